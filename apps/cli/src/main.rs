@@ -1,0 +1,2 @@
+//! The `strandline` program.
+fn main() {}

@@ -1,0 +1,65 @@
+use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// A rigid transform. Name a value by its two spaces: `world_from_head`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Rotation, unit quaternion.
+    pub rotation: Quat,
+    /// Translation \[m\], applied after the rotation.
+    pub translation: Vec3,
+}
+
+impl Pose {
+    /// The pose that moves nothing.
+    pub const IDENTITY: Self = Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
+
+    /// A rotation about a fixed point \[m\].
+    pub fn rotation_about(pivot: Vec3, rotation: Quat) -> Self {
+        Self { rotation, translation: pivot - rotation * pivot }
+    }
+
+    /// Carries a point \[m\].
+    pub fn point(&self, point: Vec3) -> Vec3 {
+        self.rotation * point + self.translation
+    }
+
+    /// Carries a direction; lengths are kept.
+    pub fn direction(&self, direction: Vec3) -> Vec3 {
+        self.rotation * direction
+    }
+
+    /// The pose that undoes this one.
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.conjugate();
+        Self { rotation, translation: -(rotation * self.translation) }
+    }
+
+    /// The pose on the way to `end`: linear in translation, spherical in rotation;
+    /// `share` is 0 here and 1 at `end`.
+    pub fn toward(&self, end: &Self, share: f32) -> Self {
+        Self {
+            rotation: self.rotation.slerp(end.rotation, share),
+            translation: self.translation.lerp(end.translation, share),
+        }
+    }
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inverse_undoes() {
+        let pose = Pose::rotation_about(Vec3::new(0.1, 1.0, -0.2), Quat::from_rotation_y(0.7));
+        let point = Vec3::new(0.3, 0.2, 0.9);
+        assert!((pose.inverse().point(pose.point(point)) - point).length() < 1e-6);
+        assert!((pose.point(Vec3::new(0.1, 1.0, -0.2)) - Vec3::new(0.1, 1.0, -0.2)).length() < 1e-6);
+    }
+}

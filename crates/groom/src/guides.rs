@@ -1,0 +1,162 @@
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::{Groom, GroomError, LANES, Vec3Lanes, block_count};
+
+/// The simulated strands at rest: each resampled to the same number of points at equal arc
+/// length, stored in blocks of [`LANES`] strands.
+///
+/// Lanes beyond the last strand repeat the last strand, so that arithmetic on them stays finite;
+/// they carry no mass and are never drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guides {
+    strand_count: usize,
+    points_per_strand: usize,
+    positions: Vec<Vec3Lanes>,
+    root_normals: Vec<Vec3>,
+    widths: Vec<f32>,
+}
+
+impl Guides {
+    /// Fewest points that a guide may have.
+    pub const MIN_POINTS: usize = 4;
+    /// Most points that a guide may have.
+    pub const MAX_POINTS: usize = 64;
+
+    /// Resamples every strand of a groom to `points_per_strand` points at equal arc length.
+    ///
+    /// Roots without a normal take the direction of their first segment.
+    ///
+    /// # Errors
+    /// `points_per_strand` outside 4..=64; a groom without strands.
+    pub fn resample(groom: &Groom, points_per_strand: usize) -> Result<Self, GroomError> {
+        if !(Self::MIN_POINTS..=Self::MAX_POINTS).contains(&points_per_strand) {
+            return Err(GroomError::Setting {
+                name: "points_per_strand",
+                found: points_per_strand.to_string(),
+                expected: "4 to 64",
+            });
+        }
+        let strand_count = groom.strand_count();
+        if strand_count == 0 {
+            return Err(GroomError::Empty);
+        }
+        let mut positions = vec![Vec3Lanes::default(); block_count(strand_count) * points_per_strand];
+        positions.par_chunks_mut(points_per_strand).enumerate().for_each(|(block, chunk)| {
+            for lane in 0..LANES {
+                let strand = groom.strand((block * LANES + lane).min(strand_count - 1));
+                for (slot, point) in chunk.iter_mut().zip(equal_arcs(strand, points_per_strand)) {
+                    slot.set(lane, point);
+                }
+            }
+        });
+        let root_normals = (0..strand_count).map(|strand| root_normal(groom, strand)).collect();
+        let widths =
+            (0..strand_count).map(|strand| groom.widths.at(strand, groom.starts[strand] as usize)).collect();
+        Ok(Self { strand_count, points_per_strand, positions, root_normals, widths })
+    }
+
+    /// Number of strands.
+    pub fn strand_count(&self) -> usize {
+        self.strand_count
+    }
+
+    /// Points on each strand.
+    pub fn points_per_strand(&self) -> usize {
+        self.points_per_strand
+    }
+
+    /// Number of blocks of [`LANES`] strands.
+    pub fn block_count(&self) -> usize {
+        block_count(self.strand_count)
+    }
+
+    /// Rest positions \[m\], head space, shape `[block][point]` of lanes.
+    pub fn positions(&self) -> &[Vec3Lanes] {
+        &self.positions
+    }
+
+    /// Rest position \[m\] of one point, head space.
+    pub fn position(&self, strand: usize, point: usize) -> Vec3 {
+        self.positions[strand / LANES * self.points_per_strand + point].get(strand % LANES)
+    }
+
+    /// Unit skin normals at the roots, head space, shape `[strand]`.
+    pub fn root_normals(&self) -> &[Vec3] {
+        &self.root_normals
+    }
+
+    /// Replaces the skin normals at the roots, head space, shape `[strand]`.
+    pub fn set_root_normals(&mut self, root_normals: Vec<Vec3>) {
+        assert_eq!(root_normals.len(), self.strand_count);
+        self.root_normals = root_normals;
+    }
+
+    /// Root diameters \[m\], shape `[strand]`.
+    pub fn widths(&self) -> &[f32] {
+        &self.widths
+    }
+}
+
+fn root_normal(groom: &Groom, strand: usize) -> Vec3 {
+    let points = groom.strand(strand);
+    match &groom.root_normals {
+        Some(normals) => normals[strand],
+        None => (points[1] - points[0]).normalize_or(Vec3::Y),
+    }
+}
+
+/// Points at equal distances along a polyline, both ends included.
+fn equal_arcs(points: &[Vec3], count: usize) -> impl Iterator<Item = Vec3> + '_ {
+    let total: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    let mut segment = 0;
+    let mut passed = 0.0;
+    (0..count).map(move |index| {
+        if index + 1 == count {
+            return points[points.len() - 1];
+        }
+        let wanted = total * index as f32 / (count - 1) as f32;
+        loop {
+            let (start, end) = (points[segment], points[segment + 1]);
+            let length = start.distance(end);
+            if passed + length >= wanted || segment + 2 == points.len() {
+                let share = if length > 0.0 { ((wanted - passed) / length).clamp(0.0, 1.0) } else { 0.0 };
+                return start.lerp(end, share);
+            }
+            passed += length;
+            segment += 1;
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bent_strand_is_divided_by_arc_length() {
+        let mut groom = Groom::empty(8e-5);
+        groom.push([Vec3::ZERO, Vec3::X, Vec3::new(1.0, 3.0, 0.0)]);
+        let guides = Guides::resample(&groom, 5).unwrap();
+        let expected = [
+            Vec3::ZERO,
+            Vec3::X,
+            Vec3::new(1.0, 1.0, 0.0),
+            Vec3::new(1.0, 2.0, 0.0),
+            Vec3::new(1.0, 3.0, 0.0),
+        ];
+        for (point, expected) in expected.into_iter().enumerate() {
+            assert!((guides.position(0, point) - expected).length() < 1e-6);
+        }
+        assert_eq!(guides.positions()[4].get(7), guides.position(0, 4));
+    }
+
+    #[test]
+    fn point_counts_outside_the_range_are_refused() {
+        let mut groom = Groom::empty(8e-5);
+        groom.push([Vec3::ZERO, Vec3::X]);
+        assert!(Guides::resample(&groom, 3).is_err());
+        assert!(Guides::resample(&groom, 65).is_err());
+        assert!(Guides::resample(&Groom::empty(8e-5), 8).is_err());
+    }
+}

@@ -1,0 +1,18 @@
+//! How hair looks: every stage from guide points to a picture [Chen2011 §3]. It takes points and
+//! knows nothing of the simulation.
+
+pub mod cpu;
+
+mod camera;
+mod error;
+mod frame;
+mod lights;
+mod look;
+mod picture;
+
+pub use camera::Camera;
+pub use error::RenderError;
+pub use frame::{FrameInput, FrameReport, Renderer};
+pub use lights::Light;
+pub use look::{LevelOfDetail, Look};
+pub use picture::Picture;

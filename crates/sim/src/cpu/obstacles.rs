@@ -1,0 +1,48 @@
+//! Colliders placed in the world for the duration of a step.
+
+use glam::Vec3;
+use strandline_body::{Carrier, Collider, Pose};
+
+/// The colliders at the end of a step, and how they got there.
+#[derive(Clone, Copy)]
+pub struct Obstacles<'a> {
+    /// The solids.
+    pub colliders: &'a [Collider],
+    /// Pose of the head at the start of the step.
+    pub start: Pose,
+    /// Pose of the head at the end of the step.
+    pub end: Pose,
+    /// Length of the step \[s\].
+    pub time_step: f32,
+}
+
+impl Obstacles<'_> {
+    /// Signed distance \[m\] to the nearest solid at the end of the step, its unit gradient, and
+    /// the solid's index; `None` without colliders. World space.
+    pub fn nearest(&self, point: Vec3) -> Option<(f32, Vec3, usize)> {
+        let head_from_world = self.end.inverse();
+        self.colliders
+            .iter()
+            .enumerate()
+            .map(|(index, collider)| match collider.carrier {
+                Carrier::World => {
+                    let (distance, gradient) = collider.shape.distance_and_gradient(point);
+                    (distance, gradient, index)
+                }
+                Carrier::Head => {
+                    let (distance, gradient) =
+                        collider.shape.distance_and_gradient(head_from_world.point(point));
+                    (distance, self.end.direction(gradient), index)
+                }
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
+    pub fn velocity(&self, collider: usize, point: Vec3) -> Vec3 {
+        match self.colliders[collider].carrier {
+            Carrier::World => Vec3::ZERO,
+            Carrier::Head => (point - self.start.point(self.end.inverse().point(point))) / self.time_step,
+        }
+    }
+}

@@ -1,0 +1,19 @@
+//! How hair moves: position-based strands coupled to a FLIP volume [Chen2011 §4].
+//!
+//! [`Settings`] are plain data in SI units, a [`Solver`] is compiled once and never changes, a
+//! [`State`] is all that changes with time.
+
+pub mod cpu;
+
+mod error;
+mod report;
+mod settings;
+mod solver;
+mod state;
+mod step;
+
+pub use error::SimError;
+pub use report::{PressureReport, StepReport};
+pub use settings::{Preconditioner, Settings, Springs, VolumeSettings};
+pub use solver::Solver;
+pub use state::{Drive, State};

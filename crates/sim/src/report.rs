@@ -1,0 +1,27 @@
+/// What the pressure solve did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PressureReport {
+    /// Conjugate-gradient iterations.
+    pub iterations: usize,
+    /// Residual over the first residual, largest absolute component.
+    pub relative_residual: f32,
+    /// Unknowns: cells that hold hair.
+    pub fluid_cells: usize,
+}
+
+/// Quality and cost of one step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Wall-clock seconds of each stage, in order.
+    pub seconds: Vec<(&'static str, f64)>,
+    /// The pressure solve.
+    pub pressure: PressureReport,
+    /// Mean of length / rest length - 1 over all segments.
+    pub stretch_mean: f32,
+    /// Largest length / rest length - 1 of any segment.
+    pub stretch_max: f32,
+    /// Deepest free point inside a collider \[m\]; 0 when none is inside.
+    pub penetration_max: f32,
+    /// Points whose position or velocity is not finite.
+    pub non_finite: usize,
+}
