@@ -1,0 +1,128 @@
+//! Runs the steps one after the other and adds up what the test runners print.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use crate::names;
+
+/// Sums over every `test result:` line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Tally {
+    passed: u64,
+    failed: u64,
+    ignored: u64,
+}
+
+impl Tally {
+    /// Adds a line such as `test result: ok. 3 passed; 0 failed; 1 ignored; ...`; false when it is not one.
+    fn add(&mut self, line: &str) -> bool {
+        let Some(counts) = line.trim_start().strip_prefix("test result:") else { return false };
+        for part in counts.split([';', '.']) {
+            let mut words = part.split_whitespace();
+            let (Some(number), Some(word)) = (words.next().and_then(|n| n.parse::<u64>().ok()), words.next())
+            else {
+                continue;
+            };
+            match word {
+                "passed" => self.passed += number,
+                "failed" => self.failed += number,
+                "ignored" => self.ignored += number,
+                _ => {}
+            }
+        }
+        true
+    }
+}
+
+/// Everything that must hold before a change lands. False when anything failed.
+pub fn test() -> bool {
+    let begin = Instant::now();
+    let mut tally = Tally::default();
+    let mut broken: Vec<String> = Vec::new();
+    let mut step = |name: &str, passed: bool| {
+        if !passed {
+            broken.push(name.to_owned());
+        }
+    };
+    step("format", cargo(&["fmt", "--all", "--check"], &[], &mut tally));
+    step("names", names::check());
+    let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
+    step("lints", cargo(&lints, &[], &mut tally));
+    let tests = ["test", "--workspace", "--all-targets", "--no-fail-fast"];
+    step("tests", cargo(&tests, &[], &mut tally));
+    step("doc tests", cargo(&["test", "--workspace", "--doc", "--no-fail-fast"], &[], &mut tally));
+    let docs = ["doc", "--workspace", "--no-deps", "--quiet"];
+    step("documentation", cargo(&docs, &[("RUSTDOCFLAGS", "-D warnings")], &mut tally));
+    for name in examples() {
+        let run = ["run", "--quiet", "--package", "strandline", "--example", &name];
+        step(&format!("example {name}"), cargo(&run, &[("STRANDLINE_QUICK", "1")], &mut tally));
+    }
+    println!("\ntook {:.0} s", begin.elapsed().as_secs_f64());
+    for name in &broken {
+        println!("FAILED: {name}");
+    }
+    println!("tests: {} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.ignored);
+    broken.is_empty() && tally.failed == 0 && tally.passed > 0
+}
+
+/// Records the golden pictures anew.
+pub fn bless() -> bool {
+    let mut tally = Tally::default();
+    let pictures = ["test", "--package", "strandline-checks", "--test", "pictures", "golden"];
+    cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
+}
+
+/// The examples, by file name, in order.
+fn examples() -> Vec<String> {
+    let folder = root().join("examples");
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".rs").map(str::to_owned))
+        .collect();
+    names.sort();
+    names
+}
+
+/// The repository's root.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the root")
+}
+
+/// Runs cargo in the root, prints what it prints, and adds up its test results.
+fn cargo(arguments: &[&str], environment: &[(&str, &str)], tally: &mut Tally) -> bool {
+    println!("\n== cargo {}", arguments.join(" "));
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(root()).stdout(Stdio::piped());
+    command.envs(environment.iter().copied());
+    let mut child = match command.spawn() {
+        Ok(child) => child,
+        Err(error) => {
+            eprintln!("cannot run cargo: {error}");
+            return false;
+        }
+    };
+    let output = BufReader::new(child.stdout.take().expect("stdout is piped"));
+    for line in output.lines().map_while(Result::ok) {
+        println!("{line}");
+        tally.add(&line);
+    }
+    child.wait().is_ok_and(|status| status.success())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_are_added_and_other_lines_are_not() {
+        let mut tally = Tally::default();
+        assert!(tally.add("test result: FAILED. 3 passed; 1 failed; 2 ignored; 0 measured; 4 filtered out"));
+        assert!(!tally.add("running 3 tests"));
+        assert!(tally.add("test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out"));
+        assert_eq!(tally, Tally { passed: 8, failed: 1, ignored: 2 });
+    }
+}
