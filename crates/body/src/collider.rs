@@ -3,7 +3,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::{Aabb, DistanceGrid, Mannequin};
+use crate::{Aabb, BodyError, DistanceGrid, Mannequin, SignedDistance};
 
 /// What a collider moves with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,15 +42,86 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// A ball of `radius` \[m\] about `center` \[m\].
+    ///
+    /// # Errors
+    /// The centre must be finite, the radius finite and above zero.
+    pub fn sphere(center: Vec3, radius: f32) -> Result<Self, BodyError> {
+        finite("the centre of the sphere", center)?;
+        positive("the radius of the sphere", radius)?;
+        Ok(Self::Sphere { center, radius })
+    }
+
+    /// All points within `radius` \[m\] of the segment from `start` to `end` \[m\];
+    /// equal ends make a sphere.
+    ///
+    /// # Errors
+    /// The ends must be finite, the radius finite and above zero.
+    pub fn capsule(start: Vec3, end: Vec3, radius: f32) -> Result<Self, BodyError> {
+        finite("the start of the capsule", start)?;
+        finite("the end of the capsule", end)?;
+        positive("the radius of the capsule", radius)?;
+        Ok(Self::Capsule { start, end, radius })
+    }
+
     /// Signed distance \[m\] and unit gradient at a point \[m\], both in the shape's space.
-    pub fn distance_and_gradient(&self, _point: Vec3) -> (f32, Vec3) {
-        unimplemented!("body mechanics")
+    ///
+    /// Where the gradient does not exist (the centre of a sphere, the segment of a capsule) it is
+    /// some unit vector that leads out of the shape on a shortest way.
+    pub fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
+        match self {
+            Self::Sphere { center, radius } => round(point - *center, Vec3::Y, *radius),
+            Self::Capsule { start, end, radius } => {
+                let axis = *end - *start;
+                let nearest = *start + axis * share_along(point - *start, axis);
+                let aside = axis.try_normalize().map_or(Vec3::Y, |unit| unit.any_orthonormal_vector());
+                round(point - nearest, aside, *radius)
+            }
+            Self::Mannequin(mannequin) => mannequin.distance_and_gradient(point),
+            Self::Grid(grid) => grid.distance_and_gradient(point),
+        }
     }
 
     /// A box that holds the shape.
     pub fn bounds(&self) -> Aabb {
-        unimplemented!("body mechanics")
+        match self {
+            Self::Sphere { center, radius } => Aabb { min: *center - *radius, max: *center + *radius },
+            Self::Capsule { start, end, radius } => {
+                Aabb { min: start.min(*end) - *radius, max: start.max(*end) + *radius }
+            }
+            Self::Mannequin(mannequin) => mannequin.bounds(),
+            Self::Grid(grid) => grid.bounds(),
+        }
     }
+}
+
+/// Distance and gradient of a round shape, `offset` \[m\] from its nearest centre; `aside` is the
+/// gradient where the offset has no direction.
+fn round(offset: Vec3, aside: Vec3, radius: f32) -> (f32, Vec3) {
+    let length = offset.length();
+    // Below this the squared length underflows and the direction is noise.
+    let gradient = if length > 1e-18 { offset / length } else { aside };
+    (length - radius, gradient)
+}
+
+/// Where along `axis` the point at `offset` from its start is nearest, 0..1; 0 for a zero-length axis.
+fn share_along(offset: Vec3, axis: Vec3) -> f32 {
+    let squared = axis.length_squared();
+    if squared > 0.0 { (offset.dot(axis) / squared).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+fn finite(what: &'static str, value: Vec3) -> Result<(), BodyError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(BodyError::Value { what, found: value.to_string(), expected: "three finite numbers [m]" })
+}
+
+fn positive(what: &'static str, value: f32) -> Result<(), BodyError> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(BodyError::Value { what, found: value.to_string(), expected: "a finite number above zero [m]" })
 }
 
 /// A shape, what carries it, and how it rubs.
@@ -62,4 +133,115 @@ pub struct Collider {
     pub carrier: Carrier,
     /// Coulomb friction coefficient, 0 is frictionless.
     pub friction: f32,
+}
+
+impl Collider {
+    /// A collider with a Coulomb friction coefficient.
+    ///
+    /// # Errors
+    /// The friction must be finite and not negative; a sphere or capsule must be as
+    /// [`Shape::sphere`] and [`Shape::capsule`] ask.
+    pub fn new(shape: Shape, carrier: Carrier, friction: f32) -> Result<Self, BodyError> {
+        let shape = match shape {
+            Shape::Sphere { center, radius } => Shape::sphere(center, radius)?,
+            Shape::Capsule { start, end, radius } => Shape::capsule(start, end, radius)?,
+            Shape::Mannequin(_) | Shape::Grid(_) => shape,
+        };
+        if !friction.is_finite() || friction < 0.0 {
+            return Err(BodyError::Value {
+                what: "the friction of the collider",
+                found: friction.to_string(),
+                expected: "a finite number, zero or more",
+            });
+        }
+        Ok(Self { shape, carrier, friction })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Single precision over lengths of about 1 m.
+    const ROUNDING: f32 = 1e-6;
+
+    fn points() -> impl Iterator<Item = Vec3> {
+        (0..343).map(|i| Vec3::new((i % 7) as f32, (i / 7 % 7) as f32, (i / 49) as f32) / 3.0 - 1.0)
+    }
+
+    #[test]
+    fn a_sphere_is_exact() {
+        let shape = Shape::sphere(Vec3::new(0.1, 0.2, -0.3), 0.4).unwrap();
+        let (distance, gradient) = shape.distance_and_gradient(Vec3::new(0.1, 1.2, -0.3));
+        assert!((distance - 0.6).abs() < ROUNDING);
+        assert!((gradient - Vec3::Y).length() < ROUNDING);
+        let (distance, _) = shape.distance_and_gradient(Vec3::new(0.2, 0.2, -0.3));
+        assert!((distance + 0.3).abs() < ROUNDING);
+    }
+
+    #[test]
+    fn a_capsule_is_the_nearest_sphere_on_its_segment() {
+        let (start, end, radius) = (Vec3::new(-0.3, 0.1, 0.0), Vec3::new(0.4, -0.2, 0.5), 0.2);
+        let shape = Shape::capsule(start, end, radius).unwrap();
+        for point in points() {
+            let brute = (0..=2000)
+                .map(|i| point.distance(start.lerp(end, i as f32 / 2000.0)) - radius)
+                .fold(f32::INFINITY, f32::min);
+            let (distance, gradient) = shape.distance_and_gradient(point);
+            // The brute force looks at points 0.45 mm apart: it is at most
+            // half of that too far when the point lies on the segment.
+            assert!(distance <= brute + ROUNDING && brute - distance < 2.3e-4, "{point}");
+            assert!((gradient.length() - 1.0).abs() < ROUNDING);
+            let further = shape.distance_and_gradient(point + gradient * 1e-2).0;
+            // Rounding of two distances of about 1 m.
+            assert!((further - distance - 1e-2).abs() < 2.0 * ROUNDING, "{point}");
+        }
+    }
+
+    #[test]
+    fn a_capsule_of_no_length_is_a_sphere() {
+        let center = Vec3::new(0.1, 0.2, 0.3);
+        let capsule = Shape::capsule(center, center, 0.25).unwrap();
+        let sphere = Shape::sphere(center, 0.25).unwrap();
+        for point in points().chain([center]) {
+            assert_eq!(capsule.distance_and_gradient(point), sphere.distance_and_gradient(point));
+        }
+    }
+
+    #[test]
+    fn the_gradient_is_a_unit_vector_where_it_does_not_exist() {
+        let sphere = Shape::sphere(Vec3::ONE, 0.5).unwrap();
+        let capsule = Shape::capsule(Vec3::ZERO, Vec3::X, 0.5).unwrap();
+        for (shape, point) in [(&sphere, Vec3::ONE), (&capsule, Vec3::X * 0.5), (&capsule, Vec3::ZERO)] {
+            let (distance, gradient) = shape.distance_and_gradient(point);
+            assert_eq!(distance, -0.5);
+            assert!((gradient.length() - 1.0).abs() < ROUNDING);
+            // Following it leads out: 0.5 m away the surface is reached.
+            assert!(shape.distance_and_gradient(point + gradient * 0.5).0.abs() < ROUNDING);
+        }
+    }
+
+    #[test]
+    fn the_bounds_touch_the_shape() {
+        let capsule = Shape::capsule(Vec3::new(0.0, 1.0, 0.0), Vec3::X, 0.5).unwrap();
+        assert_eq!(capsule.bounds(), Aabb { min: Vec3::splat(-0.5), max: Vec3::new(1.5, 1.5, 0.5) });
+        let sphere = Shape::sphere(Vec3::X, 0.5).unwrap();
+        assert_eq!(sphere.bounds(), Aabb { min: Vec3::new(0.5, -0.5, -0.5), max: Vec3::new(1.5, 0.5, 0.5) });
+    }
+
+    #[test]
+    fn impossible_values_are_refused_by_name() {
+        for radius in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            let error = Shape::sphere(Vec3::ZERO, radius).unwrap_err().to_string();
+            assert!(error.contains("the radius of the sphere") && error.contains(&radius.to_string()));
+            assert!(Shape::capsule(Vec3::ZERO, Vec3::X, radius).is_err());
+        }
+        assert!(Shape::capsule(Vec3::NAN, Vec3::X, 1.0).is_err());
+        let shape = Shape::Sphere { center: Vec3::ZERO, radius: -1.0 };
+        assert!(Collider::new(shape, Carrier::Head, 0.3).is_err());
+        let shape = Shape::Sphere { center: Vec3::ZERO, radius: 1.0 };
+        assert!(Collider::new(shape.clone(), Carrier::Head, -0.1).is_err());
+        assert!(Collider::new(shape.clone(), Carrier::Head, f32::NAN).is_err());
+        assert!(Collider::new(shape, Carrier::Head, 0.0).is_ok());
+    }
 }

@@ -12,4 +12,65 @@ pub enum BodyError {
         /// What the system said.
         source: std::io::Error,
     },
+    /// The file is not a mesh that can be used.
+    #[error("{found}, expected {expected}; {mend}: {}", path.display())]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: &'static str,
+        /// How to mend it.
+        mend: &'static str,
+    },
+    /// A mesh with holes has no inside.
+    #[error(
+        "the mesh is open: {open_edge_count} of its edges have no partner, expected none; \
+         close the mesh, or give a collider mesh of its own"
+    )]
+    OpenMesh {
+        /// Edges that are not shared by exactly two triangles of the same winding.
+        open_edge_count: usize,
+    },
+    /// A mesh without triangles or with vertices that are no points.
+    #[error("the mesh has {found}, expected {expected}; export it again as triangles")]
+    BadMesh {
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// A distance grid would be too large.
+    #[error(
+        "a distance grid of {} x {} x {} cells is too large, expected {limit} cells at most; \
+         raise the spacing of the grid, or scale the mesh to metres",
+        cells[0], cells[1], cells[2]
+    )]
+    GridTooLarge {
+        /// Cells asked for in x, y, z.
+        cells: [u64; 3],
+        /// The most that are allowed.
+        limit: u64,
+    },
+    /// A value is outside its range.
+    #[error("{what} is {found}, expected {expected}")]
+    Value {
+        /// Which value.
+        what: &'static str,
+        /// What was given.
+        found: String,
+        /// The range.
+        expected: &'static str,
+    },
+    /// A keyframe cannot be used.
+    #[error("keyframe {index} has {found}, expected {expected}")]
+    Keyframe {
+        /// Its place in the list, from 0.
+        index: usize,
+        /// What was found.
+        found: String,
+        /// What was expected.
+        expected: &'static str,
+    },
 }

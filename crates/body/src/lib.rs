@@ -4,17 +4,28 @@
 //! Units are SI; y is up and the face looks along +z. *Head space* is the space in which a body
 //! and a groom are at rest; [`Pose`] carries it into the world.
 
+mod closing;
 mod collider;
 mod distance;
+mod distance_grid;
 mod error;
+mod gltf;
+mod gltf_buffers;
+mod inside;
+mod keyframes;
+mod lattice;
 mod mannequin;
 mod mesh;
+mod mesh_distance;
 mod motion;
+mod obj;
 mod pose;
 mod scalp;
+mod triangle;
 
 pub use collider::{Carrier, Collider, Shape};
-pub use distance::{Aabb, DistanceGrid, SignedDistance};
+pub use distance::{Aabb, SignedDistance};
+pub use distance_grid::DistanceGrid;
 pub use error::BodyError;
 pub use mannequin::Mannequin;
 pub use mesh::Mesh;

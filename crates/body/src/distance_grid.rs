@@ -1,0 +1,155 @@
+use glam::{UVec3, Vec3, Vec4};
+use rayon::prelude::*;
+
+use crate::lattice::Lattice;
+use crate::{Aabb, BodyError, Mesh, SignedDistance, mesh_distance};
+
+/// Signed distance sampled on a regular grid and interpolated trilinearly.
+///
+/// The gradient is interpolated too, from central differences at the nodes: it is continuous, so
+/// that hair slides over the cells without a jerk, and it is made a unit vector afterwards.
+/// Outside the box the distance is that to the box plus the one at the nearest point of the box:
+/// continuous, and never less than the true one.
+#[derive(Clone, Debug)]
+pub struct DistanceGrid {
+    lattice: Lattice,
+    inverse_spacing: f32,
+    /// Gradient and distance \[m\] at each node, x fastest.
+    nodes: Vec<Vec4>,
+}
+
+impl DistanceGrid {
+    /// Samples a field over its bounds, padded by `padding` \[m\] (two cells at least), at `spacing` \[m\].
+    ///
+    /// # Errors
+    /// The spacing must be above zero, the padding not negative, the grid 256 x 256 x 256 cells at most.
+    pub fn from_field(field: &dyn SignedDistance, spacing: f32, padding: f32) -> Result<Self, BodyError> {
+        let lattice = Lattice::around(field.bounds(), spacing, padding)?;
+        let mut distances = vec![0.0; lattice.len()];
+        distances.par_iter_mut().enumerate().for_each(|(index, distance)| {
+            *distance = field.distance(lattice.position(lattice.node(index)));
+        });
+        Ok(Self::from_distances(lattice, &distances))
+    }
+
+    /// Signed distance of a closed mesh at `spacing` \[m\], padded by `padding` \[m\] (two cells at least).
+    ///
+    /// Inside is what the surface winds around: shells that overlap are joined. A mesh that is
+    /// inside out as a whole is taken as if it were not.
+    ///
+    /// # Errors
+    /// An empty or an open mesh has no inside; for the rest see [`Self::from_field`].
+    pub fn from_mesh(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
+        mesh.check_usable()?;
+        match mesh.open_edge_count() {
+            0 => Self::from_closed(mesh, spacing, padding),
+            open_edge_count => Err(BodyError::OpenMesh { open_edge_count }),
+        }
+    }
+
+    /// The same for a mesh that may be open, as heads are that end at the neck: every hole is closed
+    /// first by a fan of triangles from the middle of its rim.
+    ///
+    /// Shells inside others (eyes, teeth) do not count.
+    ///
+    /// # Errors
+    /// An empty mesh has no inside; for the rest see [`Self::from_field`].
+    pub fn from_open_mesh(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
+        mesh.check_usable()?;
+        Self::from_closed(&mesh.closed(), spacing, padding)
+    }
+
+    fn from_closed(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
+        let bounds = mesh.bounds().unwrap_or(Aabb { min: Vec3::ZERO, max: Vec3::ZERO });
+        let lattice = Lattice::around(bounds, spacing, padding)?;
+        Ok(Self::from_distances(lattice, &mesh_distance::at_nodes(mesh, &lattice)))
+    }
+
+    fn from_distances(lattice: Lattice, distances: &[f32]) -> Self {
+        let inverse_spacing = 1.0 / lattice.spacing;
+        let mut nodes = vec![Vec4::ZERO; lattice.len()];
+        nodes.par_iter_mut().enumerate().for_each(|(index, node)| {
+            let gradient = central_difference(&lattice, distances, index) * inverse_spacing;
+            *node = gradient.extend(distances[index]);
+        });
+        Self { lattice, inverse_spacing, nodes }
+    }
+
+    /// Distance of neighbouring nodes \[m\].
+    pub fn spacing(&self) -> f32 {
+        self.lattice.spacing
+    }
+
+    /// Cells in x, y, z.
+    pub fn cells(&self) -> UVec3 {
+        self.lattice.node_count - 1
+    }
+
+    /// The box that holds the nodes; it is larger than that of the body by the padding.
+    fn grid_box(&self) -> Aabb {
+        let Lattice { origin, node_count, .. } = self.lattice;
+        Aabb { min: origin, max: self.lattice.position(node_count - 1) }
+    }
+
+    /// Gradient and distance at a point of the box.
+    #[inline]
+    fn inside_box(&self, point: Vec3) -> Vec4 {
+        let at = (point - self.lattice.origin) * self.inverse_spacing;
+        // The last cell also holds its far border.
+        let cell = at.max(Vec3::ZERO).as_uvec3().min(self.lattice.node_count - 2);
+        let share = at - cell.as_vec3();
+        let [nx, ny, _] = self.lattice.node_count.to_array().map(|count| count as usize);
+        let corner = self.lattice.index(cell);
+        let row = |start: usize| {
+            let pair = &self.nodes[start..start + 2];
+            pair[0] + (pair[1] - pair[0]) * share.x
+        };
+        let layer = |start: usize| {
+            let (near, far) = (row(start), row(start + nx));
+            near + (far - near) * share.y
+        };
+        let (near, far) = (layer(corner), layer(corner + nx * ny));
+        near + (far - near) * share.z
+    }
+}
+
+impl SignedDistance for DistanceGrid {
+    fn distance(&self, point: Vec3) -> f32 {
+        let Aabb { min, max } = self.grid_box();
+        let clamped = point.clamp(min, max);
+        self.inside_box(clamped).w + (point - clamped).length()
+    }
+
+    fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
+        let Aabb { min, max } = self.grid_box();
+        let clamped = point.clamp(min, max);
+        let sample = self.inside_box(clamped);
+        let gradient = sample.truncate().normalize_or(Vec3::Y);
+        if clamped == point {
+            return (sample.w, gradient);
+        }
+        let outside = point - clamped;
+        // Away from the point of the surface that is nearest to the box point: at the border this is the
+        // gradient inside.
+        let away = outside + gradient * sample.w;
+        (sample.w + outside.length(), away.normalize_or(gradient))
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.grid_box()
+    }
+}
+
+/// Difference of the neighbours on either side, for each axis, by two cells;
+/// at the border of the node and its one neighbour.
+fn central_difference(lattice: &Lattice, distances: &[f32], index: usize) -> Vec3 {
+    let node = lattice.node(index).to_array();
+    let strides = [1, lattice.node_count.x as usize, lattice.layer_len()];
+    let count = lattice.node_count.to_array();
+    Vec3::from_array(std::array::from_fn(|axis| {
+        let before = if node[axis] > 0 { strides[axis] } else { 0 };
+        let after = if node[axis] + 1 < count[axis] { strides[axis] } else { 0 };
+        let width = if before > 0 && after > 0 { 2.0 } else { 1.0 };
+        (distances[index + after] - distances[index - before]) / width
+    }))
+}

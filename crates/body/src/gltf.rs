@@ -1,0 +1,145 @@
+//! Reading glTF 2.0.
+
+use std::path::{Path, PathBuf};
+
+use ::gltf::Semantic;
+use ::gltf::mesh::{Mode, Primitive};
+use glam::{Mat3, Mat4, Vec3};
+
+use crate::gltf_buffers::{Buffers, load_buffers};
+use crate::mesh::read_file;
+use crate::{BodyError, Mesh};
+
+/// The most vertices and the most triangles of one body: nodes can repeat a mesh many times.
+const COUNT_LIMIT: usize = 16 << 20;
+/// The deepest nesting of nodes.
+const DEPTH_LIMIT: usize = 64;
+
+/// Why a file is refused: what was found and what was expected.
+pub(crate) type Refusal = (String, &'static str);
+
+/// Reads a mesh in the units of the file, all nodes in place; vertices without a normal get a zero one.
+pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
+    let bytes = read_file(path)?;
+    parse(&bytes, path.parent()).map_err(|(found, expected)| BodyError::Mesh {
+        path: PathBuf::from(path),
+        found,
+        expected,
+        mend: "export the body again as plain glTF 2.0 (no compression), or as OBJ",
+    })
+}
+
+fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Mesh, Refusal> {
+    check_container(bytes)?;
+    let ::gltf::Gltf { document, blob } =
+        ::gltf::Gltf::from_slice(bytes).map_err(|error| (format!("bad glTF ({error})"), "valid glTF 2.0"))?;
+    let buffers = load_buffers(&document, blob, folder)?;
+    let mut mesh = Mesh::default();
+    for (node, world_from_node) in placed_nodes(&document)? {
+        let Some(part) = node.mesh() else { continue };
+        for primitive in part.primitives() {
+            append(&mut mesh, &primitive, world_from_node, &buffers)?;
+        }
+    }
+    Ok(mesh)
+}
+
+/// A binary file says its own length, which the parser subtracts from without a look.
+fn check_container(bytes: &[u8]) -> Result<(), Refusal> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok(());
+    }
+    let stated = bytes.get(8..12).and_then(|field| field.try_into().ok()).map(u32::from_le_bytes);
+    match stated {
+        Some(length) if length >= 12 && length as usize <= bytes.len() => Ok(()),
+        Some(length) => {
+            Err((format!("a file of {} bytes that says it has {length}", bytes.len()), "the whole file"))
+        }
+        None => Err((format!("a file of {} bytes", bytes.len()), "a header of 12 bytes")),
+    }
+}
+
+/// All nodes with their transforms, parents first.
+fn placed_nodes(document: &::gltf::Document) -> Result<Vec<(::gltf::Node<'_>, Mat4)>, Refusal> {
+    let mut is_child = vec![false; document.nodes().len()];
+    for child in document.nodes().flat_map(|node| node.children()) {
+        if std::mem::replace(&mut is_child[child.index()], true) {
+            return Err((format!("node {} below two others", child.index()), "a tree of nodes"));
+        }
+    }
+    let mut placed = Vec::new();
+    // Every node is below one other at most: the walk from the roots meets each once and ends.
+    let mut waiting: Vec<_> = document
+        .nodes()
+        .filter(|node| !is_child[node.index()])
+        .map(|node| (node, Mat4::IDENTITY, 0))
+        .collect();
+    while let Some((node, world_from_parent, depth)) = waiting.pop() {
+        if depth > DEPTH_LIMIT {
+            return Err((format!("node {} more than {DEPTH_LIMIT} deep", node.index()), "fewer levels"));
+        }
+        let world_from_node = world_from_parent * Mat4::from_cols_array_2d(&node.transform().matrix());
+        waiting.extend(node.children().map(|child| (child, world_from_node, depth + 1)));
+        placed.push((node, world_from_node));
+    }
+    placed.sort_by_key(|(node, _)| node.index());
+    Ok(placed)
+}
+
+fn append(
+    mesh: &mut Mesh,
+    part: &Primitive,
+    world_from_node: Mat4,
+    buffers: &Buffers,
+) -> Result<(), Refusal> {
+    if !matches!(part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+        return Ok(());
+    }
+    let Some(positions) = part.get(&Semantic::Positions) else { return Ok(()) };
+    let positions = buffers.vectors(&positions)?;
+    let corners = match part.indices() {
+        Some(indices) => buffers.indices(&indices)?,
+        None => (0..positions.len() as u32).collect(),
+    };
+    let first = mesh.positions.len();
+    if first + positions.len() > COUNT_LIMIT || mesh.triangles.len() + corners.len() > COUNT_LIMIT {
+        return Err(("more than 16 Mi vertices or triangles".into(), "a mesh for a body"));
+    }
+    if let Some(corner) = corners.iter().find(|corner| **corner as usize >= positions.len()) {
+        return Err((format!("the index {corner} of {} vertices", positions.len()), "indices in range"));
+    }
+    let normals = match part.get(&Semantic::Normals) {
+        Some(normals) => buffers.vectors(&normals)?,
+        None => Vec::new(),
+    };
+    // Normals turn with the inverse transpose; a mirror image turns the triangles over.
+    let linear = Mat3::from_mat4(world_from_node);
+    let world_from_normal = linear.inverse().transpose();
+    mesh.positions.extend(positions.iter().map(|position| world_from_node.transform_point3(*position)));
+    mesh.normals.extend(normals.iter().take(positions.len()).map(|normal| {
+        let normal = world_from_normal * *normal;
+        if normal.is_finite() { normal.normalize_or_zero() } else { Vec3::ZERO }
+    }));
+    mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
+    let is_mirrored = linear.determinant() < 0.0;
+    mesh.triangles.extend(triangles(part.mode(), &corners).map(|[a, b, c]| {
+        let [b, c] = if is_mirrored { [c, b] } else { [b, c] };
+        [a, b, c].map(|corner| first as u32 + corner)
+    }));
+    Ok(())
+}
+
+fn triangles(mode: Mode, corners: &[u32]) -> Box<dyn Iterator<Item = [u32; 3]> + '_> {
+    match mode {
+        Mode::TriangleStrip => Box::new(corners.windows(3).enumerate().map(|(index, c)| {
+            // Every second triangle of a strip is wound the other way.
+            if index % 2 == 0 { [c[0], c[1], c[2]] } else { [c[1], c[0], c[2]] }
+        })),
+        Mode::TriangleFan => {
+            let center = corners.first().copied().unwrap_or_default();
+            let rim = corners.get(1..).unwrap_or_default();
+            Box::new(rim.windows(2).map(move |pair| [center, pair[0], pair[1]]))
+        }
+        _ => Box::new(corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]])),
+    }
+}

@@ -1,0 +1,297 @@
+//! Signed distance of meshes against what is known of them.
+
+mod shapes;
+
+use glam::Vec3;
+use shapes::{ball, distance_by_search, inside_out, part, supplied, together, winding_number};
+use strandline_body::{Aabb, BodyError, DistanceGrid, Mesh, SignedDistance};
+
+const CENTER: Vec3 = Vec3::new(0.03, 1.5, -0.02);
+const RADIUS: f32 = 0.1;
+const SPACING: f32 = 0.004;
+const PADDING: f32 = 0.03;
+
+/// An exact ball.
+struct Ball;
+
+impl SignedDistance for Ball {
+    fn distance(&self, point: Vec3) -> f32 {
+        point.distance(CENTER) - RADIUS
+    }
+    fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
+        (self.distance(point), (point - CENTER).normalize())
+    }
+    fn bounds(&self) -> Aabb {
+        Aabb { min: CENTER - RADIUS, max: CENTER + RADIUS }
+    }
+}
+
+/// Points in a box, the same ones every time, at no special places.
+fn points(bounds: Aabb, count: u32) -> impl Iterator<Item = Vec3> {
+    let size = bounds.max - bounds.min;
+    // The additive sequence of the plastic number fills a box evenly [Roberts2018].
+    let steps = glam::DVec3::new(0.819_172_513_396, 0.671_043_606_703, 0.549_700_477_902);
+    (1..=count).map(move |index| bounds.min + size * (steps * f64::from(index)).fract().as_vec3())
+}
+
+/// The places of the nodes of a grid: its values there are not interpolated.
+fn nodes(grid: &DistanceGrid) -> impl Iterator<Item = Vec3> + '_ {
+    let count = grid.cells() + 1;
+    let total = count.x * count.y * count.z;
+    (0..total).map(move |index| {
+        let node = glam::UVec3::new(index % count.x, index / count.x % count.y, index / (count.x * count.y));
+        grid.bounds().min + node.as_vec3() * grid.spacing()
+    })
+}
+
+/// Checks a grid against the exact ball, whose samples are `inexact` \[m\] wrong.
+fn check_ball(grid: &DistanceGrid, inexact: f32) {
+    // Where the field is smooth. Trilinear error: spacing^2 / 8 times the sum of the
+    // second derivatives, 2 / distance from the centre, here at least a third of the radius.
+    let tolerance = inexact + SPACING * SPACING / 8.0 * 2.0 / (RADIUS / 3.0) + 1e-6;
+    for point in points(grid.bounds(), 20_000).filter(|point| point.distance(CENTER) > RADIUS / 3.0) {
+        let (distance, gradient) = grid.distance_and_gradient(point);
+        let (exact, direction) = Ball.distance_and_gradient(point);
+        assert!((distance - exact).abs() < tolerance, "{point}: {distance}, not {exact}");
+        assert_eq!(distance, grid.distance(point));
+        assert!((gradient.length() - 1.0).abs() < 1e-6);
+        // Differences over two cells turn the gradient by less than spacing^2 / distance^2; the facets of
+        // the mesh tilt it by up to 0.05; one-sided differences at the border by spacing / (2 distance).
+        assert!(gradient.dot(direction) > 0.995, "{point}: {gradient}, not {direction}");
+    }
+}
+
+#[test]
+fn a_field_is_sampled() {
+    let grid = DistanceGrid::from_field(&Ball, SPACING, PADDING).unwrap();
+    check_ball(&grid, 0.0);
+    assert_eq!(grid.spacing(), SPACING);
+    // 0.26 m at 4 mm, rounded up.
+    assert!(
+        grid.cells().cmpge(glam::UVec3::splat(65)).all() && grid.cells().cmple(glam::UVec3::splat(66)).all()
+    );
+}
+
+#[test]
+fn a_ball_of_triangles_is_a_ball() {
+    let mesh = ball(CENTER, RADIUS, 5);
+    let grid = DistanceGrid::from_mesh(&mesh, SPACING, PADDING).unwrap();
+    // The facets lie within the sphere by what their centres show, and the corners on it.
+    let facet = |triangle: &[u32; 3]| {
+        let sum: Vec3 = triangle.iter().map(|corner| mesh.positions[*corner as usize]).sum();
+        RADIUS - (sum / 3.0).distance(CENTER)
+    };
+    let sag = mesh.triangles.iter().map(facet).fold(0.0, f32::max);
+    assert!(sag < 2e-4, "{sag}");
+    check_ball(&grid, 1.01 * sag);
+}
+
+#[test]
+fn the_border_of_the_box_does_not_show() {
+    let mesh = ball(CENTER, RADIUS, 3);
+    let grid = DistanceGrid::from_mesh(&mesh, SPACING, 0.0).unwrap();
+    let Aabb { min, max } = grid.bounds();
+    let step = 1e-5;
+    for point in points(grid.bounds(), 2000) {
+        for (border, outward) in [(point.with_x(min.x), Vec3::NEG_X), (point.with_y(max.y), Vec3::Y)] {
+            let (inner, inner_gradient) = grid.distance_and_gradient(border - outward * step);
+            let (outer, outer_gradient) = grid.distance_and_gradient(border + outward * step);
+            // Distances change by their steps at most, 1.1 times that where they are interpolated.
+            assert!((inner - outer).abs() < 2.2 * step, "{border}: {inner} {outer}");
+            // 0.02 mm turn the gradient by what they are to the smallest distance, 8 mm, and a half of
+            // that in corners of the interpolation.
+            assert!((inner_gradient - outer_gradient).length() < 5e-3, "{inner_gradient} {outer_gradient}");
+        }
+    }
+    for point in points(Aabb { min: min - 1.0, max: max + 1.0 }, 5000) {
+        let (distance, gradient) = grid.distance_and_gradient(point);
+        let exact = Ball.distance(point);
+        // Never less than the distance but for the facets and the interpolation.
+        assert!(distance > exact - 2e-4 || exact < 0.0, "{point}: {distance}, not {exact}");
+        assert!((gradient.length() - 1.0).abs() < 1e-6);
+        let nearest = point.clamp(min, max);
+        if nearest.distance(point) > 0.5 {
+            assert!(gradient.dot((point - CENTER).normalize()) > 0.95, "{point}: {gradient}");
+        }
+    }
+}
+
+/// Compares some nodes with the search through all triangles, in distance and in sign.
+fn check_against_search(mesh: &Mesh, grid: &DistanceGrid, every: usize) {
+    let size = grid.bounds().max - grid.bounds().min;
+    for point in nodes(grid).step_by(every) {
+        let (distance, exact) = (f64::from(grid.distance(point)), distance_by_search(mesh, point));
+        // Single precision over the box; node places are rounded by that too.
+        let tolerance = 2e-6 * f64::from(size.max_element());
+        assert!((distance.abs() - exact).abs() < tolerance, "{point}: {distance}, not {exact}");
+        if exact > tolerance {
+            let winding = winding_number(mesh, point);
+            assert_eq!(distance < 0.0, winding > 0.5, "{point}: {distance}, winds {winding} times");
+        }
+    }
+}
+
+#[test]
+fn every_node_is_exact() {
+    // Nodes fall on corners and edges: the ball is symmetric and its middle is that of the grid.
+    let mesh = ball(CENTER, RADIUS, 2);
+    let grid = DistanceGrid::from_mesh(&mesh, RADIUS / 8.0, 0.02).unwrap();
+    check_against_search(&mesh, &grid, 1);
+    // Triangles of a cell and less.
+    let fine = ball(CENTER, RADIUS, 5);
+    let grid = DistanceGrid::from_mesh(&fine, SPACING, 0.02).unwrap();
+    check_against_search(&fine, &grid, 173);
+}
+
+#[test]
+fn the_collider_of_sintel_is_exact() {
+    let Some(path) = supplied("sintel/sintel-collider.obj") else { return };
+    let mesh = Mesh::load(&path, 1.0).unwrap();
+    assert!(mesh.is_closed());
+    let grid = DistanceGrid::from_mesh(&mesh, 0.003, 0.02).unwrap();
+    check_against_search(&mesh, &grid, 311);
+}
+
+#[test]
+fn open_heads_get_an_inside() {
+    for (name, spacing) in [
+        ("bust/hm08_bust_female.obj", 0.004),
+        ("bust/hm08_bust_male.obj", 0.008),
+        ("sintel/sintel.obj", 0.006),
+    ] {
+        let Some(path) = supplied(name) else { return };
+        let mesh = Mesh::load(&path, 1.0).unwrap();
+        let Err(BodyError::OpenMesh { open_edge_count }) = DistanceGrid::from_mesh(&mesh, 0.01, 0.02) else {
+            panic!("{name} is open");
+        };
+        assert!(open_edge_count > 10);
+        let grid = DistanceGrid::from_open_mesh(&mesh, spacing, 0.02).unwrap();
+        let closed = mesh.closed();
+        assert!(closed.is_closed());
+        for point in nodes(&grid).step_by(1999) {
+            let (distance, exact) = (f64::from(grid.distance(point)), distance_by_search(&closed, point));
+            let inside = winding_number(&closed, point) > 0.5;
+            assert_eq!(distance < 0.0, inside, "{name} at {point}: {distance}");
+            // Inside, shells within the head are left out, so that the way out is longer.
+            let tolerance = 1e-6;
+            assert!(distance.abs() > exact - tolerance, "{name} at {point}: {distance}, not {exact}");
+            assert!(
+                inside || distance.abs() < exact + tolerance,
+                "{name} at {point}: {distance}, not {exact}"
+            );
+        }
+    }
+}
+
+#[test]
+fn shells_join() {
+    let apart = Vec3::X * 0.12;
+    let both = together(&ball(CENTER, RADIUS, 4), &ball(CENTER + apart, RADIUS, 4));
+    let grid = DistanceGrid::from_mesh(&both, SPACING, PADDING).unwrap();
+    let (left, right) = (Ball, |point: Vec3| Ball.distance(point - apart));
+    for point in points(grid.bounds(), 5000) {
+        let exact = left.distance(point).min(right(point));
+        // Outside the union is the nearer ball; inside only the sign is as simple. Facets and interpolation
+        // take 0.5 mm, and a crease between the balls a share of a cell.
+        if exact > 0.0 {
+            assert!((grid.distance(point) - exact).abs() < 1.5e-3, "{point}");
+        } else if exact < -1.5e-3 {
+            assert!(grid.distance(point) < 0.0, "{point}");
+        }
+    }
+}
+
+#[test]
+fn a_shell_within_does_not_count() {
+    let nested = together(&ball(CENTER, RADIUS, 4), &ball(CENTER, 0.3 * RADIUS, 3));
+    let grid = DistanceGrid::from_mesh(&nested, SPACING, PADDING).unwrap();
+    let plain = DistanceGrid::from_mesh(&ball(CENTER, RADIUS, 4), SPACING, PADDING).unwrap();
+    for point in points(grid.bounds(), 5000) {
+        assert_eq!(grid.distance(point), plain.distance(point));
+    }
+}
+
+#[test]
+fn a_mesh_inside_out_is_turned() {
+    let mesh = ball(CENTER, RADIUS, 3);
+    let grid = DistanceGrid::from_mesh(&mesh, SPACING, PADDING).unwrap();
+    let turned = DistanceGrid::from_mesh(&inside_out(&mesh), SPACING, PADDING).unwrap();
+    for point in points(grid.bounds(), 5000) {
+        // Triangles with other corner orders round differently.
+        assert!((grid.distance(point) - turned.distance(point)).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_same_bits_for_any_number_of_threads() {
+    let mesh = together(&ball(CENTER, RADIUS, 4), &ball(CENTER + 0.05, 0.7 * RADIUS, 3));
+    let with_threads = |count: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().unwrap();
+        let grid = pool.install(|| DistanceGrid::from_mesh(&mesh, SPACING, PADDING)).unwrap();
+        let bits: Vec<_> = points(grid.bounds(), 20_000)
+            .map(|point| grid.distance_and_gradient(point))
+            .map(|(distance, gradient)| (distance.to_bits(), gradient.to_array().map(f32::to_bits)))
+            .collect();
+        bits
+    };
+    assert!(with_threads(1) == with_threads(3));
+}
+
+#[test]
+fn an_open_mesh_is_refused_and_can_be_closed() {
+    let whole = ball(CENTER, RADIUS, 4);
+    let open = part(&whole, |center| center.y > CENTER.y - 0.6 * RADIUS);
+    let error = DistanceGrid::from_mesh(&open, SPACING, PADDING).unwrap_err().to_string();
+    assert!(error.contains(&format!("{} of its edges", open.open_edge_count())), "{error}");
+    assert!(error.contains("close the mesh"), "{error}");
+    let grid = DistanceGrid::from_open_mesh(&open, SPACING, PADDING).unwrap();
+    let whole = DistanceGrid::from_mesh(&whole, SPACING, PADDING).unwrap();
+    for point in points(grid.bounds(), 5000) {
+        let above = point.y > CENTER.y;
+        // Above the middle the nearest surface is the same one, outside for sure.
+        if above && whole.distance(point) > 0.0 {
+            assert!((grid.distance(point) - whole.distance(point)).abs() < 1e-4, "{point}");
+        }
+    }
+    // The hole at 0.6 of the radius is closed by a flat lid, to the size of a triangle.
+    assert!(grid.distance(CENTER - Vec3::Y * (0.5 * RADIUS)) < 0.0);
+    assert!(grid.distance(CENTER - Vec3::Y * (0.75 * RADIUS)) > 0.0);
+}
+
+#[test]
+fn empty_and_impossible_meshes_are_refused() {
+    let empty = Mesh::default();
+    assert!(matches!(DistanceGrid::from_mesh(&empty, 0.01, 0.0), Err(BodyError::BadMesh { .. })));
+    assert!(matches!(DistanceGrid::from_open_mesh(&empty, 0.01, 0.0), Err(BodyError::BadMesh { .. })));
+    let mut bad = ball(CENTER, RADIUS, 1);
+    bad.positions[7].y = f32::NAN;
+    let error = DistanceGrid::from_mesh(&bad, 0.01, 0.0).unwrap_err().to_string();
+    assert!(error.contains("vertex 7"), "{error}");
+    let mut bad = ball(CENTER, RADIUS, 1);
+    bad.triangles[5][2] = 1_000_000;
+    let error = DistanceGrid::from_mesh(&bad, 0.01, 0.0).unwrap_err().to_string();
+    assert!(error.contains("triangle 5"), "{error}");
+}
+
+#[test]
+fn triangles_without_area_do_no_harm() {
+    let line = vec![CENTER, CENTER + 0.1, CENTER + 0.2, CENTER];
+    let flat = Mesh::new(line, vec![[0, 1, 2], [2, 1, 0], [0, 0, 0], [3, 0, 1], [1, 0, 3]]).unwrap();
+    let grid = DistanceGrid::from_open_mesh(&flat, 0.02, 0.1).unwrap();
+    for point in points(grid.bounds(), 500) {
+        assert!(grid.distance(point) > -1e-6);
+    }
+}
+
+#[test]
+fn grids_have_limits() {
+    let refused = |spacing, padding| DistanceGrid::from_field(&Ball, spacing, padding).unwrap_err();
+    for spacing in [0.0, -1.0, f32::NAN] {
+        assert!(refused(spacing, 0.0).to_string().contains("the spacing"));
+    }
+    for padding in [-1.0, f32::INFINITY] {
+        assert!(refused(0.01, padding).to_string().contains("the padding"));
+    }
+    assert!(matches!(refused(1e-4, 0.0), BodyError::GridTooLarge { cells: [2004, ..], .. }));
+    assert!(matches!(refused(1e-30, 0.0), BodyError::GridTooLarge { .. }));
+}
