@@ -31,15 +31,7 @@ const RECIPES: [Recipe; 2] = [
     Recipe {
         crate_folder: "crates/render",
         list: "src/frame.rs",
-        stages: &[
-            "tessellate",
-            "interpolate",
-            "opacity_depth",
-            "opacity_layers",
-            "shade",
-            "draw",
-            "resolve",
-        ],
+        stages: &["tessellate", "interpolate", "opacity_depth", "opacity_layers", "shade", "draw", "resolve"],
     },
 ];
 
@@ -80,7 +72,9 @@ fn problems(root: &Path) -> Vec<String> {
             }
         }
     }
-    found.extend(rows.difference(&known).map(|row| format!("{row}: a row in ARCHITECTURE.md without a stage")));
+    found.extend(
+        rows.difference(&known).map(|row| format!("{row}: a row in ARCHITECTURE.md without a stage")),
+    );
     found
 }
 

@@ -1,3 +1,5 @@
+use std::path::{Path, PathBuf};
+
 /// Why a groom could not be read, written or used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -15,4 +17,71 @@ pub enum GroomError {
     /// A groom without a strand.
     #[error("the groom has no strand that could be used")]
     Empty,
+    /// The bytes are not what the format asks for.
+    #[error("not a sound {format} file: {found}, expected {expected}; {mend}")]
+    Malformed {
+        /// The format.
+        format: &'static str,
+        /// What was found, and where.
+        found: String,
+        /// What was expected there.
+        expected: String,
+        /// What a person can do.
+        mend: &'static str,
+    },
+    /// A strand that cannot be used.
+    #[error("strand {strand} {found}, expected {expected}; load it leniently to leave such strands out")]
+    Strand {
+        /// Its index, from 0.
+        strand: usize,
+        /// What is wrong with it.
+        found: &'static str,
+        /// What a strand must be.
+        expected: &'static str,
+    },
+    /// A groom that a format cannot hold.
+    #[error("a {format} file cannot hold this groom: {found}, expected {expected}; {mend}")]
+    CannotHold {
+        /// The format.
+        format: &'static str,
+        /// What the groom has.
+        found: String,
+        /// What the format holds.
+        expected: &'static str,
+        /// What a person can do.
+        mend: &'static str,
+    },
+    /// A file ending that names no format.
+    #[error("the ending `{found}` names no groom format, expected .hair or .tfx: {}", path.display())]
+    Ending {
+        /// The ending.
+        found: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file could not be opened, read or written.
+    #[error("cannot {action} the groom: {source}: {}", path.display())]
+    File {
+        /// "read" or "write".
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// What is wrong with the content of a file.
+    #[error("{source}: {}", path.display())]
+    In {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<GroomError>,
+    },
+}
+
+impl GroomError {
+    /// Adds the path to an error about content.
+    pub(crate) fn of(self, path: &Path) -> Self {
+        Self::In { path: path.to_owned(), source: Box::new(self) }
+    }
 }

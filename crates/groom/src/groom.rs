@@ -1,4 +1,12 @@
-use glam::{Vec2, Vec3};
+use std::path::Path;
+
+use glam::{Quat, Vec2, Vec3};
+use strandline_body::Aabb;
+
+use crate::{
+    GroomError, Guides,
+    format::{self, LoadOptions, Saved},
+};
 
 /// Strand diameters \[m\].
 #[derive(Clone, Debug, PartialEq)]
@@ -72,5 +80,108 @@ impl Groom {
     /// The points of a strand \[m\], root first.
     pub fn strand(&self, index: usize) -> &[Vec3] {
         &self.points[self.starts[index] as usize..self.starts[index + 1] as usize]
+    }
+
+    /// Loads a .hair or .tfx file strictly, in metres, y up; see [`format::load`] for more.
+    ///
+    /// # Errors
+    /// See [`GroomError`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, GroomError> {
+        Ok(format::load(path.as_ref(), &LoadOptions::default())?.groom)
+    }
+
+    /// Writes a .hair or .tfx file; says what the format could not hold.
+    ///
+    /// # Errors
+    /// See [`GroomError`].
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<Saved, GroomError> {
+        format::save(self, path.as_ref())
+    }
+
+    /// Length of every strand \[m\], shape `[strand]`.
+    pub fn lengths(&self) -> Vec<f32> {
+        let length = |points: &[Vec3]| points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        (0..self.strand_count()).map(|strand| length(self.strand(strand))).collect()
+    }
+
+    /// The box around all points \[m\]; inside out when there is none.
+    pub fn bounds(&self) -> Aabb {
+        let start = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+        let (min, max) =
+            self.points.iter().fold(start, |(min, max), point| (min.min(*point), max.max(*point)));
+        Aabb { min, max }
+    }
+
+    /// Scales, then turns, then moves \[m\] everything.
+    pub fn transform(&mut self, scale: f32, rotation: Quat, translation: Vec3) {
+        for point in &mut self.points {
+            *point = rotation * (scale * *point) + translation;
+        }
+        for normal in self.root_normals.iter_mut().flatten() {
+            *normal = rotation * *normal;
+        }
+        match &mut self.widths {
+            Widths::Constant(width) => *width *= scale,
+            Widths::PerStrand(widths) | Widths::PerPoint(widths) => {
+                widths.iter_mut().for_each(|width| *width *= scale);
+            }
+        }
+    }
+
+    /// The strands that a choice by index keeps, in their order.
+    pub fn kept(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let strands: Vec<usize> = (0..self.strand_count()).filter(|strand| keep(*strand)).collect();
+        let range = |strand: &usize| self.starts[*strand] as usize..self.starts[strand + 1] as usize;
+        let per_strand = |values: &[f32]| strands.iter().map(|strand| values[*strand]).collect();
+        let per_point = |values: &[f32]| strands.iter().flat_map(|s| &values[range(s)]).copied().collect();
+        let mut groom = Self::empty(0.0);
+        for strand in &strands {
+            groom.push(self.strand(*strand).iter().copied());
+        }
+        groom.widths = match &self.widths {
+            Widths::Constant(width) => Widths::Constant(*width),
+            Widths::PerStrand(widths) => Widths::PerStrand(per_strand(widths)),
+            Widths::PerPoint(widths) => Widths::PerPoint(per_point(widths)),
+        };
+        groom.root_uvs = self.root_uvs.as_ref().map(|all| strands.iter().map(|s| all[*s]).collect());
+        groom.root_normals = self.root_normals.as_ref().map(|all| strands.iter().map(|s| all[*s]).collect());
+        groom.groups = self.groups.as_ref().map(|all| strands.iter().map(|s| all[*s]).collect());
+        groom.colors =
+            self.colors.as_ref().map(|all| strands.iter().flat_map(|s| &all[range(s)]).copied().collect());
+        groom.transparencies = self.transparencies.as_ref().map(|all| per_point(all));
+        groom
+    }
+
+    /// Every strand resampled to `count` points at equal arc length; its width is that of its root.
+    ///
+    /// # Errors
+    /// A count outside 2..=4096.
+    pub fn resampled(&self, count: usize) -> Result<Self, GroomError> {
+        if !(2..=format::MAX_POINTS_PER_STRAND as usize).contains(&count) {
+            return Err(GroomError::Setting {
+                name: "points",
+                found: count.to_string(),
+                expected: "2 to 4096",
+            });
+        }
+        let strands = 0..self.strand_count();
+        let mut groom = Self::empty(0.0);
+        for strand in strands.clone() {
+            groom.push(Guides::equal_arcs(self.strand(strand), count));
+        }
+        let root = |strand: usize| self.starts[strand] as usize;
+        let spread = |strand: usize| std::iter::repeat_n(strand, count);
+        groom.widths = match &self.widths {
+            Widths::Constant(width) => Widths::Constant(*width),
+            widths => Widths::PerStrand(strands.clone().map(|s| widths.at(s, root(s))).collect()),
+        };
+        groom.root_uvs.clone_from(&self.root_uvs);
+        groom.root_normals.clone_from(&self.root_normals);
+        groom.groups.clone_from(&self.groups);
+        groom.colors =
+            self.colors.as_ref().map(|all| strands.clone().flat_map(spread).map(|s| all[root(s)]).collect());
+        groom.transparencies =
+            self.transparencies.as_ref().map(|all| strands.flat_map(spread).map(|s| all[root(s)]).collect());
+        Ok(groom)
     }
 }

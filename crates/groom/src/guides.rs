@@ -45,7 +45,7 @@ impl Guides {
         positions.par_chunks_mut(points_per_strand).enumerate().for_each(|(block, chunk)| {
             for lane in 0..LANES {
                 let strand = groom.strand((block * LANES + lane).min(strand_count - 1));
-                for (slot, point) in chunk.iter_mut().zip(equal_arcs(strand, points_per_strand)) {
+                for (slot, point) in chunk.iter_mut().zip(Self::equal_arcs(strand, points_per_strand)) {
                     slot.set(lane, point);
                 }
             }
@@ -96,6 +96,29 @@ impl Guides {
     pub fn widths(&self) -> &[f32] {
         &self.widths
     }
+
+    /// Points at equal distances along a polyline, both ends included.
+    pub(crate) fn equal_arcs(points: &[Vec3], count: usize) -> impl Iterator<Item = Vec3> + '_ {
+        let total: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+        let mut segment = 0;
+        let mut passed = 0.0;
+        (0..count).map(move |index| {
+            if index + 1 == count {
+                return points[points.len() - 1];
+            }
+            let wanted = total * index as f32 / (count - 1) as f32;
+            loop {
+                let (start, end) = (points[segment], points[segment + 1]);
+                let length = start.distance(end);
+                if passed + length >= wanted || segment + 2 == points.len() {
+                    let share = if length > 0.0 { ((wanted - passed) / length).clamp(0.0, 1.0) } else { 0.0 };
+                    return start.lerp(end, share);
+                }
+                passed += length;
+                segment += 1;
+            }
+        })
+    }
 }
 
 fn root_normal(groom: &Groom, strand: usize) -> Vec3 {
@@ -104,29 +127,6 @@ fn root_normal(groom: &Groom, strand: usize) -> Vec3 {
         Some(normals) => normals[strand],
         None => (points[1] - points[0]).normalize_or(Vec3::Y),
     }
-}
-
-/// Points at equal distances along a polyline, both ends included.
-fn equal_arcs(points: &[Vec3], count: usize) -> impl Iterator<Item = Vec3> + '_ {
-    let total: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-    let mut segment = 0;
-    let mut passed = 0.0;
-    (0..count).map(move |index| {
-        if index + 1 == count {
-            return points[points.len() - 1];
-        }
-        let wanted = total * index as f32 / (count - 1) as f32;
-        loop {
-            let (start, end) = (points[segment], points[segment + 1]);
-            let length = start.distance(end);
-            if passed + length >= wanted || segment + 2 == points.len() {
-                let share = if length > 0.0 { ((wanted - passed) / length).clamp(0.0, 1.0) } else { 0.0 };
-                return start.lerp(end, share);
-            }
-            passed += length;
-            segment += 1;
-        }
-    })
 }
 
 #[cfg(test)]

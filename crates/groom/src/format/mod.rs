@@ -1,1 +1,36 @@
-//! Readers and writers of groom files.
+//! Readers and writers of groom files: `.hair` and `.tfx`.
+//!
+//! Readers work on bytes in memory, check every size in 64-bit arithmetic before they allocate,
+//! and never allocate more than a small multiple of what they were given.
+
+mod bytes;
+pub mod hair;
+mod load;
+mod report;
+mod sieve;
+pub mod tfx;
+
+pub use load::{LoadOptions, Loaded, Saved, Scale, Up, load, prepare, save};
+pub use report::{Counts, Lengths, Report};
+
+/// Most strands that a reader accepts.
+pub const MAX_STRANDS: u64 = 8_000_000;
+/// Most points of a strand.
+pub const MAX_POINTS_PER_STRAND: u64 = 4096;
+/// Most points of all strands.
+pub const MAX_POINTS: u64 = 256 << 20;
+/// Largest file \[byte\].
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+/// Coordinates lie within this distance of 0, in the file's units.
+pub const MAX_COORDINATE: f32 = 1e7;
+
+/// What a reader found in bytes, before bad strands are sieved out; units and axes of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parsed {
+    /// Name and version of the format.
+    pub format: &'static str,
+    /// The strands, bad ones among them.
+    pub groom: crate::Groom,
+    /// What was odd but could be read.
+    pub problems: Vec<String>,
+}
