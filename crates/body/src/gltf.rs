@@ -31,8 +31,9 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
 
 fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Mesh, Refusal> {
     check_container(bytes)?;
-    let ::gltf::Gltf { document, blob } =
-        ::gltf::Gltf::from_slice(bytes).map_err(|error| (format!("bad glTF ({error})"), "valid glTF 2.0"))?;
+    let refused = |error: ::gltf::Error| (format!("bad glTF ({error})"), "valid glTF 2.0");
+    check_positions(&::gltf::Gltf::from_slice_without_validation(bytes).map_err(refused)?.document)?;
+    let ::gltf::Gltf { document, blob } = ::gltf::Gltf::from_slice(bytes).map_err(refused)?;
     let buffers = load_buffers(&document, blob, folder)?;
     let mut mesh = Mesh::default();
     for (node, world_from_node) in placed_nodes(&document)? {
@@ -57,6 +58,19 @@ fn check_container(bytes: &[u8]) -> Result<(), Refusal> {
         }
         None => Err((format!("a file of {} bytes", bytes.len()), "a header of 12 bytes")),
     }
+}
+
+/// The parser's own validation looks up the accessor of the positions before it knows that there is one.
+fn check_positions(document: &::gltf::Document) -> Result<(), Refusal> {
+    let root = document.as_json();
+    let parts = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for accessor in parts.flat_map(|part| part.attributes.values()) {
+        if accessor.value() >= root.accessors.len() {
+            let found = format!("the accessor {} of {}", accessor.value(), root.accessors.len());
+            return Err((found, "accessors in range"));
+        }
+    }
+    Ok(())
 }
 
 /// All nodes with their transforms, parents first.

@@ -129,6 +129,9 @@ impl Mesh {
     }
 
     /// How many edges of triangles are met by none in the opposite direction.
+    ///
+    /// # Panics
+    /// As [`Self::is_closed`] and [`Self::closed`], when an index is out of range; loaded meshes have none such.
     pub fn open_edge_count(&self) -> usize {
         closing::open_edges(self).len()
     }

@@ -1,10 +1,9 @@
 //! Signed distance of meshes against what is known of them.
 
-mod shapes;
-
 use glam::Vec3;
-use shapes::{ball, distance_by_search, inside_out, part, supplied, together, winding_number};
 use strandline_body::{Aabb, BodyError, DistanceGrid, Mesh, SignedDistance};
+
+use crate::shapes::{ball, distance_by_search, inside_out, part, supplied, together, winding_number};
 
 const CENTER: Vec3 = Vec3::new(0.03, 1.5, -0.02);
 const RADIUS: f32 = 0.1;

@@ -1,5 +1,4 @@
 //! Meshes whose distance is known, and slow sure ways to measure any.
-#![allow(dead_code, reason = "each test uses some of these")]
 
 use std::path::{Path, PathBuf};
 
@@ -94,6 +93,7 @@ pub fn winding_number(mesh: &Mesh, point: Vec3) -> f64 {
 }
 
 /// A file of the grooms folder, if the folder is there.
+#[expect(clippy::print_stdout, reason = "the run of the tests says what it left out")]
 pub fn supplied(name: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("STRANDLINE_GROOMS")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/grooms"), PathBuf::from);
