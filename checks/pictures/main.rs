@@ -1,1 +1,4 @@
 //! pictures
+
+mod grooms;
+mod tessellation;

@@ -8,6 +8,8 @@ use glam::Vec3;
 pub struct Strands {
     /// Number of drawn strands.
     pub strand_count: usize,
+    /// Drawn strands of each guide, the guide itself first.
+    pub strands_per_guide: usize,
     /// Points on each strand, one more than its segments.
     pub points_per_strand: usize,
     /// Positions \[m\], world space.
@@ -18,4 +20,23 @@ pub struct Strands {
     pub widths: Vec<f32>,
     /// Radiance toward the camera, linear RGB; filled by `shade`.
     pub radiances: Vec<Vec3>,
+}
+
+impl Strands {
+    /// Number of segments of all strands.
+    pub fn segment_count(&self) -> usize {
+        self.strand_count * (self.points_per_strand - 1)
+    }
+
+    /// Makes room for a frame; memory is kept from frame to frame and contents are left as they are.
+    pub fn resize(&mut self, guide_count: usize, strands_per_guide: usize, points_per_strand: usize) {
+        self.strand_count = guide_count * strands_per_guide;
+        self.strands_per_guide = strands_per_guide;
+        self.points_per_strand = points_per_strand;
+        let size = self.strand_count * points_per_strand;
+        self.positions.resize(size, Vec3::ZERO);
+        self.tangents.resize(size, Vec3::Y);
+        self.widths.resize(size, 0.0);
+        self.radiances.resize(size, Vec3::ZERO);
+    }
 }

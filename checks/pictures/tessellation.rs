@@ -1,0 +1,266 @@
+//! `tessellate` and `interpolate` against the formula, and across levels of detail.
+
+use glam::{DVec3, Quat, Vec3};
+use strandline_body::Pose;
+use strandline_groom::{Groom, Guides};
+use strandline_render::cpu::{Curves, Strands, interpolate, tessellate};
+use strandline_render::{DetailLevel, LevelOfDetail, Look};
+
+use crate::grooms::arcs;
+
+const SPANS: usize = 5;
+
+fn guides(strand_count: usize) -> Guides {
+    Guides::resample(&arcs(strand_count), SPANS + 1).unwrap()
+}
+
+fn curves(guides: &Guides, level: &DetailLevel) -> Curves {
+    let mut curves = Curves::default();
+    tessellate(guides.positions(), guides, &Pose::IDENTITY, level, &mut curves);
+    curves
+}
+
+fn strands(guides: &Guides, look: &Look, level: &DetailLevel) -> Strands {
+    let mut strands = Strands::default();
+    interpolate(&curves(guides, level), guides, &Pose::IDENTITY, look, level, &mut strands);
+    strands
+}
+
+/// The uniform cubic B-spline by the recursion of Cox and de Boor, in double precision.
+fn de_boor(controls: &[DVec3], parameter: f64) -> DVec3 {
+    let span = (parameter as usize).min(controls.len() - 4);
+    let mut points = [controls[span], controls[span + 1], controls[span + 2], controls[span + 3]];
+    for level in 1..=3 {
+        for index in (level..=3).rev() {
+            // Knot of control point `index` in a uniform knot vector whose span starts at `span`.
+            let knot = span as f64 + index as f64 - 3.0;
+            let share = (parameter - knot) / (4 - level) as f64;
+            points[index] = points[index - 1].lerp(points[index], share);
+        }
+    }
+    points[3]
+}
+
+fn controls(guides: &Guides, strand: usize) -> Vec<DVec3> {
+    let points: Vec<DVec3> = (0..=SPANS).map(|point| guides.position(strand, point).as_dvec3()).collect();
+    let mut controls = vec![2.0 * points[0] - points[1]];
+    controls.extend(&points);
+    controls.push(2.0 * points[SPANS] - points[SPANS - 1]);
+    controls
+}
+
+fn greatest_error(guides: &Guides, curves: &Curves, shift: f64) -> f64 {
+    let mut greatest = 0.0f64;
+    for guide in 0..guides.strand_count() {
+        let controls = controls(guides, guide);
+        for point in 0..curves.points_per_curve {
+            let parameter = (point as f64 / 4.0 + shift).min(SPANS as f64);
+            let error = curves.point(guide, point)[0].as_dvec3().distance(de_boor(&controls, parameter));
+            greatest = greatest.max(error);
+        }
+    }
+    greatest
+}
+
+#[test]
+fn curves_follow_the_formula() {
+    let guides = guides(37);
+    let curves = curves(&guides, &DetailLevel::full(4, 1));
+    assert_eq!(curves.points_per_curve, 21);
+    // Positions up to 0.5 m in single precision (3e-8 m), with a dozen operations each.
+    assert!(greatest_error(&guides, &curves, 0.0) < 3e-7);
+    assert!(greatest_error(&guides, &curves, 0.01) > 3e-6, "a shifted parameter must be seen");
+    for guide in 0..guides.strand_count() {
+        let [root, _, _] = curves.point(guide, 0);
+        let [tip, _, _] = curves.point(guide, 20);
+        assert!(root.distance(guides.position(guide, 0)) < 1e-7);
+        assert!(tip.distance(guides.position(guide, SPANS)) < 1e-7);
+    }
+}
+
+/// Greatest jump of the second derivative at the joints, over the greatest second derivative. Each span has four
+/// segments, so five points give its cubic exactly.
+fn joint_jump(points: &[DVec3]) -> f64 {
+    let second = |at: usize| (points[at - 1] - 2.0 * points[at] + points[at + 1]) * 16.0;
+    let mut jump = 0.0f64;
+    let mut greatest = 0.0f64;
+    for joint in (4..points.len() - 4).step_by(4) {
+        // The second derivative of a cubic is linear: carried on from two points before and after.
+        let before = 2.0 * second(joint - 1) - second(joint - 2);
+        let after = 2.0 * second(joint + 1) - second(joint + 2);
+        jump = jump.max(before.distance(after));
+        greatest = greatest.max(before.length());
+    }
+    jump / greatest
+}
+
+#[test]
+fn joints_are_smooth_to_the_second_derivative() {
+    let guides = guides(37);
+    let curves = curves(&guides, &DetailLevel::full(4, 1));
+    for guide in 0..guides.strand_count() {
+        let points: Vec<DVec3> = (0..21).map(|point| curves.point(guide, point)[0].as_dvec3()).collect();
+        // Rounding of 3e-8 m, times 16 / h^2 twice over, against second derivatives of 5e-3 m.
+        assert!(joint_jump(&points) < 2e-3, "{}", joint_jump(&points));
+    }
+}
+
+#[test]
+fn a_curve_with_a_kink_in_curvature_is_told_apart() {
+    // Piecewise y = x^2 sign(x): smooth to the first derivative only.
+    let points: Vec<DVec3> = (0..=8)
+        .map(|index| {
+            let x = f64::from(index) / 4.0 - 1.0;
+            DVec3::new(x, x * x.abs(), 0.0)
+        })
+        .collect();
+    assert!(joint_jump(&points) > 0.5);
+}
+
+#[test]
+fn frames_are_orthonormal_and_follow_the_head() {
+    let guides = guides(37);
+    let level = DetailLevel::full(4, 1);
+    let rest = curves(&guides, &level);
+    let turned_pose =
+        Pose { rotation: Quat::from_euler(glam::EulerRot::YXZ, 0.9, 0.4, -0.3), translation: Vec3::X };
+    let mut moved = guides.positions().to_vec();
+    for point in &mut moved {
+        for lane in 0..8 {
+            point.set(lane, turned_pose.point(point.get(lane)));
+        }
+    }
+    let mut turned = Curves::default();
+    tessellate(&moved, &guides, &turned_pose, &level, &mut turned);
+    for guide in 0..guides.strand_count() {
+        for point in 0..rest.points_per_curve {
+            let [_, tangent, normal] = rest.point(guide, point);
+            assert!((tangent.length() - 1.0).abs() < 1e-5 && (normal.length() - 1.0).abs() < 1e-5);
+            assert!(tangent.dot(normal).abs() < 1e-5);
+            // Twenty reflections of directions that rounding of the moved points (1e-7 m of 0.02 m) has turned.
+            let expected = turned_pose.direction(normal);
+            assert!(turned.point(guide, point)[2].distance(expected) < 1e-3);
+        }
+    }
+}
+
+#[test]
+fn frames_do_not_twist() {
+    // In a plane curve, the part of the normal that stands on the plane stays the same.
+    let mut groom = Groom::empty(8e-5);
+    groom.push((0..=40).map(|step| {
+        let angle = step as f32 * 0.1;
+        Vec3::new(angle.cos(), angle.sin(), 0.0) * 0.1
+    }));
+    let mut guides = Guides::resample(&groom, 16).unwrap();
+    guides.set_root_normals(vec![Vec3::new(0.6, 0.0, 0.8)]);
+    let curves = curves(&guides, &DetailLevel::full(4, 1));
+    let start = curves.point(0, 0)[2].z;
+    assert!(start.abs() > 0.1 && start.abs() < 0.95, "the case must not be a trivial one");
+    for point in 0..curves.points_per_curve {
+        // The double reflection is exact to the fourth order of the step (0.067 rad) [Wang2008].
+        assert!((curves.point(0, point)[2].z - start).abs() < 1e-4);
+    }
+}
+
+/// Sum of width times length \[m^2\] of all strands.
+fn covered_area(strands: &Strands) -> f64 {
+    let count = strands.points_per_strand;
+    let mut area = 0.0;
+    for strand in 0..strands.strand_count {
+        for point in strand * count..(strand + 1) * count - 1 {
+            let length = strands.positions[point].distance(strands.positions[point + 1]);
+            area += f64::from(length * 0.5 * (strands.widths[point] + strands.widths[point + 1]));
+        }
+    }
+    area
+}
+
+#[test]
+fn covered_area_is_the_same_at_every_distance() {
+    let guides = guides(300);
+    let look = Look::default();
+    let levels = LevelOfDetail::default();
+    let area =
+        |distance: f32| covered_area(&strands(&guides, &look, &levels.level(distance, look.follow_strands)));
+    let near = area(0.3);
+    let expected = 8e-5 * f64::from(look.hair_count) * 0.2;
+    assert!(near > 0.5 * expected && near < 1.5 * expected, "{near} of about {expected}");
+    for distance in [1.6, 2.0, 2.9, 4.1, 6.0, 20.0] {
+        // Widths make up for lengths exactly; what is left is the length that coarser polylines cut off.
+        let ratio = area(distance) / near;
+        assert!((ratio - 1.0).abs() < 0.01, "{distance} m: {ratio}");
+    }
+    let thinned = DetailLevel { full_follow_strands: 8.0, ..levels.level(20.0, 16) };
+    assert!(covered_area(&strands(&guides, &look, &thinned)) < 0.6 * near, "lost strands must be seen");
+}
+
+/// Greatest distance \[m\] from the points of one frame to the polylines of the same strands of another,
+/// weighted with the share of the strand's full width.
+fn greatest_shift(from: &Strands, to: &Strands) -> f32 {
+    let mut greatest = 0.0f32;
+    let guide_count = from.strand_count / from.strands_per_guide;
+    for guide in 0..guide_count {
+        for index in 0..from.strands_per_guide.min(to.strands_per_guide) {
+            let [from_start, to_start] = [from, to]
+                .map(|strands| (guide * strands.strands_per_guide + index) * strands.points_per_strand);
+            let other = &to.positions[to_start..to_start + to.points_per_strand];
+            for point in &from.positions[from_start..from_start + from.points_per_strand] {
+                let nearest = other
+                    .windows(2)
+                    .map(|pair| distance_to_segment(*point, pair[0], pair[1]))
+                    .fold(f32::INFINITY, f32::min);
+                greatest = greatest.max(nearest);
+            }
+        }
+    }
+    greatest
+}
+
+fn distance_to_segment(point: Vec3, start: Vec3, end: Vec3) -> f32 {
+    let along = end - start;
+    let share = ((point - start).dot(along) / along.length_squared().max(1e-20)).clamp(0.0, 1.0);
+    point.distance(start + along * share)
+}
+
+#[test]
+fn levels_change_without_a_jump() {
+    let guides = guides(10);
+    let look = Look::default();
+    let levels = LevelOfDetail::default();
+    let mut distance = 1.4;
+    let at = |distance: f32| strands(&guides, &look, &levels.level(distance, look.follow_strands));
+    let mut borders = 0;
+    let mut before = at(distance);
+    while distance < 7.0 {
+        distance *= 1.002;
+        let after = at(distance);
+        if after.points_per_strand != before.points_per_strand
+            || after.strands_per_guide != before.strands_per_guide
+        {
+            borders += 1;
+        }
+        // A pixel of a 1,000 pixel picture of 30 degrees covers 0.5 mm for each metre of distance.
+        let shift = greatest_shift(&before, &after);
+        assert!(shift < 0.5 * 5e-4 * distance, "{shift} m at {distance} m");
+        before = after;
+    }
+    assert!(borders > 15, "the way must cross many levels");
+    let coarse = strands(&guides, &look, &DetailLevel { segments_per_span: 1.0, ..DetailLevel::full(4, 16) });
+    assert!(greatest_shift(&at(1.0), &coarse) > 0.5 * 5e-4 * 1.4, "a jump must be seen");
+}
+
+#[test]
+fn the_drawn_strands_hold_for_any_number_of_threads() {
+    let guides = guides(100);
+    let look = Look::default();
+    let level = DetailLevel::full(4, 16);
+    let in_pool = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| strands(&guides, &look, &level))
+    };
+    let (one, five) = (in_pool(1), in_pool(5));
+    assert_eq!((&one.positions, &one.tangents, &one.widths), (&five.positions, &five.tangents, &five.widths));
+    let other = strands(&guides, &Look { seed: 1, ..look.clone() }, &level);
+    assert_ne!(one.positions, other.positions);
+}

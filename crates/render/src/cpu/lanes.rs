@@ -1,0 +1,77 @@
+//! Vectors in SIMD lanes.
+
+use std::ops::{Add, Mul, Sub};
+
+use glam::Vec3;
+use strandline_groom::Vec3Lanes;
+use wide::f32x8;
+
+/// Eight vectors, component by component.
+#[derive(Clone, Copy)]
+pub(crate) struct Wide3 {
+    pub(crate) x: f32x8,
+    pub(crate) y: f32x8,
+    pub(crate) z: f32x8,
+}
+
+impl Wide3 {
+    #[inline]
+    pub(crate) fn splat(vector: Vec3) -> Self {
+        Self { x: f32x8::splat(vector.x), y: f32x8::splat(vector.y), z: f32x8::splat(vector.z) }
+    }
+
+    #[inline]
+    pub(crate) fn load(lanes: &Vec3Lanes) -> Self {
+        Self { x: f32x8::from(lanes.x), y: f32x8::from(lanes.y), z: f32x8::from(lanes.z) }
+    }
+
+    #[inline]
+    pub(crate) fn store(self, lanes: &mut Vec3Lanes) {
+        lanes.x = self.x.to_array();
+        lanes.y = self.y.to_array();
+        lanes.z = self.z.to_array();
+    }
+
+    #[inline]
+    pub(crate) fn dot(self, other: Self) -> f32x8 {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// Unit vectors; lanes too short to have a direction take `fallback`.
+    #[inline]
+    pub(crate) fn normalize_or(self, fallback: Self) -> Self {
+        let square = self.dot(self);
+        let least = f32x8::splat(1e-24);
+        let sound = square.simd_gt(least);
+        let unit = self * (f32x8::splat(1.0) / square.max(least).sqrt());
+        Self {
+            x: sound.select(unit.x, fallback.x),
+            y: sound.select(unit.y, fallback.y),
+            z: sound.select(unit.z, fallback.z),
+        }
+    }
+}
+
+impl Add for Wide3 {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl Sub for Wide3 {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+impl Mul<f32x8> for Wide3 {
+    type Output = Self;
+    #[inline]
+    fn mul(self, scale: f32x8) -> Self {
+        Self { x: self.x * scale, y: self.y * scale, z: self.z * scale }
+    }
+}

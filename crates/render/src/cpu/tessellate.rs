@@ -1,0 +1,190 @@
+//! `tessellate`: a smooth curve through each guide's points, with a frame along it.
+//!
+//! The curve is a uniform cubic B-spline over the guide's points [Chen2011 §3.1, appendix C]. At
+//! each end one more point continues the polygon (2 P0 - P1), so that the curve starts and ends at the guide's ends.
+
+use glam::Vec3;
+use rayon::prelude::*;
+use strandline_body::Pose;
+use strandline_groom::{Guides, LANES, Vec3Lanes};
+use wide::f32x8;
+
+use super::lanes::Wide3;
+use crate::DetailLevel;
+
+/// The guides as smooth curves, all of the same number of points, root first.
+///
+/// Shapes are `[block][point]` of lanes, one guide a lane.
+#[derive(Clone, Debug, Default)]
+pub struct Curves {
+    /// Number of guides.
+    pub guide_count: usize,
+    /// Points on each curve, one more than its segments.
+    pub points_per_curve: usize,
+    /// Parameter of each point, 0 at the root to 1 at the tip, shape `[point]`.
+    pub parameters: Vec<f32>,
+    /// Positions \[m\], world space.
+    pub positions: Vec<Vec3Lanes>,
+    /// Unit tangents, root to tip, world space.
+    pub tangents: Vec<Vec3Lanes>,
+    /// Unit vectors across the curve that turn as little as they can along it, world space.
+    pub normals: Vec<Vec3Lanes>,
+    taps: Vec<Tap>,
+}
+
+/// Where a curve point lies in its guide: the first of four control points and their weights for
+/// position and tangent. Control point 0 stands before the guide's first.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tap {
+    first: usize,
+    position: [f32; 4],
+    tangent: [f32; 4],
+}
+
+impl Curves {
+    /// Position, tangent and normal of one point.
+    pub fn point(&self, guide: usize, point: usize) -> [Vec3; 3] {
+        let index = guide / LANES * self.points_per_curve + point;
+        let lane = guide % LANES;
+        [&self.positions, &self.tangents, &self.normals].map(|values| values[index].get(lane))
+    }
+
+    fn resize(&mut self, guides: &Guides, level: &DetailLevel) {
+        let span_count = guides.points_per_strand() - 1;
+        self.guide_count = guides.strand_count();
+        self.points_per_curve = level.segment_count(guides.points_per_strand()) + 1;
+        self.taps.clear();
+        self.parameters.clear();
+        for point in 0..self.points_per_curve {
+            let parameter = if point + 1 == self.points_per_curve {
+                span_count as f32
+            } else {
+                point as f32 / level.segments_per_span
+            };
+            self.taps.push(tap(parameter, span_count));
+            self.parameters.push(parameter / span_count as f32);
+        }
+        let size = guides.block_count() * self.points_per_curve;
+        self.positions.resize(size, Vec3Lanes::default());
+        self.tangents.resize(size, Vec3Lanes::default());
+        self.normals.resize(size, Vec3Lanes::default());
+    }
+}
+
+/// Control points and weights at a parameter, 0 to the number of spans.
+fn tap(parameter: f32, span_count: usize) -> Tap {
+    let first = (parameter as usize).min(span_count - 1);
+    let t = parameter - first as f32;
+    let r = 1.0 - t;
+    // [Chen2011 appendix C]
+    let position = [
+        r * r * r / 6.0,
+        (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+        (3.0 * r * r * r - 6.0 * r * r + 4.0) / 6.0,
+        t * t * t / 6.0,
+    ];
+    let tangent = [-0.5 * r * r, 1.5 * t * t - 2.0 * t, 2.0 * r - 1.5 * r * r, 0.5 * t * t];
+    Tap { first, position, tangent }
+}
+
+/// Draws a smooth curve through every guide.
+///
+/// `positions` are the guides' points \[m\] in world space, shape `[block][point]` of lanes;
+/// `guides` gives their number and the skin normals at the roots, which `world_from_head` carries.
+pub fn tessellate(
+    positions: &[Vec3Lanes],
+    guides: &Guides,
+    world_from_head: &Pose,
+    level: &DetailLevel,
+    out: &mut Curves,
+) {
+    let points_per_strand = guides.points_per_strand();
+    assert_eq!(positions.len(), guides.block_count() * points_per_strand);
+    out.resize(guides, level);
+    let count = out.points_per_curve;
+    let taps = &out.taps;
+    out.positions
+        .par_chunks_mut(count)
+        .zip_eq(out.tangents.par_chunks_mut(count))
+        .zip_eq(out.normals.par_chunks_mut(count))
+        .zip_eq(positions.par_chunks(points_per_strand))
+        .enumerate()
+        .for_each(|(block, (((positions, tangents), normals), controls))| {
+            spline(controls, taps, positions, tangents);
+            normals[0] = root_axes(guides, world_from_head, block, &tangents[0]);
+            carry_frame(positions, tangents, normals);
+        });
+}
+
+/// Positions and unit tangents of a block's curves.
+fn spline(controls: &[Vec3Lanes], taps: &[Tap], positions: &mut [Vec3Lanes], tangents: &mut [Vec3Lanes]) {
+    let last = controls.len() - 1;
+    let control = |index: usize| match index {
+        0 => Wide3::load(&controls[0]) * f32x8::splat(2.0) - Wide3::load(&controls[1]),
+        _ if index == last + 2 => {
+            Wide3::load(&controls[last]) * f32x8::splat(2.0) - Wide3::load(&controls[last - 1])
+        }
+        _ => Wide3::load(&controls[index - 1]),
+    };
+    // Where points coincide the tangent of the point before is the best there is.
+    let mut fallback = Wide3::splat(Vec3::Y);
+    for ((tap, position), tangent) in taps.iter().zip(positions).zip(tangents) {
+        let mut point = Wide3::splat(Vec3::ZERO);
+        let mut direction = Wide3::splat(Vec3::ZERO);
+        for offset in 0..4 {
+            let control = control(tap.first + offset);
+            point = point + control * f32x8::splat(tap.position[offset]);
+            direction = direction + control * f32x8::splat(tap.tangent[offset]);
+        }
+        fallback = direction.normalize_or(fallback);
+        point.store(position);
+        fallback.store(tangent);
+    }
+}
+
+/// An axis of each root's frame, across its tangent: an axis in the skin, turned the way that takes
+/// the skin normal to the tangent. It is fixed to the skin and never spins about a moving strand.
+fn root_axes(guides: &Guides, world_from_head: &Pose, block: usize, tangents: &Vec3Lanes) -> Vec3Lanes {
+    let mut axes = Vec3Lanes::default();
+    for lane in 0..LANES {
+        let guide = (block * LANES + lane).min(guides.strand_count() - 1);
+        let [normal, axis, _] = skin_frame(guides.root_normals()[guide], world_from_head);
+        axes.set(lane, turn_along(normal, tangents.get(lane), axis));
+    }
+    axes
+}
+
+/// The skin's frame at a root in world space: its normal and two axes in the skin, right-handed.
+pub(crate) fn skin_frame(root_normal: Vec3, world_from_head: &Pose) -> [Vec3; 3] {
+    let (first, second) = root_normal.any_orthonormal_pair();
+    [root_normal, first, second].map(|axis| world_from_head.direction(axis))
+}
+
+/// Turns `vector` by the least turn that takes the unit vector `from` to the unit vector `to`.
+pub(crate) fn turn_along(from: Vec3, to: Vec3, vector: Vec3) -> Vec3 {
+    // A strand that grows straight into the skin has no least turn; any turn will do.
+    let cosine = from.dot(to).max(-0.999);
+    let axis = from.cross(to);
+    let turned = vector * cosine + axis.cross(vector) + axis * (axis.dot(vector) / (1.0 + cosine));
+    (turned - to * turned.dot(to)).normalize_or(to.any_orthonormal_vector())
+}
+
+/// Carries the first normal along the curves without a twist, by two reflections a point [Wang2008 table 1].
+fn carry_frame(positions: &[Vec3Lanes], tangents: &[Vec3Lanes], normals: &mut [Vec3Lanes]) {
+    let two = f32x8::splat(2.0);
+    // Smaller squares are rounding; dividing by this instead reflects by nothing.
+    let least = f32x8::splat(1e-18);
+    for point in 1..positions.len() {
+        let tangent = Wide3::load(&tangents[point - 1]);
+        let normal = Wide3::load(&normals[point - 1]);
+        let chord = Wide3::load(&positions[point]) - Wide3::load(&positions[point - 1]);
+        let scale = two / chord.dot(chord).max(least);
+        let left_normal = normal - chord * (scale * chord.dot(normal));
+        let left_tangent = tangent - chord * (scale * chord.dot(tangent));
+        let next = Wide3::load(&tangents[point]);
+        let turn = next - left_tangent;
+        let carried = left_normal - turn * (two / turn.dot(turn).max(least) * turn.dot(left_normal));
+        let across = carried - next * carried.dot(next);
+        across.normalize_or(normal).store(&mut normals[point]);
+    }
+}

@@ -1,0 +1,160 @@
+use serde::{Deserialize, Serialize};
+
+use crate::{RenderError, look::require};
+
+/// How detail falls with viewing distance [Chen2011 table 5].
+///
+/// Up to `full_distance` everything is drawn. Beyond it the share of follow strands falls in inverse
+/// proportion to the distance, and that of segments with its square root (a segment strays from the
+/// curve by the square of its length, so it strays by the same number of pixels), down to their least shares. Both
+/// numbers are continuous, so nothing jumps: the last follow strand fades by its width while the
+/// others widen (their sum stays), and the last segment of a strand shrinks to nothing at the tip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LevelOfDetail {
+    /// Segments on each span between two guide points at full detail, 1 to 16. Default 4.
+    pub segments_per_span: u32,
+    /// Distance \[m\] from the camera to the hair's middle up to which all is drawn. Default 1.5.
+    pub full_distance: f32,
+    /// Least share of the follow strands that is drawn from afar, 0 to 1. Default 0.125.
+    pub least_strands: f32,
+    /// Least share of the segments that is drawn from afar, 0 to 1. Default 0.375.
+    pub least_segments: f32,
+}
+
+impl Default for LevelOfDetail {
+    fn default() -> Self {
+        Self { segments_per_span: 4, full_distance: 1.5, least_strands: 0.125, least_segments: 0.375 }
+    }
+}
+
+impl LevelOfDetail {
+    /// Full detail at any distance.
+    pub fn full() -> Self {
+        Self { least_strands: 1.0, least_segments: 1.0, ..Self::default() }
+    }
+
+    /// Checks the settings.
+    ///
+    /// # Errors
+    /// The first setting outside its range.
+    pub fn validate(&self) -> Result<(), RenderError> {
+        let share = 0.0..=1.0;
+        require(
+            (1..=16).contains(&self.segments_per_span),
+            "level_of_detail.segments_per_span",
+            &self.segments_per_span,
+            "1 to 16",
+        )?;
+        require(
+            self.full_distance > 0.0 && self.full_distance.is_finite(),
+            "level_of_detail.full_distance",
+            &self.full_distance,
+            "a distance above 0 m",
+        )?;
+        require(
+            share.contains(&self.least_strands),
+            "level_of_detail.least_strands",
+            &self.least_strands,
+            "0 to 1",
+        )?;
+        require(
+            share.contains(&self.least_segments),
+            "level_of_detail.least_segments",
+            &self.least_segments,
+            "0 to 1",
+        )
+    }
+
+    /// The level for hair at a `distance` \[m\] from the camera, of a look with `follow_strands`
+    /// strands to a guide.
+    pub fn level(&self, distance: f32, follow_strands: u32) -> DetailLevel {
+        let share = self.full_distance / distance.max(self.full_distance);
+        let follow_strands = follow_strands.max(1) as f32;
+        DetailLevel {
+            segments_per_span: (self.segments_per_span as f32 * share.sqrt().max(self.least_segments))
+                .max(1.0),
+            follow_strands: (follow_strands * share.max(self.least_strands)).max(1.0),
+            full_follow_strands: follow_strands,
+        }
+    }
+}
+
+/// What a picture draws of each guide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DetailLevel {
+    /// Segments on each span, at least 1; a fraction ends the strand with a shorter segment.
+    pub segments_per_span: f32,
+    /// Follow strands of each guide, the guide itself among them, at least 1; a fraction thins the last.
+    pub follow_strands: f32,
+    /// Follow strands of each guide at full detail.
+    pub full_follow_strands: f32,
+}
+
+impl DetailLevel {
+    /// Everything: whole numbers of segments on each span and of follow strands.
+    pub fn full(segments_per_span: u32, follow_strands: u32) -> Self {
+        Self {
+            segments_per_span: segments_per_span as f32,
+            follow_strands: follow_strands as f32,
+            full_follow_strands: follow_strands as f32,
+        }
+    }
+
+    /// Segments of a strand whose guide has `points_per_strand` points.
+    pub fn segment_count(&self, points_per_strand: usize) -> usize {
+        // A remainder below this share of a segment is rounding, not a segment.
+        const ROUNDING: f32 = 1e-3;
+        let segments = (points_per_strand - 1) as f32 * self.segments_per_span;
+        ((segments - ROUNDING).ceil() as usize).max(1)
+    }
+
+    /// Strands drawn of each guide.
+    pub fn strand_count(&self) -> usize {
+        (self.follow_strands.ceil() as usize).max(1)
+    }
+
+    /// Width of follow strand `index` as a multiple of its width at full detail. Over a guide's
+    /// strands the multiples sum to the full number of follow strands.
+    pub fn width_scale(&self, index: usize) -> f32 {
+        let presence = (self.follow_strands - index as f32).clamp(0.0, 1.0);
+        presence * self.full_follow_strands / self.follow_strands
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_sum_to_the_full_number() {
+        for follow_strands in [16.0, 11.3, 7.999, 4.0, 1.0] {
+            let level = DetailLevel { segments_per_span: 4.0, follow_strands, full_follow_strands: 16.0 };
+            let sum: f32 = (0..level.strand_count()).map(|index| level.width_scale(index)).sum();
+            // Sixteen roundings of single precision.
+            assert!((sum - 16.0).abs() < 16.0 * 16.0 * f32::EPSILON, "{follow_strands}: {sum}");
+        }
+    }
+
+    #[test]
+    fn detail_never_rises_with_distance() {
+        let settings = LevelOfDetail::default();
+        let mut last = settings.level(0.1, 16);
+        assert_eq!(last, DetailLevel::full(4, 16));
+        for step in 1..200 {
+            let level = settings.level(0.1 * step as f32, 16);
+            assert!(level.follow_strands <= last.follow_strands);
+            assert!(level.segments_per_span <= last.segments_per_span);
+            last = level;
+        }
+        assert_eq!((last.follow_strands, last.segments_per_span), (2.0, 1.5));
+    }
+
+    #[test]
+    fn settings_outside_their_range_are_refused() {
+        assert!(LevelOfDetail::default().validate().is_ok());
+        assert!(LevelOfDetail { segments_per_span: 0, ..Default::default() }.validate().is_err());
+        assert!(LevelOfDetail { full_distance: f32::NAN, ..Default::default() }.validate().is_err());
+        assert!(LevelOfDetail { least_strands: 1.5, ..Default::default() }.validate().is_err());
+    }
+}
