@@ -1,0 +1,75 @@
+use fast_surface_nets::ndshape::RuntimeShape;
+use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
+use glam::{UVec3, Vec3};
+use rayon::prelude::*;
+
+use super::Mannequin;
+use crate::{Mesh, SignedDistance};
+
+/// Spacing of the samples \[m\].
+const SPACING: f32 = 0.0025;
+/// Newton steps that carry the vertices onto the skin.
+const NEWTON_STEPS: usize = 3;
+
+/// Meshes the skin.
+pub(super) fn mesh(mannequin: &Mannequin) -> Mesh {
+    let bounds = mannequin.bounds();
+    let origin = bounds.min - Vec3::splat(2.0 * SPACING);
+    let size = ((bounds.max - origin) / SPACING).as_uvec3() + UVec3::splat(4);
+    let samples = sample(mannequin, origin, size);
+    let mut buffer = SurfaceNetsBuffer::default();
+    let shape = RuntimeShape::<u32, 3>::new(size.to_array());
+    surface_nets(&samples, &shape, [0; 3], (size - UVec3::ONE).to_array(), &mut buffer);
+    let (positions, normals): (Vec<Vec3>, Vec<Vec3>) = buffer
+        .positions
+        .par_iter()
+        .map(|&cell| settle(mannequin, origin + Vec3::from_array(cell) * SPACING))
+        .unzip();
+    let triangles = buffer.indices.chunks_exact(3).map(|corner| [corner[0], corner[1], corner[2]]).collect();
+    Mesh { positions, normals, triangles }
+}
+
+/// Values on a grid, x fastest. Bricks that the skin cannot reach are filled from one sample.
+fn sample(mannequin: &Mannequin, origin: Vec3, size: UVec3) -> Vec<f32> {
+    const BRICK: u32 = 4;
+    let row = (size.x * size.y) as usize;
+    let mut samples = vec![0.0; row * size.z as usize];
+    let bricks = UVec3::new(size.x.div_ceil(BRICK), size.y.div_ceil(BRICK), 0);
+    let reach = 0.5 * (BRICK as f32) * SPACING * 3f32.sqrt();
+    samples.par_chunks_mut(row * BRICK as usize).enumerate().for_each(|(slab, values)| {
+        let depth = (values.len() / row) as u32;
+        let first_layer = slab as u32 * BRICK;
+        for brick_y in 0..bricks.y {
+            for brick_x in 0..bricks.x {
+                let corner = UVec3::new(brick_x * BRICK, brick_y * BRICK, first_layer);
+                let middle = origin + (corner.as_vec3() + 0.5 * BRICK as f32) * SPACING;
+                let value = mannequin.distance(middle);
+                // The field may rise a little faster than a distance: keep a margin of a half.
+                let far = value.abs() > 1.5 * reach;
+                for z in 0..depth {
+                    for y in corner.y..(corner.y + BRICK).min(size.y) {
+                        for x in corner.x..(corner.x + BRICK).min(size.x) {
+                            let cell = UVec3::new(x, y, first_layer + z);
+                            let index = z as usize * row + (y * size.x + x) as usize;
+                            values[index] = if far {
+                                value
+                            } else {
+                                mannequin.distance(origin + cell.as_vec3() * SPACING)
+                            };
+                        }
+                    }
+                }
+            }
+        }
+    });
+    samples
+}
+
+/// Carries a point near the skin onto it; the point and the normal there.
+pub(super) fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
+    for _ in 0..NEWTON_STEPS {
+        let (distance, normal) = mannequin.distance_and_gradient(point);
+        point -= normal * distance;
+    }
+    (point, mannequin.distance_and_gradient(point).1)
+}
