@@ -20,6 +20,7 @@ mod mesh_distance;
 mod motion;
 mod obj;
 mod pose;
+mod roots;
 mod scalp;
 mod triangle;
 
@@ -31,4 +32,5 @@ pub use mannequin::Mannequin;
 pub use mesh::Mesh;
 pub use motion::{Keyframe, Motion};
 pub use pose::Pose;
+pub use roots::Random;
 pub use scalp::{Root, Scalp};
