@@ -1,4 +1,4 @@
-/// Why a solver could not be made.
+/// Why a solver could not be made or a state changed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
@@ -10,6 +10,14 @@ pub enum SimError {
         /// What was given.
         found: String,
         /// The range.
+        expected: &'static str,
+    },
+    /// A rest shape that does not fit its guides.
+    #[error("the rest shape has {found}, expected {expected}")]
+    Rest {
+        /// What was given.
+        found: String,
+        /// What fits.
         expected: &'static str,
     },
 }

@@ -5,6 +5,7 @@
 
 pub mod cpu;
 
+mod clock;
 mod error;
 mod report;
 mod settings;
@@ -12,8 +13,9 @@ mod solver;
 mod state;
 mod step;
 
+pub use clock::{Clock, Ticks};
 pub use error::SimError;
 pub use report::{PressureReport, StepReport};
-pub use settings::{Preconditioner, Settings, Springs, VolumeSettings};
+pub use settings::{Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, VolumeSettings};
 pub use solver::Solver;
 pub use state::{Drive, State};

@@ -1,3 +1,5 @@
+mod limits;
+
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -5,12 +7,27 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
-    /// Length of a step \[s\].
+    /// Length of a step \[s\], 1e-5 to 0.1; default 1/60.
     pub time_step: f32,
-    /// Gravity \[m/s^2\], world space.
+    /// Rounds of the constraints in a step, 1 to 10,000; default 20 [Chen2011 §4].
+    pub iterations: u32,
+    /// Gravity \[m/s^2\], world space; default (0, -9.81, 0).
     pub gravity: Vec3,
+    /// Mass of hair per length \[kg/m\], 1e-9 to 1; default 6.5e-6, a hair 80 um thick.
+    pub mass_per_length: f32,
+    /// Share of the velocity lost per second \[1/s\], 0 to 1000; default 0.
+    pub damping: f32,
+    /// Distance \[m\] that strands keep from solids, 0 to 0.1; default 0.001. A point that rests
+    /// nearer may come as near as it rests, so that a rest pose is never pushed.
+    pub collision_margin: f32,
+    /// Drag of the air.
+    pub drag: Drag,
     /// Elastic springs, each can be off.
     pub springs: Springs,
+    /// Bends at the points of a strand.
+    pub angles: Angles,
+    /// The pass that makes lengths exact.
+    pub length_pass: LengthPass,
     /// The fluid volume.
     pub volume: VolumeSettings,
 }
@@ -19,33 +36,166 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             time_step: 1.0 / 60.0,
+            iterations: 20,
             gravity: Vec3::new(0.0, -9.81, 0.0),
+            mass_per_length: 6.5e-6,
+            damping: 0.0,
+            collision_margin: 0.001,
+            drag: Drag::default(),
             springs: Springs::default(),
+            angles: Angles::default(),
+            length_pass: LengthPass::default(),
             volume: VolumeSettings::default(),
         }
     }
 }
 
-/// Elastic springs along a strand [Chen2011 §4].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+impl Settings {
+    /// The thesis as printed: 20 rounds of distance constraints, springs, no shape and no length
+    /// pass [Chen2011 §4].
+    pub fn thesis() -> Self {
+        Self {
+            angles: Angles::OFF,
+            length_pass: LengthPass { enabled: false, ..LengthPass::default() },
+            ..Self::default()
+        }
+    }
+}
+
+/// Drag of the air: the rate at which hair takes the velocity of the wind.
+///
+/// A hair is pushed along by air across it about twice as strongly as by air along it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Springs {}
+pub struct Drag {
+    /// Rate \[1/s\] for wind across the strand, 0 to 1000; default 1.5.
+    pub across: f32,
+    /// Rate \[1/s\] for wind along the strand, 0 to 1000; default 0.75.
+    pub along: f32,
+}
+
+impl Drag {
+    /// No air.
+    pub const OFF: Self = Self { across: 0.0, along: 0.0 };
+}
+
+impl Default for Drag {
+    fn default() -> Self {
+        Self { across: 1.5, along: 0.75 }
+    }
+}
+
+/// Elastic springs along a strand [Chen2011 §4].
+///
+/// They are integrated explicitly, so a step cannot carry more stiffness than `m / (12 dt^2)` nor
+/// more damping than `m / (12 dt)`, where m is the smaller mass of the two ends; what is above is
+/// cut off there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Springs {
+    /// From point i to i + 1; default 2e-5 N/m.
+    pub stretch: Spring,
+    /// From point i to i + 2; default 1e-5 N/m.
+    pub bend: Spring,
+    /// From point i to i + 3; default 5e-6 N/m.
+    pub torsion: Spring,
+}
+
+impl Springs {
+    /// No springs.
+    pub const OFF: Self = Self { stretch: Spring::OFF, bend: Spring::OFF, torsion: Spring::OFF };
+}
+
+impl Default for Springs {
+    fn default() -> Self {
+        let spring = |stiffness| Spring { enabled: true, stiffness, damping: 2e-7 };
+        Self { stretch: spring(2e-5), bend: spring(1e-5), torsion: spring(5e-6) }
+    }
+}
+
+/// A damped elastic spring.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Spring {
+    /// False leaves the spring out; default true.
+    pub enabled: bool,
+    /// Force over extension \[N/m\], 0 or more; default 1e-5.
+    pub stiffness: f32,
+    /// Force over speed of extension \[N s/m\], 0 or more; default 2e-7.
+    pub damping: f32,
+}
+
+impl Spring {
+    /// No spring.
+    pub const OFF: Self = Self { enabled: false, stiffness: 0.0, damping: 0.0 };
+}
+
+impl Default for Spring {
+    fn default() -> Self {
+        Self { enabled: true, stiffness: 1e-5, damping: 2e-7 }
+    }
+}
+
+/// Bends at the points of a strand, measured from the rest direction that frames carry from the
+/// head along the strand.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Angles {
+    /// Largest bend away from rest at a point \[rad\], 0 to pi; pi is no limit; default 0.6.
+    pub limit: f32,
+    /// Angular frequency \[1/s\] at which a lone bent segment would swing back to rest, 0 to
+    /// 10,000; 0 is off; default 25.
+    pub stiffness: f32,
+}
+
+impl Angles {
+    /// Bends are free.
+    pub const OFF: Self = Self { limit: std::f32::consts::PI, stiffness: 0.0 };
+
+    /// Whether bends are free.
+    pub fn is_off(&self) -> bool {
+        self.limit >= std::f32::consts::PI && self.stiffness == 0.0
+    }
+}
+
+impl Default for Angles {
+    fn default() -> Self {
+        Self { limit: 0.6, stiffness: 25.0 }
+    }
+}
+
+/// The pass from root to tip that makes lengths exact [Mueller2012].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LengthPass {
+    /// False leaves it out: strands stretch as in the thesis; default true.
+    pub enabled: bool,
+    /// Share of the correction of a point that the velocity of the point before it gives back, 0
+    /// to 1; default 0.9 [Mueller2012 eq. 9].
+    pub correction: f32,
+}
+
+impl Default for LengthPass {
+    fn default() -> Self {
+        Self { enabled: true, correction: 0.9 }
+    }
+}
 
 /// The fluid volume that keeps strands apart [Chen2011 §4, McAdams2009].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct VolumeSettings {
-    /// False leaves the volume out.
+    /// False leaves the volume out; default true.
     pub enabled: bool,
-    /// Cells along x, y and z.
+    /// Cells along x, y and z, each 4 to 512; default 32, 32, 32.
     pub cells: [u32; 3],
-    /// FLIP share of the velocity update, 0 (PIC) to 1 (FLIP) [Chen2011 eq. 5].
+    /// FLIP share of the velocity update, 0 (PIC) to 1 (FLIP); default 0.95 [Chen2011 eq. 5].
     pub flip_share: f32,
-    /// Relative residual at which the pressure solve stops.
+    /// Relative residual at which the pressure solve stops, 1e-12 to 1; default 1e-5.
     pub tolerance: f32,
-    /// Most iterations of the pressure solve.
+    /// Most iterations of the pressure solve, 1 to 100,000; default 200.
     pub max_iterations: u32,
-    /// Preconditioner of the conjugate gradients.
+    /// Preconditioner of the conjugate gradients: mic0 (default), jacobi or none.
     pub preconditioner: Preconditioner,
 }
 

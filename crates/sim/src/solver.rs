@@ -1,6 +1,10 @@
-use strandline_body::{Collider, Pose};
-use strandline_groom::{Guides, RestShape};
+use glam::Vec3;
+use rayon::prelude::*;
+use strandline_body::{Carrier, Collider, Pose};
+use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 
+use crate::cpu::contacts::Contacts;
+use crate::state::Scratch;
 use crate::{Drive, Settings, SimError, State, StepReport};
 
 /// The compiled solver: rest shape, settings and colliders. It does not change while time passes.
@@ -8,24 +12,235 @@ pub struct Solver {
     pub(crate) settings: Settings,
     pub(crate) rest: RestShape,
     pub(crate) colliders: Vec<Collider>,
+    pub(crate) strand_count: usize,
+    pub(crate) points_per_strand: usize,
+    /// Rest positions \[m\], head space, shape `[block][point]` of lanes.
+    pub(crate) positions: Vec<Vec3Lanes>,
+    /// Rest direction from point i to i + 1, head space, shape `[block][point]` of lanes.
+    pub(crate) directions: Vec<Vec3Lanes>,
+    /// 1 over the mass \[1/kg\], 0 for a rooted point, shape `[block][point]` of lanes. Lanes
+    /// beyond the last strand hold what the last strand has.
+    pub(crate) inverse_mass: Vec<Lanes>,
+    /// Share of a length correction that point i takes from segment i, i + 1, shape as above.
+    pub(crate) share_lower: Vec<Lanes>,
+    /// Share of a length correction that point i + 1 takes from segment i, i + 1, shape as above.
+    pub(crate) share_upper: Vec<Lanes>,
+    /// Distance \[m\] from the colliders that the head carries at rest, shape as above.
+    pub(crate) rest_clearance: Vec<Lanes>,
+    mass_per_length: f32,
 }
 
 impl Solver {
-    /// Compiles a solver.
+    /// Points of a strand that the head carries, so that hair leaves the skin in its own direction.
+    pub const ROOTED_POINTS: usize = 2;
+
+    /// Compiles a solver for hair: the first two points of every strand are rooted in the head.
     ///
     /// # Errors
     /// A setting outside its range.
-    pub fn new(_guides: &Guides, _settings: &Settings, _colliders: Vec<Collider>) -> Result<Self, SimError> {
-        unimplemented!("strand solver")
+    pub fn new(guides: &Guides, settings: &Settings, colliders: Vec<Collider>) -> Result<Self, SimError> {
+        let rest = RestShape::new(guides, settings.mass_per_length);
+        Self::with_rest(guides, rest, |_, point| point < Self::ROOTED_POINTS, settings, colliders)
+    }
+
+    /// Compiles a solver for strands of any mass that are held at any points: ropes, chains.
+    ///
+    /// `rooted(strand, point)` tells which points the head carries. Rest lengths of 0 are allowed
+    /// nowhere but at the ends, where [`RestShape`] has them.
+    ///
+    /// # Errors
+    /// A setting outside its range; a rest shape of another shape than the guides, or with a
+    /// length or a mass of a strand that is not above 0.
+    pub fn with_rest(
+        guides: &Guides,
+        rest: RestShape,
+        rooted: impl Fn(usize, usize) -> bool + Sync,
+        settings: &Settings,
+        colliders: Vec<Collider>,
+    ) -> Result<Self, SimError> {
+        settings.check()?;
+        check_rest(guides, &rest)?;
+        let points = guides.points_per_strand();
+        let last = guides.strand_count() - 1;
+        let inverse_mass = by_lane(rest.mass.len(), points, |index, block, point, lane| {
+            let strand = (block * LANES + lane).min(last);
+            let held = rooted(strand, point);
+            let source = if strand == last { last % LANES } else { lane };
+            if held { 0.0 } else { 1.0 / rest.mass[index].0[source] }
+        });
+        let directions = directions(guides, &rest);
+        let (share_lower, share_upper) = shares(&inverse_mass, points);
+        let rest_clearance = by_lane(rest.mass.len(), points, |index, _, _, lane| {
+            clearance(&colliders, guides.positions()[index].get(lane))
+        });
+        Ok(Self {
+            settings: settings.clone(),
+            rest,
+            colliders,
+            strand_count: guides.strand_count(),
+            points_per_strand: points,
+            positions: guides.positions().to_vec(),
+            directions,
+            inverse_mass,
+            share_lower,
+            share_upper,
+            rest_clearance,
+            mass_per_length: settings.mass_per_length,
+        })
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Changes the settings between two steps; states go on as they are.
+    ///
+    /// # Errors
+    /// A setting outside its range; then nothing changes.
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
+        settings.check()?;
+        let factor = settings.mass_per_length / self.mass_per_length;
+        if factor != 1.0 {
+            let scale =
+                |lanes: &mut Lanes, factor: f32| lanes.0.iter_mut().for_each(|value| *value *= factor);
+            self.rest.mass.iter_mut().for_each(|lanes| scale(lanes, factor));
+            self.inverse_mass.iter_mut().for_each(|lanes| scale(lanes, 1.0 / factor));
+            self.mass_per_length = settings.mass_per_length;
+        }
+        self.settings = settings.clone();
+        Ok(())
+    }
+
+    /// The solids.
+    pub fn colliders(&self) -> &[Collider] {
+        &self.colliders
+    }
+
+    /// The rest shape.
+    pub fn rest(&self) -> &RestShape {
+        &self.rest
+    }
+
+    /// Number of strands.
+    pub fn strand_count(&self) -> usize {
+        self.strand_count
+    }
+
+    /// Points on each strand.
+    pub fn points_per_strand(&self) -> usize {
+        self.points_per_strand
     }
 
     /// The guides at rest, carried by a pose of the head.
-    pub fn rest_state(&self, _world_from_head: Pose) -> State {
-        unimplemented!("strand solver")
+    pub fn rest_state(&self, world_from_head: Pose) -> State {
+        let positions: Vec<Vec3Lanes> =
+            self.positions.par_iter().map(|lanes| carried(lanes, &world_from_head)).collect();
+        let blocks = positions.len() / self.points_per_strand;
+        State {
+            velocities: vec![Vec3Lanes::default(); positions.len()],
+            previous_positions: positions.clone(),
+            world_from_head,
+            time: 0.0,
+            length_scale: vec![Lanes([1.0; LANES]); blocks],
+            scratch: Scratch {
+                predicted: positions.clone(),
+                contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),
+                lengths: self.rest.clone(),
+            },
+            positions,
+        }
     }
 
     /// Advances a state by one step of `settings.time_step`.
-    pub fn step(&self, _state: &mut State, _drive: &Drive) -> StepReport {
-        unimplemented!("strand solver")
+    pub fn step(&self, state: &mut State, drive: &Drive) -> StepReport {
+        crate::step::step(self, state, drive)
     }
+}
+
+/// Rest positions of a block carried by a pose.
+pub(crate) fn carried(lanes: &Vec3Lanes, world_from_head: &Pose) -> Vec3Lanes {
+    let mut carried = Vec3Lanes::default();
+    for lane in 0..LANES {
+        carried.set(lane, world_from_head.point(lanes.get(lane)));
+    }
+    carried
+}
+
+fn check_rest(guides: &Guides, rest: &RestShape) -> Result<(), SimError> {
+    let points = guides.points_per_strand();
+    let refuse = |found: String, expected| Err(SimError::Rest { found, expected });
+    for (name, lanes) in
+        [("stretch", &rest.stretch), ("bend", &rest.bend), ("torsion", &rest.torsion), ("mass", &rest.mass)]
+    {
+        if lanes.len() != guides.positions().len() {
+            return refuse(format!("{} blocks of {name}", lanes.len()), "one for each block and point");
+        }
+    }
+    for strand in 0..guides.strand_count() {
+        let at = |lanes: &[Lanes], point: usize| lanes[strand / LANES * points + point].0[strand % LANES];
+        for point in 0..points {
+            let (length, mass) = (at(&rest.stretch, point), at(&rest.mass, point));
+            if point + 1 < points && !(length > 0.0 && length.is_finite()) {
+                return refuse(format!("length {length} m in strand {strand}"), "above 0");
+            }
+            if !(mass > 0.0 && mass.is_finite()) {
+                return refuse(format!("mass {mass} kg in strand {strand}"), "above 0");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A number for each point and lane, from (index, block, point, lane).
+fn by_lane(
+    count: usize,
+    points: usize,
+    number: impl Fn(usize, usize, usize, usize) -> f32 + Sync,
+) -> Vec<Lanes> {
+    (0..count)
+        .into_par_iter()
+        .map(|index| Lanes(std::array::from_fn(|lane| number(index, index / points, index % points, lane))))
+        .collect()
+}
+
+fn directions(guides: &Guides, rest: &RestShape) -> Vec<Vec3Lanes> {
+    let points = guides.points_per_strand();
+    let positions = guides.positions();
+    (0..rest.stretch.len())
+        .into_par_iter()
+        .map(|index| {
+            let mut directions = Vec3Lanes::splat(Vec3::Y);
+            if index % points + 1 < points {
+                for lane in 0..LANES {
+                    let along = positions[index + 1].get(lane) - positions[index].get(lane);
+                    directions.set(lane, along.normalize_or(Vec3::Y));
+                }
+            }
+            directions
+        })
+        .collect()
+}
+
+/// How the two ends of each segment share its correction, by inverse mass [Mueller2007 eq. 10-11].
+fn shares(inverse_mass: &[Lanes], points: usize) -> (Vec<Lanes>, Vec<Lanes>) {
+    let share = |upper: bool| {
+        by_lane(inverse_mass.len(), points, |index, _, point, lane| {
+            if point + 1 == points {
+                return 0.0;
+            }
+            let (here, next) = (inverse_mass[index].0[lane], inverse_mass[index + 1].0[lane]);
+            let sum = here + next;
+            if sum > 0.0 { if upper { next / sum } else { here / sum } } else { 0.0 }
+        })
+    };
+    (share(false), share(true))
+}
+
+fn clearance(colliders: &[Collider], point: Vec3) -> f32 {
+    colliders
+        .iter()
+        .filter(|collider| collider.carrier == Carrier::Head)
+        .map(|collider| collider.shape.distance_and_gradient(point).0)
+        .fold(f32::INFINITY, f32::min)
 }

@@ -1,1 +1,40 @@
 //! The step as a list of stages.
+
+use std::time::Instant;
+
+use crate::cpu::Obstacles;
+use crate::cpu::advance::advance;
+use crate::cpu::constrain::constrain;
+use crate::cpu::integrate::integrate;
+use crate::cpu::pose_roots::pose_roots;
+use crate::{Drive, Solver, State, StepReport};
+
+/// Advances a state by one step [Chen2011 §4, fig. 11-12].
+pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepReport {
+    let drive = drive.or_still(state);
+    let obstacles = Obstacles {
+        colliders: &solver.colliders,
+        start: state.world_from_head,
+        end: drive.world_from_head,
+        time_step: solver.settings.time_step,
+    };
+    let mut report = StepReport::default();
+    let seconds = &mut report.seconds;
+    timed(seconds, "pose_roots", || pose_roots(solver, state, &drive.world_from_head));
+    timed(seconds, "integrate", || integrate(solver, state, drive.wind));
+    let non_finite = timed(seconds, "constrain", || constrain(solver, state, &obstacles));
+    let outcome = timed(seconds, "advance", || advance(solver, state, &obstacles));
+    report.stretch_mean = outcome.stretch_mean();
+    report.stretch_max = outcome.stretch_max;
+    report.penetration_max = outcome.penetration_max;
+    report.non_finite = non_finite + outcome.non_finite;
+    report
+}
+
+/// Runs a stage and notes how long it took \[s\].
+fn timed<T>(seconds: &mut Vec<(&'static str, f64)>, stage: &'static str, run: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = run();
+    seconds.push((stage, start.elapsed().as_secs_f64()));
+    result
+}

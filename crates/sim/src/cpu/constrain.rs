@@ -1,0 +1,161 @@
+//! Lengths, bends and solids, then v* = (x* - x) / dt [Mueller2007; Chen2011 §4].
+
+use rayon::prelude::*;
+use strandline_groom::{LANES, Vec3Lanes};
+use wide::f32x8;
+
+use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
+use super::contacts::{Plane, Solids, Touch};
+use super::length_pass::Follow;
+use super::lengths::Segments;
+use super::vec3x8::{Vec3x8, load, splat};
+use super::{Obstacles, advance};
+use crate::{Solver, State};
+
+/// Projects the predicted positions onto the constraints and derives the velocities from them.
+///
+/// All rounds of a block of strands run one after the other, so that its points stay in the first
+/// cache. Returns the number of points that were not finite; their strands are back at rest, so
+/// that they do not spoil the volume.
+pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> usize {
+    let points = solver.points_per_strand;
+    let settings = &solver.settings;
+    let solids = Solids::new(obstacles, points);
+    let bends = Bends::new(&settings.angles, settings.time_step, settings.iterations, obstacles.end.rotation);
+    let scratch = &mut state.scratch;
+    let lengths = &scratch.lengths.stretch;
+    scratch
+        .predicted
+        .par_chunks_mut(points)
+        .zip(state.velocities.par_chunks_mut(points))
+        .zip(state.positions.par_chunks(points))
+        .zip(scratch.contacts.blocks.par_iter_mut())
+        .enumerate()
+        .with_min_len(8)
+        .map_init(
+            || Workspace::new(points),
+            |work, (block, (((predicted, velocities), start), planes))| {
+                let range = block * points..(block + 1) * points;
+                let strands = Strands {
+                    solver,
+                    bends,
+                    segments: Segments {
+                        lengths: &lengths[range.clone()],
+                        share_lower: &solver.share_lower[range.clone()],
+                        share_upper: &solver.share_upper[range.clone()],
+                    },
+                    joints: Joints {
+                        directions: &solver.directions[range.clone()],
+                        inverse_mass: &solver.inverse_mass[range],
+                    },
+                    solids: &solids,
+                };
+                strands.solve(block, predicted, start, velocities, planes, work);
+                advance::recover(solver, &obstacles.end, block, predicted, velocities)
+            },
+        )
+        .sum()
+}
+
+/// What a thread works in.
+struct Workspace {
+    touches: Vec<(usize, Touch)>,
+    margins: Vec<f32x8>,
+    corrections: Vec<Vec3x8>,
+}
+
+impl Workspace {
+    fn new(points: usize) -> Self {
+        Self {
+            touches: Vec::with_capacity(points),
+            margins: vec![splat(0.0); points],
+            corrections: vec![Vec3x8::ZERO; points + 1],
+        }
+    }
+}
+
+/// One block of strands.
+struct Strands<'a> {
+    solver: &'a Solver,
+    bends: Option<Bends>,
+    segments: Segments<'a>,
+    joints: Joints<'a>,
+    solids: &'a Solids<'a>,
+}
+
+impl Strands<'_> {
+    fn solve(
+        &self,
+        block: usize,
+        predicted: &mut [Vec3Lanes],
+        start: &[Vec3Lanes],
+        velocities: &mut [Vec3Lanes],
+        planes: &mut [Plane],
+        work: &mut Workspace,
+    ) {
+        self.find_touches(block, predicted, start, planes, work);
+        for round in 0..self.solver.settings.iterations {
+            self.segments.project(predicted);
+            if let Some(bends) = self.bends.filter(|_| round % ROUNDS_PER_PASS == 0) {
+                bends.project(self.joints, predicted);
+            }
+            for (point, touch) in &work.touches {
+                touch.resolve(Vec3x8::load(&predicted[*point])).store(&mut predicted[*point]);
+            }
+        }
+        let pass = &self.solver.settings.length_pass;
+        work.corrections.fill(Vec3x8::ZERO);
+        if pass.enabled {
+            let follow = Follow {
+                lengths: self.segments.lengths,
+                inverse_mass: self.joints.inverse_mass,
+                margins: &work.margins,
+                solids: self.solids,
+            };
+            follow.place(predicted, planes, &mut work.corrections);
+        }
+        let rate = splat(1.0 / self.solver.settings.time_step);
+        let returned = splat(pass.correction);
+        for point in 0..predicted.len() {
+            let free = load(&self.joints.inverse_mass[point]).simd_gt(splat(0.0));
+            let moved = Vec3x8::load(&predicted[point]) - Vec3x8::load(&start[point]);
+            // [Mueller2012 eq. 9]
+            let velocity = (moved - work.corrections[point + 1] * returned) * rate;
+            velocity.or(free, moved * rate).store(&mut velocities[point]);
+        }
+    }
+
+    /// Finds the planes that the free points of the block may touch in this step.
+    fn find_touches(
+        &self,
+        block: usize,
+        predicted: &[Vec3Lanes],
+        start: &[Vec3Lanes],
+        planes: &mut [Plane],
+        work: &mut Workspace,
+    ) {
+        work.touches.clear();
+        if self.solids.is_empty() {
+            return;
+        }
+        let most = splat(self.solver.settings.collision_margin);
+        let clearance = &self.solver.rest_clearance[block * predicted.len()..];
+        for point in 0..predicted.len() {
+            let margin = most.fast_min(load(&clearance[point]));
+            work.margins[point] = margin;
+            let free = load(&self.joints.inverse_mass[point]).simd_gt(splat(0.0));
+            if !free.any() {
+                continue;
+            }
+            let (here, start) = (Vec3x8::load(&predicted[point]), Vec3x8::load(&start[point]));
+            if let Some(touch) = self.solids.touch(planes, point, here, start, margin, free) {
+                work.touches.push((point, touch));
+            }
+        }
+    }
+}
+
+/// Strands of a block that carry hair, as lanes.
+pub(crate) fn live_lanes(solver: &Solver, block: usize) -> usize {
+    (solver.strand_count - block * LANES).min(LANES)
+}

@@ -1,0 +1,134 @@
+//! Forces, then a prediction: v* = v + dt a, x* = x + dt v*.
+
+use glam::Vec3;
+use rayon::prelude::*;
+use strandline_groom::{Lanes, Vec3Lanes};
+use wide::f32x8;
+
+use super::vec3x8::{Vec3x8, load, splat};
+use crate::{Solver, Spring, State};
+
+/// Applies gravity, drag and springs to the velocities of free points and predicts their
+/// positions. `wind` is the velocity of the air \[m/s\], world space.
+pub fn integrate(solver: &Solver, state: &mut State, wind: Vec3) {
+    let points = solver.points_per_strand;
+    let lengths = &state.scratch.lengths;
+    let settings = &solver.settings;
+    let springs = [
+        (1, settings.springs.stretch, &lengths.stretch),
+        (2, settings.springs.bend, &lengths.bend),
+        (3, settings.springs.torsion, &lengths.torsion),
+    ];
+    let fall = Fall::new(solver, wind);
+    state
+        .scratch
+        .predicted
+        .par_chunks_mut(points)
+        .zip(state.velocities.par_chunks_mut(points))
+        .zip(state.positions.par_chunks(points))
+        .enumerate()
+        .with_min_len(16)
+        .for_each_init(
+            || vec![Vec3x8::ZERO; points],
+            |kicks, (block, ((predicted, velocities), positions))| {
+                let range = block * points..(block + 1) * points;
+                let inverse_mass = &solver.inverse_mass[range.clone()];
+                kicks.fill(Vec3x8::ZERO);
+                for (stride, spring, rest) in springs {
+                    if spring.enabled {
+                        let rest = &rest[range.clone()];
+                        let strand = Strand { positions, velocities, inverse_mass, rest };
+                        strand.pull(stride, &spring, settings.time_step, kicks);
+                    }
+                }
+                fall.predict(positions, inverse_mass, kicks, velocities, predicted);
+            },
+        );
+}
+
+/// One block of strands as springs see it.
+struct Strand<'a> {
+    positions: &'a [Vec3Lanes],
+    velocities: &'a [Vec3Lanes],
+    inverse_mass: &'a [Lanes],
+    rest: &'a [Lanes],
+}
+
+impl Strand<'_> {
+    /// Adds what a kind of spring changes the velocities by \[m/s\] in a step.
+    ///
+    /// A point has at most six springs. With k <= m / (12 dt^2) and c <= m / (12 dt) for each, the
+    /// largest eigenvalues keep dt^2 w^2 <= 1 and c dt / m <= 2, inside the bound dt^2 w^2 + 2 c dt
+    /// / m < 4 of the semi-implicit Euler step.
+    fn pull(&self, stride: usize, spring: &Spring, time_step: f32, kicks: &mut [Vec3x8]) {
+        let stiffest = splat(1.0 / (12.0 * time_step * time_step));
+        let most_damped = splat(1.0 / (12.0 * time_step));
+        for lower in 0..self.positions.len() - stride {
+            let upper = lower + stride;
+            let (weight_lower, weight_upper) =
+                (load(&self.inverse_mass[lower]), load(&self.inverse_mass[upper]));
+            let lighter = splat(1.0) / weight_lower.fast_max(weight_upper).fast_max(splat(1e-30));
+            let stiffness = splat(spring.stiffness).fast_min(stiffest * lighter);
+            let damping = splat(spring.damping).fast_min(most_damped * lighter);
+            let across = Vec3x8::load(&self.positions[upper]) - Vec3x8::load(&self.positions[lower]);
+            let parting = Vec3x8::load(&self.velocities[upper]) - Vec3x8::load(&self.velocities[lower]);
+            let length = across.length();
+            let along = across * (splat(1.0) / length);
+            let force = stiffness * (length - load(&self.rest[lower])) + damping * parting.dot(along);
+            let impulse = along * (force * splat(time_step));
+            kicks[lower] += impulse * weight_lower;
+            kicks[upper] -= impulse * weight_upper;
+        }
+    }
+}
+
+/// What acts on every point alike.
+struct Fall {
+    time_step: f32x8,
+    gravity: Vec3x8,
+    wind: Vec3x8,
+    /// Share of the wind that a step takes over, across and along the strand.
+    across: f32x8,
+    along: f32x8,
+    kept: f32x8,
+}
+
+impl Fall {
+    fn new(solver: &Solver, wind: Vec3) -> Self {
+        let settings = &solver.settings;
+        let time_step = settings.time_step;
+        Self {
+            time_step: splat(time_step),
+            gravity: Vec3x8::splat(settings.gravity * time_step),
+            wind: Vec3x8::splat(wind),
+            across: splat(-(-settings.drag.across * time_step).exp_m1()),
+            along: splat(-(-settings.drag.along * time_step).exp_m1()),
+            kept: splat((-settings.damping * time_step).exp()),
+        }
+    }
+
+    fn predict(
+        &self,
+        positions: &[Vec3Lanes],
+        inverse_mass: &[Lanes],
+        kicks: &[Vec3x8],
+        velocities: &mut [Vec3Lanes],
+        predicted: &mut [Vec3Lanes],
+    ) {
+        let last = positions.len() - 1;
+        for point in 0..=last {
+            let free = load(&inverse_mass[point]).simd_gt(splat(0.0));
+            let before = Vec3x8::load(&velocities[point]);
+            let pushed = before + self.gravity + kicks[point];
+            let tangent = Vec3x8::load(&positions[last.min(point + 1)])
+                - Vec3x8::load(&positions[point.saturating_sub(1)]);
+            let relative = self.wind - pushed;
+            let along = tangent * (tangent.dot(relative) / (tangent.dot(tangent) + splat(1e-30)));
+            let dragged = pushed + (relative - along) * self.across + along * self.along;
+            let velocity = (dragged * self.kept).or(free, before);
+            velocity.store(&mut velocities[point]);
+            let end = Vec3x8::load(&positions[point]) + velocity * self.time_step;
+            end.or(free, Vec3x8::load(&predicted[point])).store(&mut predicted[point]);
+        }
+    }
+}
