@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn every_frame_rate_makes_the_same_number_of_steps() {
         for rate in [24.0, 30.0, 60.0, 144.0] {
-            let mut clock = Clock::new(1.0 / 60.0);
+            let mut clock = Clock::new(1.0 / 64.0);
             let mut steps = 0;
             for _ in 0..(10.0 * rate) as usize {
                 let ticks = clock.advance(1.0 / rate);
@@ -64,7 +64,7 @@ mod tests {
                 steps += u64::from(ticks.count);
                 assert!((0.0..=1.0).contains(&ticks.share));
             }
-            assert_eq!(steps, 600, "{rate} frames/s");
+            assert_eq!(steps, 640, "{rate} frames/s");
         }
     }
 
