@@ -1,1 +1,4 @@
-//! laws
+//! Laws that any implementation has to keep.
+
+mod pendulum;
+mod strands;
