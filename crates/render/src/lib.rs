@@ -15,6 +15,6 @@ pub use camera::Camera;
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameReport, Renderer};
 pub use level_of_detail::{DetailLevel, LevelOfDetail};
-pub use lights::Light;
-pub use look::{Clump, Look};
+pub use lights::{Environment, Illumination, Light, LightKind};
+pub use look::{Clump, Look, Shadow};
 pub use picture::Picture;

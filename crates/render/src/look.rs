@@ -2,7 +2,7 @@ use std::fmt::Display;
 
 use serde::{Deserialize, Serialize};
 
-use crate::RenderError;
+use crate::{Environment, RenderError};
 
 /// Colour and shape of the drawn hair.
 ///
@@ -21,6 +21,10 @@ pub struct Look {
     pub tip_width: f32,
     /// How the drawn strands lie about their guide.
     pub clump: Clump,
+    /// How hair and body cast shadows.
+    pub shadow: Shadow,
+    /// Light from all around.
+    pub environment: Environment,
     /// Seed of every random choice of the look. Default 0.
     pub seed: u32,
 }
@@ -66,6 +70,55 @@ impl Default for Clump {
     }
 }
 
+/// How hair and body cast shadows [Yuksel2008].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Shadow {
+    /// Texels along each side of a light's maps, 16 to 4,096. Default 512.
+    pub map_size: u32,
+    /// Distances \[m\] behind the first hair at which the three layers end, rising.
+    /// Default 0.004, 0.016, 0.06.
+    pub layers: [f32; 3],
+    /// Share of the light that one hair takes away where it is crossed, 0 to 0.99. Default 0.3: most of
+    /// what meets a hair goes on, scattered forward.
+    pub opacity: f32,
+    /// Depth \[m\] under the body's surface at which its shadow begins. Default 0.004.
+    pub body_bias: f32,
+    /// Depth \[m\] over which that shadow grows to its full. Default 0.008.
+    pub body_softness: f32,
+}
+
+impl Default for Shadow {
+    fn default() -> Self {
+        Self {
+            map_size: 512,
+            layers: [0.004, 0.016, 0.06],
+            opacity: 0.3,
+            body_bias: 0.004,
+            body_softness: 0.008,
+        }
+    }
+}
+
+impl Shadow {
+    /// Logarithm of the share of light that one hair lets through.
+    pub(crate) fn log_transmission(&self) -> f32 {
+        (1.0 - self.opacity).ln()
+    }
+
+    fn validate(&self) -> Result<(), RenderError> {
+        let sizes = 16..=4096;
+        require(sizes.contains(&self.map_size), "look.shadow.map_size", &self.map_size, "16 to 4096")?;
+        let [first, second, third] = self.layers;
+        let rising = 1e-6 < first && first < second && second < third && third < 1e3;
+        let found = format!("{:?}", self.layers);
+        require(rising, "look.shadow.layers", &found, "three rising distances, 0.000001 to 1000 m")?;
+        require_range("look.shadow.opacity", self.opacity, 0.0, 0.99, "0 to 0.99")?;
+        require_range("look.shadow.body_bias", self.body_bias, 0.0, 1.0, "0 to 1 m")?;
+        require_range("look.shadow.body_softness", self.body_softness, 1e-6, 1.0, "0.000001 to 1 m")
+    }
+}
+
 impl Look {
     /// Brown hair, the default.
     pub fn brown() -> Self {
@@ -75,6 +128,8 @@ impl Look {
             width_scale: 1.0,
             tip_width: 0.3,
             clump: Clump::default(),
+            shadow: Shadow::default(),
+            environment: Environment::default(),
             seed: 0,
         }
     }
@@ -93,6 +148,8 @@ impl Look {
         )?;
         require_range("look.width_scale", self.width_scale, 0.0, 1e3, "0 to 1000")?;
         require_range("look.tip_width", self.tip_width, 0.0, 1.0, "0 to 1")?;
+        self.environment.validate()?;
+        self.shadow.validate()?;
         self.clump.validate()
     }
 }

@@ -1,0 +1,91 @@
+//! `opacity_depth`: for each light with shadow, the depth of the first hair and of the body [Yuksel2008 §3].
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+use super::Strands;
+use super::shadow::{LightView, NOTHING, ShadowMap, Shadows, Window};
+use super::shadow_body::draw_depth;
+use super::shadow_hair::{part_count, part_strands, plane_bounds, walk};
+use crate::{Light, Shadow};
+
+/// A body that casts shadows, already in its place.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowBody<'a> {
+    /// Vertex positions \[m\], world space.
+    pub positions: &'a [Vec3],
+    /// Corner indices.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// Fits each shadow light's maps to hair and body, and finds the first depths in them.
+///
+/// The hair has a map of its own, no larger than the hair, so that its texels are small.
+pub fn opacity_depth(
+    strands: &Strands,
+    body: Option<ShadowBody>,
+    lights: &[Light],
+    settings: &Shadow,
+    out: &mut Shadows,
+) {
+    out.casts.clear();
+    out.casts.extend(lights.iter().map(|light| light.shadow));
+    out.maps.resize_with(lights.len(), ShadowMap::default);
+    let middle = middle(&strands.positions);
+    for (map, light) in out.maps.iter_mut().zip(lights) {
+        map.view = LightView::new(light, middle);
+        map.set(settings);
+    }
+    out.active().for_each(|map| {
+        let hair = plane_bounds(&strands.positions, &map.view);
+        map.hair_window = Window::around(hair, &map.view, map.size);
+        match body {
+            Some(body) => body_depths(map, body),
+            None => map.body_depths.clear(),
+        }
+        hair_depths(map, strands);
+    });
+}
+
+fn middle(points: &[Vec3]) -> Vec3 {
+    // A few hundred points say where the hair is.
+    let stride = (points.len() / 256).max(1);
+    let bounds = points
+        .iter()
+        .step_by(stride)
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), &point| (min.min(point), max.max(point)));
+    if points.is_empty() { Vec3::ZERO } else { 0.5 * (bounds.0 + bounds.1) }
+}
+
+fn body_depths(map: &mut ShadowMap, body: ShadowBody) {
+    let bounds: (Vec2, Vec2) = plane_bounds(body.positions, &map.view);
+    map.body_window = Window::around(bounds, &map.view, map.size);
+    map.body_depths.clear();
+    map.body_depths.resize(map.size * map.size, NOTHING);
+    draw_depth(body.positions, body.triangles, &map.view, &map.body_window, map.size, &mut map.body_depths);
+}
+
+fn hair_depths(map: &mut ShadowMap, strands: &Strands) {
+    let size = map.size;
+    let (view, window, parts) = (map.view, map.hair_window, part_count());
+    map.depth_parts.resize_with(parts, Vec::new);
+    map.depth_parts.par_iter_mut().enumerate().for_each(|(part, depths)| {
+        depths.clear();
+        depths.resize(size * size, NOTHING);
+        walk(strands, part_strands(strands, part, parts), &view, &window, size, |piece| {
+            let depth = &mut depths[piece.texel];
+            *depth = depth.min(piece.depth);
+        });
+    });
+    map.depths.resize(size * size, NOTHING);
+    let parts = &map.depth_parts;
+    map.depths.par_chunks_mut(size).enumerate().for_each(|(row, depths)| {
+        let row = row * size..(row + 1) * size;
+        depths.copy_from_slice(&parts[0][row.clone()]);
+        for part in &parts[1..] {
+            for (depth, other) in depths.iter_mut().zip(&part[row.clone()]) {
+                *depth = depth.min(*other);
+            }
+        }
+    });
+}

@@ -1,0 +1,52 @@
+//! `opacity_layers`: for each light with shadow, the hairs crossed in three layers behind the first [Yuksel2008 §3].
+
+use glam::Vec4;
+use rayon::prelude::*;
+
+use super::Strands;
+use super::shadow::{ShadowMap, Shadows};
+use super::shadow_hair::{part_count, part_strands, walk};
+
+/// Whole numbers make sums that do not depend on their order: parts of a crossing.
+const UNITS: f32 = 65536.0;
+
+/// Sums the hair in each layer of each texel; what lies behind the last layer counts to it.
+pub fn opacity_layers(strands: &Strands, out: &mut Shadows) {
+    out.active().for_each(|map| {
+        sum_parts(map, strands);
+        merge(map);
+    });
+}
+
+fn sum_parts(map: &mut ShadowMap, strands: &Strands) {
+    let size = map.size;
+    let (view, window, parts, depths) = (map.view, map.hair_window, part_count(), &map.depths);
+    let [second, third] = map.borders;
+    map.layer_parts.resize_with(parts, Vec::new);
+    map.layer_parts.par_iter_mut().enumerate().for_each(|(part, layers)| {
+        layers.clear();
+        layers.resize(3 * size * size, 0);
+        walk(strands, part_strands(strands, part, parts), &view, &window, size, |piece| {
+            let behind = piece.depth - depths[piece.texel];
+            let layer = usize::from(behind > second) + usize::from(behind > third);
+            let sum = &mut layers[3 * piece.texel + layer];
+            *sum = sum.saturating_add((piece.coverage * UNITS) as u32);
+        });
+    });
+}
+
+fn merge(map: &mut ShadowMap) {
+    let size = map.size;
+    map.texels.resize(size * size, Vec4::ZERO);
+    let (parts, depths) = (&map.layer_parts, &map.depths);
+    map.texels.par_chunks_mut(size).enumerate().for_each(|(row, texels)| {
+        for (column, texel) in texels.iter_mut().enumerate() {
+            let index = row * size + column;
+            let sum = |layer| {
+                let units: u64 = parts.iter().map(|part| u64::from(part[3 * index + layer])).sum();
+                units as f32 * (1.0 / UNITS)
+            };
+            *texel = Vec4::new(sum(0), sum(1), sum(2), depths[index]);
+        }
+    });
+}

@@ -1,0 +1,212 @@
+//! Deep opacity maps [Yuksel2008]: what a light sees of hair and body, and how much of it reaches a point.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use super::fast_math::exp;
+use crate::{Light, LightKind, Shadow};
+
+/// Depth \[m\] of a texel that holds nothing.
+pub(crate) const NOTHING: f32 = 1e30;
+/// Nearest depth \[m\] that a spot or point light sees.
+const NEAR: f32 = 1e-2;
+
+/// Where a light looks from, and how it maps points to its plane.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LightView {
+    origin: Vec3,
+    right: Vec3,
+    up: Vec3,
+    forward: Vec3,
+    parallel: bool,
+    /// Greatest coordinate on the plane that the light reaches.
+    reach: f32,
+}
+
+impl LightView {
+    /// The view of a light; a point light looks at `middle` \[m\].
+    pub(crate) fn new(light: &Light, middle: Vec3) -> Self {
+        let target = if light.kind == LightKind::Point { middle } else { light.target };
+        let forward = (target - light.position).normalize_or(Vec3::NEG_Y);
+        let (right, up) = forward.any_orthonormal_pair();
+        let reach = match light.kind {
+            LightKind::Directional => f32::INFINITY,
+            LightKind::Spot => light.cone_angle.to_radians().tan(),
+            LightKind::Point => 10.0,
+        };
+        let parallel = light.kind == LightKind::Directional;
+        Self { origin: light.position, right, up, forward, parallel, reach }
+    }
+
+    /// Plane coordinates and depth \[m\]; `None` behind the light.
+    #[inline]
+    pub(crate) fn project(&self, point: Vec3) -> Option<Vec3> {
+        let way = point - self.origin;
+        let depth = way.dot(self.forward);
+        let (x, y) = (way.dot(self.right), way.dot(self.up));
+        if self.parallel {
+            Some(Vec3::new(x, y, depth))
+        } else if depth > NEAR {
+            let inverse = 1.0 / depth;
+            Some(Vec3::new(x * inverse, y * inverse, depth))
+        } else {
+            None
+        }
+    }
+
+    /// Plane units a metre measures at a depth.
+    #[inline]
+    pub(crate) fn scale(&self, depth: f32) -> f32 {
+        if self.parallel { 1.0 } else { 1.0 / depth }
+    }
+}
+
+/// The square part of a light's plane that a map covers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Window {
+    min: Vec2,
+    /// Texels in a plane unit.
+    pub(crate) density: f32,
+}
+
+impl Window {
+    /// The smallest square around `bounds` (least and greatest plane coordinates) that the light
+    /// reaches, with a border of one texel.
+    pub(crate) fn around(bounds: (Vec2, Vec2), view: &LightView, size: usize) -> Self {
+        let reach = Vec2::splat(view.reach);
+        let (min, max) = (bounds.0.max(-reach), bounds.1.min(reach));
+        if !(min.cmple(max).all() && min.is_finite() && max.is_finite()) {
+            return Self { min: Vec2::ZERO, density: 0.0 };
+        }
+        let extent = (max - min).max_element().max(1e-4);
+        let density = (size as f32 - 2.0) / extent;
+        Self { min: 0.5 * (min + max) - Vec2::splat(0.5 * size as f32 / density), density }
+    }
+
+    /// Texel coordinates; texel 0 lies between 0 and 1.
+    #[inline]
+    pub(crate) fn texel(&self, plane: Vec2) -> Vec2 {
+        (plane - self.min) * self.density
+    }
+}
+
+/// What one light sees of hair and body.
+#[derive(Clone, Debug, Default)]
+pub struct ShadowMap {
+    pub(crate) view: LightView,
+    pub(crate) hair_window: Window,
+    pub(crate) body_window: Window,
+    pub(crate) size: usize,
+    /// Hairs crossed in each of the three layers (RGB) and depth \[m\] of the first hair (A).
+    pub(crate) texels: Vec<Vec4>,
+    /// Depth \[m\] of the first hair.
+    pub(crate) depths: Vec<f32>,
+    /// Depth \[m\] of the body.
+    pub(crate) body_depths: Vec<f32>,
+    pub(crate) depth_parts: Vec<Vec<f32>>,
+    pub(crate) layer_parts: Vec<Vec<u32>>,
+    /// Depths \[m\] behind the first hair at which layers begin.
+    starts: Vec4,
+    /// One over the thickness of each layer \[1/m\].
+    inverse_thicknesses: Vec4,
+    /// Where the second and third layers begin.
+    pub(crate) borders: [f32; 2],
+    /// Logarithm of what one hair lets through.
+    log_transmission: f32,
+    body_bias: f32,
+    inverse_softness: f32,
+}
+
+impl ShadowMap {
+    pub(crate) fn set(&mut self, settings: &Shadow) {
+        let [first, second, third] = settings.layers;
+        self.size = settings.map_size as usize;
+        self.starts = Vec4::new(0.0, first, second, 0.0);
+        self.inverse_thicknesses =
+            Vec4::new(1.0 / first, 1.0 / (second - first), 1.0 / (third - second), 0.0);
+        self.borders = [first, second];
+        self.log_transmission = settings.log_transmission();
+        self.body_bias = settings.body_bias;
+        self.inverse_softness = 1.0 / settings.body_softness;
+    }
+
+    /// Hairs that the light crosses on its way to a point \[m\], world space.
+    ///
+    /// Each of the four nearest texels is asked for itself, layers being crossed evenly, and the
+    /// answers are blended: depths are never averaged across the outline of the hair [Yuksel2008 §3].
+    #[inline]
+    pub fn crossings(&self, point: Vec3) -> f32 {
+        let Some(projected) = self.view.project(point) else { return 0.0 };
+        let Some((index, weights)) = self.corners(&self.hair_window, projected) else { return 0.0 };
+        let mut sum = Vec4::ZERO;
+        for (corner, weight) in self.quad(index).into_iter().zip(weights) {
+            let texel = self.texels[corner];
+            let behind = Vec4::splat(projected.z - texel.w) - self.starts;
+            let share = (behind * self.inverse_thicknesses).clamp(Vec4::ZERO, Vec4::ONE);
+            sum += share * texel * weight;
+        }
+        sum.x + sum.y + sum.z
+    }
+
+    /// Share of the light that the body lets through to a point \[m\], world space: 0 in its shadow.
+    #[inline]
+    pub fn body_visibility(&self, point: Vec3) -> f32 {
+        if self.body_depths.is_empty() {
+            return 1.0;
+        }
+        let Some(projected) = self.view.project(point) else { return 1.0 };
+        let Some((index, weights)) = self.corners(&self.body_window, projected) else { return 1.0 };
+        let mut shadow = 0.0;
+        for (corner, weight) in self.quad(index).into_iter().zip(weights) {
+            let behind = projected.z - self.body_depths[corner] - self.body_bias;
+            shadow += weight * (behind * self.inverse_softness).clamp(0.0, 1.0);
+        }
+        1.0 - shadow
+    }
+
+    /// Share of the light that hair and body let through to a point \[m\], world space.
+    #[inline]
+    pub fn transmittance(&self, point: Vec3) -> f32 {
+        let visibility = self.body_visibility(point);
+        if visibility == 0.0 { 0.0 } else { visibility * exp(self.crossings(point) * self.log_transmission) }
+    }
+
+    /// The first of the four texels whose middles surround a point, and the weights of the four.
+    #[inline]
+    fn corners(&self, window: &Window, projected: Vec3) -> Option<(usize, [f32; 4])> {
+        let texel = window.texel(projected.truncate()) - Vec2::splat(0.5);
+        let limit = self.size as f32 - 1.0;
+        if !(texel.x >= 0.0 && texel.y >= 0.0 && texel.x < limit && texel.y < limit) {
+            return None;
+        }
+        let (column, row) = (texel.x as usize, texel.y as usize);
+        let (x, y) = (texel.x - column as f32, texel.y - row as f32);
+        let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
+        Some((row * self.size + column, weights))
+    }
+
+    #[inline]
+    fn quad(&self, first: usize) -> [usize; 4] {
+        [first, first + 1, first + self.size, first + self.size + 1]
+    }
+}
+
+/// The shadow maps of all lights.
+#[derive(Clone, Debug, Default)]
+pub struct Shadows {
+    /// One for each light, in their order; lights without shadow have an unused one.
+    pub(crate) maps: Vec<ShadowMap>,
+    /// Which lights cast shadows.
+    pub(crate) casts: Vec<bool>,
+}
+
+impl Shadows {
+    /// The map of a light; `None` for one without shadow.
+    pub fn map(&self, light: usize) -> Option<&ShadowMap> {
+        if *self.casts.get(light)? { self.maps.get(light) } else { None }
+    }
+
+    pub(crate) fn active(&mut self) -> impl rayon::iter::ParallelIterator<Item = &mut ShadowMap> {
+        use rayon::prelude::*;
+        self.maps.par_iter_mut().zip(self.casts.par_iter()).filter_map(|(map, casts)| casts.then_some(map))
+    }
+}

@@ -1,0 +1,51 @@
+//! The depth of a body in a light's map.
+
+use glam::{Vec2, Vec3};
+
+use super::shadow::{LightView, Window};
+
+/// Draws the nearest depth \[m\] of triangles into a square map that already holds depths.
+pub(crate) fn draw_depth(
+    positions: &[Vec3],
+    triangles: &[[u32; 3]],
+    view: &LightView,
+    window: &Window,
+    size: usize,
+    depths: &mut [f32],
+) {
+    for corners in triangles {
+        let [a, b, c] = corners.map(|corner| {
+            let point = view.project(positions[corner as usize])?;
+            Some(window.texel(point.truncate()).extend(point.z))
+        });
+        if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+            fill([a, b, c], size, depths);
+        }
+    }
+}
+
+/// Fills one triangle; corners are texel coordinates with depth.
+fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32]) {
+    let [a, b, c] = corners;
+    let area = (b - a).truncate().perp_dot((c - a).truncate());
+    if area.abs() < 1e-12 || !area.is_finite() {
+        return;
+    }
+    let limit = Vec2::splat(size as f32);
+    let min = a.min(b).min(c).truncate().max(Vec2::ZERO);
+    let max = a.max(b).max(c).truncate().min(limit);
+    let inverse = 1.0 / area;
+    for row in min.y as usize..max.y.ceil() as usize {
+        for column in min.x as usize..max.x.ceil() as usize {
+            let middle = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
+            let from = |corner: Vec3| corner.truncate() - middle;
+            let first = from(b).perp_dot(from(c)) * inverse;
+            let second = from(c).perp_dot(from(a)) * inverse;
+            let third = 1.0 - first - second;
+            if first >= 0.0 && second >= 0.0 && third >= 0.0 {
+                let depth = &mut depths[row * size + column];
+                *depth = depth.min(first * a.z + second * b.z + third * c.z);
+            }
+        }
+    }
+}
