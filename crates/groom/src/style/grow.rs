@@ -1,0 +1,143 @@
+//! Grows strands step by step from their roots over the skull and down.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use strandline_body::{Mannequin, Random, Root, SignedDistance};
+
+use super::comb::{Combed, TIE_RADIUS, smooth};
+use super::{Style, StyleSettings, finish};
+use crate::{Groom, GroomError, Guides, Widths};
+
+/// Length of a step \[m\].
+const STEP: f32 = 0.004;
+/// Share of the old direction kept in each step: hair is stiff.
+const STIFFNESS: f32 = 0.72;
+/// Distance \[m\] from the skin that all hair keeps once it has left the root.
+pub const CLEARANCE: f32 = 0.0015;
+/// Diameter of a hair \[m\].
+const WIDTH: f32 = 8e-5;
+/// Way \[m\] over which hair rises from its root to the full thickness of the hair.
+const RISE: f32 = 0.10;
+
+/// What shaping needs to know of every strand.
+pub struct Strand {
+    /// Its root.
+    pub root: Root,
+    /// Its points \[m\], evenly spaced.
+    pub points: Vec<Vec3>,
+}
+
+impl StyleSettings {
+    /// Grows the style on the built-in mannequin.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn grow(&self) -> Result<Groom, GroomError> {
+        self.validate()?;
+        let mannequin = Mannequin::new();
+        let roots = mannequin.scalp().roots(self.strand_count, self.seed);
+        let strands: Vec<Strand> = roots
+            .into_par_iter()
+            .enumerate()
+            .map(|(index, root)| march(self, &mannequin, index, root))
+            .collect();
+        let (strands, clumps) = finish::finish(self, &mannequin, strands);
+        let mut groom = Groom::empty(WIDTH);
+        groom.widths = Widths::Constant(WIDTH);
+        for strand in &strands {
+            groom.push(strand.points.iter().copied());
+        }
+        groom.root_uvs = Some(strands.iter().map(|strand| strand.root.uv).collect());
+        groom.root_normals = Some(strands.iter().map(|strand| strand.root.normal).collect());
+        groom.groups = Some(clumps);
+        Ok(groom)
+    }
+}
+
+/// One strand, from its root to where it is cut.
+fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, root: Root) -> Strand {
+    let mut random = Random::new(settings.seed, 1000 + index as u64);
+    let [chance, variation, depth, cut] = std::array::from_fn(|_| random.unit());
+    let place = Vec2::from_angle(std::f32::consts::TAU * random.unit()) * random.unit().sqrt();
+    let mut combed = Combed::new(root, settings, place, chance);
+    let length =
+        settings.length * (1.0 - settings.length_variation * variation) * style_length(settings, &root);
+    let cut_height = settings.cut_height + settings.length_variation * 0.15 * (cut - 0.5);
+    // Hair from higher up lies over hair from below, and every hair has its depth in its layer.
+    let thickness = settings.volume * (0.25 + 0.75 * depth) * (0.7 + 3.0 * root.position.y.max(0.0));
+    let (mut points, mut point) = (vec![root.position], root.position);
+    let mut direction = leaving(settings, &combed);
+    let mut passed_tie = 0.0;
+    let steps = (length / STEP).ceil() as usize;
+    for step in 1..=steps {
+        let (distance, out) = mannequin.distance_and_gradient(point);
+        let wanted = combed.direction(settings, point, out, passed_tie).normalize_or(Vec3::NEG_Y);
+        direction = (direction * STIFFNESS + wanted * (1.0 - STIFFNESS)).normalize_or(wanted);
+        let rise = smooth(0.0, RISE, step as f32 * STEP);
+        let clearance = if combed.tied { CLEARANCE } else { CLEARANCE + thickness * rise };
+        // A direction into the skin is turned along it before the hair comes too near.
+        let into = -direction.dot(out);
+        if distance < clearance + STEP && into > 0.0 {
+            direction = (direction + out * into).normalize_or(wanted);
+        }
+        let before = point;
+        point =
+            outside(mannequin, point + direction * STEP, clearance.min(distance + 0.5 * STEP).max(CLEARANCE));
+        direction = (point - before).normalize_or(direction);
+        points.push(point);
+        if settings.style == Style::Ponytail {
+            let left = combed.tie().distance(point);
+            combed.tied |= left < 1.2 * TIE_RADIUS;
+            passed_tie += if combed.tied { STEP } else { 0.0 };
+        }
+        if point.y < cut_height && points.len() > 4 {
+            break;
+        }
+    }
+    smooth_out(&mut points, mannequin);
+    let points = Guides::equal_arcs(&points, settings.points()).collect();
+    Strand { root, points }
+}
+
+/// Direction in which a strand leaves the skin.
+fn leaving(settings: &StyleSettings, combed: &Combed) -> Vec3 {
+    let normal = combed.root.normal;
+    let flow = combed.direction(settings, combed.root.position, normal, 0.0).normalize_or(normal);
+    let lift = if settings.style == Style::Ponytail { 0.25 } else { 0.6 };
+    (normal * lift + flow).normalize_or(normal)
+}
+
+/// Shorter at the nape and the sides in short styles, the same everywhere else.
+fn style_length(settings: &StyleSettings, root: &Root) -> f32 {
+    match settings.style {
+        Style::Pixie => 0.45 + 0.55 * smooth(-0.06, 0.06, root.position.y),
+        _ => 1.0,
+    }
+}
+
+/// Moves a point out of the body until it is `clearance` \[m\] from the skin.
+pub fn outside(mannequin: &Mannequin, mut point: Vec3, clearance: f32) -> Vec3 {
+    for _ in 0..8 {
+        let (distance, out) = mannequin.distance_and_gradient(point);
+        if distance >= clearance {
+            break;
+        }
+        point += out * (clearance - distance);
+    }
+    point
+}
+
+/// Takes the corners out of a strand without drawing it into the body; the root stays.
+fn smooth_out(points: &mut [Vec3], mannequin: &Mannequin) {
+    for _ in 0..4 {
+        let mut before = points[0];
+        for index in 1..points.len().saturating_sub(1) {
+            let here = points[index];
+            let middle = 0.25 * before + 0.5 * here + 0.25 * points[index + 1];
+            before = here;
+            points[index] = outside(mannequin, middle, CLEARANCE);
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Every grown style: on the scalp, outside the body, as long as it says, the same every time.
+
+use strandline_body::{Mannequin, SignedDistance};
+use strandline_groom::{Groom, Style, StyleSettings};
+
+fn grown(style: Style, seed: u64) -> Groom {
+    StyleSettings { strand_count: 240, seed, ..StyleSettings::new(style) }.grow().unwrap()
+}
+
+#[test]
+fn strands_leave_the_skin_and_stay_outside() {
+    let mannequin = Mannequin::new();
+    for style in Style::ALL {
+        for seed in [1, 2] {
+            let groom = grown(style, seed);
+            assert_eq!(groom.strand_count(), 240);
+            for strand in 0..groom.strand_count() {
+                let points = groom.strand(strand);
+                assert!(points.iter().all(|point| point.is_finite()));
+                assert!(mannequin.distance(points[0]).abs() < 1e-5, "a root off the skin");
+                for point in &points[1..] {
+                    // A millimetre is asked for; in the crease behind the ear two surfaces push
+                    // against each other, and half of it is left.
+                    let distance = mannequin.distance(*point);
+                    assert!(distance > 5e-4, "{style:?} strand {strand}: {distance} m");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn lengths_are_within_the_settings_and_turns_are_gentle() {
+    for style in Style::ALL {
+        let settings = StyleSettings::new(style);
+        let groom = grown(style, 3);
+        // Curls and waves lie on top of the combed length.
+        let curl = std::f32::consts::TAU * settings.curl_radius / settings.curl_length;
+        let wave = std::f32::consts::TAU * settings.wave_amplitude / settings.wave_length;
+        let most = settings.length * (1.3 + curl * curl + wave * wave);
+        for (strand, length) in groom.lengths().into_iter().enumerate() {
+            assert!((0.015..most).contains(&length), "{style:?} strand {strand}: {length} m");
+        }
+        let mut sharp = 0;
+        let mut joints = 0;
+        for strand in 0..groom.strand_count() {
+            for joint in groom.strand(strand).windows(3) {
+                let turn = (joint[1] - joint[0]).angle_between(joint[2] - joint[1]);
+                sharp += usize::from(turn > 1.3);
+                joints += 1;
+            }
+        }
+        // A kink where hair is pushed off an ear or a shoulder is rare.
+        assert!(sharp * 200 < joints, "{style:?}: {sharp} of {joints} joints turn by more than 75 degrees");
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
+    let with = |threads: usize, seed: u64| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| grown(Style::Curly, seed))
+    };
+    assert_eq!(with(1, 5), with(4, 5));
+    assert_ne!(with(1, 5), with(1, 6));
+}
+
+#[test]
+fn settings_outside_their_range_are_refused_by_name() {
+    let long = StyleSettings::new(Style::Long);
+    for (settings, name) in [
+        (StyleSettings { strand_count: 0, ..long.clone() }, "style.strand_count is 0"),
+        (StyleSettings { strand_count: 9_000_000, ..long.clone() }, "style.strand_count"),
+        (StyleSettings { length: -1.0, ..long.clone() }, "style.length is -1"),
+        (StyleSettings { noise: f32::NAN, ..long }, "style.noise is NaN"),
+    ] {
+        let text = settings.grow().unwrap_err().to_string();
+        assert!(text.contains(name), "{text}");
+    }
+    assert!("mohawk".parse::<Style>().unwrap_err().to_string().contains("bob, long"));
+}
