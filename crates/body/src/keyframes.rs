@@ -197,15 +197,31 @@ mod tests {
     }
 
     #[test]
-    fn equal_steps_about_one_axis_keep_their_speed() {
-        let keys: Vec<Keyframe> =
-            (0..6).map(|i| key(f64::from(i), Vec3::Y, 40.0 * i as f32, Vec3::ZERO)).collect();
-        for i in 0..=20 {
+    fn an_even_motion_stays_even_at_uneven_times() {
+        let drift = Vec3::new(0.1, 0.2, -0.3);
+        let keys = [0.0, 1.0, 1.5, 3.0, 3.2, 4.0]
+            .map(|time: f64| key(time, Vec3::Y, 40.0 * time as f32, drift * time as f32));
+        for i in 0..=44 {
             // From the second to the last but one key both tangents are the chord's: a straight line.
-            let time = 1.0 + f64::from(i) * 0.15;
-            let rotation = pose(&keys, time, PIVOT).rotation;
+            let time = 1.0 + f64::from(i) * 0.05;
+            let pose = pose(&keys, time, Vec3::ZERO);
             let expected = Quat::from_rotation_y((40.0 * time as f32).to_radians());
-            assert!(rotation.dot(expected).abs() > 1.0 - 1e-6, "{time}");
+            assert!(pose.rotation.dot(expected).abs() > 1.0 - 1e-6, "{time}");
+            // Single precision at 1 m.
+            assert!((pose.translation - drift * time as f32).length() < 1e-6, "{time}");
+        }
+    }
+
+    #[test]
+    fn the_sign_of_a_quaternion_does_not_matter() {
+        let negated = path();
+        let mut keys = negated.clone();
+        keys[2].world_from_head.rotation = -keys[2].world_from_head.rotation;
+        for i in 0..400 {
+            let time = f64::from(i) * 0.01;
+            let (one, other) = (pose(&keys, time, PIVOT), pose(&negated, time, PIVOT));
+            assert!(one.rotation.dot(other.rotation).abs() > 1.0 - 1e-6, "{time}");
+            assert!((one.translation - other.translation).length() < 1e-6, "{time}");
         }
     }
 

@@ -143,6 +143,15 @@ fn every_node_is_exact() {
 }
 
 #[test]
+fn lines_through_corners_and_edges_are_counted_once() {
+    // All powers of two: the corners on the axes and the edges between them lie exactly on lines of nodes.
+    let mesh = ball(Vec3::ZERO, 0.5, 2);
+    let grid = DistanceGrid::from_mesh(&mesh, 0.0625, 0.125).unwrap();
+    assert!(nodes(&grid).any(|node| node == Vec3::ZERO));
+    check_against_search(&mesh, &grid, 1);
+}
+
+#[test]
 fn the_collider_of_sintel_is_exact() {
     let Some(path) = supplied("sintel/sintel-collider.obj") else { return };
     let mesh = Mesh::load(&path, 1.0).unwrap();
