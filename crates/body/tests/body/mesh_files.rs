@@ -117,6 +117,12 @@ fn gltf_nodes_place_their_meshes() {
     let [x, y, z, w] = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2).to_array();
     let turned = cube_glb(&format!(r#"{{"rotation": [{x}, {y}, {z}, {w}]}}"#));
     check_cube(&load_bytes("cube.glb", &turned).unwrap(), Vec3::new(0.0, 0.0, -1.0), 1.0);
+    let json = cube_json(r#"{"translation": [0, 0, 3]}"#, None).replace(
+        r#"{"children": [1]}"#,
+        r#"{"children": [1], "translation": [0, 5, 0], "scale": [2, 2, 2]}"#,
+    );
+    let nested = files::glb(&json, &files::cube_bin());
+    check_cube(&load_bytes("cube.glb", &nested).unwrap(), Vec3::new(0.0, 5.0, 6.0), 2.0);
     // A mirror image has its outside outside too.
     let mirrored = cube_glb(r#"{"scale": [-1, 1, 1]}"#);
     check_cube(&load_bytes("cube.glb", &mirrored).unwrap(), Vec3::new(-1.0, 0.0, 0.0), 1.0);
