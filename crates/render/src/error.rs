@@ -1,3 +1,5 @@
+use std::path::PathBuf;
+
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -11,5 +13,26 @@ pub enum RenderError {
         found: String,
         /// The range.
         expected: &'static str,
+    },
+    /// More memory than a picture may take.
+    #[error(
+        "{what} would take {needed} MiB, more than the {allowed} MiB that a picture may take: \
+         choose a smaller size or supersampling 1"
+    )]
+    Memory {
+        /// What was asked for.
+        what: String,
+        /// What it would take \[MiB\].
+        needed: u64,
+        /// What is allowed \[MiB\].
+        allowed: u64,
+    },
+    /// A picture could not be written.
+    #[error("cannot write the picture: {reason}: {}", path.display())]
+    Save {
+        /// What went wrong and how to mend it.
+        reason: String,
+        /// Where it should have gone.
+        path: PathBuf,
     },
 }

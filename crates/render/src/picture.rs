@@ -1,10 +1,128 @@
+use std::fs::File;
+use std::io::{BufWriter, ErrorKind, Write};
+use std::path::Path;
+
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageError};
+
+use crate::RenderError;
+
 /// A finished picture: 8-bit sRGB, rows from the top, shape `[row][column][channel]`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Picture {
     /// Width \[pixel\].
     pub width: u32,
     /// Height \[pixel\].
     pub height: u32,
-    /// RGB, three bytes a pixel.
+    /// RGB, three bytes a pixel. Not multiplied by `alpha`.
     pub pixels: Vec<u8>,
+    /// Opacity, one byte a pixel, of a picture drawn with a transparent background.
+    pub alpha: Option<Vec<u8>>,
+}
+
+impl Picture {
+    /// Writes the picture as PNG. The file appears under its name only once it is complete.
+    ///
+    /// # Errors
+    /// [`RenderError::Save`] for a folder that is missing or cannot be written and for a full disk;
+    /// no half-written file is left behind.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), RenderError> {
+        let path = path.as_ref();
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(format!(".{}.part", std::process::id()));
+        let partial = path.with_file_name(name);
+        self.write(&partial).and_then(|()| std::fs::rename(&partial, path)).map_err(|error| {
+            // The first error is the one to tell; a file that never came to be needs no removal.
+            let _ = std::fs::remove_file(&partial);
+            RenderError::Save { reason: reason(&error), path: path.to_path_buf() }
+        })
+    }
+
+    fn write(&self, path: &Path) -> std::io::Result<()> {
+        let mut file = BufWriter::new(File::create(path)?);
+        self.encode(&mut file)?;
+        file.into_inner()?.sync_all()
+    }
+
+    /// Writes the picture as PNG to `sink`.
+    ///
+    /// # Errors
+    /// Whatever the sink reports.
+    pub fn encode(&self, sink: impl Write) -> std::io::Result<()> {
+        let encoder = PngEncoder::new(sink);
+        let outcome = match &self.alpha {
+            None => encoder.write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8),
+            Some(_) => {
+                encoder.write_image(&self.interleaved(), self.width, self.height, ExtendedColorType::Rgba8)
+            }
+        };
+        outcome.map_err(|error| match error {
+            ImageError::IoError(error) => error,
+            other => std::io::Error::other(other),
+        })
+    }
+
+    /// RGBA, four bytes a pixel; opaque where the picture carries no alpha.
+    pub fn interleaved(&self) -> Vec<u8> {
+        let opacity = |pixel: usize| self.alpha.as_ref().map_or(255, |alpha| alpha[pixel]);
+        let (colors, _) = self.pixels.as_chunks::<3>();
+        colors.iter().enumerate().flat_map(|(pixel, &[r, g, b])| [r, g, b, opacity(pixel)]).collect()
+    }
+}
+
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "the folder does not exist, create it first".into(),
+        ErrorKind::PermissionDenied => "no permission to write there, choose another folder".into(),
+        ErrorKind::NotADirectory => "its folder is a file, choose another folder".into(),
+        ErrorKind::StorageFull => "the disk is full, make room or choose another folder".into(),
+        ErrorKind::ReadOnlyFilesystem => "the disk is read-only, choose another folder".into(),
+        _ => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gradient(alpha: bool) -> Picture {
+        let pixels = (0..5 * 3 * 3).map(|byte| byte as u8 * 5).collect();
+        let alpha = alpha.then(|| (0..15).map(|pixel| pixel * 17).collect());
+        Picture { width: 5, height: 3, pixels, alpha }
+    }
+
+    #[test]
+    fn a_saved_picture_reads_back_and_leaves_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        for alpha in [false, true] {
+            let picture = gradient(alpha);
+            let path = folder.path().join("picture.png");
+            picture.save(&path).unwrap();
+            let read = image::ImageReader::open(&path).unwrap().decode().unwrap();
+            assert_eq!(read.color().has_alpha(), alpha);
+            assert_eq!(read.into_rgba8().into_raw(), picture.interleaved());
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_missing_folder_is_named_with_its_remedy() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("nowhere").join("picture.png");
+        let message = gradient(false).save(&path).unwrap_err().to_string();
+        assert!(message.contains("create it first") && message.ends_with("picture.png"), "{message}");
+        let file = folder.path().join("file");
+        std::fs::write(&file, b"x").unwrap();
+        let message = gradient(false).save(file.join("picture.png")).unwrap_err().to_string();
+        assert!(message.contains("its folder is a file"), "{message}");
+    }
+
+    #[test]
+    fn a_full_disk_leaves_no_part_behind() {
+        let full = Path::new("/dev/full");
+        if full.exists() {
+            let error = gradient(false).write(full).unwrap_err();
+            assert!(reason(&error).contains("disk is full"), "{error}");
+        }
+    }
 }

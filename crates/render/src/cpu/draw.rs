@@ -1,0 +1,265 @@
+//! `draw`: the body and the hair, front to back, over the background [Chen2011 §3].
+
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+use strandline_body::{Mesh, Pose};
+
+use super::body::{Body, Occluders};
+use super::coverage::{End, Joint, OPAQUE, TileSamples};
+use super::projection::Projection;
+use super::ribbons::{Ribbons, Segment};
+use super::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
+use super::strands::Strands;
+use super::tiles::{TileRect, Tiles};
+use crate::{Background, Camera};
+
+/// Width and height of a block of samples that is left out once it is opaque.
+const BLOCK: usize = 8;
+/// Blocks across a tile.
+const TILE_BLOCKS: usize = TILE / BLOCK;
+/// Segments drawn into a tile between two looks for opaque blocks.
+const LOOK_EVERY: usize = 48;
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+pub struct DrawInput<'a> {
+    /// The hair, lit.
+    pub strands: &'a Strands,
+    /// Where the body is.
+    pub world_from_head: Pose,
+    /// The camera.
+    pub camera: &'a Camera,
+    /// What is behind everything; `None` leaves it transparent.
+    pub background: Option<Background>,
+    /// Samples along each axis of a pixel.
+    pub supersampling: u32,
+}
+
+/// Radiance of the body toward the camera, linear RGB, at a point \[m\] with a unit normal, world space.
+pub type Skin<'a> = dyn Fn(Vec3, Vec3) -> Vec3 + Sync + 'a;
+
+/// The stage and what it keeps from frame to frame.
+#[derive(Debug, Default)]
+pub struct Draw {
+    body: Option<Body>,
+    occluders: Occluders,
+    ribbons: Ribbons,
+    tiles: Tiles,
+}
+
+impl Draw {
+    /// Draws on this body.
+    pub fn new(body: Option<Mesh>) -> Self {
+        Self { body: body.map(Body::new), ..Self::default() }
+    }
+
+    /// Fills the samples; returns the number of segments that were not left out as hidden.
+    pub fn draw(&mut self, input: &DrawInput, skin: &Skin, samples: &mut Samples) -> usize {
+        let projection = Projection::new(input.camera, samples);
+        match &mut self.body {
+            Some(body) => {
+                body.draw(input.world_from_head, &projection, samples, &mut self.occluders);
+            }
+            None => {
+                self.occluders.clear();
+                samples.inverse_depths.fill(0.0);
+                samples.triangles.fill(NO_TRIANGLE);
+            }
+        }
+        self.ribbons.fill(input.strands, &projection, &self.occluders);
+        let ribbons = &self.ribbons;
+        self.tiles.fill(samples, ribbons.segment_count(), |index| ribbons.rect(index, samples));
+        self.fill(input, &projection, skin, samples);
+        self.ribbons.segment_count()
+    }
+
+    fn fill(&self, input: &DrawInput, projection: &Projection, skin: &Skin, samples: &mut Samples) {
+        let (columns, height) = (samples.tile_columns(), samples.height() as f32);
+        samples
+            .colors
+            .par_chunks_exact_mut(TILE_SAMPLES)
+            .zip(samples.inverse_depths.par_chunks_exact(TILE_SAMPLES))
+            .zip(samples.triangles.par_chunks_exact(TILE_SAMPLES))
+            .enumerate()
+            .for_each(|(tile, ((colors, depths), triangles))| {
+                colors.fill(Vec4::ZERO);
+                let corner = Vec2::new((tile % columns * TILE) as f32, (tile / columns * TILE) as f32);
+                let bare = triangles.iter().all(|&triangle| triangle == NO_TRIANGLE);
+                let hair = TileSamples { colors, depths: (!bare).then_some(depths) };
+                self.hair(tile, corner, input.strands, hair);
+                if let Some(body) = &self.body
+                    && !bare
+                {
+                    let under = Under { body, projection, skin, corner, triangles, depths };
+                    under.fill(colors, input.supersampling as usize);
+                }
+                if let Some(background) = input.background {
+                    background.fill(colors, corner.y, height);
+                }
+            });
+    }
+
+    /// The segments of one tile, nearest first.
+    fn hair(&self, tile: usize, corner: Vec2, strands: &Strands, mut samples: TileSamples) {
+        let corner = corner.extend(0.0).extend(0.0);
+        let mut opaque = 0_u16;
+        for (count, index) in self.tiles.things(tile).enumerate() {
+            if count % LOOK_EVERY == LOOK_EVERY - 1 {
+                opaque = opaque_blocks(opaque, samples.colors);
+                if opaque == u16::MAX {
+                    break;
+                }
+            }
+            let segment = self.ribbons.segment(index as usize);
+            if blocks(self.ribbons.reach(segment), corner) & !opaque == 0 {
+                continue;
+            }
+            let [first, last] = self.ribbons.ends(segment, strands, corner);
+            if first.color.is_finite() && last.color.is_finite() {
+                samples.add(&first, &last, segment.is(Segment::ALONG_Y));
+            }
+        }
+    }
+}
+
+/// Blocks of a tile (one bit each, row by row) under a box on the screen.
+fn blocks([min, max]: [Vec4; 2], corner: Vec4) -> u16 {
+    let block = |at: f32| (at.clamp(0.0, TILE as f32 - 1.0)) as usize / BLOCK;
+    let (min, max) = (min - corner, max - corner);
+    let columns = (2_u16 << block(max.x)) - (1 << block(min.x));
+    (block(min.y)..=block(max.y)).fold(0, |blocks, row| blocks | columns << (row * TILE_BLOCKS))
+}
+
+/// Adds the blocks that have become opaque.
+fn opaque_blocks(known: u16, colors: &[Vec4]) -> u16 {
+    (0..TILE_BLOCKS * TILE_BLOCKS).filter(|block| known >> block & 1 == 0).fold(known, |known, block| {
+        let first = block / TILE_BLOCKS * BLOCK * TILE + block % TILE_BLOCKS * BLOCK;
+        let opaque = (0..BLOCK)
+            .all(|row| colors[first + row * TILE..][..BLOCK].iter().all(|color| color.w >= OPAQUE));
+        known | u16::from(opaque) << block
+    })
+}
+
+impl Ribbons {
+    /// The box on the screen that a segment can touch.
+    fn reach(&self, segment: Segment) -> [Vec4; 2] {
+        let (start, end) = (self.points[segment.point()], self.points[segment.point() + 1]);
+        // Half the width along an axis (at most 0.8 of the width), the smoothing, and the wedge at a turn.
+        let reach = start.w.max(end.w).max(1.0) + 1.0;
+        [start.min(end) - reach, start.max(end) + reach]
+    }
+
+    fn rect(&self, index: usize, samples: &Samples) -> Option<TileRect> {
+        let [min, max] = self.reach(self.segment(index));
+        TileRect::of_box(samples, [min.x, min.y], [max.x, max.y])
+    }
+
+    /// The two ends of a segment, seen from the corner of a tile.
+    fn ends(&self, segment: Segment, strands: &Strands, corner: Vec4) -> [End; 2] {
+        let point = segment.point();
+        let colors = match point.checked_sub(strands.radiances.len()) {
+            None => [strands.radiances[point], strands.radiances[point + 1]],
+            Some(cut) => [self.cut_radiances[cut], self.cut_radiances[cut + 1]],
+        };
+        let across = |joint: usize| {
+            let [before, at, after] =
+                [joint - 1, joint, joint + 1].map(|point| self.points[point].truncate().truncate());
+            Joint::Turn((at - before).normalize_or_zero() + (after - at).normalize_or_zero())
+        };
+        let joint = |end: u32, turns: u32, point: usize| {
+            if segment.is(end) {
+                Joint::Tip
+            } else if segment.is(turns) {
+                across(point)
+            } else {
+                Joint::Straight
+            }
+        };
+        [
+            End {
+                point: self.points[point] - corner,
+                color: colors[0].extend(1.0),
+                joint: joint(Segment::FIRST_IS_END, Segment::FIRST_TURNS, point),
+            },
+            End {
+                point: self.points[point + 1] - corner,
+                color: colors[1].extend(1.0),
+                joint: joint(Segment::LAST_IS_END, Segment::LAST_TURNS, point + 1),
+            },
+        ]
+    }
+}
+
+/// The body in one tile.
+struct Under<'a> {
+    body: &'a Body,
+    projection: &'a Projection,
+    skin: &'a Skin<'a>,
+    corner: Vec2,
+    triangles: &'a [u32],
+    depths: &'a [f32],
+}
+
+impl Under<'_> {
+    /// Puts the lit body under what is there. The samples of a pixel that show the same surface are lit
+    /// together.
+    fn fill(&self, colors: &mut [Vec4], pixel: usize) {
+        for row in (0..TILE).step_by(pixel) {
+            for column in (0..TILE).step_by(pixel) {
+                let mut lit: Option<(f32, Vec4)> = None;
+                for sample in 0..pixel * pixel {
+                    let index = (row + sample / pixel) * TILE + column + sample % pixel;
+                    if self.triangles[index] == NO_TRIANGLE || colors[index].w >= OPAQUE {
+                        continue;
+                    }
+                    let depth = self.depths[index];
+                    // Half a per cent of the distance apart: another surface.
+                    let known = lit.filter(|&(known, _)| (known - depth).abs() < 0.005 * depth);
+                    let (_, radiance) = *lit.insert(known.unwrap_or_else(|| {
+                        let middle = Vec2::new(column as f32, row as f32) + 0.5 * pixel as f32;
+                        (depth, self.radiance(self.triangles[index], self.corner + middle))
+                    }));
+                    colors[index] += radiance * (1.0 - colors[index].w);
+                }
+            }
+        }
+    }
+
+    /// Radiance of a triangle where it is seen at a place on the screen, with an opacity of 1.
+    fn radiance(&self, triangle: u32, place: Vec2) -> Vec4 {
+        let corners = self.body.triangle(triangle);
+        let [a, b, c] = corners.map(|corner| self.body.positions[corner]);
+        let eye = self.projection.eye();
+        let sight = self.projection.world(place.x, place.y, 1.0) - eye;
+        let face = (b - a).cross(c - a);
+        let point = eye + sight * (face.dot(a - eye) / face.dot(sight));
+        // Shares of the corners, kept inside: beside an edge the plane runs off.
+        let area = face.length_squared();
+        let share_b = face.dot((point - a).cross(c - a)) / area;
+        let share_c = face.dot((b - a).cross(point - a)) / area;
+        let shares = Vec3::new(1.0 - share_b - share_c, share_b, share_c).clamp(Vec3::ZERO, Vec3::ONE);
+        let shares = shares / shares.element_sum();
+        let mix = |of: &[Vec3]| {
+            of[corners[0]] * shares.x + of[corners[1]] * shares.y + of[corners[2]] * shares.z
+        };
+        let (point, normal) = (mix(&self.body.positions), mix(&self.body.normals).normalize_or(Vec3::Y));
+        // The inside of an open mesh is lit like its outside.
+        let normal = if normal.dot(sight) > 0.0 && face.dot(sight) > 0.0 { -normal } else { normal };
+        let radiance = (self.skin)(point, normal);
+        if radiance.is_finite() { radiance.extend(1.0) } else { Vec4::W }
+    }
+}
+
+impl Background {
+    /// Puts the background under what is there, in a tile whose first row is `top`.
+    fn fill(&self, colors: &mut [Vec4], top: f32, height: f32) {
+        for (row, colors) in colors.chunks_exact_mut(TILE).enumerate() {
+            let share = ((top + row as f32 + 0.5) / height).clamp(0.0, 1.0);
+            let share = share * share * (3.0 - 2.0 * share);
+            let color = self.top.lerp(self.bottom, share).extend(1.0);
+            for below in colors {
+                *below += color * (1.0 - below.w);
+            }
+        }
+    }
+}

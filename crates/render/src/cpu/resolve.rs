@@ -1,0 +1,178 @@
+//! `resolve`: from samples to pixels [Chen2011 §3.5], in linear light; then exposure, tone map, sRGB.
+//!
+//! At two samples along each axis a pixel is filtered from five places: its middle and four places one
+//! sample away from it along the diagonals. Each place lies on the corner of four samples and takes
+//! their mean. The middle weighs 1/2, each of the others 1/8: five weights of sum 1. Every sample
+//! gives the same total, 1/4, to the picture, so that thin hairs keep their coverage wherever they lie.
+
+use std::sync::LazyLock;
+
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::samples::Samples;
+use crate::{Picture, PictureSettings, ToneMap};
+
+/// Rows of pixels handled together by one thread.
+const CHUNK: usize = 8;
+/// Light at which the filmic curve leaves the straight line.
+const KNEE: f32 = 0.6;
+/// Entries of the table from linear light to sRGB: at the steepest place, near black, one entry is
+/// 0.2 of an 8-bit step.
+const TABLE: usize = 16_384;
+
+/// Fills a picture from samples.
+pub fn resolve(samples: &Samples, settings: &PictureSettings, picture: &mut Picture) {
+    let (width, height) = (settings.width as usize, settings.height as usize);
+    picture.width = settings.width;
+    picture.height = settings.height;
+    picture.pixels.resize(width * height * 3, 0);
+    let alpha = picture.alpha.get_or_insert_default();
+    alpha.resize(if settings.transparent { width * height } else { 0 }, 0);
+    let gain = settings.exposure.exp2();
+    let finish = |pixels: &mut [u8], mut alpha: Option<&mut [u8]>, first: usize| {
+        let mut filter = Filter::new(samples, settings);
+        for (row, pixels) in pixels.chunks_exact_mut(width * 3).enumerate() {
+            let colors = filter.row(first + row);
+            let (pixels, _) = pixels.as_chunks_mut::<3>();
+            for (pixel, &color) in pixels.iter_mut().zip(colors) {
+                *pixel = encode(settings.tone_map.apply(straight(color) * gain));
+            }
+            if let Some(alpha) = &mut alpha {
+                for (alpha, color) in alpha[row * width..].iter_mut().zip(colors) {
+                    *alpha = (color.w.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+                }
+            }
+        }
+    };
+    let rows = picture.pixels.par_chunks_mut(CHUNK * width * 3).enumerate();
+    if settings.transparent {
+        rows.zip(alpha.par_chunks_mut(CHUNK * width))
+            .for_each(|((chunk, pixels), alpha)| finish(pixels, Some(alpha), chunk * CHUNK));
+    } else {
+        rows.for_each(|(chunk, pixels)| finish(pixels, None, chunk * CHUNK));
+        picture.alpha = None;
+    }
+}
+
+/// The filtered pixels before exposure and tone map: linear RGB times opacity, and opacity, shape
+/// `[row][column]`.
+pub fn resolve_linear(samples: &Samples, settings: &PictureSettings) -> Vec<Vec4> {
+    let mut filter = Filter::new(samples, settings);
+    (0..settings.height as usize).flat_map(|row| filter.row(row).to_vec()).collect()
+}
+
+/// The filter and its working memory.
+struct Filter<'a> {
+    samples: &'a Samples,
+    doubled: bool,
+    /// Sums over four rows and over the middle two, with a column repeated at each end.
+    wide: Vec<Vec4>,
+    narrow: Vec<Vec4>,
+    pixels: Vec<Vec4>,
+}
+
+impl<'a> Filter<'a> {
+    fn new(samples: &'a Samples, settings: &PictureSettings) -> Self {
+        let width = samples.width() + 2;
+        Self {
+            samples,
+            doubled: settings.supersampling == 2,
+            wide: vec![Vec4::ZERO; width],
+            narrow: vec![Vec4::ZERO; width],
+            pixels: vec![Vec4::ZERO; settings.width as usize],
+        }
+    }
+
+    fn row(&mut self, row: usize) -> &[Vec4] {
+        if self.doubled {
+            self.sum_rows(row);
+            self.sum_columns();
+        } else {
+            let samples = self.samples.row(row).flatten();
+            self.pixels.iter_mut().zip(samples).for_each(|(pixel, sample)| *pixel = *sample);
+        }
+        &self.pixels
+    }
+
+    fn sum_rows(&mut self, row: usize) {
+        // Outside the picture the outermost samples go on.
+        let inside = |row: isize| row.clamp(0, self.samples.height() as isize - 1) as usize;
+        let first = 2 * row as isize - 1;
+        let [a, b, c, d] = [0, 1, 2, 3].map(|offset| self.samples.row(inside(first + offset)));
+        let mut column = 1;
+        for (((a, b), c), d) in a.zip(b).zip(c).zip(d) {
+            let wide = &mut self.wide[column..][..a.len()];
+            let narrow = &mut self.narrow[column..][..a.len()];
+            for at in 0..a.len() {
+                narrow[at] = b[at] + c[at];
+                wide[at] = narrow[at] + (a[at] + d[at]);
+            }
+            column += a.len();
+        }
+        for sums in [&mut self.wide, &mut self.narrow] {
+            sums[0] = sums[1];
+            sums[column] = sums[column - 1];
+        }
+    }
+
+    fn sum_columns(&mut self) {
+        for (column, pixel) in self.pixels.iter_mut().enumerate() {
+            let first = 2 * column;
+            let wide = &self.wide[first..first + 4];
+            let narrow = &self.narrow[first + 1..first + 3];
+            // The four outer places together hold each of the 16 samples once, at 1/8 of 1/4; the
+            // middle adds 1/2 of 1/4 for the inner four.
+            let outer = (wide[0] + wide[1]) + (wide[2] + wide[3]);
+            *pixel = outer * (1.0 / 32.0) + (narrow[0] + narrow[1]) * (1.0 / 8.0);
+        }
+    }
+}
+
+/// Colour of a pixel that is not multiplied by its opacity.
+fn straight(color: Vec4) -> Vec3 {
+    let opacity = color.w;
+    if opacity >= 1.0 || opacity <= 0.0 { color.truncate() } else { color.truncate() / opacity }
+}
+
+impl ToneMap {
+    /// Brings linear light into 0..1.
+    ///
+    /// The filmic curve works on the largest component and scales the others along, so that hue stays;
+    /// what the curve takes away turns the colour toward white, as film does.
+    #[inline]
+    pub fn apply(self, light: Vec3) -> Vec3 {
+        let light = light.max(Vec3::ZERO);
+        let peak = light.max_element();
+        if self == Self::Off || peak <= KNEE {
+            return light.min(Vec3::ONE);
+        }
+        let shown = shoulder(peak);
+        // 0 at the knee, toward 1 far above.
+        let faded = 1.0 - (shown / peak).sqrt();
+        (light * (shown / peak)).lerp(Vec3::splat(shown), faded * faded)
+    }
+}
+
+/// The identity up to the knee, then an exponential approach to 1 that starts with slope 1.
+fn shoulder(light: f32) -> f32 {
+    if light <= KNEE { light } else { 1.0 - (1.0 - KNEE) * (-(light - KNEE) / (1.0 - KNEE)).exp() }
+}
+
+static SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let entry = |index: usize| {
+        let linear = index as f32 / (TABLE - 1) as f32;
+        // [IEC61966-2-1]
+        let encoded =
+            if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+        (encoded * 255.0 + 0.5) as u8
+    };
+    (0..TABLE).map(entry).collect()
+});
+
+/// Linear light of 0..1 as 8-bit sRGB.
+fn encode(color: Vec3) -> [u8; 3] {
+    let table = &**SRGB;
+    // A NaN becomes index 0.
+    color.to_array().map(|linear| table[((linear * (TABLE - 1) as f32 + 0.5) as usize).min(TABLE - 1)])
+}

@@ -1,0 +1,85 @@
+//! The samples of a picture, tile by tile: what `draw` fills and `resolve` reads.
+
+use glam::Vec4;
+
+/// Width and height of a tile \[sample\]: its colours (16 KiB) stay in the first-level cache.
+pub const TILE: usize = 32;
+/// Samples in a tile.
+pub const TILE_SAMPLES: usize = TILE * TILE;
+/// The triangle of a sample that shows no body.
+pub const NO_TRIANGLE: u32 = u32::MAX;
+
+/// Samples, stored tile after tile, rows inside a tile: shape `[tile row][tile column][row][column]`.
+/// Tiles at the right and lower edges are stored whole.
+#[derive(Clone, Debug, Default)]
+pub struct Samples {
+    width: usize,
+    height: usize,
+    columns: usize,
+    rows: usize,
+    /// Radiance, linear RGB, times opacity; opacity last.
+    pub colors: Vec<Vec4>,
+    /// One over the view depth \[1/m\] of the body, 0 where there is none.
+    pub inverse_depths: Vec<f32>,
+    /// The body's triangle, [`NO_TRIANGLE`] where there is none.
+    pub triangles: Vec<u32>,
+}
+
+impl Samples {
+    /// Takes a new size \[sample\]; keeps its memory when that suffices.
+    pub fn resize(&mut self, width: usize, height: usize) {
+        self.width = width;
+        self.height = height;
+        self.columns = width.div_ceil(TILE);
+        self.rows = height.div_ceil(TILE);
+        let count = self.tile_count() * TILE_SAMPLES;
+        self.colors.resize(count, Vec4::ZERO);
+        self.inverse_depths.resize(count, 0.0);
+        self.triangles.resize(count, NO_TRIANGLE);
+    }
+
+    /// Width \[sample\].
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Height \[sample\].
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Tiles across.
+    pub fn tile_columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Tiles down.
+    pub fn tile_rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of tiles.
+    pub fn tile_count(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    /// Where a sample is stored.
+    pub fn index(&self, column: usize, row: usize) -> usize {
+        let tile = row / TILE * self.columns + column / TILE;
+        tile * TILE_SAMPLES + row % TILE * TILE + column % TILE
+    }
+
+    /// Radiance times opacity, and opacity, of a sample.
+    pub fn color(&self, column: usize, row: usize) -> Vec4 {
+        self.colors[self.index(column, row)]
+    }
+
+    /// The colours of one row \[sample\], tile by tile.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = &[Vec4]> {
+        let start = row / TILE * self.columns * TILE_SAMPLES + row % TILE * TILE;
+        (0..self.columns).map(move |column| {
+            let length = TILE.min(self.width - column * TILE);
+            &self.colors[start + column * TILE_SAMPLES..][..length]
+        })
+    }
+}
