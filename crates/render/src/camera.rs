@@ -59,7 +59,8 @@ impl Camera {
         let slope_up = (0.5 * camera.field_of_view.to_radians()).tan();
         let slope_right = slope_up * aspect.max(1e-3);
         let distance = (0..8).fold(0.0_f32, |distance, corner| {
-            let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+            let pick =
+                |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
             let offset = Vec3::new(pick(0), pick(1), pick(2)) - target;
             let toward = offset.dot(direction);
             let needed = (offset.dot(right).abs() / slope_right).max(offset.dot(up).abs() / slope_up);
@@ -182,8 +183,7 @@ mod tests {
         let bounds = Aabb { min: Vec3::new(-0.2, -0.3, -0.1), max: Vec3::new(0.3, 0.2, 0.4) };
         for aspect in [0.5, 1.0, 2.0] {
             let camera = Camera::framing(bounds, Vec3::new(1.0, 0.4, 1.0), aspect);
-            let clip_from_world =
-                camera.clip_from_view(aspect) * Mat4::from(camera.view_from_world());
+            let clip_from_world = camera.clip_from_view(aspect) * Mat4::from(camera.view_from_world());
             let mut extent = 0.0_f32;
             for corner in 0..8 {
                 let pick = |axis: usize| [bounds.min[axis], bounds.max[axis]][corner >> axis & 1];

@@ -1,7 +1,15 @@
+use std::time::Instant;
+
+use glam::Vec3;
 use strandline_body::{Mesh, Pose};
 use strandline_groom::{Guides, Vec3Lanes};
 
-use crate::{Camera, LevelOfDetail, Light, Look, Picture, RenderError};
+use crate::cpu::skin::Skin;
+use crate::cpu::{
+    Curves, Draw, DrawInput, Resolve, Samples, Shadows, Strands, interpolate, opacity_depth, opacity_layers,
+    tessellate,
+};
+use crate::{BodyLook, Camera, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
 
 /// What one picture is made from.
 #[derive(Clone, Copy)]
@@ -14,6 +22,8 @@ pub struct FrameInput<'a> {
     pub camera: &'a Camera,
     /// The hair's look.
     pub look: &'a Look,
+    /// The body's look.
+    pub body_look: &'a BodyLook,
     /// The lights.
     pub lights: &'a [Light],
     /// Level of detail.
@@ -32,27 +42,182 @@ pub struct FrameReport {
 }
 
 /// Draws frames of one groom on one body; keeps its buffers from frame to frame.
-pub struct Renderer {}
+#[derive(Debug)]
+pub struct Renderer {
+    guides: Guides,
+    /// Middle of the guides at rest [m], head space.
+    middle: Vec3,
+    settings: PictureSettings,
+    curves: Curves,
+    strands: Strands,
+    shadows: Shadows,
+    samples: Samples,
+    draw: Draw,
+    resolve: Resolve,
+}
 
 impl Renderer {
-    /// A renderer of pictures `width` x `height` \[pixel\].
+    /// A renderer of pictures of a groom's guides on a body in head space.
     ///
     /// # Errors
-    /// A size of 0 or above 16,384.
+    /// A setting outside its range; a picture that would take too much memory.
     pub fn new(
-        _guides: &Guides,
-        _body: Option<&Mesh>,
-        _width: u32,
-        _height: u32,
+        guides: &Guides,
+        body: Option<&Mesh>,
+        settings: &PictureSettings,
     ) -> Result<Self, RenderError> {
-        unimplemented!("renderer")
+        let mut renderer = Self {
+            guides: guides.clone(),
+            middle: middle(guides),
+            curves: Curves::default(),
+            settings: *settings,
+            strands: Strands::default(),
+            shadows: Shadows::default(),
+            samples: Samples::default(),
+            draw: Draw::new(body.cloned()),
+            resolve: Resolve::default(),
+        };
+        renderer.set_picture(settings)?;
+        Ok(renderer)
+    }
+
+    /// Changes size, supersampling, exposure, tone map or background from the next picture on.
+    ///
+    /// # Errors
+    /// As for [`Renderer::new`]; the settings then stay as they were.
+    pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
+        settings.validate()?;
+        self.settings = *settings;
+        let scale = settings.supersampling;
+        self.samples.resize((settings.width * scale) as usize, (settings.height * scale) as usize);
+        Ok(())
+    }
+
+    /// The size and tone of the pictures.
+    pub fn picture(&self) -> &PictureSettings {
+        &self.settings
     }
 
     /// Draws a picture.
     ///
     /// # Errors
     /// A setting outside its range.
-    pub fn draw(&mut self, _input: &FrameInput) -> Result<(Picture, FrameReport), RenderError> {
-        unimplemented!("renderer")
+    pub fn draw(&mut self, input: &FrameInput) -> Result<(Picture, FrameReport), RenderError> {
+        let mut picture = Picture::default();
+        let report = self.draw_into(input, &mut picture)?;
+        Ok((picture, report))
+    }
+
+    /// Draws a picture into one that is there, whose memory is used again.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn draw_into(
+        &mut self,
+        input: &FrameInput,
+        picture: &mut Picture,
+    ) -> Result<FrameReport, RenderError> {
+        let mut report = self.draw_samples(input)?;
+        let start = Instant::now();
+        self.resolve.resolve(&self.samples, &self.settings, picture);
+        report.seconds.push(("resolve", start.elapsed().as_secs_f64()));
+        Ok(report)
+    }
+
+    /// Draws without the last stage: the samples can be looked at with [`Renderer::samples`].
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
+        input.camera.validate()?;
+        input.look.validate()?;
+        input.body_look.validate()?;
+        input.level_of_detail.validate()?;
+        input.lights.iter().try_for_each(Light::validate)?;
+        let distance = input.camera.position.distance(input.world_from_head.point(self.middle));
+        let level = input.level_of_detail.level(distance, input.look.follow_strands);
+        let (guides, pose) = (&self.guides, &input.world_from_head);
+        let Self { curves, strands, shadows, draw, samples, settings, .. } = self;
+        let mut clock = Clock::start();
+
+        tessellate(input.positions, guides, pose, &level, curves);
+        clock.lap("tessellate");
+        interpolate(curves, guides, pose, input.look, &level, strands);
+        clock.lap("interpolate");
+        draw.place_body(input.world_from_head);
+        opacity_depth(strands, draw.shadow_body(), input.lights, &input.look.shadow, shadows);
+        clock.lap("opacity_depth");
+        opacity_layers(strands, shadows);
+        clock.lap("opacity_layers");
+        shade(strands, input.lights, shadows);
+        clock.lap("shade");
+        let draw_input = DrawInput {
+            strands,
+            camera: input.camera,
+            background: (!settings.transparent).then_some(settings.background),
+            supersampling: settings.supersampling,
+        };
+        let skin = Skin {
+            look: input.body_look,
+            lights: input.lights,
+            shadows,
+            environment: &input.look.environment,
+            eye: input.camera.position,
+        };
+        draw.draw(&draw_input, &skin, samples);
+        clock.lap("draw");
+        Ok(FrameReport {
+            strands: strands.strand_count,
+            segments: strands.segment_count(),
+            seconds: clock.seconds,
+        })
+    }
+
+    /// The samples of the last picture, before `resolve`.
+    pub fn samples(&self) -> &Samples {
+        &self.samples
+    }
+}
+
+/// Middle of the box around all guide points \[m\].
+fn middle(guides: &Guides) -> Vec3 {
+    let points = (0..guides.strand_count())
+        .flat_map(|strand| (0..guides.points_per_strand()).map(move |point| guides.position(strand, point)));
+    let (min, max) =
+        points.fold((Vec3::MAX, Vec3::MIN), |(min, max), point| (min.min(point), max.max(point)));
+    0.5 * (min + max)
+}
+
+/// Diffuse light on every strand.
+fn shade(strands: &mut Strands, lights: &[Light], shadows: &Shadows) {
+    for ((radiance, &tangent), &position) in
+        strands.radiances.iter_mut().zip(&strands.tangents).zip(&strands.positions)
+    {
+        let mut sum = Vec3::splat(0.1);
+        for (index, light) in lights.iter().enumerate() {
+            let lit = light.at(position);
+            let passed = shadows.map(index).map_or(1.0, |map| map.transmittance(position));
+            sum += lit.radiance * ((1.0 - tangent.dot(lit.to_light).powi(2)).max(0.0).sqrt() * passed * 0.8);
+        }
+        *radiance = sum * Vec3::new(0.35, 0.2, 0.1);
+    }
+}
+
+/// Notes how long each stage takes.
+struct Clock {
+    last: Instant,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { last: Instant::now(), seconds: Vec::new() }
+    }
+
+    /// Ends a stage.
+    fn lap(&mut self, stage: &'static str) {
+        let now = Instant::now();
+        self.seconds.push((stage, (now - self.last).as_secs_f64()));
+        self.last = now;
     }
 }

@@ -3,6 +3,7 @@
 
 pub mod cpu;
 
+mod body_look;
 mod camera;
 mod error;
 mod frame;
@@ -10,7 +11,9 @@ mod level_of_detail;
 mod lights;
 mod look;
 mod picture;
+mod picture_settings;
 
+pub use body_look::BodyLook;
 pub use camera::Camera;
 pub use error::RenderError;
 pub use frame::{FrameInput, FrameReport, Renderer};
@@ -18,3 +21,4 @@ pub use level_of_detail::{DetailLevel, LevelOfDetail};
 pub use lights::{Environment, Illumination, Light, LightKind};
 pub use look::{Clump, Look, Shadow};
 pub use picture::Picture;
+pub use picture_settings::{Background, PictureSettings, ToneMap};

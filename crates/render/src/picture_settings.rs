@@ -101,8 +101,7 @@ impl PictureSettings {
                 return refuse(name, color.to_string(), "finite numbers of 0 or more");
             }
         }
-        let samples =
-            u64::from(self.width) * u64::from(self.height) * u64::from(self.supersampling.pow(2));
+        let samples = u64::from(self.width) * u64::from(self.height) * u64::from(self.supersampling.pow(2));
         let needed = (samples * Self::SAMPLE_BYTES).div_ceil(1 << 20);
         if needed > Self::MAX_MEMORY {
             let what =
@@ -141,10 +140,7 @@ mod tests {
             (PictureSettings { supersampling: 3, ..good }, "supersampling"),
             (PictureSettings { exposure: f32::NAN, ..good }, "exposure"),
             (
-                PictureSettings {
-                    background: Background { top: Vec3::NEG_ONE, ..good.background },
-                    ..good
-                },
+                PictureSettings { background: Background { top: Vec3::NEG_ONE, ..good.background }, ..good },
                 "background.top",
             ),
         ];

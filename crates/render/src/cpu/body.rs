@@ -47,7 +47,7 @@ struct ScreenTriangle {
 impl Body {
     /// Takes over a mesh.
     pub fn new(mesh: Mesh) -> Self {
-        let closed = is_closed(&mesh);
+        let closed = mesh.is_closed();
         Self { mesh, closed, ..Self::default() }
     }
 
@@ -56,15 +56,13 @@ impl Body {
         self.mesh.triangles[index as usize].map(|corner| corner as usize)
     }
 
-    /// Carries the body to its place, draws its depth into the samples and notes what it hides.
-    pub fn draw(
-        &mut self,
-        world_from_head: Pose,
-        projection: &Projection,
-        samples: &mut Samples,
-        occluders: &mut Occluders,
-    ) {
-        self.place(world_from_head, projection);
+    /// Every triangle's corners.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.mesh.triangles
+    }
+
+    /// Draws the depth of the body, which is in its place, into the samples and notes what it hides.
+    pub fn draw(&mut self, projection: &Projection, samples: &mut Samples, occluders: &mut Occluders) {
         self.face(projection);
         let faces = &self.faces;
         self.tiles.fill(samples, faces.len(), |face| faces[face].rect(samples));
@@ -88,29 +86,27 @@ impl Body {
             });
     }
 
-    fn place(&mut self, world_from_head: Pose, projection: &Projection) {
-        let count = self.mesh.positions.len();
-        self.positions.resize(count, Vec3::ZERO);
-        self.normals.resize(count, Vec3::ZERO);
-        self.screen.resize(count, Vec4::ZERO);
-        let mesh = &self.mesh;
-        self.positions
-            .par_chunks_mut(CHUNK)
-            .zip(self.normals.par_chunks_mut(CHUNK))
-            .zip(self.screen.par_chunks_mut(CHUNK))
-            .enumerate()
-            .for_each(|(chunk, ((positions, normals), screen))| {
-                for offset in 0..positions.len() {
-                    let vertex = chunk * CHUNK + offset;
-                    positions[offset] = world_from_head.point(mesh.positions[vertex]);
-                    normals[offset] = world_from_head.direction(mesh.normals[vertex]);
-                    screen[offset] = projection.screen(positions[offset], 0.0);
-                }
-            });
+    /// Carries the body to its place.
+    pub fn place(&mut self, world_from_head: Pose) {
+        let carry = |from: &[Vec3], to: &mut Vec<Vec3>, carry: &(dyn Fn(Vec3) -> Vec3 + Sync)| {
+            to.resize(from.len(), Vec3::ZERO);
+            to.par_chunks_mut(CHUNK)
+                .zip(from.par_chunks(CHUNK))
+                .for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, &from)| *to = carry(from)));
+        };
+        carry(&self.mesh.positions, &mut self.positions, &|point| world_from_head.point(point));
+        carry(&self.mesh.normals, &mut self.normals, &|normal| world_from_head.direction(normal));
     }
 
     /// Collects the triangles that face the camera; of open meshes all of them.
     fn face(&mut self, projection: &Projection) {
+        self.screen.resize(self.positions.len(), Vec4::ZERO);
+        self.screen.par_chunks_mut(CHUNK).zip(self.positions.par_chunks(CHUNK)).for_each(
+            |(screen, positions)| {
+                let project = |&position| projection.screen(position, 0.0);
+                screen.iter_mut().zip(positions).for_each(|(screen, position)| *screen = project(position));
+            },
+        );
         let triangles = &self.mesh.triangles;
         self.runs.resize_with(triangles.len().div_ceil(CHUNK), Vec::new);
         let (positions, screen, closed) = (&self.positions, &self.screen, self.closed);
@@ -243,20 +239,6 @@ fn cut(corners: [Vec3; 3], index: u32, projection: &Projection, found: &mut Vec<
             found.push(ScreenTriangle { corners, index });
         }
     }
-}
-
-/// Whether every edge is shared by two triangles that run along it in opposite directions.
-fn is_closed(mesh: &Mesh) -> bool {
-    let mut edges: Vec<(u32, u32, i8)> = mesh
-        .triangles
-        .iter()
-        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
-        .map(|(from, to)| if from < to { (from, to, 1) } else { (to, from, -1) })
-        .collect();
-    edges.sort_unstable();
-    let mut pairs = edges.chunks_exact(2);
-    let paired = pairs.all(|pair| pair[0] == (pair[1].0, pair[1].1, -1) && pair[1].2 == 1);
-    paired && edges.len() % 2 == 0
 }
 
 /// For each block of samples the depth beyond which everything is hidden.

@@ -4,11 +4,13 @@ use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 use strandline_body::{Mesh, Pose};
 
+use super::ShadowBody;
 use super::body::{Body, Occluders};
 use super::coverage::{End, Joint, OPAQUE, TileSamples};
 use super::projection::Projection;
 use super::ribbons::{Ribbons, Segment};
 use super::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
+use super::skin::Skin;
 use super::strands::Strands;
 use super::tiles::{TileRect, Tiles};
 use crate::{Background, Camera};
@@ -25,8 +27,6 @@ const LOOK_EVERY: usize = 48;
 pub struct DrawInput<'a> {
     /// The hair, lit.
     pub strands: &'a Strands,
-    /// Where the body is.
-    pub world_from_head: Pose,
     /// The camera.
     pub camera: &'a Camera,
     /// What is behind everything; `None` leaves it transparent.
@@ -34,9 +34,6 @@ pub struct DrawInput<'a> {
     /// Samples along each axis of a pixel.
     pub supersampling: u32,
 }
-
-/// Radiance of the body toward the camera, linear RGB, at a point \[m\] with a unit normal, world space.
-pub type Skin<'a> = dyn Fn(Vec3, Vec3) -> Vec3 + Sync + 'a;
 
 /// The stage and what it keeps from frame to frame.
 #[derive(Debug, Default)]
@@ -53,12 +50,25 @@ impl Draw {
         Self { body: body.map(Body::new), ..Self::default() }
     }
 
+    /// Carries the body to its place; to be done before the shadows and the picture of a frame.
+    pub fn place_body(&mut self, world_from_head: Pose) {
+        if let Some(body) = &mut self.body {
+            body.place(world_from_head);
+        }
+    }
+
+    /// The body in its place, to cast shadows.
+    pub fn shadow_body(&self) -> Option<ShadowBody<'_>> {
+        let body = self.body.as_ref()?;
+        Some(ShadowBody { positions: &body.positions, triangles: body.triangles() })
+    }
+
     /// Fills the samples; returns the number of segments that were not left out as hidden.
     pub fn draw(&mut self, input: &DrawInput, skin: &Skin, samples: &mut Samples) -> usize {
         let projection = Projection::new(input.camera, samples);
         match &mut self.body {
             Some(body) => {
-                body.draw(input.world_from_head, &projection, samples, &mut self.occluders);
+                body.draw(&projection, samples, &mut self.occluders);
             }
             None => {
                 self.occluders.clear();
@@ -134,8 +144,8 @@ fn blocks([min, max]: [Vec4; 2], corner: Vec4) -> u16 {
 fn opaque_blocks(known: u16, colors: &[Vec4]) -> u16 {
     (0..TILE_BLOCKS * TILE_BLOCKS).filter(|block| known >> block & 1 == 0).fold(known, |known, block| {
         let first = block / TILE_BLOCKS * BLOCK * TILE + block % TILE_BLOCKS * BLOCK;
-        let opaque = (0..BLOCK)
-            .all(|row| colors[first + row * TILE..][..BLOCK].iter().all(|color| color.w >= OPAQUE));
+        let opaque =
+            (0..BLOCK).all(|row| colors[first + row * TILE..][..BLOCK].iter().all(|color| color.w >= OPAQUE));
         known | u16::from(opaque) << block
     })
 }
@@ -239,13 +249,12 @@ impl Under<'_> {
         let share_c = face.dot((b - a).cross(point - a)) / area;
         let shares = Vec3::new(1.0 - share_b - share_c, share_b, share_c).clamp(Vec3::ZERO, Vec3::ONE);
         let shares = shares / shares.element_sum();
-        let mix = |of: &[Vec3]| {
-            of[corners[0]] * shares.x + of[corners[1]] * shares.y + of[corners[2]] * shares.z
-        };
+        let mix =
+            |of: &[Vec3]| of[corners[0]] * shares.x + of[corners[1]] * shares.y + of[corners[2]] * shares.z;
         let (point, normal) = (mix(&self.body.positions), mix(&self.body.normals).normalize_or(Vec3::Y));
         // The inside of an open mesh is lit like its outside.
         let normal = if normal.dot(sight) > 0.0 && face.dot(sight) > 0.0 { -normal } else { normal };
-        let radiance = (self.skin)(point, normal);
+        let radiance = self.skin.radiance(point, normal);
         if radiance.is_finite() { radiance.extend(1.0) } else { Vec4::W }
     }
 }

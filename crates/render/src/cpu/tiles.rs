@@ -62,12 +62,7 @@ struct Run {
 
 impl Tiles {
     /// Sorts the things `0..count` into tiles by the rectangle that `rect` gives for each.
-    pub fn fill(
-        &mut self,
-        samples: &Samples,
-        count: usize,
-        rect: impl Fn(usize) -> Option<TileRect> + Sync,
-    ) {
+    pub fn fill(&mut self, samples: &Samples, count: usize, rect: impl Fn(usize) -> Option<TileRect> + Sync) {
         self.used = count.div_ceil(CHUNK);
         if self.runs.len() < self.used {
             self.runs.resize_with(self.used, Run::default);
