@@ -1,0 +1,97 @@
+//! Solids: friction on a slope, nothing inside after settling.
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec3};
+use strandline_body::{Carrier, Collider, Mannequin, Motion, Pose, Shape};
+use strandline_groom::RestShape;
+use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
+
+use crate::strands::{ball_of_hair, bare, first, line, one_strand, skull};
+
+/// How far \[m\] a loose strand slides in a second down a slope of so many degrees.
+fn slide(degrees: f32, friction: f32) -> f32 {
+    // A ball so large that it is a plane: its top is the origin.
+    let radius = 50.0;
+    let slope = Quat::from_rotation_z(degrees.to_radians());
+    let floor = Collider {
+        shape: Shape::Sphere { center: slope * Vec3::NEG_Y * radius, radius },
+        carrier: Carrier::World,
+        friction,
+    };
+    let across = line(Vec3::new(0.0, 1e-3, -0.1), Vec3::new(0.0, 1e-3, 0.1), 8);
+    let points: Vec<Vec3> = across.into_iter().map(|point| slope * point).collect();
+    let guides = one_strand(&points);
+    let settings = Settings { collision_margin: 1e-3, ..bare(1.0 / 60.0, 20) };
+    let rest = RestShape::new(&guides, 6.5e-6);
+    let solver = Solver::with_rest(&guides, rest, |_, _| false, &settings, vec![floor]).unwrap();
+    let mut state = solver.rest_state(Pose::IDENTITY);
+    for _ in 0..60 {
+        solver.step(&mut state, &Drive::default());
+    }
+    first(&state)[4].distance(points[4])
+}
+
+#[test]
+fn friction_holds_below_its_angle_and_gives_way_above() {
+    // tan 26.6 degrees = 0.5. A ball of 50 m is rounded to 4e-6 m, so a strand that sticks creeps.
+    assert!(slide(20.0, 0.5) < 2e-3, "{}", slide(20.0, 0.5));
+    let expected = 0.5 * 9.81 * (35.0_f32.to_radians().sin() - 0.5 * 35.0_f32.to_radians().cos());
+    let found = slide(35.0, 0.5);
+    assert!((found / expected - 1.0).abs() < 0.05, "slid {found} m, expected {expected} m");
+    assert!(slide(20.0, 0.2) > 0.1, "less friction is not noticed");
+}
+
+/// Deepest point \[m\] in the second half of 4 s under a motion.
+fn depth(collider: Option<Collider>, hair: &strandline_groom::Guides, motion: &Motion, exact: bool) -> f32 {
+    let mut settings = Settings {
+        volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
+        ..Settings::default()
+    };
+    settings.length_pass.enabled = exact;
+    let inside = collider.clone().unwrap_or_else(|| skull(0.3));
+    let solver = Solver::new(hair, &settings, collider.into_iter().collect()).unwrap();
+    let mut state = solver.rest_state(Pose::IDENTITY);
+    let mut deepest = 0.0_f32;
+    for step in 1..=240 {
+        let world_from_head = motion.pose(f64::from(step) / 60.0, Vec3::NEG_Y * 0.1);
+        let report = solver.step(&mut state, &Drive { world_from_head, wind: Vec3::ZERO });
+        assert_eq!(report.non_finite, 0);
+        if step < 120 {
+            continue;
+        }
+        let head_from_world = world_from_head.inverse();
+        for block in state.positions.chunks(hair.points_per_strand()) {
+            for point in &block[2..] {
+                let here = head_from_world.point(point.get(0));
+                deepest = deepest.max(-inside.shape.distance_and_gradient(here).0);
+            }
+        }
+    }
+    deepest
+}
+
+#[test]
+fn no_hair_is_inside_a_ball_after_settling() {
+    let hair = ball_of_hair(400, 12, 0.25);
+    for motion in [Motion::Still, Motion::Shake] {
+        let exact = depth(Some(skull(0.3)), &hair, &motion, true);
+        // The rest pose keeps 2 mm; planes on a ball of 0.1 m err by less than 0.1 mm.
+        assert!(exact < 1e-4, "{motion:?}: {exact} m deep");
+        let thesis = depth(Some(skull(0.3)), &hair, &motion, false);
+        assert!(thesis < 1e-3, "{motion:?}, no length pass: {thesis} m deep");
+    }
+    let through = depth(None, &hair, &Motion::Still, true);
+    assert!(through > 1e-3, "a head that is not there is not noticed: {through} m");
+}
+
+#[test]
+fn no_hair_is_inside_the_mannequin_after_settling() {
+    let hair = ball_of_hair(400, 12, 0.25);
+    let mannequin =
+        Collider { shape: Shape::Mannequin(Mannequin::new()), carrier: Carrier::Head, friction: 0.3 };
+    // The ball lies partly inside the mannequin: only points that rest outside are held outside.
+    let _ = Arc::new(());
+    let found = depth(Some(mannequin), &hair, &Motion::Still, true);
+    assert!(found < 0.05, "{found} m deep");
+}

@@ -1,0 +1,95 @@
+//! A violent shake, frame rates and thread counts.
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+use strandline_body::{Motion, Pose};
+use strandline_groom::{LANES, Vec3Lanes};
+use strandline_sim::{Clock, Drive, Settings, Solver, State};
+
+use crate::strands::{ball_of_hair, skull};
+
+/// Mean square speed \[m^2/s^2\] of the hair.
+fn mean_square_speed(state: &State) -> f32 {
+    let sum: f64 = state
+        .velocities
+        .iter()
+        .flat_map(|v| (0..LANES).map(|lane| f64::from(v.get(lane).length_squared())))
+        .sum();
+    (sum / (state.velocities.len() * LANES) as f64) as f32
+}
+
+/// Largest mean square speed over 60 s of a shake of 20 g at 5 Hz.
+fn shaken(settings: &Settings) -> f32 {
+    let hair = ball_of_hair(64, 12, 0.3);
+    let solver = Solver::new(&hair, settings, vec![skull(0.3)]).unwrap();
+    let mut state = solver.rest_state(Pose::IDENTITY);
+    let speed = 2.0 * PI * 5.0;
+    let amplitude = 20.0 * 9.81 / (speed * speed);
+    let mut largest = 0.0_f32;
+    for step in 1..=3600 {
+        let time = (f64::from(step) / 60.0 * 5.0).fract() as f32 / 5.0;
+        let aside = Vec3::X * amplitude * (speed * time).sin();
+        let world_from_head = Pose { translation: aside, ..Pose::IDENTITY };
+        let report = solver.step(&mut state, &Drive { world_from_head, wind: Vec3::ZERO });
+        assert_eq!(report.non_finite, 0, "step {step}");
+        largest = largest.max(mean_square_speed(&state));
+    }
+    largest
+}
+
+#[test]
+fn a_minute_of_violent_shaking_stays_bounded() {
+    // The head itself moves at up to 6.3 m/s. A whip of hair is a few times faster, not more.
+    let bound = (3.0 * 6.3_f32).powi(2);
+    let default = shaken(&Settings::default());
+    assert!(default < bound, "default settings: {default} m^2/s^2");
+    let thesis = shaken(&Settings::thesis());
+    assert!(thesis < bound, "the thesis: {thesis} m^2/s^2");
+}
+
+fn shake_for(clock: &mut Clock, solver: &Solver, frames: usize, rate: f64) -> State {
+    let mut state = solver.rest_state(Pose::IDENTITY);
+    for _ in 0..frames {
+        let ticks = clock.advance(1.0 / rate);
+        for step in ticks.first..ticks.first + u64::from(ticks.count) {
+            let time = clock.step_time(step + 1);
+            let world_from_head = Motion::Shake.pose(time, Vec3::NEG_Y * 0.1);
+            solver.step(&mut state, &Drive { world_from_head, wind: Vec3::ZERO });
+        }
+    }
+    state
+}
+
+#[test]
+fn the_frame_rate_does_not_change_a_bit() {
+    let hair = ball_of_hair(40, 8, 0.25);
+    let settings = Settings { time_step: 1.0 / 64.0, ..Settings::default() };
+    let solver = Solver::new(&hair, &settings, vec![skull(0.3)]).unwrap();
+    let mut results = [30.0, 60.0, 144.0].map(|rate| {
+        shake_for(&mut Clock::new(settings.time_step), &solver, 2 * rate as usize, rate).positions
+    });
+    assert_eq!(results[0], results[1]);
+    assert_eq!(results[0], results[2]);
+    let late = shake_for(&mut Clock::new(settings.time_step), &solver, 61, 30.0);
+    results[1] = late.positions;
+    assert_ne!(results[0], results[1], "another time is not noticed");
+}
+
+fn with_threads(threads: usize, friction: f32) -> Vec<Vec3Lanes> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let hair = ball_of_hair(300, 8, 0.25);
+        let solver = Solver::new(&hair, &Settings::default(), vec![skull(friction)]).unwrap();
+        let mut clock = Clock::new(1.0 / 60.0);
+        shake_for(&mut clock, &solver, 60, 60.0).positions
+    })
+}
+
+#[test]
+fn the_number_of_threads_does_not_change_a_bit() {
+    let one = with_threads(1, 0.3);
+    assert_eq!(one, with_threads(2, 0.3));
+    assert_eq!(one, with_threads(5, 0.3));
+    assert_ne!(one, with_threads(2, 0.1), "another friction is not noticed");
+}
