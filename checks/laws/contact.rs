@@ -1,10 +1,8 @@
 //! Solids: friction on a slope, nothing inside after settling.
 
-use std::sync::Arc;
-
 use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, Mannequin, Motion, Pose, Shape};
-use strandline_groom::RestShape;
+use strandline_groom::{Guides, RestShape, Style, StyleSettings};
 use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
 
 use crate::strands::{ball_of_hair, bare, first, line, one_strand, skull};
@@ -43,7 +41,7 @@ fn friction_holds_below_its_angle_and_gives_way_above() {
 }
 
 /// Deepest point \[m\] in the second half of 4 s under a motion.
-fn depth(collider: Option<Collider>, hair: &strandline_groom::Guides, motion: &Motion, exact: bool) -> f32 {
+fn depth(collider: Option<Collider>, hair: &Guides, motion: &Motion, exact: bool) -> f32 {
     let mut settings = Settings {
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
         ..Settings::default()
@@ -87,11 +85,18 @@ fn no_hair_is_inside_a_ball_after_settling() {
 
 #[test]
 fn no_hair_is_inside_the_mannequin_after_settling() {
-    let hair = ball_of_hair(400, 12, 0.25);
-    let mannequin =
-        Collider { shape: Shape::Mannequin(Mannequin::new()), carrier: Carrier::Head, friction: 0.3 };
-    // The ball lies partly inside the mannequin: only points that rest outside are held outside.
-    let _ = Arc::new(());
-    let found = depth(Some(mannequin), &hair, &Motion::Still, true);
-    assert!(found < 0.05, "{found} m deep");
+    let settings = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) };
+    let hair = Guides::resample(&settings.grow().unwrap(), 16).unwrap();
+    let shape = Shape::Mannequin(Mannequin::new());
+    let resting =
+        hair.positions().chunks(16).flat_map(|block| &block[2..]).map(|point| {
+            (0..8).map(|lane| -shape.distance_and_gradient(point.get(lane)).0).fold(0.0, f32::max)
+        });
+    let resting = resting.fold(0.0, f32::max);
+    let collider = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
+    for motion in [Motion::Still, Motion::Shake] {
+        let found = depth(Some(collider.clone()), &hair, &motion, true);
+        // Planes on the ears, which curve within 5 mm, err by 0.1 mm and more when hair moves fast.
+        assert!(found < resting + 1e-3, "{motion:?}: {found} m deep, {resting} m at rest");
+    }
 }

@@ -93,3 +93,24 @@ fn the_number_of_threads_does_not_change_a_bit() {
     assert_eq!(one, with_threads(5, 0.3));
     assert_ne!(one, with_threads(2, 0.1), "another friction is not noticed");
 }
+
+/// Mean way \[m\] of a point in the last step of 10 s on a head that rests.
+fn restless(wind: Vec3) -> f32 {
+    let hair = ball_of_hair(64, 12, 0.3);
+    let solver = Solver::new(&hair, &Settings::default(), vec![skull(0.3)]).unwrap();
+    let mut state = solver.rest_state(Pose::IDENTITY);
+    for step in 0..600 {
+        let gust = wind * (step as f32 * 0.1).sin();
+        solver.step(&mut state, &Drive { wind: gust, ..Drive::default() });
+    }
+    let pairs = state.positions.iter().zip(&state.previous_positions);
+    let way: f32 = pairs.map(|(now, before)| now.get(0).distance(before.get(0))).sum();
+    way / state.positions.len() as f32
+}
+
+#[test]
+fn hair_on_a_resting_head_comes_to_rest() {
+    // 10 um in a step, 0.6 mm/s, is less than a tenth of a pixel of a head that fills the picture.
+    assert!(restless(Vec3::ZERO) < 1e-5, "{} m", restless(Vec3::ZERO));
+    assert!(restless(Vec3::X) > 1e-4, "gusts are not noticed");
+}

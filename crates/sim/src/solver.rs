@@ -244,3 +244,52 @@ fn clearance(colliders: &[Collider], point: Vec3) -> f32 {
         .map(|collider| collider.shape.distance_and_gradient(point).0)
         .fold(f32::INFINITY, f32::min)
 }
+
+#[cfg(test)]
+mod tests {
+    use strandline_groom::Groom;
+
+    use super::*;
+
+    fn guides() -> Guides {
+        let mut groom = Groom::empty(8e-5);
+        groom.push([Vec3::ZERO, Vec3::NEG_Y * 0.3]);
+        Guides::resample(&groom, 6).unwrap()
+    }
+
+    #[test]
+    fn a_rest_shape_that_does_not_fit_is_refused() {
+        let with = |change: fn(&mut RestShape)| {
+            let mut rest = RestShape::new(&guides(), 1e-5);
+            change(&mut rest);
+            Solver::with_rest(&guides(), rest, |_, point| point == 0, &Settings::default(), Vec::new())
+                .err()
+                .map(|error| error.to_string())
+        };
+        assert_eq!(with(|_| ()), None);
+        assert!(with(|rest| rest.mass[2].0[0] = 0.0).unwrap().contains("mass 0 kg in strand 0"));
+        assert!(with(|rest| rest.stretch[2].0[0] = f32::NAN).unwrap().contains("length NaN m"));
+        assert!(with(|rest| rest.bend.truncate(3)).unwrap().contains("3 blocks of bend"));
+    }
+
+    #[test]
+    fn settings_change_between_steps_or_not_at_all() {
+        let mut solver = Solver::new(&guides(), &Settings::default(), Vec::new()).unwrap();
+        let light = solver.inverse_mass[3].0[0];
+        let settings = Settings { mass_per_length: 1.3e-5, iterations: 7, ..Settings::default() };
+        solver.set_settings(&settings).unwrap();
+        assert!((solver.inverse_mass[3].0[0] / light - 0.5).abs() < 1e-6);
+        assert!(solver.set_settings(&Settings { iterations: 0, ..settings.clone() }).is_err());
+        assert_eq!(solver.settings(), &settings);
+    }
+
+    #[test]
+    fn lanes_beyond_the_last_strand_move_with_it() {
+        let solver = Solver::new(&guides(), &Settings::default(), Vec::new()).unwrap();
+        let mut state = solver.rest_state(Pose::IDENTITY);
+        solver.step(&mut state, &Drive { wind: Vec3::X, ..Drive::default() });
+        for lanes in &state.positions {
+            assert_eq!(lanes.get(0), lanes.get(7));
+        }
+    }
+}

@@ -152,3 +152,99 @@ fn slide(positions: &mut [Vec3Lanes], lengths: &[Lanes]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use strandline_groom::{Groom, Guides};
+
+    use super::*;
+    use crate::{Settings, VolumeSettings};
+
+    fn two_strands() -> (Solver, State) {
+        let mut groom = Groom::empty(8e-5);
+        groom.push([Vec3::ZERO, Vec3::NEG_Y * 0.3]);
+        groom.push([Vec3::X, Vec3::X + Vec3::NEG_Y * 0.3]);
+        let guides = Guides::resample(&groom, 7).unwrap();
+        let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
+        let settings = Settings { volume, ..Settings::default() };
+        let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
+        let state = solver.rest_state(Pose::IDENTITY);
+        (solver, state)
+    }
+
+    #[test]
+    fn a_cut_strand_loses_its_tip_only() {
+        let (solver, mut state) = two_strands();
+        state.set_length_scale(&solver, &[0.75, 1.0]).unwrap();
+        for _ in 0..2 {
+            let length = |point: usize, lane| {
+                state.positions[point].get(lane).distance(state.positions[point + 1].get(lane))
+            };
+            // 0.075 m of segments of 0.05 m: all but a twentieth of the last, the rest of the next.
+            let expected = [0.05, 0.05, 0.05, 0.05, 0.0225, 0.0025];
+            for (point, expected) in expected.into_iter().enumerate() {
+                assert!((length(point, 0) - expected).abs() < 1e-6, "segment {point}");
+                assert!((length(point, 1) - 0.05).abs() < 1e-6, "the other strand, segment {point}");
+            }
+            assert_eq!((state.length_scale(0), state.length_scale(1)), (0.75, 1.0));
+            let report = solver.step(&mut state, &Drive::default());
+            assert!(report.stretch_max < 1e-4, "{}", report.stretch_max);
+        }
+    }
+
+    #[test]
+    fn a_strand_that_is_cut_and_grown_again_has_its_length_back() {
+        let (solver, mut state) = two_strands();
+        state.set_length_scale(&solver, &[0.05, 0.3]).unwrap();
+        state.set_length_scale(&solver, &[1.0, 1.0]).unwrap();
+        for (found, rest) in state.positions.iter().zip(&solver.positions) {
+            assert!((found.get(0) - rest.get(0)).length() < 1e-5);
+        }
+        assert_eq!(state.scratch.lengths.stretch, solver.rest.stretch);
+    }
+
+    #[test]
+    fn a_length_scale_out_of_range_is_refused() {
+        let (solver, mut state) = two_strands();
+        assert!(state.set_length_scale(&solver, &[1.0]).is_err());
+        assert!(state.set_length_scale(&solver, &[1.0, 1.5]).is_err());
+        assert!(state.set_length_scale(&solver, &[f32::NAN, 1.0]).is_err());
+        assert_eq!(state.length_scale(1), 1.0);
+    }
+
+    #[test]
+    fn pictures_lie_between_the_last_two_steps() {
+        let (solver, mut state) = two_strands();
+        let pose = Pose { translation: Vec3::new(0.1, 0.0, 0.0), ..Pose::IDENTITY };
+        solver.step(&mut state, &Drive { world_from_head: pose, wind: Vec3::ZERO });
+        let mut between = Vec::new();
+        state.interpolated(0.25, &mut between);
+        assert!((between[0].get(0).x - 0.025).abs() < 1e-6);
+        state.interpolated(1.0, &mut between);
+        assert_eq!(between, state.positions);
+    }
+
+    #[test]
+    fn a_bad_strand_goes_back_to_rest_and_does_not_spread() {
+        let (solver, mut state) = two_strands();
+        let (_, mut sound) = two_strands();
+        state.velocities[3].set(0, Vec3::new(f32::NAN, 0.0, 0.0));
+        let report = solver.step(&mut state, &Drive::default());
+        assert!(report.non_finite > 0);
+        assert_eq!(solver.step(&mut sound, &Drive::default()).non_finite, 0);
+        for (index, lanes) in state.positions.iter().enumerate() {
+            assert_eq!(lanes.get(0), solver.positions[index].get(0));
+            assert_eq!(lanes.get(1), sound.positions[index].get(1));
+        }
+        assert_eq!(solver.step(&mut state, &Drive::default()).non_finite, 0);
+    }
+
+    #[test]
+    fn a_drive_that_is_not_finite_leaves_the_head_where_it_is() {
+        let (solver, mut state) = two_strands();
+        let pose = Pose { translation: Vec3::splat(f32::NAN), ..Pose::IDENTITY };
+        let report = solver.step(&mut state, &Drive { world_from_head: pose, wind: Vec3::NAN });
+        assert_eq!(report.non_finite, 0);
+        assert_eq!(state.world_from_head, Pose::IDENTITY);
+    }
+}

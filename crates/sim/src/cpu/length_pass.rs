@@ -6,8 +6,8 @@ use wide::f32x8;
 use super::contacts::{Plane, Solids, Touch};
 use super::vec3x8::{Vec3x8, load, splat};
 
-/// Times that a point is placed anew when the solid under it curves.
-const PLACINGS: usize = 3;
+/// Times that a point is placed anew at most when the solid under it curves: enough for an ear.
+const PLACINGS: usize = 8;
 
 /// One block of strands as the pass sees it.
 pub struct Follow<'a> {
