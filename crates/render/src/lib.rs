@@ -19,6 +19,6 @@ pub use error::RenderError;
 pub use frame::{FrameInput, FrameReport, Renderer};
 pub use level_of_detail::{DetailLevel, LevelOfDetail};
 pub use lights::{Environment, Illumination, Light, LightKind};
-pub use look::{Clump, Look, Shadow};
+pub use look::{Clump, Highlight, Look, Shadow};
 pub use picture::Picture;
 pub use picture_settings::{Background, PictureSettings, ToneMap};

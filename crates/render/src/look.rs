@@ -1,5 +1,6 @@
 use std::fmt::Display;
 
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::{Environment, RenderError};
@@ -19,6 +20,24 @@ pub struct Look {
     pub width_scale: f32,
     /// Diameter at the tip as a share of that at the root, 0 to 1. Default 0.3.
     pub tip_width: f32,
+    /// Reflectance at the root. Default brown.
+    pub root_color: Vec3,
+    /// Reflectance at the tip. Default a lighter brown.
+    pub tip_color: Vec3,
+    /// Spread of brightness among strands as a share of it, 0 to 1. Default 0.35.
+    pub variation: f32,
+    /// Share of strands that have turned white, 0 to 1. Default 0.
+    pub grey: f32,
+    /// The white highlight, from the surface of the hair.
+    pub first_highlight: Highlight,
+    /// The coloured highlight, from light that crossed the hair.
+    pub second_highlight: Highlight,
+    /// Noise along and among strands by which both highlights are moved \[degrees\], 0 to 45. Default 4.
+    pub highlight_noise: f32,
+    /// How far a second noise breaks the second highlight up into sparkles, 0 to 1. Default 0.7.
+    pub sparkle: f32,
+    /// How much further light goes through bright hair than through black, 0 to 1. Default 0.6.
+    pub translucency: f32,
     /// How the drawn strands lie about their guide.
     pub clump: Clump,
     /// How hair and body cast shadows.
@@ -32,6 +51,26 @@ pub struct Look {
 impl Default for Look {
     fn default() -> Self {
         Self::brown()
+    }
+}
+
+/// A highlight on the hair [Scheuermann2004].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Highlight {
+    /// Angle \[degrees\] by which it is moved toward the tip, -45 to 45; below 0 toward the root.
+    pub shift: f32,
+    /// Its standard deviation along the strand \[degrees\], 0.5 to 60.
+    pub width: f32,
+    /// Share of the light that goes into it, 0 to 0.5.
+    pub strength: f32,
+}
+
+impl Highlight {
+    fn validate(&self) -> Result<(), RenderError> {
+        require_range("look highlight shift", self.shift, -45.0, 45.0, "-45 to 45 degrees")?;
+        require_range("look highlight width", self.width, 0.5, 60.0, "0.5 to 60 degrees")?;
+        require_range("look highlight strength", self.strength, 0.0, 0.5, "0 to 0.5")
     }
 }
 
@@ -127,11 +166,44 @@ impl Look {
             hair_count: 100_000,
             width_scale: 1.0,
             tip_width: 0.3,
+            root_color: Vec3::new(0.20, 0.105, 0.055),
+            tip_color: Vec3::new(0.34, 0.19, 0.10),
+            variation: 0.35,
+            grey: 0.0,
+            first_highlight: Highlight { shift: -5.0, width: 6.5, strength: 0.08 },
+            second_highlight: Highlight { shift: 7.0, width: 11.0, strength: 0.22 },
+            highlight_noise: 4.0,
+            sparkle: 0.7,
+            translucency: 0.6,
             clump: Clump::default(),
             shadow: Shadow::default(),
             environment: Environment::default(),
             seed: 0,
         }
+    }
+
+    /// Black hair.
+    pub fn black() -> Self {
+        Self::colored([0.030, 0.025, 0.024], [0.045, 0.038, 0.035])
+    }
+
+    /// Blonde hair, lighter toward the tips.
+    pub fn blonde() -> Self {
+        Self::colored([0.46, 0.31, 0.165], [0.68, 0.51, 0.31])
+    }
+
+    /// Red hair.
+    pub fn red() -> Self {
+        Self::colored([0.34, 0.10, 0.035], [0.46, 0.165, 0.06])
+    }
+
+    /// Grey hair: dark strands among white ones.
+    pub fn grey() -> Self {
+        Self { grey: 0.6, ..Self::colored([0.17, 0.16, 0.15], [0.22, 0.21, 0.20]) }
+    }
+
+    fn colored(root_color: [f32; 3], tip_color: [f32; 3]) -> Self {
+        Self { root_color: root_color.into(), tip_color: tip_color.into(), ..Self::brown() }
     }
 
     /// Checks every setting.
@@ -148,6 +220,17 @@ impl Look {
         )?;
         require_range("look.width_scale", self.width_scale, 0.0, 1e3, "0 to 1000")?;
         require_range("look.tip_width", self.tip_width, 0.0, 1.0, "0 to 1")?;
+        for (name, color) in [("look.root_color", self.root_color), ("look.tip_color", self.tip_color)] {
+            let sound = color.min_element() >= 0.0 && color.max_element() <= 1.0;
+            require(sound, name, &color, "three numbers, 0 to 1")?;
+        }
+        require_range("look.variation", self.variation, 0.0, 1.0, "0 to 1")?;
+        require_range("look.grey", self.grey, 0.0, 1.0, "0 to 1")?;
+        require_range("look.highlight_noise", self.highlight_noise, 0.0, 45.0, "0 to 45 degrees")?;
+        require_range("look.sparkle", self.sparkle, 0.0, 1.0, "0 to 1")?;
+        require_range("look.translucency", self.translucency, 0.0, 1.0, "0 to 1")?;
+        self.first_highlight.validate()?;
+        self.second_highlight.validate()?;
         self.environment.validate()?;
         self.shadow.validate()?;
         self.clump.validate()

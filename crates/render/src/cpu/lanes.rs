@@ -32,6 +32,18 @@ impl Wide3 {
         lanes.z = self.z.to_array();
     }
 
+    /// The same number in all three components.
+    #[inline]
+    pub(crate) fn same(value: f32x8) -> Self {
+        Self { x: value, y: value, z: value }
+    }
+
+    /// Component by component.
+    #[inline]
+    pub(crate) fn times(self, other: Self) -> Self {
+        Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
+    }
+
     #[inline]
     pub(crate) fn dot(self, other: Self) -> f32x8 {
         self.x * other.x + self.y * other.y + self.z * other.z

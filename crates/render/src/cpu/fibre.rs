@@ -1,0 +1,116 @@
+//! How a hair scatters light: the shading model, a function of directions.
+//!
+//! Diffuse light about the strand [Kajiya1989] and two highlights from shifted tangents, the second one
+//! coloured [Scheuermann2004]. Each part is scaled so that it never gives back more than it takes.
+
+use std::f32::consts::PI;
+
+use glam::Vec3;
+use wide::f32x8;
+
+use super::fast_math::exp_lanes;
+use super::lanes::Wide3;
+use crate::{Highlight, Look};
+
+/// How much more a hair sends back toward the light than onward; 1 sends nothing straight on.
+const BACKWARD: f32 = 0.8;
+
+/// A highlight as shading needs it.
+#[derive(Clone, Copy)]
+pub(crate) struct Lobe {
+    /// Sum of the sines of both directions with the strand at which the highlight is brightest.
+    shift: f32x8,
+    /// Factor of the squared sum in the exponent.
+    sharpness: f32x8,
+    /// Peak, times pi since lights are given as the radiance of a white surface.
+    peak: f32x8,
+}
+
+impl Lobe {
+    pub(crate) fn new(highlight: &Highlight) -> Self {
+        // Both directions turn, so a sum of sines is twice as wide as the highlight.
+        let deviation = 2.0 * highlight.width.to_radians().sin();
+        Self {
+            shift: f32x8::splat(2.0 * highlight.shift.to_radians().sin()),
+            sharpness: f32x8::splat(-0.5 / (deviation * deviation)),
+            peak: f32x8::splat(highlight.strength * PI / (deviation * (2.0 * PI).sqrt())),
+        }
+    }
+
+    /// Brightness for a sum of sines, before the turn about the strand; `jitter` moves the highlight.
+    #[inline]
+    fn at(&self, sum: f32x8, jitter: f32x8) -> f32x8 {
+        let away = sum - self.shift - jitter;
+        self.peak * exp_lanes(self.sharpness * away * away)
+    }
+}
+
+/// The model with its settings worked out.
+#[derive(Clone, Copy)]
+pub(crate) struct Fibre {
+    first: Lobe,
+    second: Lobe,
+    pub(crate) diffuse: f32,
+}
+
+/// Radiance over that of a white surface that faces the light.
+pub(crate) struct Scattered {
+    /// To be coloured with the hair's reflectance.
+    pub(crate) diffuse: f32x8,
+    /// White highlight.
+    pub(crate) first: f32x8,
+    /// Highlight to be coloured with light that crossed the hair.
+    pub(crate) second: f32x8,
+}
+
+impl Fibre {
+    pub(crate) fn new(look: &Look) -> Self {
+        let share = 1.0 - look.first_highlight.strength - look.second_highlight.strength;
+        Self {
+            first: Lobe::new(&look.first_highlight),
+            second: Lobe::new(&look.second_highlight),
+            diffuse: share.max(0.0),
+        }
+    }
+
+    /// Light scattered from `to_light` to `to_eye` by strands of unit `tangent`, root to tip.
+    #[inline]
+    pub(crate) fn scatter(&self, tangent: Wide3, to_light: Wide3, to_eye: Wide3, jitter: f32x8) -> Scattered {
+        let (zero, one) = (f32x8::splat(0.0), f32x8::splat(1.0));
+        let sine_light = tangent.dot(to_light);
+        let sine_eye = tangent.dot(to_eye);
+        let cosine_light = (one - sine_light * sine_light).max(zero).sqrt();
+        let cosine_eye = (one - sine_eye * sine_eye).max(zero).sqrt();
+        // Turn about the strand from the light to the eye.
+        let across = (cosine_light * cosine_eye).max(f32x8::splat(1e-4));
+        let turn = ((to_light.dot(to_eye) - sine_light * sine_eye) / across).max(-one).min(one);
+        let facing = (f32x8::splat(0.5) + f32x8::splat(0.5) * turn).max(zero);
+        let sum = sine_light + sine_eye;
+        // Over a full turn cos(turn / 2) / 4 and (1 + cos turn)^2 / (3 pi) sum to 1, like the mirror on a
+        // smooth cylinder and the reflection from its back wall [Marschner2003].
+        let first = self.first.at(sum, jitter) * cosine_light * facing.sqrt() * f32x8::splat(0.25);
+        let second =
+            self.second.at(sum, jitter) * cosine_light * facing * facing * f32x8::splat(4.0 / (3.0 * PI));
+        // [Kajiya1989 eq. 14]: the sine between strand and light, over pi so that a hair in even light from
+        // all around shows that light times its reflectance.
+        let back = one + f32x8::splat(BACKWARD) * turn;
+        let diffuse = cosine_light * back * f32x8::splat(self.diffuse / PI);
+        Scattered { diffuse, first, second }
+    }
+}
+
+/// Radiance of one point over that of a white surface, with `color` for diffuse light and `tint` for the second highlight.
+pub fn reflectance(
+    look: &Look,
+    color: Vec3,
+    tint: Vec3,
+    tangent: Vec3,
+    to_light: Vec3,
+    to_eye: Vec3,
+) -> Vec3 {
+    let [tangent, to_light, to_eye] = [tangent, to_light, to_eye].map(Wide3::splat);
+    let scattered = Fibre::new(look).scatter(tangent, to_light, to_eye, f32x8::splat(0.0));
+    let [diffuse, first, second] =
+        [scattered.diffuse, scattered.first, scattered.second].map(|lanes| lanes.to_array()[0]);
+    color * diffuse + Vec3::splat(first) + tint * second
+}

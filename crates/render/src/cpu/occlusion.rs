@@ -1,0 +1,194 @@
+//! How much of the surroundings hair hides from a place: the ambient part of `shade`.
+//!
+//! Hair is summed into a coarse grid of cells; light is carried through the grid along the six
+//! axes, mixed a little with the neighbours at every cell so that it stands for a cone of
+//! directions. A place keeps six visibilities, an ambient cube [McTaggart2004].
+
+use glam::{UVec3, Vec3};
+use rayon::prelude::*;
+
+use super::Strands;
+use super::fast_math::exp;
+use crate::{Environment, Shadow};
+
+/// Cells along the longest side of the box around the hair.
+const LONGEST: u32 = 40;
+/// Parts that the strands are shared out to.
+const PARTS: usize = 4;
+/// Whole numbers make sums that do not depend on their order: parts of a square metre.
+const UNITS: f32 = 4_294_967_296.0;
+/// Mean of the sine between random hairs and a fixed direction: projected over full width times length.
+const MEAN_SINE: f32 = std::f32::consts::FRAC_PI_4;
+/// Share of the light that each of four neighbours gives at every cell: about 25 degrees of spread.
+const SPREAD: f32 = 0.1;
+
+/// What reaches each cell along +x, -x, +y, -y, +z, -z, that is from there; two more are unused.
+type Cube = [f32; 8];
+
+/// Visibility of the surroundings around and in the hair.
+#[derive(Clone, Debug, Default)]
+pub struct Occlusion {
+    min: Vec3,
+    cell: f32,
+    counts: [usize; 3],
+    parts: Vec<Vec<u64>>,
+    /// Logarithm of what each cell lets through.
+    logs: Vec<f32>,
+    cubes: Vec<Cube>,
+    front: [Vec<f32>; 2],
+}
+
+impl Occlusion {
+    /// Sums the hair and carries light through it.
+    pub fn fill(&mut self, strands: &Strands, settings: &Shadow) {
+        self.fit(&strands.positions);
+        self.sum(strands, settings.log_transmission());
+        self.cubes.clear();
+        self.cubes.resize(self.logs.len(), [1.0; 8]);
+        for axis in 0..3 {
+            self.sweep(axis, true);
+            self.sweep(axis, false);
+        }
+    }
+
+    /// Visibility, 0 to 1, of the surroundings from a point \[m\] toward +x, -x, +y, -y, +z, -z.
+    pub fn visibilities(&self, point: Vec3) -> [f32; 6] {
+        let cube = self.cube(point);
+        [cube[0], cube[1], cube[2], cube[3], cube[4], cube[5]]
+    }
+
+    /// Mean radiance of the surroundings that reaches a point \[m\], linear RGB.
+    pub fn ambient(&self, point: Vec3, environment: &Environment) -> Vec3 {
+        mean_radiance(&self.cube(point), environment)
+    }
+
+    /// Radiance that reaches a surface of the given unit normal at a point \[m\], weighted with the
+    /// cosine: what a white matte surface there shows.
+    pub fn ambient_on(&self, point: Vec3, normal: Vec3, environment: &Environment) -> Vec3 {
+        let cube = self.cube(point);
+        // Over the cosine lobe about a normal, the height of a direction averages two thirds of the normal's.
+        environment.radiance(normal * (2.0 / 3.0)) * toward(&cube, normal)
+    }
+
+    #[inline]
+    pub(crate) fn cube(&self, point: Vec3) -> Cube {
+        let at = (point - self.min) / self.cell - Vec3::splat(0.5);
+        let last = Vec3::from(self.counts.map(|count| count as f32 - 1.001));
+        if self.cubes.is_empty() || !at.is_finite() {
+            return [1.0; 8];
+        }
+        let at = at.clamp(Vec3::ZERO, last.max(Vec3::ZERO));
+        let (x, y, z) = (at.x as usize, at.y as usize, at.z as usize);
+        let part = at - at.floor();
+        let [columns, rows, _] = self.counts;
+        let first = (z * rows + y) * columns + x;
+        let mut sum = [0.0; 8];
+        for corner in 0..8 {
+            let (dx, dy, dz) = (corner & 1, corner >> 1 & 1, corner >> 2);
+            let weight = side(part.x, dx) * side(part.y, dy) * side(part.z, dz);
+            let cube = &self.cubes[first + (dz * rows + dy) * columns + dx];
+            for (sum, value) in sum.iter_mut().zip(cube) {
+                *sum += weight * value;
+            }
+        }
+        sum
+    }
+
+    fn fit(&mut self, points: &[Vec3]) {
+        let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (min, max) = points
+            .par_chunks(8192)
+            .map(|chunk| chunk.iter().fold(empty, |(min, max), &point| (min.min(point), max.max(point))))
+            .reduce(|| empty, |one, other| (one.0.min(other.0), one.1.max(other.1)));
+        let sound = min.is_finite() && max.is_finite();
+        let (min, max) = if sound { (min, max) } else { (Vec3::ZERO, Vec3::ONE) };
+        let extent = (max - min).max(Vec3::splat(1e-3));
+        self.cell = extent.max_element() / LONGEST as f32;
+        // One empty cell around the hair, where light enters unhindered.
+        self.min = min - Vec3::splat(1.5 * self.cell);
+        let counts: UVec3 = (extent / self.cell).ceil().as_uvec3() + UVec3::splat(3);
+        self.counts = counts.to_array().map(|count| count as usize);
+    }
+
+    fn sum(&mut self, strands: &Strands, log_transmission: f32) {
+        let [columns, rows, layers] = self.counts;
+        let cells = columns * rows * layers;
+        let (min, inverse) = (self.min, 1.0 / self.cell);
+        let count = strands.points_per_strand;
+        self.parts.resize_with(PARTS, Vec::new);
+        self.parts.par_iter_mut().enumerate().for_each(|(part, areas)| {
+            areas.clear();
+            areas.resize(cells, 0);
+            let range = strands.strand_count * part / PARTS..strands.strand_count * (part + 1) / PARTS;
+            for segment in range.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
+                let (start, end) = (strands.positions[segment], strands.positions[segment + 1]);
+                let at = (0.5 * (start + end) - min) * inverse;
+                let cell = (at.z as usize * rows + at.y as usize) * columns + at.x as usize;
+                if let Some(area) = areas.get_mut(cell) {
+                    *area += (start.distance(end) * strands.widths[segment] * UNITS) as u64;
+                }
+            }
+        });
+        let face = self.cell * self.cell;
+        let scale = MEAN_SINE * log_transmission / (UNITS * face);
+        self.logs.clear();
+        self.logs.extend((0..cells).map(|cell| {
+            let units: u64 = self.parts.iter().map(|part| part[cell]).sum();
+            units as f32 * scale
+        }));
+    }
+
+    /// Carries light along an axis, from its far end when `backward`; what passes is stored where it comes from.
+    fn sweep(&mut self, axis: usize, backward: bool) {
+        let strides = [1, self.counts[0], self.counts[0] * self.counts[1]];
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (wide, high, deep) = (self.counts[u], self.counts[v], self.counts[axis]);
+        let slot = 2 * axis + usize::from(!backward);
+        let [light, next] = &mut self.front;
+        light.clear();
+        light.resize(wide * high, 1.0);
+        next.resize(wide * high, 1.0);
+        for step in 0..deep {
+            let plane = strides[axis] * if backward { deep - 1 - step } else { step };
+            for row in 0..high {
+                for column in 0..wide {
+                    let at = |column: usize, row: usize| light[row * wide + column];
+                    let around = at(column.saturating_sub(1), row)
+                        + at((column + 1).min(wide - 1), row)
+                        + at(column, row.saturating_sub(1))
+                        + at(column, (row + 1).min(high - 1));
+                    let arrived = (1.0 - 4.0 * SPREAD) * at(column, row) + SPREAD * around;
+                    let cell = plane + column * strides[u] + row * strides[v];
+                    // Half of the cell's own hair lies before its middle.
+                    let half = exp(0.5 * self.logs[cell]);
+                    self.cubes[cell][slot] = arrived * half;
+                    next[row * wide + column] = arrived * half * half;
+                }
+            }
+            std::mem::swap(light, next);
+        }
+    }
+}
+
+#[inline]
+fn side(part: f32, upper: usize) -> f32 {
+    if upper == 1 { part } else { 1.0 - part }
+}
+
+/// Visibility toward a unit direction.
+#[inline]
+pub(crate) fn toward(cube: &Cube, direction: Vec3) -> f32 {
+    let square = direction * direction;
+    let pick = |axis: usize, value: f32| cube[2 * axis + usize::from(value < 0.0)];
+    square.x * pick(0, direction.x) + square.y * pick(1, direction.y) + square.z * pick(2, direction.z)
+}
+
+/// Mean radiance over all directions.
+#[inline]
+pub(crate) fn mean_radiance(cube: &Cube, environment: &Environment) -> Vec3 {
+    let level = 0.5 * (environment.sky + environment.ground) * (cube[0] + cube[1] + cube[4] + cube[5]);
+    // The mean height of the directions of one axis's share of the sphere: three quarters of the pole's.
+    let up = environment.radiance(Vec3::Y * 0.75) * cube[2];
+    let down = environment.radiance(Vec3::NEG_Y * 0.75) * cube[3];
+    (level + up + down) * (1.0 / 6.0)
+}

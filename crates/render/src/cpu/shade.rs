@@ -1,0 +1,253 @@
+//! `shade`: light from every point of the hair toward the camera [Chen2011 §3.4].
+
+use glam::Vec3;
+use rayon::prelude::*;
+use strandline_groom::{LANES, Vec3Lanes};
+use wide::f32x8;
+
+use super::fast_math::exp_lanes;
+use super::fibre::Fibre;
+use super::lanes::Wide3;
+use super::noise::{Random, hash_pair, unit};
+use super::occlusion::{Occlusion, mean_radiance, toward};
+use super::{Shadows, Strands};
+use crate::{Light, LightKind, Look};
+
+/// Fills the radiances of all strands \[linear RGB\] as seen from `eye` \[m\], world space.
+///
+/// `shadows` are the maps of the same `lights`; `occlusion` is filled here from the strands.
+pub fn shade(
+    strands: &mut Strands,
+    shadows: &Shadows,
+    lights: &[Light],
+    look: &Look,
+    eye: Vec3,
+    occlusion: &mut Occlusion,
+) {
+    occlusion.fill(strands, &look.shadow);
+    let count = strands.points_per_strand;
+    let per_guide = strands.strands_per_guide;
+    let shared = Shared::new(shadows, lights, look, eye, occlusion);
+    strands
+        .radiances
+        .par_chunks_mut(count * per_guide)
+        .zip_eq(strands.positions.par_chunks(count * per_guide))
+        .zip_eq(strands.tangents.par_chunks(count * per_guide))
+        .enumerate()
+        .for_each(|(guide, ((radiances, positions), tangents))| {
+            let places = positions.chunks(count).zip(tangents.chunks(count));
+            for (index, (radiances, (positions, tangents))) in
+                radiances.chunks_mut(count).zip(places).enumerate()
+            {
+                let color = StrandColor::new(look, guide as u32, index as u32);
+                for first in (0..count).step_by(LANES) {
+                    let points = Points::load(positions, tangents, first, &color);
+                    let radiance = shared.radiance(&points);
+                    let lanes = (count - first).min(LANES);
+                    for (lane, slot) in radiances[first..first + lanes].iter_mut().enumerate() {
+                        *slot = radiance.get(lane);
+                    }
+                }
+            }
+        });
+}
+
+/// Noise nodes along a strand.
+const NODES: usize = 8;
+
+/// What sets one strand apart from the others.
+struct StrandColor {
+    root: Vec3,
+    tip: Vec3,
+    /// Shift of the highlights along the strand, as a sum of sines, at even distances from root to tip.
+    jitters: [f32; NODES],
+    /// Brightness of the second highlight, likewise.
+    sparkles: [f32; NODES],
+}
+
+impl StrandColor {
+    fn new(look: &Look, guide: u32, index: u32) -> Self {
+        let seed = hash_pair(look.seed ^ 0x10_5e, guide);
+        // Half of the variation belongs to the whole clump, as in real locks.
+        let clump = unit(seed) - 0.5;
+        let mut random = Random::new(hash_pair(seed, index));
+        let own = random.unit() - 0.5;
+        let brightness = 1.0 + look.variation * (clump + own);
+        let white = random.unit() < look.grey;
+        let color = |color: Vec3| {
+            let color = if white { Vec3::new(0.62, 0.62, 0.60) } else { color };
+            (color * brightness).clamp(Vec3::ZERO, Vec3::splat(0.99))
+        };
+        let jitter = 2.0 * look.highlight_noise.to_radians();
+        let whole = 2.0 * random.unit() - 1.0;
+        Self {
+            root: color(look.root_color),
+            tip: color(look.tip_color),
+            jitters: std::array::from_fn(|_| jitter * (0.6 * whole + 0.8 * random.unit() - 0.4)),
+            sparkles: std::array::from_fn(|_| 1.0 - look.sparkle * random.unit()),
+        }
+    }
+}
+
+/// Eight consecutive points of one strand; lanes beyond its tip repeat the tip.
+struct Points {
+    places: [Vec3; LANES],
+    position: Wide3,
+    tangent: Wide3,
+    color: Wide3,
+    tint: Wide3,
+    jitter: f32x8,
+    sparkle: f32x8,
+}
+
+impl Points {
+    fn load(positions: &[Vec3], tangents: &[Vec3], first: usize, strand: &StrandColor) -> Self {
+        let last = positions.len() - 1;
+        let mut lanes = [Vec3Lanes::default(); 3];
+        let mut places = [Vec3::ZERO; LANES];
+        let (mut jitter, mut sparkle) = ([0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            let point = (first + lane).min(last);
+            let share = point as f32 / last as f32;
+            let at = share * (NODES - 1) as f32;
+            let node = (at as usize).min(NODES - 2);
+            let part = at - node as f32;
+            let between = |nodes: &[f32; NODES]| nodes[node] + (nodes[node + 1] - nodes[node]) * part;
+            jitter[lane] = between(&strand.jitters);
+            sparkle[lane] = between(&strand.sparkles);
+            places[lane] = positions[point];
+            lanes[0].set(lane, positions[point]);
+            lanes[1].set(lane, tangents[point]);
+            lanes[2].set(lane, strand.root.lerp(strand.tip, share));
+        }
+        let color = Wide3::load(&lanes[2]);
+        // The second highlight crosses the hair once there and back, diffuse light many hairs: its
+        // colour is paler.
+        let tint = Wide3 { x: color.x.sqrt(), y: color.y.sqrt(), z: color.z.sqrt() };
+        Self {
+            places,
+            position: Wide3::load(&lanes[0]),
+            tangent: Wide3::load(&lanes[1]),
+            color,
+            tint,
+            jitter: f32x8::from(jitter),
+            sparkle: f32x8::from(sparkle),
+        }
+    }
+}
+
+/// A light for eight points at a time.
+enum Source {
+    /// Direction and radiance, the same everywhere.
+    Distant(Vec3, Vec3),
+    /// The light itself.
+    Near(Light),
+}
+
+/// What all strands have in common.
+struct Shared<'a> {
+    shadows: &'a Shadows,
+    sources: Vec<Source>,
+    look: &'a Look,
+    fibre: Fibre,
+    eye: Wide3,
+    occlusion: &'a Occlusion,
+    log_transmission: f32,
+}
+
+impl<'a> Shared<'a> {
+    fn new(
+        shadows: &'a Shadows,
+        lights: &[Light],
+        look: &'a Look,
+        eye: Vec3,
+        occlusion: &'a Occlusion,
+    ) -> Self {
+        let sources = lights.iter().map(|light| match light.kind {
+            LightKind::Directional => {
+                let light = light.at(Vec3::ZERO);
+                Source::Distant(light.to_light, light.radiance)
+            }
+            _ => Source::Near(*light),
+        });
+        Self {
+            shadows,
+            sources: sources.collect(),
+            look,
+            fibre: Fibre::new(look),
+            eye: Wide3::splat(eye),
+            occlusion,
+            log_transmission: look.shadow.log_transmission(),
+        }
+    }
+
+    fn radiance(&self, points: &Points) -> Vec3Lanes {
+        let cubes = points.places.map(|place| self.occlusion.cube(place));
+        let mut ambient = Vec3Lanes::default();
+        for (lane, cube) in cubes.iter().enumerate() {
+            ambient.set(lane, mean_radiance(cube, &self.look.environment));
+        }
+        let mut sum = points.color.times(Wide3::load(&ambient));
+        let to_eye = (self.eye - points.position).normalize_or(Wide3::splat(Vec3::Z));
+        for (index, source) in self.sources.iter().enumerate() {
+            let (to_light, radiance) = source.at(&points.places);
+            let scattered = self.fibre.scatter(points.tangent, to_light, to_eye, points.jitter);
+            let (crossings, open) = self.shadow(index, points, &cubes, to_light);
+            let extinction = crossings * f32x8::splat(self.log_transmission);
+            let straight = open * exp_lanes(extinction);
+            let highlights = points.tint * (scattered.second * points.sparkle * straight)
+                + Wide3::same(scattered.first * straight);
+            // Bright hair passes on more of what meets it, in its own colour.
+            let dull = (Wide3::same(f32x8::splat(1.0)) - points.tint * f32x8::splat(self.look.translucency))
+                * extinction;
+            let passed = Wide3 { x: exp_lanes(dull.x), y: exp_lanes(dull.y), z: exp_lanes(dull.z) };
+            let diffuse = points.color.times(passed) * (scattered.diffuse * open);
+            sum = sum + (diffuse + highlights).times(radiance);
+        }
+        let mut lanes = Vec3Lanes::default();
+        sum.store(&mut lanes);
+        lanes
+    }
+
+    /// Hairs crossed on the way to a light, and the share of it that the body leaves open.
+    fn shadow(
+        &self,
+        light: usize,
+        points: &Points,
+        cubes: &[[f32; 8]; LANES],
+        to_light: Wide3,
+    ) -> (f32x8, f32x8) {
+        let mut crossings = [0.0; LANES];
+        let mut open = [1.0; LANES];
+        if let Some(map) = self.shadows.map(light) {
+            for (lane, &place) in points.places.iter().enumerate() {
+                open[lane] = map.body_visibility(place);
+                crossings[lane] = map.crossings(place);
+            }
+        } else {
+            let mut directions = Vec3Lanes::default();
+            to_light.store(&mut directions);
+            for (lane, cube) in cubes.iter().enumerate() {
+                open[lane] = toward(cube, directions.get(lane));
+            }
+        }
+        (f32x8::from(crossings), f32x8::from(open))
+    }
+}
+
+impl Source {
+    fn at(&self, places: &[Vec3; LANES]) -> (Wide3, Wide3) {
+        match self {
+            Self::Distant(to_light, radiance) => (Wide3::splat(*to_light), Wide3::splat(*radiance)),
+            Self::Near(light) => {
+                let mut lanes = [Vec3Lanes::default(); 2];
+                for (lane, &place) in places.iter().enumerate() {
+                    let light = light.at(place);
+                    lanes[0].set(lane, light.to_light);
+                    lanes[1].set(lane, light.radiance);
+                }
+                (Wide3::load(&lanes[0]), Wide3::load(&lanes[1]))
+            }
+        }
+    }
+}
