@@ -1,4 +1,6 @@
 //! pictures
 
 mod grooms;
+mod opacity;
+mod shading;
 mod tessellation;

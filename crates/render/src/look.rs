@@ -115,8 +115,9 @@ impl Default for Clump {
 pub struct Shadow {
     /// Texels along each side of a light's maps, 16 to 4,096. Default 512.
     pub map_size: u32,
-    /// Distances \[m\] behind the first hair at which the three layers end, rising.
-    /// Default 0.004, 0.016, 0.06.
+    /// Distances \[m\] behind the first hair at which the three layers end, rising;
+    /// hair farther behind it casts no shadow.
+    /// Default 0.015, 0.05, 0.15.
     pub layers: [f32; 3],
     /// Share of the light that one hair takes away where it is crossed, 0 to 0.99. Default 0.3: most of
     /// what meets a hair goes on, scattered forward.
@@ -131,7 +132,7 @@ impl Default for Shadow {
     fn default() -> Self {
         Self {
             map_size: 512,
-            layers: [0.004, 0.016, 0.06],
+            layers: [0.015, 0.05, 0.15],
             opacity: 0.3,
             body_bias: 0.004,
             body_softness: 0.008,

@@ -108,8 +108,8 @@ pub struct ShadowMap {
     starts: Vec4,
     /// One over the thickness of each layer \[1/m\].
     inverse_thicknesses: Vec4,
-    /// Where the second and third layers begin.
-    pub(crate) borders: [f32; 2],
+    /// Where the layers end.
+    pub(crate) borders: [f32; 3],
     /// Logarithm of what one hair lets through.
     log_transmission: f32,
     body_bias: f32,
@@ -123,7 +123,7 @@ impl ShadowMap {
         self.starts = Vec4::new(0.0, first, second, 0.0);
         self.inverse_thicknesses =
             Vec4::new(1.0 / first, 1.0 / (second - first), 1.0 / (third - second), 0.0);
-        self.borders = [first, second];
+        self.borders = settings.layers;
         self.log_transmission = settings.log_transmission();
         self.body_bias = settings.body_bias;
         self.inverse_softness = 1.0 / settings.body_softness;
