@@ -6,8 +6,8 @@ use strandline_groom::{Guides, Vec3Lanes};
 
 use crate::cpu::skin::Skin;
 use crate::cpu::{
-    Curves, Draw, DrawInput, Resolve, Samples, Shadows, Strands, interpolate, opacity_depth, opacity_layers,
-    tessellate,
+    Curves, Draw, DrawInput, Occlusion, Resolve, Samples, Shadows, Strands, interpolate, opacity_depth,
+    opacity_layers, shade, tessellate,
 };
 use crate::{BodyLook, Camera, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
 
@@ -51,6 +51,7 @@ pub struct Renderer {
     curves: Curves,
     strands: Strands,
     shadows: Shadows,
+    occlusion: Occlusion,
     samples: Samples,
     draw: Draw,
     resolve: Resolve,
@@ -73,6 +74,7 @@ impl Renderer {
             settings: *settings,
             strands: Strands::default(),
             shadows: Shadows::default(),
+            occlusion: Occlusion::default(),
             samples: Samples::default(),
             draw: Draw::new(body.cloned()),
             resolve: Resolve::default(),
@@ -137,7 +139,7 @@ impl Renderer {
         let distance = input.camera.position.distance(input.world_from_head.point(self.middle));
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
         let (guides, pose) = (&self.guides, &input.world_from_head);
-        let Self { curves, strands, shadows, draw, samples, settings, .. } = self;
+        let Self { curves, strands, shadows, occlusion, draw, samples, settings, .. } = self;
         let mut clock = Clock::start();
 
         tessellate(input.positions, guides, pose, &level, curves);
@@ -149,7 +151,7 @@ impl Renderer {
         clock.lap("opacity_depth");
         opacity_layers(strands, shadows);
         clock.lap("opacity_layers");
-        shade(strands, input.lights, shadows);
+        shade(strands, shadows, input.lights, input.look, input.camera.position, occlusion);
         clock.lap("shade");
         let draw_input = DrawInput {
             strands,
@@ -161,6 +163,7 @@ impl Renderer {
             look: input.body_look,
             lights: input.lights,
             shadows,
+            occlusion,
             environment: &input.look.environment,
             eye: input.camera.position,
         };
@@ -186,21 +189,6 @@ fn middle(guides: &Guides) -> Vec3 {
     let (min, max) =
         points.fold((Vec3::MAX, Vec3::MIN), |(min, max), point| (min.min(point), max.max(point)));
     0.5 * (min + max)
-}
-
-/// Diffuse light on every strand.
-fn shade(strands: &mut Strands, lights: &[Light], shadows: &Shadows) {
-    for ((radiance, &tangent), &position) in
-        strands.radiances.iter_mut().zip(&strands.tangents).zip(&strands.positions)
-    {
-        let mut sum = Vec3::splat(0.1);
-        for (index, light) in lights.iter().enumerate() {
-            let lit = light.at(position);
-            let passed = shadows.map(index).map_or(1.0, |map| map.transmittance(position));
-            sum += lit.radiance * ((1.0 - tangent.dot(lit.to_light).powi(2)).max(0.0).sqrt() * passed * 0.8);
-        }
-        *radiance = sum * Vec3::new(0.35, 0.2, 0.1);
-    }
 }
 
 /// Notes how long each stage takes.

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::Shadows;
+use super::{Occlusion, Shadows};
 use crate::{BodyLook, Environment, Light};
 
 /// What lights the body.
@@ -16,6 +16,8 @@ pub struct Skin<'a> {
     pub lights: &'a [Light],
     /// Their shadows of hair and body.
     pub shadows: &'a Shadows,
+    /// How much of the surroundings the hair hides.
+    pub occlusion: &'a Occlusion,
     /// Light from all around.
     pub environment: &'a Environment,
     /// Where the camera stands \[m\], world space.
@@ -26,9 +28,7 @@ impl Skin<'_> {
     /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space.
     pub fn radiance(&self, point: Vec3, normal: Vec3) -> Vec3 {
         let to_eye = (self.eye - point).normalize_or(normal);
-        // The mean of a linear gradient over a hemisphere, weighted by the cosine: 2/3 of the way from
-        // the horizon to the pole.
-        let around = self.environment.radiance(normal * (2.0 / 3.0));
+        let around = self.occlusion.ambient_on(point, normal, self.environment);
         let lights = self.lights.iter().enumerate();
         lights.fold(self.look.color * around, |sum, (index, light)| {
             let lit = light.at(point);
