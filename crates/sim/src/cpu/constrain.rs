@@ -5,7 +5,7 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
-use super::contacts::{Plane, Solids, Touch};
+use super::contacts::{Care, Plane, Solids, Touch};
 use super::length_pass::Follow;
 use super::lengths::Segments;
 use super::vec3x8::{Vec3x8, load, splat};
@@ -138,7 +138,9 @@ impl Strands<'_> {
         if self.solids.is_empty() {
             return;
         }
-        let most = splat(self.solver.settings.collision_margin);
+        let settings = &self.solver.settings;
+        let care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
+        let most = splat(settings.collision_margin);
         let clearance = &self.solver.rest_clearance[block * predicted.len()..];
         for point in 0..predicted.len() {
             let margin = most.fast_min(load(&clearance[point]));
@@ -148,7 +150,7 @@ impl Strands<'_> {
                 continue;
             }
             let (here, start) = (Vec3x8::load(&predicted[point]), Vec3x8::load(&start[point]));
-            if let Some(touch) = self.solids.touch(planes, point, here, start, margin, free) {
+            if let Some(touch) = self.solids.touch(planes, point, here, start, margin, free, care) {
                 work.touches.push((point, touch));
             }
         }

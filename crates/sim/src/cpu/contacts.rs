@@ -13,12 +13,24 @@ use wide::f32x8;
 use super::Obstacles;
 use super::vec3x8::{Rigid, Vec3x8, load, splat};
 
-/// A plane serves until its point has moved so far \[m\]; on a ball of radius r it is then wrong by
-/// its square over 2 r: 5 um on a skull, 0.1 mm on the tip of a nose.
-const PLANE_REACH: f32 = 1e-3;
+/// How careful a look at the solids is.
+#[derive(Clone, Copy)]
+pub struct Care {
+    /// A plane serves until its point has moved so far \[m\]; on a ball of radius r it is then wrong
+    /// by its square over 2 r.
+    stale: f32,
+    /// A point nearer than its margin and this \[m\] gets a plane.
+    near: f32,
+}
 
-/// A point nearer than its margin and this \[m\] gets a plane for the rounds of a step.
-const NEAR: f32 = 0.01;
+impl Care {
+    /// For the rounds when an exact look follows: wrong by 0.3 mm on a skull.
+    pub const ROUGH: Self = Self { stale: 8e-3, near: 5e-3 };
+    /// For the rounds when nothing follows.
+    pub const ROUNDS: Self = Self { stale: 1e-3, near: 1e-2 };
+    /// For the places where points stay: wrong by 5 um on a skull, by 0.1 mm on the tip of a nose.
+    pub const EXACT: Self = Self { stale: 1e-3, near: 0.0 };
+}
 
 /// The planes of all points, shape `[block]`.
 #[derive(Clone, Debug)]
@@ -105,12 +117,13 @@ impl<'a> Solids<'a> {
         start: Vec3x8,
         margin: f32x8,
         free: f32x8,
+        care: Care,
     ) -> Option<Touch> {
         let mut touch: Option<Touch> = None;
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
             let plane = &mut planes[point];
             let local = group.carrier_from_world.points(position);
-            let near = group.refresh(plane, local, margin + splat(NEAR)) & free;
+            let near = group.refresh(plane, local, margin + splat(care.near), care.stale) & free;
             if !near.any() {
                 continue;
             }
@@ -135,7 +148,7 @@ impl<'a> Solids<'a> {
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
             let plane = &mut planes[point];
             let local = group.carrier_from_world.points(position);
-            let near = group.refresh(plane, local, splat(0.0));
+            let near = group.refresh(plane, local, splat(0.0), Care::EXACT.stale);
             let above = Vec3x8::load(&plane.normal).dot(local - Vec3x8::load(&plane.anchor));
             let distance = load(&plane.distance) + above;
             depth = near.bitselect(depth.fast_max(-distance), depth);
@@ -147,10 +160,10 @@ impl<'a> Solids<'a> {
 impl Group<'_> {
     /// Looks up distances where the remembered plane no longer serves; the mask of the lanes that
     /// may be nearer than `reach` \[m\].
-    fn refresh(&self, plane: &mut Plane, local: Vec3x8, reach: f32x8) -> f32x8 {
+    fn refresh(&self, plane: &mut Plane, local: Vec3x8, reach: f32x8, stale: f32) -> f32x8 {
         let moved = (local - Vec3x8::load(&plane.anchor)).length();
         let near = (load(&plane.distance) - moved).simd_le(reach);
-        let stale = (near & moved.simd_gt(splat(PLANE_REACH))).to_bitmask();
+        let stale = (near & moved.simd_gt(splat(stale))).to_bitmask();
         if stale == 0 {
             return near;
         }
