@@ -18,13 +18,13 @@ pub struct LevelOfDetail {
     pub full_distance: f32,
     /// Least share of the follow strands that is drawn from afar, 0 to 1. Default 0.125.
     pub least_strands: f32,
-    /// Least share of the segments that is drawn from afar, 0 to 1. Default 0.375.
+    /// Least share of the segments that is drawn from afar, 0 to 1. Default 0.5.
     pub least_segments: f32,
 }
 
 impl Default for LevelOfDetail {
     fn default() -> Self {
-        Self { segments_per_span: 4, full_distance: 1.5, least_strands: 0.125, least_segments: 0.375 }
+        Self { segments_per_span: 4, full_distance: 1.5, least_strands: 0.125, least_segments: 0.5 }
     }
 }
 
@@ -147,7 +147,7 @@ mod tests {
             assert!(level.segments_per_span <= last.segments_per_span);
             last = level;
         }
-        assert_eq!((last.follow_strands, last.segments_per_span), (2.0, 1.5));
+        assert_eq!((last.follow_strands, last.segments_per_span), (2.0, 2.0));
     }
 
     #[test]

@@ -71,12 +71,12 @@ impl Light {
     pub fn three_point(target: Vec3) -> [Self; 3] {
         let light = |x, y, z| Self { position: target + Vec3::new(x, y, z), target, ..Self::default() };
         [
-            Self { color: Vec3::new(1.0, 0.95, 0.88), intensity: 2.2, ..light(-0.9, 1.25, 1.35) },
-            Self { color: Vec3::new(0.85, 0.93, 1.0), intensity: 2.6, ..light(1.1, 1.2, -1.2) },
+            Self { color: Vec3::new(1.0, 0.95, 0.88), intensity: 1.35, ..light(-0.9, 1.25, 1.35) },
+            Self { color: Vec3::new(0.85, 0.93, 1.0), intensity: 1.7, ..light(1.1, 1.2, -1.2) },
             Self {
                 kind: LightKind::Directional,
                 color: Vec3::new(0.9, 0.95, 1.0),
-                intensity: 0.45,
+                intensity: 0.22,
                 shadow: false,
                 ..light(1.5, 0.2, 1.2)
             },
@@ -137,15 +137,15 @@ impl Light {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Environment {
-    /// Radiance from straight above, linear RGB. Default (0.42, 0.46, 0.52).
+    /// Radiance from straight above, linear RGB. Default (0.26, 0.29, 0.33).
     pub sky: Vec3,
-    /// Radiance from straight below, linear RGB. Default (0.20, 0.17, 0.15).
+    /// Radiance from straight below, linear RGB. Default (0.13, 0.11, 0.10).
     pub ground: Vec3,
 }
 
 impl Default for Environment {
     fn default() -> Self {
-        Self { sky: Vec3::new(0.42, 0.46, 0.52), ground: Vec3::new(0.20, 0.17, 0.15) }
+        Self { sky: Vec3::new(0.26, 0.29, 0.33), ground: Vec3::new(0.13, 0.11, 0.10) }
     }
 }
 

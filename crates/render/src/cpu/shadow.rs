@@ -136,7 +136,9 @@ impl ShadowMap {
     #[inline]
     pub fn crossings(&self, point: Vec3) -> f32 {
         let Some(projected) = self.view.project(point) else { return 0.0 };
-        let Some((index, weights)) = self.corners(&self.hair_window, projected) else { return 0.0 };
+        let Some((index, weights)) = self.corners(self.hair_window.texel(projected.truncate())) else {
+            return 0.0;
+        };
         let mut sum = Vec4::ZERO;
         for (corner, weight) in self.quad(index).into_iter().zip(weights) {
             let texel = self.texels[corner];
@@ -150,30 +152,44 @@ impl ShadowMap {
     /// Share of the light that the body lets through to a point \[m\], world space: 0 in its shadow.
     #[inline]
     pub fn body_visibility(&self, point: Vec3) -> f32 {
+        self.body_seen(point, &[Vec2::ZERO])
+    }
+
+    /// Share of the light that hair and body let through to a point \[m\], world space.
+    ///
+    /// The edge of the body's shadow is smoothed over three texels, since it falls on smooth skin.
+    #[inline]
+    pub fn transmittance(&self, point: Vec3) -> f32 {
+        const AROUND: [Vec2; 4] =
+            [Vec2::new(-0.9, -0.4), Vec2::new(0.4, -0.9), Vec2::new(0.9, 0.4), Vec2::new(-0.4, 0.9)];
+        let visibility = self.body_seen(point, &AROUND);
+        if visibility == 0.0 { 0.0 } else { visibility * exp(self.crossings(point) * self.log_transmission) }
+    }
+
+    /// Mean visibility past the body at offsets \[texel\] from a point \[m\].
+    #[inline]
+    fn body_seen(&self, point: Vec3, offsets: &[Vec2]) -> f32 {
         if self.body_depths.is_empty() {
             return 1.0;
         }
         let Some(projected) = self.view.project(point) else { return 1.0 };
-        let Some((index, weights)) = self.corners(&self.body_window, projected) else { return 1.0 };
+        let texel = self.body_window.texel(projected.truncate());
+        let nearest = projected.z - self.body_bias;
         let mut shadow = 0.0;
-        for (corner, weight) in self.quad(index).into_iter().zip(weights) {
-            let behind = projected.z - self.body_depths[corner] - self.body_bias;
-            shadow += weight * (behind * self.inverse_softness).clamp(0.0, 1.0);
+        for &offset in offsets {
+            let Some((index, weights)) = self.corners(texel + offset) else { continue };
+            for (corner, weight) in self.quad(index).into_iter().zip(weights) {
+                let behind = nearest - self.body_depths[corner];
+                shadow += weight * (behind * self.inverse_softness).clamp(0.0, 1.0);
+            }
         }
-        1.0 - shadow
+        1.0 - shadow / offsets.len() as f32
     }
 
-    /// Share of the light that hair and body let through to a point \[m\], world space.
+    /// The first of the four texels whose middles surround texel coordinates, and the weights of the four.
     #[inline]
-    pub fn transmittance(&self, point: Vec3) -> f32 {
-        let visibility = self.body_visibility(point);
-        if visibility == 0.0 { 0.0 } else { visibility * exp(self.crossings(point) * self.log_transmission) }
-    }
-
-    /// The first of the four texels whose middles surround a point, and the weights of the four.
-    #[inline]
-    fn corners(&self, window: &Window, projected: Vec3) -> Option<(usize, [f32; 4])> {
-        let texel = window.texel(projected.truncate()) - Vec2::splat(0.5);
+    fn corners(&self, texel: Vec2) -> Option<(usize, [f32; 4])> {
+        let texel = texel - Vec2::splat(0.5);
         let limit = self.size as f32 - 1.0;
         if !(texel.x >= 0.0 && texel.y >= 0.0 && texel.x < limit && texel.y < limit) {
             return None;
