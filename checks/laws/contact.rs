@@ -42,12 +42,23 @@ fn friction_holds_below_its_angle_and_gives_way_above() {
 
 /// Deepest point \[m\] in the second half of 4 s under a motion.
 fn depth(collider: Option<Collider>, hair: &Guides, motion: &Motion, exact: bool) -> f32 {
+    let inside = collider.clone().unwrap_or_else(|| skull(0.3));
+    depth_below(&inside, collider, hair, motion, exact)
+}
+
+/// The same, measured in one solid and held out of another.
+fn depth_below(
+    inside: &Collider,
+    collider: Option<Collider>,
+    hair: &Guides,
+    motion: &Motion,
+    exact: bool,
+) -> f32 {
     let mut settings = Settings {
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
         ..Settings::default()
     };
     settings.length_pass.enabled = exact;
-    let inside = collider.clone().unwrap_or_else(|| skull(0.3));
     let solver = Solver::new(hair, &settings, collider.into_iter().collect()).unwrap();
     let mut state = solver.rest_state(Pose::IDENTITY);
     let mut deepest = 0.0_f32;
@@ -94,9 +105,12 @@ fn no_hair_is_inside_the_mannequin_after_settling() {
         });
     let resting = resting.fold(0.0, f32::max);
     let collider = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
-    for motion in [Motion::Still, Motion::Shake] {
+    // At rest what planes on the ears err by, which curve within 5 mm; shaken also what is left in
+    // the creases of ears and neck, where two planes and a length cannot all be kept.
+    for (motion, bound) in [(Motion::Still, 5e-4), (Motion::Shake, 3e-3)] {
         let found = depth(Some(collider.clone()), &hair, &motion, true);
-        // Planes on the ears, which curve within 5 mm, err by 0.1 mm and more when hair moves fast.
-        assert!(found < resting + 1e-3, "{motion:?}: {found} m deep, {resting} m at rest");
+        assert!(found < resting + bound, "{motion:?}: {found} m deep, {resting} m at rest");
     }
+    let through = depth_below(&collider, None, &hair, &Motion::Still, true);
+    assert!(through > 1e-2, "a head that is not there is not noticed: {through} m");
 }

@@ -5,7 +5,7 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
-use super::contacts::{Care, Plane, Solids, Touch};
+use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::length_pass::Follow;
 use super::lengths::Segments;
 use super::vec3x8::{Vec3x8, load, splat};
@@ -149,8 +149,9 @@ impl Strands<'_> {
             if !free.any() {
                 continue;
             }
-            let (here, start) = (Vec3x8::load(&predicted[point]), Vec3x8::load(&start[point]));
-            if let Some(touch) = self.solids.touch(planes, point, here, start, margin, free, care) {
+            let (position, start) = (Vec3x8::load(&predicted[point]), Vec3x8::load(&start[point]));
+            let query = Query { position, start, margin, free, care };
+            if let Some(touch) = self.solids.touch(planes, point, query) {
                 work.touches.push((point, touch));
             }
         }

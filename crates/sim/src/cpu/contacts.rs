@@ -38,6 +38,21 @@ pub struct Contacts {
     pub blocks: Vec<Vec<Plane>>,
 }
 
+/// Where the points of one index are, for a look at the solids.
+#[derive(Clone, Copy)]
+pub struct Query {
+    /// Where they are \[m\].
+    pub position: Vec3x8,
+    /// Where they were when the step began \[m\].
+    pub start: Vec3x8,
+    /// Distance \[m\] that they keep.
+    pub margin: f32x8,
+    /// Mask of the lanes that may move.
+    pub free: f32x8,
+    /// How careful to be.
+    pub care: Care,
+}
+
 /// What the points of one index in a block remember, in the space of their carrier.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane {
@@ -107,18 +122,9 @@ impl<'a> Solids<'a> {
         self.groups.is_empty()
     }
 
-    /// What the points of one index may touch near `position`; `start` is where they were when the
-    /// step began and `margin` \[m\] what they keep. `None` when no free lane is near a solid.
-    pub fn touch(
-        &self,
-        planes: &mut [Plane],
-        point: usize,
-        position: Vec3x8,
-        start: Vec3x8,
-        margin: f32x8,
-        free: f32x8,
-        care: Care,
-    ) -> Option<Touch> {
+    /// What the points of one index may touch; `None` when no free lane is near a solid.
+    pub fn touch(&self, planes: &mut [Plane], point: usize, query: Query) -> Option<Touch> {
+        let Query { position, start, margin, free, care } = query;
         let mut touch: Option<Touch> = None;
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
             let plane = &mut planes[point];

@@ -3,7 +3,7 @@
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::contacts::{Care, Plane, Solids, Touch};
+use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::vec3x8::{Vec3x8, load, splat};
 
 /// Times that a point is placed anew at most when the solid under it curves: enough for an ear.
@@ -32,7 +32,8 @@ impl Follow<'_> {
             if !self.solids.is_empty() && free.any() {
                 for _ in 0..PLACINGS {
                     let margin = self.margins[point];
-                    let touch = self.solids.touch(planes, point, placed, placed, margin, free, Care::EXACT);
+                    let query = Query { position: placed, start: placed, margin, free, care: Care::EXACT };
+                    let touch = self.solids.touch(planes, point, query);
                     let Some(touch) = touch.filter(|touch| touch.height(placed).simd_lt(splat(-1e-6)).any())
                     else {
                         break;
