@@ -19,7 +19,7 @@ pub struct BodyLook {
 
 impl Default for BodyLook {
     fn default() -> Self {
-        Self { color: Vec3::new(0.50, 0.44, 0.40), wrap: 0.2, specular: 0.03, roughness: 0.5 }
+        Self { color: Vec3::new(0.30, 0.262, 0.236), wrap: 0.2, specular: 0.03, roughness: 0.5 }
     }
 }
 

@@ -65,7 +65,7 @@ impl Body {
     pub fn draw(&mut self, projection: &Projection, samples: &mut Samples, occluders: &mut Occluders) {
         self.face(projection);
         let faces = &self.faces;
-        self.tiles.fill(samples, faces.len(), |face| faces[face].rect(samples));
+        self.tiles.fill(samples, faces.len(), |face| Some((faces[face].rect(samples)?, face as u32)));
         let columns = samples.tile_columns();
         occluders.resize(columns, samples.tile_rows());
         let (tiles, body) = (&self.tiles, &*self);

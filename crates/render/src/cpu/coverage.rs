@@ -58,40 +58,40 @@ impl TileSamples<'_> {
     }
 
     fn fill<const ALONG_Y: bool, const BODY: bool>(&mut self, first: &End, last: &End) {
-        let along = |end: &End| if ALONG_Y { end.point.y } else { end.point.x };
-        let across = |end: &End| if ALONG_Y { end.point.x } else { end.point.y };
-        // `low` and `high` in order along the axis; the strand may run either way.
-        let (low, high) = if along(first) <= along(last) { (first, last) } else { (last, first) };
-        let (start, end) = (along(low), along(high));
-        let length = end - start;
-        let per_step = 1.0 / length.max(1e-6);
-        let slope = ((across(high) - across(low)) * per_step).clamp(-2.0, 2.0);
-        // Width along the other axis [sample].
-        let slant = (1.0 + slope * slope).sqrt();
-        let widest = slant * low.point.w.max(high.point.w);
-        let turn = Turns::of(first, last);
-        let reach = if turn.is_some() { 0.5 * widest.max(1.0) + 1.0 } else { 0.0 };
-        let lowest = match low.joint {
-            Joint::Straight => (start - 0.5).ceil(),
-            Joint::Tip => start.floor(),
-            Joint::Turn(_) => (start - reach).floor(),
-        };
-        let highest = match high.joint {
-            Joint::Straight => (end - 0.5).ceil(),
-            Joint::Tip => end.ceil(),
-            Joint::Turn(_) => (end + reach).ceil(),
-        };
-        let steps = lowest.max(0.0) as usize..highest.clamp(0.0, TILE as f32) as usize;
-        for step in steps {
-            let left = step as f32;
-            let share = ((left + 0.5 - start) * per_step).clamp(0.0, 1.0);
-            let from = if low.joint == Joint::Tip { start.max(left) } else { left };
-            let to = if high.joint == Joint::Tip { end.min(left + 1.0) } else { left + 1.0 };
-            let point = low.point + (high.point - low.point) * share;
-            let color = low.color + (high.color - low.color) * share;
-            let center = across(low) + slope * (left + 0.5 - start);
-            let stroke = Stroke { step, center, width: slant * point.w, share: to - from, depth: point.z };
-            self.stroke::<ALONG_Y, BODY>(&stroke, color, turn.as_ref());
+        let run = Run::of::<ALONG_Y>(first, last);
+        let turns = Turns::of(first, last);
+        if turns.is_none() && run.is_bare {
+            for step in run.steps(0.0) {
+                let (stroke, color) = run.stroke(step);
+                if stroke.width <= 1.0 {
+                    self.thin_stroke::<ALONG_Y, BODY>(&stroke, color);
+                } else {
+                    self.stroke::<ALONG_Y, BODY>(&stroke, color, None);
+                }
+            }
+        } else {
+            // A neighbour along the other axis is met on a slant, beyond the joint.
+            let reach = if turns.is_some() { 0.5 * run.widest.max(1.0) + 1.0 } else { 0.0 };
+            for step in run.steps(reach) {
+                let (mut stroke, color) = run.stroke(step);
+                stroke.share = run.covered(step);
+                self.stroke::<ALONG_Y, BODY>(&stroke, color, turns.as_ref());
+            }
+        }
+    }
+
+    /// One step of a ribbon thinner than a sample: the two samples beside its middle.
+    #[inline]
+    fn thin_stroke<const ALONG_Y: bool, const BODY: bool>(&mut self, stroke: &Stroke, color: Vec4) {
+        // Counted from one sample before the tile, so that cutting off rounds down.
+        let place = (stroke.center + 0.5).clamp(0.0, TILE as f32 + 1.0);
+        let after = place as i32;
+        let share = place - after as f32;
+        for (place, share) in [(after - 1, 1.0 - share), (after, share)] {
+            if (0..TILE as i32).contains(&place) {
+                let sample = index::<ALONG_Y>(stroke.step, place as usize);
+                self.blend::<BODY>(sample, stroke.depth, color, stroke.width * share);
+            }
         }
     }
 
@@ -103,25 +103,129 @@ impl TileSamples<'_> {
         color: Vec4,
         turns: Option<&Turns>,
     ) {
-        let Stroke { step, center, width, share, depth } = *stroke;
         // Thinner than a sample: drawn one sample wide and as much fainter.
-        let strength = width.min(1.0) * share;
-        let reach = 0.5 * width.max(1.0) + 0.5;
-        let low = (center - reach + 0.5).floor().max(0.0) as usize;
-        let end = (center + reach - 0.5).ceil().clamp(0.0, TILE as f32) as usize;
+        let strength = stroke.width.min(1.0) * stroke.share;
+        let reach = 0.5 * stroke.width.max(1.0) + 0.5;
+        let low = (stroke.center - reach + 0.5).clamp(0.0, TILE as f32) as usize;
+        let end = (stroke.center + reach + 0.5).clamp(0.0, TILE as f32) as usize;
         for place in low..end {
-            let sample = if ALONG_Y { step * TILE + place } else { place * TILE + step };
-            if BODY && self.depths.is_some_and(|depths| depths[sample] > depth) {
-                continue;
+            let sample = index::<ALONG_Y>(stroke.step, place);
+            if turns.is_none_or(|turns| turns.own(sample)) {
+                let distance = (place as f32 + 0.5 - stroke.center).abs();
+                let coverage = strength * (reach - distance).clamp(0.0, 1.0);
+                self.blend::<BODY>(sample, stroke.depth, color, coverage);
             }
-            if turns.is_some_and(|turns| !turns.own(sample)) {
-                continue;
-            }
-            let distance = (place as f32 + 0.5 - center).abs();
-            let coverage = strength * (reach - distance).clamp(0.0, 1.0);
-            let below = &mut self.colors[sample];
-            *below += color * (coverage * (1.0 - below.w));
         }
+    }
+
+    #[inline]
+    fn blend<const BODY: bool>(&mut self, sample: usize, depth: f32, color: Vec4, coverage: f32) {
+        if BODY && self.depths.is_some_and(|depths| depths[sample] > depth) {
+            return;
+        }
+        let below = &mut self.colors[sample];
+        *below += color * (coverage * (1.0 - below.w));
+    }
+}
+
+#[inline]
+fn index<const ALONG_Y: bool>(step: usize, place: usize) -> usize {
+    if ALONG_Y { step * TILE + place } else { place * TILE + step }
+}
+
+/// A segment in the direction of its axis; the strand may run either way.
+struct Run<'a> {
+    low: &'a End,
+    /// From `low` to the other end.
+    point: Vec4,
+    color: Vec4,
+    high_joint: Joint,
+    /// Neither end is a strand's.
+    is_bare: bool,
+    /// Where it starts and ends on its axis, and where it starts on the other \[sample\].
+    start: f32,
+    end: f32,
+    across: f32,
+    slope: f32,
+    /// Share of the segment in one step.
+    per_step: f32,
+    /// Width on the other axis over width.
+    slant: f32,
+    /// Greatest width on the other axis \[sample\].
+    widest: f32,
+}
+
+impl<'a> Run<'a> {
+    #[inline]
+    fn of<const ALONG_Y: bool>(first: &'a End, last: &'a End) -> Self {
+        let along = |end: &End| if ALONG_Y { end.point.y } else { end.point.x };
+        let across = |end: &End| if ALONG_Y { end.point.x } else { end.point.y };
+        let (low, high) = if along(first) <= along(last) { (first, last) } else { (last, first) };
+        let (start, end) = (along(low), along(high));
+        let per_step = 1.0 / (end - start).max(1e-6);
+        let slope = ((across(high) - across(low)) * per_step).clamp(-2.0, 2.0);
+        let slant = (1.0 + slope * slope).sqrt();
+        Self {
+            low,
+            point: high.point - low.point,
+            color: high.color - low.color,
+            high_joint: high.joint,
+            is_bare: low.joint != Joint::Tip && high.joint != Joint::Tip,
+            start,
+            end,
+            across: across(low),
+            slope,
+            per_step,
+            slant,
+            widest: slant * low.point.w.max(high.point.w),
+        }
+    }
+
+    /// The steps inside the tile.
+    #[inline]
+    fn steps(&self, reach: f32) -> std::ops::Range<usize> {
+        let inside = |at: f32| at.clamp(0.0, TILE as f32);
+        // The first step with its middle at or behind a place: half a sample on, rounded down after
+        // one more, unless it is there exactly.
+        let from = |at: f32| {
+            let at = inside(at - 0.5);
+            let whole = at as usize;
+            whole + usize::from(at > whole as f32)
+        };
+        let low = match self.low.joint {
+            Joint::Straight => from(self.start),
+            Joint::Tip => inside(self.start) as usize,
+            Joint::Turn(_) => inside(self.start - reach) as usize,
+        };
+        let high = match self.high_joint {
+            Joint::Straight => from(self.end),
+            Joint::Tip => from(self.end + 0.5),
+            Joint::Turn(_) => from(self.end + reach + 0.5),
+        };
+        low..high
+    }
+
+    #[inline]
+    fn stroke(&self, step: usize) -> (Stroke, Vec4) {
+        let along = step as f32 + 0.5 - self.start;
+        let share = (along * self.per_step).clamp(0.0, 1.0);
+        let point = self.low.point + self.point * share;
+        let stroke = Stroke {
+            step,
+            center: self.across + self.slope * along,
+            width: self.slant * point.w,
+            share: 1.0,
+            depth: point.z,
+        };
+        (stroke, self.low.color + self.color * share)
+    }
+
+    /// Share of a step that is covered: less than all at the ends of a strand.
+    fn covered(&self, step: usize) -> f32 {
+        let left = step as f32;
+        let from = if self.low.joint == Joint::Tip { self.start.max(left) } else { left };
+        let to = if self.high_joint == Joint::Tip { self.end.min(left + 1.0) } else { left + 1.0 };
+        (to - from).max(0.0)
     }
 }
 

@@ -20,7 +20,7 @@ const BLOCK: usize = 8;
 /// Blocks across a tile.
 const TILE_BLOCKS: usize = TILE / BLOCK;
 /// Segments drawn into a tile between two looks for opaque blocks.
-const LOOK_EVERY: usize = 48;
+const BATCH: usize = 48;
 
 /// What is drawn.
 #[derive(Clone, Copy)]
@@ -78,7 +78,11 @@ impl Draw {
         }
         self.ribbons.fill(input.strands, &projection, &self.occluders);
         let ribbons = &self.ribbons;
-        self.tiles.fill(samples, ribbons.segment_count(), |index| ribbons.rect(index, samples));
+        self.tiles.fill(samples, ribbons.segment_count(), |index| {
+            let segment = ribbons.segment(index);
+            let [min, max] = reach(ribbons.ends(segment));
+            Some((TileRect::of_box(samples, [min.x, min.y], [max.x, max.y])?, segment.into()))
+        });
         self.fill(input, &projection, skin, samples);
         self.ribbons.segment_count()
     }
@@ -113,29 +117,77 @@ impl Draw {
     fn hair(&self, tile: usize, corner: Vec2, strands: &Strands, mut samples: TileSamples) {
         let corner = corner.extend(0.0).extend(0.0);
         let mut opaque = 0_u16;
-        for (count, index) in self.tiles.things(tile).enumerate() {
-            if count % LOOK_EVERY == LOOK_EVERY - 1 {
-                opaque = opaque_blocks(opaque, samples.colors);
-                if opaque == u16::MAX {
-                    break;
+        let mut batch = [Fetched::default(); BATCH];
+        let mut things = self.tiles.things(tile).map(Segment::from);
+        loop {
+            // Fetched together: their places in memory are far apart, and waiting for one at a time
+            // would take longer than drawing.
+            let mut count = 0;
+            for (fetched, segment) in batch.iter_mut().zip(&mut things) {
+                let [first, last] = self.ribbons.ends(segment);
+                let radiances = self.ribbons.radiances(segment, strands);
+                *fetched = Fetched { segment, ends: [first - corner, last - corner], radiances };
+                count += 1;
+            }
+            for fetched in &batch[..count] {
+                if blocks(reach(fetched.ends)) & !opaque != 0
+                    && fetched.radiances.iter().all(|radiance| radiance.is_finite())
+                {
+                    let [first, last] = fetched.ends(&self.ribbons);
+                    samples.add(&first, &last, fetched.segment.is(Segment::ALONG_Y));
                 }
             }
-            let segment = self.ribbons.segment(index as usize);
-            if blocks(self.ribbons.reach(segment), corner) & !opaque == 0 {
-                continue;
-            }
-            let [first, last] = self.ribbons.ends(segment, strands, corner);
-            if first.color.is_finite() && last.color.is_finite() {
-                samples.add(&first, &last, segment.is(Segment::ALONG_Y));
+            opaque = opaque_blocks(opaque, samples.colors);
+            if count < BATCH || opaque == u16::MAX {
+                break;
             }
         }
     }
 }
 
-/// Blocks of a tile (one bit each, row by row) under a box on the screen.
-fn blocks([min, max]: [Vec4; 2], corner: Vec4) -> u16 {
+/// A segment with what it is drawn from, seen from the corner of a tile.
+#[derive(Clone, Copy, Default)]
+struct Fetched {
+    segment: Segment,
+    ends: [Vec4; 2],
+    radiances: [Vec3; 2],
+}
+
+impl Fetched {
+    fn ends(&self, ribbons: &Ribbons) -> [End; 2] {
+        let segment = self.segment;
+        let joint = |end: u32, turns: u32, point: usize| {
+            if segment.is(end) {
+                Joint::Tip
+            } else if segment.is(turns) {
+                Joint::Turn(ribbons.across(point))
+            } else {
+                Joint::Straight
+            }
+        };
+        let point = segment.point();
+        let joints = [
+            joint(Segment::FIRST_IS_END, Segment::FIRST_TURNS, point),
+            joint(Segment::LAST_IS_END, Segment::LAST_TURNS, point + 1),
+        ];
+        [0, 1].map(|end| End {
+            point: self.ends[end],
+            color: self.radiances[end].extend(1.0),
+            joint: joints[end],
+        })
+    }
+}
+
+/// The box on the screen that a segment can touch.
+fn reach([start, end]: [Vec4; 2]) -> [Vec4; 2] {
+    // Half the width along an axis (at most 0.8 of the width), the smoothing, and the wedge at a turn.
+    let reach = start.w.max(end.w).max(1.0) + 1.0;
+    [start.min(end) - reach, start.max(end) + reach]
+}
+
+/// Blocks of a tile (one bit each, row by row) under a box seen from its corner.
+fn blocks([min, max]: [Vec4; 2]) -> u16 {
     let block = |at: f32| (at.clamp(0.0, TILE as f32 - 1.0)) as usize / BLOCK;
-    let (min, max) = (min - corner, max - corner);
     let columns = (2_u16 << block(max.x)) - (1 << block(min.x));
     (block(min.y)..=block(max.y)).fold(0, |blocks, row| blocks | columns << (row * TILE_BLOCKS))
 }
@@ -148,56 +200,6 @@ fn opaque_blocks(known: u16, colors: &[Vec4]) -> u16 {
             (0..BLOCK).all(|row| colors[first + row * TILE..][..BLOCK].iter().all(|color| color.w >= OPAQUE));
         known | u16::from(opaque) << block
     })
-}
-
-impl Ribbons {
-    /// The box on the screen that a segment can touch.
-    fn reach(&self, segment: Segment) -> [Vec4; 2] {
-        let (start, end) = (self.points[segment.point()], self.points[segment.point() + 1]);
-        // Half the width along an axis (at most 0.8 of the width), the smoothing, and the wedge at a turn.
-        let reach = start.w.max(end.w).max(1.0) + 1.0;
-        [start.min(end) - reach, start.max(end) + reach]
-    }
-
-    fn rect(&self, index: usize, samples: &Samples) -> Option<TileRect> {
-        let [min, max] = self.reach(self.segment(index));
-        TileRect::of_box(samples, [min.x, min.y], [max.x, max.y])
-    }
-
-    /// The two ends of a segment, seen from the corner of a tile.
-    fn ends(&self, segment: Segment, strands: &Strands, corner: Vec4) -> [End; 2] {
-        let point = segment.point();
-        let colors = match point.checked_sub(strands.radiances.len()) {
-            None => [strands.radiances[point], strands.radiances[point + 1]],
-            Some(cut) => [self.cut_radiances[cut], self.cut_radiances[cut + 1]],
-        };
-        let across = |joint: usize| {
-            let [before, at, after] =
-                [joint - 1, joint, joint + 1].map(|point| self.points[point].truncate().truncate());
-            Joint::Turn((at - before).normalize_or_zero() + (after - at).normalize_or_zero())
-        };
-        let joint = |end: u32, turns: u32, point: usize| {
-            if segment.is(end) {
-                Joint::Tip
-            } else if segment.is(turns) {
-                across(point)
-            } else {
-                Joint::Straight
-            }
-        };
-        [
-            End {
-                point: self.points[point] - corner,
-                color: colors[0].extend(1.0),
-                joint: joint(Segment::FIRST_IS_END, Segment::FIRST_TURNS, point),
-            },
-            End {
-                point: self.points[point + 1] - corner,
-                color: colors[1].extend(1.0),
-                joint: joint(Segment::LAST_IS_END, Segment::LAST_TURNS, point + 1),
-            },
-        ]
-    }
 }
 
 /// The body in one tile.

@@ -1,6 +1,6 @@
 //! Strands on the screen: which of their segments are drawn, and in which order.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::body::Occluders;
@@ -15,8 +15,20 @@ const CHUNK: usize = 256;
 const AXIS_HOLD: f32 = 1.25;
 
 /// A drawn segment: the index of its first point on the screen and what its two ends are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Segment(u32);
+
+impl From<u32> for Segment {
+    fn from(word: u32) -> Self {
+        Self(word)
+    }
+}
+
+impl From<Segment> for u32 {
+    fn from(segment: Segment) -> Self {
+        segment.0
+    }
+}
 
 impl Segment {
     /// Runs along y: one step is a row of samples, not a column.
@@ -50,9 +62,9 @@ impl Segment {
 pub struct Ribbons {
     /// Screen points (see [`Projection`]), shape `[strand][point]`, then pairs of points for the
     /// segments cut by the near plane.
-    pub points: Vec<Vec4>,
+    points: Vec<Vec4>,
     /// Radiances of the pairs.
-    pub cut_radiances: Vec<Vec3>,
+    cut_radiances: Vec<Vec3>,
     /// Sorted front to back: key and segment.
     order: Vec<u64>,
     spare: Vec<u64>,
@@ -121,6 +133,29 @@ impl Ribbons {
     #[inline]
     pub fn segment(&self, index: usize) -> Segment {
         Segment(sort::payload(self.order[index]))
+    }
+
+    /// The two screen points of a segment.
+    #[inline]
+    pub fn ends(&self, segment: Segment) -> [Vec4; 2] {
+        let point = segment.point();
+        [self.points[point], self.points[point + 1]]
+    }
+
+    /// The radiances at the two ends of a segment.
+    #[inline]
+    pub fn radiances(&self, segment: Segment, strands: &Strands) -> [Vec3; 2] {
+        let point = segment.point();
+        match point.checked_sub(strands.radiances.len()) {
+            None => [strands.radiances[point], strands.radiances[point + 1]],
+            Some(cut) => [self.cut_radiances[cut], self.cut_radiances[cut + 1]],
+        }
+    }
+
+    /// The direction across the line that divides two segments at a joint, root to tip.
+    pub fn across(&self, joint: usize) -> Vec2 {
+        let [before, at, after] = [joint - 1, joint, joint + 1].map(|point| self.points[point].xy());
+        (at - before).normalize_or_zero() + (after - at).normalize_or_zero()
     }
 }
 

@@ -55,14 +55,15 @@ pub struct Tiles {
 
 #[derive(Debug, Default)]
 struct Run {
-    rects: Vec<Option<TileRect>>,
+    rects: Vec<Option<(TileRect, u32)>>,
     starts: Vec<u32>,
     things: Vec<u32>,
 }
 
 impl Tiles {
-    /// Sorts the things `0..count` into tiles by the rectangle that `rect` gives for each.
-    pub fn fill(&mut self, samples: &Samples, count: usize, rect: impl Fn(usize) -> Option<TileRect> + Sync) {
+    /// Sorts the things `0..count` into tiles by the rectangle that `rect` gives for each, beside the
+    /// number by which the thing is listed.
+    pub fn fill(&mut self, samples: &Samples, count: usize, rect: impl Fn(usize) -> Option<(TileRect, u32)> + Sync) {
         self.used = count.div_ceil(CHUNK);
         if self.runs.len() < self.used {
             self.runs.resize_with(self.used, Run::default);
@@ -71,7 +72,7 @@ impl Tiles {
             let first = index * CHUNK;
             run.rects.clear();
             run.rects.extend((first..count.min(first + CHUNK)).map(&rect));
-            run.sort(first as u32, samples.tile_columns(), samples.tile_count());
+            run.sort(samples.tile_columns(), samples.tile_count());
         });
     }
 
@@ -86,11 +87,11 @@ impl Tiles {
 
 impl Run {
     /// A counting sort: starts hold counts first, then the end of each tile's list, then its start.
-    fn sort(&mut self, first: u32, columns: usize, tile_count: usize) {
+    fn sort(&mut self, columns: usize, tile_count: usize) {
         self.starts.clear();
         self.starts.resize(tile_count + 1, 0);
         let Self { rects, starts, things } = self;
-        for rect in rects.iter().flatten() {
+        for (rect, _) in rects.iter().flatten() {
             rect.for_each_tile(columns, |tile| starts[tile] += 1);
         }
         let mut total = 0;
@@ -101,11 +102,10 @@ impl Run {
         things.clear();
         things.resize(total as usize, 0);
         // Backwards, so that each list ends up in order.
-        for (offset, rect) in rects.iter().enumerate().rev() {
-            let Some(rect) = rect else { continue };
+        for (rect, thing) in rects.iter().flatten().rev() {
             rect.for_each_tile(columns, |tile| {
                 starts[tile] -= 1;
-                things[starts[tile] as usize] = first + offset as u32;
+                things[starts[tile] as usize] = *thing;
             });
         }
     }
@@ -125,7 +125,7 @@ mod tests {
             TileRect::of_box(&samples, [x, y], [x + 30.0, y + 10.0])
         };
         let mut tiles = Tiles::default();
-        tiles.fill(&samples, count, rect);
+        tiles.fill(&samples, count, |thing| Some((rect(thing)?, thing as u32)));
         for row in 0..samples.tile_rows() as u16 {
             for column in 0..samples.tile_columns() as u16 {
                 let expected = (0..count as u32).filter(|&thing| {
@@ -137,7 +137,7 @@ mod tests {
                 assert!(tiles.things(tile).eq(expected));
             }
         }
-        tiles.fill(&samples, 0, rect);
+        tiles.fill(&samples, 0, |_| None);
         assert_eq!(tiles.things(0).count(), 0);
     }
 
