@@ -156,3 +156,38 @@ fn highlights_lie_where_their_shifts_put_them() {
     let second = brightest(|color| color.x, &two);
     assert!((second - 2.0 * look.second_highlight.shift).abs() <= 4.0, "{second}");
 }
+
+#[test]
+fn hair_hides_the_sky_but_not_the_ground() {
+    // A flat sheet of strands 4 mm apart, ten deep, each 0.4 mm wide: a ray through it meets one hair.
+    let mut strands = Strands::default();
+    strands.resize(500, 1, 21);
+    for strand in 0..500 {
+        for point in 0..21 {
+            let (row, depth) = (strand % 50, strand / 50);
+            strands.positions[strand * 21 + point] =
+                Vec3::new(row as f32 * 4e-3, depth as f32 * 1e-3, point as f32 * 0.01);
+        }
+    }
+    strands.widths.fill(4e-4);
+    let look = Look::brown();
+    let mut occlusion = Occlusion::default();
+    occlusion.fill(&strands, &look.shadow);
+    // Cells of 5 mm hold more or less of hair 4 mm apart: a mean over many places is what counts.
+    let places = (0..400)
+        .map(|index| Vec3::new(0.06 + 0.00037 * (index % 200) as f32, -0.005, 0.07 + 0.00017 * index as f32));
+    let mut sums = [0.0f32; 6];
+    for place in places {
+        for (sum, visibility) in sums.iter_mut().zip(occlusion.visibilities(place)) {
+            *sum += visibility / 400.0;
+        }
+    }
+    let [_, _, up, down, ..] = sums;
+    // One hair takes 0.3 of the light where it is met across; random hairs are met at pi / 4 of that on average. Light from
+    // the sides that spreads under the sheet, and the unevenness of cells, leave a little more.
+    let expected = 0.7f32.powf(std::f32::consts::FRAC_PI_4);
+    assert!((up - expected).abs() < 0.06, "{up} of {expected}");
+    assert!(down > 0.95, "{down}");
+    let far = occlusion.visibilities(Vec3::new(0.1, 0.5, 0.1));
+    assert!(far[2] > 0.9, "{}", far[2]);
+}

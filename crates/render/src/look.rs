@@ -185,7 +185,7 @@ impl Look {
 
     /// Black hair.
     pub fn black() -> Self {
-        Self::colored([0.030, 0.025, 0.024], [0.045, 0.038, 0.035])
+        Self::colored([0.016, 0.013, 0.012], [0.026, 0.021, 0.019])
     }
 
     /// Blonde hair, lighter toward the tips.
