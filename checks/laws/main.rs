@@ -3,6 +3,8 @@
 mod contact;
 mod free_strand;
 mod pendulum;
+mod poisson;
 mod shake;
 mod strands;
 mod stretch;
+mod transfer;

@@ -1,1 +1,3 @@
-//! thesis
+//! The thesis's own examples.
+
+mod sort;

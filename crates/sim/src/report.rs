@@ -3,8 +3,13 @@
 pub struct PressureReport {
     /// Conjugate-gradient iterations.
     pub iterations: usize,
+    /// Iterations after which the residual would have met the tolerance as an absolute one \[m/s\].
+    pub iterations_absolute: usize,
     /// Residual over the first residual, largest absolute component.
     pub relative_residual: f32,
+    /// Residual \[m/s\], largest absolute component: what still flows out of a cell, over the area
+    /// of a face.
+    pub absolute_residual: f32,
     /// Unknowns: cells that hold hair.
     pub fluid_cells: usize,
 }

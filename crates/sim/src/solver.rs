@@ -147,6 +147,7 @@ impl Solver {
                 predicted: positions.clone(),
                 contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),
                 lengths: self.rest.clone(),
+                volume: None,
             },
             positions,
         }

@@ -3,6 +3,7 @@ use rayon::prelude::*;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
+use crate::cpu::Volume;
 use crate::cpu::contacts::Contacts;
 use crate::cpu::vec3x8::{Vec3x8, splat};
 use crate::{SimError, Solver};
@@ -55,6 +56,8 @@ pub(crate) struct Scratch {
     pub contacts: Contacts,
     /// The rest shape with the length scales applied.
     pub lengths: RestShape,
+    /// The fluid volume; none while it is off.
+    pub volume: Option<Volume>,
 }
 
 impl State {

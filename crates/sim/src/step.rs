@@ -2,11 +2,15 @@
 
 use std::time::Instant;
 
-use crate::cpu::Obstacles;
 use crate::cpu::advance::advance;
 use crate::cpu::constrain::constrain;
+use crate::cpu::gather::gather;
 use crate::cpu::integrate::integrate;
+use crate::cpu::mark::mark;
 use crate::cpu::pose_roots::pose_roots;
+use crate::cpu::solve_pressure::solve_pressure;
+use crate::cpu::splat::splat;
+use crate::cpu::{Obstacles, Volume};
 use crate::{Drive, Solver, State, StepReport};
 
 /// Advances a state by one step [Chen2011 §4, fig. 11-12].
@@ -23,12 +27,28 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
     timed(seconds, "pose_roots", || pose_roots(solver, state, &drive.world_from_head));
     timed(seconds, "integrate", || integrate(solver, state, drive.wind));
     let non_finite = timed(seconds, "constrain", || constrain(solver, state, &obstacles));
+    if let Some(mut volume) = volume(solver, state) {
+        let (positions, velocities) = (&state.scratch.predicted, &mut state.velocities);
+        timed(seconds, "splat", || splat(&mut volume, positions, velocities, &solver.rest.mass));
+        timed(seconds, "mark", || mark(&mut volume, &obstacles));
+        report.pressure = timed(seconds, "solve_pressure", || solve_pressure(&mut volume));
+        timed(seconds, "gather", || gather(&volume, positions, velocities));
+        state.scratch.volume = Some(volume);
+    }
     let outcome = timed(seconds, "advance", || advance(solver, state, &obstacles));
     report.stretch_mean = outcome.stretch_mean();
     report.stretch_max = outcome.stretch_max;
     report.penetration_max = outcome.penetration_max;
     report.non_finite = non_finite + outcome.non_finite;
     report
+}
+
+/// The fluid volume of a state, unless it is switched off.
+fn volume(solver: &Solver, state: &mut State) -> Option<Volume> {
+    let settings = &solver.settings.volume;
+    let old = state.scratch.volume.take();
+    let new = || Volume::keep_or_new(old, settings, solver.strand_count, solver.points_per_strand);
+    settings.enabled.then(new)
 }
 
 /// Runs a stage and notes how long it took \[s\].

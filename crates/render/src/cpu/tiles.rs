@@ -63,7 +63,12 @@ struct Run {
 impl Tiles {
     /// Sorts the things `0..count` into tiles by the rectangle that `rect` gives for each, beside the
     /// number by which the thing is listed.
-    pub fn fill(&mut self, samples: &Samples, count: usize, rect: impl Fn(usize) -> Option<(TileRect, u32)> + Sync) {
+    pub fn fill(
+        &mut self,
+        samples: &Samples,
+        count: usize,
+        rect: impl Fn(usize) -> Option<(TileRect, u32)> + Sync,
+    ) {
         self.used = count.div_ceil(CHUNK);
         if self.runs.len() < self.used {
             self.runs.resize_with(self.used, Run::default);

@@ -1,10 +1,21 @@
 //! The stages in plain Rust, public so that checks can run each alone.
 
 pub mod advance;
+mod cell_set;
+pub mod cell_sort;
 pub mod constrain;
+pub mod faces;
+pub mod gather;
+pub mod grid;
 pub mod integrate;
+pub mod mark;
 pub mod obstacles;
+pub mod pcg;
+pub mod poisson;
 pub mod pose_roots;
+pub mod solve_pressure;
+pub mod splat;
+pub mod volume;
 
 pub(crate) mod angles;
 pub(crate) mod contacts;
@@ -13,3 +24,4 @@ pub(crate) mod lengths;
 pub(crate) mod vec3x8;
 
 pub use obstacles::Obstacles;
+pub use volume::{Kind, Volume};

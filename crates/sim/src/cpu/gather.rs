@@ -1,0 +1,47 @@
+//! `gather`: points take their velocities from the faces.
+
+use rayon::prelude::*;
+use strandline_groom::{LANES, Vec3Lanes};
+
+use super::faces::{Faces, Stencil};
+use super::grid::{Grid, Place};
+use super::volume::Volume;
+
+/// Points of a strand that the head moves; they keep their velocities.
+const ROOTED: usize = 2;
+
+/// Updates the velocities of free points: `a` times (the velocity plus its change on the faces)
+/// plus (1 - `a`) times the velocity on the faces, with `a` the FLIP share [Chen2011 eq. 5].
+///
+/// Every face in the stencil of a point carries weight, at least its own. Points outside the box
+/// keep their velocities. Shapes are `[block][point]` of lanes, world space.
+pub fn gather(volume: &Volume, positions: &[Vec3Lanes], velocities: &mut [Vec3Lanes]) {
+    let points = volume.points_per_strand;
+    let share = volume.settings.flip_share;
+    velocities
+        .par_chunks_mut(points)
+        .zip(positions.par_chunks(points))
+        .with_min_len(16)
+        .enumerate()
+        .for_each(|(block, (velocities, positions))| {
+            for (velocity, position) in velocities.iter_mut().zip(positions).skip(ROOTED) {
+                for lane in (0..LANES).filter(|lane| volume.is_live(block, *lane)) {
+                    let Some(place) = volume.grid.place(position.get(lane)) else { continue };
+                    let old = velocity.get(lane);
+                    let (x, x_change) = at::<0>(&volume.grid, &volume.faces, &place);
+                    let (y, y_change) = at::<1>(&volume.grid, &volume.faces, &place);
+                    let (z, z_change) = at::<2>(&volume.grid, &volume.faces, &place);
+                    let flip = old + glam::Vec3::new(x_change, y_change, z_change);
+                    let pic = glam::Vec3::new(x, y, z);
+                    velocity.set(lane, share * flip + (1.0 - share) * pic);
+                }
+            }
+        });
+}
+
+/// Velocity and change of a component at a place.
+#[inline]
+fn at<const AXIS: usize>(grid: &Grid, faces: &Faces, place: &Place) -> (f32, f32) {
+    let strides = grid.strides();
+    Stencil::new::<AXIS>(place, strides).interpolate(&faces.components[AXIS], strides)
+}

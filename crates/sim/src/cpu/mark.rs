@@ -1,0 +1,73 @@
+//! `mark`: every cell near hair is fluid, solid or air.
+
+use rayon::prelude::*;
+
+use super::obstacles::Obstacles;
+use super::volume::{Kind, Volume};
+
+/// Marks the cells, and gives the faces of solid cells the velocity of the solid
+/// [McAdams2009, Bridson2008].
+///
+/// A cell that holds points is fluid unless its middle lies deeper in a solid than one cell: hair
+/// lies on the skin, so the cells of its roots straddle the surface, and were they solid the hair
+/// in them would be torn from the volume. Of the other cells only neighbours of fluid ones matter;
+/// they are solid where their middle is inside. Signed distances are looked up for these alone.
+pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
+    for &cell in &volume.marked {
+        volume.kinds[cell as usize] = Kind::Air;
+    }
+    let Volume { grid, sort, touched_set, spare_set, marked, .. } = volume;
+    // Occupied cells and their six neighbours.
+    touched_set.copy_from(sort.occupied());
+    for stride in grid.strides() {
+        touched_set.insert_neighbours(sort.occupied(), stride);
+    }
+    spare_set.copy_from(touched_set);
+    spare_set.list_into(marked);
+    classify(volume, obstacles);
+    volume.fluid.clear();
+    volume.fluid.extend(volume.marked.iter().filter(|&&cell| volume.kinds[cell as usize] == Kind::Fluid));
+    carry_walls(volume, obstacles);
+}
+
+fn classify(volume: &mut Volume, obstacles: &Obstacles) {
+    let (grid, depth) = (&volume.grid, volume.grid.spacing());
+    let occupied = |cell: u32| volume.sort.cells().binary_search(&cell).is_ok();
+    let kinds: Vec<Kind> = volume
+        .marked
+        .par_iter()
+        .with_min_len(256)
+        .map(|&cell| {
+            let distance = obstacles.nearest(grid.center(cell as usize)).map_or(f32::INFINITY, |near| near.0);
+            match occupied(cell) {
+                true if distance < -depth => Kind::Solid,
+                true => Kind::Fluid,
+                false if distance < 0.0 => Kind::Solid,
+                false => Kind::Air,
+            }
+        })
+        .collect();
+    for (&cell, kind) in volume.marked.iter().zip(kinds) {
+        volume.kinds[cell as usize] = kind;
+    }
+}
+
+/// Sets faces between fluid and solid cells to the velocity of the solid.
+fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
+    let strides = volume.grid.strides();
+    for index in 0..volume.fluid.len() {
+        let cell = volume.fluid[index] as usize;
+        for (axis, stride) in strides.into_iter().enumerate() {
+            for (neighbour, face) in [(cell - stride, cell), (cell + stride, cell + stride)] {
+                if volume.kinds[neighbour] != Kind::Solid {
+                    continue;
+                }
+                let center = volume.grid.face_center(axis, face);
+                let velocity = obstacles
+                    .nearest(center)
+                    .map_or(0.0, |(_, _, collider)| obstacles.velocity(collider, center)[axis]);
+                volume.faces.set(axis, face, velocity);
+            }
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! `solve_pressure`: the pressure that takes the divergence out of the hair's velocity.
+
+use super::pcg::PcgSettings;
+use super::volume::{Kind, Volume};
+use crate::PressureReport;
+
+/// Solves for the pressure of the fluid cells and subtracts its gradient, one component at a time
+/// [Chen2011 eq. 4, 19-24].
+///
+/// The unknown is the pressure times step over density and cell size \[m/s\], so that neither the
+/// step nor the size of a cell enters the system.
+pub fn solve_pressure(volume: &mut Volume) -> PressureReport {
+    let strides = volume.grid.strides();
+    volume.system.assemble(&volume.fluid, &volume.kinds, strides);
+    let right = volume.fluid.iter().map(|&cell| -volume.divergence(cell as usize));
+    let right: Vec<f32> = right.collect();
+    volume.solution.right.clear();
+    volume.solution.right.extend(right);
+    let settings = PcgSettings {
+        preconditioner: volume.settings.preconditioner,
+        tolerance: volume.settings.tolerance,
+        max_iterations: volume.settings.max_iterations,
+    };
+    let Volume { system, pcg, solution, .. } = volume;
+    let report = pcg.solve(system, &settings, solution);
+    for (axis, stride) in strides.into_iter().enumerate() {
+        subtract_gradient(volume, axis, stride);
+    }
+    report
+}
+
+/// Subtracts the gradient along one axis from the faces of fluid cells.
+fn subtract_gradient(volume: &mut Volume, axis: usize, stride: usize) {
+    let Volume { faces, fluid, kinds, system, solution, .. } = volume;
+    let pressure = &solution.values;
+    for (unknown, &cell) in fluid.iter().enumerate() {
+        let cell = cell as usize;
+        let before = system.lower[unknown][axis] as usize;
+        if kinds[cell - stride] != Kind::Solid {
+            faces.change_by(axis, cell, pressure[before] - pressure[unknown]);
+        }
+        // The face to a fluid cell behind is that cell's lower face.
+        if kinds[cell + stride] == Kind::Air {
+            faces.change_by(axis, cell + stride, pressure[unknown]);
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! What the volume stages share: the moving box, the sorted points, the staggered faces.
+
+use strandline_groom::LANES;
+
+use super::cell_set::CellSet;
+use super::cell_sort::CellSort;
+use super::faces::Faces;
+use super::grid::Grid;
+use super::pcg::{Pcg, Solution};
+use super::poisson::Poisson;
+use crate::VolumeSettings;
+
+/// What a cell is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// Holds no hair: the pressure is 0.
+    #[default]
+    Air,
+    /// Holds hair: the pressure is unknown.
+    Fluid,
+    /// Inside a solid: nothing flows through its faces but what the solid carries along.
+    Solid,
+}
+
+/// The fluid volume [Chen2011 §4, McAdams2009]. Its memory is kept from step to step; what a step
+/// costs follows the cells that hold hair, not the size of the box.
+#[derive(Clone, Debug)]
+pub struct Volume {
+    pub(super) settings: VolumeSettings,
+    pub(super) points_per_strand: usize,
+    pub(super) strand_count: usize,
+    /// The moving box.
+    pub grid: Grid,
+    /// Points sorted by cell.
+    pub sort: CellSort,
+    /// Velocities on the faces.
+    pub faces: Faces,
+    pub(super) cell_of_point: Vec<u32>,
+    /// Cells whose lower faces points may reach, ascending.
+    pub(super) touched: Vec<u32>,
+    pub(super) touched_set: CellSet,
+    pub(super) spare_set: CellSet,
+    /// What each cell is; cells that are not listed in `marked` are air.
+    pub(super) kinds: Vec<Kind>,
+    pub(super) marked: Vec<u32>,
+    /// Cells whose pressure is unknown, ascending.
+    pub(super) fluid: Vec<u32>,
+    pub(super) system: Poisson,
+    pub(super) pcg: Pcg,
+    pub(super) solution: Solution,
+}
+
+impl Volume {
+    /// A volume for strands of `points_per_strand` points.
+    pub fn new(settings: &VolumeSettings, strand_count: usize, points_per_strand: usize) -> Self {
+        let grid = Grid::new(settings.cells.map(|count| count as usize));
+        let count = grid.cell_count();
+        Self {
+            settings: *settings,
+            points_per_strand,
+            strand_count,
+            sort: CellSort::new(count),
+            faces: Faces::new(count),
+            cell_of_point: Vec::new(),
+            touched: Vec::new(),
+            touched_set: CellSet::new(count),
+            spare_set: CellSet::new(count),
+            kinds: vec![Kind::Air; count],
+            marked: Vec::new(),
+            fluid: Vec::new(),
+            system: Poisson::default(),
+            pcg: Pcg::default(),
+            solution: Solution::default(),
+            grid,
+        }
+    }
+
+    /// Takes over settings; the box is made anew when its cells change.
+    pub fn keep_or_new(
+        old: Option<Self>,
+        settings: &VolumeSettings,
+        strand_count: usize,
+        points: usize,
+    ) -> Self {
+        match old {
+            Some(old) if old.settings.cells == settings.cells => Self { settings: *settings, ..old },
+            _ => Self::new(settings, strand_count, points),
+        }
+    }
+
+    /// What a cell is.
+    pub fn kind(&self, cell: usize) -> Kind {
+        self.kinds[cell]
+    }
+
+    /// The cells whose pressure is unknown, ascending.
+    pub fn fluid(&self) -> &[u32] {
+        &self.fluid
+    }
+
+    /// Whether a lane of a block is a strand and not a repetition of the last one.
+    #[inline]
+    pub(super) fn is_live(&self, block: usize, lane: usize) -> bool {
+        block * LANES + lane < self.strand_count
+    }
+
+    /// Largest divergence of a fluid cell: what flows out of it, over the area of a face \[m/s\].
+    pub fn largest_divergence(&self) -> f32 {
+        self.fluid.iter().map(|&cell| self.divergence(cell as usize).abs()).fold(0.0, f32::max)
+    }
+
+    /// What flows out of a cell, over the area of a face \[m/s\] [Chen2011 eq. 19].
+    #[inline]
+    pub(super) fn divergence(&self, cell: usize) -> f32 {
+        let strides = self.grid.strides();
+        (0..3)
+            .map(|axis| self.faces.velocity(axis, cell + strides[axis]) - self.faces.velocity(axis, cell))
+            .sum()
+    }
+}
