@@ -20,7 +20,7 @@ mod mesh_distance;
 mod motion;
 mod obj;
 mod pose;
-mod roots;
+mod random;
 mod scalp;
 mod triangle;
 
@@ -32,5 +32,5 @@ pub use mannequin::Mannequin;
 pub use mesh::Mesh;
 pub use motion::{Keyframe, Motion};
 pub use pose::Pose;
-pub use roots::Random;
+pub use random::Random;
 pub use scalp::{Root, Scalp};

@@ -90,6 +90,11 @@ impl Ear {
         *head = head.join(ear, ROOT_BLEND);
     }
 
+    /// Distance \[m\] to the ear alone, from a point with x >= 0.
+    pub(super) fn distance(&self, point: Vec3) -> f32 {
+        self.at(self.frame().transpose() * (point - self.origin)).value
+    }
+
     fn frame(&self) -> Mat3 {
         let (flare_sine, flare_cosine) = self.flare.sin_cos();
         let (lean_sine, lean_cosine) = self.lean.sin_cos();
@@ -102,7 +107,8 @@ impl Ear {
     fn at(&self, point: Vec3) -> Field {
         let mut shell = self.shell.at(point).join(self.lobe.at(point), 0.010);
         for hollow in &self.hollows {
-            hollow_at(hollow, point, &mut shell);
+            // The frame of an ear has no mirror plane: apply the swelling once.
+            hollow.apply_at(hollow.center, point, &mut shell);
         }
         let rim = self.rim[0].at(point).join(self.rim[1].at(point), 0.001).join(self.rim[2].at(point), 0.001);
         shell
@@ -111,9 +117,4 @@ impl Ear {
             .join(self.fold.at(point), 0.005)
             .join(self.tragus.at(point), 0.005)
     }
-}
-
-/// The frame of an ear has no mirror plane, so the swelling is applied once.
-fn hollow_at(hollow: &Swelling, point: Vec3, field: &mut Field) {
-    hollow.apply_at(hollow.center, point, field);
 }

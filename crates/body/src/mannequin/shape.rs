@@ -4,7 +4,7 @@ use super::ear::Ear;
 use super::field::{Ellipsoid, Field, RoundCone, Swelling};
 
 /// Swellings on face and skull.
-pub(super) const SWELLING_COUNT: usize = 42;
+pub(super) const SWELLING_COUNT: usize = 40;
 
 /// The parts of the bust, all given on the side of positive x and mirrored. SI units.
 #[repr(C)]
@@ -23,6 +23,7 @@ pub(super) struct BustShape {
     pub(super) nostril_reach: f32,
     pub(super) eyeball: Ellipsoid,
     pub(super) eyeball_reach: f32,
+    pub(super) lids: [Swelling; 2],
     pub(super) neck: RoundCone,
     pub(super) neck_reach: f32,
     pub(super) trapezius: RoundCone,
@@ -52,6 +53,11 @@ impl BustShape {
         let mut field = self.half_at(half);
         field.gradient.x *= side;
         field
+    }
+
+    /// Distance \[m\] to the nearer ear; large when it is far.
+    pub(super) fn ear_distance(&self, point: Vec3) -> f32 {
+        self.ear.distance(Vec3::new(point.x.abs(), point.y, point.z))
     }
 
     fn half_at(&self, point: Vec3) -> Field {
@@ -101,6 +107,9 @@ impl BustShape {
         }
         if in_front {
             *head = head.join(self.eyeball.at(point), self.eyeball_reach);
+            for lid in &self.lids {
+                lid.apply(point, head);
+            }
         }
         self.ear.add(point, head);
     }

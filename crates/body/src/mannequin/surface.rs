@@ -7,7 +7,7 @@ use super::Mannequin;
 use crate::{Mesh, SignedDistance};
 
 /// Spacing of the samples \[m\].
-const SPACING: f32 = 0.0025;
+const SPACING: f32 = 0.0022;
 /// Newton steps that carry the vertices onto the skin.
 const NEWTON_STEPS: usize = 3;
 
@@ -72,4 +72,47 @@ pub(super) fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
         point -= normal * distance;
     }
     (point, mannequin.distance_and_gradient(point).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    /// Directed edges that have no partner, and the volume [m^3] by the divergence theorem.
+    fn open_edges_and_volume(mesh: &Mesh) -> (usize, f32) {
+        let mut balance = BTreeMap::new();
+        let mut volume = 0.0;
+        for corners in &mesh.triangles {
+            let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+            volume += a.dot(b.cross(c)) / 6.0;
+            for side in 0..3 {
+                let (from, to) = (corners[side], corners[(side + 1) % 3]);
+                *balance.entry((from.min(to), from.max(to))).or_insert(0) += if from < to { 1 } else { -1 };
+            }
+        }
+        (balance.values().filter(|&&sum| sum != 0).count(), volume)
+    }
+
+    #[test]
+    fn the_mesh_is_closed_and_faces_outward() {
+        let mut mesh = Mannequin::default().mesh();
+        let (open, volume) = open_edges_and_volume(&mesh);
+        assert_eq!(open, 0);
+        // A head holds about 4.5 l, neck and shoulders of the bust about as much again.
+        assert!((0.0065..0.012).contains(&volume), "{volume}");
+        mesh.triangles.pop();
+        assert_ne!(open_edges_and_volume(&mesh).0, 0);
+    }
+
+    #[test]
+    fn every_vertex_lies_on_the_skin() {
+        let mannequin = Mannequin::default();
+        let mesh = mannequin.mesh();
+        for (vertex, normal) in mesh.positions.iter().zip(&mesh.normals) {
+            assert!(mannequin.distance(*vertex).abs() < 1e-4, "{vertex}");
+            assert!((normal.length() - 1.0).abs() < 1e-4);
+        }
+    }
 }
