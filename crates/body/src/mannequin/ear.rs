@@ -1,4 +1,4 @@
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 use super::field::{Ellipsoid, Field, Swelling};
 
@@ -6,38 +6,37 @@ use super::field::{Ellipsoid, Field, Swelling};
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Arc {
-    /// Centre of the circle \[m\].
-    pub(super) center: Vec3,
-    /// Radius of the circle \[m\].
-    pub(super) radius: f32,
-    /// Middle of the part that is there \[rad\], from the first axis toward the second.
-    pub(super) middle: f32,
-    /// Half of the part that is there \[rad\].
-    pub(super) half_span: f32,
-    /// Radius of the tube \[m\].
-    pub(super) tube: f32,
+    center: Vec3,
+    radius: f32,
+    tube: f32,
+    /// Direction of the middle of the part that is there.
+    middle: Vec2,
+    /// Direction of its end, seen from its middle.
+    end: Vec2,
 }
 
 impl Arc {
+    /// `center` and `radius` \[m\] of the circle, `tube` \[m\] of the tube around it; there `from` and
+    /// `to` \[degrees\] from the first axis toward the second.
+    pub(super) fn new(center: Vec3, radius: f32, from: f32, to: f32, tube: f32) -> Self {
+        let middle = Vec2::from_angle((0.5 * (from + to)).to_radians());
+        let end = Vec2::from_angle((0.5 * (to - from)).to_radians());
+        Self { center, radius, tube, middle, end }
+    }
+
     /// Exact distance.
     #[inline]
     fn at(&self, point: Vec3) -> Field {
         let offset = point - self.center;
-        let (sine, cosine) = self.middle.sin_cos();
         // Turned so that the middle of the arc lies on the first axis.
-        let along = offset.x * cosine + offset.y * sine;
-        let across = offset.y * cosine - offset.x * sine;
-        let (end_sine, end_cosine) = self.half_span.sin_cos();
-        let radial = (along * along + across * across).sqrt().max(1e-6);
-        let beyond = along * end_sine - across.abs() * end_cosine < 0.0;
-        let (near_along, near_across) =
-            if beyond { (end_cosine, end_sine * across.signum()) } else { (along / radial, across / radial) };
-        let near = Vec3::new(
-            near_along * cosine - near_across * sine,
-            near_along * sine + near_across * cosine,
-            0.0,
-        ) * self.radius;
-        let arm = offset - near;
+        let turned = Vec2::new(self.middle.x, -self.middle.y).rotate(offset.truncate());
+        let beyond = turned.x * self.end.y < turned.y.abs() * self.end.x;
+        let nearest = if beyond {
+            Vec2::new(self.end.x, self.end.y.copysign(turned.y))
+        } else {
+            turned.normalize_or(Vec2::X)
+        };
+        let arm = offset - (self.middle.rotate(nearest) * self.radius).extend(0.0);
         let distance = arm.length();
         Field { value: distance - self.tube, gradient: arm / distance.max(1e-6) }
     }
@@ -49,10 +48,8 @@ impl Arc {
 pub(super) struct Ear {
     /// Origin of the frame \[m\], head space.
     pub(super) origin: Vec3,
-    /// Angle \[rad\] by which the back edge stands off the head.
-    pub(super) flare: f32,
-    /// Angle \[rad\] by which the upper end leans back.
-    pub(super) lean: f32,
+    /// The axes of the frame, head space.
+    pub(super) head_from_ear: Mat3,
     /// The thin shell.
     pub(super) shell: Ellipsoid,
     /// What joins the shell to the head.
@@ -84,31 +81,34 @@ impl Ear {
         if offset.length_squared() > reach * reach {
             return;
         }
-        let head_from_ear = self.frame();
-        let mut ear = self.at(head_from_ear.transpose() * offset);
-        ear.gradient = head_from_ear * ear.gradient;
+        let mut ear = self.at(self.head_from_ear.transpose() * offset);
+        ear.gradient = self.head_from_ear * ear.gradient;
         *head = head.join(ear, ROOT_BLEND);
     }
 
     /// Distance \[m\] to the ear alone, from a point with x >= 0.
     pub(super) fn distance(&self, point: Vec3) -> f32 {
-        self.at(self.frame().transpose() * (point - self.origin)).value
+        self.at(self.head_from_ear.transpose() * (point - self.origin)).value
     }
 
-    fn frame(&self) -> Mat3 {
-        let (flare_sine, flare_cosine) = self.flare.sin_cos();
-        let (lean_sine, lean_cosine) = self.lean.sin_cos();
+    /// The axes of an ear whose back edge stands off the head by `flare` \[rad\] and whose upper end
+    /// leans back by `lean` \[rad\].
+    pub(super) fn frame(flare: f32, lean: f32) -> Mat3 {
+        let (flare_sine, flare_cosine) = flare.sin_cos();
+        let (lean_sine, lean_cosine) = lean.sin_cos();
         let back = Vec3::new(flare_sine, 0.0, -flare_cosine);
         let out = Vec3::new(flare_cosine, 0.0, flare_sine);
-        let up = Vec3::Y;
-        Mat3::from_cols(back * lean_cosine - up * lean_sine, up * lean_cosine + back * lean_sine, out)
+        Mat3::from_cols(
+            back * lean_cosine - Vec3::Y * lean_sine,
+            Vec3::Y * lean_cosine + back * lean_sine,
+            out,
+        )
     }
 
     fn at(&self, point: Vec3) -> Field {
         let mut shell = self.shell.at(point).join(self.lobe.at(point), 0.010);
         for hollow in &self.hollows {
-            // The frame of an ear has no mirror plane: apply the swelling once.
-            hollow.apply_at(hollow.center, point, &mut shell);
+            hollow.raise_here(point, &mut shell);
         }
         let rim = self.rim[0].at(point).join(self.rim[1].at(point), 0.001).join(self.rim[2].at(point), 0.001);
         shell

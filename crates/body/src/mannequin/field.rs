@@ -103,46 +103,79 @@ impl RoundCone {
     }
 }
 
-/// A local swelling (or hollow, when `height` is negative) of the skin: compact, with
-/// continuous curvature.
+/// A local swelling (or hollow, when its height is negative) of the skin: compact, with
+/// continuous curvature, the same at every distance from the skin under it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Swelling {
-    /// Centre \[m\], on the side of positive x.
-    pub(super) center: Vec3,
-    /// Half axes of the region that it reaches \[m\].
-    pub(super) radii: Vec3,
-    /// Height in its centre \[m\].
-    pub(super) height: f32,
-    /// Bend \[1/m\]: the region follows the parabola y = bend x^2 about its centre.
-    pub(super) bend: f32,
+    center: Vec3,
+    inverse_radii: Vec3,
+    height: f32,
+    bend: f32,
 }
 
 impl Swelling {
-    /// Raises the skin at a point with x >= 0; a swelling that crosses the middle is mirrored.
+    /// `center` \[m\] on the side of positive x; `radii` \[m\] of the region that it reaches; `height` \[m\]
+    /// in its centre; `bend` \[1/m\]: the region follows the parabola y = bend x^2 about its centre.
+    pub(super) const fn new(center: Vec3, radii: Vec3, height: f32, bend: f32) -> Self {
+        let inverse_radii = Vec3::new(1.0 / radii.x, 1.0 / radii.y, 1.0 / radii.z);
+        Self { center, inverse_radii, height, bend }
+    }
+
+    /// Height \[m\] at a place with x >= 0, its slope added to `slope`; one that crosses the middle
+    /// is mirrored.
     #[inline]
-    pub(super) fn apply(&self, point: Vec3, field: &mut Field) {
-        self.apply_at(self.center, point, field);
-        if self.center.x > 0.0 && point.x < self.radii.x - self.center.x {
-            self.apply_at(Vec3::new(-self.center.x, self.center.y, self.center.z), point, field);
+    fn height_at(&self, place: Vec3, slope: &mut Vec3) -> f32 {
+        let mut height = self.height_about(self.center, place, slope);
+        if self.center.x > 0.0 && (place.x + self.center.x) * self.inverse_radii.x < 1.0 {
+            let mirrored = Vec3::new(-self.center.x, self.center.y, self.center.z);
+            height += self.height_about(mirrored, place, slope);
         }
+        height
+    }
+
+    /// Raises the skin where the point itself lies in the region: for shells that are too thin to
+    /// tell which side a point belongs to. Not mirrored.
+    #[inline]
+    pub(super) fn raise_here(&self, point: Vec3, field: &mut Field) {
+        let mut slope = Vec3::ZERO;
+        field.value -= self.height_about(self.center, point, &mut slope);
+        field.gradient -= slope;
     }
 
     #[inline]
-    pub(super) fn apply_at(&self, center: Vec3, point: Vec3, field: &mut Field) {
-        let mut offset = point - center;
+    fn height_about(&self, center: Vec3, place: Vec3, slope: &mut Vec3) -> f32 {
+        let mut offset = place - center;
         let bent = self.bend * offset.x;
         offset.y -= bent * offset.x;
-        let unit = offset / self.radii;
+        let unit = offset * self.inverse_radii;
         let inside = 1.0 - unit.length_squared();
         if inside <= 0.0 {
-            return;
+            return 0.0;
         }
-        let slope = unit / self.radii;
-        field.value -= self.height * inside * inside * inside;
-        field.gradient += Vec3::new(slope.x - 2.0 * bent * slope.y, slope.y, slope.z)
-            * (6.0 * self.height * inside * inside);
+        let rate = unit * self.inverse_radii * (-6.0 * self.height * inside * inside);
+        *slope += Vec3::new(rate.x - 2.0 * bent * rate.y, rate.y, rate.z);
+        self.height * inside * inside * inside
     }
+}
+
+/// Radius of curvature \[m\] of skin, with which slopes spread away from it.
+const CURVATURE_RADIUS: f32 = 0.08;
+
+/// Raises the skin at a point with x >= 0 by the swellings at the foot of the point on it.
+#[inline]
+pub(super) fn raise(swellings: &[Swelling], point: Vec3, field: &mut Field) {
+    let steepness = field.gradient.length_recip();
+    let normal = field.gradient * steepness;
+    let above = field.value * steepness;
+    let foot = point - normal * above;
+    let (mut height, mut slope) = (0.0, Vec3::ZERO);
+    for swelling in swellings {
+        height += swelling.height_at(foot, &mut slope);
+    }
+    let spread = CURVATURE_RADIUS / (CURVATURE_RADIUS + above).max(0.5 * CURVATURE_RADIUS);
+    field.value -= height;
+    field.gradient -= (slope - normal * slope.dot(normal)) * spread;
 }
 
 #[cfg(test)]
@@ -168,15 +201,8 @@ mod tests {
             start_radius: 0.05,
             end_radius: 0.03,
         };
-        let swelling = Swelling {
-            center: Vec3::new(0.02, 0.03, 0.08),
-            radii: Vec3::new(0.04, 0.03, 0.05),
-            height: 0.005,
-            bend: 6.0,
-        };
         let all = |point: Vec3| {
-            let mut field = ball.at(point).join(cone.at(point), 0.04);
-            swelling.apply(point, &mut field);
+            let field = ball.at(point).join(cone.at(point), 0.04);
             field.cut(Field { value: point.y - 0.12, gradient: Vec3::Y }, 0.02)
         };
         for point in [
@@ -187,6 +213,27 @@ mod tests {
             Vec3::new(0.2, -0.2, 0.1),
         ] {
             check_gradient(all, point);
+        }
+    }
+
+    #[test]
+    fn a_swelling_has_its_height_and_its_slope_on_the_skin() {
+        let radius = CURVATURE_RADIUS;
+        let ball = Ellipsoid { center: Vec3::ZERO, radii: Vec3::splat(radius) };
+        let swelling = Swelling::new(Vec3::new(0.02, 0.0, 0.077), Vec3::new(0.04, 0.03, 0.05), 0.005, 6.0);
+        let raised = |point: Vec3| {
+            let mut field = ball.at(point);
+            raise(&[swelling], point, &mut field);
+            field
+        };
+        let top = Vec3::new(0.02, 0.0, 0.077).normalize();
+        for above in [0.0, 0.02] {
+            let value = raised(top * (radius + above)).value;
+            assert!((value - (above - 0.005)).abs() < 1e-4, "{value}");
+        }
+        for point in [Vec3::new(0.03, 0.01, 0.075), Vec3::new(0.005, 0.0, 0.08), Vec3::new(0.02, -0.01, 0.09)]
+        {
+            check_gradient(raised, point);
         }
     }
 }

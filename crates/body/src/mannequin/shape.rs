@@ -1,10 +1,12 @@
 use glam::Vec3;
 
 use super::ear::Ear;
-use super::field::{Ellipsoid, Field, RoundCone, Swelling};
+use super::field::{Ellipsoid, Field, RoundCone, Swelling, raise};
 
-/// Swellings on face and skull.
-pub(super) const SWELLING_COUNT: usize = 40;
+/// Broad swellings of face and skull.
+pub(super) const MASS_COUNT: usize = 26;
+/// Small swellings laid over them.
+pub(super) const DETAIL_COUNT: usize = 14;
 
 /// The parts of the bust, all given on the side of positive x and mirrored. SI units.
 #[repr(C)]
@@ -35,13 +37,22 @@ pub(super) struct BustShape {
     pub(super) muscle: RoundCone,
     pub(super) muscle_reach: f32,
     pub(super) ear: Ear,
-    pub(super) swellings: [Swelling; SWELLING_COUNT],
+    pub(super) masses: [Swelling; MASS_COUNT],
+    pub(super) details: [Swelling; DETAIL_COUNT],
 }
 
 /// Height \[m\] of the plane that cuts the base.
 const BASE: f32 = -0.262;
 /// Rounding \[m\] of the edge of the base.
 const BASE_REACH: f32 = 0.03;
+/// Above this height \[m\] of the torso only the neck is near the head.
+const NECK_ALONE: f32 = -0.005;
+/// A ball around jaw and chin: centre and radius \[m\].
+const LOWER_FACE: (Vec3, f32) = (Vec3::new(0.0, -0.09, 0.045), 0.075);
+/// Nose, lips and eyes lie in front of this plane \[m\].
+const FACE_BEGINS: f32 = 0.03;
+/// Nose, lips and eyes lie below this height \[m\].
+const FACE_ENDS: f32 = 0.05;
 /// The fold at the middle plane is rounded over this width \[m\].
 const FOLD: f32 = 0.012;
 
@@ -71,47 +82,44 @@ impl BustShape {
     }
 
     fn torso(&self, point: Vec3) -> Field {
+        let neck = self.neck.at(point);
+        if point.y > NECK_ALONE {
+            return neck;
+        }
         let (folded, slope) = fold(point);
         let trapezius = unfold(self.trapezius.at(folded), slope);
         let shoulder = unfold(self.shoulder.at(folded), slope);
+        let muscle = unfold(self.muscle.at(folded), slope);
         self.chest
             .at(point)
             .join(shoulder, self.shoulder_reach)
             .join(trapezius, self.trapezius_reach)
-            .join(self.neck.at(point), self.chest_reach)
+            .join(neck, self.chest_reach)
+            .join(muscle, self.muscle_reach)
     }
 
     fn with_head(&self, point: Vec3, torso: Field) -> Field {
-        let (folded, slope) = fold(point);
-        let mut head = self
-            .cranium
-            .at(point)
-            .join(self.face.at(point), self.face_reach)
-            .join(unfold(self.jaw.at(folded), slope), self.jaw_reach)
-            .join(self.chin.at(point), self.chin_reach);
-        if head.value < 0.04 {
-            self.add_features(point, &mut head);
+        let mut head = self.cranium.at(point).join(self.face.at(point), self.face_reach);
+        if (point - LOWER_FACE.0).length() < LOWER_FACE.1 + self.jaw_reach + head.value.max(0.0) {
+            let (folded, slope) = fold(point);
+            head = head
+                .join(unfold(self.jaw.at(folded), slope), self.jaw_reach)
+                .join(self.chin.at(point), self.chin_reach);
         }
-        let muscle = unfold(self.muscle.at(folded), slope);
-        head.join(torso.join(muscle, self.muscle_reach), self.neck_reach)
+        raise(&self.masses, point, &mut head);
+        if point.z > FACE_BEGINS && point.y < FACE_ENDS {
+            self.add_face(point, &mut head);
+        }
+        self.ear.add(point, &mut head);
+        head.join(torso, self.neck_reach)
     }
 
-    fn add_features(&self, point: Vec3, head: &mut Field) {
-        let in_front = point.z > 0.04;
-        if in_front {
-            *head = head.join(self.nose.at(point), self.nose_reach);
-            *head = head.join(self.nostril.at(point), self.nostril_reach);
-        }
-        for swelling in &self.swellings {
-            swelling.apply(point, head);
-        }
-        if in_front {
-            *head = head.join(self.eyeball.at(point), self.eyeball_reach);
-            for lid in &self.lids {
-                lid.apply(point, head);
-            }
-        }
-        self.ear.add(point, head);
+    fn add_face(&self, point: Vec3, head: &mut Field) {
+        *head = head.join(self.nose.at(point), self.nose_reach);
+        *head = head.join(self.nostril.at(point), self.nostril_reach);
+        raise(&self.details, point, head);
+        *head = head.join(self.eyeball.at(point), self.eyeball_reach);
+        raise(&self.lids, point, head);
     }
 }
 

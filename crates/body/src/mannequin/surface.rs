@@ -9,7 +9,9 @@ use crate::{Mesh, SignedDistance};
 /// Spacing of the samples \[m\].
 const SPACING: f32 = 0.0022;
 /// Newton steps that carry the vertices onto the skin.
-const NEWTON_STEPS: usize = 3;
+const NEWTON_STEPS: usize = 4;
+/// No step is longer \[m\], so that a vertex in a crease stays there.
+const LONGEST_STEP: f32 = 0.004;
 
 /// Meshes the skin.
 pub(super) fn mesh(mannequin: &Mannequin) -> Mesh {
@@ -68,10 +70,11 @@ fn sample(mannequin: &Mannequin, origin: Vec3, size: UVec3) -> Vec<f32> {
 /// Carries a point near the skin onto it; the point and the normal there.
 pub(super) fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
     for _ in 0..NEWTON_STEPS {
-        let (distance, normal) = mannequin.distance_and_gradient(point);
-        point -= normal * distance;
+        let field = mannequin.shape.at(point);
+        let step = field.gradient * (field.value / field.gradient.length_squared().max(1e-2));
+        point -= step.clamp_length_max(LONGEST_STEP);
     }
-    (point, mannequin.distance_and_gradient(point).1)
+    (point, mannequin.shape.at(point).gradient.normalize_or(Vec3::Y))
 }
 
 #[cfg(test)]
