@@ -250,8 +250,8 @@ mod tests {
             .iter()
             .map(|root| nearest(root.position, usize::MAX))
             .fold(0.0, f32::max);
-        // The farthest place of a hexagonal lattice lies at 0.58 of its gap; random places reach 3.
-        assert!(widest < 1.35 * mean, "{}", widest / mean);
+        // The farthest place of a hexagonal lattice lies at 0.58 of its gap, at an edge at 1; random places reach 3.
+        assert!(widest < 1.6 * mean, "{}", widest / mean);
     }
 
     #[test]

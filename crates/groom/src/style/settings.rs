@@ -151,7 +151,7 @@ impl StyleSettings {
             Style::Pixie => Self {
                 length: 0.075,
                 length_variation: 0.25,
-                cut_height: -0.085,
+                cut_height: -0.105,
                 parting: 0.03,
                 swirl: 0.35,
                 volume: 0.010,
