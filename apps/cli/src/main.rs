@@ -1,2 +1,42 @@
-//! The `strandline` program.
-fn main() {}
+//! The `strandline` program: demo, render, sim, groom, convert, info, bench.
+
+#![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
+
+mod arguments;
+mod bench;
+mod files;
+mod progress;
+mod render;
+mod sim;
+mod statistics;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+
+fn main() -> ExitCode {
+    // clap ends the program itself: 0 for help, 2 for wrong usage.
+    let arguments = Arguments::parse();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("strandline: {error:#}");
+            ExitCode::from(if error.is::<arguments::Usage>() { 2 } else { 1 })
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    match &arguments.command {
+        None => render::demo(),
+        Some(Command::Render(options)) => render::render(options),
+        Some(Command::Sim(options)) => sim::sim(options),
+        Some(Command::Groom(options)) => files::groom(options),
+        Some(Command::Convert(options)) => files::convert(options),
+        Some(Command::Info(options)) => files::info(options),
+        Some(Command::Scene(options)) => files::scene(options),
+        Some(Command::Bench(options)) => bench::bench(options),
+    }
+}

@@ -1,1 +1,46 @@
-//! Façade.
+//! Hair for people who make pictures move: load or grow a groom, simulate it, draw it.
+//!
+//! ```
+//! use strandline::{Backend, Camera, Groom, Hair, Look, Pose, Settings};
+//!
+//! # fn main() -> Result<(), strandline::Error> {
+//! let mut groom = Groom::empty(8e-5); // or Groom::load("wavy.hair")?
+//! groom.push((0..16).map(|point| glam::Vec3::new(0.01 * point as f32, 0.0, 0.0)));
+//! let mut hair = Hair::new(&Backend::auto(), &groom, &Settings::default())?;
+//! for _ in 0..24 {
+//!     hair.step(1.0 / 60.0, &Pose::IDENTITY);
+//! }
+//! let camera = Camera::framing(hair.bounds(), glam::Vec3::Z, 30.0, 1.0);
+//! let picture = hair.picture(&camera, &Look::brown())?;
+//! # assert!(picture.width > 0);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A [`Scene`] holds everything that one run needs and is one TOML file; a [`Player`] plays it.
+
+mod backend;
+mod error;
+mod film;
+mod hair;
+mod player;
+mod prepare;
+
+pub mod scene;
+
+pub use strandline_body as body;
+pub use strandline_groom as groom;
+pub use strandline_render as render;
+pub use strandline_sim as sim;
+
+pub use backend::Backend;
+pub use body::{Motion, Pose};
+pub use error::Error;
+pub use film::{Film, FilmFiles};
+pub use groom::{Groom, Style};
+pub use hair::Hair;
+pub use player::{Event, Player};
+pub use prepare::Prepared;
+pub use render::{Camera, Light, Look, Picture};
+pub use scene::Scene;
+pub use sim::Settings;

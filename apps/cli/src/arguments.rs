@@ -1,0 +1,223 @@
+//! What may stand on the command line.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use clap::{Args, Parser, Subcommand};
+use strandline::{Backend, Scene, Style, groom::StyleSettings, scene::MotionName};
+
+/// Real-time hair: load or grow a groom, simulate it, draw it.
+///
+/// Without a command it runs the demo: a head of hair shakes for 4 s; pictures go to out/demo.
+#[derive(Debug, Parser)]
+#[command(version, about, long_about)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Simulate and draw a scene: frames, a contact sheet and a video.
+    Render(RenderOptions),
+    /// Simulate a scene without pictures, and report quality and cost.
+    Sim(SimOptions),
+    /// Grow a built-in style and write it to a file.
+    Groom(GroomOptions),
+    /// Read a groom and write it in another format.
+    Convert(ConvertOptions),
+    /// Say what a groom file holds.
+    Info(InfoOptions),
+    /// Print a scene as TOML, every key spelled out: a start for your own.
+    Scene(SceneOptions),
+    /// Measure speed: the thesis's tables, or how cost grows.
+    Bench(BenchOptions),
+}
+
+/// What to simulate: a scene, and what replaces parts of it.
+#[derive(Args, Clone, Debug)]
+pub struct Inputs {
+    /// demo, thesis, or a .toml file [default: demo].
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "demo", hide_default_value = true)]
+    pub scene: String,
+    /// Grow this style: bob, long, wavy, curly, pixie or ponytail.
+    #[arg(long, value_name = "NAME", value_parser = Style::from_str, conflicts_with = "groom")]
+    pub style: Option<Style>,
+    /// Load strands from this .hair or .tfx file.
+    #[arg(long, value_name = "FILE")]
+    pub groom: Option<PathBuf>,
+    /// Load the body from this .obj, .gltf or .glb file.
+    #[arg(long, value_name = "FILE")]
+    pub body: Option<PathBuf>,
+    /// still, shake, nod, turn or keyframes.
+    #[arg(long, value_name = "NAME", value_parser = MotionName::from_str)]
+    pub motion: Option<MotionName>,
+    /// Number of frames.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub frames: Option<u32>,
+    /// Where it runs: auto or cpu.
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = Backend::from_str)]
+    pub backend: Backend,
+    /// Print one JSON object, and nothing else, to standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct RenderOptions {
+    #[command(flatten)]
+    pub inputs: Inputs,
+    /// Size of a picture [pixel].
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<(u32, u32)>,
+    /// Folder of the pictures [default: out/ and the scene's name].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub struct SimOptions {
+    #[command(flatten)]
+    pub inputs: Inputs,
+}
+
+#[derive(Args, Debug)]
+pub struct GroomOptions {
+    /// bob, long, wavy, curly, pixie or ponytail.
+    #[arg(long, value_name = "NAME", value_parser = Style::from_str)]
+    pub style: Style,
+    /// Number of strands.
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=8_000_000))]
+    pub strands: u32,
+    /// Seed of every random choice.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// The .hair or .tfx file to write.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+#[derive(Args, Debug)]
+pub struct ConvertOptions {
+    /// The .hair or .tfx file to read.
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// The .hair or .tfx file to write.
+    #[arg(value_name = "OUT")]
+    pub output: PathBuf,
+    /// Resample every strand to this number of points.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4096))]
+    pub points: Option<u32>,
+}
+
+#[derive(Args, Debug)]
+pub struct InfoOptions {
+    /// The .hair or .tfx file to read.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Print one JSON object.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args, Debug)]
+pub struct SceneOptions {
+    /// demo, thesis, or a .toml file.
+    #[arg(value_name = "NAME|FILE.toml", default_value = "demo")]
+    pub scene: String,
+}
+
+#[derive(Args, Debug)]
+pub struct BenchOptions {
+    /// The thesis's tables 2, 3 and 4 beside ours, or how cost grows with strands and cells.
+    #[arg(value_enum, default_value = "thesis")]
+    pub what: Bench,
+    /// Write the measurements to this file.
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Bench {
+    /// The thesis's tables.
+    Thesis,
+    /// Cost against strands and cells.
+    Scaling,
+}
+
+/// A wrong use of the command line that clap does not see; ends with code 2.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Usage(pub String);
+
+/// A scene by name or path.
+pub fn scene(name: &str) -> anyhow::Result<Scene> {
+    if strandline::scene::is_file(Path::new(name)) {
+        return Ok(Scene::load(Path::new(name))?);
+    }
+    Scene::from_str(name).map_err(|error| Usage(error.to_string()).into())
+}
+
+impl Inputs {
+    /// The scene with what the command line replaces.
+    pub fn scene(&self) -> anyhow::Result<Scene> {
+        let mut scene = scene(&self.scene)?;
+        if let Some(style) = self.style {
+            scene.groom.file = None;
+            let plain = StyleSettings::new(style);
+            scene.style =
+                StyleSettings { strand_count: scene.style.strand_count, seed: scene.style.seed, ..plain };
+        }
+        // Paths given here are relative to the current folder, not to the scene's.
+        if let Some(file) = &self.groom {
+            scene.groom.file = Some(std::path::absolute(file)?);
+        }
+        if let Some(file) = &self.body {
+            scene.body.file = Some(std::path::absolute(file)?);
+        }
+        if let Some(name) = self.motion {
+            scene.motion.name = name;
+        }
+        if let Some(frames) = self.frames {
+            scene.film.frames = frames;
+        }
+        Ok(scene)
+    }
+
+    /// What the output is called: the style, the groom's or the scene's name.
+    pub fn name(&self) -> String {
+        let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        match (&self.style, &self.groom) {
+            (Some(style), _) => style.name().to_owned(),
+            (None, Some(file)) => stem(file).unwrap_or_else(|| "groom".to_owned()),
+            (None, None) => stem(Path::new(&self.scene)).unwrap_or_else(|| "scene".to_owned()),
+        }
+    }
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let expected = || format!("`{text}` is not a size, expected WIDTHxHEIGHT such as 800x600");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
+    let side =
+        |text: &str| text.parse::<u32>().ok().filter(|side| (1..=16_384).contains(side)).ok_or_else(expected);
+    Ok((side(width)?, side(height)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_two_numbers_with_an_x() {
+        assert_eq!(parse_size("800x600"), Ok((800, 600)));
+        for wrong in ["800", "800x", "x600", "0x600", "800x-1", "800x99999", "axb"] {
+            assert!(parse_size(wrong).unwrap_err().contains("expected WIDTHxHEIGHT"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn the_arguments_are_sound() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+}

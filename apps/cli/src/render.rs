@@ -1,0 +1,94 @@
+//! `strandline render` and the demo: a scene becomes pictures.
+
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use strandline::{Backend, Event, Film, Player, Scene};
+
+use crate::arguments::RenderOptions;
+use crate::progress::Progress;
+use crate::statistics::{Collector, Times};
+
+/// What `render --json` prints.
+#[derive(Debug, Serialize)]
+struct RenderReport {
+    backend: &'static str,
+    frames: usize,
+    follow_strands: usize,
+    segments: usize,
+    ms_per_frame: Times,
+    files: Vec<PathBuf>,
+}
+
+/// The demo, into out/demo.
+pub fn demo() -> anyhow::Result<()> {
+    let scene = Scene::demo();
+    println!(
+        "strandline demo: a head of {} hair shakes for {:.0} s; `strandline --help` shows what else there is",
+        scene.style.style.name(),
+        f64::from(scene.film.frames) / f64::from(scene.film.frames_per_second)
+    );
+    film(&scene, &Backend::auto(), Path::new("out/demo"), false)
+}
+
+/// A scene as the command line names it.
+pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
+    let mut scene = options.inputs.scene()?;
+    if let Some((width, height)) = options.size {
+        (scene.picture.width, scene.picture.height) = (width, height);
+    }
+    let folder = options.out.clone().unwrap_or_else(|| Path::new("out").join(options.inputs.name()));
+    film(&scene, &options.inputs.backend, &folder, options.inputs.json)
+}
+
+fn film(scene: &Scene, backend: &Backend, folder: &Path, json: bool) -> anyhow::Result<()> {
+    let mut player = Player::new(scene, backend, true)?;
+    for note in player.notes() {
+        eprintln!("note: {note}");
+    }
+    let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second)?;
+    let mut times = Collector::default();
+    let (mut strands, mut segments) = (0, 0);
+    let mut progress = Progress::new(u64::from(player.frames()), "frames", json);
+    while let Some(event) = player.next() {
+        if let Event::Drawn { picture, report, .. } = event? {
+            film.add(&picture)?;
+            times.add(&report.seconds);
+            (strands, segments) = (report.strands, report.segments);
+        }
+        progress.reached(u64::from(player.frames_done()));
+    }
+    drop(progress);
+    let written = film.finish()?;
+    for note in &written.notes {
+        eprintln!("note: {note}");
+    }
+    let report = RenderReport {
+        backend: backend.name(),
+        frames: times.len(),
+        follow_strands: strands,
+        segments,
+        ms_per_frame: times.times(),
+        files: written.files,
+    };
+    if json {
+        println!("{}", serde_json::to_string(&report)?);
+    } else {
+        print(&report, folder);
+    }
+    Ok(())
+}
+
+fn print(report: &RenderReport, folder: &Path) {
+    let times = &report.ms_per_frame;
+    println!(
+        "{} pictures of {} strands, {} segments on the {}",
+        report.frames, report.follow_strands, report.segments, report.backend
+    );
+    println!("a picture takes {:.0} ms (95 of 100 at most {:.0} ms)", times.median, times.p95);
+    for (name, time) in times.stages.iter() {
+        println!("  {name:<15}{time:>8.1} ms");
+    }
+    let last = report.files.last().map_or(folder, PathBuf::as_path);
+    println!("wrote {} files to {}: look at {}", report.files.len(), folder.display(), last.display());
+}

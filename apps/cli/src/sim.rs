@@ -1,0 +1,132 @@
+//! `strandline sim`: steps without pictures.
+
+use serde::Serialize;
+use strandline::{
+    Event, Player,
+    sim::{PressureReport, StepReport},
+};
+
+use crate::arguments::SimOptions;
+use crate::progress::Progress;
+use crate::statistics::{Collector, Times};
+
+/// What `sim --json` prints.
+#[derive(Debug, Serialize)]
+pub struct SimReport {
+    pub backend: &'static str,
+    pub strands: usize,
+    pub points_per_strand: usize,
+    pub steps: usize,
+    pub ms_per_step: Times,
+    pub stretch: Stretch,
+    pub penetration_max_m: f32,
+    pub non_finite: usize,
+    pub pcg: Pcg,
+    pub fluid_cells_mean: f64,
+}
+
+/// Length over rest length - 1: the mean over all steps and segments, and the largest.
+#[derive(Debug, Serialize)]
+pub struct Stretch {
+    pub mean: f64,
+    pub max: f32,
+}
+
+/// The conjugate gradients.
+#[derive(Debug, Serialize)]
+pub struct Pcg {
+    /// To the scene's relative residual.
+    pub iterations_mean: f64,
+    /// Until the same number would have been met as an absolute residual.
+    pub iterations_absolute_mean: f64,
+    pub residual_max: f32,
+}
+
+/// Gathers step reports.
+#[derive(Debug, Default)]
+pub struct Steps {
+    times: Collector,
+    stretch: Vec<f64>,
+    pressure: Vec<PressureReport>,
+    stretch_max: f32,
+    penetration_max: f32,
+    non_finite: usize,
+}
+
+impl Steps {
+    pub fn add(&mut self, report: &StepReport) {
+        self.times.add(&report.seconds);
+        self.stretch.push(f64::from(report.stretch_mean));
+        self.pressure.push(report.pressure);
+        self.stretch_max = self.stretch_max.max(report.stretch_max);
+        self.penetration_max = self.penetration_max.max(report.penetration_max);
+        self.non_finite = self.non_finite.max(report.non_finite);
+    }
+
+    pub fn report(&self, backend: &'static str, strands: usize, points_per_strand: usize) -> SimReport {
+        let pressure = |value: fn(&PressureReport) -> f64| mean(self.pressure.iter().map(value));
+        SimReport {
+            backend,
+            strands,
+            points_per_strand,
+            steps: self.times.len(),
+            ms_per_step: self.times.times(),
+            stretch: Stretch { mean: mean(self.stretch.iter().copied()), max: self.stretch_max },
+            penetration_max_m: self.penetration_max,
+            non_finite: self.non_finite,
+            pcg: Pcg {
+                iterations_mean: pressure(|report| report.iterations as f64),
+                iterations_absolute_mean: pressure(|report| report.iterations_absolute as f64),
+                residual_max: self.pressure.iter().map(|report| report.relative_residual).fold(0.0, f32::max),
+            },
+            fluid_cells_mean: pressure(|report| report.fluid_cells as f64),
+        }
+    }
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
+    values.sum::<f64>() / count
+}
+
+pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
+    let inputs = &options.inputs;
+    let scene = inputs.scene()?;
+    let mut player = Player::new(&scene, &inputs.backend, false)?;
+    for note in player.notes() {
+        eprintln!("note: {note}");
+    }
+    let mut progress = Progress::new(u64::from(player.frames()), "frames", inputs.json);
+    let mut steps = Steps::default();
+    while let Some(event) = player.next() {
+        if let Event::Stepped(report) = event? {
+            steps.add(&report);
+        }
+        progress.reached(u64::from(player.frames_done()));
+    }
+    drop(progress);
+    let guides = player.hair().guides();
+    let report = steps.report(inputs.backend.name(), guides.strand_count(), guides.points_per_strand());
+    if inputs.json {
+        println!("{}", serde_json::to_string(&report)?);
+    } else {
+        print(&report);
+    }
+    Ok(())
+}
+
+fn print(report: &SimReport) {
+    let SimReport { strands, points_per_strand, steps, ms_per_step, stretch, pcg, .. } = report;
+    println!("{strands} strands x {points_per_strand} points, {steps} steps on the {}", report.backend);
+    println!("a step takes {:.2} ms (95 of 100 at most {:.2} ms)", ms_per_step.median, ms_per_step.p95);
+    for (name, time) in ms_per_step.stages.iter() {
+        println!("  {name:<15}{time:>8.3} ms");
+    }
+    println!("stretch: mean {:.4} %, largest {:.3} %", 100.0 * stretch.mean, 100.0 * stretch.max);
+    println!("deepest point inside a solid: {:.2} mm", 1e3 * report.penetration_max_m);
+    println!("points that are not finite: {}", report.non_finite);
+    println!(
+        "pressure: {:.1} iterations on {:.0} fluid cells, largest residual {:.1e}",
+        pcg.iterations_mean, report.fluid_cells_mean, pcg.residual_max
+    );
+}

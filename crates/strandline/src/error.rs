@@ -1,0 +1,73 @@
+use std::path::{Path, PathBuf};
+
+use crate::{body::BodyError, groom::GroomError, render::RenderError, sim::SimError};
+
+/// Why a scene could not be loaded, moved or drawn.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene file could not be read.
+    #[error("cannot read the scene: {source}: {}", path.display())]
+    ReadScene {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The scene is not valid TOML, or a key is unknown or has a value of the wrong kind.
+    #[error("not a valid scene: {message}: {origin}")]
+    ParseScene {
+        /// The file, or `scene` for text from memory.
+        origin: String,
+        /// Line, what was found and what was expected.
+        message: String,
+    },
+    /// A value of the scene is outside its range.
+    #[error("{key} is {found}, expected {expected}")]
+    Value {
+        /// The key, with its section.
+        key: &'static str,
+        /// What was given.
+        found: String,
+        /// What may be given.
+        expected: String,
+    },
+    /// The asked backend is not there.
+    #[error(
+        "backend `{found}` is not there, expected auto or cpu: this build simulates and draws on the CPU"
+    )]
+    Backend {
+        /// What was asked for.
+        found: String,
+    },
+    /// An output file or folder could not be written.
+    #[error("cannot write {what}: {source}; frames already written are complete: {}", path.display())]
+    Write {
+        /// What was being written.
+        what: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// From the body.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// From the groom.
+    #[error(transparent)]
+    Groom(#[from] GroomError),
+    /// From the simulation.
+    #[error(transparent)]
+    Sim(#[from] SimError),
+    /// From the renderer.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+impl Error {
+    /// For `map_err` on what writes to `path`.
+    pub(crate) fn write(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Write { what, path, source }
+    }
+}

@@ -1,0 +1,188 @@
+use glam::Vec3;
+
+use crate::{
+    Backend, Error, Scene,
+    body::{Aabb, Collider, Mesh, Pose},
+    groom::{Groom, Guides, Vec3Lanes},
+    prepare::{self, Prepared},
+    render::{
+        BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings,
+        Renderer,
+    },
+    sim::{Clock, Drive, Settings, Solver, State, StepReport},
+};
+
+/// Points of a guide when nothing else is said.
+const POINTS_PER_STRAND: usize = 16;
+
+/// A head of hair that moves and can be drawn: solver, state and renderer in one.
+pub struct Hair {
+    guides: Guides,
+    bounds: Aabb,
+    solver: Solver,
+    state: State,
+    clock: Clock,
+    /// Where the picture lies between the last two states.
+    share: f32,
+    /// Poses of the head at the last two states, and where the last call of `step` ended.
+    poses: [Pose; 2],
+    end: Pose,
+    shown: Vec<Vec3Lanes>,
+    renderer: Renderer,
+    /// Velocity of the air \[m/s\], world space.
+    pub wind: Vec3,
+    /// The lights; three to begin with.
+    pub lights: Vec<Light>,
+    /// Colour of the body.
+    pub body_look: BodyLook,
+    /// How detail falls with distance.
+    pub level_of_detail: LevelOfDetail,
+}
+
+impl Hair {
+    /// Hair of a groom, without a body.
+    ///
+    /// # Errors
+    /// A setting outside its range, or a groom without strands.
+    pub fn new(backend: &Backend, groom: &Groom, settings: &Settings) -> Result<Self, Error> {
+        let guides = Guides::resample(groom, POINTS_PER_STRAND)?;
+        Self::with_body(backend, guides, None, Vec::new(), settings)
+    }
+
+    /// Guides on a body: its drawn mesh, and the solids that hair hits.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn with_body(
+        backend: &Backend,
+        guides: Guides,
+        mesh: Option<&Mesh>,
+        colliders: Vec<Collider>,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let Backend::Cpu = backend;
+        let solver = Solver::new(&guides, settings, colliders)?;
+        let state = solver.rest_state(Pose::IDENTITY);
+        let bounds = prepare::bounds(&guides, mesh);
+        Ok(Self {
+            shown: guides.positions().to_vec(),
+            lights: Light::three_point(prepare::center(bounds)).to_vec(),
+            renderer: Renderer::new(&guides, mesh, &PictureSettings::default())?,
+            clock: Clock::new(settings.time_step),
+            share: 1.0,
+            poses: [Pose::IDENTITY; 2],
+            end: Pose::IDENTITY,
+            wind: Vec3::ZERO,
+            body_look: BodyLook::default(),
+            level_of_detail: LevelOfDetail::default(),
+            guides,
+            bounds,
+            solver,
+            state,
+        })
+    }
+
+    /// All that a scene names.
+    ///
+    /// # Errors
+    /// A setting of the scene outside its range.
+    pub fn from_scene(scene: &Scene, prepared: Prepared, backend: &Backend) -> Result<Self, Error> {
+        let Prepared { guides, mesh, colliders, .. } = prepared;
+        let mut hair = Self::with_body(backend, guides, mesh.as_ref(), colliders, &scene.simulation)?;
+        if !scene.lights.is_empty() {
+            hair.lights.clone_from(&scene.lights);
+        }
+        hair.body_look = scene.body_look;
+        hair.level_of_detail = scene.level_of_detail;
+        hair.set_picture(&scene.picture)?;
+        Ok(hair)
+    }
+
+    /// Lets `seconds` pass while the head moves evenly to `world_from_head`. Steps have a fixed
+    /// length, so zero or more of them happen; a frame longer than 16 steps slows time down.
+    /// Returns one report a step.
+    pub fn step(&mut self, seconds: f64, world_from_head: &Pose) -> Vec<StepReport> {
+        let (start, end) = (self.end, *world_from_head);
+        self.step_along(seconds, |share| start.toward(&end, share))
+    }
+
+    /// As [`Hair::step`], with the head's pose for each share (0 to 1) of the time that passes.
+    pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Vec<StepReport> {
+        let ticks = self.clock.advance(seconds);
+        let waited = f64::from(ticks.share) * self.clock.step_time(1);
+        let reports = (0..ticks.count).map(|step| {
+            // The last step ends `waited` before the end of the frame.
+            let left = self.clock.step_time(u64::from(ticks.count - 1 - step)) + waited;
+            let share = (1.0 - left / seconds).clamp(0.0, 1.0);
+            let drive = Drive { world_from_head: pose(share as f32), wind: self.wind };
+            self.poses = [self.poses[1], drive.world_from_head];
+            self.solver.step(&mut self.state, &drive)
+        });
+        let reports = reports.collect();
+        self.share = ticks.share;
+        self.end = pose(1.0);
+        reports
+    }
+
+    /// Draws the hair as it is now.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn picture(&mut self, camera: &Camera, look: &Look) -> Result<Picture, Error> {
+        Ok(self.picture_with_report(camera, look)?.0)
+    }
+
+    /// Draws the hair as it is now, and says what it cost.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn picture_with_report(
+        &mut self,
+        camera: &Camera,
+        look: &Look,
+    ) -> Result<(Picture, FrameReport), Error> {
+        self.state.interpolated(self.share, &mut self.shown);
+        let input = FrameInput {
+            positions: &self.shown,
+            world_from_head: self.poses[0].toward(&self.poses[1], self.share),
+            camera,
+            look,
+            body_look: &self.body_look,
+            lights: &self.lights,
+            level_of_detail: &self.level_of_detail,
+        };
+        Ok(self.renderer.draw(&input)?)
+    }
+
+    /// Changes size and finish of the pictures.
+    ///
+    /// # Errors
+    /// A setting outside its range; the settings then stay as they were.
+    pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), Error> {
+        Ok(self.renderer.set_picture(settings)?)
+    }
+
+    /// Scales the length of every strand at run time, near its tip only, shape `[strand]`
+    /// [Chen2011 fig. 45].
+    ///
+    /// # Errors
+    /// Another number of scales than strands, or a scale outside 0.05 to 1.
+    pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), Error> {
+        Ok(self.state.set_length_scale(&self.solver, scales)?)
+    }
+
+    /// The simulated strands at rest.
+    pub fn guides(&self) -> &Guides {
+        &self.guides
+    }
+
+    /// The state of the simulation.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The box around hair and body at rest \[m\], head space.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+}

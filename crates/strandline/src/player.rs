@@ -1,0 +1,141 @@
+use crate::{
+    Backend, Error, Hair, Scene,
+    body::{Motion, Pose},
+    prepare::Prepared,
+    render::{Camera, FrameReport, Picture},
+    scene::WindSection,
+    sim::StepReport,
+};
+
+/// What a [`Player`] tells while it plays.
+#[derive(Clone, Debug)]
+pub enum Event {
+    /// A step of the simulation ended.
+    Stepped(StepReport),
+    /// A picture is finished.
+    Drawn {
+        /// Its number, from 0.
+        frame: u32,
+        /// The picture.
+        picture: Picture,
+        /// What it cost.
+        report: FrameReport,
+    },
+}
+
+/// Plays a scene: an iterator of events, frame after frame, until the film is over.
+pub struct Player {
+    hair: Hair,
+    motion: Motion,
+    pivot: glam::Vec3,
+    wind: WindSection,
+    camera: Camera,
+    look: crate::render::Look,
+    draw: bool,
+    frame_seconds: f64,
+    settle_seconds: f64,
+    frames: u32,
+    frame: u32,
+    waiting: std::vec::IntoIter<StepReport>,
+    drawn: bool,
+    notes: Vec<String>,
+}
+
+impl Player {
+    /// Loads a scene; `draw` false leaves the pictures out.
+    ///
+    /// # Errors
+    /// Whatever the scene's parts refuse.
+    pub fn new(scene: &Scene, backend: &Backend, draw: bool) -> Result<Self, Error> {
+        let mut prepared = Prepared::new(scene)?;
+        let motion = prepared.motion.clone();
+        let (pivot, bounds) = (prepared.pivot, prepared.bounds);
+        let notes = std::mem::take(&mut prepared.notes);
+        let aspect = scene.picture.width as f32 / scene.picture.height as f32;
+        Ok(Self {
+            hair: Hair::from_scene(scene, prepared, backend)?,
+            motion,
+            pivot,
+            wind: scene.wind,
+            camera: scene.camera.camera(bounds, aspect),
+            look: scene.look.clone(),
+            draw,
+            frame_seconds: 1.0 / f64::from(scene.film.frames_per_second),
+            settle_seconds: f64::from(scene.film.settle),
+            frames: scene.film.frames,
+            frame: 0,
+            waiting: Vec::new().into_iter(),
+            drawn: true,
+            notes,
+        })
+    }
+
+    /// The hair that is played.
+    pub fn hair(&self) -> &Hair {
+        &self.hair
+    }
+
+    /// Number of frames of the film.
+    pub fn frames(&self) -> u32 {
+        self.frames
+    }
+
+    /// Frames of which every event was told.
+    pub fn frames_done(&self) -> u32 {
+        self.frame - u32::from(!self.drawn)
+    }
+
+    /// What was mended or left out while loading.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Lets the hair hang on the resting head; the steps are not told.
+    fn settle(&mut self) {
+        let rest = self.motion.pose(0.0, self.pivot);
+        self.hair.wind = self.wind.at(0.0);
+        let frames = (self.settle_seconds / self.frame_seconds).ceil();
+        for _ in 0..frames as u64 {
+            self.hair.step(self.settle_seconds / frames, &rest);
+        }
+    }
+
+    /// Moves the hair to the next frame.
+    fn advance(&mut self) {
+        if self.frame == 0 {
+            self.settle();
+        }
+        let begin = f64::from(self.frame) * self.frame_seconds;
+        self.hair.wind = self.wind.at(begin);
+        let (motion, pivot, length) = (&self.motion, self.pivot, self.frame_seconds);
+        let pose = |share: f32| -> Pose { motion.pose(begin + length * f64::from(share), pivot) };
+        self.waiting = self.hair.step_along(length, pose).into_iter();
+        self.drawn = !self.draw;
+        self.frame += 1;
+    }
+
+    fn picture(&mut self) -> Result<Event, Error> {
+        self.drawn = true;
+        let (picture, report) = self.hair.picture_with_report(&self.camera, &self.look)?;
+        Ok(Event::Drawn { frame: self.frame - 1, picture, report })
+    }
+}
+
+impl Iterator for Player {
+    type Item = Result<Event, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(report) = self.waiting.next() {
+                return Some(Ok(Event::Stepped(report)));
+            }
+            if !self.drawn {
+                return Some(self.picture());
+            }
+            if self.frame == self.frames {
+                return None;
+            }
+            self.advance();
+        }
+    }
+}

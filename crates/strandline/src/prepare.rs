@@ -1,0 +1,162 @@
+//! From a scene to what runs: strands, body, solids and motion.
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec3};
+
+use crate::{
+    Error, Scene,
+    body::{Aabb, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Motion, Shape},
+    groom::{
+        Groom, Guides,
+        format::{self, LoadOptions},
+    },
+    scene::Model,
+};
+
+/// Air around a loaded body that its signed distance covers \[m\].
+const DISTANCE_PADDING: f32 = 0.02;
+
+/// What a scene names, loaded or grown.
+pub struct Prepared {
+    /// The simulated strands.
+    pub guides: Guides,
+    /// The drawn body.
+    pub mesh: Option<Mesh>,
+    /// Everything that hair hits.
+    pub colliders: Vec<Collider>,
+    /// How the head moves.
+    pub motion: Motion,
+    /// Point about which the head turns \[m\], head space.
+    pub pivot: Vec3,
+    /// The box around hair and drawn body at rest \[m\], head space.
+    pub bounds: Aabb,
+    /// What was mended or left out while loading, for a person to read.
+    pub notes: Vec<String>,
+}
+
+/// The body of a scene before strands are known.
+struct Body {
+    mesh: Option<Mesh>,
+    shape: Option<Shape>,
+    pivot: Option<Vec3>,
+}
+
+impl Prepared {
+    /// Loads and grows all that a scene names.
+    ///
+    /// # Errors
+    /// Whatever a reader or a validation found.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        scene.check()?;
+        let mut notes = Vec::new();
+        let groom = groom(scene, &mut notes)?;
+        let body = body(scene)?;
+        let mut guides = Guides::resample(&groom, scene.groom.points_per_strand as usize)?;
+        if groom.root_normals.is_none()
+            && let Some(shape) = &body.shape
+        {
+            let normals = (0..guides.strand_count())
+                .map(|strand| shape.distance_and_gradient(guides.position(strand, 0)).1)
+                .collect();
+            guides.set_root_normals(normals);
+        }
+        let mut colliders = Vec::new();
+        if scene.body.solid
+            && let Some(shape) = body.shape
+        {
+            colliders.push(Collider::new(shape, Carrier::Head, scene.body.friction)?);
+        }
+        for section in &scene.colliders {
+            colliders.push(section.collider()?);
+        }
+        let mesh = body.mesh.filter(|_| scene.body.visible);
+        let bounds = bounds(&guides, mesh.as_ref());
+        let pivot = scene.motion.pivot.or(body.pivot).unwrap_or_else(|| low_center(bounds));
+        let motion = scene.motion.motion(pivot)?;
+        Ok(Self { guides, mesh, colliders, motion, pivot, bounds, notes })
+    }
+}
+
+/// The strands of a scene: from its file, or grown.
+fn groom(scene: &Scene, notes: &mut Vec<String>) -> Result<Groom, Error> {
+    let Some(file) = &scene.groom.file else { return Ok(scene.style.grow()?) };
+    let options = LoadOptions { strict: false, scale: scene.groom.scale, up: scene.groom.up };
+    let loaded = format::load(&scene.path(file), &options)?;
+    notes.extend(loaded.report.problems.iter().map(|problem| format!("{}: {problem}", file.display())));
+    let mut groom = loaded.groom;
+    groom.transform(1.0, Quat::IDENTITY, scene.groom.translation);
+    let every = scene.groom.guide_every as usize;
+    Ok(if every > 1 { groom.kept(|strand| strand % every == 0) } else { groom })
+}
+
+fn body(scene: &Scene) -> Result<Body, Error> {
+    let section = &scene.body;
+    if let Some(file) = &section.file {
+        let mesh = Mesh::load(&scene.path(file), section.scale)?;
+        let shape = if section.solid { Some(solid(scene, &mesh)?) } else { None };
+        return Ok(Body { mesh: Some(mesh), shape, pivot: None });
+    }
+    let grown = scene.groom.file.is_none();
+    Ok(match section.model {
+        Model::Mannequin => mannequin(scene)?,
+        Model::Auto if grown => mannequin(scene)?,
+        Model::Auto | Model::None => Body { mesh: None, shape: None, pivot: None },
+    })
+}
+
+/// The mannequin; hair hits its signed distance sampled at `spacing`, or the exact one, which is
+/// looked up four times as slowly.
+fn mannequin(scene: &Scene) -> Result<Body, Error> {
+    let mannequin = Mannequin::new();
+    let shape = if scene.body.exact {
+        Shape::Mannequin(mannequin.clone())
+    } else {
+        let grid = DistanceGrid::from_field(&*mannequin, scene.body.spacing, DISTANCE_PADDING)?;
+        Shape::Grid(Arc::new(grid))
+    };
+    Ok(Body { mesh: Some(mannequin.mesh()), pivot: Some(mannequin.neck_pivot()), shape: Some(shape) })
+}
+
+/// The signed distance of a loaded body; a closed mesh as it is, an open one with its holes closed.
+fn solid(scene: &Scene, drawn: &Mesh) -> Result<Shape, Error> {
+    let spacing = scene.body.spacing;
+    let grid = match &scene.body.collider_file {
+        Some(file) => closed_or_open(&Mesh::load(&scene.path(file), scene.body.scale)?, spacing)?,
+        None => closed_or_open(drawn, spacing)?,
+    };
+    Ok(Shape::Grid(Arc::new(grid)))
+}
+
+fn closed_or_open(mesh: &Mesh, spacing: f32) -> Result<DistanceGrid, Error> {
+    Ok(if mesh.is_closed() {
+        DistanceGrid::from_mesh(mesh, spacing, DISTANCE_PADDING)?
+    } else {
+        DistanceGrid::from_open_mesh(mesh, spacing, DISTANCE_PADDING)?
+    })
+}
+
+/// The box around strands and body \[m\].
+pub(crate) fn bounds(guides: &Guides, mesh: Option<&Mesh>) -> Aabb {
+    let (min, max) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+    let mut bounds = mesh.and_then(Mesh::bounds).unwrap_or(Aabb { min, max });
+    for strand in 0..guides.strand_count() {
+        for point in 0..guides.points_per_strand() {
+            let point = guides.position(strand, point);
+            bounds = Aabb { min: bounds.min.min(point), max: bounds.max.max(point) };
+        }
+    }
+    bounds
+}
+
+/// The middle of a box \[m\].
+pub(crate) fn center(bounds: Aabb) -> Vec3 {
+    0.5 * (bounds.min + bounds.max)
+}
+
+/// Where the neck of an unknown head may be: in the middle, a third of the way up.
+fn low_center(bounds: Aabb) -> Vec3 {
+    let mut center = center(bounds);
+    center.y = bounds.min.y + (bounds.max.y - bounds.min.y) / 3.0;
+    center
+}

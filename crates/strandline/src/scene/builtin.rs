@@ -1,0 +1,50 @@
+use std::str::FromStr;
+
+use super::{FilmSection, GroomSection, MotionName, Scene};
+use crate::{
+    Error,
+    groom::{Style, StyleSettings},
+    render::LevelOfDetail,
+    sim::Settings,
+};
+
+impl Scene {
+    /// The demo: the default style shakes its head for 4 s.
+    pub fn demo() -> Self {
+        Self::default()
+    }
+
+    /// The thesis's scene [Chen2011 §6]: 1,750 guides x 6 points, 32^3 cells, 20 iterations, 16
+    /// follow strands, 560,000 segments, three lights of which two cast shadows, head shake.
+    pub fn thesis() -> Self {
+        let mut scene = Self {
+            groom: GroomSection { points_per_strand: 6, ..GroomSection::default() },
+            style: StyleSettings { strand_count: 1750, ..StyleSettings::new(Style::Long) },
+            simulation: Settings::thesis(),
+            film: FilmSection::default(),
+            ..Self::default()
+        };
+        scene.motion.name = MotionName::Shake;
+        scene.look.follow_strands = 16;
+        scene.level_of_detail = LevelOfDetail::full();
+        (scene.picture.width, scene.picture.height) = (800, 600);
+        scene
+    }
+}
+
+impl FromStr for Scene {
+    type Err = Error;
+
+    /// A built-in scene by its name, `demo` or `thesis`.
+    fn from_str(name: &str) -> Result<Self, Error> {
+        match name {
+            "demo" => Ok(Self::demo()),
+            "thesis" => Ok(Self::thesis()),
+            found => Err(Error::Value {
+                key: "scene",
+                found: format!("`{found}`"),
+                expected: "demo, thesis or the path of a .toml file".to_owned(),
+            }),
+        }
+    }
+}
