@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
-use strandline::{Backend, Scene, Style, groom::StyleSettings, scene::MotionName};
+use strandline::{Backend, Scene, Style, scene::MotionName};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
@@ -163,10 +163,7 @@ impl Inputs {
     pub fn scene(&self) -> anyhow::Result<Scene> {
         let mut scene = scene(&self.scene)?;
         if let Some(style) = self.style {
-            scene.groom.file = None;
-            let plain = StyleSettings::new(style);
-            scene.style =
-                StyleSettings { strand_count: scene.style.strand_count, seed: scene.style.seed, ..plain };
+            scene.set_style(style);
         }
         // Paths given here are relative to the current folder, not to the scene's.
         if let Some(file) = &self.groom {

@@ -11,15 +11,33 @@ use crate::{
 impl Scene {
     /// The demo: the default style shakes its head for 4 s.
     pub fn demo() -> Self {
-        Self::default()
+        let mut scene = Self::default();
+        scene.set_style(Style::default());
+        scene
+    }
+
+    /// Replaces the strands by a built-in style, with as many points on a guide as its curls need
+    /// and a drawn segment about every centimetre.
+    pub fn set_style(&mut self, style: Style) {
+        let (seed, strand_count) = (self.style.seed, self.style.strand_count);
+        self.groom.file = None;
+        self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
+        let (points, segments) = match style {
+            Style::Curly => (56, 1),
+            Style::Wavy => (28, 2),
+            _ => (16, 3),
+        };
+        self.groom.points_per_strand = points;
+        self.level_of_detail.segments_per_span = segments;
     }
 
     /// The thesis's scene [Chen2011 §6]: 1,750 guides x 6 points, 32^3 cells, 20 iterations, 16
     /// follow strands, 560,000 segments, three lights of which two cast shadows, head shake.
     pub fn thesis() -> Self {
+        // Six points bend over the skull only when they are not far apart: a bob.
         let mut scene = Self {
             groom: GroomSection { points_per_strand: 6, ..GroomSection::default() },
-            style: StyleSettings { strand_count: 1750, ..StyleSettings::new(Style::Long) },
+            style: StyleSettings { strand_count: 1750, ..StyleSettings::new(Style::Bob) },
             simulation: Settings::thesis(),
             film: FilmSection::default(),
             ..Self::default()

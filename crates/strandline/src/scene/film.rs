@@ -48,12 +48,16 @@ pub struct CameraSection {
     pub field_of_view: Option<f32>,
 }
 
+/// The framing holds the corners of the box around hair and body, and a head has none: the camera
+/// comes closer by this share.
+const CLOSER: f32 = 0.82;
+
 impl CameraSection {
     /// The camera, given the box around hair and body \[m\] and width / height of the picture.
     pub fn camera(&self, bounds: Aabb, aspect: f32) -> Camera {
         let framing = Camera::framing(bounds, self.view.direction(), aspect);
         let target = self.target.unwrap_or(framing.target);
-        let position = self.position.unwrap_or(target + (framing.position - framing.target));
+        let position = self.position.unwrap_or(target + CLOSER * (framing.position - framing.target));
         let field_of_view = self.field_of_view.unwrap_or(framing.field_of_view);
         Camera { position, target, field_of_view, ..framing }
     }
