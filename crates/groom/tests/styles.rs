@@ -55,6 +55,46 @@ fn lengths_are_within_the_settings_and_turns_are_gentle() {
     }
 }
 
+/// Tips of all strands \[m\].
+fn tips(groom: &Groom) -> Vec<glam::Vec3> {
+    (0..groom.strand_count()).map(|strand| *groom.strand(strand).last().unwrap()).collect()
+}
+
+#[test]
+fn a_bob_ends_level() {
+    let settings = StyleSettings::new(Style::Bob);
+    let mut heights: Vec<f32> = tips(&grown(Style::Bob, 4)).iter().map(|tip| tip.y).collect();
+    heights.sort_by(f32::total_cmp);
+    let (low, high) = (heights[12], heights[228]);
+    // Nine of ten within the layering, a step of 4 mm and the disorder of the tips.
+    assert!(high - low < settings.layering + 0.004 + 2.0 * settings.noise, "{low} to {high}");
+    assert!((low - settings.cut_height).abs() < 0.01);
+}
+
+#[test]
+fn a_ponytail_hangs_together_behind_the_head() {
+    let tips = tips(&grown(Style::Ponytail, 4));
+    let middle = tips.iter().sum::<glam::Vec3>() / tips.len() as f32;
+    assert!(middle.z < -0.10 && middle.x.abs() < 0.01 && middle.y < -0.1, "{middle}");
+    for tip in tips {
+        // A tail is about 6 cm wide.
+        assert!((tip - middle).with_y(0.0).length() < 0.05, "{tip} is off {middle}");
+    }
+}
+
+#[test]
+fn no_place_of_the_scalp_is_bald() {
+    let probes = Mannequin::new().scalp().roots(600, 12);
+    for style in Style::ALL {
+        let groom = StyleSettings { strand_count: 1750, ..StyleSettings::new(style) }.grow().unwrap();
+        for probe in &probes {
+            let covered = groom.points.iter().any(|point| point.distance(probe.position) < 0.011);
+            // 1,750 roots lie 6 mm apart; a bald patch would be wider than two of these gaps.
+            assert!(covered, "{style:?}: nothing near {}", probe.position);
+        }
+    }
+}
+
 #[test]
 fn the_same_seed_gives_the_same_bits_for_any_number_of_threads() {
     let with = |threads: usize, seed: u64| {

@@ -8,13 +8,35 @@ use super::{Style, StyleSettings};
 /// Where the whorl lies \[m\].
 const WHORL: Vec3 = Vec3::new(0.012, 0.092, -0.062);
 /// Where a ponytail is tied \[m\], and where the hair leaves the tie.
-pub const TIE: Vec3 = Vec3::new(0.0, 0.052, -0.118);
+pub const TIE: Vec3 = Vec3::new(0.0, 0.038, -0.117);
 /// Radius \[m\] of the tied hair.
 pub const TIE_RADIUS: f32 = 0.011;
 /// The room in front of the face that falling hair keeps free: centre and half axes \[m\].
 const FACE: (Vec3, Vec3) = (Vec3::new(0.0, -0.085, 0.080), Vec3::new(0.062, 0.145, 0.075));
+/// Strands rooted in front of this plane \[m\] fall before the shoulder.
+const FRONT_FROM: f32 = 0.012;
 /// From this height \[m\] on the skull the hair no longer heeds the parting.
 const PARTED_ABOVE: f32 = 0.045;
+
+/// Where a strand has come to.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Place \[m\].
+    pub point: Vec3,
+    /// Distance \[m\] from the skin.
+    pub distance: f32,
+    /// Unit vector away from the skin.
+    pub out: Vec3,
+    /// Way \[m\] since the tie.
+    pub passed: f32,
+}
+
+impl Place {
+    /// The part of a direction that runs along the skin, of length 1.
+    fn along(&self, direction: Vec3) -> Vec3 {
+        (direction - self.out * direction.dot(self.out)).normalize_or_zero()
+    }
+}
 
 /// What is known of a strand while it is combed.
 #[derive(Clone, Copy, Debug)]
@@ -33,7 +55,7 @@ impl Combed {
     /// Of a root; `place` is its place across a tie, in the unit disc, and `chance` decides the
     /// side of strands on the parting itself.
     pub fn new(root: Root, settings: &StyleSettings, place: Vec2, chance: f32) -> Self {
-        let across = root.position.x - settings.parting + 0.006 * (chance - 0.5);
+        let across = root.position.x - settings.parting + 0.002 * (chance - 0.5);
         Self { root, side: if across < 0.0 { -1.0 } else { 1.0 }, place, tied: false }
     }
 
@@ -42,43 +64,56 @@ impl Combed {
         TIE + TIE_RADIUS * Vec3::new(self.place.x, self.place.y, 0.0)
     }
 
-    /// Direction at a place \[m\] with the skin's outward direction `out` at a distance \[m\].
-    pub fn direction(&self, settings: &StyleSettings, point: Vec3, out: Vec3, passed: f32) -> Vec3 {
-        let along = |direction: Vec3| (direction - out * direction.dot(out)).normalize_or_zero();
+    /// Direction at a place on or above the skin.
+    pub fn direction(&self, settings: &StyleSettings, place: Place) -> Vec3 {
         match settings.style {
-            Style::Ponytail if !self.tied => {
-                along(self.tie() - point) + 0.35 * (self.tie() - point).normalize_or_zero()
-            }
-            Style::Ponytail => {
-                // Out of the tie first, then down.
-                let fall = (passed / 0.05).min(1.0);
-                Vec3::new(0.0, 0.25, -1.0).lerp(Vec3::new(0.02 * self.place.x, -1.0, -0.06), fall)
-            }
-            Style::Pixie => self.off_whorl(settings, along, point),
-            _ => self.falling(settings, along, point),
+            Style::Ponytail if self.tied => self.tail(place.passed),
+            Style::Ponytail => self.gathered(place),
+            Style::Pixie => self.off_whorl(settings, place),
+            _ => self.falling(settings, place),
         }
     }
 
+    /// Along the skin to the tie; over the ear, not across it.
+    fn gathered(&self, place: Place) -> Vec3 {
+        let way = (self.tie() - place.point).normalize_or_zero();
+        let before_ear = smooth(-0.03, 0.005, place.point.z) * smooth(0.030, 0.005, place.point.y);
+        let over_ear = Vec3::new(0.0, 1.4 * before_ear, -0.3 * before_ear);
+        place.along(way + over_ear) + 0.35 * way * (1.0 - before_ear)
+    }
+
+    /// Out of the tie, then down: the tail opens to its middle and closes to its end.
+    fn tail(&self, passed: f32) -> Vec3 {
+        let fall = smooth(0.0, 0.055, passed);
+        let open =
+            0.16 * smooth(0.0, 0.03, passed) * smooth(0.16, 0.07, passed) - 0.05 * smooth(0.16, 0.30, passed);
+        let spread = open * Vec3::new(self.place.x, 0.0, self.place.y);
+        Vec3::new(0.0, 0.35, -1.0).lerp(Vec3::new(0.0, -1.0, 0.03), fall) + spread
+    }
+
     /// Outward from the whorl, turned by the swirl; over the forehead to the side.
-    fn off_whorl(&self, settings: &StyleSettings, along: impl Fn(Vec3) -> Vec3, point: Vec3) -> Vec3 {
-        let away = Quat::from_axis_angle(WHORL.normalize(), settings.swirl) * (self.root.position - WHORL);
+    fn off_whorl(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+        let turn = Quat::from_axis_angle(WHORL.normalize(), settings.swirl);
+        let away = place.along(turn * (self.root.position - WHORL));
         let ahead = smooth(0.02, 0.07, self.root.position.z) * smooth(-0.02, 0.05, self.root.position.y);
-        let fringe = Vec3::new(-0.7 * settings.parting.signum(), -0.15, 0.5);
-        along(away).lerp(along(fringe), 0.75 * ahead)
-            + 0.35 * along(Vec3::NEG_Y) * smooth(0.06, -0.02, point.y)
+        let fringe = place.along(Vec3::new(-0.7 * settings.parting.signum(), -0.15, 0.5));
+        away.lerp(fringe, 0.75 * ahead) + 0.35 * place.along(Vec3::NEG_Y) * smooth(0.06, -0.02, place.point.y)
     }
 
     /// Away from the parting over the skull, then down beside the face.
-    fn falling(&self, settings: &StyleSettings, along: impl Fn(Vec3) -> Vec3, point: Vec3) -> Vec3 {
+    fn falling(&self, settings: &StyleSettings, place: Place) -> Vec3 {
+        let point = place.point;
         let on_top = smooth(PARTED_ABOVE - 0.03, PARTED_ABOVE + 0.04, point.y);
         // The parting runs from the forehead to the whorl; behind it hair falls to the back.
         let parted = smooth(WHORL.z - 0.01, WHORL.z + 0.035, self.root.position.z);
-        let sideways = along(Vec3::new(self.side, -0.35, -0.45));
-        let backward = along(self.root.position - WHORL + Vec3::new(0.0, -0.02, -0.03));
+        let sideways = place.along(Vec3::new(self.side, -0.35, -0.45));
+        let backward = place.along(self.root.position - WHORL + Vec3::new(0.0, -0.02, -0.03));
         let combed = backward.lerp(sideways, parted);
-        let behind = self.behind_ear(point);
-        let down = (Vec3::NEG_Y + behind).normalize();
-        let free = down + self.off_face(settings, point) + self.off_shoulder(point);
+        let down = (Vec3::NEG_Y + self.behind_ear(point)).normalize();
+        let mut free = down + self.off_face(point) + self.toward_curtain(point);
+        free += self.turned_under(settings, point);
+        let resting = smooth(0.040, 0.012, place.distance) * smooth(-0.125, -0.150, point.y);
+        free = free.lerp(1.3 * self.off_shoulder(place), resting);
         combed * on_top + free * (1.0 - 0.75 * on_top)
     }
 
@@ -88,25 +123,41 @@ impl Combed {
         Vec3::new(0.0, 0.0, -0.55 * level * smooth(-0.02, 0.05, point.z))
     }
 
-    /// Out of the room in front of the face.
-    fn off_face(&self, settings: &StyleSettings, point: Vec3) -> Vec3 {
-        let side = if settings.parting.abs() > 1e-3 && self.root.position.x.abs() < settings.parting.abs() {
-            self.side
-        } else {
-            point.x.signum()
-        };
+    /// Out of the room in front of the face, to the side that the strand was combed to.
+    fn off_face(&self, point: Vec3) -> Vec3 {
         let inside = 1.3 - ((point - FACE.0) / FACE.1).length();
         if inside <= 0.0 {
             return Vec3::ZERO;
         }
+        let middle = self.root.position.x.abs() < 0.04;
+        let side = if middle { self.side } else { self.root.position.x.signum() };
         Vec3::new(side * 3.0, 0.3, -1.5) * inside.min(0.8)
     }
 
-    /// In front of the shoulder or behind it, not on top.
-    fn off_shoulder(&self, point: Vec3) -> Vec3 {
-        let near = smooth(-0.10, -0.16, point.y);
-        let way = if self.root.position.z > 0.005 { 0.55 } else { -0.35 };
-        Vec3::new(0.0, 0.0, way * near)
+    /// 1 for strands that fall before the shoulder, -1 behind it.
+    fn curtain(&self) -> f32 {
+        if self.root.position.z > FRONT_FROM { 1.0 } else { -1.0 }
+    }
+
+    /// In good time before or behind the shoulder.
+    fn toward_curtain(&self, point: Vec3) -> Vec3 {
+        let level = smooth(-0.21, -0.17, point.y);
+        let forward = 0.32 * smooth(-0.06, -0.13, point.y);
+        let backward = -0.50 * smooth(0.01, -0.08, point.y) * smooth(-0.105, -0.06, point.z);
+        Vec3::new(0.0, 0.0, if self.curtain() > 0.0 { forward } else { backward } * level)
+    }
+
+    /// Hair that rests on the shoulder slides off it to the front or the back, not outward.
+    fn off_shoulder(&self, place: Place) -> Vec3 {
+        let inward = -0.25 * place.point.x.signum() * smooth(0.07, 0.13, place.point.x.abs());
+        place.along(Vec3::new(inward, -0.45, 0.9 * self.curtain()))
+    }
+
+    /// The ends turn toward the neck.
+    fn turned_under(&self, settings: &StyleSettings, point: Vec3) -> Vec3 {
+        let near_end = smooth(settings.cut_height + 0.055, settings.cut_height, point.y);
+        let inward = Vec3::new(-point.x, 0.0, -0.03 - point.z).normalize_or_zero();
+        settings.turn_under * near_end * inward
     }
 }
 

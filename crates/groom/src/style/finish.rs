@@ -1,12 +1,14 @@
 //! Clumps, waves, curls and disorder, laid over the combed strands.
 
+use std::f32::consts::TAU;
+
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use strandline_body::{Mannequin, Random};
 
-use super::comb::{TIE, smooth};
+use super::StyleSettings;
+use super::comb::smooth;
 use super::grow::{CLEARANCE, Strand, outside};
-use super::{Style, StyleSettings};
 use crate::Guides;
 
 /// Shapes the strands; also tells the clump of each.
@@ -69,29 +71,15 @@ fn shape(
     index: usize,
     clump: u32,
 ) -> Vec<Vec3> {
-    let mut own = Random::new(settings.seed, 2_000_000_000 + index as u64);
-    let mut shared = Random::new(settings.seed, 3_000_000_000 + u64::from(clump));
-    let phase = std::f32::consts::TAU * shared.unit() + 0.9 * (own.unit() - 0.5);
-    let stretch = 0.85 + 0.3 * shared.unit();
-    let swing = [own.unit(), own.unit(), own.unit(), own.unit()].map(|unit| std::f32::consts::TAU * unit);
     let length: f32 = strand.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     let last = strand.points.len() - 1;
-    let frames = frames(&strand.points, strand.root.normal);
-    let mut points: Vec<Vec3> = (0..=last)
-        .map(|point| {
+    let bends = Bends::new(settings, strand, index, clump);
+    let mut points: Vec<Vec3> = frames(&strand.points, strand.root.normal)
+        .into_iter()
+        .enumerate()
+        .map(|(point, frame)| {
             let share = point as f32 / last as f32;
-            let along = share * length;
-            let [side, up] = frames[point];
-            let mut place = clumped(settings, strand, center, point, share);
-            let wave = settings.wave_amplitude * smooth(0.02, 0.14, along);
-            let angle = phase + std::f32::consts::TAU * along / (settings.wave_length * stretch);
-            place += wave * (angle.sin() * side + 0.35 * angle.cos() * up);
-            let curl = settings.curl_radius * smooth(0.01, 0.10, along);
-            let angle = phase + std::f32::consts::TAU * along / (settings.curl_length * stretch);
-            place += curl * (angle.cos() * side + angle.sin() * up);
-            let disorder = settings.noise * share;
-            let [a, b] = [swing[0] + 25.0 * along, swing[1] + 41.0 * along];
-            place + disorder * ((a.sin() + 0.5 * (swing[2] + b).sin()) * side + (swing[3] + a).sin() * up)
+            clumped(settings, strand, center, point, share) + bends.offset(settings, frame, share, length)
         })
         .collect();
     points[0] = strand.root.position;
@@ -105,19 +93,58 @@ fn shape(
     even
 }
 
-/// A strand drawn toward the middle of its clump; in a tied tail toward the middle of the tail.
+/// The choices that bend a strand: those of its clump and its own.
+struct Bends {
+    wave_phase: f32,
+    curl_phase: f32,
+    /// Turning sense and radius of the curl, 1 on average in size.
+    curl: f32,
+    /// Rate of waves and curls, 1 on average.
+    rate: f32,
+    swing: [f32; 4],
+}
+
+impl Bends {
+    fn new(settings: &StyleSettings, strand: &Strand, index: usize, clump: u32) -> Self {
+        let mut own = Random::new(settings.seed, 2_000_000_000 + index as u64);
+        let mut shared = Random::new(settings.seed, 3_000_000_000 + u64::from(clump));
+        let sense = if shared.unit() < 0.5 { -1.0 } else { 1.0 };
+        // Waves of neighbouring clumps run side by side; curls do not.
+        let place = strand.root.position;
+        let together = 2.5 * (31.0 * place.z + 1.3).sin() + 2.0 * (23.0 * place.y + 17.0 * place.x).sin();
+        Self {
+            wave_phase: together + 1.1 * (shared.unit() - 0.5) + 0.5 * (own.unit() - 0.5),
+            curl_phase: TAU * shared.unit() + 0.9 * (own.unit() - 0.5),
+            curl: sense * (0.65 + 0.7 * shared.unit()) * (0.9 + 0.2 * own.unit()),
+            rate: 0.8 + 0.4 * shared.unit() + 0.04 * (own.unit() - 0.5),
+            swing: [(); 4].map(|()| TAU * own.unit()),
+        }
+    }
+
+    /// How far \[m\] a strand is bent aside at a share of its length \[m\].
+    fn offset(&self, settings: &StyleSettings, [side, up]: [Vec3; 2], share: f32, length: f32) -> Vec3 {
+        let along = share * length;
+        let wave = settings.wave_amplitude * smooth(0.02, 0.16, along);
+        let wave_rate = 1.0 + 0.5 * (self.rate - 1.0);
+        let angle = self.wave_phase + TAU * wave_rate * along / settings.wave_length;
+        let waved = wave * (angle.sin() * side + 0.4 * angle.cos() * up);
+        let curl = settings.curl_radius * smooth(0.005, 0.08, along);
+        let angle = self.curl_phase + TAU * self.rate * along / settings.curl_length;
+        let curled = curl * (self.curl * angle.cos() * side + self.curl.abs() * angle.sin() * up);
+        let [a, b] = [self.swing[0] + 25.0 * along, self.swing[1] + 41.0 * along];
+        let disorder = settings.noise * share;
+        let loose = (a.sin() + 0.5 * (self.swing[2] + b).sin()) * side + (self.swing[3] + a).sin() * up;
+        waved + curled + disorder * loose
+    }
+}
+
+/// A strand drawn toward the middle of its clump.
 fn clumped(settings: &StyleSettings, strand: &Strand, center: &Strand, point: usize, share: f32) -> Vec3 {
     let here = strand.points[point];
     // Strands that parted ways, at the neck for example, do not meet again.
     let apart = here.distance(center.points[point]);
     let pull = settings.clump_share * share.powf(1.3) * smooth(0.05, 0.02, apart);
-    let mut place = here.lerp(center.points[point], pull);
-    if settings.style == Style::Ponytail {
-        // The tail closes toward its tip and opens a little in its upper third.
-        let fallen = smooth(TIE.y, TIE.y - 0.25, here.y) * smooth(-0.08, -0.11, here.z);
-        place.x *= 1.0 + 1.2 * fallen * (1.0 - fallen);
-    }
-    place
+    here.lerp(center.points[point], pull)
 }
 
 /// Two directions across the strand at every point, turned as little as possible from the root on.

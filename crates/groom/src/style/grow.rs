@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
-use super::comb::{Combed, TIE_RADIUS, smooth};
+use super::comb::{Combed, Place, TIE_RADIUS, smooth};
 use super::{Style, StyleSettings, finish};
 use crate::{Groom, GroomError, Guides, Widths};
 
@@ -20,6 +20,14 @@ pub const CLEARANCE: f32 = 0.0015;
 const WIDTH: f32 = 8e-5;
 /// Way \[m\] over which hair rises from its root to the full thickness of the hair.
 const RISE: f32 = 0.10;
+
+/// Distance \[m\] from the parting within which roots are drawn toward it.
+const PARTING_REACH: f32 = 0.014;
+
+/// A dome over the ear: centre on the side of positive x and half axes \[m\].
+const EAR_DOME: (Vec3, Vec3) = (Vec3::new(0.062, -0.026, -0.012), Vec3::new(0.033, 0.056, 0.050));
+/// Blend of the dome and the skin \[m\].
+const DOME_REACH: f32 = 0.016;
 
 /// What shaping needs to know of every strand.
 pub struct Strand {
@@ -41,7 +49,7 @@ impl StyleSettings {
         let strands: Vec<Strand> = roots
             .into_par_iter()
             .enumerate()
-            .map(|(index, root)| march(self, &mannequin, index, root))
+            .map(|(index, root)| march(self, &mannequin, index, beside_parting(self, &mannequin, root)))
             .collect();
         let (strands, clumps) = finish::finish(self, &mannequin, strands);
         let mut groom = Groom::empty(WIDTH);
@@ -56,6 +64,19 @@ impl StyleSettings {
     }
 }
 
+/// Draws roots near the parting toward it, so that it is a line and not a lane.
+fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -> Root {
+    let across = root.position.x - settings.parting;
+    let share = across.abs() / PARTING_REACH;
+    if matches!(settings.style, Style::Pixie | Style::Ponytail) || share >= 1.0 || root.position.y < 0.0 {
+        return root;
+    }
+    let mut drawn = root.position;
+    drawn.x = settings.parting + across * share.sqrt();
+    let (position, normal) = mannequin.nearest_skin(drawn);
+    Root { position, normal, ..root }
+}
+
 /// One strand, from its root to where it is cut.
 fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, root: Root) -> Strand {
     let mut random = Random::new(settings.seed, 1000 + index as u64);
@@ -64,7 +85,8 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
     let mut combed = Combed::new(root, settings, place, chance);
     let length =
         settings.length * (1.0 - settings.length_variation * variation) * style_length(settings, &root);
-    let cut_height = settings.cut_height + settings.length_variation * 0.15 * (cut - 0.5);
+    let crown = smooth(-0.06, 0.10, root.position.y);
+    let cut_height = settings.cut_height + settings.layering * (0.6 * crown + 0.4 * cut);
     // Hair from higher up lies over hair from below, and every hair has its depth in its layer.
     let thickness = settings.volume * (0.25 + 0.75 * depth) * (0.7 + 3.0 * root.position.y.max(0.0));
     let (mut points, mut point) = (vec![root.position], root.position);
@@ -72,8 +94,9 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
     let mut passed_tie = 0.0;
     let steps = (length / STEP).ceil() as usize;
     for step in 1..=steps {
-        let (distance, out) = mannequin.distance_and_gradient(point);
-        let wanted = combed.direction(settings, point, out, passed_tie).normalize_or(Vec3::NEG_Y);
+        let (distance, out) = covered(settings, mannequin, point);
+        let place = Place { point, distance, out, passed: passed_tie };
+        let wanted = combed.direction(settings, place).normalize_or(Vec3::NEG_Y);
         direction = (direction * STIFFNESS + wanted * (1.0 - STIFFNESS)).normalize_or(wanted);
         let rise = smooth(0.0, RISE, step as f32 * STEP);
         let clearance = if combed.tied { CLEARANCE } else { CLEARANCE + thickness * rise };
@@ -83,8 +106,8 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
             direction = (direction + out * into).normalize_or(wanted);
         }
         let before = point;
-        point =
-            outside(mannequin, point + direction * STEP, clearance.min(distance + 0.5 * STEP).max(CLEARANCE));
+        let least = clearance.min(distance + 0.5 * STEP).max(CLEARANCE);
+        point = uncovered(settings, mannequin, point + direction * STEP, least);
         direction = (point - before).normalize_or(direction);
         points.push(point);
         if settings.style == Style::Ponytail {
@@ -104,9 +127,18 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
 /// Direction in which a strand leaves the skin.
 fn leaving(settings: &StyleSettings, combed: &Combed) -> Vec3 {
     let normal = combed.root.normal;
-    let flow = combed.direction(settings, combed.root.position, normal, 0.0).normalize_or(normal);
+    let place = Place { point: combed.root.position, distance: 0.0, out: normal, passed: 0.0 };
+    let flow = combed.direction(settings, place).normalize_or(normal);
     let lift = if settings.style == Style::Ponytail { 0.25 } else { 0.6 };
-    (normal * lift + flow).normalize_or(normal)
+    // Beside the parting hair rises before it falls to its side, which hides the skin.
+    let beside = match settings.style {
+        Style::Pixie | Style::Ponytail => 0.0,
+        _ => {
+            smooth(0.012, 0.0, (combed.root.position.x - settings.parting).abs())
+                * smooth(-0.02, 0.03, combed.root.position.y)
+        }
+    };
+    (normal * (lift + 0.45 * beside) + flow * (1.0 - 0.6 * beside)).normalize_or(normal)
 }
 
 /// Shorter at the nape and the sides in short styles, the same everywhere else.
@@ -115,6 +147,23 @@ fn style_length(settings: &StyleSettings, root: &Root) -> f32 {
         Style::Pixie => 0.45 + 0.55 * smooth(-0.06, 0.06, root.position.y),
         _ => 1.0,
     }
+}
+
+/// Distance \[m\] and direction away from the skin, ears smoothed over where hair falls across them.
+fn covered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3) -> (f32, Vec3) {
+    let (distance, out) = mannequin.distance_and_gradient(point);
+    if matches!(settings.style, Style::Pixie | Style::Ponytail) {
+        return (distance, out);
+    }
+    let side = Vec3::new(point.x.signum(), 1.0, 1.0);
+    let unit = (point - EAR_DOME.0 * side) / EAR_DOME.1;
+    let size = unit.length().max(1e-3);
+    let slope = unit / EAR_DOME.1 / size;
+    let dome = (size - 1.0) / slope.length();
+    let overlap = (1.0 - (dome - distance).abs() / DOME_REACH).max(0.0);
+    let share = if dome < distance { 1.0 - 0.5 * overlap * overlap } else { 0.5 * overlap * overlap };
+    let joined = distance.min(dome) - DOME_REACH * overlap * overlap * overlap / 6.0;
+    (joined, out.lerp(slope.normalize(), share).normalize_or(out))
 }
 
 /// Moves a point out of the body until it is `clearance` \[m\] from the skin.
@@ -129,9 +178,16 @@ pub fn outside(mannequin: &Mannequin, mut point: Vec3, clearance: f32) -> Vec3 {
     point
 }
 
+/// Moves a point out of the body and of the domes over the ears.
+fn uncovered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3, clearance: f32) -> Vec3 {
+    let (distance, out) = covered(settings, mannequin, point);
+    let moved = if distance < clearance { point + out * (clearance - distance) } else { point };
+    outside(mannequin, moved, clearance)
+}
+
 /// Takes the corners out of a strand without drawing it into the body; the root stays.
 fn smooth_out(points: &mut [Vec3], mannequin: &Mannequin) {
-    for _ in 0..4 {
+    for _ in 0..8 {
         let mut before = points[0];
         for index in 1..points.len().saturating_sub(1) {
             let here = points[index];

@@ -19,6 +19,10 @@ pub struct StyleSettings {
     pub length_variation: f32,
     /// Height \[m\], head space, at which falling hair is cut level.
     pub cut_height: f32,
+    /// Height \[m\] over which the cut is spread, hair from the crown ending highest; 0 cuts level.
+    pub layering: f32,
+    /// How far the ends turn under, toward the neck, 0 to 2.
+    pub turn_under: f32,
     /// Place of the parting \[m\], positive on the head's left.
     pub parting: f32,
     /// Turn \[rad\] of the hair around the whorl.
@@ -51,6 +55,8 @@ struct Given {
     length: Option<f32>,
     length_variation: Option<f32>,
     cut_height: Option<f32>,
+    layering: Option<f32>,
+    turn_under: Option<f32>,
     parting: Option<f32>,
     swirl: Option<f32>,
     volume: Option<f32>,
@@ -73,6 +79,8 @@ impl From<Given> for StyleSettings {
             length: given.length.unwrap_or(plain.length),
             length_variation: given.length_variation.unwrap_or(plain.length_variation),
             cut_height: given.cut_height.unwrap_or(plain.cut_height),
+            layering: given.layering.unwrap_or(plain.layering),
+            turn_under: given.turn_under.unwrap_or(plain.turn_under),
             parting: given.parting.unwrap_or(plain.parting),
             swirl: given.swirl.unwrap_or(plain.swirl),
             volume: given.volume.unwrap_or(plain.volume),
@@ -103,6 +111,8 @@ impl StyleSettings {
             length: 0.52,
             length_variation: 0.10,
             cut_height: -0.27,
+            layering: 0.02,
+            turn_under: 0.0,
             parting: 0.0,
             swirl: 0.0,
             volume: 0.012,
@@ -120,6 +130,8 @@ impl StyleSettings {
                 length: 0.34,
                 length_variation: 0.03,
                 cut_height: -0.112,
+                layering: 0.004,
+                turn_under: 0.7,
                 parting: 0.025,
                 volume: 0.016,
                 clump_share: 0.15,
@@ -127,25 +139,27 @@ impl StyleSettings {
                 ..long
             },
             Style::Wavy => Self {
-                volume: 0.016,
+                layering: 0.06,
+                volume: 0.017,
                 parting: 0.02,
-                clump_size: 14.0,
+                clump_size: 12.0,
                 clump_share: 0.5,
-                wave_amplitude: 0.009,
-                wave_length: 0.085,
+                wave_amplitude: 0.011,
+                wave_length: 0.095,
                 ..long
             },
             Style::Curly => Self {
-                length: 0.40,
+                length: 0.34,
                 length_variation: 0.25,
-                cut_height: -0.19,
+                cut_height: -0.175,
+                layering: 0.09,
                 parting: -0.02,
-                volume: 0.024,
-                clump_size: 9.0,
+                volume: 0.026,
+                clump_size: 8.0,
                 clump_share: 0.6,
-                curl_radius: 0.009,
-                curl_length: 0.055,
-                noise: 0.004,
+                curl_radius: 0.0085,
+                curl_length: 0.06,
+                noise: 0.005,
                 ..long
             },
             Style::Pixie => Self {
@@ -195,10 +209,12 @@ impl StyleSettings {
             let found = self.strand_count.to_string();
             return Err(GroomError::Setting { name: "style.strand_count", found, expected: "1 to 8000000" });
         }
-        let ranges: [(&'static str, f32, f32, f32, &'static str); 13] = [
+        let ranges: [(&'static str, f32, f32, f32, &'static str); 15] = [
             ("style.length", self.length, 0.01, 2.0, "0.01 to 2 m"),
             ("style.length_variation", self.length_variation, 0.0, 0.9, "0 to 0.9"),
             ("style.cut_height", self.cut_height, -10.0, 1.0, "-10 to 1 m"),
+            ("style.layering", self.layering, 0.0, 0.5, "0 to 0.5 m"),
+            ("style.turn_under", self.turn_under, 0.0, 2.0, "0 to 2"),
             ("style.parting", self.parting, -0.07, 0.07, "-0.07 to 0.07 m"),
             ("style.swirl", self.swirl, -3.0, 3.0, "-3 to 3 rad"),
             ("style.volume", self.volume, 0.001, 0.1, "0.001 to 0.1 m"),
