@@ -1,6 +1,10 @@
 //! pictures
 
+mod coverage;
+mod flip;
+mod golden;
 mod grooms;
 mod opacity;
+mod screen;
 mod shading;
 mod tessellation;

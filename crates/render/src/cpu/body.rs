@@ -288,3 +288,111 @@ impl Occluders {
         self.blocks[(tile * TILE_BLOCKS + y % TILE_BLOCKS) * TILE_BLOCKS + x % TILE_BLOCKS]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Camera;
+
+    /// A ball of `radius` \[m\].
+    fn ball(radius: f32) -> Mesh {
+        let (rings, turns) = (24, 40);
+        let mut positions = vec![Vec3::Y * radius, Vec3::NEG_Y * radius];
+        for ring in 1..rings {
+            for turn in 0..turns {
+                let (height, angle) = (ring as f32 / rings as f32, turn as f32 / turns as f32);
+                let (sine, cosine) = (height * std::f32::consts::PI).sin_cos();
+                let (side, front) = (angle * std::f32::consts::TAU).sin_cos();
+                positions.push(radius * Vec3::new(sine * side, cosine, sine * front));
+            }
+        }
+        let at = |ring: u32, turn: u32| 2 + (ring - 1) * turns + turn % turns;
+        let mut triangles = Vec::new();
+        for turn in 0..turns {
+            triangles.push([0, at(1, turn), at(1, turn + 1)]);
+            triangles.push([1, at(rings - 1, turn + 1), at(rings - 1, turn)]);
+            for ring in 1..rings - 1 {
+                triangles.push([at(ring, turn), at(ring + 1, turn), at(ring, turn + 1)]);
+                triangles.push([at(ring, turn + 1), at(ring + 1, turn), at(ring + 1, turn + 1)]);
+            }
+        }
+        Mesh::new(positions, triangles).unwrap()
+    }
+
+    fn drawn(mesh: Mesh, camera: &Camera) -> (Body, Samples, Occluders, Projection) {
+        let mut samples = Samples::default();
+        samples.resize(300, 260);
+        let projection = Projection::new(camera, &samples);
+        let (mut body, mut occluders) = (Body::new(mesh), Occluders::default());
+        body.place(Pose::IDENTITY);
+        body.draw(&projection, &mut samples, &mut occluders);
+        (body, samples, occluders, projection)
+    }
+
+    #[test]
+    fn a_ball_is_drawn_without_holes_at_its_depth() {
+        let camera = Camera { position: Vec3::new(0.3, 0.2, 0.9), target: Vec3::ZERO, ..Camera::front() };
+        let (body, samples, ..) = drawn(ball(0.1), &camera);
+        assert!(body.closed);
+        let (distance, focal) = (camera.position.length(), 130.0 * camera.focal());
+        // The outline of a ball is a circle seen under this angle; flat facets cut 0.4 % off.
+        let outline = focal * (0.1 / distance).asin().tan();
+        for row in 0..260 {
+            for column in 0..300 {
+                let (x, y) = (column as f32 + 0.5 - 150.0, row as f32 + 0.5 - 130.0);
+                let index = samples.index(column, row);
+                let depth = samples.inverse_depths[index];
+                let out = x.hypot(y);
+                assert_eq!(samples.triangles[index] == NO_TRIANGLE, depth == 0.0);
+                if out > outline + 0.1 {
+                    assert_eq!(depth, 0.0, "at {column}, {row}");
+                } else if out < outline * 0.99 - 0.5 {
+                    // The ball's depth along this line of sight, by the quadratic formula.
+                    let slope = Vec3::new(x / focal, y / focal, 1.0);
+                    let (a, b) = (slope.length_squared(), distance);
+                    let near = (b - (b * b - a * (b * b - 0.01)).sqrt()) / a;
+                    let found = 1.0 / depth;
+                    // Facets lie up to 0.4 % of the radius inside, and the depth for hair is moved back
+                    // by the skin's depth, both along a line that meets the surface on a slant.
+                    let slack = 2.0 * (0.01 * 0.1 + SKIN_DEPTH / MIN_COSINE);
+                    assert!(found > near - 1e-5 && found < near + slack, "{found} and {near}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_behind_the_ball_is_hidden_and_nothing_else() {
+        let camera = Camera { position: Vec3::Z, target: Vec3::ZERO, ..Camera::front() };
+        let (.., occluders, projection) = drawn(ball(0.12), &camera);
+        let hidden = |start: Vec3, end: Vec3| {
+            occluders.hide(projection.screen(start, 1e-4), projection.screen(end, 1e-4))
+        };
+        assert!(hidden(Vec3::new(-0.01, 0.0, -0.2), Vec3::new(0.01, 0.02, -0.2)));
+        assert!(!hidden(Vec3::new(-0.01, 0.0, 0.2), Vec3::new(0.01, 0.02, 0.2)));
+        assert!(!hidden(Vec3::new(0.0, 0.0, -0.2), Vec3::new(0.2, 0.0, -0.2)));
+        assert!(!hidden(Vec3::new(0.3, 0.0, -0.2), Vec3::new(0.31, 0.0, -0.2)));
+    }
+
+    #[test]
+    fn a_triangle_through_the_near_plane_fills_what_is_seen_of_it() {
+        let camera = Camera { position: Vec3::Z, target: Vec3::ZERO, ..Camera::front() };
+        // A floor from far in front of the camera to behind it, 0.1 m below.
+        let corner = |x: f32, z: f32| Vec3::new(x, -0.1, z);
+        let floor =
+            Mesh::new(vec![corner(-90.0, -50.0), corner(90.0, -50.0), corner(0.0, 9.0)], vec![[0, 2, 1]])
+                .unwrap();
+        let (_, samples, ..) = drawn(floor, &camera);
+        let focal = 130.0 * camera.focal();
+        for row in 140..260 {
+            let depth = samples.inverse_depths[samples.index(150, row)];
+            let expected = (row as f32 + 0.5 - 130.0) / focal / 0.1;
+            // One over depth is exact on a plane up to rounding and the skin's depth on a slant.
+            assert!(
+                (depth / expected - 1.0).abs() < 2.0 * SKIN_DEPTH / MIN_COSINE * expected,
+                "{row}: {depth}"
+            );
+        }
+        assert_eq!(samples.inverse_depths[samples.index(150, 120)], 0.0);
+    }
+}

@@ -1,0 +1,74 @@
+//! Golden pictures, compared as a person would see them [Andersson2020].
+
+use std::path::PathBuf;
+
+use strandline_render::Picture;
+
+/// Compares a picture with the golden one of that name; with STRANDLINE_BLESS=1 in the environment it
+/// becomes the golden one.
+///
+/// `mean` and `p99` bound the mean error and the error that one pixel of a hundred exceeds, both 0 to 1.
+pub fn assert_flip(picture: &Picture, name: &str, mean: f32, p99: f32) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures/golden").join(format!("{name}.png"));
+    if std::env::var_os("STRANDLINE_BLESS").is_some_and(|bless| bless == "1") {
+        picture.save(&path).unwrap();
+        return;
+    }
+    let golden = match image::open(&path) {
+        Ok(golden) => golden.into_rgb8(),
+        Err(error) => {
+            panic!("no golden picture ({error}): draw it with STRANDLINE_BLESS=1: {}", path.display())
+        }
+    };
+    let golden =
+        Picture { width: golden.width(), height: golden.height(), pixels: golden.into_raw(), alpha: None };
+    if let Err(message) = compare(picture, &golden, mean, p99) {
+        let drawn = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
+        picture.save(&drawn).unwrap();
+        panic!("{name}: {message}; drawn: {}", drawn.display());
+    }
+}
+
+/// Compares two pictures; the message says what exceeds its bound.
+pub fn compare(picture: &Picture, golden: &Picture, mean: f32, p99: f32) -> Result<(), String> {
+    if (picture.width, picture.height) != (golden.width, golden.height) {
+        return Err(format!(
+            "{} x {} pixels, expected {} x {}",
+            picture.width, picture.height, golden.width, golden.height
+        ));
+    }
+    let image =
+        |picture: &Picture| nv_flip::FlipImageRgb8::with_data(picture.width, picture.height, &picture.pixels);
+    let errors = nv_flip::flip(image(golden), image(picture), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    let mut pool = nv_flip::FlipPool::from_image(&errors);
+    let found = (pool.mean(), pool.get_percentile(0.99, false));
+    if found.0 <= mean && found.1 <= p99 {
+        Ok(())
+    } else {
+        Err(format!("mean error {}, at most {mean}; of one in a hundred {}, at most {p99}", found.0, found.1))
+    }
+}
+
+#[test]
+fn a_shifted_picture_is_noticed_and_an_equal_one_is_not() {
+    let stripes = |shift: u32| {
+        let pixels = (0..64 * 64)
+            .flat_map(|pixel| if (pixel % 64 + shift) / 2 % 2 == 0 { [200, 150, 90] } else { [40, 30, 20] })
+            .collect();
+        Picture { width: 64, height: 64, pixels, alpha: None }
+    };
+    compare(&stripes(0), &stripes(0), 0.0, 0.0).unwrap();
+    assert!(compare(&stripes(1), &stripes(0), 0.05, 1.0).is_err());
+    assert!(compare(&stripes(1), &stripes(0), 1.0, 0.05).is_err());
+}
+
+#[test]
+fn a_picture_of_another_size_is_noticed() {
+    let blank = |size: u32| Picture {
+        width: size,
+        height: size,
+        pixels: vec![0; (size * size * 3) as usize],
+        alpha: None,
+    };
+    assert!(compare(&blank(8), &blank(9), 1.0, 1.0).unwrap_err().contains("8 x 8"));
+}

@@ -1,0 +1,90 @@
+//! Whole pictures of grown styles on the mannequin.
+
+use strandline_body::{Mannequin, Pose};
+use strandline_groom::{Guides, Style, StyleSettings};
+use strandline_render::{
+    BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, Picture, PictureSettings, Renderer,
+};
+
+use crate::flip::{assert_flip, compare};
+
+/// A style of few guides, each with 16 follow strands.
+fn draw(style: Style, points_per_strand: usize, camera: Camera, settings: PictureSettings) -> Picture {
+    let groom = StyleSettings { strand_count: 1_000, ..StyleSettings::new(style) }.grow().unwrap();
+    let guides = Guides::resample(&groom, points_per_strand).unwrap();
+    let mesh = Mannequin::new().mesh();
+    let mut renderer = Renderer::new(&guides, Some(&mesh), &settings).unwrap();
+    let input = FrameInput {
+        positions: guides.positions(),
+        world_from_head: Pose::IDENTITY,
+        camera: &camera,
+        look: &Look::brown(),
+        body_look: &BodyLook::default(),
+        lights: &Light::three_point(camera.target),
+        level_of_detail: &LevelOfDetail::default(),
+    };
+    renderer.draw(&input).unwrap().0
+}
+
+/// Machines differ in the last bits of powers and exponentials: that moves single samples at
+/// outlines, whose error over the whole picture stays below these bounds. A picture shifted by a pixel
+/// exceeds them (tested below).
+const MEAN: f32 = 0.01;
+const ONE_IN_A_HUNDRED: f32 = 0.15;
+
+fn check(name: &str, style: Style, points_per_strand: usize, camera: Camera) {
+    let picture = draw(style, points_per_strand, camera, PictureSettings::sized(256, 256));
+    assert_flip(&picture, name, MEAN, ONE_IN_A_HUNDRED);
+}
+
+#[test]
+fn long_hair_from_the_front() {
+    check("long_front", Style::Long, 16, Camera::front());
+}
+
+#[test]
+fn curls_from_between_front_and_side() {
+    check("curly_three_quarter", Style::Curly, 32, Camera::three_quarter());
+}
+
+#[test]
+fn a_ponytail_from_the_side() {
+    check("ponytail_side", Style::Ponytail, 16, Camera::side());
+}
+
+#[test]
+fn short_hair_from_behind() {
+    check("pixie_back", Style::Pixie, 10, Camera::back());
+}
+
+#[test]
+fn the_bounds_notice_a_shift_by_a_pixel_and_a_change_of_light() {
+    let settings = PictureSettings::sized(256, 256);
+    let picture = draw(Style::Bob, 12, Camera::side(), settings);
+    let mut shifted = picture.clone();
+    shifted.pixels.rotate_right(3);
+    assert!(compare(&shifted, &picture, MEAN, ONE_IN_A_HUNDRED).is_err());
+    let brighter = draw(Style::Bob, 12, Camera::side(), PictureSettings { exposure: 0.2, ..settings });
+    assert!(compare(&brighter, &picture, MEAN, ONE_IN_A_HUNDRED).is_err());
+}
+
+#[test]
+fn a_bob_on_a_transparent_background() {
+    let settings = PictureSettings { transparent: true, ..PictureSettings::sized(96, 128) };
+    let picture = draw(Style::Bob, 12, Camera::three_quarter(), settings);
+    let alpha = picture.alpha.as_ref().unwrap();
+    assert_eq!((alpha[0], alpha[64 * 96 + 48]), (0, 255));
+    assert!(alpha.iter().any(|&alpha| (20..235).contains(&alpha)), "outlines of hair are half covered");
+}
+
+#[test]
+fn any_number_of_threads_draws_the_same_bits() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| draw(Style::Wavy, 12, Camera::three_quarter(), PictureSettings::sized(160, 120)))
+    };
+    let one = on(1);
+    for threads in [2, 5] {
+        assert!(on(threads) == one, "{threads} threads");
+    }
+}
