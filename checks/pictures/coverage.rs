@@ -192,3 +192,22 @@ fn the_order_of_strands_does_not_matter() {
     // Exact: no two of these 600 segments have the same mean depth in 24 bits.
     assert!(draw(&forward).colors == draw(&backward).colors);
 }
+
+#[test]
+fn strands_through_the_camera_are_cut_and_strands_that_are_not_numbers_left_out() {
+    let screen = Screen { size: 96, supersampling: 1 };
+    let away = line(Vec3::new(0.02, -0.05, 1.2), Vec3::new(0.0, 0.0, -0.5), 5);
+    let mut broken = line(screen.point(10.0, 20.0), screen.point(80.0, 20.0), 5);
+    broken[2].y = f32::NAN;
+    let dot = vec![screen.point(40.0, 70.0); 6];
+    let samples = screen.draw(&white(&[away, broken, dot], 1e-3), None);
+    assert!(samples.colors.iter().all(|color| color.is_finite() && color.w <= 1.0 + 1e-6));
+    // The one through the camera's right: from the lower edge up to the middle, nowhere thinner than
+    // 0.3 samples, half of which the nearer of two samples shows.
+    assert!(samples.color(48, 48).w > 0.0);
+    assert!((60..96).all(|row| (48..96).any(|column| samples.color(column, row).w > 0.15)));
+    // Of the broken one the segments beside the bad point are missing, the others are there.
+    let row = |column: usize| samples.color(column, 19).w + samples.color(column, 20).w;
+    assert!(row(15) > 0.5 && row(75) > 0.5 && row(35) == 0.0 && row(50) == 0.0);
+    assert_eq!(samples.color(40, 70).w, 0.0);
+}

@@ -230,14 +230,12 @@ fn cut(corners: [Vec3; 3], index: u32, projection: &Projection, found: &mut Vec<
             push(seen);
         }
         if (seen.z > 0.0) != (next_seen.z > 0.0) {
-            push(projection.screen(start.lerp(end, projection.near_crossing(start, end)), 0.0));
+            push(projection.near_crossing(start, end, [0.0; 2]).1);
         }
     }
     for last in 2..count {
         let corners = [polygon[0], polygon[last - 1], polygon[last]];
-        if corners.iter().all(|corner| corner.z > 0.0) {
-            found.push(ScreenTriangle { corners, index });
-        }
+        found.push(ScreenTriangle { corners, index });
     }
 }
 

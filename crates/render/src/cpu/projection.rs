@@ -44,9 +44,15 @@ impl Projection {
         let view = self.view_from_world.transform_point3(point);
         let inverse_depth = -1.0 / view.z;
         // Written so that a NaN, too, counts as nearer.
-        if !(inverse_depth > 0.0 && inverse_depth <= self.max_inverse_depth) {
-            return Vec4::ZERO;
+        if inverse_depth > 0.0 && inverse_depth <= self.max_inverse_depth {
+            self.at(view, inverse_depth, width)
+        } else {
+            Vec4::ZERO
         }
+    }
+
+    #[inline]
+    fn at(&self, view: Vec3, inverse_depth: f32, width: f32) -> Vec4 {
         let scale = self.focal * inverse_depth;
         let (x, y) = (self.center[0] + scale * view.x, self.center[1] - scale * view.y);
         // max first: it turns a NaN into 0.
@@ -55,13 +61,13 @@ impl Projection {
         Vec4::new(x, y, inverse_depth, width)
     }
 
-    /// Share of the way from `start` to `end` \[m\] at which the near plane is crossed; 0..1 when the
-    /// ends are on its two sides.
-    pub fn near_crossing(&self, start: Vec3, end: Vec3) -> f32 {
-        let depth = |point| -self.view_from_world.transform_point3(point).z;
-        let (start, end) = (depth(start), depth(end));
-        // A hair's breadth behind the plane, so that rounding does not put the cut in front of it.
-        ((1.0 + 1e-5) / self.max_inverse_depth - start) / (end - start)
+    /// Where a line between two points \[m\] on either side of the near plane meets it: the share of
+    /// the way from `start`, 0..1, and the point on the screen, with a diameter \[m\].
+    pub fn near_crossing(&self, start: Vec3, end: Vec3, widths: [f32; 2]) -> (f32, Vec4) {
+        let [first, last] = [start, end].map(|point| self.view_from_world.transform_point3(point));
+        let share = ((-1.0 / self.max_inverse_depth - first.z) / (last.z - first.z)).clamp(0.0, 1.0);
+        let width = widths[0] * (1.0 - share) + widths[1] * share;
+        (share, self.at(first.lerp(last, share), self.max_inverse_depth, width))
     }
 
     /// The point \[m\] in world space that is seen at a place on the screen.

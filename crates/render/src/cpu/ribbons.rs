@@ -236,13 +236,9 @@ impl Run {
             if near_first == near_last || !ends[0].is_finite() || !ends[1].is_finite() {
                 continue;
             }
-            let share = projection.near_crossing(ends[0], ends[1]).clamp(0.0, 1.0);
-            let width = strands.widths[first] * (1.0 - share) + strands.widths[last] * share;
-            let screen = projection.screen(ends[0].lerp(ends[1], share), width);
+            let widths = [strands.widths[first], strands.widths[last]];
+            let (share, screen) = projection.near_crossing(ends[0], ends[1], widths);
             let radiance = strands.radiances[first].lerp(strands.radiances[last], share);
-            if screen.z == 0.0 {
-                continue;
-            }
             let (points, radiances, end) = if near_first {
                 ([screen, pair[1]], [radiance, strands.radiances[last]], Segment::FIRST_IS_END)
             } else {
