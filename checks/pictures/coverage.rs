@@ -206,8 +206,8 @@ fn strands_through_the_camera_are_cut_and_strands_that_are_not_numbers_left_out(
     // 0.3 samples, half of which the nearer of two samples shows.
     assert!(samples.color(48, 48).w > 0.0);
     assert!((60..96).all(|row| (48..96).any(|column| samples.color(column, row).w > 0.15)));
-    // Of the broken one the segments beside the bad point are missing, the others are there.
+    // Of the broken one, 0.18 samples wide, the segments beside the bad point are missing, the others are there.
     let row = |column: usize| samples.color(column, 19).w + samples.color(column, 20).w;
-    assert!(row(15) > 0.5 && row(75) > 0.5 && row(35) == 0.0 && row(50) == 0.0);
+    assert!(row(15) > 0.17 && row(75) > 0.17 && row(35) == 0.0 && row(50) == 0.0);
     assert_eq!(samples.color(40, 70).w, 0.0);
 }
