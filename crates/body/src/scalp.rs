@@ -26,7 +26,7 @@ pub struct Scalp {
     mannequin: Mannequin,
     /// Distance \[m\] of the skin from [`CENTER`], shape `[polar][azimuth]`.
     radii: Vec<f32>,
-    /// Skin area up to and including each cell, no unit, shape `[polar][azimuth]`.
+    /// Twice the skin area \[m^2\] up to and including each cell, shape `[polar][azimuth]`.
     areas: Vec<f32>,
 }
 
@@ -83,6 +83,18 @@ impl Scalp {
     /// Height \[m\] of a place on the skin above the hairline there, negative on bare skin.
     pub fn height_above_hairline(&self, position: Vec3) -> f32 {
         position.y - hairline::height(position.x.abs().atan2(position.z))
+    }
+
+    /// Area \[m^2\], to a few parts in a hundred.
+    pub fn area(&self) -> f32 {
+        let cells = (0..POLARS * AZIMUTHS).filter(|&cell| {
+            let (polar, azimuth) = ((cell / AZIMUTHS) as f32, (cell % AZIMUTHS) as f32);
+            self.contains(self.guess(polar + 0.5, azimuth + 0.5))
+        });
+        // The table sums cross products of diagonals, twice the area of each cell.
+        0.5 * cells
+            .map(|cell| self.areas[cell] - if cell > 0 { self.areas[cell - 1] } else { 0.0 })
+            .sum::<f32>()
     }
 
     /// `count` roots spread evenly (blue noise) over the scalp; the same seed gives the same roots.
@@ -252,6 +264,13 @@ mod tests {
             .fold(0.0, f32::max);
         // The farthest place of a hexagonal lattice lies at 0.58 of its gap, at an edge at 1; random places reach 3.
         assert!(widest < 1.6 * mean, "{}", widest / mean);
+    }
+
+    #[test]
+    fn the_area_is_that_of_a_scalp() {
+        let (_, scalp) = scalp();
+        // A person's scalp has 0.05 to 0.08 m^2.
+        assert!((0.05..0.08).contains(&scalp.area()), "{}", scalp.area());
     }
 
     #[test]

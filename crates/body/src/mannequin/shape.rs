@@ -5,6 +5,10 @@ use super::field::{Ellipsoid, Field, RoundCone, Swelling, raise};
 
 /// Broad swellings of face and skull.
 pub(super) const MASS_COUNT: usize = 26;
+/// How many of them, from the first, belong to the skull; the others lie in front of
+/// [`FACE_MASSES_BEGIN`] and below [`FACE_ENDS`].
+const SKULL_MASS_COUNT: usize = 10;
+const FACE_MASSES_BEGIN: f32 = -0.035;
 /// Small swellings laid over them.
 pub(super) const DETAIL_COUNT: usize = 14;
 
@@ -106,7 +110,8 @@ impl BustShape {
                 .join(unfold(self.jaw.at(folded), slope), self.jaw_reach)
                 .join(self.chin.at(point), self.chin_reach);
         }
-        raise(&self.masses, point, &mut head);
+        let on_face = point.z > FACE_MASSES_BEGIN && point.y < FACE_ENDS;
+        raise(if on_face { &self.masses } else { &self.masses[..SKULL_MASS_COUNT] }, point, &mut head);
         if point.z > FACE_BEGINS && point.y < FACE_ENDS {
             self.add_face(point, &mut head);
         }

@@ -107,7 +107,9 @@ impl Combed {
         // The parting runs from the forehead to the whorl; behind it hair falls to the back.
         let parted = smooth(WHORL.z - 0.01, WHORL.z + 0.035, self.root.position.z);
         let sideways = place.along(Vec3::new(self.side, -0.35, -0.45));
-        let backward = place.along(self.root.position - WHORL + Vec3::new(0.0, -0.02, -0.03));
+        let spread = Vec3::new(0.6, 1.0, 1.0);
+        let loose = Vec3::new(0.010 * self.place.x, -0.02, -0.03);
+        let backward = place.along((self.root.position - WHORL) * spread + loose);
         let combed = backward.lerp(sideways, parted);
         let down = (Vec3::NEG_Y + self.behind_ear(point)).normalize();
         let mut free = down + self.off_face(point) + self.toward_curtain(point);

@@ -17,7 +17,8 @@ pub fn finish(
     mannequin: &Mannequin,
     strands: Vec<Strand>,
 ) -> (Vec<Strand>, Vec<u32>) {
-    let clumps = clumps(settings, &strands);
+    let count = (mannequin.scalp().area() / settings.clump_width.powi(2)).ceil() as usize;
+    let clumps = clumps(count.clamp(1, strands.len()), &strands);
     let shaped = strands.par_iter().enumerate().map(|(index, strand)| {
         let center = &strands[clumps[index] as usize];
         let points = shape(settings, mannequin, strand, center, index, clumps[index]);
@@ -28,8 +29,7 @@ pub fn finish(
 }
 
 /// For every strand the strand in the middle of its clump.
-fn clumps(settings: &StyleSettings, strands: &[Strand]) -> Vec<u32> {
-    let count = (strands.len() as f32 / settings.clump_size).ceil().max(1.0) as usize;
+fn clumps(count: usize, strands: &[Strand]) -> Vec<u32> {
     let every = strands.len() as f32 / count as f32;
     let middles: Vec<u32> = (0..count)
         .map(|clump| ((clump as f32 + 0.5) * every) as u32)
