@@ -7,7 +7,7 @@ use super::field::{Ellipsoid, Field, RoundCone, Swelling, raise};
 pub(super) const MASS_COUNT: usize = 26;
 /// How many of them, from the first, belong to the skull; the others lie in front of
 /// [`FACE_MASSES_BEGIN`] and below [`FACE_ENDS`].
-const SKULL_MASS_COUNT: usize = 10;
+const SKULL_MASS_COUNT: usize = 11;
 const FACE_MASSES_BEGIN: f32 = -0.035;
 /// Small swellings laid over them.
 pub(super) const DETAIL_COUNT: usize = 14;
