@@ -93,7 +93,7 @@ fn springs_and_bends_at_rest_stay_at_rest() {
     let settings = Settings {
         gravity: Vec3::ZERO,
         springs: Springs { stretch: stiff, bend: stiff, torsion: stiff },
-        angles: Angles { limit: 0.1, stiffness: 100.0 },
+        angles: Angles { limit: 0.1, stiffness: 100.0, hold: 0.0 },
         ..bare(1.0 / 60.0, 20)
     };
     let solver = Solver::new(&one_strand(&helix(12)), &settings, Vec::new()).unwrap();

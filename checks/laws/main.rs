@@ -1,6 +1,7 @@
 //! Laws that any implementation has to keep.
 
 mod contact;
+mod curl;
 mod free_strand;
 mod pendulum;
 mod poisson;

@@ -146,21 +146,25 @@ pub struct Angles {
     /// Angular frequency \[1/s\] at which a lone bent segment would swing back to rest, 0 to
     /// 10,000; 0 is off; default 25.
     pub stiffness: f32,
+    /// Rate \[1/s\] at which the length pass turns every segment to the direction that it has at
+    /// rest from the segment before, 0 to 10,000; 0 is off; default 0. It goes from root to tip, so
+    /// that curls of many points hold where the other bends, which work both ways, let them hang.
+    pub hold: f32,
 }
 
 impl Angles {
     /// Bends are free.
-    pub const OFF: Self = Self { limit: std::f32::consts::PI, stiffness: 0.0 };
+    pub const OFF: Self = Self { limit: std::f32::consts::PI, stiffness: 0.0, hold: 0.0 };
 
     /// Whether bends are free.
     pub fn is_off(&self) -> bool {
-        self.limit >= std::f32::consts::PI && self.stiffness == 0.0
+        self.limit >= std::f32::consts::PI && self.stiffness == 0.0 && self.hold == 0.0
     }
 }
 
 impl Default for Angles {
     fn default() -> Self {
-        Self { limit: 0.6, stiffness: 25.0 }
+        Self { limit: 0.6, stiffness: 25.0, hold: 0.0 }
     }
 }
 

@@ -23,6 +23,7 @@ pub struct Bends {
     cos_limit: f32x8,
     sin_limit: f32x8,
     share: f32x8,
+    hold: f32x8,
     head: Quat,
 }
 
@@ -49,6 +50,7 @@ impl Bends {
             cos_limit: splat(angles.limit.cos()),
             sin_limit: splat(angles.limit.sin()),
             share: splat(1.0 - left.powf(1.0 / passes as f32)),
+            hold: splat(1.0 - (-angles.hold * time_step).exp()),
             head,
         })
     }
@@ -86,6 +88,12 @@ impl Bends {
         joint.store(&mut positions[last]);
     }
 
+    /// A shape to hold from root to tip, when there is one.
+    pub fn held<'a>(&self, directions: &'a [Vec3Lanes]) -> Option<Held<'a>> {
+        let frame = Turn::splat(self.head);
+        (self.hold.to_array()[0] > 0.0).then_some(Held { share: self.hold, directions, frame })
+    }
+
     /// How far a unit direction has to go: into the cone about `expected`, then a share of the way.
     #[inline(always)]
     fn gap(&self, expected: Vec3x8, direction: Vec3x8) -> Vec3x8 {
@@ -94,6 +102,34 @@ impl Bends {
         let on_cone = expected * self.cos_limit + aside * (self.sin_limit / aside.length());
         let allowed = on_cone.or(cos.simd_lt(self.cos_limit), direction);
         (allowed - direction) + (expected - allowed) * self.share
+    }
+}
+
+/// The shape that a walk from root to tip gives back to a strand.
+pub struct Held<'a> {
+    share: f32x8,
+    directions: &'a [Vec3Lanes],
+    frame: Turn,
+}
+
+impl Held<'_> {
+    /// A segment that ends at `point`, turned a share of the way to its rest direction.
+    #[inline(always)]
+    pub fn turn(&self, point: usize, across: Vec3x8) -> Vec3x8 {
+        let length = across.length();
+        let expected = self.frame.apply(Vec3x8::load(&self.directions[point - 1]));
+        let direction = across * (splat(1.0) / length);
+        let turned = direction + (expected - direction) * self.share;
+        // Opposite directions may meet in nothing: then the segment stays.
+        let size = turned.length();
+        (turned * (length / size)).or(size.simd_gt(splat(1e-3)), across)
+    }
+
+    /// Carries the frame over the segment that now ends at `point`.
+    #[inline(always)]
+    pub fn pass(&mut self, point: usize, across: Vec3x8) {
+        let expected = self.frame.apply(Vec3x8::load(&self.directions[point - 1]));
+        self.frame = self.frame.then_from_to(expected, across * (splat(1.0) / across.length()));
     }
 }
 

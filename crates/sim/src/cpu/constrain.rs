@@ -112,7 +112,8 @@ impl Strands<'_> {
                 margins: &work.margins,
                 solids: self.solids,
             };
-            follow.place(predicted, planes, &mut work.corrections);
+            let held = self.bends.and_then(|bends| bends.held(self.joints.directions));
+            follow.place(held, predicted, planes, &mut work.corrections);
         }
         let rate = splat(1.0 / self.solver.settings.time_step);
         let returned = splat(pass.correction);

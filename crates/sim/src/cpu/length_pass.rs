@@ -3,6 +3,7 @@
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
+use super::angles::Held;
 use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::vec3x8::{Vec3x8, load, splat};
 
@@ -20,13 +21,25 @@ pub struct Follow<'a> {
 
 impl Follow<'_> {
     /// Moves each point to its length from the one before and tells how far \[m\] it moved.
-    pub fn place(&self, positions: &mut [Vec3Lanes], planes: &mut [Plane], corrections: &mut [Vec3x8]) {
+    ///
+    /// A held shape turns the segments first; that turn is no correction of a length and gives
+    /// no velocity back.
+    pub fn place(
+        &self,
+        mut held: Option<Held>,
+        positions: &mut [Vec3Lanes],
+        planes: &mut [Plane],
+        corrections: &mut [Vec3x8],
+    ) {
         corrections[0] = Vec3x8::ZERO;
         let mut before = Vec3x8::load(&positions[0]);
         for point in 1..positions.len() {
-            let found = Vec3x8::load(&positions[point]);
+            let mut found = Vec3x8::load(&positions[point]);
             let free = load(&self.inverse_mass[point]).simd_gt(splat(0.0));
             let length = load(&self.lengths[point - 1]);
+            if let Some(held) = &held {
+                found = (before + held.turn(point, found - before)).or(free, found);
+            }
             let across = found - before;
             let mut placed = before + across * (length / across.length());
             if !self.solids.is_empty() && free.any() {
@@ -44,6 +57,9 @@ impl Follow<'_> {
             let placed = placed.or(free, found);
             placed.store(&mut positions[point]);
             corrections[point] = placed - found;
+            if let Some(held) = &mut held {
+                held.pass(point, placed - before);
+            }
             before = placed;
         }
     }

@@ -23,6 +23,7 @@ impl Settings {
         self.check_springs()?;
         within("angles.limit", self.angles.limit, 0.0, PI, "0 to pi")?;
         within("angles.stiffness", self.angles.stiffness, 0.0, 1e4, "0 to 10000 1/s")?;
+        within("angles.hold", self.angles.hold, 0.0, 1e4, "0 to 10000 1/s")?;
         within("length_pass.correction", self.length_pass.correction, 0.0, 1.0, "0 to 1")?;
         self.check_volume()
     }

@@ -16,18 +16,20 @@ impl Scene {
         scene
     }
 
-    /// Replaces the strands by a built-in style, with as many points on a guide as its curls need
-    /// and a drawn segment about every centimetre.
+    /// Replaces the strands by a built-in style, with as many points on a guide as its curls need,
+    /// a drawn segment about every centimetre, and a hold that keeps its shape.
     pub fn set_style(&mut self, style: Style) {
         let (seed, strand_count) = (self.style.seed, self.style.strand_count);
         self.groom.file = None;
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
-        let (points, segments) = match style {
-            Style::Curly => (56, 1),
-            Style::Wavy => (28, 2),
-            _ => (16, 3),
+        let (points, segments, hold) = match style {
+            Style::Curly => (56, 1, 120.0),
+            Style::Wavy => (28, 2, 60.0),
+            Style::Pixie => (16, 3, 30.0),
+            _ => (16, 3, 5.0),
         };
         self.groom.points_per_strand = points;
+        self.simulation.angles.hold = hold;
         self.level_of_detail.segments_per_span = segments;
     }
 

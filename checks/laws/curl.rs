@@ -1,0 +1,45 @@
+//! A curl that hangs keeps its turns.
+
+use glam::{Vec3, vec3};
+use strandline_body::Pose;
+use strandline_groom::{Groom, Guides};
+use strandline_sim::{Drive, Settings, Solver};
+
+/// A curl of eight turns: radius 9 mm, 4 cm of hair a turn, hanging from the origin.
+fn curl() -> Guides {
+    let mut groom = Groom::empty(8e-5);
+    let root = [Vec3::ZERO, vec3(0.0, -0.004, 0.0)];
+    let turns = (1..=96).map(|step| {
+        let (along, angle) = (step as f32 / 96.0, std::f32::consts::TAU * 8.0 * step as f32 / 96.0);
+        let radius = 0.009 * (4.0 * along).min(1.0);
+        vec3(radius * angle.cos(), -0.004 - 0.12 * along, radius * angle.sin())
+    });
+    groom.push(root.into_iter().chain(turns));
+    Guides::resample(&groom, 64).unwrap()
+}
+
+/// Height \[m\] from root to tip and mean distance \[m\] from the axis after two seconds.
+fn hung(hold: f32) -> (f32, f32) {
+    let mut settings = Settings::default();
+    settings.angles.hold = hold;
+    settings.volume.enabled = false;
+    let guides = curl();
+    let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
+    let mut state = solver.rest_state(Pose::IDENTITY);
+    for _ in 0..120 {
+        solver.step(&mut state, &Drive::default());
+    }
+    let points: Vec<Vec3> = state.positions.iter().map(|lanes| lanes.get(0)).collect();
+    let axis = |point: &Vec3| vec3(point.x, 0.0, point.z).length();
+    let radius = points.iter().skip(16).map(axis).sum::<f32>() / (points.len() - 16) as f32;
+    (-points[63].y, radius)
+}
+
+#[test]
+fn a_held_curl_keeps_its_turns_and_a_free_one_hangs_straight() {
+    let (height, radius) = hung(120.0);
+    // It is 12.4 cm high at rest and sags; straight it would be some 40 cm.
+    assert!(height < 0.20 && radius > 0.006, "height {height}, radius {radius}");
+    let (free_height, free_radius) = hung(0.0);
+    assert!(free_height > 1.3 * height && free_radius < radius, "{free_height}, {free_radius}: it can fail");
+}
