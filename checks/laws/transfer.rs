@@ -91,7 +91,7 @@ fn ball(radius: f32, per_cell: usize, seed: u64) -> Vec<(Vec3, Vec3)> {
 
 /// Angular momentum about z that is left after some transfers, mean of several balls.
 fn spin_left(radius: f32, per_cell: usize, flip_share: f32, transfers: usize) -> f32 {
-    const BALLS: u64 = 24;
+    const BALLS: u64 = 160;
     let left = (0..BALLS).map(|seed| {
         let mut cloud = Cloud::new(&ball(radius, per_cell, seed));
         let mut volume = volume(&cloud, [32; 3], flip_share);
@@ -126,7 +126,8 @@ fn flip_keeps_the_spin_and_pic_loses_it() {
         assert!((flip - 1.0).abs() < 1e-4, "FLIP keeps {flip}");
     }
     // transfer_conservation.json: radius, points per cell, share left after one transfer by PIC. The
-    // reference is one draw of points, ours the mean of several: 0.3 points.
+    // reference is one draw of points, ours the mean of many: 0.3 points of a hundred on the larger
+    // ball, twice that on the smaller one, whose draw of 32 to 256 points scatters more.
     for (radius, per_cell, left) in [
         (2.0, 1, 0.892_929),
         (2.0, 2, 0.864_922),
@@ -135,10 +136,14 @@ fn flip_keeps_the_spin_and_pic_loses_it() {
         (4.0, 2, 0.957_630),
         (4.0, 8, 0.955_155),
     ] {
+        let tolerance = if radius > 3.0 { 0.003 } else { 0.006 };
         let found = spin_left(radius, per_cell, 0.0, 1);
-        assert!((found - left).abs() < 0.003, "radius {radius}, {per_cell} points: {found}, expected {left}");
+        assert!(
+            (found - left).abs() < tolerance,
+            "radius {radius}, {per_cell} points: {found}, expected {left}"
+        );
         let other = spin_left(radius + 1.0, per_cell, 0.0, 1);
-        assert!((other - left).abs() > 0.003, "a ball of another size is noticed");
+        assert!((other - left).abs() > tolerance, "a ball of another size is noticed");
     }
     let one = spin_left(4.0, 2, 0.0, 1);
     let ten = spin_left(4.0, 2, 0.0, 10);

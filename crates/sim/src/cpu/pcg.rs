@@ -160,10 +160,10 @@ impl Pcg {
             return;
         }
         let zero = system.len();
-        for unknown in 0..zero {
-            let [x, y, z] = system.lower[unknown].map(|before| self.carried[before as usize]);
+        for (unknown, (lower, residual)) in system.lower.iter().zip(residual).enumerate() {
+            let [x, y, z] = lower.map(|before| self.carried[before as usize]);
             let scale = self.scale[unknown];
-            let value = (residual[unknown] + x + y + z) * scale;
+            let value = (residual + x + y + z) * scale;
             self.forward[unknown] = value;
             self.carried[unknown] = value * scale;
         }
