@@ -10,7 +10,7 @@
 //! for _ in 0..24 {
 //!     hair.step(1.0 / 60.0, &Pose::IDENTITY);
 //! }
-//! let camera = Camera::framing(hair.bounds(), glam::Vec3::Z, 30.0, 1.0);
+//! let camera = Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
 //! let picture = hair.picture(&camera, &Look::brown())?;
 //! # assert!(picture.width > 0);
 //! # Ok(())

@@ -31,24 +31,34 @@ pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
 }
 
 fn classify(volume: &mut Volume, obstacles: &Obstacles) {
-    let (grid, depth) = (&volume.grid, volume.grid.spacing());
-    let occupied = |cell: u32| volume.sort.cells().binary_search(&cell).is_ok();
-    let kinds: Vec<Kind> = volume
+    let look_up =
+        |cell: usize| obstacles.nearest(volume.grid.center(cell)).map_or(f32::INFINITY, |near| near.0);
+    let depth = volume.grid.spacing();
+    let occupied: Vec<f32> =
+        volume.sort.cells().par_iter().with_min_len(256).map(|&cell| look_up(cell as usize)).collect();
+    for (&cell, &distance) in volume.sort.cells().iter().zip(&occupied) {
+        volume.kinds[cell as usize] = if distance < -depth { Kind::Solid } else { Kind::Fluid };
+        volume.distances[cell as usize] = distance;
+    }
+    let (strides, kinds, distances) = (volume.grid.strides(), &volume.kinds, &volume.distances);
+    let beside: Vec<u32> = volume
         .marked
         .par_iter()
         .with_min_len(256)
-        .map(|&cell| {
-            let distance = obstacles.nearest(grid.center(cell as usize)).map_or(f32::INFINITY, |near| near.0);
-            match occupied(cell) {
-                true if distance < -depth => Kind::Solid,
-                true => Kind::Fluid,
-                false if distance < 0.0 => Kind::Solid,
-                false => Kind::Air,
-            }
+        .filter(|&&cell| volume.sort.cells().binary_search(&cell).is_err())
+        .filter(|&&cell| {
+            // A distance changes by no more than the way: most neighbours need no look-up. A cell of
+            // the ring has neighbours outside the grid.
+            let cell = cell as usize;
+            let around =
+                strides.into_iter().flat_map(|stride| [cell.checked_sub(stride), Some(cell + stride)]);
+            let far = |cell: usize| kinds.get(cell) == Some(&Kind::Fluid) && distances[cell] > depth;
+            !around.flatten().any(far) && look_up(cell) < 0.0
         })
+        .copied()
         .collect();
-    for (&cell, kind) in volume.marked.iter().zip(kinds) {
-        volume.kinds[cell as usize] = kind;
+    for cell in beside {
+        volume.kinds[cell as usize] = Kind::Solid;
     }
 }
 

@@ -43,6 +43,8 @@ pub struct Volume {
     /// What each cell is; cells that are not listed in `marked` are air.
     pub(super) kinds: Vec<Kind>,
     pub(super) marked: Vec<u32>,
+    /// Signed distance \[m\] at the middle of every fluid cell; of other cells an old one.
+    pub(super) distances: Vec<f32>,
     /// Cells whose pressure is unknown, ascending.
     pub(super) fluid: Vec<u32>,
     pub(super) system: Poisson,
@@ -67,6 +69,7 @@ impl Volume {
             spare_set: CellSet::new(count),
             kinds: vec![Kind::Air; count],
             marked: Vec::new(),
+            distances: vec![0.0; count],
             fluid: Vec::new(),
             system: Poisson::default(),
             pcg: Pcg::default(),

@@ -25,8 +25,9 @@ impl Scene {
         let (points, segments, hold) = match style {
             Style::Curly => (56, 1, 120.0),
             Style::Wavy => (28, 2, 60.0),
-            Style::Pixie => (16, 3, 30.0),
-            _ => (16, 3, 5.0),
+            Style::Pixie | Style::Ponytail => (16, 3, 80.0),
+            Style::Bob => (16, 3, 25.0),
+            Style::Long => (16, 3, 8.0),
         };
         self.groom.points_per_strand = points;
         self.simulation.angles.hold = hold;

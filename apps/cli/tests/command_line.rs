@@ -1,0 +1,199 @@
+//! The program as a person uses it: right and wrong.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn strandline(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_strandline")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// Runs and expects success; returns standard output.
+fn works(folder: &Path, arguments: &[&str]) -> String {
+    let output = strandline(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// Runs and expects one clear error with a code, all of some words, and no panic.
+fn fails(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    let output = strandline(folder, arguments);
+    let error = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    assert!(!error.contains("panicked"), "{error}");
+    assert!(output.stdout.is_empty(), "{arguments:?} printed {}", text(&output.stdout));
+    for word in words {
+        assert!(error.contains(word), "`{word}` is missing for {arguments:?}: {error}");
+    }
+}
+
+/// A scene that takes a moment.
+const SMALL: &str = "[style]\nstrand_count = 40\n[look]\nfollow_strands = 2\n[film]\nframes = 2\nsettle = 0.0\n\
+                     [picture]\nwidth = 64\nheight = 48\n";
+
+fn small(folder: &Path) {
+    std::fs::write(folder.join("small.toml"), SMALL).unwrap();
+}
+
+fn keys(object: &serde_json::Value) -> Vec<&str> {
+    object.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+#[test]
+fn render_writes_frames_a_sheet_and_a_moving_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    small(folder.path());
+    let output = works(folder.path(), &["render", "--scene", "small.toml", "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&output).unwrap();
+    for key in ["backend", "frames", "follow_strands", "segments", "ms_per_frame", "files"] {
+        assert!(keys(&report).contains(&key), "{key} is missing in {output}");
+    }
+    assert_eq!((report["frames"].as_u64(), report["follow_strands"].as_u64()), (Some(2), Some(80)));
+    for name in ["frame_0000.png", "frame_0001.png", "sheet.png"] {
+        let file = std::fs::read(folder.path().join("out/small").join(name)).unwrap();
+        assert!(file.starts_with(b"\x89PNG") && file.ends_with(b"IEND\xaeB`\x82"), "{name} is not whole");
+    }
+    let moving =
+        ["video.mp4", "animation.gif"].map(|name| folder.path().join("out/small").join(name).is_file());
+    assert_eq!(moving.iter().filter(|there| **there).count(), 1);
+    let stages = keys(&report["ms_per_frame"]["stages"]);
+    assert_eq!(stages.len(), 7, "{stages:?}");
+}
+
+#[test]
+fn sim_prints_one_object_and_the_same_physics_every_time() {
+    let folder = tempfile::tempdir().unwrap();
+    small(folder.path());
+    let run = || {
+        let output = works(folder.path(), &["sim", "--scene", "small.toml", "--json", "--frames", "5"]);
+        let mut report: serde_json::Value = serde_json::from_str(&output).unwrap();
+        assert!(report["ms_per_step"]["median"].as_f64().unwrap() > 0.0);
+        report.as_object_mut().unwrap().remove("ms_per_step");
+        report
+    };
+    let report = run();
+    assert_eq!(report["steps"], 10);
+    let all =
+        ["backend", "strands", "points_per_strand", "steps", "stretch", "penetration_max_m", "non_finite"];
+    for key in all.into_iter().chain(["pcg", "fluid_cells_mean"]) {
+        assert!(keys(&report).contains(&key), "{key}");
+    }
+    assert_eq!(report, run());
+    let other = works(folder.path(), &["sim", "--scene", "small.toml", "--json", "--frames", "6"]);
+    assert!(!other.contains("\"steps\":10,"), "the comparison can fail");
+}
+
+#[test]
+fn grooms_are_grown_converted_and_described() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    works(at, &["groom", "--style", "curly", "--strands", "30", "--seed", "4", "--out", "a.hair"]);
+    works(at, &["convert", "a.hair", "b.tfx"]);
+    works(at, &["convert", "b.tfx", "c.hair", "--points", "5"]);
+    for (file, points) in [("a.hair", 30 * 64), ("b.tfx", 30 * 64), ("c.hair", 30 * 5)] {
+        let output = works(at, &["info", file, "--json"]);
+        let report: serde_json::Value = serde_json::from_str(&output).unwrap();
+        assert_eq!((&report["strands"], &report["points"]), (&30.into(), &points.into()), "{output}");
+        for key in ["format", "points_per_strand", "length_m", "bounds_m", "problems"] {
+            assert!(keys(&report).contains(&key), "{key}");
+        }
+    }
+    assert!(works(at, &["info", "a.hair"]).contains("strands   30"));
+}
+
+#[test]
+fn wrong_usage_ends_with_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fails(at, &["fly"], 2, &["unrecognized subcommand"]);
+    fails(at, &["render", "--size", "800"], 2, &["expected WIDTHxHEIGHT"]);
+    fails(at, &["render", "--frames", "-3"], 2, &["-3"]);
+    fails(at, &["render", "--frames", "0"], 2, &["0 is not in 1..=1000000"]);
+    fails(at, &["render", "--style", "mohawk"], 2, &["`mohawk`", "bob, long, wavy"]);
+    fails(at, &["render", "--motion", "jump"], 2, &["`jump`", "still, shake, nod"]);
+    fails(at, &["render", "--style", "bob", "--groom", "a.hair"], 2, &["cannot be used with"]);
+    fails(at, &["sim", "--backend", "gpu"], 2, &["`gpu`", "auto or cpu"]);
+    fails(at, &["sim", "--scene", "nowhere"], 2, &["`nowhere`", "demo, thesis or the path of a .toml"]);
+}
+
+#[test]
+fn bad_scenes_are_refused_by_key() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fails(at, &["sim", "--scene", "absent.toml"], 1, &["cannot read the scene", "absent.toml"]);
+    for (content, words) in [
+        ("[grom]\n", vec!["unknown field `grom`", "`groom`"]),
+        ("[simulation]\ngravitas = 1\n", vec!["unknown field `gravitas`", "gravity"]),
+        ("[style]\nstrand_count = -4\n", vec!["-4"]),
+        ("[film]\nframes = 0\n", vec!["film.frames is 0", "1 to"]),
+        ("[picture]\nwidth = \"wide\"\n", vec!["wide"]),
+        ("[groom]\nfile = \"absent.hair\"\n", vec!["cannot read the groom", "absent.hair"]),
+        ("[body]\nfile = \"absent.obj\"\n", vec!["absent.obj"]),
+        ("[[colliders]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = -1\n", vec!["-1"]),
+        ("[motion]\nname = \"keyframes\"\n", vec!["keyframe"]),
+    ] {
+        std::fs::write(at.join("bad.toml"), content).unwrap();
+        fails(at, &["sim", "--scene", "bad.toml"], 1, &words);
+    }
+}
+
+#[test]
+fn bad_files_are_refused_with_their_path() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    works(at, &["groom", "--style", "pixie", "--strands", "20", "--out", "good.hair"]);
+    let good = std::fs::read(at.join("good.hair")).unwrap();
+    std::fs::write(at.join("cut.hair"), &good[..good.len() / 2]).unwrap();
+    std::fs::write(at.join("zip.hair"), b"PK\x03\x04").unwrap();
+    let mut huge = good.clone();
+    huge[4..8].copy_from_slice(&u32::MAX.to_le_bytes());
+    std::fs::write(at.join("huge.hair"), huge).unwrap();
+    std::fs::write(at.join("old.tfx"), 2.0_f32.to_le_bytes().repeat(50)).unwrap();
+    std::fs::write(at.join("empty.obj"), b"# nothing\n").unwrap();
+    std::fs::write(at.join("nan.obj"), b"v 0 0 0\nv 1 0 0\nv nan 0 0\nf 1 2 3\n").unwrap();
+    fails(at, &["info", "cut.hair"], 1, &["bytes", "expected", "cut.hair"]);
+    fails(at, &["info", "zip.hair"], 1, &["starts with `PK", "expected `HAIR`", "zip.hair"]);
+    fails(at, &["info", "huge.hair"], 1, &["4294967295 strands", "huge.hair"]);
+    fails(at, &["info", "old.tfx"], 1, &["version 2", "3 or 4", "old.tfx"]);
+    fails(at, &["convert", "good.hair", "good.fbx"], 1, &["`fbx`", ".hair or .tfx", "good.fbx"]);
+    fails(at, &["sim", "--frames", "1", "--body", "empty.obj"], 1, &["empty.obj"]);
+    fails(at, &["sim", "--frames", "1", "--body", "nan.obj"], 1, &["nan.obj"]);
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_written_is_an_error_and_an_open_body_is_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    small(at);
+    std::fs::write(at.join("file"), b"in the way").unwrap();
+    fails(
+        at,
+        &["render", "--scene", "small.toml", "--out", "file/out"],
+        1,
+        &["cannot write the output folder", "file/out"],
+    );
+    fails(
+        at,
+        &["groom", "--style", "bob", "--strands", "3", "--out", "file/a.hair"],
+        1,
+        &["cannot write", "a.hair"],
+    );
+    let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 -1 1\nv -1 -1 1\nv 0 0.4 0\n";
+    std::fs::write(at.join("open.obj"), format!("{corners}f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n")).unwrap();
+    let open = ["sim", "--scene", "small.toml", "--frames", "1", "--body", "open.obj"];
+    std::fs::write(at.join("small.toml"), format!("{SMALL}[body]\nspacing = 0.05\n")).unwrap();
+    works(at, &open);
+}
+
+#[test]
+fn printed_scenes_are_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["demo", "thesis"] {
+        let printed = works(folder.path(), &["scene", name]);
+        std::fs::write(folder.path().join("again.toml"), &printed).unwrap();
+        assert_eq!(works(folder.path(), &["scene", "again.toml"]), printed);
+    }
+}
