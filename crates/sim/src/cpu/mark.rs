@@ -45,7 +45,8 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
         .marked
         .par_iter()
         .with_min_len(256)
-        .filter(|&&cell| volume.sort.cells().binary_search(&cell).is_err())
+        // Occupied cells are fluid or solid by now.
+        .filter(|&&cell| kinds[cell as usize] == Kind::Air)
         .filter(|&&cell| {
             // A distance changes by no more than the way: most neighbours need no look-up. A cell of
             // the ring has neighbours outside the grid.
