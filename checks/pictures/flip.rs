@@ -1,4 +1,4 @@
-//! Golden pictures, compared as a person would see them [Andersson2020].
+//! Golden pictures, compared as a person would see them \[Andersson2020\].
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! The worked example of figures 28 to 30: points sorted by cell [Chen2011].
+//! The worked example of figures 28 to 30: points sorted by cell \[Chen2011\].
 
 use strandline_sim::cpu::cell_sort::CellSort;
 

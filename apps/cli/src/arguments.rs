@@ -67,7 +67,7 @@ pub struct Inputs {
 pub struct RenderOptions {
     #[command(flatten)]
     pub inputs: Inputs,
-    /// Size of a picture [pixel].
+    /// Size of a picture in pixels.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
     /// Folder of the pictures [default: out/ and the scene's name].

@@ -16,7 +16,7 @@ struct Crossing {
 /// Whether the surface winds around each node, in the order of storage.
 ///
 /// Triangles are given in cells. Each line of nodes along x counts the triangles that it
-/// passes, with their direction: the winding number [Jacobson2013] of a closed surface, as an integer.
+/// passes, with their direction: the winding number \[Jacobson2013\] of a closed surface, as an integer.
 /// A line through an edge or a corner counts one of the triangles that meet there, never two and
 /// never none, because each edge decides alone, from its two ends, on which side the line passes it.
 pub(crate) fn inside_nodes(triangles: &[[DVec3; 3]], lattice: &Lattice) -> Vec<bool> {

@@ -163,7 +163,7 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, BodyError> {
     Ok(bytes)
 }
 
-/// Means of the face normals around each place, weighted by the angle of the face there [Thurmer1998].
+/// Means of the face normals around each place, weighted by the angle of the face there \[Thurmer1998\].
 ///
 /// Vertices at one position get one normal, so that seams do not show. Vertices of no face, or of
 /// faces without area, get the y axis.

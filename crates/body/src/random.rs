@@ -1,4 +1,4 @@
-/// A small generator of random numbers: PCG-XSH-RR with 64 bits of state [ONeill2014].
+/// A small generator of random numbers: PCG-XSH-RR with 64 bits of state \[ONeill2014\].
 #[derive(Clone, Debug)]
 pub struct Random {
     state: u64,
@@ -36,7 +36,7 @@ impl Random {
 }
 
 /// Spreads the bits of a number, so that neighbouring seeds have nothing in common
-/// (the finalizer of SplitMix64 [Steele2014]).
+/// (the finalizer of SplitMix64 \[Steele2014\]).
 fn mix(number: u64) -> u64 {
     let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

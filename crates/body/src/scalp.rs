@@ -100,7 +100,7 @@ impl Scalp {
     /// `count` roots spread evenly (blue noise) over the scalp; the same seed gives the same roots.
     ///
     /// Up to 60,000 roots are left over from four times as many by taking away the most crowded
-    /// [Yuksel2015]; more are drawn one from each stretch of a space-filling curve. Neighbours in the
+    /// \[Yuksel2015\]; more are drawn one from each stretch of a space-filling curve. Neighbours in the
     /// list are neighbours on the skin.
     pub fn roots(&self, count: usize, seed: u64) -> Vec<Root> {
         let mut candidates = self.candidates(count * CANDIDATES, seed);
@@ -186,7 +186,7 @@ fn uv(position: Vec3) -> Vec2 {
     (around * (0.5 * share) + 0.5).clamp(Vec2::ZERO, Vec2::ONE)
 }
 
-/// Place along the Hilbert curve of order 16 over the unit square [Hilbert1891].
+/// Place along the Hilbert curve of order 16 over the unit square \[Hilbert1891\].
 fn curve_index(uv: Vec2) -> u32 {
     const ORDER: u32 = 16;
     let most = ((1u32 << ORDER) - 1) as f32;

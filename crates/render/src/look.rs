@@ -54,7 +54,7 @@ impl Default for Look {
     }
 }
 
-/// A highlight on the hair [Scheuermann2004].
+/// A highlight on the hair \[Scheuermann2004\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Highlight {
@@ -109,7 +109,7 @@ impl Default for Clump {
     }
 }
 
-/// How hair and body cast shadows [Yuksel2008].
+/// How hair and body cast shadows \[Yuksel2008\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Shadow {

@@ -168,7 +168,7 @@ impl Default for Angles {
     }
 }
 
-/// The pass from root to tip that makes lengths exact [Mueller2012].
+/// The pass from root to tip that makes lengths exact \[Mueller2012\].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LengthPass {

@@ -26,7 +26,7 @@ impl PartialOrd for Crowded {
 }
 
 /// Indices, in rising order, of the `count` places \[m\] that are left when the most crowded one is
-/// taken away again and again [Yuksel2015].
+/// taken away again and again \[Yuksel2015\].
 pub(super) fn kept(places: &[Vec3], count: usize) -> Vec<usize> {
     // Twice the largest radius of discs that could cover the area; the area follows from the grid.
     let reach = 2.0 * (area(places) / (2.0 * 3f32.sqrt() * count.max(1) as f32)).sqrt();

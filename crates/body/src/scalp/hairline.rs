@@ -26,7 +26,7 @@ const PLACES: [Vec2; 20] = [
 ];
 
 /// Height \[m\] of the hairline at an angle from the front \[rad\], 0..pi: a cubic through the places,
-/// level where they turn, so that it never overshoots [Fritsch1980].
+/// level where they turn, so that it never overshoots \[Fritsch1980\].
 pub(super) fn height(angle: f32) -> f32 {
     let angle = angle.to_degrees().clamp(0.0, 180.0);
     let next = PLACES.partition_point(|place| place.x <= angle).clamp(1, PLACES.len() - 1);

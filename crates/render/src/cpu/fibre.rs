@@ -1,7 +1,7 @@
 //! How a hair scatters light: the shading model, a function of directions.
 //!
-//! Diffuse light about the strand [Kajiya1989] and two highlights from shifted tangents, the second one
-//! coloured [Scheuermann2004]. Each part is scaled so that it never gives back more than it takes.
+//! Diffuse light about the strand \[Kajiya1989\] and two highlights from shifted tangents, the second one
+//! coloured \[Scheuermann2004\]. Each part is scaled so that it never gives back more than it takes.
 
 use std::f32::consts::PI;
 

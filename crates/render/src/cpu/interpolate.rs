@@ -238,7 +238,7 @@ fn kept_length(shared: &Shared, seed: u32) -> f32 {
 }
 
 /// Offset of a follow strand in the unit disc: even for any number of strands (the additive
-/// recurrence of [Roberts2018]), turned and shifted for each guide.
+/// recurrence of \[Roberts2018\]), turned and shifted for each guide.
 fn disc_offset(seed: u32, index: usize) -> Vec2 {
     const STEPS: [f32; 2] = [0.754_877_7, 0.569_840_3];
     let index = index as f32;

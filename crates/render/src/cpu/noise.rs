@@ -1,6 +1,6 @@
 //! Random numbers that depend on nothing but what they are for.
 
-/// A well-mixed number from any number: the output function of a PCG generator [ONeill2014].
+/// A well-mixed number from any number: the output function of a PCG generator \[ONeill2014\].
 #[inline]
 pub(crate) fn hash(value: u32) -> u32 {
     let state = value.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);

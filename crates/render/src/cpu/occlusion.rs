@@ -2,7 +2,7 @@
 //!
 //! Hair is summed into a coarse grid of cells; light is carried through the grid along the six
 //! axes, mixed a little with the neighbours at every cell so that it stands for a cone of
-//! directions. A place keeps six visibilities, an ambient cube [McTaggart2004].
+//! directions. A place keeps six visibilities, an ambient cube \[McTaggart2004\].
 
 use glam::{UVec3, Vec3};
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! Deep opacity maps [Yuksel2008]: what a light sees of hair and body, and how much of it reaches a point.
+//! Deep opacity maps \[Yuksel2008\]: what a light sees of hair and body, and how much of it reaches a point.
 
 use glam::{Vec2, Vec3, Vec4};
 

@@ -52,8 +52,8 @@ pub fn reflectance(look: &BodyLook, normal: Vec3, to_eye: Vec3, to_light: Vec3) 
     look.color * (diffuse / PI) + Vec3::splat(highlight(look, normal, to_eye, to_light))
 }
 
-/// Microfacets with the distribution and masking of [Walter2007] and the Fresnel term of
-/// [Schlick1994].
+/// Microfacets with the distribution and masking of \[Walter2007\] and the Fresnel term of
+/// \[Schlick1994\].
 fn highlight(look: &BodyLook, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> f32 {
     let (light, eye) = (normal.dot(to_light), normal.dot(to_eye).max(1e-3));
     if light <= 0.0 {

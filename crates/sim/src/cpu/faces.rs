@@ -1,4 +1,4 @@
-//! The staggered velocities: u, v and w on the faces between cells [McAdams2009].
+//! The staggered velocities: u, v and w on the faces between cells \[McAdams2009\].
 
 use wide::f32x4;
 

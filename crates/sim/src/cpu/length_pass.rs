@@ -1,4 +1,4 @@
-//! Exact lengths from root to tip, outside the solids [Mueller2012].
+//! Exact lengths from root to tip, outside the solids \[Mueller2012\].
 
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;

@@ -6,9 +6,9 @@
 use super::poisson::Poisson;
 use crate::{Preconditioner, PressureReport};
 
-/// Share of the dropped fill-in that MIC(0) adds to the diagonal [Bridson2008].
+/// Share of the dropped fill-in that MIC(0) adds to the diagonal \[Bridson2008\].
 const TAU: f32 = 0.97;
-/// Least share of the diagonal that a pivot may keep [Bridson2008].
+/// Least share of the diagonal that a pivot may keep \[Bridson2008\].
 const SIGMA: f32 = 0.25;
 
 /// When to stop, and how to get there fast.
@@ -118,7 +118,7 @@ impl Pcg {
         self.scale.push(0.0);
     }
 
-    /// Modified incomplete Cholesky of level zero [Bridson2008]. A pivot that becomes too small
+    /// Modified incomplete Cholesky of level zero \[Bridson2008\]. A pivot that becomes too small
     /// leaves the dropped fill-in out; where that does not help, it is the diagonal. Around solids
     /// this saves a sixth of the iterations against going to the diagonal at once.
     fn factorize(&mut self, system: &Poisson) {

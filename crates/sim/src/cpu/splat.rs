@@ -10,7 +10,7 @@ use super::grid::{Grid, REACH};
 use super::volume::Volume;
 
 /// Sorts the points by cell [Chen2011 fig. 26-30] and gives every face that they reach their mean
-/// velocity, weighted by mass and trilinearly [Zhu2005]. Momentum is kept exactly.
+/// velocity, weighted by mass and trilinearly \[Zhu2005\]. Momentum is kept exactly.
 ///
 /// All shapes are `[block][point]` of lanes, world space. Lanes beyond the last strand and points
 /// without mass or too far away take no part. One task per component sums the points in the order
