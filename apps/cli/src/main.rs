@@ -22,7 +22,7 @@ fn main() -> ExitCode {
     match run(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("strandline: {error:#}");
+            eprintln!("strandline: {error}");
             ExitCode::from(if error.is::<arguments::Usage>() { 2 } else { 1 })
         }
     }
