@@ -1,1 +1,36 @@
 //! Shared helpers of the checks.
+
+use std::sync::OnceLock;
+
+use strandline_gpu::Gpu;
+
+/// The adapter that the checks of the GPU backend run on, any that there is; they share its device.
+/// Without one they say so and check nothing, unless `STRANDLINE_REQUIRE_GPU` is 1: then that fails.
+///
+/// # Panics
+/// There is no adapter, or it does not start, and one is required.
+pub fn gpu() -> Option<Gpu> {
+    static SHARED: OnceLock<Option<Gpu>> = OnceLock::new();
+    SHARED.get_or_init(open).clone()
+}
+
+/// As [`gpu`], with a device of its own: for checks that spoil it.
+///
+/// # Panics
+/// As [`gpu`].
+pub fn own_gpu() -> Option<Gpu> {
+    open()
+}
+
+#[allow(clippy::print_stderr)] // it tells what is not tested
+fn open() -> Option<Gpu> {
+    match Gpu::any() {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            let required = std::env::var_os("STRANDLINE_REQUIRE_GPU").is_some_and(|value| value == "1");
+            assert!(!required, "STRANDLINE_REQUIRE_GPU is 1, but {error}");
+            eprintln!("not tested on a GPU: {error}");
+            None
+        }
+    }
+}

@@ -80,6 +80,16 @@ impl DistanceGrid {
         self.lattice.spacing
     }
 
+    /// Place of the first node \[m\].
+    pub fn origin(&self) -> Vec3 {
+        self.lattice.origin
+    }
+
+    /// Gradient and distance \[m\] at each node, x fastest, then y.
+    pub fn nodes(&self) -> &[Vec4] {
+        &self.nodes
+    }
+
     /// Cells in x, y, z.
     pub fn cells(&self) -> UVec3 {
         self.lattice.node_count - 1

@@ -20,4 +20,7 @@ pub enum SimError {
         /// What fits.
         expected: &'static str,
     },
+    /// What the GPU could not do.
+    #[error(transparent)]
+    Gpu(#[from] strandline_gpu::GpuError),
 }

@@ -4,6 +4,7 @@
 //! [`State`] is all that changes with time.
 
 pub mod cpu;
+pub mod gpu;
 
 mod clock;
 mod error;

@@ -51,6 +51,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Share that a rate \[1/s\] takes in a step.
+    pub(crate) fn taken(&self, rate: f32) -> f32 {
+        -(-rate * self.time_step).exp_m1()
+    }
+
     /// The thesis as printed: 20 rounds of distance constraints, springs, no shape and no length
     /// pass [Chen2011 §4].
     pub fn thesis() -> Self {
@@ -199,7 +204,8 @@ pub struct VolumeSettings {
     pub tolerance: f32,
     /// Most iterations of the pressure solve, 1 to 100,000; default 200.
     pub max_iterations: u32,
-    /// Preconditioner of the conjugate gradients: mic0 (default), jacobi or none.
+    /// Preconditioner of the conjugate gradients: auto (default), mic0 (CPU only), jacobi, chebyshev
+    /// or none. Auto is the one that is faster: mic0 on the CPU, chebyshev on a GPU.
     pub preconditioner: Preconditioner,
 }
 
@@ -211,7 +217,7 @@ impl Default for VolumeSettings {
             flip_share: 0.95,
             tolerance: 1e-5,
             max_iterations: 200,
-            preconditioner: Preconditioner::Mic0,
+            preconditioner: Preconditioner::Auto,
         }
     }
 }
@@ -220,11 +226,15 @@ impl Default for VolumeSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Preconditioner {
-    /// Modified incomplete Cholesky, level zero.
+    /// The fastest of the backend.
     #[default]
+    Auto,
+    /// Modified incomplete Cholesky, level zero: a chain from cell to cell, for the CPU only.
     Mic0,
     /// The diagonal.
     Jacobi,
+    /// A Chebyshev polynomial of the system scaled by its diagonal \[Saad2003\].
+    Chebyshev,
     /// None.
     None,
 }

@@ -127,6 +127,11 @@ impl Solver {
         self.strand_count
     }
 
+    /// Strands and the lanes that fill up the last block.
+    pub(crate) fn lane_count(&self) -> usize {
+        self.positions.len() / self.points_per_strand * LANES
+    }
+
     /// Points on each strand.
     pub fn points_per_strand(&self) -> usize {
         self.points_per_strand

@@ -19,11 +19,11 @@ pub struct Drive {
 
 impl Drive {
     /// This drive, where it is finite; else a head that stays and air that rests.
-    pub(crate) fn or_still(&self, state: &State) -> Self {
+    pub(crate) fn or_still_at(&self, start: Pose) -> Self {
         let pose = &self.world_from_head;
         let posed = pose.rotation.is_finite() && pose.translation.is_finite();
         Self {
-            world_from_head: if posed { *pose } else { state.world_from_head },
+            world_from_head: if posed { *pose } else { start },
             wind: if self.wind.is_finite() { self.wind } else { Vec3::ZERO },
         }
     }
@@ -70,6 +70,12 @@ impl State {
             let before = Vec3x8::load(before);
             (before + (Vec3x8::load(now) - before) * splat(share)).store(between);
         });
+    }
+
+    /// Positions at the end of the step \[m\], world space, shape `[block][point]` of lanes: what the
+    /// stages between `pose_roots` and `advance` work on.
+    pub fn predicted(&self) -> &[Vec3Lanes] {
+        &self.scratch.predicted
     }
 
     /// Length over rest length of a strand.

@@ -15,7 +15,7 @@ use crate::{Drive, Solver, State, StepReport};
 
 /// Advances a state by one step [Chen2011 §4, fig. 11-12].
 pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepReport {
-    let drive = drive.or_still(state);
+    let drive = drive.or_still_at(state.world_from_head);
     let obstacles = Obstacles {
         colliders: &solver.colliders,
         start: state.world_from_head,

@@ -27,6 +27,29 @@ pub struct Bends {
     head: Quat,
 }
 
+/// What a pass over the bends takes of the gap to the rest shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BendShares {
+    /// Share of the gap that a pass among the rounds closes.
+    pub share: f32,
+    /// Share that the walk from root to tip closes.
+    pub hold: f32,
+}
+
+impl BendShares {
+    pub fn new(angles: &Angles, time_step: f32, iterations: u32) -> Self {
+        // One backward Euler step of a spring of this frequency closes this share of the gap; the
+        // passes of a step share it, so that their number does not matter.
+        let turn = (angles.stiffness * time_step).powi(2);
+        let left = 1.0 / (1.0 + turn);
+        let passes = iterations.div_ceil(ROUNDS_PER_PASS);
+        Self {
+            share: 1.0 - left.powf(1.0 / passes as f32),
+            hold: 1.0 - (-angles.hold * time_step).exp(),
+        }
+    }
+}
+
 /// One block of strands as bends see it.
 #[derive(Clone, Copy)]
 pub struct Joints<'a> {
@@ -41,16 +64,12 @@ impl Bends {
         if angles.is_off() {
             return None;
         }
-        // One backward Euler step of a spring of this frequency closes this share of the gap; the
-        // passes of a step share it, so that their number does not matter.
-        let turn = (angles.stiffness * time_step).powi(2);
-        let left = 1.0 / (1.0 + turn);
-        let passes = iterations.div_ceil(ROUNDS_PER_PASS);
+        let BendShares { share, hold } = BendShares::new(angles, time_step, iterations);
         Some(Self {
             cos_limit: splat(angles.limit.cos()),
             sin_limit: splat(angles.limit.sin()),
-            share: splat(1.0 - left.powf(1.0 / passes as f32)),
-            hold: splat(1.0 - (-angles.hold * time_step).exp()),
+            share: splat(share),
+            hold: splat(hold),
             head,
         })
     }

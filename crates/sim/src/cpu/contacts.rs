@@ -20,7 +20,7 @@ pub struct Care {
     /// by its square over 2 r.
     stale: f32,
     /// A point nearer than its margin and this \[m\] gets a plane.
-    near: f32,
+    pub near: f32,
 }
 
 impl Care {

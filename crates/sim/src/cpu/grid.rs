@@ -7,7 +7,7 @@ use glam::Vec3;
 pub const REACH: f32 = 1e4;
 
 /// Finest spacing \[m\]: below it a cell is smaller than the gap between neighbouring hairs.
-const MIN_SPACING: f32 = 1e-3;
+pub(crate) const MIN_SPACING: f32 = 1e-3;
 
 /// Spacings form a ladder with this many rungs per doubling.
 const RUNGS_PER_DOUBLING: f32 = 8.0;
@@ -142,6 +142,15 @@ impl Grid {
         }
         Some(place)
     }
+}
+
+/// Every spacing \[m\] of the ladder that hair within [`REACH`] may need, ascending.
+pub(crate) fn ladder() -> Vec<f32> {
+    let mut rungs = vec![rung_above(MIN_SPACING)];
+    while let Some(&last) = rungs.last().filter(|last| **last < 2.0 * REACH) {
+        rungs.push(rung_above(last * (0.5 / RUNGS_PER_DOUBLING).exp2()));
+    }
+    rungs
 }
 
 /// The smallest spacing of the ladder that is not below `needed`.

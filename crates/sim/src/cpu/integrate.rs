@@ -101,9 +101,9 @@ impl Fall {
             time_step: splat(time_step),
             gravity: Vec3x8::splat(settings.gravity * time_step),
             wind: Vec3x8::splat(wind),
-            across: splat(-(-settings.drag.across * time_step).exp_m1()),
-            along: splat(-(-settings.drag.along * time_step).exp_m1()),
-            kept: splat((-settings.damping * time_step).exp()),
+            across: splat(settings.taken(settings.drag.across)),
+            along: splat(settings.taken(settings.drag.along)),
+            kept: splat(1.0 - settings.taken(settings.damping)),
         }
     }
 

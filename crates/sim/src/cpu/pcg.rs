@@ -11,6 +11,12 @@ const TAU: f32 = 0.97;
 /// Least share of the diagonal that a pivot may keep \[Bridson2008\].
 const SIGMA: f32 = 0.25;
 
+/// Steps of the Chebyshev polynomial, each but the first a product with the matrix.
+pub(crate) const CHEBYSHEV_STEPS: usize = 3;
+/// Eigenvalues of the scaled matrix that the polynomial is made for. None is above 2 (Gershgorin);
+/// below the least one it stays positive, only less helpful.
+pub(crate) const CHEBYSHEV_RANGE: [f32; 2] = [0.1, 2.0];
+
 /// When to stop, and how to get there fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PcgSettings {
@@ -108,8 +114,8 @@ impl Pcg {
         }
         self.scale.clear();
         match preconditioner {
-            Preconditioner::Mic0 => self.factorize(system),
-            Preconditioner::Jacobi => {
+            Preconditioner::Auto | Preconditioner::Mic0 => self.factorize(system),
+            Preconditioner::Jacobi | Preconditioner::Chebyshev => {
                 let inverse = |diagonal: &f32| if *diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
                 self.scale.extend(system.diagonal.iter().map(inverse));
             }
@@ -153,12 +159,41 @@ impl Pcg {
 
     /// `better` = M^-1 `residual`.
     fn precondition(&mut self, system: &Poisson, preconditioner: Preconditioner, residual: &[f32]) {
-        if preconditioner != Preconditioner::Mic0 {
-            for ((better, residual), scale) in self.better.iter_mut().zip(residual).zip(&self.scale) {
-                *better = residual * scale;
+        match preconditioner {
+            Preconditioner::Auto | Preconditioner::Mic0 => self.substitute(system, residual),
+            Preconditioner::Chebyshev => self.smooth(system, residual),
+            Preconditioner::Jacobi | Preconditioner::None => {
+                for ((better, residual), scale) in self.better.iter_mut().zip(residual).zip(&self.scale) {
+                    *better = residual * scale;
+                }
             }
-            return;
         }
+    }
+
+    /// Steps of the Chebyshev iteration from zero \[Saad2003 alg. 12.1\].
+    fn smooth(&mut self, system: &Poisson, residual: &[f32]) {
+        let [least, most] = CHEBYSHEV_RANGE;
+        let (theta, delta) = (0.5 * (most + least), 0.5 * (most - least));
+        let Self { better, carried: change, forward: image, scale, .. } = self;
+        for unknown in 0..system.len() {
+            change[unknown] = residual[unknown] * scale[unknown] / theta;
+            better[unknown] = change[unknown];
+        }
+        let mut before = delta / theta;
+        for _ in 1..CHEBYSHEV_STEPS {
+            let rho = 1.0 / (2.0 * theta / delta - before);
+            system.multiply(better, image);
+            for unknown in 0..system.len() {
+                let left = residual[unknown] - image[unknown];
+                change[unknown] = rho * before * change[unknown] + 2.0 * rho / delta * scale[unknown] * left;
+                better[unknown] += change[unknown];
+            }
+            before = rho;
+        }
+    }
+
+    /// The two substitutions of MIC(0).
+    fn substitute(&mut self, system: &Poisson, residual: &[f32]) {
         let zero = system.len();
         for (unknown, (lower, residual)) in system.lower.iter().zip(residual).enumerate() {
             let [x, y, z] = lower.map(|before| self.carried[before as usize]);

@@ -96,9 +96,31 @@ impl Volume {
         self.kinds[cell]
     }
 
+    /// Makes a cell something else than [`mark`](super::mark::mark) found, for rooms that hair seldom makes.
+    pub fn set_kind(&mut self, cell: usize, kind: Kind) {
+        let number = cell as u32;
+        self.kinds[cell] = kind;
+        match (self.fluid.binary_search(&number), kind) {
+            (Err(place), Kind::Fluid) => self.fluid.insert(place, number),
+            (Ok(place), Kind::Air | Kind::Solid) => {
+                self.fluid.remove(place);
+            }
+            _ => {}
+        }
+        if let Err(place) = self.marked.binary_search(&number) {
+            self.marked.insert(place, number);
+        }
+    }
+
     /// The cells whose pressure is unknown, ascending.
     pub fn fluid(&self) -> &[u32] {
         &self.fluid
+    }
+
+    /// Pressure times step over density and cell size \[m/s\] of each fluid cell, with a zero behind
+    /// the last.
+    pub fn pressure(&self) -> &[f32] {
+        &self.solution.values
     }
 
     /// Whether a lane of a block is a strand and not a repetition of the last one.

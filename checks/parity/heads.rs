@@ -1,0 +1,151 @@
+//! Hair that the stages are compared on.
+
+use glam::{Quat, Vec3};
+use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape};
+use strandline_gpu::Gpu;
+use strandline_groom::{Groom, Guides, LANES, Vec3Lanes};
+use strandline_sim::gpu::GpuSolver;
+use strandline_sim::{Drive, Settings, Solver, State, VolumeSettings};
+
+/// One kind of hair: what is compared on it.
+pub struct Head {
+    pub name: &'static str,
+    pub guides: Guides,
+    pub colliders: Vec<Collider>,
+    pub settings: Settings,
+}
+
+impl Head {
+    pub fn solver(&self) -> Solver {
+        Solver::new(&self.guides, &self.settings, self.colliders.clone()).unwrap()
+    }
+
+    pub fn gpu_solver(&self, gpu: &Gpu) -> GpuSolver {
+        GpuSolver::new(gpu, self.solver()).unwrap()
+    }
+
+    /// The hair after some steps of a head that turns, with nothing remembered of the solids.
+    pub fn moving(&self, solver: &Solver) -> State {
+        let mut state = solver.rest_state(Pose::IDENTITY);
+        for step in 1..=5 {
+            solver.step(&mut state, &drive(step));
+        }
+        let mut fresh = solver.rest_state(state.world_from_head);
+        fresh.positions = state.positions;
+        fresh.previous_positions = state.previous_positions;
+        fresh.velocities = state.velocities;
+        fresh
+    }
+}
+
+/// A head that turns and a wind.
+pub fn drive(step: usize) -> Drive {
+    let turned = Quat::from_rotation_y(0.03 * step as f32) * Quat::from_rotation_x(0.01 * step as f32);
+    Drive {
+        world_from_head: Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), turned),
+        wind: Vec3::new(0.4, 0.1, -0.2),
+    }
+}
+
+pub fn volume(cells: u32) -> VolumeSettings {
+    VolumeSettings { cells: [cells; 3], ..VolumeSettings::default() }
+}
+
+/// Strands on the upper half of a ball of 9 cm about the origin, that wave and hang.
+pub fn ball(strands: usize, points: usize) -> Guides {
+    let mut groom = Groom::empty(8e-5);
+    let golden = std::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
+    for strand in 0..strands {
+        let height = 1.0 - (strand as f32 + 0.5) / strands as f32;
+        let around = golden * strand as f32;
+        let aside = (1.0 - height * height).sqrt();
+        let out = Vec3::new(aside * around.cos(), height, aside * around.sin());
+        let along = |share: f32| {
+            let wave = 0.01 * (12.0 * share + around).sin();
+            0.09 * out + out * 0.12 * share + Vec3::NEG_Y * 0.1 * share * share + Vec3::splat(wave * share)
+        };
+        groom.push((0..=20).map(|index| along(index as f32 / 20.0)));
+    }
+    Guides::resample(&groom, points).unwrap()
+}
+
+pub fn skull(friction: f32) -> Collider {
+    Collider::new(Shape::sphere(Vec3::ZERO, 0.09).unwrap(), Carrier::Head, friction).unwrap()
+}
+
+/// A ball in the head, a capsule in the world and a grid: every kind of solid.
+pub fn solids() -> Vec<Collider> {
+    let capsule =
+        Shape::capsule(Vec3::new(-0.3, -0.14, 0.05), Vec3::new(0.3, -0.14, 0.05), 0.04).unwrap();
+    let mannequin = Mannequin::new();
+    let grid = DistanceGrid::from_field(&*mannequin, 0.008, 0.02).unwrap();
+    vec![
+        skull(0.3),
+        Collider::new(capsule, Carrier::World, 0.5).unwrap(),
+        Collider::new(Shape::Grid(grid.into()), Carrier::Head, 0.2).unwrap(),
+    ]
+}
+
+/// The hair that every stage is compared on: an ordinary head and the edges.
+pub fn heads() -> Vec<Head> {
+    let with = |change: fn(&mut Settings)| {
+        let mut settings = Settings { volume: volume(16), ..Settings::default() };
+        change(&mut settings);
+        settings
+    };
+    vec![
+        Head {
+            name: "300 strands of 16 points on solids of every kind",
+            guides: ball(300, 16),
+            colliders: solids(),
+            settings: with(|settings| settings.angles.hold = 8.0),
+        },
+        Head {
+            name: "the thesis: 6 points, no bends, no length pass",
+            guides: ball(90, 6),
+            colliders: vec![skull(0.3)],
+            settings: Settings { volume: volume(12), ..Settings::thesis() },
+        },
+        Head {
+            name: "one strand, no solids",
+            guides: ball(1, 12),
+            colliders: Vec::new(),
+            settings: with(|_| ()),
+        },
+        Head {
+            name: "the fewest points",
+            guides: ball(9, 4),
+            colliders: vec![skull(0.0)],
+            settings: with(|_| ()),
+        },
+        Head {
+            name: "the most points",
+            guides: ball(33, 64),
+            colliders: vec![skull(0.9)],
+            settings: with(|settings| settings.iterations = 7),
+        },
+        Head {
+            name: "the fewest cells",
+            guides: ball(20, 8),
+            colliders: vec![skull(0.3)],
+            settings: with(|settings| settings.volume.cells = [4, 5, 6]),
+        },
+    ]
+}
+
+/// The largest distance between the live strands of two sets of vectors.
+pub fn apart(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> f32 {
+    let points = guides.points_per_strand();
+    assert_eq!(a.len(), b.len());
+    let mut largest = 0.0_f32;
+    for (index, (a, b)) in a.iter().zip(b).enumerate() {
+        for lane in 0..LANES {
+            if index / points * LANES + lane < guides.strand_count() {
+                let distance = (a.get(lane) - b.get(lane)).length();
+                assert!(distance.is_finite(), "not finite at {index}, lane {lane}");
+                largest = largest.max(distance);
+            }
+        }
+    }
+    largest
+}

@@ -1,0 +1,7 @@
+//! Every stage of the GPU backend against its twin in plain Rust.
+
+mod heads;
+mod shaders;
+mod strands;
+mod volume;
+mod whole;

@@ -1,0 +1,86 @@
+//! Kernels against their shaders, without an adapter.
+
+use strandline_gpu::{Access, Declaration, Field, Layout, check};
+use strandline_sim::gpu::{declarations, modules};
+
+fn declaration(entry: &str) -> Declaration {
+    declarations().into_iter().find(|declaration| declaration.entry == entry).unwrap()
+}
+
+fn complaints(declaration: &Declaration) -> String {
+    check(declaration).join("\n")
+}
+
+#[test]
+fn every_kernel_agrees_with_its_shader() {
+    for declaration in declarations() {
+        assert_eq!(complaints(&declaration), "", "{}", declaration.entry);
+    }
+}
+
+#[test]
+fn every_entry_point_has_a_kernel() {
+    let known: Vec<&str> = declarations().iter().map(|declaration| declaration.entry).collect();
+    for (module, text) in modules() {
+        let entries: Vec<&str> = text
+            .split("@compute")
+            .skip(1)
+            .map(|rest| rest.split("fn ").nth(1).unwrap().split('(').next().unwrap())
+            .collect();
+        assert!(!entries.is_empty(), "{module} has no entry point");
+        for entry in entries {
+            assert!(known.contains(&entry), "{module}::{entry} has no kernel");
+        }
+    }
+}
+
+#[test]
+fn a_renamed_field_is_found() {
+    let mut wrong = declaration("integrate");
+    let Layout::Struct { fields, .. } = &mut wrong.bindings[0].layout else { panic!("the step is a struct") };
+    fields[5] = Field { name: "timestep", ..fields[5].clone() };
+    let found = complaints(&wrong);
+    assert!(found.contains("integrate::integrate: step.timestep is called"), "{found}");
+}
+
+#[test]
+fn a_moved_field_and_a_wrong_size_are_found() {
+    let mut wrong = declaration("integrate");
+    let Layout::Struct { fields, size, .. } = &mut wrong.bindings[0].layout else { panic!("a struct") };
+    fields[6].offset += 4;
+    *size += 16;
+    let found = complaints(&wrong);
+    assert!(found.contains("step.time_step is at"), "{found}");
+    assert!(found.contains("bytes, declared"), "{found}");
+}
+
+#[test]
+fn a_wrong_access_name_number_or_type_is_found() {
+    let mut wrong = declaration("gather");
+    wrong.bindings[2].access = Access::ReadWrite;
+    assert!(complaints(&wrong).contains("predicted is Some(Read), declared ReadWrite"));
+
+    let mut wrong = declaration("gather");
+    wrong.bindings[3].name = "speeds";
+    assert!(complaints(&wrong).contains("velocities at 3 is declared as speeds"));
+
+    let mut wrong = declaration("gather");
+    wrong.bindings[4].index = 9;
+    let found = complaints(&wrong);
+    assert!(found.contains("faces at 4 is not declared") && found.contains("at 9 is not used"), "{found}");
+
+    let mut wrong = declaration("gather");
+    wrong.bindings[4].layout = Layout::Scalar("u32");
+    let found = complaints(&wrong);
+    assert!(found.contains("elements of 8 bytes, declared 4"), "{found}");
+}
+
+#[test]
+fn a_missing_entry_point_and_a_broken_text_are_found() {
+    let wrong = Declaration { entry: "gathers", ..declaration("gather") };
+    assert!(complaints(&wrong).contains("there is no such entry point"));
+    let wrong = Declaration { source: "fn broken( {", ..declaration("gather") };
+    // The module and the place in it are named.
+    let found = complaints(&wrong);
+    assert!(found.contains("gather::gather") && found.contains("wgsl:1"), "{found}");
+}

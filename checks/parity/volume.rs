@@ -1,0 +1,313 @@
+//! The stages of the fluid volume.
+
+use strandline_checks::gpu;
+use strandline_sim::cpu::{
+    Kind, Obstacles, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
+    pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
+};
+use strandline_sim::gpu::{Gradient, Probe, Spread};
+use strandline_sim::{Preconditioner, Solver, State};
+
+use crate::heads::{Head, apart, drive, heads};
+
+/// Everything up to the volume on the CPU, and an empty volume.
+fn constrained(head: &Head) -> (Solver, State, Volume) {
+    let solver = head.solver();
+    let mut state = head.moving(&solver);
+    let obstacles = obstacles(&solver, &state);
+    pose_roots(&solver, &mut state, &drive(6).world_from_head);
+    integrate(&solver, &mut state, drive(6).wind);
+    constrain(&solver, &mut state, &obstacles);
+    let volume =
+        Volume::new(&head.settings.volume, head.guides.strand_count(), head.guides.points_per_strand());
+    (solver, state, volume)
+}
+
+fn obstacles<'a>(solver: &'a Solver, state: &State) -> Obstacles<'a> {
+    Obstacles {
+        colliders: solver.colliders(),
+        start: state.world_from_head,
+        end: drive(6).world_from_head,
+        time_step: solver.settings().time_step,
+    }
+}
+
+fn splat_cpu(solver: &Solver, state: &State, volume: &mut Volume) {
+    splat(volume, state.predicted(), &state.velocities, &solver.rest().mass);
+}
+
+/// The largest difference of the velocities of all faces \[m/s\], and of their changes.
+fn faces_apart(volume: &Volume, found: &[[f32; 2]]) -> [f32; 2] {
+    let count = volume.grid.cell_count();
+    let mut largest = [0.0_f32; 2];
+    for (index, pair) in found.iter().enumerate() {
+        let (axis, cell) = (index / count, index % count);
+        let expected = [volume.faces.velocity(axis, cell), volume.faces.change(axis, cell)];
+        for kind in 0..2 {
+            let difference = (pair[kind] - expected[kind]).abs();
+            assert!(difference.is_finite());
+            largest[kind] = largest[kind].max(difference);
+        }
+    }
+    largest
+}
+
+#[test]
+fn splat_sorts_and_sums_the_same() {
+    let Some(gpu) = gpu() else { return };
+    for head in heads() {
+        let (solver, state, mut volume) = constrained(&head);
+        splat_cpu(&solver, &state, &mut volume);
+        let gpu_solver = head.gpu_solver(&gpu);
+        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+        probe.run(&drive(6), &["splat"]).unwrap();
+        let name = head.name;
+        let (origin, spacing) = probe.grid().unwrap();
+        assert_eq!(spacing, volume.grid.spacing(), "{name}");
+        let low = volume.grid.low_corner() - spacing;
+        assert!((glam::Vec3::from(origin) - low).length() < 1e-6, "{name}");
+        // The order within a cell is free on a GPU; the cells are not.
+        let (start_index, order) = (probe.start_index().unwrap(), probe.order().unwrap());
+        assert_eq!(order.len(), volume.sort.order().len(), "{name}");
+        for cell in 0..volume.grid.cell_count() {
+            let range = start_index[cell] as usize..start_index[cell + 1] as usize;
+            let mut points = order[range.clone()].to_vec();
+            points.sort_unstable();
+            let expected = match volume.sort.cells().binary_search(&(cell as u32)) {
+                Ok(index) => volume.sort.points_of(index),
+                Err(_) => &[],
+            };
+            assert_eq!(points, expected, "{name}, cell {cell}");
+            // [Chen2011 fig. 26] has the number of points where a cell is empty.
+            let first = if range.is_empty() { order.len() } else { range.start };
+            assert_eq!(first as u32, volume.sort.start_index()[cell], "{name}, cell {cell}");
+        }
+        // Sums of up to some hundred velocities of about 1 m/s in another order.
+        let [velocity, change] = faces_apart(&volume, &probe.faces().unwrap());
+        assert!(velocity < 2e-5 && change == 0.0, "{name}: {velocity}, {change}");
+    }
+}
+
+#[test]
+fn mark_tells_the_same_cells_and_walls() {
+    let Some(gpu) = gpu() else { return };
+    for head in heads() {
+        let (solver, state, mut volume) = constrained(&head);
+        splat_cpu(&solver, &state, &mut volume);
+        let gpu_solver = head.gpu_solver(&gpu);
+        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+        probe.run(&drive(6), &["splat"]).unwrap();
+        probe.run(&drive(6), &["mark"]).unwrap();
+        mark(&mut volume, &obstacles(&solver, &state));
+        let kinds = probe.kinds().unwrap();
+        for (cell, kind) in kinds.iter().enumerate() {
+            assert_eq!(*kind, volume.kind(cell), "{}, cell {cell}", head.name);
+        }
+        let differences = faces_apart(&volume, &probe.faces().unwrap());
+        assert!(differences.iter().all(|difference| *difference < 1e-4), "{}: {differences:?}", head.name);
+    }
+}
+
+/// A volume with its walls, ready to be solved.
+fn marked(head: &Head) -> (Solver, State, Volume) {
+    let (solver, state, mut volume) = constrained(head);
+    splat_cpu(&solver, &state, &mut volume);
+    mark(&mut volume, &obstacles(&solver, &state));
+    (solver, state, volume)
+}
+
+#[test]
+fn solve_pressure_agrees_in_every_way_to_run_it() {
+    let Some(gpu) = gpu() else { return };
+    for mut head in heads() {
+        // Close enough to the solution that two ways to it cannot be far apart.
+        head.settings.volume.tolerance = 1e-6;
+        for preconditioner in [Preconditioner::Chebyshev, Preconditioner::Jacobi, Preconditioner::None] {
+            head.settings.volume.preconditioner = preconditioner;
+            let (_, state, volume) = marked(&head);
+            let mut solved = volume.clone();
+            let expected = solve_pressure(&mut solved);
+            let gpu_solver = head.gpu_solver(&gpu);
+            for (spread, gradient) in [(Spread::One, Gradient::Joint), (Spread::Many, Gradient::Split)] {
+                let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+                probe.state.set_spread(spread);
+                probe.state.set_gradient(gradient);
+                probe.set_volume(&volume).unwrap();
+                probe.run(&drive(6), &["solve_pressure"]).unwrap();
+                let name = format!("{}, {preconditioner:?}, {spread:?}", head.name);
+                let (pressure, found) = probe.pressure().unwrap();
+                assert_eq!(found.fluid_cells as usize, expected.fluid_cells, "{name}");
+                let iterations = expected.iterations as i64 - i64::from(found.iterations);
+                // Single precision sums may need an iteration more or less, or two of many.
+                let slack = 1 + expected.iterations as i64 / 20;
+                assert!(iterations.abs() <= slack, "{name}: {expected:?}, {found:?}");
+                let largest = solved.pressure().iter().fold(0.0, |a: f32, b| a.max(b.abs()));
+                for (found, expected) in pressure.iter().zip(solved.pressure()) {
+                    assert!((found - expected).abs() <= 1e-4 * largest, "{name}: {found}, {expected}");
+                }
+                let [velocity, change] = faces_apart(&solved, &probe.faces().unwrap());
+                assert!(velocity < 1e-3 && change < 1e-3, "{name}: {velocity}, {change}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_solve_that_may_not_go_on_stops_and_says_so() {
+    let Some(gpu) = gpu() else { return };
+    let mut head = heads().swap_remove(0);
+    head.settings.volume.max_iterations = 3;
+    head.settings.volume.preconditioner = Preconditioner::Jacobi;
+    let (_, state, volume) = marked(&head);
+    let expected = solve_pressure(&mut volume.clone());
+    let gpu_solver = head.gpu_solver(&gpu);
+    for spread in [Spread::One, Spread::Many] {
+        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+        probe.state.set_spread(spread);
+        probe.set_volume(&volume).unwrap();
+        probe.run(&drive(6), &["solve_pressure"]).unwrap();
+        let (_, found) = probe.pressure().unwrap();
+        assert_eq!(found.iterations, 3, "{spread:?}");
+        let relative = found.residual / found.first;
+        assert!((relative - expected.relative_residual).abs() < 1e-4, "{relative}, {expected:?}");
+    }
+}
+
+#[test]
+fn more_iterations_than_rounds_go_on_in_one_workgroup() {
+    let Some(gpu) = gpu() else { return };
+    let mut head = heads().swap_remove(0);
+    head.settings.volume.cells = [64; 3];
+    head.settings.volume.tolerance = 1e-7;
+    head.settings.volume.preconditioner = Preconditioner::None;
+    let (_, state, volume) = marked(&head);
+    let mut solved = volume.clone();
+    let expected = solve_pressure(&mut solved);
+    assert!(expected.iterations > 55, "{expected:?}");
+    let gpu_solver = head.gpu_solver(&gpu);
+    let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+    probe.set_volume(&volume).unwrap();
+    probe.run(&drive(6), &["solve_pressure"]).unwrap();
+    let (_, found) = probe.pressure().unwrap();
+    assert!(found.iterations > 50 && found.residual <= 1e-7 * found.first, "{found:?}");
+    let [velocity, _] = faces_apart(&solved, &probe.faces().unwrap());
+    assert!(velocity < 1e-4, "{velocity}");
+}
+
+#[test]
+fn rooms_without_air_are_levelled() {
+    let Some(gpu) = gpu() else { return };
+    let mut head = heads().swap_remove(0);
+    head.settings.volume.cells = [12; 3];
+    let (_, state, volume) = marked(&head);
+    let gpu_solver = head.gpu_solver(&gpu);
+    // Every air cell becomes solid: what is fluid is enclosed.
+    let mut closed = volume.clone();
+    for cell in 0..closed.grid.cell_count() {
+        if closed.kind(cell) == Kind::Air {
+            closed.set_kind(cell, Kind::Solid);
+        }
+    }
+    for (name, volume) in [("closed", closed)] {
+        let mut solved = volume.clone();
+        let expected = solve_pressure(&mut solved);
+        assert!(expected.fluid_cells > 10 && expected.relative_residual <= 1e-5, "{name}: {expected:?}");
+        for spread in [Spread::One, Spread::Many] {
+            let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+            probe.state.set_spread(spread);
+            probe.set_volume(&volume).unwrap();
+            probe.run(&drive(6), &["solve_pressure"]).unwrap();
+            let (_, found) = probe.pressure().unwrap();
+            assert!(found.residual <= 1e-5 * found.first, "{name}: {found:?}");
+            let [velocity, _] = faces_apart(&solved, &probe.faces().unwrap());
+            assert!(velocity < 1e-3, "{name}: {velocity}");
+        }
+    }
+}
+
+#[test]
+fn nothing_to_solve_is_solved() {
+    let Some(gpu) = gpu() else { return };
+    let mut head = heads().swap_remove(0);
+    head.settings.volume.cells = [8; 3];
+    let (_, state, volume) = marked(&head);
+    let gpu_solver = head.gpu_solver(&gpu);
+    for kind in [Kind::Air, Kind::Solid] {
+        let mut volume = volume.clone();
+        for cell in 0..volume.grid.cell_count() {
+            volume.set_kind(cell, kind);
+        }
+        assert_eq!(solve_pressure(&mut volume.clone()).iterations, 0);
+        for spread in [Spread::One, Spread::Many] {
+            let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+            probe.state.set_spread(spread);
+            probe.set_volume(&volume).unwrap();
+            probe.run(&drive(6), &["solve_pressure"]).unwrap();
+            let (_, found) = probe.pressure().unwrap();
+            assert_eq!((found.iterations, found.fluid_cells), (0, 0));
+            assert_eq!(faces_apart(&volume, &probe.faces().unwrap()), [0.0; 2]);
+        }
+    }
+}
+
+#[test]
+fn gather_agrees() {
+    let Some(gpu) = gpu() else { return };
+    for head in heads() {
+        let (_, mut state, mut volume) = marked(&head);
+        solve_pressure(&mut volume);
+        let gpu_solver = head.gpu_solver(&gpu);
+        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+        probe.set_volume(&volume).unwrap();
+        probe.run(&drive(6), &["gather"]).unwrap();
+        let before = state.velocities.clone();
+        let predicted = state.predicted().to_vec();
+        gather(&volume, &predicted, &mut state.velocities);
+        assert!(apart(&before, &state.velocities, &head.guides) > 1e-3, "{}: nothing changed", head.name);
+        let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);
+        assert!(speed < 1e-5, "{}: {speed}", head.name);
+    }
+}
+
+#[test]
+fn points_outside_and_on_borders_of_cells_go_where_they_belong() {
+    let Some(gpu) = gpu() else { return };
+    let head = heads().swap_remove(2);
+    let (solver, mut state, mut volume) = constrained(&head);
+    // A box from corner to corner, points on its cells' borders, one far out and one not a number.
+    let places = [
+        [0.0, 0.0, 0.0],
+        [1.5, 1.5, 1.5],
+        [0.1, 0.2, 0.3],
+        [0.75, 0.75, 0.75],
+        [1.0, 0.5, 0.25],
+        [2e4, 0.0, 0.0],
+        [f32::NAN, 0.0, 0.0],
+        [0.0, 1.5, 0.0],
+        [1.5, 0.0, 0.75],
+        [0.2, 0.2, 0.2],
+        [0.4, 0.4, 0.4],
+        [0.6, 0.6, 0.6],
+    ];
+    let mut predicted = state.predicted().to_vec();
+    for (lanes, place) in predicted.iter_mut().zip(places) {
+        (0..8).for_each(|lane| lanes.set(lane, place.into()));
+    }
+    splat(&mut volume, &predicted, &state.velocities, &solver.rest().mass);
+    let gpu_solver = head.gpu_solver(&gpu);
+    let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+    probe.set_predicted(&predicted).unwrap();
+    probe.run(&drive(6), &["splat"]).unwrap();
+    let mut order = probe.order().unwrap();
+    order.sort_unstable();
+    let mut expected = volume.sort.order().to_vec();
+    expected.sort_unstable();
+    assert_eq!(order, expected);
+    assert_eq!(order.len(), 10);
+    let [velocity, _] = faces_apart(&volume, &probe.faces().unwrap());
+    assert!(velocity < 1e-5, "{velocity}");
+    // Points outside keep their velocities.
+    probe.run(&drive(6), &["gather"]).unwrap();
+    gather(&volume, &predicted, &mut state.velocities);
+    assert!(apart(&state.velocities, &probe.velocities().unwrap(), &head.guides) < 1e-5);
+}

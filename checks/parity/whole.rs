@@ -1,0 +1,103 @@
+//! The whole step: short runs by points, long ones by statistics.
+
+use strandline_body::Pose;
+use strandline_checks::gpu;
+use strandline_sim::Drive;
+
+use crate::heads::{apart, drive, heads};
+
+#[test]
+fn short_runs_agree_by_points() {
+    let Some(gpu) = gpu() else { return };
+    for head in heads() {
+        let solver = head.solver();
+        let gpu_solver = head.gpu_solver(&gpu);
+        let mut expected = solver.rest_state(Pose::IDENTITY);
+        let mut found = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
+        let mut reports = Vec::new();
+        for step in 1..=4 {
+            reports.push(solver.step(&mut expected, &drive(step)));
+            gpu_solver.step(&mut found, &drive(step)).unwrap();
+        }
+        let told = gpu_solver.reports(&mut found).unwrap();
+        let found = gpu_solver.download(&found).unwrap();
+        let name = head.name;
+        assert_eq!(told.len(), 4, "{name}");
+        assert_eq!(found.world_from_head, expected.world_from_head);
+        assert_eq!(found.time, expected.time);
+        let distance = apart(&expected.positions, &found.positions, &head.guides);
+        // Two solves to 1e-5 and contact planes of another age, over four steps of a few mm.
+        assert!(distance < 1e-3, "{name}: {distance}");
+        let before = apart(&expected.previous_positions, &found.previous_positions, &head.guides);
+        assert!(before < 1e-3, "{name}: {before}");
+        for (expected, found) in reports.iter().zip(&told) {
+            assert_eq!(found.non_finite, 0);
+            let fluid = expected.pressure.fluid_cells.abs_diff(found.pressure.fluid_cells);
+            assert!(fluid <= 2 + expected.pressure.fluid_cells / 20, "{name}: {expected:?}, {found:?}");
+            assert!(found.pressure.relative_residual <= 1e-5, "{name}: {found:?}");
+            assert!((expected.stretch_max - found.stretch_max).abs() < 2e-2, "{name}: {expected:?} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn long_runs_agree_by_statistics() {
+    let Some(gpu) = gpu() else { return };
+    let head = &heads()[0];
+    let solver = head.solver();
+    let gpu_solver = head.gpu_solver(&gpu);
+    let mut expected = solver.rest_state(Pose::IDENTITY);
+    let mut found = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
+    let still = Drive::default();
+    let mut energies = [0.0_f64; 2];
+    for step in 1..=150 {
+        let drive = if step <= 60 { drive(step.min(30)) } else { still };
+        let report = solver.step(&mut expected, &drive);
+        gpu_solver.step(&mut found, &drive).unwrap();
+        assert_eq!(report.non_finite, 0);
+    }
+    let reports = gpu_solver.reports(&mut found).unwrap();
+    assert_eq!(reports.len(), 150);
+    assert!(reports.iter().all(|report| report.non_finite == 0));
+    assert!(reports.iter().all(|report| report.stretch_max < 1e-3), "the length pass holds lengths");
+    assert!(reports.iter().all(|report| report.penetration_max < 2e-3));
+    let found = gpu_solver.download(&found).unwrap();
+    let mean = |state: &strandline_sim::State| {
+        let points: Vec<glam::Vec3> =
+            state.positions.iter().flat_map(|lanes| (0..8).map(|lane| lanes.get(lane))).collect();
+        points.iter().sum::<glam::Vec3>() / points.len() as f32
+    };
+    // Hair of 20 cm that came to rest: its centre of mass lies within a few millimetres.
+    let apart = (mean(&expected) - mean(&found)).length();
+    assert!(apart < 5e-3, "{apart}");
+    for (energy, state) in energies.iter_mut().zip([&expected, &found]) {
+        let speeds = state.velocities.iter().flat_map(|v| (0..8).map(|lane| v.get(lane).length_squared()));
+        *energy = speeds.map(f64::from).sum();
+    }
+    // What still moves does so about as much.
+    assert!((0.3..3.0).contains(&(energies[1] / energies[0])), "{energies:?}");
+}
+
+#[test]
+fn steps_may_be_queued_and_a_zero_number_of_them_changes_nothing() {
+    let Some(gpu) = gpu() else { return };
+    let head = &heads()[2];
+    let gpu_solver = head.gpu_solver(&gpu);
+    let mut state = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
+    let before = gpu_solver.download(&state).unwrap();
+    assert!(gpu_solver.reports(&mut state).unwrap().is_empty());
+    assert_eq!(gpu_solver.download(&state).unwrap().positions, before.positions);
+    // More than the device keeps reports of.
+    for step in 0..70 {
+        gpu_solver.step(&mut state, &drive(step)).unwrap();
+    }
+    let reports = gpu_solver.reports(&mut state).unwrap();
+    assert_eq!(reports.len(), 70);
+    let costs = state.costs();
+    assert!(costs.dispatches - costs.solve_dispatches < 40, "{costs:?}");
+    if gpu.has_timestamps() {
+        let stages: Vec<&str> = reports[69].seconds.iter().map(|(name, _)| *name).collect();
+        let all = ["pose_roots", "integrate", "constrain", "splat", "mark", "solve_pressure", "gather", "advance"];
+        assert_eq!(stages, all);
+    }
+}

@@ -1,0 +1,163 @@
+use std::marker::PhantomData;
+
+use bytemuck::Pod;
+
+use crate::{Gpu, GpuError};
+
+/// Elements of one type on the device.
+#[derive(Debug)]
+pub struct Buffer<T> {
+    gpu: Gpu,
+    raw: wgpu::Buffer,
+    name: &'static str,
+    len: usize,
+    element: PhantomData<T>,
+}
+
+impl<T: Pod> Buffer<T> {
+    /// A buffer of zeros; an empty one holds room for one element, which no binding can do without.
+    ///
+    /// # Errors
+    /// It is larger than WebGPU's default limits allow, or the device has no memory left.
+    pub fn new(gpu: &Gpu, name: &'static str, len: usize) -> Result<Self, GpuError> {
+        let usage = wgpu::BufferUsages::STORAGE;
+        Self::with_usage(gpu, name, len, usage)
+    }
+
+    /// A buffer that holds copies of elements.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn from_slice(gpu: &Gpu, name: &'static str, elements: &[T]) -> Result<Self, GpuError> {
+        let buffer = Self::new(gpu, name, elements.len())?;
+        buffer.write(elements)?;
+        Ok(buffer)
+    }
+
+    /// A uniform of one element.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn uniform(gpu: &Gpu, name: &'static str) -> Result<Self, GpuError> {
+        Self::with_usage(gpu, name, 1, wgpu::BufferUsages::UNIFORM)
+    }
+
+    fn with_usage(
+        gpu: &Gpu,
+        name: &'static str,
+        len: usize,
+        usage: wgpu::BufferUsages,
+    ) -> Result<Self, GpuError> {
+        let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
+        gpu.take_memory(name, bytes)?;
+        let descriptor = wgpu::BufferDescriptor {
+            label: Some(name),
+            size: bytes,
+            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST | query(usage),
+            mapped_at_creation: false,
+        };
+        let made = gpu.guarded(name, || gpu.device().create_buffer(&descriptor));
+        match made {
+            Ok(raw) => Ok(Self { gpu: gpu.clone(), raw, name, len, element: PhantomData }),
+            Err(error) => {
+                gpu.give_memory_back(bytes);
+                Err(match error {
+                    GpuError::OutOfMemory { adapter, what, .. } => {
+                        GpuError::OutOfMemory { adapter, what, bytes }
+                    }
+                    other => other,
+                })
+            }
+        }
+    }
+
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is no element.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The buffer itself, for a renderer on the same device.
+    pub fn raw(&self) -> &wgpu::Buffer {
+        &self.raw
+    }
+
+    /// Replaces the first elements.
+    ///
+    /// # Errors
+    /// The device was lost, or there are more elements than the buffer holds.
+    pub fn write(&self, elements: &[T]) -> Result<(), GpuError> {
+        let bytes: &[u8] = bytemuck::cast_slice(elements);
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        self.gpu.guarded(self.name, || self.gpu.queue().write_buffer(&self.raw, 0, bytes))
+    }
+
+    /// Waits for the device and copies all elements back.
+    ///
+    /// # Errors
+    /// The device was lost or has no memory left.
+    pub fn read(&self) -> Result<Vec<T>, GpuError> {
+        self.read_first(self.len)
+    }
+
+    /// Waits for the device and copies the first `count` elements back.
+    ///
+    /// # Errors
+    /// The device was lost or has no memory left.
+    pub fn read_first(&self, count: usize) -> Result<Vec<T>, GpuError> {
+        let count = count.min(self.len);
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        let gpu = &self.gpu;
+        let bytes = (count * size_of::<T>()).next_multiple_of(4) as u64;
+        let staging = gpu.guarded(self.name, || {
+            let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: bytes,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            let mut encoder = gpu.device().create_command_encoder(&Default::default());
+            encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, bytes);
+            gpu.queue().submit([encoder.finish()]);
+            staging.slice(..).map_async(wgpu::MapMode::Read, |_| ());
+            staging
+        })?;
+        gpu.wait()?;
+        let view = staging.slice(..).get_mapped_range().map_err(|error| GpuError::Refused {
+            adapter: gpu.name(),
+            what: format!("reading {}", self.name),
+            message: error.to_string(),
+        })?;
+        let mut elements = vec![T::zeroed(); count];
+        bytemuck::cast_slice_mut::<T, u8>(&mut elements).copy_from_slice(&view[..count * size_of::<T>()]);
+        Ok(elements)
+    }
+}
+
+/// Storage may also take the results of queries.
+fn query(usage: wgpu::BufferUsages) -> wgpu::BufferUsages {
+    if usage.contains(wgpu::BufferUsages::STORAGE) {
+        wgpu::BufferUsages::QUERY_RESOLVE
+    } else {
+        wgpu::BufferUsages::empty()
+    }
+}
+
+impl<T> Drop for Buffer<T> {
+    fn drop(&mut self) {
+        self.gpu.give_memory_back(self.raw.size());
+    }
+}

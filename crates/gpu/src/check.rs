@@ -1,0 +1,173 @@
+//! Holds a kernel's declaration to the shader that was linked: names, offsets, sizes, access.
+
+use wgpu::naga::{
+    AddressSpace, Handle, Module, ScalarKind, ShaderStage, StorageAccess, Type, TypeInner, VectorSize,
+    front::wgsl,
+    valid::{Capabilities, ValidationFlags, Validator},
+};
+
+use crate::{Access, Binding, Declaration, Layout};
+
+/// Compares a declaration with its linked shader, without a device. Returns what differs; nothing
+/// when the two agree.
+pub fn check(declaration: &Declaration) -> Vec<String> {
+    let named = |message: String| format!("{}::{}: {message}", declaration.module, declaration.entry);
+    problems(declaration).into_iter().map(named).collect()
+}
+
+fn problems(declaration: &Declaration) -> Vec<String> {
+    let module = match wgsl::parse_str(declaration.source) {
+        Ok(module) => module,
+        Err(error) => return vec![error.emit_to_string(declaration.source)],
+    };
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+    let info = match validator.validate(&module) {
+        Ok(info) => info,
+        Err(error) => return vec![error.emit_to_string(declaration.source)],
+    };
+    let entry = module
+        .entry_points
+        .iter()
+        .position(|entry| entry.name == declaration.entry && entry.stage == ShaderStage::Compute);
+    let Some(entry) = entry else { return vec!["there is no such entry point".to_owned()] };
+    let used = info.get_entry_point(entry);
+    let mut problems = Vec::new();
+    let mut found = Vec::new();
+    for (handle, variable) in module.global_variables.iter() {
+        let Some(binding) = &variable.binding else { continue };
+        if used[handle].is_empty() {
+            continue;
+        }
+        let name = variable.name.as_deref().unwrap_or_default();
+        found.push(binding.binding);
+        if binding.group != 0 {
+            problems.push(format!("{name} is in group {}, expected 0", binding.group));
+        }
+        match declaration.bindings.iter().find(|declared| declared.index == binding.binding) {
+            None => problems.push(format!("{name} at {} is not declared", binding.binding)),
+            Some(declared) => {
+                compare_variable(&module, declared, name, variable.space, variable.ty, &mut problems);
+            }
+        }
+    }
+    for declared in &declaration.bindings {
+        if !found.contains(&declared.index) {
+            problems.push(format!("{} at {} is not used by the shader", declared.name, declared.index));
+        }
+    }
+    let storage = declaration.bindings.iter().filter(|binding| binding.access != Access::Uniform).count();
+    let most = wgpu::Limits::default().max_storage_buffers_per_shader_stage as usize;
+    if storage > most {
+        problems.push(format!("{storage} storage buffers, at most {most} are portable"));
+    }
+    problems
+}
+
+fn compare_variable(
+    module: &Module,
+    declared: &Binding,
+    name: &str,
+    space: AddressSpace,
+    ty: Handle<Type>,
+    problems: &mut Vec<String>,
+) {
+    // Names of imported modules come before the variable's own.
+    if !is_named(name, declared.name) {
+        problems.push(format!("{name} at {} is declared as {}", declared.index, declared.name));
+    }
+    let access = match space {
+        AddressSpace::Uniform => Some(Access::Uniform),
+        AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => Some(Access::ReadWrite),
+        AddressSpace::Storage { .. } => Some(Access::Read),
+        _ => None,
+    };
+    if access != Some(declared.access) {
+        problems.push(format!("{} is {access:?}, declared {:?}", declared.name, declared.access));
+    }
+    let inner = &module.types[ty].inner;
+    let element = match inner {
+        TypeInner::Array { base, stride, .. } => {
+            let size = size_of_layout(&declared.layout);
+            if *stride as usize != size {
+                problems.push(format!("{}: elements of {stride} bytes, declared {size}", declared.name));
+            }
+            *base
+        }
+        _ => ty,
+    };
+    compare_type(module, &declared.layout, element, declared.name, problems);
+}
+
+fn is_named(found: &str, declared: &str) -> bool {
+    found == declared || found.ends_with(&format!("_{declared}")) || found.ends_with(&format!("1{declared}"))
+}
+
+fn size_of_layout(layout: &Layout) -> usize {
+    match layout {
+        Layout::Scalar(_) => 4,
+        Layout::Vector { count, .. } => 4 * count,
+        Layout::Struct { size, .. } => *size,
+    }
+}
+
+fn compare_type(
+    module: &Module,
+    layout: &Layout,
+    ty: Handle<Type>,
+    path: &str,
+    problems: &mut Vec<String>,
+) {
+    let found = &module.types[ty];
+    match (layout, &found.inner) {
+        (Layout::Scalar(scalar), TypeInner::Scalar(kind) | TypeInner::Atomic(kind)) => {
+            compare_scalar(scalar, kind.kind, path, problems);
+        }
+        (Layout::Vector { scalar, count }, TypeInner::Vector { size, scalar: kind }) => {
+            compare_scalar(scalar, kind.kind, path, problems);
+            let lanes = match size {
+                VectorSize::Bi => 2,
+                VectorSize::Tri => 3,
+                VectorSize::Quad => 4,
+            };
+            if lanes != *count {
+                problems.push(format!("{path} has {lanes} components, declared {count}"));
+            }
+        }
+        (Layout::Struct { name, size, fields }, TypeInner::Struct { members, span }) => {
+            let called = found.name.as_deref().unwrap_or_default();
+            if !is_named(called, name) {
+                problems.push(format!("{path} is a {called}, declared {name}"));
+            }
+            if *span as usize != *size {
+                problems.push(format!("{path} has {span} bytes, declared {size}"));
+            }
+            if members.len() != fields.len() {
+                problems.push(format!("{path} has {} fields, declared {}", members.len(), fields.len()));
+            }
+            for (member, field) in members.iter().zip(fields) {
+                let path = format!("{path}.{}", field.name);
+                if member.name.as_deref() != Some(field.name) {
+                    let found = member.name.as_deref().unwrap_or_default();
+                    problems.push(format!("{path} is called {found} in the shader"));
+                }
+                if member.offset as usize != field.offset {
+                    problems.push(format!("{path} is at {}, declared {}", member.offset, field.offset));
+                }
+                compare_type(module, &field.layout, member.ty, &path, problems);
+            }
+        }
+        (declared, found) => problems.push(format!("{path} is {found:?}, declared {declared:?}")),
+    }
+}
+
+fn compare_scalar(declared: &str, found: ScalarKind, path: &str, problems: &mut Vec<String>) {
+    let expected = match found {
+        ScalarKind::Float => "f32",
+        ScalarKind::Uint => "u32",
+        ScalarKind::Sint => "i32",
+        _ => "another",
+    };
+    if declared != expected {
+        problems.push(format!("{path} is {expected}, declared {declared}"));
+    }
+}

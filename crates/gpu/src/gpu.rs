@@ -1,0 +1,273 @@
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use crate::{Adapter, GpuError};
+
+/// How long a submission may take before the device counts as hung: a software adapter on a busy
+/// machine takes seconds.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A device and its queue. Clones share them.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    adapter: Adapter,
+    /// Why the device is gone, once it is.
+    lost: Arc<Mutex<Option<String>>>,
+    memory: Mutex<Memory>,
+}
+
+/// What buffers hold, and the most that they may.
+#[derive(Debug)]
+struct Memory {
+    used: u64,
+    most: u64,
+}
+
+impl Gpu {
+    /// The first adapter that is real hardware, discrete before integrated.
+    ///
+    /// # Errors
+    /// There is none, or it does not offer WebGPU's default limits.
+    pub fn auto() -> Result<Self, GpuError> {
+        Self::choose("hardware GPU", |adapter| !adapter.software)
+    }
+
+    /// The first adapter of any kind, hardware before software.
+    ///
+    /// # Errors
+    /// There is none, or it does not offer WebGPU's default limits.
+    pub fn any() -> Result<Self, GpuError> {
+        Self::choose("GPU", |_| true)
+    }
+
+    /// An adapter by its number in [`Gpu::list`].
+    ///
+    /// # Errors
+    /// There is none of that number, or it does not offer WebGPU's default limits.
+    pub fn open(index: usize) -> Result<Self, GpuError> {
+        Self::choose(&format!("GPU of number {index}"), |adapter| adapter.index == index)
+    }
+
+    /// All adapters, hardware before software.
+    pub fn list() -> Vec<Adapter> {
+        adapters().into_iter().map(|(_, adapter)| adapter).collect()
+    }
+
+    /// A host's own device and queue. The host keeps its error handlers; the device needs WebGPU's
+    /// default limits, and `TIMESTAMP_QUERY` for times.
+    pub fn from_parts(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let adapter = Adapter::new(0, &device.adapter_info());
+        Self::new(device, queue, adapter, Arc::default())
+    }
+
+    fn new(
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        adapter: Adapter,
+        lost: Arc<Mutex<Option<String>>>,
+    ) -> Self {
+        let memory = Mutex::new(Memory { used: 0, most: u64::MAX });
+        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory }) }
+    }
+
+    fn choose(wanted: &str, suits: impl Fn(&Adapter) -> bool) -> Result<Self, GpuError> {
+        let adapters = adapters();
+        let offered: Vec<Adapter> = adapters.iter().map(|(_, adapter)| adapter.clone()).collect();
+        let Some((found, adapter)) = adapters.into_iter().find(|(_, adapter)| suits(adapter)) else {
+            return Err(GpuError::NoAdapter { wanted: wanted.to_owned(), offered });
+        };
+        Self::start(&found, adapter)
+    }
+
+    fn start(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
+        let limits = wgpu::Limits::default();
+        let mut refused = None;
+        limits.check_limits_with_fail_fn(&found.limits(), false, |what, needed, limit| {
+            refused.get_or_insert_with(|| GpuError::Limit {
+                adapter: adapter.to_string(),
+                what: what.to_owned(),
+                needed,
+                limit,
+            });
+        });
+        if let Some(error) = refused {
+            return Err(error);
+        }
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("strandline"),
+            required_features: found.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: limits,
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(found.request_device(&descriptor)).map_err(|error| {
+            let what = "starting the device".to_owned();
+            GpuError::Refused { adapter: adapter.to_string(), what, message: error.to_string() }
+        })?;
+        let lost: Arc<Mutex<Option<String>>> = Arc::default();
+        let (slot, first) = (lost.clone(), lost.clone());
+        device.set_device_lost_callback(move |_, message| note(&slot, message));
+        // What no error scope caught: the device is of no use after it.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&first, error.to_string())));
+        Ok(Self::new(device, queue, adapter, lost))
+    }
+
+    /// The device.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.shared.device
+    }
+
+    /// The queue.
+    pub fn queue(&self) -> &wgpu::Queue {
+        &self.shared.queue
+    }
+
+    /// The adapter.
+    pub fn adapter(&self) -> &Adapter {
+        &self.shared.adapter
+    }
+
+    /// Whether the device can tell how long its work takes.
+    pub fn has_timestamps(&self) -> bool {
+        self.device().features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Sets the most bytes that all buffers together may hold, so that a host can keep some for
+    /// itself. What is held already stays.
+    pub fn set_memory_limit(&self, bytes: u64) {
+        self.memory().most = bytes;
+    }
+
+    /// Bytes that all buffers together hold.
+    pub fn memory_used(&self) -> u64 {
+        self.memory().used
+    }
+
+    /// Gives the device up; whatever is asked of it afterwards is an error.
+    pub fn destroy(&self) {
+        note(&self.shared.lost, "it was given up".to_owned());
+        self.device().destroy();
+    }
+
+    /// Tells whether the device still works.
+    ///
+    /// # Errors
+    /// It was lost.
+    pub fn check(&self) -> Result<(), GpuError> {
+        match &*lock(&self.shared.lost) {
+            None => Ok(()),
+            Some(reason) => Err(GpuError::Lost { adapter: self.name(), reason: reason.clone() }),
+        }
+    }
+
+    /// Runs what may be refused and turns a refusal into an error.
+    ///
+    /// # Errors
+    /// The device is lost, has no memory left, or finds a mistake.
+    pub fn guarded<T>(&self, what: &str, run: impl FnOnce() -> T) -> Result<T, GpuError> {
+        self.check()?;
+        let memory = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let internal = self.device().push_error_scope(wgpu::ErrorFilter::Internal);
+        let validation = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
+        let result = run();
+        let pops = [
+            pollster::block_on(validation.pop()),
+            pollster::block_on(internal.pop()),
+            pollster::block_on(memory.pop()),
+        ];
+        match pops.into_iter().flatten().next() {
+            None => self.check().map(|()| result),
+            Some(error) => Err(self.refusal(what, &error)),
+        }
+    }
+
+    fn refusal(&self, what: &str, error: &wgpu::Error) -> GpuError {
+        if let Err(lost) = self.check() {
+            return lost;
+        }
+        let (adapter, what) = (self.name(), what.to_owned());
+        match error {
+            wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory { adapter, what, bytes: 0 },
+            other => GpuError::Refused { adapter, what, message: other.to_string() },
+        }
+    }
+
+    /// Waits until everything that was submitted is done.
+    ///
+    /// # Errors
+    /// The device was lost or does not answer.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.check()?;
+        let patience = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        let polled = self.device().poll(patience);
+        self.check()?;
+        polled.map(drop).map_err(|error| GpuError::Lost { adapter: self.name(), reason: error.to_string() })
+    }
+
+    /// Takes bytes for a buffer, if they may be had.
+    pub(crate) fn take_memory(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
+        let limits = wgpu::Limits::default();
+        let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        if bytes > limit {
+            let what = format!("a buffer of bytes for {what}");
+            return Err(GpuError::Limit { adapter: self.name(), what, needed: bytes, limit });
+        }
+        let mut memory = self.memory();
+        if bytes > memory.most.saturating_sub(memory.used) {
+            return Err(GpuError::OutOfMemory { adapter: self.name(), what: what.to_owned(), bytes });
+        }
+        memory.used += bytes;
+        Ok(())
+    }
+
+    pub(crate) fn give_memory_back(&self, bytes: u64) {
+        let mut memory = self.memory();
+        memory.used = memory.used.saturating_sub(bytes);
+    }
+
+    pub(crate) fn name(&self) -> String {
+        self.shared.adapter.to_string()
+    }
+
+    fn memory(&self) -> MutexGuard<'_, Memory> {
+        lock(&self.shared.memory)
+    }
+}
+
+/// A lock that outlives a panic elsewhere: what it holds is plain data.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps the first reason.
+fn note(slot: &Mutex<Option<String>>, reason: String) {
+    lock(slot).get_or_insert(reason);
+}
+
+/// All adapters, the fastest kind first.
+fn adapters() -> Vec<(wgpu::Adapter, Adapter)> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+    // The validation layers of old drivers report errors where there are none.
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(descriptor);
+    let mut found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    found.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    let described = |(index, adapter): (usize, wgpu::Adapter)| {
+        let description = Adapter::new(index, &adapter.get_info());
+        (adapter, description)
+    };
+    found.into_iter().enumerate().map(described).collect()
+}

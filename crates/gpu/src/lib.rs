@@ -1,0 +1,28 @@
+//! A thin kit over wgpu: a device, typed buffers, kernels that are held to their shaders, readback
+//! and timestamps. There is no hair in it.
+//!
+//! Everything keeps to WebGPU's default limits, whatever the adapter offers.
+
+mod buffer;
+mod check;
+mod error;
+mod gpu;
+mod kernel;
+mod layout;
+mod list;
+mod timer;
+
+pub use buffer::Buffer;
+pub use check::check;
+pub use error::GpuError;
+pub use gpu::Gpu;
+pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Kernel, Recorder, groups};
+pub use layout::{Field, Layout, Mirror};
+pub use list::Adapter;
+pub use timer::Timer;
+
+/// The crate that the host's device and queue come from.
+pub use wgpu;
+
+#[doc(hidden)]
+pub use bytemuck;

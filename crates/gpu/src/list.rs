@@ -1,0 +1,32 @@
+use std::fmt;
+
+/// What is known of an adapter before it is opened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Adapter {
+    /// Its number in the list.
+    pub index: usize,
+    /// Its name.
+    pub name: String,
+    /// The interface that drives it: Vulkan, Metal, Dx12.
+    pub interface: String,
+    /// Whether it is a processor that plays a GPU: for tests only.
+    pub software: bool,
+}
+
+impl Adapter {
+    pub(crate) fn new(index: usize, info: &wgpu::AdapterInfo) -> Self {
+        Self {
+            index,
+            name: info.name.clone(),
+            interface: info.backend.to_string(),
+            software: info.device_type == wgpu::DeviceType::Cpu,
+        }
+    }
+}
+
+impl fmt::Display for Adapter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let software = if self.software { ", software" } else { "" };
+        write!(f, "gpu:{} {} ({}{software})", self.index, self.name, self.interface)
+    }
+}

@@ -1,0 +1,76 @@
+//! What the step was worth.
+
+use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel, mirror};
+
+use super::solve_pressure::PressureState;
+use super::uniform::Step;
+use super::{Buffers, Dispatches, THREADS};
+
+mirror! {
+    /// What a step did. Mirrors `Report` in advance.wesl.
+    pub(super) struct Report {
+        pub stretch_sum: f32,
+        pub stretch_max: f32,
+        pub penetration_max: f32,
+        /// A number of points.
+        pub non_finite: f32,
+        pub pressure: PressureState,
+    }
+}
+
+kernel! {
+    /// One thread is one strand.
+    pub(super) struct Advance in "advance" (super::linked::ADVANCE), entry "advance" {
+        0 step: Uniform Step,
+        1 solids: Read [f32; 4],
+        2 rest_positions: Read f32,
+        3 rest: Read f32,
+        4 predicted: ReadWrite f32,
+        5 velocities: ReadWrite f32,
+        6 bad_points: Read u32,
+        7 outcomes: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One workgroup.
+    pub(super) struct Gathered in "advance" (super::linked::ADVANCE), entry "report" {
+        0 step: Uniform Step,
+        7 outcomes: ReadWrite [f32; 4],
+        8 pressure: Read PressureState,
+        9 reports: ReadWrite Report,
+    }
+}
+
+pub(super) struct Stage {
+    advance: Kernel<Advance<'static>>,
+    report: Kernel<Gathered<'static>>,
+}
+
+impl Stage {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { advance: Kernel::new(gpu, &[])?, report: Kernel::new(gpu, &[])? })
+    }
+
+    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+        let Buffers { step, solids, rest_positions, rest, velocities, bad_points, outcomes, .. } = buffers;
+        let predicted = &buffers.places[1 - side];
+        let advance = self.advance.bind(
+            gpu,
+            &Advance {
+                step,
+                solids,
+                rest_positions,
+                rest,
+                predicted,
+                velocities,
+                bad_points,
+                outcomes,
+            },
+        )?;
+        let pressure = buffers.volume.as_ref().map_or(&buffers.no_pressure, |volume| &volume.states);
+        let reports = &buffers.reports;
+        let report = self.report.bind(gpu, &Gathered { step, outcomes, pressure, reports })?;
+        Ok(vec![(advance, groups(buffers.lane_count, THREADS)), (report, [1; 3])])
+    }
+}

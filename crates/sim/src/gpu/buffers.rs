@@ -1,0 +1,134 @@
+//! What lies on the device.
+
+use strandline_gpu::{Buffer, Gpu};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
+
+use super::advance::Report;
+use super::solve_pressure::PressureState;
+use super::uniform::Step;
+use super::volume::Volume;
+use super::{THREADS, solids};
+use crate::{SimError, Solver, State};
+
+/// Steps whose reports the device keeps until they are read.
+pub(super) const REPORTS: usize = 64;
+
+/// The buffers of a state. Numbers of points lie as on the CPU, `[block][point]` of lanes; where a
+/// point has several they lie `[block][point][number]` of lanes.
+pub(super) struct Buffers {
+    pub strand_count: usize,
+    /// Strands and what fills up the last block.
+    pub lane_count: usize,
+    pub points: usize,
+    pub step: Buffer<Step>,
+    /// Head space \[m\].
+    pub rest_positions: Buffer<f32>,
+    /// Six numbers: rest direction, rest length \[m\], inverse mass \[1/kg\], clearance at rest \[m\].
+    pub rest: Buffer<f32>,
+    /// Two numbers: rest lengths of the bend and the torsion spring \[m\].
+    pub springs: Buffer<f32>,
+    /// \[kg\]
+    pub mass: Buffer<f32>,
+    pub solids: Buffer<[f32; 4]>,
+    /// Positions \[m\] of the last two steps; which is the newer changes with every step.
+    pub places: [Buffer<f32>; 2],
+    /// \[m/s\]
+    pub velocities: Buffer<f32>,
+    /// Five numbers: see constrain.wesl.
+    pub planes: Buffer<f32>,
+    /// Per strand.
+    pub bad_points: Buffer<u32>,
+    /// Per workgroup of strands: see splat.wesl.
+    pub boxes: Buffer<[f32; 4]>,
+    /// Per workgroup of strands: see advance.wesl.
+    pub outcomes: Buffer<[f32; 4]>,
+    pub reports: Buffer<Report>,
+    /// What a step without a volume reports.
+    pub no_pressure: Buffer<PressureState>,
+    pub volume: Option<Volume>,
+}
+
+impl Buffers {
+    /// Copies a state to the device.
+    pub fn new(gpu: &Gpu, solver: &Solver, state: &State) -> Result<Self, SimError> {
+        let points = solver.points_per_strand;
+        let lane_count = solver.lane_count();
+        let blocks = lane_count / LANES;
+        let count = lane_count * points;
+        let workgroups = lane_count.div_ceil(THREADS);
+        let vectors = |name, lanes: &[Vec3Lanes]| Buffer::from_slice(gpu, name, floats(lanes));
+        let buffers = Self {
+            strand_count: solver.strand_count,
+            lane_count,
+            points,
+            step: Buffer::uniform(gpu, "step")?,
+            rest_positions: vectors("rest positions", &solver.positions)?,
+            rest: Buffer::new(gpu, "rest shape", 6 * count)?,
+            springs: Buffer::new(gpu, "springs", 2 * count)?,
+            mass: Buffer::new(gpu, "masses", count)?,
+            solids: solids::upload(gpu, &solver.colliders)?,
+            places: [
+                vectors("positions", &state.positions)?,
+                vectors("predicted positions", &state.previous_positions)?,
+            ],
+            velocities: vectors("velocities", &state.velocities)?,
+            planes: Buffer::new(gpu, "contact planes", 5 * count)?,
+            bad_points: Buffer::new(gpu, "bad points", blocks * LANES)?,
+            boxes: Buffer::new(gpu, "boxes", 2 * solver.strand_count.div_ceil(THREADS))?,
+            outcomes: Buffer::new(gpu, "outcomes", workgroups)?,
+            reports: Buffer::new(gpu, "reports", REPORTS)?,
+            no_pressure: Buffer::new(gpu, "no pressure", 1)?,
+            volume: None,
+        };
+        buffers.write_rest(solver, state)?;
+        Ok(buffers)
+    }
+
+    pub fn point_count(&self) -> usize {
+        self.lane_count * self.points
+    }
+
+    /// Bytes that a step must move at least, without the rounds of the pressure solve: each number
+    /// that a kernel reads or writes, once.
+    pub fn bytes_of_step(&self) -> u64 {
+        // Numbers of four bytes per point: pose_roots touches two points of each strand only.
+        const INTEGRATE: u64 = 3 + 3 + 2 + 2 + 3;
+        const CONSTRAIN: u64 = 3 + 3 + 6 + 5 + 3 + 3;
+        const ADVANCE: u64 = 3 + 3 + 2;
+        // Bounds, cells, order, sums of faces, gather.
+        const VOLUME: u64 = 4 + (4 + 2) + (2 + 3 + 3 + 1 + 8) + 8 + (3 + 3 + 3);
+        // Counts, sums, kinds, rows, faces written and read back.
+        const CELL: u64 = 4 + 6 + 2 + 3 + 6 + 6;
+        let strands = 4 * self.point_count() as u64 * (INTEGRATE + CONSTRAIN + ADVANCE);
+        let volume = self.volume.as_ref().map_or(0, |volume| {
+            4 * (self.point_count() as u64 * VOLUME + volume.cell_count as u64 * CELL)
+        });
+        strands + volume
+    }
+
+    /// Writes what follows from the settings and the lengths of the strands.
+    pub fn write_rest(&self, solver: &Solver, state: &State) -> Result<(), SimError> {
+        let lengths = &state.scratch.lengths;
+        let mut rest = Vec::with_capacity(6 * LANES * solver.positions.len());
+        let mut springs = Vec::with_capacity(2 * LANES * solver.positions.len());
+        for index in 0..solver.positions.len() {
+            rest.extend_from_slice(floats(&solver.directions[index..=index]));
+            for lanes in [&lengths.stretch, &solver.inverse_mass, &solver.rest_clearance] {
+                // Infinity has no place in a shader.
+                rest.extend(lanes[index].0.map(|number| number.min(f32::MAX)));
+            }
+            springs.extend_from_slice(&lengths.bend[index].0);
+            springs.extend_from_slice(&lengths.torsion[index].0);
+        }
+        self.rest.write(&rest)?;
+        self.springs.write(&springs)?;
+        let mass: Vec<Lanes> = solver.rest.mass.clone();
+        self.mass.write(bytemuck::cast_slice(&mass))?;
+        Ok(())
+    }
+}
+
+/// Vectors as the numbers that they are.
+pub(super) fn floats(lanes: &[Vec3Lanes]) -> &[f32] {
+    bytemuck::cast_slice(lanes)
+}

@@ -1,0 +1,73 @@
+//! Lengths, bends and solids: all rounds of a strand in one thread.
+
+use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+
+use super::uniform::Step;
+use super::{Buffers, Dispatches, THREADS};
+
+kernel! {
+    /// One thread is one strand.
+    pub(super) struct Constrain in "constrain" (super::linked::CONSTRAIN), entry "constrain" {
+        0 step: Uniform Step,
+        1 solids: Read [f32; 4],
+        2 rest_positions: Read f32,
+        3 rest: Read f32,
+        4 positions: Read f32,
+        5 predicted: ReadWrite f32,
+        6 velocities: ReadWrite f32,
+        7 planes: ReadWrite f32,
+        8 bad_points: ReadWrite u32,
+    }
+}
+
+pub(super) struct Stage {
+    kernel: Kernel<Constrain<'static>>,
+    strands_per_workgroup: usize,
+}
+
+impl Stage {
+    pub fn new(gpu: &Gpu, points: usize) -> Result<Self, GpuError> {
+        let strands = strands_per_workgroup(points);
+        let constants = [("POINTS", points as f64), ("STRANDS", strands as f64)];
+        Ok(Self { kernel: Kernel::new(gpu, &constants)?, strands_per_workgroup: strands })
+    }
+
+    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+        let bound = self.kernel.bind(
+            gpu,
+            &Constrain {
+                step: &buffers.step,
+                solids: &buffers.solids,
+                rest_positions: &buffers.rest_positions,
+                rest: &buffers.rest,
+                positions: &buffers.places[side],
+                predicted: &buffers.places[1 - side],
+                velocities: &buffers.velocities,
+                planes: &buffers.planes,
+                bad_points: &buffers.bad_points,
+            },
+        )?;
+        Ok(vec![(bound, groups(buffers.lane_count, self.strands_per_workgroup))])
+    }
+}
+
+/// Strands whose points fit a workgroup's 16 KiB, a power of two and no more than a workgroup's
+/// threads elsewhere.
+fn strands_per_workgroup(points: usize) -> usize {
+    const WORKGROUP_MEMORY: usize = 16 * 1024;
+    let fitting = WORKGROUP_MEMORY / (points * size_of::<[f32; 3]>());
+    (1 << fitting.ilog2()).min(THREADS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strands_of_any_length_fit_the_workgroup_memory() {
+        for points in 4..=64 {
+            let strands = strands_per_workgroup(points);
+            assert!(strands >= 16 && strands * points * 12 <= 16_384, "{points}: {strands}");
+        }
+    }
+}

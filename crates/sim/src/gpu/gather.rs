@@ -1,0 +1,41 @@
+//! Points take their velocities from the faces.
+
+use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+
+use super::uniform::Step;
+use super::volume::GridState;
+use super::{Buffers, Dispatches, THREADS};
+
+kernel! {
+    /// One thread is one point.
+    pub(super) struct Gather in "gather" (super::linked::GATHER), entry "gather" {
+        0 step: Uniform Step,
+        1 grid: Read GridState,
+        2 predicted: Read f32,
+        3 velocities: ReadWrite f32,
+        4 faces: Read [f32; 2],
+    }
+}
+
+pub(super) struct Stage(Kernel<Gather<'static>>);
+
+impl Stage {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Kernel::new(gpu, &[]).map(Self)
+    }
+
+    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+        let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
+        let bound = self.0.bind(
+            gpu,
+            &Gather {
+                step: &buffers.step,
+                grid: &volume.grid,
+                predicted: &buffers.places[1 - side],
+                velocities: &buffers.velocities,
+                faces: &volume.faces,
+            },
+        )?;
+        Ok(vec![(bound, groups(buffers.point_count(), THREADS))])
+    }
+}

@@ -1,0 +1,41 @@
+//! Forces, then a prediction.
+
+use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+
+use super::uniform::Step;
+use super::{Buffers, Dispatches, THREADS};
+
+kernel! {
+    /// One thread is one point.
+    pub(super) struct Integrate in "integrate" (super::linked::INTEGRATE), entry "integrate" {
+        0 step: Uniform Step,
+        2 rest: Read f32,
+        3 springs: Read f32,
+        4 positions: Read f32,
+        5 velocities: Read f32,
+        6 predicted: ReadWrite f32,
+    }
+}
+
+pub(super) struct Stage(Kernel<Integrate<'static>>);
+
+impl Stage {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Kernel::new(gpu, &[]).map(Self)
+    }
+
+    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+        let bound = self.0.bind(
+            gpu,
+            &Integrate {
+                step: &buffers.step,
+                rest: &buffers.rest,
+                springs: &buffers.springs,
+                positions: &buffers.places[side],
+                velocities: &buffers.velocities,
+                predicted: &buffers.places[1 - side],
+            },
+        )?;
+        Ok(vec![(bound, groups(buffers.point_count(), THREADS))])
+    }
+}

@@ -1,0 +1,52 @@
+//! Every cell near hair is fluid, solid or air.
+
+use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+
+use super::uniform::Step;
+use super::volume::GridState;
+use super::{Buffers, Dispatches, THREADS};
+
+kernel! {
+    /// One thread is one cell.
+    pub(super) struct Mark in "mark" (super::linked::MARK), entry "mark" {
+        0 step: Uniform Step,
+        1 solids: Read [f32; 4],
+        2 grid: Read GridState,
+        3 start_index: Read u32,
+        4 kinds: ReadWrite u32,
+        5 unknowns: ReadWrite u32,
+    }
+}
+
+kernel! {
+    /// Faces of solids take the solid's velocity; one thread is one cell.
+    pub(super) struct CarryWalls in "mark" (super::linked::MARK), entry "carry_walls" {
+        0 step: Uniform Step,
+        1 solids: Read [f32; 4],
+        2 grid: Read GridState,
+        4 kinds: ReadWrite u32,
+        6 faces: ReadWrite [f32; 2],
+    }
+}
+
+pub(super) struct Stage {
+    mark: Kernel<Mark<'static>>,
+    carry_walls: Kernel<CarryWalls<'static>>,
+}
+
+impl Stage {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self { mark: Kernel::new(gpu, &[])?, carry_walls: Kernel::new(gpu, &[])? })
+    }
+
+    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers) -> Result<Dispatches, GpuError> {
+        let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
+        let (step, solids) = (&buffers.step, &buffers.solids);
+        let (grid, start_index, kinds) = (&volume.grid, &volume.start_index, &volume.kinds);
+        let (unknowns, faces) = (&volume.unknowns, &volume.faces);
+        let by_cell = groups(volume.cell_count, THREADS);
+        let mark = self.mark.bind(gpu, &Mark { step, solids, grid, start_index, kinds, unknowns })?;
+        let carry_walls = self.carry_walls.bind(gpu, &CarryWalls { step, solids, grid, kinds, faces })?;
+        Ok(vec![(mark, by_cell), (carry_walls, by_cell)])
+    }
+}

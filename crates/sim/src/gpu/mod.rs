@@ -1,0 +1,37 @@
+//! The stages as kernels, through wgpu; every one has a twin in plain Rust under the same name.
+//!
+//! A [`GpuSolver`] is compiled once, a [`GpuState`] lies on the device. A step is one submission;
+//! nothing is read back until it is asked for.
+
+mod advance;
+mod buffers;
+mod constrain;
+mod gather;
+mod integrate;
+mod linked;
+mod mark;
+mod pose_roots;
+mod probe;
+mod scan;
+mod solids;
+mod solve_pressure;
+mod solver;
+mod splat;
+mod state;
+mod step;
+mod uniform;
+mod volume;
+
+use buffers::Buffers;
+pub use linked::modules;
+pub use probe::Probe;
+pub use solve_pressure::{Gradient, PressureState, Spread};
+pub use solver::{GpuSolver, declarations};
+pub use state::{Costs, GpuState};
+use strandline_groom::LANES;
+
+/// Threads of a workgroup, as in common.wesl.
+const THREADS: usize = 64;
+
+/// Kernels with their buffers and their numbers of workgroups, in order.
+type Dispatches = Vec<(strandline_gpu::Bound, [u32; 3])>;

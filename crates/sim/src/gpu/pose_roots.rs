@@ -1,0 +1,41 @@
+//! Rooted points follow the head.
+
+use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+
+use super::uniform::Step;
+use super::{Buffers, Dispatches, THREADS};
+
+kernel! {
+    /// One thread is one strand.
+    pub(super) struct PoseRoots in "pose_roots" (super::linked::POSE_ROOTS), entry "pose_roots" {
+        0 step: Uniform Step,
+        2 rest_positions: Read f32,
+        3 rest: Read f32,
+        4 positions: Read f32,
+        5 predicted: ReadWrite f32,
+        6 velocities: ReadWrite f32,
+    }
+}
+
+pub(super) struct Stage(Kernel<PoseRoots<'static>>);
+
+impl Stage {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Kernel::new(gpu, &[]).map(Self)
+    }
+
+    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+        let bound = self.0.bind(
+            gpu,
+            &PoseRoots {
+                step: &buffers.step,
+                rest_positions: &buffers.rest_positions,
+                rest: &buffers.rest,
+                positions: &buffers.places[side],
+                predicted: &buffers.places[1 - side],
+                velocities: &buffers.velocities,
+            },
+        )?;
+        Ok(vec![(bound, groups(buffers.lane_count, THREADS))])
+    }
+}

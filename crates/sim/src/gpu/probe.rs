@@ -1,0 +1,174 @@
+//! For checks: single stages, and what they wrote.
+
+use strandline_groom::Vec3Lanes;
+
+use super::buffers::floats;
+use super::state::floats_mut;
+use super::volume::GridState;
+use super::{GpuSolver, GpuState, step};
+use crate::cpu::{Kind, Volume};
+use crate::{Drive, SimError, State, StepReport};
+
+/// A state under examination: stages run alone, buffers are set and read.
+pub struct Probe<'a> {
+    solver: &'a GpuSolver,
+    /// The state.
+    pub state: GpuState,
+}
+
+impl<'a> Probe<'a> {
+    /// Copies a state of the host to the device, its predicted positions too.
+    ///
+    /// # Errors
+    /// The device has no memory left or was lost.
+    pub fn new(solver: &'a GpuSolver, state: &State) -> Result<Self, SimError> {
+        let mut probe = Self { solver, state: solver.upload(state)? };
+        probe.state.buffers.places[1].write(floats(&state.scratch.predicted))?;
+        probe.state.prepare(solver)?;
+        Ok(probe)
+    }
+
+    /// Runs the named stages of a step; the state does not count it as one.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn run(&mut self, drive: &Drive, stages: &[&str]) -> Result<(), SimError> {
+        step::run(self.solver, &mut self.state, drive, |name| stages.contains(&name))
+    }
+
+    /// What `advance` told of the last run.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn report(&mut self) -> Result<StepReport, SimError> {
+        self.state.pending = 1;
+        let reports = self.state.take_reports(self.solver)?;
+        Ok(reports.into_iter().next().unwrap_or_default())
+    }
+
+    /// Replaces the predicted positions \[m\].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn set_predicted(&self, predicted: &[Vec3Lanes]) -> Result<(), SimError> {
+        Ok(self.state.buffers.places[1 - self.state.side].write(floats(predicted))?)
+    }
+
+    /// Predicted positions \[m\].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn predicted(&self) -> Result<Vec<Vec3Lanes>, SimError> {
+        let read = self.state.buffers.places[1 - self.state.side].read()?;
+        Ok(vectors(&read))
+    }
+
+    /// Velocities \[m/s\].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn velocities(&self) -> Result<Vec<Vec3Lanes>, SimError> {
+        Ok(vectors(&self.state.buffers.velocities.read()?))
+    }
+
+    /// Gives the device the cells and the faces of a volume of the host.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn set_volume(&self, volume: &Volume) -> Result<(), SimError> {
+        let Some(device) = &self.state.buffers.volume else { return Ok(()) };
+        let count = device.cell_count;
+        let grid = GridState {
+            origin: (volume.grid.low_corner() - volume.grid.spacing()).to_array(),
+            spacing: volume.grid.spacing(),
+            size: volume.grid.size().map(|count| count as u32),
+            cell_count: count as u32,
+        };
+        device.grid.write(&[grid])?;
+        let pair = |axis: usize, cell: usize| {
+            [volume.faces.velocity(axis, cell), volume.faces.change(axis, cell)]
+        };
+        let faces: Vec<[f32; 2]> = (0..3 * count).map(|index| pair(index / count, index % count)).collect();
+        device.faces.write(&faces)?;
+        let number = |kind| match kind {
+            Kind::Air => 0,
+            Kind::Fluid => 1,
+            Kind::Solid => 2,
+        };
+        let kinds: Vec<u32> = (0..count).map(|cell| number(volume.kind(cell))).collect();
+        device.kinds.write(&kinds)?;
+        let mut fluid: Vec<u32> = kinds.iter().map(|kind| u32::from(*kind == 1)).collect();
+        fluid.push(0);
+        device.unknowns.write(&fluid)?;
+        Ok(())
+    }
+
+    /// Origin \[m\] and spacing \[m\] of the grid with its ring.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn grid(&self) -> Result<([f32; 3], f32), SimError> {
+        let grid = match &self.state.buffers.volume {
+            Some(volume) => volume.grid.read()?[0],
+            None => GridState::default(),
+        };
+        Ok((grid.origin, grid.spacing))
+    }
+
+    /// Where the points of each cell begin, and what is behind the last cell: their number.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn start_index(&self) -> Result<Vec<u32>, SimError> {
+        self.state.buffers.volume.as_ref().map_or(Ok(Vec::new()), |volume| Ok(volume.start_index.read()?))
+    }
+
+    /// Indices of the points in the order of their cells; as many as there are sorted points.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn order(&self) -> Result<Vec<u32>, SimError> {
+        let Some(volume) = &self.state.buffers.volume else { return Ok(Vec::new()) };
+        let count = self.start_index()?.last().copied().unwrap_or(0);
+        let sorted = volume.sorted_velocities.read_first(count as usize)?;
+        Ok(sorted.iter().map(|vector| vector[3].to_bits()).collect())
+    }
+
+    /// Velocity and change \[m/s\] of every face, shape `[component][cell]`.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn faces(&self) -> Result<Vec<[f32; 2]>, SimError> {
+        self.state.buffers.volume.as_ref().map_or(Ok(Vec::new()), |volume| Ok(volume.faces.read()?))
+    }
+
+    /// What each cell is.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn kinds(&self) -> Result<Vec<Kind>, SimError> {
+        let Some(volume) = &self.state.buffers.volume else { return Ok(Vec::new()) };
+        let kind = |number| match number {
+            1 => Kind::Fluid,
+            2 => Kind::Solid,
+            _ => Kind::Air,
+        };
+        Ok(volume.kinds.read()?.into_iter().map(kind).collect())
+    }
+
+    /// Pressure of the fluid cells, as [`Volume::pressure`] has it, and where the solve ended.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn pressure(&self) -> Result<(Vec<f32>, super::PressureState), SimError> {
+        let Some(volume) = &self.state.buffers.volume else { return Ok(Default::default()) };
+        let state = volume.states.read_first(1)?[0];
+        Ok((volume.vectors.read_first(state.fluid_cells as usize + 1)?, state))
+    }
+}
+
+fn vectors(floats: &[f32]) -> Vec<Vec3Lanes> {
+    let mut vectors = vec![Vec3Lanes::default(); floats.len() / (3 * strandline_groom::LANES)];
+    floats_mut(&mut vectors).copy_from_slice(floats);
+    vectors
+}

@@ -1,0 +1,80 @@
+//! The colliders as the kernels read them.
+
+use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Shape};
+use strandline_gpu::{Buffer, Gpu};
+
+use crate::SimError;
+
+/// Spacing at which the exact mannequin is sampled \[m\]: kernels know grids only.
+const MANNEQUIN_SPACING: f32 = 0.003;
+/// Air around the mannequin that its samples cover \[m\].
+const MANNEQUIN_PADDING: f32 = 0.02;
+
+/// One collider, mirrored by the comment in `solids.wesl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+struct Header {
+    kind: u32,
+    carried: u32,
+    first_node: u32,
+    friction: f32,
+    /// Centre, start or origin \[m\].
+    start: [f32; 3],
+    /// Radius or spacing \[m\].
+    size: f32,
+    end: [f32; 3],
+    unused: u32,
+    node_counts: [u32; 3],
+    unused_too: u32,
+}
+
+/// Vectors of a header.
+const HEADER: usize = size_of::<Header>() / size_of::<[f32; 4]>();
+
+/// Headers of all colliders, then the nodes of the grids among them.
+pub(super) fn upload(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<[f32; 4]>, SimError> {
+    let mut headers = Vec::new();
+    let mut nodes: Vec<[f32; 4]> = Vec::new();
+    for collider in colliders {
+        let mut header = Header {
+            carried: u32::from(collider.carrier == Carrier::Head),
+            friction: collider.friction,
+            ..Header::default()
+        };
+        match &collider.shape {
+            Shape::Sphere { center, radius } => {
+                header.start = center.to_array();
+                header.size = *radius;
+            }
+            Shape::Capsule { start, end, radius } => {
+                header.kind = 1;
+                header.start = start.to_array();
+                header.end = end.to_array();
+                header.size = *radius;
+            }
+            Shape::Mannequin(mannequin) => header.add_grid(&sampled(mannequin)?, colliders.len(), &mut nodes),
+            Shape::Grid(grid) => header.add_grid(grid, colliders.len(), &mut nodes),
+        }
+        headers.push(header);
+    }
+    let mut all: Vec<[f32; 4]> = bytemuck::cast_slice(&headers).to_vec();
+    all.extend(nodes);
+    Ok(Buffer::from_slice(gpu, "solids", &all)?)
+}
+
+fn sampled(mannequin: &Mannequin) -> Result<DistanceGrid, SimError> {
+    DistanceGrid::from_field(mannequin, MANNEQUIN_SPACING, MANNEQUIN_PADDING).map_err(|error| {
+        SimError::Setting { name: "colliders", found: error.to_string(), expected: "a body that fits a grid" }
+    })
+}
+
+impl Header {
+    fn add_grid(&mut self, grid: &DistanceGrid, collider_count: usize, nodes: &mut Vec<[f32; 4]>) {
+        self.kind = 2;
+        self.start = grid.origin().to_array();
+        self.size = grid.spacing();
+        self.node_counts = (grid.cells() + 1).to_array();
+        self.first_node = (collider_count * HEADER + nodes.len()) as u32;
+        nodes.extend(grid.nodes().iter().map(|node| node.to_array()));
+    }
+}

@@ -1,0 +1,133 @@
+//! Points become velocities on the faces of the staggered grid: sorted by cell, then gathered.
+
+use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+
+use super::scan::Scan;
+use super::uniform::Step;
+use super::volume::GridState;
+use super::{Buffers, Dispatches, THREADS};
+
+kernel! {
+    /// Boxes around the points of strands; one thread is one strand.
+    pub(super) struct Bounds in "splat" (super::linked::SPLAT), entry "bounds" {
+        0 step: Uniform Step,
+        2 predicted: Read f32,
+        4 mass: Read f32,
+        5 boxes: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// Moves the grid over the points; one workgroup.
+    pub(super) struct Follow in "splat" (super::linked::SPLAT), entry "follow" {
+        1 grid: ReadWrite GridState,
+        5 boxes: ReadWrite [f32; 4],
+        6 ladder: Read f32,
+    }
+}
+
+kernel! {
+    /// The histogram; one thread is one point.
+    pub(super) struct FindCells in "splat" (super::linked::SPLAT), entry "find_cells" {
+        0 step: Uniform Step,
+        1 grid: ReadWrite GridState,
+        2 predicted: Read f32,
+        4 mass: Read f32,
+        7 counts: ReadWrite u32,
+        8 cell_ranks: ReadWrite [u32; 2],
+    }
+}
+
+kernel! {
+    /// The order; one thread is one point.
+    pub(super) struct SortPoints in "splat" (super::linked::SPLAT), entry "sort_points" {
+        0 step: Uniform Step,
+        1 grid: ReadWrite GridState,
+        2 predicted: Read f32,
+        3 velocities: Read f32,
+        4 mass: Read f32,
+        8 cell_ranks: ReadWrite [u32; 2],
+        9 start_index: Read u32,
+        10 sorted_places: ReadWrite [f32; 4],
+        11 sorted_velocities: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// The sums; one thread is the three lower faces of a cell.
+    pub(super) struct SumFaces in "splat" (super::linked::SPLAT), entry "sum_faces" {
+        1 grid: ReadWrite GridState,
+        9 start_index: Read u32,
+        10 sorted_places: ReadWrite [f32; 4],
+        11 sorted_velocities: ReadWrite [f32; 4],
+        12 faces: ReadWrite [f32; 2],
+    }
+}
+
+pub(super) struct Stage {
+    bounds: Kernel<Bounds<'static>>,
+    follow: Kernel<Follow<'static>>,
+    find_cells: Kernel<FindCells<'static>>,
+    sort_points: Kernel<SortPoints<'static>>,
+    sum_faces: Kernel<SumFaces<'static>>,
+}
+
+impl Stage {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            bounds: Kernel::new(gpu, &[])?,
+            follow: Kernel::new(gpu, &[])?,
+            find_cells: Kernel::new(gpu, &[])?,
+            sort_points: Kernel::new(gpu, &[])?,
+            sum_faces: Kernel::new(gpu, &[])?,
+        })
+    }
+
+    /// `start_index` must be all 0 when the first kernel starts.
+    pub fn bind(
+        &self,
+        gpu: &Gpu,
+        buffers: &Buffers,
+        scan: &Scan,
+        side: usize,
+    ) -> Result<Dispatches, GpuError> {
+        let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
+        let Buffers { step, velocities, mass, .. } = buffers;
+        let predicted = &buffers.places[1 - side];
+        let (grid, boxes, ladder) = (&volume.grid, &buffers.boxes, &volume.ladder);
+        let (counts, start_index) = (&volume.start_index, &volume.start_index);
+        let (cell_ranks, faces) = (&volume.cell_ranks, &volume.faces);
+        let (sorted_places, sorted_velocities) = (&volume.sorted_places, &volume.sorted_velocities);
+        let by_point = groups(buffers.point_count(), THREADS);
+        let bounds = self.bounds.bind(gpu, &Bounds { step, predicted, mass, boxes })?;
+        let follow = self.follow.bind(gpu, &Follow { grid, boxes, ladder })?;
+        let find_cells =
+            self.find_cells.bind(gpu, &FindCells { step, grid, predicted, mass, counts, cell_ranks })?;
+        let sort_points = self.sort_points.bind(
+            gpu,
+            &SortPoints {
+                step,
+                grid,
+                predicted,
+                velocities,
+                mass,
+                cell_ranks,
+                start_index,
+                sorted_places,
+                sorted_velocities,
+            },
+        )?;
+        let sum_faces = self
+            .sum_faces
+            .bind(gpu, &SumFaces { grid, start_index, sorted_places, sorted_velocities, faces })?;
+        let mut dispatches = vec![
+            (bounds, groups(buffers.strand_count, THREADS)),
+            (follow, [1; 3]),
+            (find_cells, by_point),
+        ];
+        dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);
+        dispatches.push((sort_points, by_point));
+        dispatches.push((sum_faces, groups(volume.cell_count, THREADS)));
+        Ok(dispatches)
+    }
+}

@@ -1,0 +1,236 @@
+use strandline_body::Pose;
+use strandline_gpu::{Buffer, Timer};
+use strandline_groom::{Lanes, Vec3Lanes};
+
+use super::advance::Report;
+use super::buffers::{Buffers, REPORTS, floats};
+use super::solver::GpuSolver;
+use super::step::Stages;
+use super::volume::Volume;
+use super::{Gradient, Spread};
+use crate::{SimError, Solver, State, StepReport};
+
+/// All that changes with time, on the device.
+pub struct GpuState {
+    pub(super) buffers: Buffers,
+    /// Which of the two buffers of positions is the newer.
+    pub(super) side: usize,
+    /// The stages bound to the buffers, for both sides; none after a change.
+    pub(super) stages: Option<[Stages; 2]>,
+    pub(super) world_from_head: Pose,
+    pub(super) time: f64,
+    length_scale: Vec<Lanes>,
+    timer: Option<Timer>,
+    marks: Buffer<u64>,
+    /// Steps whose reports lie on the device.
+    pub(super) pending: usize,
+    reports: Vec<StepReport>,
+    pub(super) gradient: Gradient,
+    pub(super) spread: Spread,
+    pub(super) costs: Costs,
+}
+
+/// What a step asked of the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Costs {
+    /// Kernels started.
+    pub dispatches: usize,
+    /// Those of the pressure solve among them.
+    pub solve_dispatches: usize,
+    /// Bytes that the kernels without the solve's rounds must move at least: every number that they
+    /// read or write, once for each kernel.
+    pub bytes: u64,
+}
+
+impl GpuState {
+    pub(super) fn new(solver: &GpuSolver, buffers: Buffers, state: &State) -> Result<Self, SimError> {
+        let gpu = &solver.gpu;
+        Ok(Self {
+            buffers,
+            side: 0,
+            stages: None,
+            world_from_head: state.world_from_head,
+            time: state.time,
+            length_scale: state.length_scale.clone(),
+            timer: Timer::new(gpu)?,
+            marks: Buffer::new(gpu, "times of stages", REPORTS * Timer::BYTES as usize / size_of::<u64>())?,
+            pending: 0,
+            reports: Vec::new(),
+            gradient: Gradient::default(),
+            spread: Spread::default(),
+            costs: Costs::default(),
+        })
+    }
+
+    /// Time \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Pose of the head now.
+    pub fn world_from_head(&self) -> Pose {
+        self.world_from_head
+    }
+
+    /// Positions \[m\] now and one step ago, world space, `[block][point][component][lane]`: for a
+    /// renderer on the same device. They change places with every step.
+    pub fn positions(&self) -> [&Buffer<f32>; 2] {
+        [&self.buffers.places[self.side], &self.buffers.places[1 - self.side]]
+    }
+
+    /// What the last step asked of the device.
+    pub fn costs(&self) -> Costs {
+        self.costs
+    }
+
+    /// Chooses between one kernel and three for the pressure gradient [Chen2011 table 1].
+    pub fn set_gradient(&mut self, gradient: Gradient) {
+        self.gradient = gradient;
+        self.unbind();
+    }
+
+    /// Chooses where the pressure solve runs.
+    pub fn set_spread(&mut self, spread: Spread) {
+        self.spread = spread;
+        self.unbind();
+    }
+
+    /// Has the stages bound anew before the next step.
+    pub(super) fn unbind(&mut self) {
+        self.stages = None;
+    }
+
+    /// Makes the volume fit the settings and binds the stages where that changed.
+    pub(super) fn prepare(&mut self, solver: &GpuSolver) -> Result<(), SimError> {
+        let settings = &solver.solver.settings.volume;
+        let kept = self.buffers.volume.take().filter(|old| settings.enabled && old.cells == settings.cells);
+        let changed = kept.is_some() != settings.enabled;
+        self.buffers.volume = match kept {
+            Some(volume) => Some(volume),
+            None if settings.enabled => {
+                let Buffers { lane_count, points, .. } = self.buffers;
+                Some(Volume::new(&solver.gpu, settings.cells, lane_count, points)?)
+            }
+            None => None,
+        };
+        if changed || self.stages.is_none() {
+            // Times of stages that are no longer there cannot be told apart later.
+            self.drain(solver)?;
+            if let Some(volume) = &mut self.buffers.volume {
+                volume.gradient = self.gradient;
+                volume.spread = self.spread;
+            }
+            self.stages = None;
+            self.stages = Some([Stages::new(solver, &self.buffers, 0)?, Stages::new(solver, &self.buffers, 1)?]);
+        }
+        if self.pending == REPORTS {
+            self.drain(solver)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn timer(&self) -> Option<&Timer> {
+        self.timer.as_ref()
+    }
+
+    pub(super) fn marks(&self) -> &Buffer<u64> {
+        &self.marks
+    }
+
+    pub(super) fn take_reports(&mut self, solver: &GpuSolver) -> Result<Vec<StepReport>, SimError> {
+        self.drain(solver)?;
+        Ok(std::mem::take(&mut self.reports))
+    }
+
+    /// Reads the reports that lie on the device.
+    fn drain(&mut self, solver: &GpuSolver) -> Result<(), SimError> {
+        if self.pending == 0 {
+            return Ok(());
+        }
+        let found = self.buffers.reports.read_first(self.pending)?;
+        let stride = Timer::BYTES as usize / size_of::<u64>();
+        let marks = match &self.timer {
+            Some(_) => self.marks.read_first(self.pending * stride)?,
+            None => Vec::new(),
+        };
+        for (slot, report) in found.iter().enumerate() {
+            let seconds = match &self.timer {
+                Some(timer) => timer.seconds(&marks[slot * stride..(slot + 1) * stride]),
+                None => Vec::new(),
+            };
+            self.reports.push(step_report(report, seconds, solver.segment_count));
+        }
+        self.pending = 0;
+        Ok(())
+    }
+
+    pub(super) fn to_host(&self, solver: &Solver) -> Result<State, SimError> {
+        let mut state = solver.rest_state(self.world_from_head);
+        // Lengths first: they move the points of the state that is about to be overwritten.
+        let scales: Vec<f32> = (0..solver.strand_count)
+            .map(|strand| {
+                let lanes = strandline_groom::LANES;
+                self.length_scale[strand / lanes].0[strand % lanes]
+            })
+            .collect();
+        state.set_length_scale(solver, &scales)?;
+        state.time = self.time;
+        let [positions, previous] = self.positions();
+        read_vectors(positions, &mut state.positions)?;
+        read_vectors(previous, &mut state.previous_positions)?;
+        read_vectors(&self.buffers.velocities, &mut state.velocities)?;
+        Ok(state)
+    }
+
+    /// Waits for the device and copies what a picture needs into a state of the host: positions,
+    /// those of one step ago, the head's pose and the time; and the velocities.
+    ///
+    /// # Errors
+    /// The device was lost; the state is then as it was.
+    pub fn read_into(&self, state: &mut State) -> Result<(), SimError> {
+        let [positions, previous] = self.positions();
+        let (positions, previous) = (positions.read()?, previous.read()?);
+        let velocities = self.buffers.velocities.read()?;
+        floats_mut(&mut state.positions).copy_from_slice(&positions);
+        floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
+        floats_mut(&mut state.velocities).copy_from_slice(&velocities);
+        state.world_from_head = self.world_from_head;
+        state.time = self.time;
+        Ok(())
+    }
+
+    /// Replaces the state on the device by one of the host.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn write(&mut self, solver: &GpuSolver, state: &State) -> Result<(), SimError> {
+        self.buffers.write_rest(&solver.solver, state)?;
+        self.buffers.places[self.side].write(floats(&state.positions))?;
+        self.buffers.places[1 - self.side].write(floats(&state.previous_positions))?;
+        self.buffers.velocities.write(floats(&state.velocities))?;
+        self.length_scale.clone_from(&state.length_scale);
+        self.world_from_head = state.world_from_head;
+        self.time = state.time;
+        Ok(())
+    }
+}
+
+fn read_vectors(buffer: &Buffer<f32>, into: &mut [Vec3Lanes]) -> Result<(), SimError> {
+    floats_mut(into).copy_from_slice(&buffer.read()?);
+    Ok(())
+}
+
+pub(super) fn floats_mut(lanes: &mut [Vec3Lanes]) -> &mut [f32] {
+    bytemuck::cast_slice_mut(lanes)
+}
+
+fn step_report(report: &Report, seconds: Vec<(&'static str, f64)>, segment_count: usize) -> StepReport {
+    StepReport {
+        seconds,
+        pressure: report.pressure.into(),
+        stretch_mean: report.stretch_sum / segment_count.max(1) as f32,
+        stretch_max: report.stretch_max,
+        penetration_max: report.penetration_max,
+        non_finite: report.non_finite as usize,
+    }
+}

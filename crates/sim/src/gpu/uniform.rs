@@ -1,0 +1,134 @@
+//! The settings of a step as the kernels read them.
+
+use glam::{Mat3, Vec3};
+use strandline_body::Pose;
+use strandline_gpu::mirror;
+
+use crate::cpu::angles::BendShares;
+use crate::cpu::contacts::Care;
+use crate::{Drive, Preconditioner, Solver, Spring};
+
+mirror! {
+    /// Rows of a rotation, each with its component of the translation \[m\] behind it.
+    pub(super) struct Rigid {
+        pub x: [f32; 4],
+        pub y: [f32; 4],
+        pub z: [f32; 4],
+    }
+}
+
+mirror! {
+    /// Mirrors `Step` in common.wesl.
+    pub(super) struct Step {
+        pub world_from_head: Rigid,
+        pub head_from_world: Rigid,
+        /// Carries what rests on the head from the start to the end of the step.
+        pub end_from_start: Rigid,
+        pub start_from_end: Rigid,
+        pub head_rotation: [f32; 4],
+        /// What gravity adds in a step \[m/s\].
+        pub gravity: [f32; 3],
+        pub time_step: f32,
+        pub wind: [f32; 3],
+        pub margin: f32,
+        /// Stiffness \[N/m\] and damping \[N s/m\]; both 0 for a spring that is off.
+        pub stretch_spring: [f32; 2],
+        pub bend_spring: [f32; 2],
+        pub torsion_spring: [f32; 2],
+        pub drag_across: f32,
+        pub drag_along: f32,
+        pub kept: f32,
+        /// A point nearer than its margin and this \[m\] gets a plane.
+        pub near: f32,
+        pub cos_limit: f32,
+        pub sin_limit: f32,
+        pub bend_share: f32,
+        pub hold: f32,
+        pub bends: u32,
+        pub length_pass: u32,
+        pub correction: f32,
+        pub iterations: u32,
+        pub strand_count: u32,
+        /// Strands and what fills up the last block.
+        pub lane_count: u32,
+        pub points: u32,
+        pub collider_count: u32,
+        pub flip_share: f32,
+        pub tolerance: f32,
+        pub max_iterations: u32,
+        pub preconditioner: u32,
+        /// Where the report goes.
+        pub slot: u32,
+        pub unused_a: u32,
+    }
+}
+
+impl Rigid {
+    fn new(pose: &Pose) -> Self {
+        let rows = Mat3::from_quat(pose.rotation).transpose();
+        let row = |axis: Vec3, offset: f32| axis.extend(offset).to_array();
+        Self {
+            x: row(rows.x_axis, pose.translation.x),
+            y: row(rows.y_axis, pose.translation.y),
+            z: row(rows.z_axis, pose.translation.z),
+        }
+    }
+}
+
+impl Step {
+    /// The uniform of a step that starts at a pose of the head.
+    pub fn new(solver: &Solver, start: &Pose, drive: &Drive, slot: usize) -> Self {
+        let settings = &solver.settings;
+        let end = drive.world_from_head;
+        let from_start = |a: &Pose, b: Pose| Pose {
+            rotation: a.rotation * b.rotation,
+            translation: a.point(b.translation),
+        };
+        let shares = BendShares::new(&settings.angles, settings.time_step, settings.iterations);
+        let care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
+        Self {
+            world_from_head: Rigid::new(&end),
+            head_from_world: Rigid::new(&end.inverse()),
+            end_from_start: Rigid::new(&from_start(&end, start.inverse())),
+            start_from_end: Rigid::new(&from_start(start, end.inverse())),
+            head_rotation: end.rotation.to_array(),
+            gravity: (settings.gravity * settings.time_step).to_array(),
+            time_step: settings.time_step,
+            wind: drive.wind.to_array(),
+            margin: settings.collision_margin,
+            stretch_spring: spring(&settings.springs.stretch),
+            bend_spring: spring(&settings.springs.bend),
+            torsion_spring: spring(&settings.springs.torsion),
+            drag_across: settings.taken(settings.drag.across),
+            drag_along: settings.taken(settings.drag.along),
+            kept: 1.0 - settings.taken(settings.damping),
+            near: care.near,
+            cos_limit: settings.angles.limit.cos(),
+            sin_limit: settings.angles.limit.sin(),
+            bend_share: shares.share,
+            hold: shares.hold,
+            bends: u32::from(!settings.angles.is_off()),
+            length_pass: u32::from(settings.length_pass.enabled),
+            correction: settings.length_pass.correction,
+            iterations: settings.iterations,
+            strand_count: solver.strand_count as u32,
+            lane_count: solver.lane_count() as u32,
+            points: solver.points_per_strand as u32,
+            collider_count: solver.colliders.len() as u32,
+            flip_share: settings.volume.flip_share,
+            tolerance: settings.volume.tolerance,
+            max_iterations: settings.volume.max_iterations,
+            preconditioner: match settings.volume.preconditioner {
+                Preconditioner::None => 0,
+                Preconditioner::Jacobi => 1,
+                Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => 2,
+            },
+            slot: slot as u32,
+            ..Self::default()
+        }
+    }
+}
+
+fn spring(spring: &Spring) -> [f32; 2] {
+    if spring.enabled { [spring.stiffness, spring.damping] } else { [0.0; 2] }
+}

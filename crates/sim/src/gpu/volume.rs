@@ -1,0 +1,85 @@
+//! The buffers of the fluid volume.
+
+use strandline_gpu::{Buffer, Gpu, GpuError, mirror};
+
+use super::scan::Scan;
+use super::solve_pressure::{Gradient, MOST_WORKGROUPS, PressureState, Spread};
+use super::{LANES, THREADS};
+use crate::cpu::grid::{Grid, MIN_SPACING, ladder};
+
+mirror! {
+    /// The box. Mirrors `Grid` in grid.wesl.
+    pub(super) struct GridState {
+        pub origin: [f32; 3],
+        pub spacing: f32,
+        pub size: [u32; 3],
+        pub cell_count: u32,
+    }
+}
+
+/// Vectors of the Poisson system, as numbered in poisson.wesl.
+const VECTORS: usize = 9;
+
+pub(super) struct Volume {
+    pub cells: [u32; 3],
+    /// Cells with the ring.
+    pub cell_count: usize,
+    pub gradient: Gradient,
+    pub spread: Spread,
+    pub grid: Buffer<GridState>,
+    pub ladder: Buffer<f32>,
+    /// Points of each cell while they are counted, then where they begin; one more than cells.
+    pub start_index: Buffer<u32>,
+    pub totals: Buffer<u32>,
+    pub cell_ranks: Buffer<[u32; 2]>,
+    pub sorted_places: Buffer<[f32; 4]>,
+    pub sorted_velocities: Buffer<[f32; 4]>,
+    /// Velocity and change, shape `[component][cell]`.
+    pub faces: Buffer<[f32; 2]>,
+    pub kinds: Buffer<u32>,
+    /// Fluid cells before each cell; one more than cells.
+    pub unknowns: Buffer<u32>,
+    pub vectors: Buffer<f32>,
+    /// Shape `[side][unknown]`.
+    pub neighbours: Buffer<u32>,
+    pub rooms: Buffer<u32>,
+    pub states: Buffer<PressureState>,
+    pub partials: Buffer<[f32; 4]>,
+}
+
+impl Volume {
+    pub fn new(gpu: &Gpu, cells: [u32; 3], lane_count: usize, points: usize) -> Result<Self, GpuError> {
+        let grid = Grid::new(cells.map(|count| count as usize));
+        let cell_count = grid.cell_count();
+        let point_count = lane_count.next_multiple_of(LANES) * points;
+        let steps: Vec<f32> = std::iter::once(MIN_SPACING).chain(ladder()).collect();
+        let start = GridState {
+            origin: [-1.0; 3],
+            spacing: grid.spacing(),
+            size: grid.size().map(|count| count as u32),
+            cell_count: cell_count as u32,
+        };
+        let workgroups = cell_count.div_ceil(THREADS).min(MOST_WORKGROUPS);
+        Ok(Self {
+            cells,
+            cell_count,
+            gradient: Gradient::default(),
+            spread: Spread::default(),
+            grid: Buffer::from_slice(gpu, "grid", &[start])?,
+            ladder: Buffer::from_slice(gpu, "spacings", &steps)?,
+            start_index: Buffer::new(gpu, "start_index", cell_count + 1)?,
+            totals: Scan::totals(gpu, cell_count + 1)?,
+            cell_ranks: Buffer::new(gpu, "cells of points", point_count)?,
+            sorted_places: Buffer::new(gpu, "sorted places", point_count)?,
+            sorted_velocities: Buffer::new(gpu, "sorted velocities", point_count)?,
+            faces: Buffer::new(gpu, "faces", 3 * cell_count)?,
+            kinds: Buffer::new(gpu, "kinds of cells", cell_count)?,
+            unknowns: Buffer::new(gpu, "unknowns", cell_count + 1)?,
+            vectors: Buffer::new(gpu, "vectors of the pressure", VECTORS * (cell_count + 1))?,
+            neighbours: Buffer::new(gpu, "neighbours of cells", 6 * cell_count)?,
+            rooms: Buffer::new(gpu, "rooms", cell_count)?,
+            states: Buffer::new(gpu, "state of the pressure", 2)?,
+            partials: Buffer::new(gpu, "partial sums", 2 * workgroups)?,
+        })
+    }
+}
