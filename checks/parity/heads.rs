@@ -75,8 +75,7 @@ pub fn skull(friction: f32) -> Collider {
 
 /// A ball in the head, a capsule in the world and a grid: every kind of solid.
 pub fn solids() -> Vec<Collider> {
-    let capsule =
-        Shape::capsule(Vec3::new(-0.3, -0.14, 0.05), Vec3::new(0.3, -0.14, 0.05), 0.04).unwrap();
+    let capsule = Shape::capsule(Vec3::new(-0.3, -0.14, 0.05), Vec3::new(0.3, -0.14, 0.05), 0.04).unwrap();
     let mannequin = Mannequin::new();
     let grid = DistanceGrid::from_field(&*mannequin, 0.008, 0.02).unwrap();
     vec![
@@ -135,17 +134,25 @@ pub fn heads() -> Vec<Head> {
 
 /// The largest distance between the live strands of two sets of vectors.
 pub fn apart(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> f32 {
+    distances(a, b, guides).into_iter().fold(0.0, f32::max)
+}
+
+/// Their mean distance.
+pub fn mean_apart(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> f32 {
+    let distances = distances(a, b, guides);
+    distances.iter().sum::<f32>() / distances.len() as f32
+}
+
+fn distances(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> Vec<f32> {
     let points = guides.points_per_strand();
     assert_eq!(a.len(), b.len());
-    let mut largest = 0.0_f32;
+    let mut distances = Vec::new();
     for (index, (a, b)) in a.iter().zip(b).enumerate() {
-        for lane in 0..LANES {
-            if index / points * LANES + lane < guides.strand_count() {
-                let distance = (a.get(lane) - b.get(lane)).length();
-                assert!(distance.is_finite(), "not finite at {index}, lane {lane}");
-                largest = largest.max(distance);
-            }
+        for lane in (0..LANES).filter(|lane| index / points * LANES + lane < guides.strand_count()) {
+            let distance = (a.get(lane) - b.get(lane)).length();
+            assert!(distance.is_finite(), "not finite at {index}, lane {lane}");
+            distances.push(distance);
         }
     }
-    largest
+    distances
 }

@@ -6,7 +6,7 @@ use strandline_sim::cpu::{
     pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
 };
 use strandline_sim::gpu::{Gradient, Probe, Spread};
-use strandline_sim::{Preconditioner, Solver, State};
+use strandline_sim::{Preconditioner, Solver, State, VolumeSettings};
 
 use crate::heads::{Head, apart, drive, heads};
 
@@ -177,21 +177,33 @@ fn a_solve_that_may_not_go_on_stops_and_says_so() {
 fn more_iterations_than_rounds_go_on_in_one_workgroup() {
     let Some(gpu) = gpu() else { return };
     let mut head = heads().swap_remove(0);
-    head.settings.volume.cells = [64; 3];
-    head.settings.volume.tolerance = 1e-7;
-    head.settings.volume.preconditioner = Preconditioner::None;
-    let (_, state, volume) = marked(&head);
+    head.settings.volume = VolumeSettings {
+        cells: [36; 3],
+        tolerance: 1e-6,
+        preconditioner: Preconditioner::None,
+        ..head.settings.volume
+    };
+    let (_, state, mut volume) = marked(&head);
+    // A block of hair: a solve of many iterations, on a grid that is large enough for rounds.
+    let [x, y, _] = volume.grid.size();
+    for cell in 0..volume.grid.cell_count() {
+        let place = [cell % x, cell / x % y, cell / (x * y)];
+        volume.set_kind(
+            cell,
+            if place.iter().all(|at| (1..=36).contains(at)) { Kind::Fluid } else { Kind::Air },
+        );
+    }
     let mut solved = volume.clone();
     let expected = solve_pressure(&mut solved);
-    assert!(expected.iterations > 55, "{expected:?}");
+    assert!(expected.iterations > 60, "{expected:?}");
     let gpu_solver = head.gpu_solver(&gpu);
     let mut probe = Probe::new(&gpu_solver, &state).unwrap();
     probe.set_volume(&volume).unwrap();
     probe.run(&drive(6), &["solve_pressure"]).unwrap();
     let (_, found) = probe.pressure().unwrap();
-    assert!(found.iterations > 50 && found.residual <= 1e-7 * found.first, "{found:?}");
+    assert!(found.iterations > 55 && found.residual <= 1e-6 * found.first, "{found:?}");
     let [velocity, _] = faces_apart(&solved, &probe.faces().unwrap());
-    assert!(velocity < 1e-4, "{velocity}");
+    assert!(velocity < 1e-3, "{velocity}");
 }
 
 #[test]
@@ -263,7 +275,9 @@ fn gather_agrees() {
         let before = state.velocities.clone();
         let predicted = state.predicted().to_vec();
         gather(&volume, &predicted, &mut state.velocities);
-        assert!(apart(&before, &state.velocities, &head.guides) > 1e-3, "{}: nothing changed", head.name);
+        // A lone strand's volume gives it back what it gave.
+        let changed = apart(&before, &state.velocities, &head.guides);
+        assert!(changed > 1e-3 || head.guides.strand_count() == 1, "{}: {changed}", head.name);
         let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);
         assert!(speed < 1e-5, "{}: {speed}", head.name);
     }

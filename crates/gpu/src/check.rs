@@ -110,13 +110,7 @@ fn size_of_layout(layout: &Layout) -> usize {
     }
 }
 
-fn compare_type(
-    module: &Module,
-    layout: &Layout,
-    ty: Handle<Type>,
-    path: &str,
-    problems: &mut Vec<String>,
-) {
+fn compare_type(module: &Module, layout: &Layout, ty: Handle<Type>, path: &str, problems: &mut Vec<String>) {
     let found = &module.types[ty];
     match (layout, &found.inner) {
         (Layout::Scalar(scalar), TypeInner::Scalar(kind) | TypeInner::Atomic(kind)) => {

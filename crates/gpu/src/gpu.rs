@@ -1,3 +1,4 @@
+use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -21,6 +22,14 @@ struct Shared {
     /// Why the device is gone, once it is.
     lost: Arc<Mutex<Option<String>>>,
     memory: Mutex<Memory>,
+    kernels: Mutex<HashMap<String, Compiled>>,
+}
+
+/// A compiled kernel, kept for whoever asks for the same again.
+#[derive(Clone, Debug)]
+pub(crate) struct Compiled {
+    pub pipeline: wgpu::ComputePipeline,
+    pub layout: wgpu::BindGroupLayout,
 }
 
 /// What buffers hold, and the most that they may.
@@ -74,7 +83,8 @@ impl Gpu {
         lost: Arc<Mutex<Option<String>>>,
     ) -> Self {
         let memory = Mutex::new(Memory { used: 0, most: u64::MAX });
-        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory }) }
+        let kernels = Mutex::default();
+        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory, kernels }) }
     }
 
     fn choose(wanted: &str, suits: impl Fn(&Adapter) -> bool) -> Result<Self, GpuError> {
@@ -224,6 +234,20 @@ impl Gpu {
         }
         memory.used += bytes;
         Ok(())
+    }
+
+    /// The kernel of a key, compiled if nobody asked for it before.
+    pub(crate) fn kernel(
+        &self,
+        key: String,
+        compile: impl FnOnce() -> Result<Compiled, GpuError>,
+    ) -> Result<Compiled, GpuError> {
+        if let Some(kernel) = lock(&self.shared.kernels).get(&key) {
+            return Ok(kernel.clone());
+        }
+        let kernel = compile()?;
+        lock(&self.shared.kernels).insert(key, kernel.clone());
+        Ok(kernel)
     }
 
     pub(crate) fn give_memory_back(&self, bytes: u64) {

@@ -3,6 +3,7 @@
 
 use std::marker::PhantomData;
 
+use crate::gpu::Compiled;
 use crate::{Gpu, GpuError, Layout, Timer};
 
 /// How a kernel uses a buffer.
@@ -102,56 +103,20 @@ macro_rules! kernel {
 /// A compiled kernel; `B` is what [`kernel!`](crate::kernel) declared, with a static lifetime.
 #[derive(Debug)]
 pub struct Kernel<B> {
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
+    compiled: Compiled,
     bindings: PhantomData<fn(B)>,
 }
 
 impl<B: Bindings<Kernel = B>> Kernel<B> {
-    /// Compiles a kernel with values for its `override` constants.
+    /// Compiles a kernel with values for its `override` constants; a device compiles each once.
     ///
     /// # Errors
     /// The driver does not take it, or the device was lost.
     pub fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, GpuError> {
         let declaration = B::declaration();
-        let Declaration { module, source, entry, bindings } = &declaration;
-        let made = gpu.guarded(module, || {
-            let device = gpu.device();
-            let entries: Vec<_> = bindings.iter().map(entry_of).collect();
-            let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some(entry),
-                entries: &entries,
-            });
-            let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some(entry),
-                bind_group_layouts: &[Some(&layout)],
-                immediate_size: 0,
-            });
-            let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(module),
-                source: wgpu::ShaderSource::Wgsl((*source).into()),
-            });
-            let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&pipeline_layout),
-                module: &shader,
-                entry_point: Some(entry),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants,
-                    // Every kernel writes its workgroup memory before it reads it.
-                    zero_initialize_workgroup_memory: false,
-                },
-                cache: None,
-            });
-            (pipeline, layout)
-        });
-        let (pipeline, layout) = made.map_err(|error| match error {
-            GpuError::Refused { adapter, what, message } => {
-                GpuError::Shader { adapter, module: what, message }
-            }
-            other => other,
-        })?;
-        Ok(Self { pipeline, layout, bindings: PhantomData })
+        let key = format!("{}::{} {constants:?}", declaration.module, declaration.entry);
+        let compiled = gpu.kernel(key, || compile(gpu, &declaration, constants))?;
+        Ok(Self { compiled, bindings: PhantomData })
     }
 
     /// Binds a kernel to its buffers.
@@ -173,12 +138,50 @@ impl<B: Bindings<Kernel = B>> Kernel<B> {
                 .collect();
             gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some(declaration.entry),
-                layout: &self.layout,
+                layout: &self.compiled.layout,
                 entries: &entries,
             })
         })?;
-        Ok(Bound { pipeline: self.pipeline.clone(), group })
+        Ok(Bound { pipeline: self.compiled.pipeline.clone(), group })
     }
+}
+
+fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> Result<Compiled, GpuError> {
+    let Declaration { module, source, entry, bindings } = declaration;
+    let made = gpu.guarded(module, || {
+        let device = gpu.device();
+        let entries: Vec<_> = bindings.iter().map(entry_of).collect();
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some(entry),
+            entries: &entries,
+        });
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(entry),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(module),
+            source: wgpu::ShaderSource::Wgsl((*source).into()),
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry),
+            layout: Some(&pipeline_layout),
+            module: &shader,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                // Every kernel writes its workgroup memory before it reads it.
+                zero_initialize_workgroup_memory: false,
+            },
+            cache: None,
+        });
+        Compiled { pipeline, layout }
+    });
+    made.map_err(|error| match error {
+        GpuError::Refused { adapter, what, message } => GpuError::Shader { adapter, module: what, message },
+        other => other,
+    })
 }
 
 fn entry_of(binding: &Binding) -> wgpu::BindGroupLayoutEntry {

@@ -43,10 +43,7 @@ impl BendShares {
         let turn = (angles.stiffness * time_step).powi(2);
         let left = 1.0 / (1.0 + turn);
         let passes = iterations.div_ceil(ROUNDS_PER_PASS);
-        Self {
-            share: 1.0 - left.powf(1.0 / passes as f32),
-            hold: 1.0 - (-angles.hold * time_step).exp(),
-        }
+        Self { share: 1.0 - left.powf(1.0 / passes as f32), hold: 1.0 - (-angles.hold * time_step).exp() }
     }
 }
 

@@ -57,16 +57,7 @@ impl Stage {
         let predicted = &buffers.places[1 - side];
         let advance = self.advance.bind(
             gpu,
-            &Advance {
-                step,
-                solids,
-                rest_positions,
-                rest,
-                predicted,
-                velocities,
-                bad_points,
-                outcomes,
-            },
+            &Advance { step, solids, rest_positions, rest, predicted, velocities, bad_points, outcomes },
         )?;
         let pressure = buffers.volume.as_ref().map_or(&buffers.no_pressure, |volume| &volume.states);
         let reports = &buffers.reports;

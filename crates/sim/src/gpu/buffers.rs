@@ -100,9 +100,10 @@ impl Buffers {
         // Counts, sums, kinds, rows, faces written and read back.
         const CELL: u64 = 4 + 6 + 2 + 3 + 6 + 6;
         let strands = 4 * self.point_count() as u64 * (INTEGRATE + CONSTRAIN + ADVANCE);
-        let volume = self.volume.as_ref().map_or(0, |volume| {
-            4 * (self.point_count() as u64 * VOLUME + volume.cell_count as u64 * CELL)
-        });
+        let volume = self
+            .volume
+            .as_ref()
+            .map_or(0, |volume| 4 * (self.point_count() as u64 * VOLUME + volume.cell_count as u64 * CELL));
         strands + volume
     }
 

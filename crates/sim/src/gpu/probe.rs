@@ -85,9 +85,8 @@ impl<'a> Probe<'a> {
             cell_count: count as u32,
         };
         device.grid.write(&[grid])?;
-        let pair = |axis: usize, cell: usize| {
-            [volume.faces.velocity(axis, cell), volume.faces.change(axis, cell)]
-        };
+        let pair =
+            |axis: usize, cell: usize| [volume.faces.velocity(axis, cell), volume.faces.change(axis, cell)];
         let faces: Vec<[f32; 2]> = (0..3 * count).map(|index| pair(index / count, index % count)).collect();
         device.faces.write(&faces)?;
         let number = |kind| match kind {

@@ -3,9 +3,7 @@ use strandline_gpu::{Bindings, Declaration, Gpu, GpuError};
 
 use super::buffers::Buffers;
 use super::scan::Scan;
-use super::{
-    GpuState, advance, constrain, gather, integrate, mark, pose_roots, scan, solve_pressure, splat,
-};
+use super::{GpuState, advance, constrain, gather, integrate, mark, pose_roots, scan, solve_pressure, splat};
 use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport};
 
 /// A solver whose stages run on a GPU.

@@ -120,11 +120,8 @@ impl Stage {
         let sum_faces = self
             .sum_faces
             .bind(gpu, &SumFaces { grid, start_index, sorted_places, sorted_velocities, faces })?;
-        let mut dispatches = vec![
-            (bounds, groups(buffers.strand_count, THREADS)),
-            (follow, [1; 3]),
-            (find_cells, by_point),
-        ];
+        let mut dispatches =
+            vec![(bounds, groups(buffers.strand_count, THREADS)), (follow, [1; 3]), (find_cells, by_point)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);
         dispatches.push((sort_points, by_point));
         dispatches.push((sum_faces, groups(volume.cell_count, THREADS)));

@@ -121,7 +121,8 @@ impl GpuState {
                 volume.spread = self.spread;
             }
             self.stages = None;
-            self.stages = Some([Stages::new(solver, &self.buffers, 0)?, Stages::new(solver, &self.buffers, 1)?]);
+            self.stages =
+                Some([Stages::new(solver, &self.buffers, 0)?, Stages::new(solver, &self.buffers, 1)?]);
         }
         if self.pending == REPORTS {
             self.drain(solver)?;

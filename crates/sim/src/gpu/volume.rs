@@ -8,7 +8,7 @@ use super::{LANES, THREADS};
 use crate::cpu::grid::{Grid, MIN_SPACING, ladder};
 
 mirror! {
-    /// The box. Mirrors `Grid` in grid.wesl.
+    /// The box. Mirrors `GridState` in grid.wesl.
     pub(super) struct GridState {
         pub origin: [f32; 3],
         pub spacing: f32,
