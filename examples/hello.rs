@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Bob) }.grow()?;
     let mut hair = Hair::new(&Backend::auto(), &groom, &Settings::default())?;
     for _ in 0..60 {
-        hair.step(1.0 / 60.0, &Pose::IDENTITY);
+        hair.step(1.0 / 60.0, &Pose::IDENTITY)?;
     }
     std::fs::create_dir_all("out/examples")?;
     hair.picture(&Camera::three_quarter(), &Look::brown())?.save("out/examples/hello.png")?;

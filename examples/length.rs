@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let roots = groom.starts.iter().take(strand_count).map(|start| groom.points[*start as usize]);
     let scales: Vec<f32> = roots.map(|root| if root.x > 0.0 { 0.6 } else { 1.0 }).collect();
     hair.set_length_scale(&scales)?;
-    hair.step(0.25, &Pose::IDENTITY);
+    hair.step(0.25, &Pose::IDENTITY)?;
     std::fs::create_dir_all("out/examples")?;
     hair.picture(&Camera::front(), &Look::red())?.save("out/examples/length.png")?;
     Ok(())

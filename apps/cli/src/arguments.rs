@@ -32,6 +32,10 @@ pub enum Command {
     Scene(SceneOptions),
     /// Measure speed: the thesis's tables, or how cost grows.
     Bench(BenchOptions),
+    /// List the GPUs of this machine.
+    Gpus,
+    /// Write the linked shader modules to a folder, to read.
+    Shaders(ShaderOptions),
 }
 
 /// What to simulate: a scene, and what replaces parts of it.
@@ -55,9 +59,9 @@ pub struct Inputs {
     /// Number of frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
-    /// Where it runs: auto or cpu.
-    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = Backend::from_str)]
-    pub backend: Backend,
+    /// Where it is simulated: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
+    #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
+    pub backend: Option<Backend>,
     /// Print one JSON object, and nothing else, to standard output.
     #[arg(long)]
     pub json: bool,
@@ -128,10 +132,24 @@ pub struct SceneOptions {
 }
 
 #[derive(Args, Debug)]
+pub struct ShaderOptions {
+    /// The folder to write to.
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
+
+#[derive(Args, Debug)]
 pub struct BenchOptions {
     /// The thesis's tables 2, 3 and 4 beside ours, or how cost grows with strands and cells.
     #[arg(value_enum, default_value = "thesis")]
     pub what: Bench,
+    /// Which GPU is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,
+    /// or gpu:0 and so on.
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = Backend::from_str)]
+    pub backend: Backend,
+    /// A short run that shows that everything works; its figures mean little.
+    #[arg(long)]
+    pub quick: bool,
     /// Write the measurements to this file.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
@@ -174,6 +192,9 @@ impl Inputs {
         }
         if let Some(name) = self.motion {
             scene.motion.name = name;
+        }
+        if let Some(backend) = self.backend {
+            scene.simulation.backend = backend;
         }
         if let Some(frames) = self.frames {
             scene.film.frames = frames;

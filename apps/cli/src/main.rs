@@ -1,10 +1,11 @@
-//! The `strandline` program: demo, render, sim, groom, convert, info, bench.
+//! The `strandline` program: demo, render, sim, groom, convert, info, bench, gpus, shaders.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
 mod arguments;
 mod bench;
 mod files;
+mod gpus;
 mod progress;
 mod render;
 mod sim;
@@ -38,5 +39,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(Command::Info(options)) => files::info(options),
         Some(Command::Scene(options)) => files::scene(options),
         Some(Command::Bench(options)) => bench::bench(options),
+        Some(Command::Gpus) => gpus::list(),
+        Some(Command::Shaders(options)) => gpus::shaders(options),
     }
 }

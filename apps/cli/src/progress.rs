@@ -24,6 +24,14 @@ impl Progress {
         Self { begin: Instant::now(), total, what, bar: None, watched }
     }
 
+    /// Says something without tearing the bar.
+    pub fn note(&self, note: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| eprintln!("note: {note}")),
+            None => eprintln!("note: {note}"),
+        }
+    }
+
     /// `done` are done.
     pub fn reached(&mut self, done: u64) {
         if !self.watched {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Backend, Event, Film, Player, Scene};
+use strandline::{Event, Film, Player, Scene};
 
 use crate::arguments::RenderOptions;
 use crate::progress::Progress;
@@ -12,7 +12,7 @@ use crate::statistics::{Collector, Times};
 /// What `render --json` prints.
 #[derive(Debug, Serialize)]
 struct RenderReport {
-    backend: &'static str,
+    backend: String,
     frames: usize,
     follow_strands: usize,
     segments: usize,
@@ -28,7 +28,7 @@ pub fn demo() -> anyhow::Result<()> {
         scene.style.style.name(),
         f64::from(scene.film.frames) / f64::from(scene.film.frames_per_second)
     );
-    film(&scene, &Backend::auto(), Path::new("out/demo"), false)
+    film(&scene, Path::new("out/demo"), false)
 }
 
 /// A scene as the command line names it.
@@ -38,11 +38,11 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
         (scene.picture.width, scene.picture.height) = (width, height);
     }
     let folder = options.out.clone().unwrap_or_else(|| Path::new("out").join(options.inputs.name()));
-    film(&scene, &options.inputs.backend, &folder, options.inputs.json)
+    film(&scene, &folder, options.inputs.json)
 }
 
-fn film(scene: &Scene, backend: &Backend, folder: &Path, json: bool) -> anyhow::Result<()> {
-    let mut player = Player::new(scene, backend, true)?;
+fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
+    let mut player = Player::new(scene, &scene.simulation.backend, true)?;
     for note in player.notes() {
         eprintln!("note: {note}");
     }
@@ -51,10 +51,14 @@ fn film(scene: &Scene, backend: &Backend, folder: &Path, json: bool) -> anyhow::
     let (mut strands, mut segments) = (0, 0);
     let mut progress = Progress::new(u64::from(player.frames()), "frames", json);
     while let Some(event) = player.next() {
-        if let Event::Drawn { picture, report, .. } = event? {
-            film.add(&picture)?;
-            times.add(&report.seconds);
-            (strands, segments) = (report.strands, report.segments);
+        match event? {
+            Event::Note(note) => progress.note(&note),
+            Event::Stepped(_) => {}
+            Event::Drawn { picture, report, .. } => {
+                film.add(&picture)?;
+                times.add(&report.seconds);
+                (strands, segments) = (report.strands, report.segments);
+            }
         }
         progress.reached(u64::from(player.frames_done()));
     }
@@ -64,7 +68,7 @@ fn film(scene: &Scene, backend: &Backend, folder: &Path, json: bool) -> anyhow::
         eprintln!("note: {note}");
     }
     let report = RenderReport {
-        backend: backend.name(),
+        backend: player.hair().simulated_on(),
         frames: times.len(),
         follow_strands: strands,
         segments,
@@ -82,7 +86,7 @@ fn film(scene: &Scene, backend: &Backend, folder: &Path, json: bool) -> anyhow::
 fn print(report: &RenderReport, folder: &Path) {
     let times = &report.ms_per_frame;
     println!(
-        "{} pictures of {} strands, {} segments on the {}",
+        "{} pictures of {} strands, {} segments, drawn on the cpu, simulated on {}",
         report.frames, report.follow_strands, report.segments, report.backend
     );
     println!("a picture takes {:.0} ms (95 of 100 at most {:.0} ms)", times.median, times.p95);

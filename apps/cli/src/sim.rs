@@ -13,7 +13,7 @@ use crate::statistics::{Collector, Times};
 /// What `sim --json` prints.
 #[derive(Debug, Serialize)]
 pub struct SimReport {
-    pub backend: &'static str,
+    pub backend: String,
     pub strands: usize,
     pub points_per_strand: usize,
     pub steps: usize,
@@ -63,7 +63,7 @@ impl Steps {
         self.non_finite = self.non_finite.max(report.non_finite);
     }
 
-    pub fn report(&self, backend: &'static str, strands: usize, points_per_strand: usize) -> SimReport {
+    pub fn report(&self, backend: String, strands: usize, points_per_strand: usize) -> SimReport {
         let pressure = |value: fn(&PressureReport) -> f64| mean(self.pressure.iter().map(value));
         SimReport {
             backend,
@@ -92,21 +92,24 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let inputs = &options.inputs;
     let scene = inputs.scene()?;
-    let mut player = Player::new(&scene, &inputs.backend, false)?;
+    let mut player = Player::new(&scene, &scene.simulation.backend, false)?;
     for note in player.notes() {
         eprintln!("note: {note}");
     }
     let mut progress = Progress::new(u64::from(player.frames()), "frames", inputs.json);
     let mut steps = Steps::default();
     while let Some(event) = player.next() {
-        if let Event::Stepped(report) = event? {
-            steps.add(&report);
+        match event? {
+            Event::Note(note) => progress.note(&note),
+            Event::Stepped(report) => steps.add(&report),
+            Event::Drawn { .. } => {}
         }
         progress.reached(u64::from(player.frames_done()));
     }
     drop(progress);
     let guides = player.hair().guides();
-    let report = steps.report(inputs.backend.name(), guides.strand_count(), guides.points_per_strand());
+    let report =
+        steps.report(player.hair().simulated_on(), guides.strand_count(), guides.points_per_strand());
     if inputs.json {
         println!("{}", serde_json::to_string(&report)?);
     } else {
@@ -117,7 +120,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
 
 fn print(report: &SimReport) {
     let SimReport { strands, points_per_strand, steps, ms_per_step, stretch, pcg, .. } = report;
-    println!("{strands} strands x {points_per_strand} points, {steps} steps on the {}", report.backend);
+    println!("{strands} strands x {points_per_strand} points, {steps} steps on {}", report.backend);
     println!("a step takes {:.2} ms (95 of 100 at most {:.2} ms)", ms_per_step.median, ms_per_step.p95);
     for (name, time) in ms_per_step.stages.iter() {
         println!("  {name:<15}{time:>8.3} ms");

@@ -39,16 +39,18 @@ pub struct Times {
 #[derive(Clone, Debug, Default)]
 pub struct Collector {
     names: Vec<&'static str>,
-    runs: Vec<Vec<f64>>,
+    runs: Vec<Vec<(&'static str, f64)>>,
 }
 
 impl Collector {
-    /// Adds one run: the seconds of each stage, the same stages every time.
+    /// Adds one run: the seconds of each stage. A stage may be missing in some runs.
     pub fn add(&mut self, seconds: &[(&'static str, f64)]) {
-        if self.names.is_empty() {
-            self.names = seconds.iter().map(|(name, _)| *name).collect();
+        for (name, _) in seconds {
+            if !self.names.contains(name) {
+                self.names.push(name);
+            }
         }
-        self.runs.push(seconds.iter().map(|(_, seconds)| 1e3 * seconds).collect());
+        self.runs.push(seconds.iter().map(|(name, seconds)| (*name, 1e3 * seconds)).collect());
     }
 
     /// Number of runs.
@@ -58,10 +60,11 @@ impl Collector {
 
     /// The medians.
     pub fn times(&self) -> Times {
-        let totals: Vec<f64> = self.runs.iter().map(|run| run.iter().sum()).collect();
-        let stage = |index: usize| self.runs.iter().map(|run| run[index]).collect::<Vec<f64>>();
-        let stages =
-            self.names.iter().enumerate().map(|(i, name)| ((*name).to_owned(), median(&stage(i)))).collect();
+        let totals: Vec<f64> = self.runs.iter().map(|run| run.iter().map(|(_, time)| time).sum()).collect();
+        let stage = |wanted: &str| -> Vec<f64> {
+            self.runs.iter().flatten().filter(|(name, _)| *name == wanted).map(|(_, time)| *time).collect()
+        };
+        let stages = self.names.iter().map(|name| ((*name).to_owned(), median(&stage(name)))).collect();
         Times { median: median(&totals), p95: quantile(&totals, 0.95), stages: StageTimes(stages) }
     }
 }
@@ -99,6 +102,8 @@ mod tests {
         let times = collector.times();
         assert_eq!(times.stages.iter().collect::<Vec<_>>(), [("b", 1.0), ("a", 3.0)]);
         assert_eq!(times.p95, 7.0);
+        collector.add(&[("step", 0.004)]);
+        assert_eq!(collector.times().stages.iter().last(), Some(("step", 4.0)));
         assert_eq!(serde_json::to_string(&times.stages).unwrap(), r#"{"b":1.0,"a":3.0}"#);
     }
 }

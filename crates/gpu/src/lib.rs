@@ -3,6 +3,7 @@
 //!
 //! Everything keeps to WebGPU's default limits, whatever the adapter offers.
 
+mod bandwidth;
 mod buffer;
 mod check;
 mod error;

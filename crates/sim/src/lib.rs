@@ -6,6 +6,7 @@
 pub mod cpu;
 pub mod gpu;
 
+mod backend;
 mod clock;
 mod error;
 mod report;
@@ -14,6 +15,7 @@ mod solver;
 mod state;
 mod step;
 
+pub use backend::Backend;
 pub use clock::{Clock, Ticks};
 pub use error::SimError;
 pub use report::{PressureReport, StepReport};

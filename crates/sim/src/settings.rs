@@ -3,10 +3,15 @@ mod limits;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::Backend;
+
 /// Everything about the motion that a person may set, in SI units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Settings {
+    /// Where a scene is simulated: auto (default), cpu, gpu, or gpu:0 and so on for one of several.
+    /// A [`Solver`](crate::Solver) itself runs where it is made.
+    pub backend: Backend,
     /// Length of a step \[s\], 1e-5 to 0.1; default 1/60.
     pub time_step: f32,
     /// Rounds of the constraints in a step, 1 to 10,000; default 20 [Chen2011 §4].
@@ -35,6 +40,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            backend: Backend::Auto,
             time_step: 1.0 / 60.0,
             iterations: 20,
             gravity: Vec3::new(0.0, -9.81, 0.0),

@@ -8,6 +8,7 @@ use crate::state::Scratch;
 use crate::{Drive, Settings, SimError, State, StepReport};
 
 /// The compiled solver: rest shape, settings and colliders. It does not change while time passes.
+#[derive(Clone)]
 pub struct Solver {
     pub(crate) settings: Settings,
     pub(crate) rest: RestShape,

@@ -32,14 +32,6 @@ pub enum Error {
         /// What may be given.
         expected: String,
     },
-    /// The asked backend is not there.
-    #[error(
-        "backend `{found}` is not there, expected auto or cpu: this build simulates and draws on the CPU"
-    )]
-    Backend {
-        /// What was asked for.
-        found: String,
-    },
     /// An output file or folder could not be written.
     #[error("cannot write {what}: {source}; frames already written are complete: {}", path.display())]
     Write {

@@ -3,6 +3,8 @@ use glam::Vec3;
 use crate::{
     Backend, Error, Scene,
     body::{Aabb, Collider, Mesh, Pose},
+    engine::Engine,
+    gpu::Gpu,
     groom::{Groom, Guides, Vec3Lanes},
     prepare::{self, Prepared},
     render::{
@@ -19,8 +21,7 @@ const POINTS_PER_STRAND: usize = 16;
 pub struct Hair {
     guides: Guides,
     bounds: Aabb,
-    solver: Solver,
-    state: State,
+    engine: Engine,
     clock: Clock,
     /// Where the picture lies between the last two states.
     share: f32,
@@ -52,7 +53,7 @@ impl Hair {
     /// Guides on a body: its drawn mesh, and the solids that hair hits.
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// A setting outside its range, or a GPU that is asked for by name and not there.
     pub fn with_body(
         backend: &Backend,
         guides: Guides,
@@ -60,9 +61,34 @@ impl Hair {
         colliders: Vec<Collider>,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let Backend::Cpu = backend;
-        let solver = Solver::new(&guides, settings, colliders)?;
-        let state = solver.rest_state(Pose::IDENTITY);
+        let gpu = backend.open()?;
+        let fall_back = *backend == Backend::Auto;
+        Self::placed(gpu.as_ref(), fall_back, guides, mesh, colliders, settings)
+    }
+
+    /// As [`Hair::with_body`], simulated on a device that the host owns.
+    ///
+    /// # Errors
+    /// A setting outside its range, or whatever the device refuses.
+    pub fn with_device(
+        gpu: &Gpu,
+        guides: Guides,
+        mesh: Option<&Mesh>,
+        colliders: Vec<Collider>,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        Self::placed(Some(gpu), false, guides, mesh, colliders, settings)
+    }
+
+    fn placed(
+        gpu: Option<&Gpu>,
+        fall_back: bool,
+        guides: Guides,
+        mesh: Option<&Mesh>,
+        colliders: Vec<Collider>,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let engine = Engine::new(gpu, Solver::new(&guides, settings, colliders)?, fall_back)?;
         let bounds = prepare::bounds(&guides, mesh);
         Ok(Self {
             shown: guides.positions().to_vec(),
@@ -77,8 +103,7 @@ impl Hair {
             level_of_detail: LevelOfDetail::default(),
             guides,
             bounds,
-            solver,
-            state,
+            engine,
         })
     }
 
@@ -101,27 +126,64 @@ impl Hair {
     /// Lets `seconds` pass while the head moves evenly to `world_from_head`. Steps have a fixed
     /// length, so zero or more of them happen; a frame longer than 16 steps slows time down.
     /// Returns one report a step.
-    pub fn step(&mut self, seconds: f64, world_from_head: &Pose) -> Vec<StepReport> {
+    ///
+    /// # Errors
+    /// The GPU failed and [`Hair::set_fall_back`] was not asked for; the hair keeps its last state.
+    pub fn step(&mut self, seconds: f64, world_from_head: &Pose) -> Result<Vec<StepReport>, Error> {
         let (start, end) = (self.end, *world_from_head);
         self.step_along(seconds, |share| start.toward(&end, share))
     }
 
     /// As [`Hair::step`], with the head's pose for each share (0 to 1) of the time that passes.
-    pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Vec<StepReport> {
+    ///
+    /// # Errors
+    /// As [`Hair::step`].
+    pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Result<Vec<StepReport>, Error> {
         let ticks = self.clock.advance(seconds);
         let waited = f64::from(ticks.share) * self.clock.step_time(1);
-        let reports = (0..ticks.count).map(|step| {
+        let drive = |step| {
             // The last step ends `waited` before the end of the frame.
             let left = self.clock.step_time(u64::from(ticks.count - 1 - step)) + waited;
             let share = (1.0 - left / seconds).clamp(0.0, 1.0);
-            let drive = Drive { world_from_head: pose(share as f32), wind: self.wind };
+            Drive { world_from_head: pose(share as f32), wind: self.wind }
+        };
+        let drives: Vec<Drive> = (0..ticks.count).map(drive).collect();
+        let reports = self.engine.run(&drives)?;
+        for drive in &drives {
             self.poses = [self.poses[1], drive.world_from_head];
-            self.solver.step(&mut self.state, &drive)
-        });
-        let reports = reports.collect();
+        }
         self.share = ticks.share;
         self.end = pose(1.0);
-        reports
+        Ok(reports)
+    }
+
+    /// Whether the hair goes on on the CPU, from its last state, when the GPU fails; it does for
+    /// [`Backend::Auto`].
+    pub fn set_fall_back(&mut self, fall_back: bool) {
+        self.engine.fall_back = fall_back;
+    }
+
+    /// The device that the hair is simulated on; none on the CPU.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.engine.gpu()
+    }
+
+    /// Where the hair is simulated: cpu, or the adapter's number and name.
+    pub fn simulated_on(&self) -> String {
+        self.gpu().map_or_else(|| "cpu".to_owned(), |gpu| gpu.adapter().to_string())
+    }
+
+    /// What happened to the backend since the last call, for a person to read.
+    pub fn take_notes(&mut self) -> Vec<String> {
+        self.engine.take_notes()
+    }
+
+    /// Changes how the hair moves; it goes on as it is.
+    ///
+    /// # Errors
+    /// A setting outside its range, then nothing changes; or the GPU failed.
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), Error> {
+        Ok(self.engine.set_settings(settings)?)
     }
 
     /// Draws the hair as it is now.
@@ -141,7 +203,7 @@ impl Hair {
         camera: &Camera,
         look: &Look,
     ) -> Result<(Picture, FrameReport), Error> {
-        self.state.interpolated(self.share, &mut self.shown);
+        self.engine.state().interpolated(self.share, &mut self.shown);
         let input = FrameInput {
             positions: &self.shown,
             world_from_head: self.poses[0].toward(&self.poses[1], self.share),
@@ -168,7 +230,7 @@ impl Hair {
     /// # Errors
     /// Another number of scales than strands, or a scale outside 0.05 to 1.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), Error> {
-        Ok(self.state.set_length_scale(&self.solver, scales)?)
+        Ok(self.engine.set_length_scale(scales)?)
     }
 
     /// The simulated strands at rest.
@@ -178,7 +240,12 @@ impl Hair {
 
     /// The state of the simulation.
     pub fn state(&self) -> &State {
-        &self.state
+        self.engine.state()
+    }
+
+    /// The settings of the simulation.
+    pub fn settings(&self) -> &Settings {
+        self.engine.solver().settings()
     }
 
     /// The box around hair and body at rest \[m\], head space.

@@ -8,7 +8,7 @@
 //! groom.push((0..16).map(|point| glam::Vec3::new(0.01 * point as f32, 0.0, 0.0)));
 //! let mut hair = Hair::new(&Backend::auto(), &groom, &Settings::default())?;
 //! for _ in 0..24 {
-//!     hair.step(1.0 / 60.0, &Pose::IDENTITY);
+//!     hair.step(1.0 / 60.0, &Pose::IDENTITY)?;
 //! }
 //! let camera = Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
 //! let picture = hair.picture(&camera, &Look::brown())?;
@@ -19,7 +19,7 @@
 //!
 //! A [`Scene`] holds everything that one run needs and is one TOML file; a [`Player`] plays it.
 
-mod backend;
+mod engine;
 mod error;
 mod film;
 mod hair;
@@ -29,11 +29,11 @@ mod prepare;
 pub mod scene;
 
 pub use strandline_body as body;
+pub use strandline_gpu as gpu;
 pub use strandline_groom as groom;
 pub use strandline_render as render;
 pub use strandline_sim as sim;
 
-pub use backend::Backend;
 pub use body::{Motion, Pose};
 pub use error::Error;
 pub use film::{Film, FilmFiles};
@@ -43,4 +43,4 @@ pub use player::{Event, Player};
 pub use prepare::Prepared;
 pub use render::{Camera, Light, Look, Picture};
 pub use scene::Scene;
-pub use sim::Settings;
+pub use sim::{Backend, Settings};

@@ -10,6 +10,8 @@ use crate::{
 /// What a [`Player`] tells while it plays.
 #[derive(Clone, Debug)]
 pub enum Event {
+    /// Something happened that a person should read; the film goes on.
+    Note(String),
     /// A step of the simulation ended.
     Stepped(StepReport),
     /// A picture is finished.
@@ -37,6 +39,9 @@ pub struct Player {
     frames: u32,
     frame: u32,
     waiting: std::vec::IntoIter<StepReport>,
+    told: std::vec::IntoIter<String>,
+    /// Whether the simulation cannot go on.
+    failed: bool,
     drawn: bool,
     notes: Vec<String>,
 }
@@ -50,10 +55,12 @@ impl Player {
         let mut prepared = Prepared::new(scene)?;
         let motion = prepared.motion.clone();
         let (pivot, bounds) = (prepared.pivot, prepared.bounds);
-        let notes = std::mem::take(&mut prepared.notes);
+        let mut notes = std::mem::take(&mut prepared.notes);
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
+        let mut hair = Hair::from_scene(scene, prepared, backend)?;
+        notes.extend(hair.take_notes());
         Ok(Self {
-            hair: Hair::from_scene(scene, prepared, backend)?,
+            hair,
             motion,
             pivot,
             wind: scene.wind,
@@ -65,6 +72,8 @@ impl Player {
             frames: scene.film.frames,
             frame: 0,
             waiting: Vec::new().into_iter(),
+            told: Vec::new().into_iter(),
+            failed: false,
             drawn: true,
             notes,
         })
@@ -73,6 +82,11 @@ impl Player {
     /// The hair that is played.
     pub fn hair(&self) -> &Hair {
         &self.hair
+    }
+
+    /// The hair that is played, to change while it moves.
+    pub fn hair_mut(&mut self) -> &mut Hair {
+        &mut self.hair
     }
 
     /// Number of frames of the film.
@@ -91,27 +105,30 @@ impl Player {
     }
 
     /// Lets the hair hang on the resting head; the steps are not told.
-    fn settle(&mut self) {
+    fn settle(&mut self) -> Result<(), Error> {
         let rest = self.motion.pose(0.0, self.pivot);
         self.hair.wind = self.wind.at(0.0);
         let frames = (self.settle_seconds / self.frame_seconds).ceil();
         for _ in 0..frames as u64 {
-            self.hair.step(self.settle_seconds / frames, &rest);
+            self.hair.step(self.settle_seconds / frames, &rest)?;
         }
+        Ok(())
     }
 
     /// Moves the hair to the next frame.
-    fn advance(&mut self) {
+    fn advance(&mut self) -> Result<(), Error> {
         if self.frame == 0 {
-            self.settle();
+            self.settle()?;
         }
         let begin = f64::from(self.frame) * self.frame_seconds;
         self.hair.wind = self.wind.at(begin);
         let (motion, pivot, length) = (&self.motion, self.pivot, self.frame_seconds);
         let pose = |share: f32| -> Pose { motion.pose(begin + length * f64::from(share), pivot) };
-        self.waiting = self.hair.step_along(length, pose).into_iter();
+        self.waiting = self.hair.step_along(length, pose)?.into_iter();
+        self.told = self.hair.take_notes().into_iter();
         self.drawn = !self.draw;
         self.frame += 1;
+        Ok(())
     }
 
     fn picture(&mut self) -> Result<Event, Error> {
@@ -126,16 +143,22 @@ impl Iterator for Player {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
+            if let Some(note) = self.told.next() {
+                return Some(Ok(Event::Note(note)));
+            }
             if let Some(report) = self.waiting.next() {
                 return Some(Ok(Event::Stepped(report)));
             }
             if !self.drawn {
                 return Some(self.picture());
             }
-            if self.frame == self.frames {
+            if self.frame == self.frames || self.failed {
                 return None;
             }
-            self.advance();
+            if let Err(error) = self.advance() {
+                self.failed = true;
+                return Some(Err(error));
+            }
         }
     }
 }

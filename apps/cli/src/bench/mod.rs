@@ -1,5 +1,6 @@
 //! `strandline bench`: the thesis's tables beside ours, and how cost grows.
 
+mod gpu;
 mod machine;
 mod scaling;
 mod thesis;
@@ -13,54 +14,69 @@ use crate::arguments::{Bench, BenchOptions};
 use crate::progress::Progress;
 use crate::sim::{SimReport, Steps};
 use crate::statistics::{Collector, Times};
+use gpu::{Adapter, Device};
 
 /// What is written with `--json`: the measurements and what they were made on.
 #[derive(Debug, Serialize)]
 struct Baseline<T: Serialize> {
     bench: &'static str,
     version: &'static str,
-    backend: &'static str,
     machine: machine::Machine,
+    /// None when no GPU was measured.
+    gpu: Option<Adapter>,
+    /// Whether this was a short run, whose figures mean little.
+    quick: bool,
     results: T,
 }
 
 pub fn bench(options: &BenchOptions) -> anyhow::Result<()> {
-    let path = options.json.as_deref();
+    let device = Device::open(options.backend, options.quick)?;
+    let device = device.as_ref();
     match options.what {
-        Bench::Thesis => write(path, "thesis", thesis::run()?),
-        Bench::Scaling => write(path, "scaling", scaling::run()?),
+        Bench::Thesis => write(options, device, "thesis", thesis::run(device, options.quick)?),
+        Bench::Scaling => write(options, device, "scaling", scaling::run(device, options.quick)?),
     }
 }
 
-fn write<T: Serialize>(path: Option<&Path>, bench: &'static str, results: T) -> anyhow::Result<()> {
+fn write<T: Serialize>(
+    options: &BenchOptions,
+    device: Option<&Device>,
+    bench: &'static str,
+    results: T,
+) -> anyhow::Result<()> {
     let machine = machine::Machine::here();
-    println!("\nmachine: {}, {} threads, backend {}", machine.cpu, machine.threads, Backend::auto().name());
+    println!("\nmachine: {}, {} threads", machine.cpu, machine.threads);
     if let Some(memory) = machine.peak_memory_mb {
         println!("peak memory: {memory:.0} MB");
     }
-    let Some(path) = path else { return Ok(()) };
+    let Some(path) = options.json.as_deref() else { return Ok(()) };
+    let gpu = device.map(|device| device.adapter.clone());
     let version = env!("CARGO_PKG_VERSION");
-    let baseline = Baseline { bench, version, backend: Backend::auto().name(), machine, results };
+    let baseline = Baseline { bench, version, machine, gpu, quick: options.quick, results };
     let mut text = serde_json::to_string_pretty(&baseline)?;
     text.push('\n');
-    std::fs::write(path, text).map_err(|source| Error::Write {
-        what: "the measurements",
-        path: path.to_owned(),
-        source,
-    })?;
+    save(path, &text)?;
     println!("wrote {}", path.display());
     Ok(())
 }
 
-/// Plays a scene and measures its steps, and its pictures when `draw`.
+fn save(path: &Path, text: &str) -> Result<(), Error> {
+    std::fs::write(path, text).map_err(|source| Error::Write {
+        what: "the measurements",
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// Plays a scene on the CPU and measures its steps, and its pictures when `draw`.
 fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimReport, Times, usize), Error> {
-    let backend = Backend::auto();
-    let mut player = Player::new(scene, &backend, draw)?;
+    let mut player = Player::new(scene, &Backend::Cpu, draw)?;
     let (mut steps, mut pictures) = (Steps::default(), Collector::default());
     let mut segments = 0;
     let mut progress = Progress::new(u64::from(player.frames()), what, false);
     while let Some(event) = player.next() {
         match event? {
+            Event::Note(note) => progress.note(&note),
             Event::Stepped(report) => steps.add(&report),
             Event::Drawn { report, .. } => {
                 pictures.add(&report.seconds);
@@ -70,6 +86,6 @@ fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimReport, 
         progress.reached(u64::from(player.frames_done()));
     }
     let guides = player.hair().guides();
-    let report = steps.report(backend.name(), guides.strand_count(), guides.points_per_strand());
+    let report = steps.report("cpu".to_owned(), guides.strand_count(), guides.points_per_strand());
     Ok((report, pictures.times(), segments))
 }

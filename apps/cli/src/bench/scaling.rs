@@ -1,21 +1,34 @@
 //! How the cost of a step grows with strands and with cells.
 
 use serde::Serialize;
-use strandline::Scene;
+use strandline::{
+    Error, Scene,
+    gpu::GpuError,
+    sim::{SimError, gpu::Gradient},
+};
 
+use super::gpu::{Device, GpuRun};
 use super::measure;
 
 /// Strands of 16 points: from 10,000 to 320,000 points.
 const STRANDS: [usize; 6] = [625, 1250, 2500, 5000, 10_000, 20_000];
 /// Cells along each side.
 const GRIDS: [u32; 4] = [16, 32, 64, 128];
-const FRAMES: u32 = 60;
+/// Frames of a row; in a short run.
+const FRAMES: [u32; 2] = [60, 4];
+/// On a GPU: strands of 32 points, doubled until the device refuses, or so many times.
+const FIRST_ON_GPU: usize = 1250;
+const DOUBLINGS: usize = 9;
+/// What is promised of a current data-centre GPU: strands, points, cells, most ms a step.
+const PROMISED: [(usize, usize, u32, f64); 3] =
+    [(1750, 6, 32, 0.3), (10_000, 32, 64, 0.8), (100_000, 32, 64, 3.0)];
 
 #[derive(Debug, Serialize)]
 pub struct Results {
     strands: Vec<Row>,
     growth_of_time_per_point: f64,
     grids: Vec<Row>,
+    gpu: Option<OnGpu>,
 }
 
 #[derive(Debug, Serialize)]
@@ -28,16 +41,42 @@ struct Row {
     ns_per_point: f64,
 }
 
-pub fn run() -> anyhow::Result<Results> {
+#[derive(Debug, Serialize)]
+struct OnGpu {
+    promised: Vec<Promised>,
+    sweep: Vec<GpuRow>,
+    /// What ended the sweep of each grid, if anything did.
+    refusals: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Promised {
+    most_ms_per_step: f64,
+    run: GpuRow,
+}
+
+#[derive(Debug, Serialize)]
+struct GpuRow {
+    cells: u32,
+    strands: usize,
+    points: usize,
+    run: GpuRun,
+}
+
+pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
+    let frames = FRAMES[usize::from(quick)];
     println!("strands of 16 points, 32^3 cells");
     heading();
-    let strands = STRANDS.iter().map(|count| row(*count, 32)).collect::<Result<Vec<_>, _>>()?;
+    let counts = if quick { &STRANDS[..2] } else { &STRANDS[..] };
+    let strands = counts.iter().map(|count| row(*count, 32, frames)).collect::<Result<Vec<_>, _>>()?;
     let growth = strands[strands.len() - 1].ns_per_point / strands[0].ns_per_point;
     println!("time per point grows {growth:.2} times (at most 1.3 is promised)\n");
     println!("2,500 strands of 16 points");
     heading();
-    let grids = GRIDS.iter().map(|cells| row(2500, *cells)).collect::<Result<Vec<_>, _>>()?;
-    Ok(Results { strands, growth_of_time_per_point: growth, grids })
+    let grids = if quick { &GRIDS[..2] } else { &GRIDS[..] };
+    let grids = grids.iter().map(|cells| row(2500, *cells, frames)).collect::<Result<Vec<_>, _>>()?;
+    let gpu = device.map(|device| on_gpu(device, frames, quick)).transpose()?;
+    Ok(Results { strands, growth_of_time_per_point: growth, grids, gpu })
 }
 
 fn heading() {
@@ -47,13 +86,17 @@ fn heading() {
     );
 }
 
-fn row(strand_count: usize, cells: u32) -> anyhow::Result<Row> {
+fn scene(strand_count: usize, points: usize, cells: u32, frames: u32) -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = strand_count;
-    scene.groom.points_per_strand = 16;
+    scene.groom.points_per_strand = points as u32;
     scene.simulation.volume.cells = [cells; 3];
-    scene.film.frames = FRAMES;
-    let (report, ..) = measure(&scene, false, "frames")?;
+    scene.film.frames = frames;
+    scene
+}
+
+fn row(strand_count: usize, cells: u32, frames: u32) -> anyhow::Result<Row> {
+    let (report, ..) = measure(&scene(strand_count, 16, cells, frames), false, "frames")?;
     let points = report.strands * report.points_per_strand;
     let ms_per_step = report.ms_per_step.median;
     let row = Row {
@@ -69,4 +112,73 @@ fn row(strand_count: usize, cells: u32) -> anyhow::Result<Row> {
         row.cells, row.strands, row.points, row.fluid_cells, row.ms_per_step, row.ns_per_point
     );
     Ok(row)
+}
+
+fn on_gpu(device: &Device, frames: u32, quick: bool) -> anyhow::Result<OnGpu> {
+    println!("\non {}: what is promised of a data-centre GPU", device.adapter.name);
+    gpu_heading();
+    let mut promised = Vec::new();
+    let promises = if quick { &PROMISED[..1] } else { &PROMISED[..] };
+    for (strands, points, cells, most_ms_per_step) in promises.iter().copied() {
+        let run = gpu_row(device, &promised_scene(strands, points, cells, frames))?;
+        println!("{:>44}at most {most_ms_per_step} ms", "");
+        promised.push(Promised { most_ms_per_step, run });
+    }
+    println!("\nstrands of 32 points until the device refuses");
+    gpu_heading();
+    let (mut sweep, mut refusals) = (Vec::new(), Vec::new());
+    let grids = if quick { &GRIDS[..1] } else { &GRIDS[..] };
+    for cells in grids {
+        for doubling in 0..if quick { 1 } else { DOUBLINGS } {
+            match gpu_row(device, &scene(FIRST_ON_GPU << doubling, 32, *cells, frames)) {
+                Ok(row) => sweep.push(row),
+                Err(error) if is_refusal(&error) => {
+                    println!("{error}");
+                    refusals.push(error.to_string());
+                    break;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+    }
+    Ok(OnGpu { promised, sweep, refusals })
+}
+
+/// The thesis's scene, or the demo of another size.
+fn promised_scene(strands: usize, points: usize, cells: u32, frames: u32) -> Scene {
+    let mut scene = if points == 6 { Scene::thesis() } else { scene(strands, points, cells, frames) };
+    scene.simulation.volume.cells = [cells; 3];
+    scene.film.frames = frames;
+    scene
+}
+
+/// Whether there is only too little room.
+fn is_refusal(error: &anyhow::Error) -> bool {
+    let sim = error.downcast_ref::<SimError>().or(match error.downcast_ref::<Error>() {
+        Some(Error::Sim(error)) => Some(error),
+        _ => None,
+    });
+    matches!(sim.and_then(SimError::gpu), Some(GpuError::Limit { .. } | GpuError::OutOfMemory { .. }))
+}
+
+fn gpu_heading() {
+    println!(
+        "{:>8}{:>10}{:>10}{:>12}{:>12}{:>12}{:>12}{:>10}",
+        "cells", "strands", "points", "ms a step", "wall ms", "solve ms", "dispatches", "copy %"
+    );
+}
+
+fn gpu_row(device: &Device, scene: &Scene) -> anyhow::Result<GpuRow> {
+    let cells = scene.simulation.volume.cells[0];
+    let run = device.measure(scene, Gradient::Joint, "frames")?;
+    let (strands, points) = (run.steps.strands, run.steps.strands * run.steps.points_per_strand);
+    println!(
+        "{cells:>6}^3{strands:>10}{points:>10}{:>12.3}{:>12.3}{:>12.3}{:>12}{:>10.1}",
+        run.steps.ms_per_step.median,
+        run.wall_ms_per_step,
+        run.steps.ms_per_step.stages.sum(&["solve_pressure"]),
+        run.dispatches,
+        100.0 * run.share_of_copy_bandwidth
+    );
+    Ok(GpuRow { cells, strands, points, run })
 }

@@ -63,11 +63,6 @@ impl GpuSolver {
         &self.gpu
     }
 
-    /// Gives the device up and keeps the solver.
-    pub fn into_solver(self) -> Solver {
-        self.solver
-    }
-
     /// Changes the settings between two steps of a state.
     ///
     /// # Errors

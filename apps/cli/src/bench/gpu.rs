@@ -1,0 +1,124 @@
+//! Steps on a GPU, measured by its own clock.
+
+use std::time::Instant;
+
+use serde::Serialize;
+use strandline::{
+    Backend, Prepared, Scene,
+    gpu::Gpu,
+    sim::{
+        Drive, SimError, Solver,
+        gpu::{GpuSolver, GpuState, Gradient},
+    },
+};
+
+use crate::progress::Progress;
+use crate::sim::{SimReport, Steps};
+
+/// Steps that are queued before their reports are read.
+const QUEUED: usize = 16;
+
+/// The GPU that is measured.
+pub struct Device {
+    pub gpu: Gpu,
+    pub adapter: Adapter,
+}
+
+/// What is written of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Adapter {
+    pub name: String,
+    pub software: bool,
+    pub timestamps: bool,
+    /// Bytes per second that a copy reads and writes.
+    pub copy_bytes_per_second: f64,
+}
+
+/// One scene on the GPU.
+#[derive(Debug, Serialize)]
+pub struct GpuRun {
+    /// Times by timestamps.
+    pub steps: SimReport,
+    /// Time on the host's clock for a step among many that are queued.
+    pub wall_ms_per_step: f64,
+    pub dispatches: usize,
+    pub dispatches_without_solve: usize,
+    /// Bytes that a step moves at least, without the rounds of the solve.
+    pub bytes_per_step: u64,
+    /// Those over the time of the stages without the solve, over what a copy moves in that time.
+    pub share_of_copy_bandwidth: f64,
+}
+
+impl Device {
+    /// Opens what the command line names; none when that is the CPU.
+    pub fn open(backend: Backend, quick: bool) -> anyhow::Result<Option<Self>> {
+        let Some(gpu) = backend.open()? else {
+            println!("no hardware GPU is measured: its columns are left out");
+            return Ok(None);
+        };
+        let copies = if quick { 4 } else { 128 };
+        let adapter = Adapter {
+            name: gpu.adapter().to_string(),
+            software: gpu.adapter().software,
+            timestamps: gpu.has_timestamps(),
+            copy_bytes_per_second: gpu.copy_bandwidth(copies)?,
+        };
+        println!("{}: a copy moves {:.1} GB/s", adapter.name, adapter.copy_bytes_per_second * 1e-9);
+        Ok(Some(Self { gpu, adapter }))
+    }
+
+    /// Plays a scene without pictures.
+    pub fn measure(&self, scene: &Scene, gradient: Gradient, what: &'static str) -> anyhow::Result<GpuRun> {
+        let Prepared { guides, colliders, motion, pivot, .. } = Prepared::new(scene)?;
+        let solver = GpuSolver::new(&self.gpu, Solver::new(&guides, &scene.simulation, colliders)?)?;
+        let mut state = solver.rest_state(motion.pose(0.0, pivot))?;
+        state.set_gradient(gradient);
+        let mut steps = Steps::default();
+        let count = scene.film.frames as usize;
+        let mut progress = Progress::new(count as u64, what, false);
+        // The first steps compile and allocate.
+        self.run(&solver, &mut state, 2, |_| Drive::default())?;
+        let mut wall = 0.0;
+        for first in (0..count).step_by(QUEUED) {
+            let queued = QUEUED.min(count - first);
+            let begin = Instant::now();
+            let drive = |step: usize| {
+                let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
+                Drive { world_from_head: motion.pose(time, pivot), wind: scene.wind.at(time) }
+            };
+            for report in self.run(&solver, &mut state, queued, drive)? {
+                steps.add(&report);
+            }
+            wall += begin.elapsed().as_secs_f64();
+            progress.reached((first + queued) as u64);
+        }
+        drop(progress);
+        let steps =
+            steps.report(self.adapter.name.clone(), guides.strand_count(), guides.points_per_strand());
+        let costs = state.costs();
+        let solve = steps.ms_per_step.stages.sum(&["solve_pressure"]);
+        let rest: f64 = steps.ms_per_step.stages.iter().map(|(_, time)| time).sum::<f64>() - solve;
+        let copied = self.adapter.copy_bytes_per_second * rest * 1e-3;
+        Ok(GpuRun {
+            steps,
+            wall_ms_per_step: 1e3 * wall / count.max(1) as f64,
+            dispatches: costs.dispatches,
+            dispatches_without_solve: costs.dispatches - costs.solve_dispatches,
+            bytes_per_step: costs.bytes,
+            share_of_copy_bandwidth: if copied > 0.0 { costs.bytes as f64 / copied } else { 0.0 },
+        })
+    }
+
+    fn run(
+        &self,
+        solver: &GpuSolver,
+        state: &mut GpuState,
+        count: usize,
+        drive: impl Fn(usize) -> Drive,
+    ) -> Result<Vec<strandline::sim::StepReport>, SimError> {
+        for step in 0..count {
+            solver.step(state, &drive(step))?;
+        }
+        solver.reports(state)
+    }
+}

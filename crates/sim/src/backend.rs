@@ -1,0 +1,108 @@
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+use strandline_gpu::{Gpu, GpuError};
+
+use crate::SimError;
+
+/// Where stages run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Backend {
+    /// A hardware GPU when there is one, else the CPU; never a software adapter. When the GPU fails
+    /// in the middle of a run, the run goes on on the CPU.
+    #[default]
+    Auto,
+    /// Plain Rust on every core.
+    Cpu,
+    /// The adapter of this number, or the first: hardware before software.
+    Gpu(Option<usize>),
+}
+
+impl Backend {
+    /// The fastest backend of this machine.
+    pub fn auto() -> Self {
+        Self::Auto
+    }
+
+    /// Opens the device; none means the CPU.
+    ///
+    /// # Errors
+    /// A GPU is asked for by name and there is none, or it does not start.
+    pub fn open(self) -> Result<Option<Gpu>, GpuError> {
+        match self {
+            Self::Auto => Ok(Gpu::auto().ok()),
+            Self::Cpu => Ok(None),
+            Self::Gpu(None) => Gpu::any().map(Some),
+            Self::Gpu(Some(index)) => Gpu::open(index).map(Some),
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Cpu => f.write_str("cpu"),
+            Self::Gpu(None) => f.write_str("gpu"),
+            Self::Gpu(Some(index)) => write!(f, "gpu:{index}"),
+        }
+    }
+}
+
+impl FromStr for Backend {
+    type Err = SimError;
+
+    fn from_str(name: &str) -> Result<Self, SimError> {
+        let numbered = || name.strip_prefix("gpu:")?.parse().ok();
+        match name {
+            "auto" => Ok(Self::Auto),
+            "cpu" => Ok(Self::Cpu),
+            "gpu" => Ok(Self::Gpu(None)),
+            _ => numbered().map(|index| Self::Gpu(Some(index))).ok_or_else(|| SimError::Setting {
+                name: "backend",
+                found: format!("`{name}`"),
+                expected: "auto, cpu, gpu, or gpu: and a number such as gpu:0",
+            }),
+        }
+    }
+}
+
+impl TryFrom<String> for Backend {
+    type Error = SimError;
+
+    fn try_from(name: String) -> Result<Self, SimError> {
+        name.parse()
+    }
+}
+
+impl From<Backend> for String {
+    fn from(backend: Backend) -> Self {
+        backend.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_as_they_are_written() {
+        for backend in [Backend::Auto, Backend::Cpu, Backend::Gpu(None), Backend::Gpu(Some(3))] {
+            assert_eq!(backend.to_string().parse::<Backend>().unwrap(), backend);
+        }
+        for wrong in ["", "GPU", "gpu:", "gpu:-1", "gpu:x", "cuda"] {
+            let error = wrong.parse::<Backend>().unwrap_err().to_string();
+            assert!(error.contains("expected auto, cpu, gpu"), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_cpu_needs_no_device() {
+        assert!(Backend::Cpu.open().unwrap().is_none());
+        // Whatever is installed: auto never opens a software adapter and never fails.
+        let opened = Backend::Auto.open().unwrap();
+        assert!(opened.is_none_or(|gpu| !gpu.adapter().software));
+    }
+}

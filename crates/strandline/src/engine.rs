@@ -1,0 +1,162 @@
+//! The simulation on whichever backend it runs.
+
+use std::time::Instant;
+
+use strandline_gpu::Gpu;
+
+use crate::{
+    Error,
+    body::Pose,
+    sim::{
+        Drive, Settings, SimError, Solver, State, StepReport,
+        gpu::{GpuSolver, GpuState},
+    },
+};
+
+/// A solver and its state; a state on a GPU is mirrored on the host after every run of steps.
+pub(crate) struct Engine {
+    place: Place,
+    state: State,
+    /// Whether the run goes on on the CPU when the GPU fails.
+    pub fall_back: bool,
+    /// What happened on the way, for a person to read.
+    notes: Vec<String>,
+}
+
+enum Place {
+    Cpu(Solver),
+    Gpu(Box<(GpuSolver, GpuState)>),
+}
+
+impl Engine {
+    /// Puts a solver on a device, or on the CPU without one.
+    pub fn new(gpu: Option<&Gpu>, solver: Solver, fall_back: bool) -> Result<Self, SimError> {
+        let state = solver.rest_state(Pose::IDENTITY);
+        let Some(gpu) = gpu else {
+            return Ok(Self { place: Place::Cpu(solver), state, fall_back, notes: Vec::new() });
+        };
+        let spare = fall_back.then(|| solver.clone());
+        let placed = GpuSolver::new(gpu, solver).and_then(|solver| {
+            let device = solver.upload(&state)?;
+            Ok(Place::Gpu(Box::new((solver, device))))
+        });
+        match (placed, spare) {
+            (Ok(place), _) => Ok(Self { place, state, fall_back, notes: Vec::new() }),
+            (Err(error), Some(solver)) => {
+                let notes = vec![format!("simulating on the CPU: {error}")];
+                Ok(Self { place: Place::Cpu(solver), state, fall_back, notes })
+            }
+            (Err(error), None) => Err(error),
+        }
+    }
+
+    pub fn solver(&self) -> &Solver {
+        match &self.place {
+            Place::Cpu(solver) => solver,
+            Place::Gpu(pair) => pair.0.solver(),
+        }
+    }
+
+    /// The device, while the simulation runs on one.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        match &self.place {
+            Place::Gpu(pair) => Some(pair.0.gpu()),
+            Place::Cpu(_) => None,
+        }
+    }
+
+    /// The state after the last run of steps.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    pub fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// Runs steps. When the GPU fails they run from the last state on the CPU, or not at all.
+    pub fn run(&mut self, drives: &[Drive]) -> Result<Vec<StepReport>, SimError> {
+        let failure = match &mut self.place {
+            Place::Gpu(pair) => {
+                let (solver, device) = &mut **pair;
+                match run_on_gpu(solver, device, drives, &mut self.state) {
+                    Ok(reports) => return Ok(reports),
+                    Err(failure) => failure,
+                }
+            }
+            Place::Cpu(solver) => {
+                return Ok(drives.iter().map(|drive| solver.step(&mut self.state, drive)).collect());
+            }
+        };
+        self.recover(failure)?;
+        self.run(drives)
+    }
+
+    /// Changes the settings between two steps.
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
+        let failure = match &mut self.place {
+            Place::Cpu(solver) => return solver.set_settings(settings),
+            Place::Gpu(pair) => match pair.0.set_settings(settings, &mut pair.1) {
+                Ok(()) => return Ok(()),
+                Err(error) if error.gpu().is_none() => return Err(error),
+                Err(failure) => failure,
+            },
+        };
+        self.recover(failure)?;
+        self.set_settings(settings)
+    }
+
+    /// Scales the length of every strand.
+    pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), SimError> {
+        let failure = match &mut self.place {
+            Place::Cpu(solver) => return self.state.set_length_scale(solver, scales),
+            Place::Gpu(pair) => {
+                self.state.set_length_scale(pair.0.solver(), scales)?;
+                match pair.1.write(&pair.0, &self.state) {
+                    Ok(()) => return Ok(()),
+                    Err(failure) => failure,
+                }
+            }
+        };
+        // The mirrored state is scaled already.
+        self.recover(failure)
+    }
+
+    /// Goes on on the CPU from the last state, if that is wanted.
+    fn recover(&mut self, failure: SimError) -> Result<(), SimError> {
+        if !self.fall_back {
+            return Err(failure);
+        }
+        self.place = Place::Cpu(self.solver().clone());
+        self.notes.push(format!("going on on the CPU from {:.3} s: {failure}", self.state.time));
+        Ok(())
+    }
+}
+
+fn run_on_gpu(
+    solver: &GpuSolver,
+    device: &mut GpuState,
+    drives: &[Drive],
+    state: &mut State,
+) -> Result<Vec<StepReport>, SimError> {
+    let begin = Instant::now();
+    for drive in drives {
+        solver.step(device, drive)?;
+    }
+    let mut reports = solver.reports(device)?;
+    if !drives.is_empty() {
+        let each = begin.elapsed().as_secs_f64() / drives.len() as f64;
+        // A device without timestamps: the wait for it is all that is known.
+        for report in reports.iter_mut().filter(|report| report.seconds.is_empty()) {
+            report.seconds.push(("step", each));
+        }
+        device.read_into(state)?;
+    }
+    Ok(reports)
+}
+
+impl From<strandline_gpu::GpuError> for Error {
+    fn from(error: strandline_gpu::GpuError) -> Self {
+        Self::Sim(error.into())
+    }
+}
