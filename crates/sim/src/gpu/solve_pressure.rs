@@ -152,9 +152,10 @@ pub enum Spread {
     Many,
 }
 
-/// Rounds over many workgroups before one finishes; an even number, so that the state ends where it
-/// began.
-const ROUNDS: usize = 48;
+/// Rounds over many workgroups before one finishes, with the polynomial and without: about what hair
+/// needs, since a round that has nothing left to do is not free. Even numbers, so that the state ends
+/// where it began.
+const ROUNDS: [usize; 2] = [16, 32];
 /// Cells up to which one workgroup does it all: 32 x 32 x 32 and their ring.
 const SMALL: usize = 34 * 34 * 34;
 /// Most workgroups of a round: each sums what all of them found.
@@ -240,6 +241,7 @@ impl Stage {
         let workgroups = [(partials.len() / 2) as u32, 1, 1];
         let polynomial = matches!(preconditioner, Preconditioner::Auto | Preconditioner::Chebyshev);
         let degrees = if polynomial { self.smooth.len() } else { 0 };
+        let count = if polynomial { ROUNDS[0] } else { ROUNDS[1] };
         let mut sides = [Vec::new(), Vec::new()];
         for (side, dispatches) in sides.iter_mut().enumerate() {
             let update = Update { step, grid, vectors, states, partials, unknowns };
@@ -252,7 +254,7 @@ impl Stage {
             dispatches.push((self.search[side].bind(gpu, &search)?, workgroups));
         }
         // A side: update and smooth with its state, then search from it to the other.
-        let mut rounds: Dispatches = (0..ROUNDS).flat_map(|round| sides[round % 2].clone()).collect();
+        let mut rounds: Dispatches = (0..count).flat_map(|round| sides[round % 2].clone()).collect();
         let last = sides[0].len() - 1;
         rounds.extend_from_slice(&sides[0][..last]);
         Ok(rounds)
