@@ -1,0 +1,207 @@
+//! Hair on a GPU as the façade has it: the same motion, and what happens when the GPU goes away.
+
+use strandline::{
+    Backend, Event, Film, Hair, Player, Pose, Scene,
+    gpu::Gpu,
+    groom::{LANES, Vec3Lanes},
+    scene::MotionName,
+    sim::{State, VolumeSettings},
+};
+
+/// Any adapter, with a device of its own: these tests spoil it.
+fn gpu() -> Option<Gpu> {
+    match Gpu::any() {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            assert!(std::env::var_os("STRANDLINE_REQUIRE_GPU").is_none_or(|value| value != "1"), "{error}");
+            eprintln!("not tested on a GPU: {error}");
+            None
+        }
+    }
+}
+
+fn scene() -> Scene {
+    let mut scene = Scene::demo();
+    scene.style.strand_count = 60;
+    scene.body.spacing = 0.01;
+    scene.simulation.volume.cells = [12; 3];
+    scene.motion.name = MotionName::Shake;
+    scene.film.frames = 4;
+    scene.film.settle = 0.1;
+    scene.look.follow_strands = 1;
+    (scene.picture.width, scene.picture.height) = (64, 48);
+    scene
+}
+
+fn hair(gpu: &Gpu) -> Hair {
+    let scene = scene();
+    let prepared = strandline::Prepared::new(&scene).unwrap();
+    Hair::with_device(gpu, prepared.guides, None, prepared.colliders, &scene.simulation).unwrap()
+}
+
+fn turned(share: f32) -> Pose {
+    Pose { rotation: glam::Quat::from_rotation_y(0.5 * share), ..Pose::IDENTITY }
+}
+
+/// The largest distance \[m\] between the 60 strands of two sets of positions.
+fn apart(a: &[Vec3Lanes], b: &[Vec3Lanes]) -> f32 {
+    let points = a.len() / 60_usize.div_ceil(LANES);
+    let mut largest = 0.0_f32;
+    for (index, (a, b)) in a.iter().zip(b).enumerate() {
+        for lane in (0..LANES).filter(|lane| index / points * LANES + lane < 60) {
+            largest = largest.max((a.get(lane) - b.get(lane)).length());
+        }
+    }
+    largest
+}
+
+#[test]
+fn a_scene_moves_alike_on_both_backends() {
+    let Some(_) = gpu() else { return };
+    let play = |backend| -> State {
+        let mut player = Player::new(&scene(), &backend, false).unwrap();
+        for event in player.by_ref() {
+            if let Event::Stepped(report) = event.unwrap() {
+                assert_eq!(report.non_finite, 0);
+                assert!(!report.seconds.is_empty());
+            }
+        }
+        player.hair().state().clone()
+    };
+    let (cpu, gpu) = (play(Backend::Cpu), play(Backend::Gpu(None)));
+    assert_eq!(cpu.time, gpu.time);
+    let moved = apart(&cpu.positions, &cpu.previous_positions);
+    assert!(moved > 1e-4, "nothing moved: {moved}");
+    // Fourteen steps; contact planes of another age under hair that lies on the head.
+    let distance = apart(&cpu.positions, &gpu.positions);
+    assert!(distance < 1e-2, "{distance}");
+}
+
+#[test]
+fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    hair.step(0.1, &turned(0.2)).unwrap();
+    let before = hair.state().clone();
+    gpu.destroy();
+    let error = hair.step(0.1, &turned(0.4)).unwrap_err().to_string();
+    assert!(error.contains(&gpu.adapter().name) && error.contains("lost"), "{error}");
+    assert_eq!(hair.state().positions, before.positions);
+    let camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
+    assert!(hair.picture(&camera, &strandline::Look::brown()).is_ok(), "the last state can be drawn");
+    assert!(hair.step(0.1, &turned(0.4)).is_err(), "it stays lost");
+}
+
+#[test]
+fn a_run_that_may_fall_back_goes_on_from_the_last_state() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    hair.set_fall_back(true);
+    hair.step(0.1, &turned(0.2)).unwrap();
+    let before = hair.state().clone();
+    assert!(hair.simulated_on().starts_with("gpu:"));
+    gpu.destroy();
+    let reports = hair.step(1.0 / 60.0, &turned(0.23)).unwrap();
+    assert_eq!(reports.len(), 1);
+    assert_eq!(hair.simulated_on(), "cpu");
+    let notes = hair.take_notes();
+    assert!(notes.len() == 1 && notes[0].contains("going on on the CPU from 0.100 s"), "{notes:?}");
+    assert!(notes[0].contains(&gpu.adapter().name), "{notes:?}");
+    assert_eq!(hair.state().previous_positions, before.positions, "no step is lost or repeated");
+    let moved = apart(&hair.state().positions, &before.positions);
+    assert!(moved > 1e-5 && moved < 0.05, "{moved}");
+    assert!(hair.take_notes().is_empty());
+}
+
+#[test]
+fn refused_memory_names_the_adapter_and_the_size() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    hair.step(0.05, &turned(0.1)).unwrap();
+    gpu.set_memory_limit(gpu.memory_used() + 100_000);
+    let mut settings = hair.settings().clone();
+    settings.volume = VolumeSettings { cells: [64; 3], ..settings.volume };
+    hair.set_settings(&settings).unwrap();
+    let error = hair.step(0.05, &turned(0.2)).unwrap_err().to_string();
+    assert!(error.contains(&gpu.adapter().name) && error.contains("out of memory"), "{error}");
+    assert!(error.contains("bytes was refused"), "{error}");
+    hair.set_fall_back(true);
+    hair.step(0.05, &turned(0.2)).unwrap();
+    assert_eq!(hair.simulated_on(), "cpu");
+}
+
+#[test]
+fn a_film_keeps_its_finished_frames_when_the_gpu_goes_away() {
+    let Some(_) = gpu() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let mut player = Player::new(&scene(), &Backend::Gpu(None), true).unwrap();
+    let mut film = Film::new(folder.path(), player.frames(), 24.0).unwrap();
+    let mut outcome = None;
+    while let Some(event) = player.next() {
+        match event {
+            Ok(Event::Drawn { frame, picture, .. }) => {
+                film.add(&picture).unwrap();
+                if frame == 1 {
+                    player.hair().gpu().unwrap().destroy();
+                }
+            }
+            Ok(_) => {}
+            Err(error) => outcome = Some(error.to_string()),
+        }
+    }
+    assert!(outcome.unwrap().contains("lost"));
+    assert!(player.next().is_none(), "a film that failed is over");
+    for frame in 0..2 {
+        let path = folder.path().join(format!("frame_{frame:04}.png"));
+        assert_eq!(image::open(path).unwrap().width(), 64);
+    }
+}
+
+#[test]
+fn lengths_change_on_a_gpu_too() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    hair.step(0.05, &Pose::IDENTITY).unwrap();
+    hair.set_length_scale(&[0.5; 60]).unwrap();
+    let reports = hair.step(0.2, &Pose::IDENTITY).unwrap();
+    assert!(reports.iter().all(|report| report.stretch_max < 1e-3), "{:?}", reports.last());
+    let state = hair.state();
+    let points = hair.guides().points_per_strand();
+    let length = |strand: usize| -> f32 {
+        (1..points)
+            .map(|point| {
+                let at = |point: usize| state.positions[strand / LANES * points + point].get(strand % LANES);
+                at(point).distance(at(point - 1))
+            })
+            .sum()
+    };
+    let rest = |strand: usize| -> f32 {
+        (1..points)
+            .map(|p| hair.guides().position(strand, p).distance(hair.guides().position(strand, p - 1)))
+            .sum()
+    };
+    for strand in 0..60 {
+        assert!((length(strand) / rest(strand) - 0.5).abs() < 0.02, "strand {strand}");
+    }
+    assert!(hair.set_length_scale(&[2.0; 60]).is_err());
+}
+
+#[test]
+fn mic0_is_for_the_cpu_and_auto_takes_it_there() {
+    let Some(gpu) = gpu() else { return };
+    let mut scene = scene();
+    scene.simulation.volume.preconditioner = strandline::sim::Preconditioner::Mic0;
+    let prepared = strandline::Prepared::new(&scene).unwrap();
+    let made = Hair::with_device(&gpu, prepared.guides, None, Vec::new(), &scene.simulation);
+    let error = made.err().unwrap().to_string();
+    assert!(error.contains("mic0") && error.contains("chebyshev"), "{error}");
+}
+
+#[test]
+fn a_scene_names_its_backend() {
+    let scene = Scene::parse("[simulation]\nbackend = \"gpu:2\"\n", "test").unwrap();
+    assert_eq!(scene.simulation.backend, Backend::Gpu(Some(2)));
+    assert!(scene.to_toml().contains("backend = \"gpu:2\""));
+    let error = Scene::parse("[simulation]\nbackend = \"cuda\"\n", "test").unwrap_err().to_string();
+    assert!(error.contains("expected auto, cpu, gpu"), "{error}");
+}
