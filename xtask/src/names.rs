@@ -1,4 +1,4 @@
-//! One stage, one stem: a stage listed in a recipe has a file of its name, a timer label and a row
+//! One stage, one stem: a stage listed in a recipe has files of its name, a timer label and a row
 //! in ARCHITECTURE.md's stage table, and nothing there is without a stage.
 
 use std::collections::BTreeSet;
@@ -9,14 +9,26 @@ use crate::run::root;
 /// A crate with stages and the file that lists them.
 struct Recipe {
     crate_folder: &'static str,
-    list: &'static str,
+    /// The files that list them, for each backend, and the ending of a kernel where there is one.
+    backends: &'static [Backend],
     stages: &'static [&'static str],
+}
+
+/// A backend of a crate: its folder, the file that lists its stages, and the endings of the files of
+/// a stage.
+struct Backend {
+    folder: &'static str,
+    list: &'static str,
+    endings: &'static [&'static str],
 }
 
 const RECIPES: [Recipe; 2] = [
     Recipe {
         crate_folder: "crates/sim",
-        list: "src/step.rs",
+        backends: &[
+            Backend { folder: "cpu", list: "src/step.rs", endings: &["rs"] },
+            Backend { folder: "gpu", list: "src/gpu/step.rs", endings: &["rs", "wesl"] },
+        ],
         stages: &[
             "pose_roots",
             "integrate",
@@ -30,7 +42,7 @@ const RECIPES: [Recipe; 2] = [
     },
     Recipe {
         crate_folder: "crates/render",
-        list: "src/frame.rs",
+        backends: &[Backend { folder: "cpu", list: "src/frame.rs", endings: &["rs"] }],
         stages: &["tessellate", "interpolate", "opacity_depth", "opacity_layers", "shade", "draw", "resolve"],
     },
 ];
@@ -49,19 +61,17 @@ pub fn check() -> bool {
 
 fn problems(root: &Path) -> Vec<String> {
     let rows = table_rows(&read(&root.join("ARCHITECTURE.md")));
+    let parity = read_all(&root.join("checks/parity"));
     let mut known = BTreeSet::new();
     let mut found = Vec::new();
     for recipe in &RECIPES {
-        let list = read(&root.join(recipe.crate_folder).join(recipe.list));
+        for backend in recipe.backends {
+            found.extend(missing_in_backend(root, recipe, backend));
+        }
         for stage in recipe.stages {
             known.insert((*stage).to_owned());
-            let file = format!("{}/src/cpu/{stage}.rs", recipe.crate_folder);
-            if !root.join(&file).is_file() {
-                found.push(format!("{stage}: no file {file}"));
-            }
-            if !list.contains(&format!("\"{stage}\"")) {
-                let file = format!("{}/{}", recipe.crate_folder, recipe.list);
-                found.push(format!("{stage}: no timer label \"{stage}\" in {file}"));
+            if recipe.backends.len() > 1 && !parity.contains(&format!("fn {stage}_")) {
+                found.push(format!("{stage}: no check in checks/parity named after it"));
             }
             if !rows.contains(*stage) {
                 found.push(format!("{stage}: no row in ARCHITECTURE.md's stage table"));
@@ -72,6 +82,31 @@ fn problems(root: &Path) -> Vec<String> {
         rows.difference(&known).map(|row| format!("{row}: a row in ARCHITECTURE.md without a stage")),
     );
     found
+}
+
+/// Stages without their files or their timer label in one backend.
+fn missing_in_backend(root: &Path, recipe: &Recipe, backend: &Backend) -> Vec<String> {
+    let list_file = format!("{}/{}", recipe.crate_folder, backend.list);
+    let list = read(&root.join(&list_file));
+    let mut found = Vec::new();
+    for stage in recipe.stages {
+        for ending in backend.endings {
+            let file = format!("{}/src/{}/{stage}.{ending}", recipe.crate_folder, backend.folder);
+            if !root.join(&file).is_file() {
+                found.push(format!("{stage}: no file {file}"));
+            }
+        }
+        if !list.contains(&format!("\"{stage}\"")) {
+            found.push(format!("{stage}: no timer label \"{stage}\" in {list_file}"));
+        }
+    }
+    found
+}
+
+/// The text of every file of a folder.
+fn read_all(folder: &Path) -> String {
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    files.map(|file| read(&file.path())).collect()
 }
 
 /// The first cells, in backquotes, of the table under the heading "Stages".
@@ -101,6 +136,7 @@ mod tests {
     #[test]
     fn an_empty_folder_lacks_everything() {
         let folder = std::env::temp_dir().join("strandline-names-of-nothing");
-        assert_eq!(problems(&folder).len(), 3 * (8 + 7));
+        // A row each; a file and a label on the CPU; two files, a label and a check on the GPU.
+        assert_eq!(problems(&folder).len(), 8 * (1 + 2 + 4) + 7 * (1 + 2));
     }
 }

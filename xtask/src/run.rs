@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use crate::names;
+use crate::{adapter, names};
 
 /// Sums over every `test result:` line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,8 +36,18 @@ impl Tally {
     }
 }
 
-/// Everything that must hold before a change lands. False when anything failed.
-pub fn test() -> bool {
+/// Everything that must hold before a change lands. False when anything failed. `setup` installs an
+/// adapter to test on where there is none.
+pub fn test(setup: bool) -> bool {
+    let adapter = match adapter::prepare(setup) {
+        Ok(adapter) => adapter,
+        Err(why) => {
+            println!("FAILED: {why}\ntests: 0 passed, 1 failed, 0 skipped");
+            return false;
+        }
+    };
+    let required = [(adapter::REQUIRED, "1")];
+    let required = if setup { &required[..] } else { &[] };
     let begin = Instant::now();
     let mut tally = Tally::default();
     let mut broken: Vec<String> = Vec::new();
@@ -51,7 +61,7 @@ pub fn test() -> bool {
     let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
     step("lints", cargo(&lints, &[], &mut tally));
     let tests = ["test", "--workspace", "--all-targets", "--no-fail-fast"];
-    step("tests", cargo(&tests, &[], &mut tally));
+    step("tests", cargo(&tests, required, &mut tally));
     step("doc tests", cargo(&["test", "--workspace", "--doc", "--no-fail-fast"], &[], &mut tally));
     let docs = ["doc", "--workspace", "--no-deps", "--quiet"];
     step("documentation", cargo(&docs, &[("RUSTDOCFLAGS", "-D warnings")], &mut tally));
@@ -60,6 +70,9 @@ pub fn test() -> bool {
         step(&format!("example {name}"), cargo(&run, &[("STRANDLINE_QUICK", "1")], &mut tally));
     }
     println!("\ntook {:.0} s", begin.elapsed().as_secs_f64());
+    if !adapter {
+        println!("NOT TESTED: {}", adapter::UNTESTED);
+    }
     for name in &broken {
         println!("FAILED: {name}");
     }
@@ -92,11 +105,18 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the root")
 }
 
+/// Cargo in the root.
+pub fn cargo_command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(arguments).current_dir(root());
+    command
+}
+
 /// Runs cargo in the root, prints what it prints, and adds up its test results.
 fn cargo(arguments: &[&str], environment: &[(&str, &str)], tally: &mut Tally) -> bool {
     println!("\n== cargo {}", arguments.join(" "));
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(arguments).current_dir(root()).stdout(Stdio::piped());
+    let mut command = cargo_command(arguments);
+    command.stdout(Stdio::piped());
     command.envs(environment.iter().copied());
     let mut child = match command.spawn() {
         Ok(child) => child,

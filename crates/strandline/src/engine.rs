@@ -24,7 +24,7 @@ pub(crate) struct Engine {
 }
 
 enum Place {
-    Cpu(Solver),
+    Cpu(Box<Solver>),
     Gpu(Box<(GpuSolver, GpuState)>),
 }
 
@@ -33,7 +33,7 @@ impl Engine {
     pub fn new(gpu: Option<&Gpu>, solver: Solver, fall_back: bool) -> Result<Self, SimError> {
         let state = solver.rest_state(Pose::IDENTITY);
         let Some(gpu) = gpu else {
-            return Ok(Self { place: Place::Cpu(solver), state, fall_back, notes: Vec::new() });
+            return Ok(Self { place: Place::Cpu(solver.into()), state, fall_back, notes: Vec::new() });
         };
         let spare = fall_back.then(|| solver.clone());
         let placed = GpuSolver::new(gpu, solver).and_then(|solver| {
@@ -44,7 +44,7 @@ impl Engine {
             (Ok(place), _) => Ok(Self { place, state, fall_back, notes: Vec::new() }),
             (Err(error), Some(solver)) => {
                 let notes = vec![format!("simulating on the CPU: {error}")];
-                Ok(Self { place: Place::Cpu(solver), state, fall_back, notes })
+                Ok(Self { place: Place::Cpu(solver.into()), state, fall_back, notes })
             }
             (Err(error), None) => Err(error),
         }
@@ -127,7 +127,7 @@ impl Engine {
         if !self.fall_back {
             return Err(failure);
         }
-        self.place = Place::Cpu(self.solver().clone());
+        self.place = Place::Cpu(self.solver().clone().into());
         self.notes.push(format!("going on on the CPU from {:.3} s: {failure}", self.state.time));
         Ok(())
     }

@@ -9,6 +9,7 @@ use strandline::{
 };
 
 /// Any adapter, with a device of its own: these tests spoil it.
+#[allow(clippy::print_stderr)] // it tells what is not tested
 fn gpu() -> Option<Gpu> {
     match Gpu::any() {
         Ok(gpu) => Some(gpu),
