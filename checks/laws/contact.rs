@@ -1,14 +1,15 @@
 //! Solids: friction on a slope, nothing inside after settling.
 
 use glam::{Quat, Vec3};
-use strandline_body::{Carrier, Collider, Mannequin, Motion, Pose, Shape};
+use strandline_body::{Carrier, Collider, Mannequin, Motion, Shape};
+use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, RestShape, Style, StyleSettings};
 use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
 
 use crate::strands::{ball_of_hair, bare, first, line, one_strand, skull};
 
 /// How far \[m\] a loose strand slides in a second down a slope of so many degrees.
-fn slide(degrees: f32, friction: f32) -> f32 {
+fn slide(on: &On, degrees: f32, friction: f32) -> f32 {
     // A ball so large that it is a plane: its top is the origin.
     let radius = 50.0;
     let slope = Quat::from_rotation_z(degrees.to_radians());
@@ -23,31 +24,31 @@ fn slide(degrees: f32, friction: f32) -> f32 {
     let settings = Settings { collision_margin: 1e-3, ..bare(1.0 / 60.0, 20) };
     let rest = RestShape::new(&guides, 6.5e-6);
     let solver = Solver::with_rest(&guides, rest, |_, _| false, &settings, vec![floor]).unwrap();
-    let mut state = solver.rest_state(Pose::IDENTITY);
-    for _ in 0..60 {
-        solver.step(&mut state, &Drive::default());
-    }
-    first(&state)[4].distance(points[4])
+    let mut rig = Rig::new(on, solver);
+    rig.steps(&[Drive::default(); 60]);
+    first(rig.state())[4].distance(points[4])
 }
 
-#[test]
-fn friction_holds_below_its_angle_and_gives_way_above() {
-    // tan 26.6 degrees = 0.5. A ball of 50 m is rounded to 4e-6 m, so a strand that sticks creeps.
-    assert!(slide(20.0, 0.5) < 2e-3, "{}", slide(20.0, 0.5));
-    let expected = 0.5 * 9.81 * (35.0_f32.to_radians().sin() - 0.5 * 35.0_f32.to_radians().cos());
-    let found = slide(35.0, 0.5);
-    assert!((found / expected - 1.0).abs() < 0.05, "slid {found} m, expected {expected} m");
-    assert!(slide(20.0, 0.2) > 0.1, "less friction is not noticed");
+law! {
+    fn friction_holds_below_its_angle_and_gives_way_above(on) {
+        // tan 26.6 degrees = 0.5. A ball of 50 m is rounded to 4e-6 m, so a strand that sticks creeps.
+        assert!(slide(on, 20.0, 0.5) < 2e-3, "{}", slide(on, 20.0, 0.5));
+        let expected = 0.5 * 9.81 * (35.0_f32.to_radians().sin() - 0.5 * 35.0_f32.to_radians().cos());
+        let found = slide(on, 35.0, 0.5);
+        assert!((found / expected - 1.0).abs() < 0.05, "slid {found} m, expected {expected} m");
+        assert!(slide(on, 20.0, 0.2) > 0.1, "less friction is not noticed");
+    }
 }
 
 /// Deepest point \[m\] in the second half of 4 s under a motion.
-fn depth(collider: Option<Collider>, hair: &Guides, motion: &Motion, exact: bool) -> f32 {
+fn depth(on: &On, collider: Option<Collider>, hair: &Guides, motion: &Motion, exact: bool) -> f32 {
     let inside = collider.clone().unwrap_or_else(|| skull(0.3));
-    depth_below(&inside, collider, hair, motion, exact)
+    depth_below(on, &inside, collider, hair, motion, exact)
 }
 
 /// The same, measured in one solid and held out of another.
 fn depth_below(
+    on: &On,
     inside: &Collider,
     collider: Option<Collider>,
     hair: &Guides,
@@ -60,17 +61,17 @@ fn depth_below(
     };
     settings.length_pass.enabled = exact;
     let solver = Solver::new(hair, &settings, collider.into_iter().collect()).unwrap();
-    let mut state = solver.rest_state(Pose::IDENTITY);
+    let mut rig = Rig::new(on, solver);
     let mut deepest = 0.0_f32;
     for step in 1..=240 {
         let world_from_head = motion.pose(f64::from(step) / 60.0, Vec3::NEG_Y * 0.1);
-        let report = solver.step(&mut state, &Drive { world_from_head, wind: Vec3::ZERO });
+        let report = rig.step(&Drive { world_from_head, wind: Vec3::ZERO });
         assert_eq!(report.non_finite, 0);
         if step < 120 {
             continue;
         }
         let head_from_world = world_from_head.inverse();
-        for block in state.positions.chunks(hair.points_per_strand()) {
+        for block in rig.state().positions.chunks(hair.points_per_strand()) {
             for point in &block[2..] {
                 let here = head_from_world.point(point.get(0));
                 deepest = deepest.max(-inside.shape.distance_and_gradient(here).0);
@@ -80,37 +81,39 @@ fn depth_below(
     deepest
 }
 
-#[test]
-fn no_hair_is_inside_a_ball_after_settling() {
-    let hair = ball_of_hair(400, 12, 0.25);
-    for motion in [Motion::Still, Motion::Shake] {
-        let exact = depth(Some(skull(0.3)), &hair, &motion, true);
-        // The rest pose keeps 2 mm; planes on a ball of 0.1 m err by less than 0.1 mm.
-        assert!(exact < 1e-4, "{motion:?}: {exact} m deep");
-        let thesis = depth(Some(skull(0.3)), &hair, &motion, false);
-        assert!(thesis < 1e-3, "{motion:?}, no length pass: {thesis} m deep");
+law! {
+    fn no_hair_is_inside_a_ball_after_settling(on) {
+        let hair = ball_of_hair(400, 12, 0.25);
+        for motion in [Motion::Still, Motion::Shake] {
+            let exact = depth(on, Some(skull(0.3)), &hair, &motion, true);
+            // The rest pose keeps 2 mm; planes on a ball of 0.1 m err by less than 0.1 mm.
+            assert!(exact < 1e-4, "{motion:?}: {exact} m deep");
+            let thesis = depth(on, Some(skull(0.3)), &hair, &motion, false);
+            assert!(thesis < 1e-3, "{motion:?}, no length pass: {thesis} m deep");
+        }
+        let through = depth(on, None, &hair, &Motion::Still, true);
+        assert!(through > 1e-3, "a head that is not there is not noticed: {through} m");
     }
-    let through = depth(None, &hair, &Motion::Still, true);
-    assert!(through > 1e-3, "a head that is not there is not noticed: {through} m");
 }
 
-#[test]
-fn no_hair_is_inside_the_mannequin_after_settling() {
-    let settings = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) };
-    let hair = Guides::resample(&settings.grow().unwrap(), 16).unwrap();
-    let shape = Shape::Mannequin(Mannequin::new());
-    let resting =
-        hair.positions().chunks(16).flat_map(|block| &block[2..]).map(|point| {
-            (0..8).map(|lane| -shape.distance_and_gradient(point.get(lane)).0).fold(0.0, f32::max)
-        });
-    let resting = resting.fold(0.0, f32::max);
-    let collider = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
-    // At rest what planes on the ears err by, which curve within 5 mm; shaken also what is left in
-    // the creases of ears and neck, where two planes and a length cannot all be kept.
-    for (motion, bound) in [(Motion::Still, 5e-4), (Motion::Shake, 3e-3)] {
-        let found = depth(Some(collider.clone()), &hair, &motion, true);
-        assert!(found < resting + bound, "{motion:?}: {found} m deep, {resting} m at rest");
+law! {
+    fn no_hair_is_inside_the_mannequin_after_settling(on) {
+        let settings = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) };
+        let hair = Guides::resample(&settings.grow().unwrap(), 16).unwrap();
+        let shape = Shape::Mannequin(Mannequin::new());
+        let resting =
+            hair.positions().chunks(16).flat_map(|block| &block[2..]).map(|point| {
+                (0..8).map(|lane| -shape.distance_and_gradient(point.get(lane)).0).fold(0.0, f32::max)
+            });
+        let resting = resting.fold(0.0, f32::max);
+        let collider = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
+        // At rest what planes on the ears err by, which curve within 5 mm; shaken also what is left in
+        // the creases of ears and neck, where two planes and a length cannot all be kept.
+        for (motion, bound) in [(Motion::Still, 5e-4), (Motion::Shake, 3e-3)] {
+            let found = depth(on, Some(collider.clone()), &hair, &motion, true);
+            assert!(found < resting + bound, "{motion:?}: {found} m deep, {resting} m at rest");
+        }
+        let through = depth_below(on, &collider, None, &hair, &Motion::Still, true);
+        assert!(through > 1e-2, "a head that is not there is not noticed: {through} m");
     }
-    let through = depth_below(&collider, None, &hair, &Motion::Still, true);
-    assert!(through > 1e-2, "a head that is not there is not noticed: {through} m");
 }

@@ -1,7 +1,7 @@
 //! A curl that hangs keeps its turns.
 
 use glam::{Vec3, vec3};
-use strandline_body::Pose;
+use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides};
 use strandline_sim::{Drive, Settings, Solver};
 
@@ -19,27 +19,26 @@ fn curl() -> Guides {
 }
 
 /// Height \[m\] from root to tip and mean distance \[m\] from the axis after two seconds.
-fn hung(hold: f32) -> (f32, f32) {
+fn hung(on: &On, hold: f32) -> (f32, f32) {
     let mut settings = Settings::default();
     settings.angles.hold = hold;
     settings.volume.enabled = false;
     let guides = curl();
     let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
-    let mut state = solver.rest_state(Pose::IDENTITY);
-    for _ in 0..120 {
-        solver.step(&mut state, &Drive::default());
-    }
-    let points: Vec<Vec3> = state.positions.iter().map(|lanes| lanes.get(0)).collect();
+    let mut rig = Rig::new(on, solver);
+    rig.steps(&[Drive::default(); 120]);
+    let points: Vec<Vec3> = rig.state().positions.iter().map(|lanes| lanes.get(0)).collect();
     let axis = |point: &Vec3| vec3(point.x, 0.0, point.z).length();
     let radius = points.iter().skip(16).map(axis).sum::<f32>() / (points.len() - 16) as f32;
     (-points[63].y, radius)
 }
 
-#[test]
-fn a_held_curl_keeps_its_turns_and_a_free_one_hangs_straight() {
-    let (height, radius) = hung(120.0);
-    // It is 12.4 cm high at rest and sags; straight it would be some 40 cm.
-    assert!(height < 0.20 && radius > 0.006, "height {height}, radius {radius}");
-    let (free_height, free_radius) = hung(0.0);
-    assert!(free_height > 1.3 * height && free_radius < radius, "{free_height}, {free_radius}: it can fail");
+law! {
+    fn a_held_curl_keeps_its_turns_and_a_free_one_hangs_straight(on) {
+        let (height, radius) = hung(on, 120.0);
+        // It is 12.4 cm high at rest and sags; straight it would be some 40 cm.
+        assert!(height < 0.20 && radius > 0.006, "height {height}, radius {radius}");
+        let (free_height, free_radius) = hung(on, 0.0);
+        assert!(free_height > 1.3 * height && free_radius < radius, "{free_height}, {free_radius}: it can fail");
+    }
 }

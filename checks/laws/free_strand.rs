@@ -1,18 +1,17 @@
 //! Strands that nothing holds: free fall, momentum, springs at rest.
 
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_checks::{On, Rig, law};
 use strandline_groom::RestShape;
 use strandline_sim::{Angles, Drag, Drive, LengthPass, Settings, Solver, Spring, Springs, State};
 
 use crate::strands::{bare, first, line, one_strand};
 
-fn loose(points: &[Vec3], settings: &Settings) -> (Solver, State) {
+fn loose(on: &On, points: &[Vec3], settings: &Settings) -> Rig {
     let guides = one_strand(points);
     let rest = RestShape::new(&guides, 6.5e-6);
     let solver = Solver::with_rest(&guides, rest, |_, _| false, settings, Vec::new()).unwrap();
-    let state = solver.rest_state(Pose::IDENTITY);
-    (solver, state)
+    Rig::new(on, solver)
 }
 
 /// A helix: three-dimensional, so that every spring has work to do.
@@ -23,107 +22,112 @@ fn helix(points: usize) -> Vec<Vec3> {
         .collect()
 }
 
-fn steps(solver: &Solver, state: &mut State, count: usize) {
-    for _ in 0..count {
-        solver.step(state, &Drive::default());
+fn steps(rig: &mut Rig, count: usize) {
+    rig.steps(&vec![Drive::default(); count]);
+}
+
+fn momentum(rig: &mut Rig) -> Vec3 {
+    let masses = rig.solver().rest().mass.clone();
+    rig.state().velocities.iter().zip(masses).map(|(velocity, mass)| velocity.get(0) * mass.0[0]).sum()
+}
+
+fn fallen(on: &On, settings: &Settings) -> f32 {
+    let mut rig = loose(on, &line(Vec3::ZERO, Vec3::NEG_Y * 0.3, 8), settings);
+    steps(&mut rig, 60);
+    -first(rig.state())[0].y
+}
+
+law! {
+    fn a_loose_strand_falls_freely(on) {
+        // n steps of the semi-implicit Euler rule fall g dt^2 n (n + 1) / 2.
+        let expected = 9.81 / 3600.0 * 60.0 * 61.0 / 2.0;
+        let settings = bare(1.0 / 60.0, 20);
+        // Positions of 5 m are rounded to 5e-7 m, 60 times, and so are the velocities that follow.
+        assert!((fallen(on, &settings) / expected - 1.0).abs() < 1e-4);
+        let dragged = fallen(on, &Settings { drag: Drag::default(), ..settings });
+        assert!((dragged / expected - 1.0).abs() > 0.1, "drag is not noticed");
     }
 }
 
-fn momentum(solver: &Solver, state: &State) -> Vec3 {
-    let masses = &solver.rest().mass;
-    state.velocities.iter().zip(masses).map(|(velocity, mass)| velocity.get(0) * mass.0[0]).sum()
-}
-
-fn fallen(settings: &Settings) -> f32 {
-    let (solver, mut state) = loose(&line(Vec3::ZERO, Vec3::NEG_Y * 0.3, 8), settings);
-    steps(&solver, &mut state, 60);
-    -first(&state)[0].y
-}
-
-#[test]
-fn a_loose_strand_falls_freely() {
-    // n steps of the semi-implicit Euler rule fall g dt^2 n (n + 1) / 2.
-    let expected = 9.81 / 3600.0 * 60.0 * 61.0 / 2.0;
-    let settings = bare(1.0 / 60.0, 20);
-    // Positions of 5 m are rounded to 5e-7 m, 60 times, and so are the velocities that follow.
-    assert!((fallen(&settings) / expected - 1.0).abs() < 1e-4);
-    let dragged = fallen(&Settings { drag: Drag::default(), ..settings });
-    assert!((dragged / expected - 1.0).abs() > 0.1, "drag is not noticed");
-}
-
-#[test]
-fn wind_carries_a_loose_strand_along() {
-    let settings = Settings { gravity: Vec3::ZERO, drag: Drag::default(), ..bare(1.0 / 60.0, 20) };
-    let (solver, mut state) = loose(&line(Vec3::ZERO, Vec3::NEG_Y * 0.3, 8), &settings);
-    for _ in 0..60 {
-        solver.step(&mut state, &Drive { wind: Vec3::new(2.0, 2.0, 0.0), ..Drive::default() });
+law! {
+    fn wind_carries_a_loose_strand_along(on) {
+        let settings = Settings { gravity: Vec3::ZERO, drag: Drag::default(), ..bare(1.0 / 60.0, 20) };
+        let mut rig = loose(on, &line(Vec3::ZERO, Vec3::NEG_Y * 0.3, 8), &settings);
+        rig.steps(&[Drive { wind: Vec3::new(2.0, 2.0, 0.0), ..Drive::default() }; 60]);
+        let velocity = rig.state().velocities[4].get(0);
+        // Across the strand 1 - exp(-1.5), along it 1 - exp(-0.75), for 1 s; rounding of 60 steps.
+        assert!((velocity.x - 2.0 * (1.0 - (-1.5_f32).exp())).abs() < 1e-3, "{velocity}");
+        assert!((velocity.y - 2.0 * (1.0 - (-0.75_f32).exp())).abs() < 1e-3, "{velocity}");
     }
-    let velocity = state.velocities[4].get(0);
-    // Across the strand 1 - exp(-1.5), along it 1 - exp(-0.75), for 1 s; rounding of 60 steps.
-    assert!((velocity.x - 2.0 * (1.0 - (-1.5_f32).exp())).abs() < 1e-3, "{velocity}");
-    assert!((velocity.y - 2.0 * (1.0 - (-0.75_f32).exp())).abs() < 1e-3, "{velocity}");
 }
 
 /// All that acts within a strand, kicked.
-fn drift(settings: &Settings) -> f32 {
+fn drift(on: &On, settings: &Settings) -> f32 {
     let settings = Settings { gravity: Vec3::ZERO, ..settings.clone() };
-    let (solver, mut state) = loose(&helix(12), &settings);
-    for (index, velocity) in state.velocities.iter_mut().enumerate() {
-        velocity.set(0, Vec3::new(0.3 * (index as f32).sin(), 0.2, 0.4 * (index as f32 * 2.0).cos()));
+    let mut rig = loose(on, &helix(12), &settings);
+    rig.change(|state| {
+        for (index, velocity) in state.velocities.iter_mut().enumerate() {
+            velocity.set(0, Vec3::new(0.3 * (index as f32).sin(), 0.2, 0.4 * (index as f32 * 2.0).cos()));
+        }
+    });
+    let before = momentum(&mut rig);
+    steps(&mut rig, 30);
+    (momentum(&mut rig) - before).length() / before.length()
+}
+
+law! {
+    fn what_acts_within_a_strand_keeps_its_momentum(on) {
+        let all = Settings { springs: Springs::default(), angles: Angles::default(), ..bare(1.0 / 60.0, 20) };
+        // Velocities are differences of rounded positions: 2e-8 m * 60 / 0.3 m/s, summed over 30 steps.
+        let drifted = drift(on, &all);
+        assert!(drifted < 2e-4, "{drifted}");
+        let pass = LengthPass { enabled: true, correction: 0.0 };
+        let one_sided = Settings { length_pass: pass, iterations: 1, ..all };
+        assert!(drift(on, &one_sided) > 1e-2, "a pass that pushes one end only is not noticed");
     }
-    let before = momentum(&solver, &state);
-    steps(&solver, &mut state, 30);
-    (momentum(&solver, &state) - before).length() / before.length()
 }
 
-#[test]
-fn what_acts_within_a_strand_keeps_its_momentum() {
-    let all = Settings { springs: Springs::default(), angles: Angles::default(), ..bare(1.0 / 60.0, 20) };
-    // Velocities are differences of rounded positions: 2e-8 m * 60 / 0.3 m/s, summed over 30 steps.
-    let drifted = drift(&all);
-    assert!(drifted < 2e-4, "{drifted}");
-    let pass = LengthPass { enabled: true, correction: 0.0 };
-    let one_sided = Settings { length_pass: pass, iterations: 1, ..all };
-    assert!(drift(&one_sided) > 1e-2, "a pass that pushes one end only is not noticed");
+law! {
+    fn springs_and_bends_at_rest_stay_at_rest(on) {
+        let stiff = Spring { enabled: true, stiffness: 1e3, damping: 0.0 };
+        let settings = Settings {
+            gravity: Vec3::ZERO,
+            springs: Springs { stretch: stiff, bend: stiff, torsion: stiff },
+            angles: Angles { limit: 0.1, stiffness: 100.0, hold: 0.0 },
+            ..bare(1.0 / 60.0, 20)
+        };
+        let solver = Solver::new(&one_strand(&helix(12)), &settings, Vec::new()).unwrap();
+        let mut rig = Rig::new(on, solver);
+        let before = first(rig.state());
+        steps(&mut rig, 600);
+        let moved = |state: &State| {
+            first(state).iter().zip(&before).map(|(now, then)| now.distance(*then)).fold(0.0, f32::max)
+        };
+        // Rounding of 600 steps.
+        assert!(moved(rig.state()) < 1e-4, "{}", moved(rig.state()));
+        rig.change(|state| {
+            let stretched = state.positions[5].get(0) + Vec3::X * 1e-2;
+            state.positions[5].set(0, stretched);
+        });
+        steps(&mut rig, 10);
+        assert!(moved(rig.state()) > 1e-3, "springs do not act");
+    }
 }
 
-#[test]
-fn springs_and_bends_at_rest_stay_at_rest() {
-    let stiff = Spring { enabled: true, stiffness: 1e3, damping: 0.0 };
-    let settings = Settings {
-        gravity: Vec3::ZERO,
-        springs: Springs { stretch: stiff, bend: stiff, torsion: stiff },
-        angles: Angles { limit: 0.1, stiffness: 100.0, hold: 0.0 },
-        ..bare(1.0 / 60.0, 20)
-    };
-    let solver = Solver::new(&one_strand(&helix(12)), &settings, Vec::new()).unwrap();
-    let mut state = solver.rest_state(Pose::IDENTITY);
-    let before = first(&state);
-    steps(&solver, &mut state, 600);
-    let moved = |state: &State| {
-        first(state).iter().zip(&before).map(|(now, then)| now.distance(*then)).fold(0.0, f32::max)
-    };
-    // Rounding of 600 steps.
-    assert!(moved(&state) < 1e-4, "{}", moved(&state));
-    let stretched = state.positions[5].get(0) + Vec3::X * 1e-2;
-    state.positions[5].set(0, stretched);
-    steps(&solver, &mut state, 10);
-    assert!(moved(&state) > 1e-3, "springs do not act");
-}
-
-#[test]
-fn springs_of_any_stiffness_stay_stable() {
-    let stiff = Spring { enabled: true, stiffness: 1e30, damping: 1e30 };
-    let settings =
-        Settings { springs: Springs { stretch: stiff, bend: stiff, torsion: stiff }, ..bare(1.0 / 60.0, 20) };
-    let guides = one_strand(&helix(16));
-    let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
-    let mut state = solver.rest_state(Pose::IDENTITY);
-    for _ in 0..1200 {
-        let report = solver.step(&mut state, &Drive::default());
-        assert_eq!(report.non_finite, 0);
-        let fastest = state.velocities.iter().map(|v| v.get(0).length()).fold(0.0, f32::max);
-        // A fall over the length of the strand reaches 1.7 m/s.
-        assert!(fastest < 4.0, "{fastest} m/s");
+law! {
+    fn springs_of_any_stiffness_stay_stable(on) {
+        let stiff = Spring { enabled: true, stiffness: 1e30, damping: 1e30 };
+        let settings =
+            Settings { springs: Springs { stretch: stiff, bend: stiff, torsion: stiff }, ..bare(1.0 / 60.0, 20) };
+        let guides = one_strand(&helix(16));
+        let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
+        let mut rig = Rig::new(on, solver);
+        for _ in 0..1200 {
+            let report = rig.step(&Drive::default());
+            assert_eq!(report.non_finite, 0);
+            let fastest = rig.state().velocities.iter().map(|v| v.get(0).length()).fold(0.0, f32::max);
+            // A fall over the length of the strand reaches 1.7 m/s.
+            assert!(fastest < 4.0, "{fastest} m/s");
+        }
     }
 }

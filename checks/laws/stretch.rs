@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 use strandline_body::Pose;
+use strandline_checks::{On, Rig, law};
 use strandline_sim::{Drive, LengthPass, Settings};
 
 use crate::strands::{bare, chain, first, line};
@@ -13,18 +14,18 @@ use crate::strands::{bare, chain, first, line};
 ///
 /// The protocol of reference/pbd_stretch.csv, whose velocities keep 0.995 of themselves in each
 /// step: 0.3 of them are lost per second.
-fn stretch(links: usize, amplitude: f32, settings: &Settings) -> (f32, f32) {
+fn stretch(on: &On, links: usize, amplitude: f32, settings: &Settings) -> (f32, f32) {
     let points = line(Vec3::ZERO, Vec3::NEG_Y * 0.3, links);
     let solver = chain(&points, 1.0, |point| point == 0, settings);
-    let mut state = solver.rest_state(Pose::IDENTITY);
+    let mut rig = Rig::new(on, solver);
     let (mut segment, mut total) = (0.0_f32, 0.0_f32);
     for step in 1..=600 {
         let time = step as f32 / 60.0;
         let aside = Vec3::X * amplitude * (2.0 * PI * 2.0 * time).sin();
         let world_from_head = Pose { translation: aside, ..Pose::IDENTITY };
-        solver.step(&mut state, &Drive { world_from_head, wind: Vec3::ZERO });
+        rig.step(&Drive { world_from_head, wind: Vec3::ZERO });
         if step > 300 {
-            let points = first(&state);
+            let points = first(rig.state());
             let lengths: Vec<f32> = points.windows(2).map(|pair| pair[0].distance(pair[1])).collect();
             let longest = lengths.iter().fold(0.0_f32, |most, length| most.max(*length));
             segment = segment.max(longest * links as f32 / 0.3 - 1.0);
@@ -53,28 +54,31 @@ const STRETCHES: [(usize, u32, f32, f32, f32); 10] = [
     (16, 50, 0.2, 0.537_557_04, 0.174_559_27),
 ];
 
-#[test]
-fn projection_leaves_the_stretch_of_the_reference() {
-    for (links, iterations, amplitude, segment, total) in STRETCHES {
-        let found = stretch(links, amplitude, &projection(iterations));
-        // 10 %: reference/README.md; the shaken strand is chaotic and we count in f32.
-        let close = (found.0 / segment - 1.0).abs() < 0.1 && (found.1 / total - 1.0).abs() < 0.1;
-        assert!(close, "{links} links, {iterations} rounds, {amplitude} m: {found:?}");
+law! {
+    fn projection_leaves_the_stretch_of_the_reference(on) {
+        for (links, iterations, amplitude, segment, total) in STRETCHES {
+            let found = stretch(on, links, amplitude, &projection(iterations));
+            // 10 %: reference/README.md; the shaken strand is chaotic and we count in f32.
+            let close = (found.0 / segment - 1.0).abs() < 0.1 && (found.1 / total - 1.0).abs() < 0.1;
+            assert!(close, "{links} links, {iterations} rounds, {amplitude} m: {found:?}");
+        }
     }
 }
 
-#[test]
-fn a_round_less_is_told_apart() {
-    let (segment, _) = stretch(8, 0.0, &projection(17));
-    assert!((segment / 0.028_484_53 - 1.0).abs() > 0.1, "{segment}");
+law! {
+    fn a_round_less_is_told_apart(on) {
+        let (segment, _) = stretch(on, 8, 0.0, &projection(17));
+        assert!((segment / 0.028_484_53 - 1.0).abs() > 0.1, "{segment}");
+    }
 }
 
-#[test]
-fn the_length_pass_leaves_none() {
-    let exact = Settings { length_pass: LengthPass::default(), ..projection(20) };
-    for (links, amplitude) in [(8, 0.0), (8, 0.2), (16, 0.2), (63, 0.2)] {
-        let (segment, total) = stretch(links, amplitude, &exact);
-        // Rounding of positions of 0.5 m over a segment of 5 mm: 6e-8 * 0.5 / 0.005.
-        assert!(segment < 2e-5 && total < 2e-5, "{links} links, {amplitude} m: {segment}, {total}");
+law! {
+    fn the_length_pass_leaves_none(on) {
+        let exact = Settings { length_pass: LengthPass::default(), ..projection(20) };
+        for (links, amplitude) in [(8, 0.0), (8, 0.2), (16, 0.2), (63, 0.2)] {
+            let (segment, total) = stretch(on, links, amplitude, &exact);
+            // Rounding of positions of 0.5 m over a segment of 5 mm: 6e-8 * 0.5 / 0.005.
+            assert!(segment < 2e-5 && total < 2e-5, "{links} links, {amplitude} m: {segment}, {total}");
+        }
     }
 }

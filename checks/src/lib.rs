@@ -1,7 +1,10 @@
 //! Shared helpers of the checks.
 
+mod rig;
+
 use std::sync::OnceLock;
 
+pub use rig::{On, Rig};
 use strandline_gpu::Gpu;
 
 /// The adapter that the checks of the GPU backend run on, any that there is; they share its device.

@@ -2,7 +2,7 @@ use std::marker::PhantomData;
 
 use bytemuck::Pod;
 
-use crate::{Gpu, GpuError};
+use crate::{Gpu, GpuError, Readback};
 
 /// Elements of one type on the device.
 #[derive(Debug)]
@@ -81,6 +81,11 @@ impl<T: Pod> Buffer<T> {
         self.len == 0
     }
 
+    /// The device that it lies on.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
     /// What it is called.
     pub fn name(&self) -> &'static str {
         self.name
@@ -116,34 +121,9 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// The device was lost or has no memory left.
     pub fn read_first(&self, count: usize) -> Result<Vec<T>, GpuError> {
-        let count = count.min(self.len);
-        if count == 0 {
-            return Ok(Vec::new());
-        }
-        let gpu = &self.gpu;
-        let bytes = (count * size_of::<T>()).next_multiple_of(4) as u64;
-        let staging = gpu.guarded(self.name, || {
-            let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
-                label: Some("readback"),
-                size: bytes,
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            let mut encoder = gpu.device().create_command_encoder(&Default::default());
-            encoder.copy_buffer_to_buffer(&self.raw, 0, &staging, 0, bytes);
-            gpu.queue().submit([encoder.finish()]);
-            staging.slice(..).map_async(wgpu::MapMode::Read, |_| ());
-            staging
-        })?;
-        gpu.wait()?;
-        let view = staging.slice(..).get_mapped_range().map_err(|error| GpuError::Refused {
-            adapter: gpu.name(),
-            what: format!("reading {}", self.name),
-            message: error.to_string(),
-        })?;
-        let mut elements = vec![T::zeroed(); count];
-        bytemuck::cast_slice_mut::<T, u8>(&mut elements).copy_from_slice(&view[..count * size_of::<T>()]);
-        Ok(elements)
+        let mut batch = Readback::new();
+        let part = batch.add(self, count);
+        Ok(batch.read(&self.gpu)?.take(part))
     }
 }
 

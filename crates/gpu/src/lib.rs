@@ -11,6 +11,7 @@ mod gpu;
 mod kernel;
 mod layout;
 mod list;
+mod readback;
 mod timer;
 
 pub use buffer::Buffer;
@@ -20,6 +21,7 @@ pub use gpu::Gpu;
 pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Kernel, Recorder, groups};
 pub use layout::{Field, Layout, Mirror};
 pub use list::Adapter;
+pub use readback::{Copied, Part, Readback};
 pub use timer::Timer;
 
 /// The crate that the host's device and queue come from.

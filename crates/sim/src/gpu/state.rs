@@ -1,5 +1,5 @@
 use strandline_body::Pose;
-use strandline_gpu::{Buffer, Timer};
+use strandline_gpu::{Buffer, Readback, Timer};
 use strandline_groom::{Lanes, Vec3Lanes};
 
 use super::advance::Report;
@@ -148,12 +148,12 @@ impl GpuState {
         if self.pending == 0 {
             return Ok(());
         }
-        let found = self.buffers.reports.read_first(self.pending)?;
-        let stride = Timer::BYTES as usize / size_of::<u64>();
-        let marks = match &self.timer {
-            Some(_) => self.marks.read_first(self.pending * stride)?,
-            None => Vec::new(),
-        };
+        let stride = if self.timer.is_some() { Timer::BYTES as usize / size_of::<u64>() } else { 0 };
+        let mut batch = Readback::new();
+        let reports = batch.add(&self.buffers.reports, self.pending);
+        let marks = batch.add(&self.marks, self.pending * stride);
+        let copied = batch.read(&solver.gpu)?;
+        let (found, marks) = (copied.take(reports), copied.take(marks));
         for (slot, report) in found.iter().enumerate() {
             let seconds = match &self.timer {
                 Some(timer) => timer.seconds(&marks[slot * stride..(slot + 1) * stride]),
@@ -175,11 +175,7 @@ impl GpuState {
             })
             .collect();
         state.set_length_scale(solver, &scales)?;
-        state.time = self.time;
-        let [positions, previous] = self.positions();
-        read_vectors(positions, &mut state.positions)?;
-        read_vectors(previous, &mut state.previous_positions)?;
-        read_vectors(&self.buffers.velocities, &mut state.velocities)?;
+        self.read_into(&mut state)?;
         Ok(state)
     }
 
@@ -190,8 +186,11 @@ impl GpuState {
     /// The device was lost; the state is then as it was.
     pub fn read_into(&self, state: &mut State) -> Result<(), SimError> {
         let [positions, previous] = self.positions();
-        let (positions, previous) = (positions.read()?, previous.read()?);
-        let velocities = self.buffers.velocities.read()?;
+        let velocities = &self.buffers.velocities;
+        let mut batch = Readback::new();
+        let parts = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
+        let copied = batch.read(velocities.gpu())?;
+        let [positions, previous, velocities] = parts.map(|part| copied.take(part));
         floats_mut(&mut state.positions).copy_from_slice(&positions);
         floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
         floats_mut(&mut state.velocities).copy_from_slice(&velocities);
@@ -214,11 +213,6 @@ impl GpuState {
         self.time = state.time;
         Ok(())
     }
-}
-
-fn read_vectors(buffer: &Buffer<f32>, into: &mut [Vec3Lanes]) -> Result<(), SimError> {
-    floats_mut(into).copy_from_slice(&buffer.read()?);
-    Ok(())
 }
 
 pub(super) fn floats_mut(lanes: &mut [Vec3Lanes]) -> &mut [f32] {
