@@ -21,13 +21,12 @@ mirror! {
 kernel! {
     /// One thread is one strand.
     pub(super) struct Advance in "advance" (super::linked::ADVANCE), entry "advance" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 solids: Read [f32; 4],
         2 rest_positions: Read f32,
         3 rest: Read f32,
         4 predicted: ReadWrite f32,
         5 velocities: ReadWrite f32,
-        6 bad_points: Read u32,
         7 outcomes: ReadWrite [f32; 4],
     }
 }
@@ -35,7 +34,7 @@ kernel! {
 kernel! {
     /// One workgroup.
     pub(super) struct Gathered in "advance" (super::linked::ADVANCE), entry "report" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         7 outcomes: ReadWrite [f32; 4],
         8 pressure: Read PressureState,
         9 reports: ReadWrite Report,
@@ -53,12 +52,11 @@ impl Stage {
     }
 
     pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
-        let Buffers { step, solids, rest_positions, rest, velocities, bad_points, outcomes, .. } = buffers;
+        let Buffers { step, solids, rest_positions, rest, velocities, outcomes, .. } = buffers;
         let predicted = &buffers.places[1 - side];
-        let advance = self.advance.bind(
-            gpu,
-            &Advance { step, solids, rest_positions, rest, predicted, velocities, bad_points, outcomes },
-        )?;
+        let advance = self
+            .advance
+            .bind(gpu, &Advance { step, solids, rest_positions, rest, predicted, velocities, outcomes })?;
         let pressure = buffers.volume.as_ref().map_or(&buffers.no_pressure, |volume| &volume.states);
         let reports = &buffers.reports;
         let report = self.report.bind(gpu, &Gathered { step, outcomes, pressure, reports })?;

@@ -36,8 +36,6 @@ pub(super) struct Buffers {
     pub velocities: Buffer<f32>,
     /// Five numbers: see constrain.wesl.
     pub planes: Buffer<f32>,
-    /// Per strand.
-    pub bad_points: Buffer<u32>,
     /// Per workgroup of strands: see splat.wesl.
     pub boxes: Buffer<[f32; 4]>,
     /// Per workgroup of strands: see advance.wesl.
@@ -53,7 +51,6 @@ impl Buffers {
     pub fn new(gpu: &Gpu, solver: &Solver, state: &State) -> Result<Self, SimError> {
         let points = solver.points_per_strand;
         let lane_count = solver.lane_count();
-        let blocks = lane_count / LANES;
         let count = lane_count * points;
         let workgroups = lane_count.div_ceil(THREADS);
         let vectors = |name, lanes: &[Vec3Lanes]| Buffer::from_slice(gpu, name, floats(lanes));
@@ -61,7 +58,7 @@ impl Buffers {
             strand_count: solver.strand_count,
             lane_count,
             points,
-            step: Buffer::uniform(gpu, "step")?,
+            step: Buffer::new(gpu, "step", 1)?,
             rest_positions: vectors("rest positions", &solver.positions)?,
             rest: Buffer::new(gpu, "rest shape", 6 * count)?,
             springs: Buffer::new(gpu, "springs", 2 * count)?,
@@ -73,7 +70,6 @@ impl Buffers {
             ],
             velocities: vectors("velocities", &state.velocities)?,
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
-            bad_points: Buffer::new(gpu, "bad points", blocks * LANES)?,
             boxes: Buffer::new(gpu, "boxes", 2 * solver.strand_count.div_ceil(THREADS))?,
             outcomes: Buffer::new(gpu, "outcomes", workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,

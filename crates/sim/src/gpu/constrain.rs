@@ -8,15 +8,13 @@ use super::{Buffers, Dispatches, THREADS};
 kernel! {
     /// One thread is one strand.
     pub(super) struct Constrain in "constrain" (super::linked::CONSTRAIN), entry "constrain" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 solids: Read [f32; 4],
-        2 rest_positions: Read f32,
         3 rest: Read f32,
         4 positions: Read f32,
         5 predicted: ReadWrite f32,
         6 velocities: ReadWrite f32,
         7 planes: ReadWrite f32,
-        8 bad_points: ReadWrite u32,
     }
 }
 
@@ -38,13 +36,11 @@ impl Stage {
             &Constrain {
                 step: &buffers.step,
                 solids: &buffers.solids,
-                rest_positions: &buffers.rest_positions,
                 rest: &buffers.rest,
                 positions: &buffers.places[side],
                 predicted: &buffers.places[1 - side],
                 velocities: &buffers.velocities,
                 planes: &buffers.planes,
-                bad_points: &buffers.bad_points,
             },
         )?;
         Ok(vec![(bound, groups(buffers.lane_count, self.strands_per_workgroup))])

@@ -9,7 +9,7 @@ use super::{Buffers, Dispatches, THREADS};
 kernel! {
     /// One thread is one point.
     pub(super) struct Gather in "gather" (super::linked::GATHER), entry "gather" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 grid: Read GridState,
         2 predicted: Read f32,
         3 velocities: ReadWrite f32,

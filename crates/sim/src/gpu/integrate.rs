@@ -8,7 +8,7 @@ use super::{Buffers, Dispatches, THREADS};
 kernel! {
     /// One thread is one point.
     pub(super) struct Integrate in "integrate" (super::linked::INTEGRATE), entry "integrate" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         2 rest: Read f32,
         3 springs: Read f32,
         4 positions: Read f32,

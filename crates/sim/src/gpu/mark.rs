@@ -9,7 +9,7 @@ use super::{Buffers, Dispatches, THREADS};
 kernel! {
     /// One thread is one cell.
     pub(super) struct Mark in "mark" (super::linked::MARK), entry "mark" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 solids: Read [f32; 4],
         2 grid: Read GridState,
         3 start_index: Read u32,
@@ -21,7 +21,7 @@ kernel! {
 kernel! {
     /// Faces of solids take the solid's velocity; one thread is one cell.
     pub(super) struct CarryWalls in "mark" (super::linked::MARK), entry "carry_walls" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 solids: Read [f32; 4],
         2 grid: Read GridState,
         4 kinds: ReadWrite u32,

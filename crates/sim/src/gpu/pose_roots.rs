@@ -8,7 +8,7 @@ use super::{Buffers, Dispatches, THREADS};
 kernel! {
     /// One thread is one strand.
     pub(super) struct PoseRoots in "pose_roots" (super::linked::POSE_ROOTS), entry "pose_roots" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         2 rest_positions: Read f32,
         3 rest: Read f32,
         4 positions: Read f32,

@@ -129,8 +129,8 @@ impl<'a> Probe<'a> {
     pub fn order(&self) -> Result<Vec<u32>, SimError> {
         let Some(volume) = &self.state.buffers.volume else { return Ok(Vec::new()) };
         let count = self.start_index()?.last().copied().unwrap_or(0);
-        let sorted = volume.sorted_velocities.read_first(count as usize)?;
-        Ok(sorted.iter().map(|vector| vector[3].to_bits()).collect())
+        let sorted = volume.sorted_points.read_first(count as usize)?;
+        Ok(sorted.iter().map(|point| point.index).collect())
     }
 
     /// Velocity and change \[m/s\] of every face, shape `[component][cell]`.

@@ -71,7 +71,7 @@ kernel! {
 kernel! {
     /// The next direction and its image.
     pub(super) struct Search in "solve_pressure" (super::linked::SOLVE_PRESSURE), entry "search" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,
         3 neighbours: ReadWrite u32,
@@ -84,7 +84,7 @@ kernel! {
 kernel! {
     /// A step along it.
     pub(super) struct Update in "solve_pressure" (super::linked::SOLVE_PRESSURE), entry "update" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,
         4 states: ReadWrite PressureState,
@@ -96,7 +96,7 @@ kernel! {
 kernel! {
     /// A further step of the preconditioner.
     pub(super) struct SmoothResidual in "solve_pressure" (super::linked::SOLVE_PRESSURE), entry "smooth_residual" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,
         3 neighbours: ReadWrite u32,
@@ -109,7 +109,7 @@ kernel! {
 kernel! {
     /// All that is left; one workgroup.
     pub(super) struct Finish in "solve_pressure" (super::linked::SOLVE_PRESSURE), entry "finish" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,
         3 neighbours: ReadWrite u32,

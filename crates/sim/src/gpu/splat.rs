@@ -4,13 +4,13 @@ use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
 
 use super::scan::Scan;
 use super::uniform::Step;
-use super::volume::GridState;
+use super::volume::{GridState, SortedPoint};
 use super::{Buffers, Dispatches, THREADS};
 
 kernel! {
     /// Boxes around the points of strands; one thread is one strand.
     pub(super) struct Bounds in "splat" (super::linked::SPLAT), entry "bounds" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         2 predicted: Read f32,
         4 mass: Read f32,
         5 boxes: ReadWrite [f32; 4],
@@ -29,7 +29,7 @@ kernel! {
 kernel! {
     /// The histogram; one thread is one point.
     pub(super) struct FindCells in "splat" (super::linked::SPLAT), entry "find_cells" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 grid: ReadWrite GridState,
         2 predicted: Read f32,
         4 mass: Read f32,
@@ -41,15 +41,14 @@ kernel! {
 kernel! {
     /// The order; one thread is one point.
     pub(super) struct SortPoints in "splat" (super::linked::SPLAT), entry "sort_points" {
-        0 step: Uniform Step,
+        0 step: Read Step,
         1 grid: ReadWrite GridState,
         2 predicted: Read f32,
         3 velocities: Read f32,
         4 mass: Read f32,
         8 cell_ranks: ReadWrite [u32; 2],
         9 start_index: Read u32,
-        10 sorted_places: ReadWrite [f32; 4],
-        11 sorted_velocities: ReadWrite [f32; 4],
+        10 sorted_points: ReadWrite SortedPoint,
     }
 }
 
@@ -58,9 +57,8 @@ kernel! {
     pub(super) struct SumFaces in "splat" (super::linked::SPLAT), entry "sum_faces" {
         1 grid: ReadWrite GridState,
         9 start_index: Read u32,
-        10 sorted_places: ReadWrite [f32; 4],
-        11 sorted_velocities: ReadWrite [f32; 4],
-        12 faces: ReadWrite [f32; 2],
+        10 sorted_points: ReadWrite SortedPoint,
+        11 faces: ReadWrite [f32; 2],
     }
 }
 
@@ -97,7 +95,7 @@ impl Stage {
         let (grid, boxes, ladder) = (&volume.grid, &buffers.boxes, &volume.ladder);
         let (counts, start_index) = (&volume.start_index, &volume.start_index);
         let (cell_ranks, faces) = (&volume.cell_ranks, &volume.faces);
-        let (sorted_places, sorted_velocities) = (&volume.sorted_places, &volume.sorted_velocities);
+        let sorted_points = &volume.sorted_points;
         let by_point = groups(buffers.point_count(), THREADS);
         let bounds = self.bounds.bind(gpu, &Bounds { step, predicted, mass, boxes })?;
         let follow = self.follow.bind(gpu, &Follow { grid, boxes, ladder })?;
@@ -105,21 +103,9 @@ impl Stage {
             self.find_cells.bind(gpu, &FindCells { step, grid, predicted, mass, counts, cell_ranks })?;
         let sort_points = self.sort_points.bind(
             gpu,
-            &SortPoints {
-                step,
-                grid,
-                predicted,
-                velocities,
-                mass,
-                cell_ranks,
-                start_index,
-                sorted_places,
-                sorted_velocities,
-            },
+            &SortPoints { step, grid, predicted, velocities, mass, cell_ranks, start_index, sorted_points },
         )?;
-        let sum_faces = self
-            .sum_faces
-            .bind(gpu, &SumFaces { grid, start_index, sorted_places, sorted_velocities, faces })?;
+        let sum_faces = self.sum_faces.bind(gpu, &SumFaces { grid, start_index, sorted_points, faces })?;
         let mut dispatches =
             vec![(bounds, groups(buffers.strand_count, THREADS)), (follow, [1; 3]), (find_cells, by_point)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);

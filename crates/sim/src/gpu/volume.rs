@@ -17,6 +17,16 @@ mirror! {
     }
 }
 
+mirror! {
+    /// A point in the order of the cells. Mirrors `SortedPoint` in splat.wesl.
+    pub(super) struct SortedPoint {
+        pub place: [f32; 3],
+        pub mass: f32,
+        pub velocity: [f32; 3],
+        pub index: u32,
+    }
+}
+
 /// Vectors of the Poisson system, as numbered in poisson.wesl.
 const VECTORS: usize = 9;
 
@@ -32,8 +42,7 @@ pub(super) struct Volume {
     pub start_index: Buffer<u32>,
     pub totals: Buffer<u32>,
     pub cell_ranks: Buffer<[u32; 2]>,
-    pub sorted_places: Buffer<[f32; 4]>,
-    pub sorted_velocities: Buffer<[f32; 4]>,
+    pub sorted_points: Buffer<SortedPoint>,
     /// Velocity and change, shape `[component][cell]`.
     pub faces: Buffer<[f32; 2]>,
     pub kinds: Buffer<u32>,
@@ -70,8 +79,7 @@ impl Volume {
             start_index: Buffer::new(gpu, "start_index", cell_count + 1)?,
             totals: Scan::totals(gpu, cell_count + 1)?,
             cell_ranks: Buffer::new(gpu, "cells of points", point_count)?,
-            sorted_places: Buffer::new(gpu, "sorted places", point_count)?,
-            sorted_velocities: Buffer::new(gpu, "sorted velocities", point_count)?,
+            sorted_points: Buffer::new(gpu, "sorted points", point_count)?,
             faces: Buffer::new(gpu, "faces", 3 * cell_count)?,
             kinds: Buffer::new(gpu, "kinds of cells", cell_count)?,
             unknowns: Buffer::new(gpu, "unknowns", cell_count + 1)?,
