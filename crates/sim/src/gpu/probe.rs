@@ -1,6 +1,6 @@
 //! For checks: single stages, and what they wrote.
 
-use strandline_groom::Vec3Lanes;
+use strandline_groom::{Lanes, Vec3Lanes};
 
 use super::buffers::floats;
 use super::state::floats_mut;
@@ -52,6 +52,22 @@ impl<'a> Probe<'a> {
     /// The device was lost.
     pub fn set_predicted(&self, predicted: &[Vec3Lanes]) -> Result<(), SimError> {
         Ok(self.state.buffers.places[1 - self.state.side].write(floats(predicted))?)
+    }
+
+    /// Replaces the velocities \[m/s\].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn set_velocities(&self, velocities: &[Vec3Lanes]) -> Result<(), SimError> {
+        Ok(self.state.buffers.velocities.write(floats(velocities))?)
+    }
+
+    /// Replaces the masses \[kg\] that the volume sees.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn set_mass(&self, mass: &[Lanes]) -> Result<(), SimError> {
+        Ok(self.state.buffers.mass.write(bytemuck::cast_slice(mass))?)
     }
 
     /// Predicted positions \[m\].
