@@ -20,7 +20,7 @@ pub(crate) struct Engine {
     /// Whether the run goes on on the CPU when the GPU fails.
     pub fall_back: bool,
     /// What happened on the way, for a person to read.
-    notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 enum Place {
@@ -41,7 +41,12 @@ impl Engine {
             Ok(Place::Gpu(Box::new((solver, device))))
         });
         match (placed, spare) {
-            (Ok(place), _) => Ok(Self { place, state, fall_back, notes: Vec::new() }),
+            (Ok(place), _) => {
+                let adapter = gpu.adapter();
+                let slow = format!("{adapter}: for tests; `--backend cpu` is many times faster");
+                let notes = adapter.software.then_some(slow).into_iter().collect();
+                Ok(Self { place, state, fall_back, notes })
+            }
             (Err(error), Some(solver)) => {
                 let notes = vec![format!("simulating on the CPU: {error}")];
                 Ok(Self { place: Place::Cpu(solver.into()), state, fall_back, notes })

@@ -61,9 +61,14 @@ impl Hair {
         colliders: Vec<Collider>,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let gpu = backend.open()?;
         let fall_back = *backend == Backend::Auto;
-        Self::placed(gpu.as_ref(), fall_back, guides, mesh, colliders, settings)
+        let (gpu, refused) = match backend.open() {
+            Err(error) if fall_back => (None, Some(error)),
+            opened => (opened?, None),
+        };
+        let mut hair = Self::placed(gpu.as_ref(), fall_back, guides, mesh, colliders, settings)?;
+        hair.engine.notes.extend(refused.map(|error| format!("simulating on the CPU: {error}")));
+        Ok(hair)
     }
 
     /// As [`Hair::with_body`], simulated on a device that the host owns.

@@ -97,6 +97,8 @@ fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
 fn a_run_that_may_fall_back_goes_on_from_the_last_state() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
+    let notes = hair.take_notes();
+    assert_eq!(notes.len(), usize::from(gpu.adapter().software), "{notes:?}");
     hair.set_fall_back(true);
     hair.step(0.1, &turned(0.2)).unwrap();
     let before = hair.state().clone();

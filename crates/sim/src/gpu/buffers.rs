@@ -1,7 +1,7 @@
 //! What lies on the device.
 
 use strandline_gpu::{Buffer, Gpu};
-use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
 use super::advance::Report;
 use super::solve_pressure::PressureState;
@@ -76,7 +76,7 @@ impl Buffers {
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,
         };
-        buffers.write_rest(solver, state)?;
+        buffers.write_rest(solver, &state.scratch.lengths)?;
         Ok(buffers)
     }
 
@@ -104,8 +104,7 @@ impl Buffers {
     }
 
     /// Writes what follows from the settings and the lengths of the strands.
-    pub fn write_rest(&self, solver: &Solver, state: &State) -> Result<(), SimError> {
-        let lengths = &state.scratch.lengths;
+    pub fn write_rest(&self, solver: &Solver, lengths: &RestShape) -> Result<(), SimError> {
         let mut rest = Vec::with_capacity(6 * LANES * solver.positions.len());
         let mut springs = Vec::with_capacity(2 * LANES * solver.positions.len());
         for index in 0..solver.positions.len() {
@@ -119,8 +118,7 @@ impl Buffers {
         }
         self.rest.write(&rest)?;
         self.springs.write(&springs)?;
-        let mass: Vec<Lanes> = solver.rest.mass.clone();
-        self.mass.write(bytemuck::cast_slice(&mass))?;
+        self.mass.write(bytemuck::cast_slice(&solver.rest.mass))?;
         Ok(())
     }
 }

@@ -66,15 +66,14 @@ impl GpuSolver {
     /// Changes the settings between two steps of a state.
     ///
     /// # Errors
-    /// A setting outside its range, MIC(0), or a lost device; then nothing changes.
+    /// A setting outside its range or MIC(0), then nothing changes; or the device was lost.
     pub fn set_settings(&mut self, settings: &Settings, state: &mut GpuState) -> Result<(), SimError> {
         check(settings)?;
         self.gpu.check()?;
         self.solver.set_settings(settings)?;
-        let host = self.download(state)?;
-        state.buffers.write_rest(&self.solver, &host)?;
         state.unbind();
-        Ok(())
+        // Masses may have changed.
+        state.buffers.write_rest(&self.solver, &state.lengths)
     }
 
     /// The guides at rest, carried by a pose of the head.

@@ -1,6 +1,6 @@
 use strandline_body::Pose;
 use strandline_gpu::{Buffer, Readback, Timer};
-use strandline_groom::{Lanes, Vec3Lanes};
+use strandline_groom::{Lanes, RestShape, Vec3Lanes};
 
 use super::advance::Report;
 use super::buffers::{Buffers, REPORTS, floats};
@@ -20,6 +20,8 @@ pub struct GpuState {
     pub(super) world_from_head: Pose,
     pub(super) time: f64,
     length_scale: Vec<Lanes>,
+    /// The rest shape with the length scales applied.
+    pub(super) lengths: RestShape,
     timer: Option<Timer>,
     marks: Buffer<u64>,
     /// Steps whose reports lie on the device.
@@ -52,6 +54,7 @@ impl GpuState {
             world_from_head: state.world_from_head,
             time: state.time,
             length_scale: state.length_scale.clone(),
+            lengths: state.scratch.lengths.clone(),
             timer: Timer::new(gpu)?,
             marks: Buffer::new(gpu, "times of stages", REPORTS * Timer::BYTES as usize / size_of::<u64>())?,
             pending: 0,
@@ -167,14 +170,8 @@ impl GpuState {
 
     pub(super) fn to_host(&self, solver: &Solver) -> Result<State, SimError> {
         let mut state = solver.rest_state(self.world_from_head);
-        // Lengths first: they move the points of the state that is about to be overwritten.
-        let scales: Vec<f32> = (0..solver.strand_count)
-            .map(|strand| {
-                let lanes = strandline_groom::LANES;
-                self.length_scale[strand / lanes].0[strand % lanes]
-            })
-            .collect();
-        state.set_length_scale(solver, &scales)?;
+        state.length_scale.clone_from(&self.length_scale);
+        state.scratch.lengths.clone_from(&self.lengths);
         self.read_into(&mut state)?;
         Ok(state)
     }
@@ -204,11 +201,12 @@ impl GpuState {
     /// # Errors
     /// The device was lost.
     pub fn write(&mut self, solver: &GpuSolver, state: &State) -> Result<(), SimError> {
-        self.buffers.write_rest(&solver.solver, state)?;
+        self.buffers.write_rest(&solver.solver, &state.scratch.lengths)?;
         self.buffers.places[self.side].write(floats(&state.positions))?;
         self.buffers.places[1 - self.side].write(floats(&state.previous_positions))?;
         self.buffers.velocities.write(floats(&state.velocities))?;
         self.length_scale.clone_from(&state.length_scale);
+        self.lengths.clone_from(&state.scratch.lengths);
         self.world_from_head = state.world_from_head;
         self.time = state.time;
         Ok(())
