@@ -18,22 +18,60 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   bless    record the golden pictures anew; look at each before you commit it
   names    check that every stage has one name everywhere";
 
+/// What to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Chore {
+    Test { setup: bool },
+    Bless,
+    Names,
+    Help,
+}
+
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let passed = match words[..] {
-        ["test"] => run::test(false),
-        ["test", "--setup"] | ["ci"] => run::test(true),
-        ["bless"] => run::bless(),
-        ["names"] => names::check(),
-        ["--help" | "-h" | "help"] => {
+    let passed = match chore(&words) {
+        Some(Chore::Test { setup }) => run::test(setup),
+        Some(Chore::Bless) => run::bless(),
+        Some(Chore::Names) => names::check(),
+        Some(Chore::Help) => {
             println!("{USAGE}");
             true
         }
-        _ => {
+        None => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);
         }
     };
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// What the words of the command line ask for; none when they ask for nothing that there is.
+fn chore(words: &[&str]) -> Option<Chore> {
+    if words.iter().any(|word| ["--help", "-h", "help"].contains(word)) {
+        return Some(Chore::Help);
+    }
+    match words {
+        ["test"] => Some(Chore::Test { setup: false }),
+        ["test", "--setup"] | ["ci"] => Some(Chore::Test { setup: true }),
+        ["bless"] => Some(Chore::Bless),
+        ["names"] => Some(Chore::Names),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_ask_for_chores() {
+        assert_eq!(chore(&["test"]), Some(Chore::Test { setup: false }));
+        assert_eq!(chore(&["test", "--setup"]), Some(Chore::Test { setup: true }));
+        assert_eq!(chore(&["ci"]), Some(Chore::Test { setup: true }));
+        assert_eq!(chore(&["test", "--help"]), Some(Chore::Help));
+        for wrong in [&[][..], &["test", "--set"], &["ci", "--setup"], &["tset"], &["names", "test"]] {
+            assert_eq!(chore(wrong), None, "{wrong:?}");
+        }
+    }
 }

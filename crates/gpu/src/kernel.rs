@@ -71,7 +71,7 @@ macro_rules! kernel {
         $($index:literal $name:ident: $access:ident $kind:ty,)*
     }) => {
         $(#[$attribute])*
-        #[derive(Clone, Copy)]
+        #[derive(Clone, Copy, Debug)]
         $visibility struct $kernel<'a> {
             $(#[allow(missing_docs)] pub $name: &'a $crate::Buffer<$kind>,)*
         }
