@@ -20,40 +20,15 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// It is larger than WebGPU's default limits allow, or the device has no memory left.
     pub fn new(gpu: &Gpu, name: &'static str, len: usize) -> Result<Self, GpuError> {
-        let usage = wgpu::BufferUsages::STORAGE;
-        Self::with_usage(gpu, name, len, usage)
-    }
-
-    /// A buffer that holds copies of elements.
-    ///
-    /// # Errors
-    /// As [`Buffer::new`].
-    pub fn from_slice(gpu: &Gpu, name: &'static str, elements: &[T]) -> Result<Self, GpuError> {
-        let buffer = Self::new(gpu, name, elements.len())?;
-        buffer.write(elements)?;
-        Ok(buffer)
-    }
-
-    /// A uniform of one element.
-    ///
-    /// # Errors
-    /// As [`Buffer::new`].
-    pub fn uniform(gpu: &Gpu, name: &'static str) -> Result<Self, GpuError> {
-        Self::with_usage(gpu, name, 1, wgpu::BufferUsages::UNIFORM)
-    }
-
-    fn with_usage(
-        gpu: &Gpu,
-        name: &'static str,
-        len: usize,
-        usage: wgpu::BufferUsages,
-    ) -> Result<Self, GpuError> {
         let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
         gpu.take_memory(name, bytes)?;
         let descriptor = wgpu::BufferDescriptor {
             label: Some(name),
             size: bytes,
-            usage: usage | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST | query(usage),
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST
+                | wgpu::BufferUsages::QUERY_RESOLVE,
             mapped_at_creation: false,
         };
         let made = gpu.guarded(name, || gpu.device().create_buffer(&descriptor));
@@ -69,6 +44,16 @@ impl<T: Pod> Buffer<T> {
                 })
             }
         }
+    }
+
+    /// A buffer that holds copies of elements.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn from_slice(gpu: &Gpu, name: &'static str, elements: &[T]) -> Result<Self, GpuError> {
+        let buffer = Self::new(gpu, name, elements.len())?;
+        buffer.write(elements)?;
+        Ok(buffer)
     }
 
     /// Number of elements.
@@ -124,15 +109,6 @@ impl<T: Pod> Buffer<T> {
         let mut batch = Readback::new();
         let part = batch.add(self, count);
         Ok(batch.read(&self.gpu)?.take(part))
-    }
-}
-
-/// Storage may also take the results of queries.
-fn query(usage: wgpu::BufferUsages) -> wgpu::BufferUsages {
-    if usage.contains(wgpu::BufferUsages::STORAGE) {
-        wgpu::BufferUsages::QUERY_RESOLVE
-    } else {
-        wgpu::BufferUsages::empty()
     }
 }
 

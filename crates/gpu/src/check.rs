@@ -55,7 +55,7 @@ fn problems(declaration: &Declaration) -> Vec<String> {
             problems.push(format!("{} at {} is not used by the shader", declared.name, declared.index));
         }
     }
-    let storage = declaration.bindings.iter().filter(|binding| binding.access != Access::Uniform).count();
+    let storage = declaration.bindings.len();
     let most = wgpu::Limits::default().max_storage_buffers_per_shader_stage as usize;
     if storage > most {
         problems.push(format!("{storage} storage buffers, at most {most} are portable"));
@@ -76,7 +76,6 @@ fn compare_variable(
         problems.push(format!("{name} at {} is declared as {}", declared.index, declared.name));
     }
     let access = match space {
-        AddressSpace::Uniform => Some(Access::Uniform),
         AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => Some(Access::ReadWrite),
         AddressSpace::Storage { .. } => Some(Access::Read),
         _ => None,

@@ -9,8 +9,6 @@ use crate::{Gpu, GpuError, Layout, Timer};
 /// How a kernel uses a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
-    /// `var<uniform>`.
-    Uniform,
     /// `var<storage, read>`.
     Read,
     /// `var<storage, read_write>`.
@@ -59,7 +57,7 @@ pub trait Bindings {
 /// kernel! {
 ///     /// What it does.
 ///     pub struct Name in "module" (LINKED_TEXT), entry "name" {
-///         0 step: Uniform Step,
+///         0 step: Read Step,
 ///         1 positions: Read f32,
 ///         2 velocities: ReadWrite f32,
 ///     }
@@ -186,7 +184,6 @@ fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> R
 
 fn entry_of(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
     let ty = match binding.access {
-        Access::Uniform => wgpu::BufferBindingType::Uniform,
         Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
         Access::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
     };
