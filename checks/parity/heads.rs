@@ -124,6 +124,12 @@ pub fn heads() -> Vec<Head> {
             settings: with(|settings| settings.iterations = 7),
         },
         Head {
+            name: "the shortest step",
+            guides: ball(20, 10),
+            colliders: vec![skull(0.3)],
+            settings: with(|settings| settings.time_step = 1e-5),
+        },
+        Head {
             name: "the fewest cells",
             guides: ball(20, 8),
             colliders: vec![skull(0.3)],

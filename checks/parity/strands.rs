@@ -11,9 +11,6 @@ use crate::heads::{Head, apart, drive, heads, mean_apart};
 
 /// Rounding of positions of some decimetres \[m\], over a few operations.
 const PLACE: f32 = 1e-6;
-/// The same over a step of 1/60 s \[m/s\].
-const SPEED: f32 = 60.0 * PLACE;
-
 fn obstacles<'a>(solver: &'a Solver, state: &State) -> Obstacles<'a> {
     Obstacles {
         colliders: solver.colliders(),
@@ -58,7 +55,8 @@ fn pose_roots_agrees() {
                 head.name
             );
             let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);
-            assert!(speed < SPEED, "{}: {speed}", head.name);
+            // The same over the length of a step.
+            assert!(speed < PLACE / head.settings.time_step, "{}: {speed}", head.name);
         });
     }
 }
@@ -88,7 +86,7 @@ fn constrain_agrees() {
                 _ => 1e-3,
             };
             assert!(distance < limit, "{}: {distance}", head.name);
-            assert!(speed < 60.0 * limit, "{}: {speed}", head.name);
+            assert!(speed < limit / head.settings.time_step, "{}: {speed}", head.name);
             let mean = mean_apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
             assert!(mean < 1e-5, "{}: {mean}", head.name);
         });

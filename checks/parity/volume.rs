@@ -1,6 +1,7 @@
 //! The stages of the fluid volume.
 
 use strandline_checks::gpu;
+use strandline_groom::LANES;
 use strandline_sim::cpu::{
     Kind, Obstacles, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
     pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
@@ -34,6 +35,12 @@ fn obstacles<'a>(solver: &'a Solver, state: &State) -> Obstacles<'a> {
 
 fn splat_cpu(solver: &Solver, state: &State, volume: &mut Volume) {
     splat(volume, state.predicted(), &state.velocities, &solver.rest().mass);
+}
+
+/// The fastest point \[m/s\], 10 at least: what velocities are rounded by.
+fn fastest(state: &State) -> f32 {
+    let speeds = state.velocities.iter().flat_map(|lanes| (0..LANES).map(|lane| lanes.get(lane).length()));
+    speeds.fold(10.0, f32::max)
 }
 
 /// The largest difference of the velocities of all faces \[m/s\], and of their changes.
@@ -82,9 +89,10 @@ fn splat_sorts_and_sums_the_same() {
             let first = if range.is_empty() { order.len() } else { range.start };
             assert_eq!(first as u32, volume.sort.start_index()[cell], "{name}, cell {cell}");
         }
-        // Sums of up to some hundred velocities of about 1 m/s in another order.
+        // Sums of up to some hundred velocities in another order, rounded as the fastest of them.
+        let speed = fastest(&state);
         let [velocity, change] = faces_apart(&volume, &probe.faces().unwrap());
-        assert!(velocity < 2e-5 && change == 0.0, "{name}: {velocity}, {change}");
+        assert!(velocity < 2e-5 * speed && change == 0.0, "{name}: {velocity}, {change}");
     }
 }
 
@@ -104,7 +112,9 @@ fn mark_tells_the_same_cells_and_walls() {
             assert_eq!(*kind, volume.kind(cell), "{}, cell {cell}", head.name);
         }
         let differences = faces_apart(&volume, &probe.faces().unwrap());
-        assert!(differences.iter().all(|difference| *difference < 1e-4), "{}: {differences:?}", head.name);
+        // Walls move as fast as hair.
+        let limit = 1e-5 * fastest(&state);
+        assert!(differences.iter().all(|difference| *difference < limit), "{}: {differences:?}", head.name);
     }
 }
 
@@ -279,7 +289,7 @@ fn gather_agrees() {
         let changed = apart(&before, &state.velocities, &head.guides);
         assert!(changed > 1e-3 || head.guides.strand_count() == 1, "{}: {changed}", head.name);
         let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);
-        assert!(speed < 1e-5, "{}: {speed}", head.name);
+        assert!(speed < 1e-6 * fastest(&state), "{}: {speed}", head.name);
     }
 }
 

@@ -1,10 +1,13 @@
 //! The whole step: short runs by points, long ones by statistics.
 
+use glam::Vec3;
 use strandline_body::Pose;
-use strandline_checks::gpu;
-use strandline_sim::Drive;
+use strandline_checks::{gpu, own_gpu};
+use strandline_groom::{Groom, Guides};
+use strandline_sim::gpu::GpuSolver;
+use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
 
-use crate::heads::{apart, drive, heads, mean_apart};
+use crate::heads::{apart, ball, drive, heads, mean_apart};
 
 #[test]
 fn short_runs_agree_by_points() {
@@ -111,4 +114,48 @@ fn steps_may_be_queued_and_a_zero_number_of_them_changes_nothing() {
             ["pose_roots", "integrate", "constrain", "splat", "mark", "solve_pressure", "gather", "advance"];
         assert_eq!(stages, all);
     }
+}
+
+#[test]
+fn more_points_than_a_row_of_workgroups_holds_all_move() {
+    let Some(gpu) = gpu() else { return };
+    // 4.4 million points are 68,750 workgroups of points; a row holds 65,535.
+    let mut groom = Groom::empty(8e-5);
+    for strand in 0..1_100_000 {
+        let root = Vec3::new((strand % 1000) as f32, 0.0, (strand / 1000) as f32) * 1e-3;
+        groom.push([root, root + Vec3::NEG_Y * 0.1]);
+    }
+    let guides = Guides::resample(&groom, 4).unwrap();
+    drop(groom);
+    let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
+    let settings = Settings { volume, iterations: 2, ..Settings::default() };
+    let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
+    let mut expected = solver.rest_state(Pose::IDENTITY);
+    let gpu_solver = GpuSolver::new(&gpu, solver).unwrap();
+    let mut found = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
+    gpu_solver.solver().step(&mut expected, &drive(1));
+    gpu_solver.step(&mut found, &drive(1)).unwrap();
+    let mut moved = expected.clone();
+    found.read_into(&mut moved).unwrap();
+    let distance = apart(&expected.positions, &moved.positions, &guides);
+    // Positions of a metre are rounded to 6e-8 m, a few times.
+    assert!(distance < 2e-6, "{distance}");
+    assert!(apart(&moved.previous_positions, &moved.positions, &guides) > 1e-3, "nothing moved");
+}
+
+#[test]
+fn more_points_than_a_buffer_holds_are_refused_with_the_sizes() {
+    let Some(gpu) = own_gpu() else { return };
+    let guides = ball(8, 4);
+    let settings = Settings {
+        volume: VolumeSettings { cells: [512; 3], ..VolumeSettings::default() },
+        ..Settings::default()
+    };
+    let solver = GpuSolver::new(&gpu, Solver::new(&guides, &settings, Vec::new()).unwrap()).unwrap();
+    let used = gpu.memory_used();
+    let mut state = solver.rest_state(Pose::IDENTITY).unwrap();
+    let error = solver.step(&mut state, &drive(1)).unwrap_err().to_string();
+    assert!(error.contains(&gpu.adapter().name) && error.contains("134217728"), "{error}");
+    drop(state);
+    assert_eq!(gpu.memory_used(), used, "what was had for the refused volume is given back");
 }
