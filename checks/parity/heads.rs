@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, LANES, Vec3Lanes};
+use strandline_sim::cpu::Obstacles;
 use strandline_sim::gpu::GpuSolver;
 use strandline_sim::{Drive, Settings, Solver, State, VolumeSettings};
 
@@ -44,6 +45,16 @@ pub fn drive(step: usize) -> Drive {
     Drive {
         world_from_head: Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), turned),
         wind: Vec3::new(0.4, 0.1, -0.2),
+    }
+}
+
+/// The solids in the sixth step.
+pub fn obstacles<'a>(solver: &'a Solver, state: &State) -> Obstacles<'a> {
+    Obstacles {
+        colliders: solver.colliders(),
+        start: state.world_from_head,
+        end: drive(6).world_from_head,
+        time_step: solver.settings().time_step,
     }
 }
 

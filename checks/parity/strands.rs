@@ -2,24 +2,15 @@
 
 use strandline_checks::gpu;
 use strandline_sim::cpu::{
-    Obstacles, advance::advance, constrain::constrain, integrate::integrate, pose_roots::pose_roots,
+    advance::advance, constrain::constrain, integrate::integrate, pose_roots::pose_roots,
 };
 use strandline_sim::gpu::Probe;
 use strandline_sim::{Solver, State};
 
-use crate::heads::{Head, apart, drive, heads, mean_apart};
+use crate::heads::{Head, apart, drive, heads, mean_apart, obstacles};
 
 /// Rounding of positions of some decimetres \[m\], over a few operations.
 const PLACE: f32 = 1e-6;
-fn obstacles<'a>(solver: &'a Solver, state: &State) -> Obstacles<'a> {
-    Obstacles {
-        colliders: solver.colliders(),
-        start: state.world_from_head,
-        end: drive(6).world_from_head,
-        time_step: solver.settings().time_step,
-    }
-}
-
 /// Runs the stages before `last` on the CPU, then `last` on both.
 fn both(head: &Head, last: &str, compare: impl Fn(&Solver, &State, &Probe)) {
     let Some(gpu) = gpu() else { return };

@@ -3,13 +3,13 @@
 use strandline_checks::gpu;
 use strandline_groom::LANES;
 use strandline_sim::cpu::{
-    Kind, Obstacles, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
+    Kind, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
     pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
 };
-use strandline_sim::gpu::{Gradient, Probe, Spread};
+use strandline_sim::gpu::{GpuSolver, Gradient, Probe, Spread};
 use strandline_sim::{Preconditioner, Solver, State, VolumeSettings};
 
-use crate::heads::{Head, apart, drive, heads};
+use crate::heads::{Head, apart, drive, heads, obstacles};
 
 /// Everything up to the volume on the CPU, and an empty volume.
 fn constrained(head: &Head) -> (Solver, State, Volume) {
@@ -22,15 +22,6 @@ fn constrained(head: &Head) -> (Solver, State, Volume) {
     let volume =
         Volume::new(&head.settings.volume, head.guides.strand_count(), head.guides.points_per_strand());
     (solver, state, volume)
-}
-
-fn obstacles<'a>(solver: &'a Solver, state: &State) -> Obstacles<'a> {
-    Obstacles {
-        colliders: solver.colliders(),
-        start: state.world_from_head,
-        end: drive(6).world_from_head,
-        time_step: solver.settings().time_step,
-    }
 }
 
 fn splat_cpu(solver: &Solver, state: &State, volume: &mut Volume) {
@@ -126,6 +117,15 @@ fn marked(head: &Head) -> (Solver, State, Volume) {
     (solver, state, volume)
 }
 
+/// The same volume, solved on the device.
+fn solved<'a>(solver: &'a GpuSolver, state: &State, volume: &Volume, spread: Spread) -> Probe<'a> {
+    let mut probe = Probe::new(solver, state).unwrap();
+    probe.state.set_spread(spread);
+    probe.set_volume(volume).unwrap();
+    probe.run(&drive(6), &["solve_pressure"]).unwrap();
+    probe
+}
+
 #[test]
 fn solve_pressure_agrees_in_every_way_to_run_it() {
     let Some(gpu) = gpu() else { return };
@@ -172,10 +172,7 @@ fn a_solve_that_may_not_go_on_stops_and_says_so() {
     let expected = solve_pressure(&mut volume.clone());
     let gpu_solver = head.gpu_solver(&gpu);
     for spread in [Spread::One, Spread::Many] {
-        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-        probe.state.set_spread(spread);
-        probe.set_volume(&volume).unwrap();
-        probe.run(&drive(6), &["solve_pressure"]).unwrap();
+        let probe = solved(&gpu_solver, &state, &volume, spread);
         let (_, found) = probe.pressure().unwrap();
         assert_eq!(found.iterations, 3, "{spread:?}");
         let relative = found.residual / found.first;
@@ -230,20 +227,15 @@ fn rooms_without_air_are_levelled() {
             closed.set_kind(cell, Kind::Solid);
         }
     }
-    for (name, volume) in [("closed", closed)] {
-        let mut solved = volume.clone();
-        let expected = solve_pressure(&mut solved);
-        assert!(expected.fluid_cells > 10 && expected.relative_residual <= 1e-5, "{name}: {expected:?}");
-        for spread in [Spread::One, Spread::Many] {
-            let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-            probe.state.set_spread(spread);
-            probe.set_volume(&volume).unwrap();
-            probe.run(&drive(6), &["solve_pressure"]).unwrap();
-            let (_, found) = probe.pressure().unwrap();
-            assert!(found.residual <= 1e-5 * found.first, "{name}: {found:?}");
-            let [velocity, _] = faces_apart(&solved, &probe.faces().unwrap());
-            assert!(velocity < 1e-3, "{name}: {velocity}");
-        }
+    let mut expected_faces = closed.clone();
+    let expected = solve_pressure(&mut expected_faces);
+    assert!(expected.fluid_cells > 10 && expected.relative_residual <= 1e-5, "{expected:?}");
+    for spread in [Spread::One, Spread::Many] {
+        let probe = solved(&gpu_solver, &state, &closed, spread);
+        let (_, found) = probe.pressure().unwrap();
+        assert!(found.residual <= 1e-5 * found.first, "{spread:?}: {found:?}");
+        let [velocity, _] = faces_apart(&expected_faces, &probe.faces().unwrap());
+        assert!(velocity < 1e-3, "{spread:?}: {velocity}");
     }
 }
 
@@ -261,10 +253,7 @@ fn nothing_to_solve_is_solved() {
         }
         assert_eq!(solve_pressure(&mut volume.clone()).iterations, 0);
         for spread in [Spread::One, Spread::Many] {
-            let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-            probe.state.set_spread(spread);
-            probe.set_volume(&volume).unwrap();
-            probe.run(&drive(6), &["solve_pressure"]).unwrap();
+            let probe = solved(&gpu_solver, &state, &volume, spread);
             let (_, found) = probe.pressure().unwrap();
             assert_eq!((found.iterations, found.fluid_cells), (0, 0));
             assert_eq!(faces_apart(&volume, &probe.faces().unwrap()), [0.0; 2]);

@@ -1,14 +1,24 @@
 //! Links the WESL modules of the stages into one WGSL text each.
 
 /// Modules with entry points; the others are imported by them.
-const STAGES: [&str; 9] =
-    ["pose_roots", "integrate", "constrain", "splat", "mark", "solve_pressure", "gather", "advance", "scan"];
+const MODULES: [&str; 10] = [
+    "pose_roots",
+    "integrate",
+    "constrain",
+    "splat",
+    "mark",
+    "solve_pressure",
+    "gather",
+    "advance",
+    "scan",
+    "rooms",
+];
 
 fn main() {
     println!("cargo::rerun-if-changed=src/gpu");
     let linker = wesl::Wesl::new("src/gpu");
-    for stage in STAGES {
-        let module = format!("package::{stage}").parse().expect("the name of a stage is a path");
-        linker.build_artifact(&module, stage);
+    for name in MODULES {
+        let module = format!("package::{name}").parse().expect("a name is a path");
+        linker.build_artifact(&module, name);
     }
 }

@@ -59,12 +59,12 @@ kernel! {
 
 kernel! {
     /// Rooms without a way to air; one workgroup.
-    pub(super) struct LevelRooms in "solve_pressure" (super::linked::SOLVE_PRESSURE), entry "level_rooms" {
+    pub(super) struct LevelRooms in "rooms" (super::linked::ROOMS), entry "level_rooms" {
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,
         3 neighbours: ReadWrite u32,
-        7 unknowns: Read u32,
-        9 rooms: ReadWrite u32,
+        4 unknowns: Read u32,
+        5 rooms: ReadWrite u32,
     }
 }
 
