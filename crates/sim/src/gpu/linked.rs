@@ -18,6 +18,7 @@ modules! {
     SPLAT = "splat",
     SCAN = "scan",
     MARK = "mark",
+    PCG = "pcg",
     ROOMS = "rooms",
     SOLVE_PRESSURE = "solve_pressure",
     GATHER = "gather",

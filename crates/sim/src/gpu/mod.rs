@@ -10,6 +10,7 @@ mod gather;
 mod integrate;
 mod linked;
 mod mark;
+mod pcg;
 mod pose_roots;
 mod probe;
 mod scan;
@@ -24,8 +25,9 @@ mod volume;
 
 use buffers::Buffers;
 pub use linked::modules;
+pub use pcg::Spread;
 pub use probe::Probe;
-pub use solve_pressure::{Gradient, PressureState, Spread};
+pub use solve_pressure::{Gradient, PressureState};
 pub use solver::{GpuSolver, declarations};
 pub use state::{Costs, GpuState};
 use strandline_groom::LANES;

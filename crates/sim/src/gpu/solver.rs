@@ -3,7 +3,9 @@ use strandline_gpu::{Bindings, Declaration, Gpu, GpuError};
 
 use super::buffers::Buffers;
 use super::scan::Scan;
-use super::{GpuState, advance, constrain, gather, integrate, mark, pose_roots, scan, solve_pressure, splat};
+use super::{
+    GpuState, advance, constrain, gather, integrate, mark, pcg, pose_roots, scan, solve_pressure, splat,
+};
 use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport};
 
 /// A solver whose stages run on a GPU.
@@ -158,10 +160,10 @@ pub fn declarations() -> Vec<Declaration> {
         mark::CarryWalls::declaration(),
         solve_pressure::Assemble::declaration(),
         solve_pressure::LevelRooms::declaration(),
-        solve_pressure::Search::declaration(),
-        solve_pressure::Update::declaration(),
-        solve_pressure::SmoothResidual::declaration(),
-        solve_pressure::Finish::declaration(),
+        pcg::Search::declaration(),
+        pcg::Update::declaration(),
+        pcg::SmoothResidual::declaration(),
+        pcg::Finish::declaration(),
         solve_pressure::SubtractGradient::declaration(),
         gather::Gather::declaration(),
         advance::Advance::declaration(),

@@ -2,8 +2,9 @@
 
 use strandline_gpu::{Buffer, Gpu, GpuError, mirror};
 
+use super::pcg::{MOST_WORKGROUPS, Spread};
 use super::scan::Scan;
-use super::solve_pressure::{Gradient, MOST_WORKGROUPS, PressureState, Spread};
+use super::solve_pressure::{Gradient, PressureState};
 use super::{LANES, THREADS};
 use crate::cpu::grid::{Grid, MIN_SPACING, ladder};
 
