@@ -1,4 +1,7 @@
 //! The pressure system against closed forms, and the counts of its solver.
+//!
+//! On the CPU, whose solver takes any right-hand side; parity holds the kernels to the same pressures
+//! and counts.
 
 use std::f64::consts::PI;
 

@@ -69,8 +69,9 @@ impl Gpu {
         adapters().into_iter().map(|(_, adapter)| adapter).collect()
     }
 
-    /// A host's own device and queue. The host keeps its error handlers; the device needs WebGPU's
-    /// default limits, and `TIMESTAMP_QUERY` for times.
+    /// A host's own device and queue. The host keeps its error handlers and its callback, so that the
+    /// loss of the device shows as [`GpuError::Refused`] here; the device needs WebGPU's default
+    /// limits, and `TIMESTAMP_QUERY` for times.
     pub fn from_parts(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let adapter = Adapter::new(0, &device.adapter_info());
         Self::new(device, queue, adapter, Arc::default())
