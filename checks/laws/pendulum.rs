@@ -183,7 +183,7 @@ const SAGS: [(f32, f32); 4] = [(0.4, 0.429_992_3), (0.6, 0.363_835_1), (0.8, 0.2
 law! {
     fn a_rope_held_at_both_ends_hangs_in_a_catenary(on) {
         let settings = Settings { damping: 4.0, ..bare(1.0 / 600.0, 200) };
-        // A software adapter takes its time: the first and the last on a GPU.
+        // A software adapter takes its time: the first and the last.
         for (span, sag) in SAGS.into_iter().step_by(on.either(1, 3)) {
             let error = sag_error(on, span, sag, &settings);
             // 0.2 %: reference/README.md for lengths that are exact, as 200 rounds at 1/600 s make them.

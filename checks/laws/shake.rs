@@ -20,8 +20,8 @@ fn mean_square_speed(state: &State) -> f32 {
     (sum / (state.velocities.len() * LANES) as f64) as f32
 }
 
-/// Largest mean square speed over 60 s of a shake of 20 g at 5 Hz; on a GPU 2 s, which on a software
-/// adapter take longer.
+/// Largest mean square speed over 60 s of a shake of 20 g at 5 Hz; on a software adapter 2 s, which
+/// take longer there.
 fn shaken(on: &On, settings: &Settings) -> f32 {
     let hair = ball_of_hair(64, 12, 0.3);
     let solver = Solver::new(&hair, settings, vec![skull(0.3)]).unwrap();

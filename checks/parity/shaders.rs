@@ -64,6 +64,11 @@ fn a_wrong_access_name_number_or_type_is_found() {
     wrong.bindings[3].name = "speeds";
     assert!(complaints(&wrong).contains("velocities at 3 is declared as speeds"));
 
+    // The end of a name is not the name.
+    let mut wrong = declaration("pose_roots");
+    wrong.bindings[1].name = "positions";
+    assert!(complaints(&wrong).contains("rest_positions at 2 is declared as positions"));
+
     let mut wrong = declaration("gather");
     wrong.bindings[4].index = 9;
     let found = complaints(&wrong);

@@ -15,11 +15,11 @@ pub enum On {
 }
 
 impl On {
-    /// One number for the CPU and one for a GPU, where a software adapter would take too long.
-    pub fn either<T>(&self, cpu: T, gpu: T) -> T {
+    /// One number, and a smaller one for a software adapter, which would take too long.
+    pub fn either<T>(&self, full: T, software: T) -> T {
         match self {
-            Self::Cpu => cpu,
-            Self::Gpu(_) => gpu,
+            Self::Gpu(gpu) if gpu.adapter().software => software,
+            _ => full,
         }
     }
 }

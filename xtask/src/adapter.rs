@@ -57,7 +57,7 @@ pub fn plan(setup: bool, required: bool, machine: Machine) -> Plan {
 /// tests cannot start.
 pub fn prepare(setup: bool) -> Result<bool, String> {
     let required = std::env::var_os(REQUIRED).is_some_and(|value| value == "1");
-    let adapter = is_there();
+    let adapter = is_there()?;
     match plan(setup, required, look(adapter)) {
         Plan::Go => Ok(adapter),
         Plan::GiveUp(why) => Err(why.to_owned()),
@@ -66,16 +66,20 @@ pub fn prepare(setup: bool) -> Result<bool, String> {
             if !install(before) {
                 return Err("the package manager could not install the software driver".to_owned());
             }
-            if is_there() { Ok(true) } else { Err("the software driver shows no adapter".to_owned()) }
+            if is_there()? { Ok(true) } else { Err("the software driver shows no adapter".to_owned()) }
         }
     }
 }
 
-/// Asks the kit for the adapters, and prints them.
-fn is_there() -> bool {
+/// Asks the kit for the adapters, and prints them; why it cannot be asked.
+fn is_there() -> Result<bool, String> {
     println!("\n== adapters");
     let list = ["run", "--quiet", "--package", "strandline-gpu", "--example", "adapters"];
-    cargo_command(&list).status().is_ok_and(|status| status.success())
+    match cargo_command(&list).status().map(|status| status.code()) {
+        Ok(Some(0)) => Ok(true),
+        Ok(Some(1)) => Ok(false),
+        _ => Err("the list of adapters does not build or run".to_owned()),
+    }
 }
 
 fn look(adapter: bool) -> Machine {

@@ -140,7 +140,7 @@ pub struct ShaderOptions {
 
 #[derive(Args, Debug)]
 pub struct BenchOptions {
-    /// The thesis's tables 2, 3 and 4 beside ours, or how cost grows with strands and cells.
+    /// The thesis's tables 1 to 4 beside ours, or how cost grows with strands and cells.
     #[arg(value_enum, default_value = "thesis")]
     pub what: Bench,
     /// Which GPU is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,

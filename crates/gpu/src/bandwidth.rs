@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use crate::{Buffer, Gpu, GpuError};
 
-/// Bytes copied at once: more than any cache holds.
+/// Bytes copied at once: more than most caches hold, less than a buffer may.
 const BYTES: usize = 64 << 20;
 
 impl Gpu {

@@ -21,6 +21,7 @@ impl<T: Pod> Buffer<T> {
     /// It is larger than WebGPU's default limits allow, or the device has no memory left.
     pub fn new(gpu: &Gpu, name: &'static str, len: usize) -> Result<Self, GpuError> {
         let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
+        gpu.check_size(name, bytes)?;
         gpu.take_memory(name, bytes)?;
         let descriptor = wgpu::BufferDescriptor {
             label: Some(name),

@@ -71,7 +71,6 @@ fn compare_variable(
     ty: Handle<Type>,
     problems: &mut Vec<String>,
 ) {
-    // Names of imported modules come before the variable's own.
     if !is_named(name, declared.name) {
         problems.push(format!("{name} at {} is declared as {}", declared.index, declared.name));
     }
@@ -97,8 +96,9 @@ fn compare_variable(
     compare_type(module, &declared.layout, element, declared.name, problems);
 }
 
+/// Whether a name is the declared one; names of imported modules stand before it.
 fn is_named(found: &str, declared: &str) -> bool {
-    found == declared || found.ends_with(&format!("_{declared}")) || found.ends_with(&format!("1{declared}"))
+    found == declared || (found.starts_with("package_") && found.ends_with(&format!("_{declared}")))
 }
 
 fn size_of_layout(layout: &Layout) -> usize {

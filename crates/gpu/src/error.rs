@@ -33,13 +33,13 @@ pub enum GpuError {
         reason: String,
     },
     /// The adapter has no memory left.
-    #[error("{adapter}: out of memory: {what} of {bytes} bytes was refused")]
+    #[error("{adapter}: out of memory: {what}{} was refused", sized(*bytes))]
     OutOfMemory {
         /// The adapter's name.
         adapter: String,
         /// What was to be stored.
         what: String,
-        /// Its size.
+        /// Its size; 0 where the driver does not tell what it lacked.
         bytes: u64,
     },
     /// A shader that the driver does not take.
@@ -62,6 +62,10 @@ pub enum GpuError {
         /// What the device says.
         message: String,
     },
+}
+
+fn sized(bytes: u64) -> String {
+    if bytes == 0 { String::new() } else { format!(" of {bytes} bytes") }
 }
 
 fn found(offered: &[Adapter]) -> String {

@@ -88,13 +88,19 @@ impl Gpu {
         Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory, kernels }) }
     }
 
+    /// The first that suits and starts; else why the first of them did not.
     fn choose(wanted: &str, suits: impl Fn(&Adapter) -> bool) -> Result<Self, GpuError> {
         let adapters = adapters();
         let offered: Vec<Adapter> = adapters.iter().map(|(_, adapter)| adapter.clone()).collect();
-        let Some((found, adapter)) = adapters.into_iter().find(|(_, adapter)| suits(adapter)) else {
-            return Err(GpuError::NoAdapter { wanted: wanted.to_owned(), offered });
-        };
-        Self::start(&found, adapter)
+        let mut refused = GpuError::NoAdapter { wanted: wanted.to_owned(), offered };
+        for (found, adapter) in adapters.into_iter().filter(|(_, adapter)| suits(adapter)) {
+            match Self::start(&found, adapter) {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) if matches!(refused, GpuError::NoAdapter { .. }) => refused = error,
+                Err(_) => {}
+            }
+        }
+        Err(refused)
     }
 
     fn start(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
@@ -186,16 +192,27 @@ impl Gpu {
         let memory = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.device().push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
-        let result = run();
+        let ran = self.surviving(run);
         let pops = [
             pollster::block_on(validation.pop()),
             pollster::block_on(internal.pop()),
             pollster::block_on(memory.pop()),
         ];
-        match pops.into_iter().flatten().next() {
-            None => self.check().map(|()| result),
+        match pops.into_iter().flatten().next().filter(|_| ran.is_ok()) {
+            None => ran.and_then(|result| self.check().map(|()| result)),
             Some(error) => Err(self.refusal(what, &error)),
         }
+    }
+
+    /// Runs what ends in a panic when the driver says that the device is gone: wgpu takes that for
+    /// fatal where it waits. Nothing of ours is left half done, since it is not used afterwards.
+    fn surviving<T>(&self, run: impl FnOnce() -> T) -> Result<T, GpuError> {
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).map_err(|panic| {
+            let said = panic.downcast_ref::<String>().map(String::as_str);
+            let said = said.or(panic.downcast_ref::<&str>().copied()).unwrap_or("the driver gave up");
+            note(&self.shared.lost, said.to_owned());
+            GpuError::Lost { adapter: self.name(), reason: said.to_owned() }
+        })
     }
 
     fn refusal(&self, what: &str, error: &wgpu::Error) -> GpuError {
@@ -216,19 +233,24 @@ impl Gpu {
     pub fn wait(&self) -> Result<(), GpuError> {
         self.check()?;
         let patience = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
-        let polled = self.device().poll(patience);
+        let polled = self.surviving(|| self.device().poll(patience))?;
         self.check()?;
         polled.map(drop).map_err(|error| GpuError::Lost { adapter: self.name(), reason: error.to_string() })
     }
 
-    /// Takes bytes for a buffer, if they may be had.
-    pub(crate) fn take_memory(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
+    /// Checks that a buffer may be as large as WebGPU's default limits allow.
+    pub(crate) fn check_size(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
         let limits = wgpu::Limits::default();
         let limit = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        if bytes > limit {
-            let what = format!("a buffer of bytes for {what}");
-            return Err(GpuError::Limit { adapter: self.name(), what, needed: bytes, limit });
+        if bytes <= limit {
+            return Ok(());
         }
+        let what = format!("a buffer of bytes for {what}");
+        Err(GpuError::Limit { adapter: self.name(), what, needed: bytes, limit })
+    }
+
+    /// Takes bytes of memory, if they may be had.
+    pub(crate) fn take_memory(&self, what: &str, bytes: u64) -> Result<(), GpuError> {
         let mut memory = self.memory();
         if bytes > memory.most.saturating_sub(memory.used) {
             return Err(GpuError::OutOfMemory { adapter: self.name(), what: what.to_owned(), bytes });

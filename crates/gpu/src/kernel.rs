@@ -112,7 +112,8 @@ impl<B: Bindings<Kernel = B>> Kernel<B> {
     /// The driver does not take it, or the device was lost.
     pub fn new(gpu: &Gpu, constants: &[(&str, f64)]) -> Result<Self, GpuError> {
         let declaration = B::declaration();
-        let key = format!("{}::{} {constants:?}", declaration.module, declaration.entry);
+        // The text is static: its place stands for it.
+        let key = format!("{:p} {} {constants:?}", declaration.source, declaration.entry);
         let compiled = gpu.kernel(key, || compile(gpu, &declaration, constants))?;
         Ok(Self { compiled, bindings: PhantomData })
     }

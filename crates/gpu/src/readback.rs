@@ -53,6 +53,13 @@ impl<'a> Readback<'a> {
         if self.bytes == 0 {
             return Ok(Copied { bytes: Vec::new() });
         }
+        gpu.take_memory("the copy back", self.bytes as u64)?;
+        let copied = self.copy(gpu);
+        gpu.give_memory_back(self.bytes as u64);
+        copied
+    }
+
+    fn copy(&self, gpu: &Gpu) -> Result<Copied, GpuError> {
         let staging = gpu.guarded("readback", || {
             let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),

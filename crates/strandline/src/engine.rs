@@ -145,18 +145,24 @@ fn run_on_gpu(
     state: &mut State,
 ) -> Result<Vec<StepReport>, SimError> {
     let begin = Instant::now();
+    if drives.is_empty() {
+        return Ok(Vec::new());
+    }
+    // A run that failed may have left the device ahead of the state.
+    if device.time() != state.time {
+        device.write(solver, state)?;
+        solver.reports(device)?;
+    }
     for drive in drives {
         solver.step(device, drive)?;
     }
     let mut reports = solver.reports(device)?;
-    if !drives.is_empty() {
-        let each = begin.elapsed().as_secs_f64() / drives.len() as f64;
-        // A device without timestamps: the wait for it is all that is known.
-        for report in reports.iter_mut().filter(|report| report.seconds.is_empty()) {
-            report.seconds.push(("step", each));
-        }
-        device.read_into(state)?;
+    let each = begin.elapsed().as_secs_f64() / drives.len() as f64;
+    // A device without timestamps: the wait for it is all that is known.
+    for report in reports.iter_mut().filter(|report| report.seconds.is_empty()) {
+        report.seconds.push(("step", each));
     }
+    device.read_into(state)?;
     Ok(reports)
 }
 

@@ -144,6 +144,7 @@ impl Hair {
     /// # Errors
     /// As [`Hair::step`].
     pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Result<Vec<StepReport>, Error> {
+        let before = self.clock;
         let ticks = self.clock.advance(seconds);
         let waited = f64::from(ticks.share) * self.clock.step_time(1);
         let drive = |step| {
@@ -153,7 +154,13 @@ impl Hair {
             Drive { world_from_head: pose(share as f32), wind: self.wind }
         };
         let drives: Vec<Drive> = (0..ticks.count).map(drive).collect();
-        let reports = self.engine.run(&drives)?;
+        let reports = match self.engine.run(&drives) {
+            Ok(reports) => reports,
+            Err(error) => {
+                self.clock = before;
+                return Err(error.into());
+            }
+        };
         for drive in &drives {
             self.poses = [self.poses[1], drive.world_from_head];
         }

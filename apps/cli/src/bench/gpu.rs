@@ -56,6 +56,9 @@ impl Device {
             println!("no hardware GPU is measured: its columns are left out");
             return Ok(None);
         };
+        if !gpu.has_timestamps() {
+            anyhow::bail!("{} offers no timestamps to measure by", gpu.adapter());
+        }
         let copies = if quick { 4 } else { 128 };
         let adapter = Adapter {
             name: gpu.adapter().to_string(),

@@ -2,8 +2,8 @@
 
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel, mirror};
 
+use super::inputs::Step;
 use super::solve_pressure::PressureState;
-use super::uniform::Step;
 use super::{Buffers, Dispatches, THREADS};
 
 mirror! {
@@ -22,7 +22,7 @@ kernel! {
     /// One thread is one strand.
     pub(super) struct Advance in "advance" (super::linked::ADVANCE), entry "advance" {
         0 step: Read Step,
-        1 solids: Read [f32; 4],
+        1 solids: Read [u32; 4],
         2 rest_positions: Read f32,
         3 rest: Read f32,
         4 predicted: ReadWrite f32,

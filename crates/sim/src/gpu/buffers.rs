@@ -4,8 +4,8 @@ use strandline_gpu::{Buffer, Gpu};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
 use super::advance::Report;
+use super::inputs::Step;
 use super::solve_pressure::PressureState;
-use super::uniform::Step;
 use super::volume::Volume;
 use super::{THREADS, solids};
 use crate::{SimError, Solver, State};
@@ -29,7 +29,7 @@ pub(super) struct Buffers {
     pub springs: Buffer<f32>,
     /// \[kg\]
     pub mass: Buffer<f32>,
-    pub solids: Buffer<[f32; 4]>,
+    pub solids: Buffer<[u32; 4]>,
     /// Positions \[m\] of the last two steps; which is the newer changes with every step.
     pub places: [Buffer<f32>; 2],
     /// \[m/s\]

@@ -2,14 +2,14 @@
 
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
 
-use super::uniform::Step;
+use super::inputs::Step;
 use super::{Buffers, Dispatches, THREADS};
 
 kernel! {
     /// One thread is one strand.
     pub(super) struct Constrain in "constrain" (super::linked::CONSTRAIN), entry "constrain" {
         0 step: Read Step,
-        1 solids: Read [f32; 4],
+        1 solids: Read [u32; 4],
         3 rest: Read f32,
         4 positions: Read f32,
         5 predicted: ReadWrite f32,

@@ -2,7 +2,7 @@
 
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
 
-use super::uniform::Step;
+use super::inputs::Step;
 use super::volume::GridState;
 use super::{Buffers, Dispatches, THREADS};
 

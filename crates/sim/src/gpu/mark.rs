@@ -2,7 +2,7 @@
 
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
 
-use super::uniform::Step;
+use super::inputs::Step;
 use super::volume::GridState;
 use super::{Buffers, Dispatches, THREADS};
 
@@ -10,7 +10,7 @@ kernel! {
     /// One thread is one cell.
     pub(super) struct Mark in "mark" (super::linked::MARK), entry "mark" {
         0 step: Read Step,
-        1 solids: Read [f32; 4],
+        1 solids: Read [u32; 4],
         2 grid: Read GridState,
         3 start_index: Read u32,
         4 kinds: ReadWrite u32,
@@ -22,7 +22,7 @@ kernel! {
     /// Faces of solids take the solid's velocity; one thread is one cell.
     pub(super) struct CarryWalls in "mark" (super::linked::MARK), entry "carry_walls" {
         0 step: Read Step,
-        1 solids: Read [f32; 4],
+        1 solids: Read [u32; 4],
         2 grid: Read GridState,
         4 kinds: ReadWrite u32,
         6 faces: ReadWrite [f32; 2],

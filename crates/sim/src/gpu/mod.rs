@@ -7,6 +7,7 @@ mod advance;
 mod buffers;
 mod constrain;
 mod gather;
+mod inputs;
 mod integrate;
 mod linked;
 mod mark;
@@ -20,7 +21,7 @@ mod solver;
 mod splat;
 mod state;
 mod step;
-mod uniform;
+
 mod volume;
 
 use buffers::Buffers;

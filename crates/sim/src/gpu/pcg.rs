@@ -3,8 +3,8 @@
 use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, kernel};
 
 use super::Dispatches;
+use super::inputs::Step;
 use super::solve_pressure::PressureState;
-use super::uniform::Step;
 use super::volume::{GridState, Volume};
 use crate::Preconditioner;
 use crate::cpu::pcg::CHEBYSHEV_STEPS;

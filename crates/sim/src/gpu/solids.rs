@@ -32,7 +32,7 @@ struct Header {
 const HEADER: usize = size_of::<Header>() / size_of::<[f32; 4]>();
 
 /// Headers of all colliders, then the nodes of the grids among them.
-pub(super) fn upload(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<[f32; 4]>, SimError> {
+pub(super) fn upload(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<[u32; 4]>, SimError> {
     let mut headers = Vec::new();
     let mut nodes: Vec<[f32; 4]> = Vec::new();
     for collider in colliders {
@@ -57,8 +57,8 @@ pub(super) fn upload(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<[f32; 4
         }
         headers.push(header);
     }
-    let mut all: Vec<[f32; 4]> = bytemuck::cast_slice(&headers).to_vec();
-    all.extend(nodes);
+    let mut all: Vec<[u32; 4]> = bytemuck::cast_slice(&headers).to_vec();
+    all.extend(nodes.iter().map(|node| node.map(f32::to_bits)));
     Ok(Buffer::from_slice(gpu, "solids", &all)?)
 }
 

@@ -37,7 +37,8 @@ impl GpuSolver {
     /// Compiles the kernels for a solver.
     ///
     /// # Errors
-    /// MIC(0), which is for the CPU only; whatever the device refuses.
+    /// MIC(0), which is for the CPU only; more than 2,000 iterations of the pressure solve; whatever the
+    /// device refuses.
     pub fn new(gpu: &Gpu, solver: Solver) -> Result<Self, SimError> {
         check(&solver.settings)?;
         let kernels = Kernels {
@@ -107,7 +108,8 @@ impl GpuSolver {
     /// for. Now and then, when the device holds as many reports as it can, they are read.
     ///
     /// # Errors
-    /// The device has no memory left or was lost; the state is then of no use.
+    /// The device has no memory left or was lost; then nothing is known of the state until
+    /// [`GpuState::write`] replaces it.
     pub fn step(&self, state: &mut GpuState, drive: &Drive) -> Result<(), SimError> {
         super::step::step(self, state, drive)
     }
@@ -121,12 +123,22 @@ impl GpuSolver {
     }
 }
 
+/// Most iterations of a solve: one kernel may have to run them all.
+const MOST_ITERATIONS: u32 = 2000;
+
 fn check(settings: &Settings) -> Result<(), SimError> {
     if settings.volume.preconditioner == Preconditioner::Mic0 {
         return Err(SimError::Setting {
             name: "volume.preconditioner",
             found: "mic0, which is a chain from cell to cell".to_owned(),
             expected: "auto, chebyshev, jacobi or none on a GPU",
+        });
+    }
+    if settings.volume.max_iterations > MOST_ITERATIONS {
+        return Err(SimError::Setting {
+            name: "volume.max_iterations",
+            found: settings.volume.max_iterations.to_string(),
+            expected: "1 to 2000 on a GPU, whose driver ends what takes long",
         });
     }
     Ok(())

@@ -2,8 +2,8 @@
 
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
 
+use super::inputs::Step;
 use super::scan::Scan;
-use super::uniform::Step;
 use super::volume::{GridState, SortedPoint};
 use super::{Buffers, Dispatches, THREADS};
 

@@ -3,8 +3,8 @@
 use strandline_gpu::{Recorder, Timer};
 
 use super::buffers::Buffers;
+use super::inputs::Step;
 use super::state::Costs;
-use super::uniform::Step;
 use super::{Dispatches, GpuSolver, GpuState};
 use crate::{Drive, SimError};
 

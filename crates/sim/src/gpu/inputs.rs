@@ -76,7 +76,7 @@ impl Rigid {
 }
 
 impl Step {
-    /// The uniform of a step that starts at a pose of the head.
+    /// What a step needs that starts at a pose of the head.
     pub fn new(solver: &Solver, start: &Pose, drive: &Drive, slot: usize) -> Self {
         let settings = &solver.settings;
         let end = drive.world_from_head;
