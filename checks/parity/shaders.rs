@@ -1,7 +1,13 @@
 //! Kernels against their shaders, without an adapter.
 
-use strandline_gpu::{Access, Declaration, Field, Layout, check};
-use strandline_sim::gpu::{declarations, modules};
+use strandline_gpu::{Access, Declaration, Field, Layout, Scan, check};
+use strandline_render::gpu as render;
+use strandline_sim::gpu as sim;
+
+fn declarations() -> Vec<Declaration> {
+    let all = [sim::declarations(), render::declarations(), Scan::declarations().to_vec()];
+    all.into_iter().flatten().collect()
+}
 
 fn declaration(entry: &str) -> Declaration {
     declarations().into_iter().find(|declaration| declaration.entry == entry).unwrap()
@@ -20,11 +26,12 @@ fn every_kernel_agrees_with_its_shader() {
 
 #[test]
 fn every_entry_point_has_a_kernel() {
-    let known: Vec<&str> = declarations().iter().map(|declaration| declaration.entry).collect();
-    for (module, text) in modules() {
-        let entries: Vec<&str> = text
-            .split("@compute")
-            .skip(1)
+    let all = declarations();
+    let known: Vec<&str> = all.iter().flat_map(|one| [Some(one.entry), one.fragment]).flatten().collect();
+    for (module, text) in sim::modules().into_iter().chain(render::modules()) {
+        let entries: Vec<&str> = ["@compute", "@vertex", "@fragment"]
+            .into_iter()
+            .flat_map(|stage| text.split(stage).skip(1))
             .map(|rest| rest.split("fn ").nth(1).unwrap().split('(').next().unwrap())
             .collect();
         assert!(!entries.is_empty(), "{module} has no entry point");

@@ -1,29 +1,59 @@
 //! Whole pictures of grown styles on the mannequin.
 
-use strandline_body::{Mannequin, Pose};
+use strandline_body::{Mannequin, Mesh, Pose};
+use strandline_checks::gpu;
 use strandline_groom::{Guides, Style, StyleSettings};
+use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, Picture, PictureSettings, Renderer,
 };
 
-use crate::flip::{assert_flip, compare};
+use strandline_checks::flip::{assert_flip, compare};
 
-/// A style of few guides, each with 16 follow strands.
+/// A style of few guides, each with 16 follow strands, and what is needed to draw it.
+struct Sitting {
+    guides: Guides,
+    mesh: Mesh,
+    camera: Camera,
+    lights: [Light; 3],
+}
+
+impl Sitting {
+    fn new(style: Style, points_per_strand: usize, camera: Camera) -> Self {
+        let groom = StyleSettings { strand_count: 1_000, ..StyleSettings::new(style) }.grow().unwrap();
+        Self {
+            guides: Guides::resample(&groom, points_per_strand).unwrap(),
+            mesh: Mannequin::new().mesh(),
+            camera,
+            lights: Light::three_point(camera.target),
+        }
+    }
+
+    fn draw(&self, draw: impl FnOnce(&FrameInput) -> Picture) -> Picture {
+        draw(&FrameInput {
+            positions: self.guides.positions(),
+            world_from_head: Pose::IDENTITY,
+            camera: &self.camera,
+            look: &Look::brown(),
+            body_look: &BodyLook::default(),
+            lights: &self.lights,
+            level_of_detail: &LevelOfDetail::default(),
+        })
+    }
+
+    fn on_cpu(&self, settings: &PictureSettings) -> Picture {
+        let mut renderer = Renderer::new(&self.guides, Some(&self.mesh), settings).unwrap();
+        self.draw(|input| renderer.draw(input).unwrap().0)
+    }
+
+    fn on_gpu(&self, settings: &PictureSettings) -> Option<Picture> {
+        let mut renderer = GpuRenderer::new(&gpu()?, &self.guides, Some(&self.mesh), settings).unwrap();
+        Some(self.draw(|input| renderer.draw(input).unwrap().0))
+    }
+}
+
 fn draw(style: Style, points_per_strand: usize, camera: Camera, settings: PictureSettings) -> Picture {
-    let groom = StyleSettings { strand_count: 1_000, ..StyleSettings::new(style) }.grow().unwrap();
-    let guides = Guides::resample(&groom, points_per_strand).unwrap();
-    let mesh = Mannequin::new().mesh();
-    let mut renderer = Renderer::new(&guides, Some(&mesh), &settings).unwrap();
-    let input = FrameInput {
-        positions: guides.positions(),
-        world_from_head: Pose::IDENTITY,
-        camera: &camera,
-        look: &Look::brown(),
-        body_look: &BodyLook::default(),
-        lights: &Light::three_point(camera.target),
-        level_of_detail: &LevelOfDetail::default(),
-    };
-    renderer.draw(&input).unwrap().0
+    Sitting::new(style, points_per_strand, camera).on_cpu(&settings)
 }
 
 /// Machines differ in the last bits of powers and exponentials: that moves single samples at
@@ -33,8 +63,12 @@ const MEAN: f32 = 0.01;
 const ONE_IN_A_HUNDRED: f32 = 0.15;
 
 fn check(name: &str, style: Style, points_per_strand: usize, camera: Camera) {
-    let picture = draw(style, points_per_strand, camera, PictureSettings::sized(256, 256));
-    assert_flip(&picture, name, MEAN, ONE_IN_A_HUNDRED);
+    let sitting = Sitting::new(style, points_per_strand, camera);
+    let settings = PictureSettings::sized(256, 256);
+    assert_flip(&sitting.on_cpu(&settings), name, MEAN, ONE_IN_A_HUNDRED);
+    if let Some(picture) = sitting.on_gpu(&settings) {
+        assert_flip(&picture, name, MEAN, ONE_IN_A_HUNDRED);
+    }
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! pictures
 
 mod coverage;
-mod flip;
 mod golden;
 mod grooms;
 mod opacity;

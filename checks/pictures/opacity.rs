@@ -3,9 +3,15 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
-use strandline_groom::Groom;
+use strandline_body::Pose;
+use strandline_checks::gpu;
+use strandline_gpu::Gpu;
+use strandline_groom::{Groom, Guides, Style, StyleSettings};
 use strandline_render::cpu::{ShadowBody, Shadows, Strands, opacity_depth, opacity_layers};
-use strandline_render::{Light, LightKind, Shadow};
+use strandline_render::gpu::GpuRenderer;
+use strandline_render::{
+    BodyLook, Camera, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings, Shadow,
+};
 
 use crate::grooms::Random;
 
@@ -28,9 +34,27 @@ fn strands(lines: &[Vec<Vec3>], diameter: f32) -> Strands {
 
 fn shadows(strands: &Strands, light: &Light, settings: &Shadow) -> Shadows {
     let mut shadows = Shadows::default();
-    opacity_depth(strands, None, std::slice::from_ref(light), settings, &mut shadows);
+    opacity_depth(strands, None, std::slice::from_ref(light), Vec3::ZERO, settings, &mut shadows);
     opacity_layers(strands, &mut shadows);
     shadows
+}
+
+/// As [`shadows`] with the usual settings, on a GPU.
+fn shadows_on(gpu: &Gpu, strands: &Strands, light: &Light) -> Shadows {
+    // Any guides will do: the strands take their place.
+    let groom = StyleSettings { strand_count: 8, ..StyleSettings::new(Style::Pixie) }.grow().unwrap();
+    let guides = Guides::resample(&groom, 4).unwrap();
+    let mut renderer = GpuRenderer::new(gpu, &guides, None, &PictureSettings::sized(16, 16)).unwrap();
+    let input = FrameInput {
+        positions: guides.positions(),
+        world_from_head: Pose::IDENTITY,
+        camera: &Camera::front(),
+        look: &Look { follow_strands: 1, ..Look::default() },
+        body_look: &BodyLook::default(),
+        lights: std::slice::from_ref(light),
+        level_of_detail: &LevelOfDetail { segments_per_span: 1, ..LevelOfDetail::full() },
+    };
+    renderer.shadows_of(strands, &input).unwrap()
 }
 
 /// How well a map tells the light that reaches points: 0.7 to the power of the crossings.
@@ -128,6 +152,13 @@ fn maps_tell_the_crossings_of_the_reference_groom() {
     let found = accuracy(&shadows(&strands, &sun(TRAVELS), &Shadow::default()), &points, &crossings);
     println!("{found:?}");
     assert!(found.sound(), "{found:?}");
+    if let Some(gpu) = gpu() {
+        let on_gpu = accuracy(&shadows_on(&gpu, &strands, &sun(TRAVELS)), &points, &crossings);
+        println!("on a GPU {on_gpu:?}");
+        assert!(on_gpu.sound(), "on a GPU {on_gpu:?}");
+        let wrong = accuracy(&shadows_on(&gpu, &strands, &sun(-TRAVELS)), &points, &crossings);
+        assert!(!wrong.sound(), "light from the wrong side must be seen on a GPU: {wrong:?}");
+    }
     let wrong = accuracy(&shadows(&strands, &sun(-TRAVELS), &Shadow::default()), &points, &crossings);
     assert!(!wrong.sound(), "light from the wrong side must be seen: {wrong:?}");
 }
@@ -236,7 +267,7 @@ fn maps_hold_for_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut shadows = Shadows::default();
-            opacity_depth(&strands, None, &lights, &Shadow::default(), &mut shadows);
+            opacity_depth(&strands, None, &lights, Vec3::ZERO, &Shadow::default(), &mut shadows);
             opacity_layers(&strands, &mut shadows);
             let maps: Vec<_> = (0..2).map(|light| shadows.map(light).unwrap()).collect();
             let at =
@@ -260,7 +291,7 @@ fn a_body_shadows_what_lies_behind_it() {
     let body = ShadowBody { positions: &corners, triangles: &[[0, 1, 2], [0, 2, 3]] };
     for light in [sun(Vec3::NEG_Y), Light { position: Vec3::new(0.0, 1.0, 0.0), ..Light::default() }] {
         let mut shadows = Shadows::default();
-        opacity_depth(&strands, Some(body), &[light], &Shadow::default(), &mut shadows);
+        opacity_depth(&strands, Some(body), &[light], Vec3::ZERO, &Shadow::default(), &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let map = shadows.map(0).unwrap();
         assert_eq!(map.body_visibility(Vec3::new(0.03, -0.05, 0.02)), 0.0);

@@ -71,7 +71,7 @@ fn grown(look: &Look) -> Strands {
 fn shaded(look: &Look, lights: &[Light]) -> Strands {
     let mut strands = grown(look);
     let mut shadows = Shadows::default();
-    opacity_depth(&strands, None, lights, &look.shadow, &mut shadows);
+    opacity_depth(&strands, None, lights, Vec3::ZERO, &look.shadow, &mut shadows);
     opacity_layers(&strands, &mut shadows);
     shade(&mut strands, &shadows, lights, look, EYE, &mut Occlusion::default());
     strands

@@ -1,5 +1,6 @@
 //! Shared helpers of the checks.
 
+pub mod flip;
 mod rig;
 
 use std::sync::OnceLock;

@@ -1,7 +1,7 @@
 //! Links the WESL modules of the stages into one WGSL text each.
 
 /// Modules with entry points; the others are imported by them.
-const MODULES: [&str; 11] = [
+const MODULES: [&str; 10] = [
     "pose_roots",
     "integrate",
     "constrain",
@@ -10,7 +10,6 @@ const MODULES: [&str; 11] = [
     "solve_pressure",
     "gather",
     "advance",
-    "scan",
     "rooms",
     "pcg",
 ];

@@ -29,6 +29,7 @@ impl<T: Pod> Buffer<T> {
             usage: wgpu::BufferUsages::STORAGE
                 | wgpu::BufferUsages::COPY_SRC
                 | wgpu::BufferUsages::COPY_DST
+                | wgpu::BufferUsages::INDEX
                 | wgpu::BufferUsages::QUERY_RESOLVE,
             mapped_at_creation: false,
         };
@@ -110,6 +111,13 @@ impl<T: Pod> Buffer<T> {
         let mut batch = Readback::new();
         let part = batch.add(self, count);
         Ok(batch.read(&self.gpu)?.take(part))
+    }
+}
+
+impl<T> Buffer<T> {
+    /// As [`Buffer::raw`], whatever it holds.
+    pub(crate) fn raw_buffer(&self) -> &wgpu::Buffer {
+        &self.raw
     }
 }
 

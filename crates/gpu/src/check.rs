@@ -1,7 +1,8 @@
 //! Holds a kernel's declaration to the shader that was linked: names, offsets, sizes, access.
 
 use wgpu::naga::{
-    AddressSpace, Handle, Module, ScalarKind, ShaderStage, StorageAccess, Type, TypeInner, VectorSize,
+    AddressSpace, Handle, ImageClass, Module, ScalarKind, ShaderStage, StorageAccess, Type, TypeInner,
+    VectorSize,
     front::wgsl,
     valid::{Capabilities, ValidationFlags, Validator},
 };
@@ -20,22 +21,27 @@ fn problems(declaration: &Declaration) -> Vec<String> {
         Ok(module) => module,
         Err(error) => return vec![error.emit_to_string(declaration.source)],
     };
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+    // Packing half floats is part of WebGPU; naga counts it apart for older devices.
+    let capabilities = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    let mut validator = Validator::new(ValidationFlags::all(), capabilities);
     let info = match validator.validate(&module) {
         Ok(info) => info,
         Err(error) => return vec![error.emit_to_string(declaration.source)],
     };
-    let entry = module
-        .entry_points
-        .iter()
-        .position(|entry| entry.name == declaration.entry && entry.stage == ShaderStage::Compute);
-    let Some(entry) = entry else { return vec!["there is no such entry point".to_owned()] };
-    let used = info.get_entry_point(entry);
+    let wanted = entries(declaration);
+    let mut used = Vec::new();
+    for (stage, name) in wanted {
+        let found = module.entry_points.iter().position(|entry| entry.name == name && entry.stage == stage);
+        match found {
+            Some(entry) => used.push(info.get_entry_point(entry)),
+            None => return vec!["there is no such entry point".to_owned()],
+        }
+    }
     let mut problems = Vec::new();
     let mut found = Vec::new();
     for (handle, variable) in module.global_variables.iter() {
         let Some(binding) = &variable.binding else { continue };
-        if used[handle].is_empty() {
+        if used.iter().all(|entry| entry[handle].is_empty()) {
             continue;
         }
         let name = variable.name.as_deref().unwrap_or_default();
@@ -55,12 +61,21 @@ fn problems(declaration: &Declaration) -> Vec<String> {
             problems.push(format!("{} at {} is not used by the shader", declared.name, declared.index));
         }
     }
-    let storage = declaration.bindings.len();
+    let storage = declaration.bindings.iter().filter(|binding| binding.access != Access::Texture).count();
     let most = wgpu::Limits::default().max_storage_buffers_per_shader_stage as usize;
     if storage > most {
         problems.push(format!("{storage} storage buffers, at most {most} are portable"));
     }
     problems
+}
+
+/// The stages of a pipeline and their entry points.
+fn entries(declaration: &Declaration) -> Vec<(ShaderStage, &'static str)> {
+    if !declaration.draws {
+        return vec![(ShaderStage::Compute, declaration.entry)];
+    }
+    let fragment = declaration.fragment.map(|entry| (ShaderStage::Fragment, entry));
+    std::iter::once((ShaderStage::Vertex, declaration.entry)).chain(fragment).collect()
 }
 
 fn compare_variable(
@@ -77,6 +92,7 @@ fn compare_variable(
     let access = match space {
         AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => Some(Access::ReadWrite),
         AddressSpace::Storage { .. } => Some(Access::Read),
+        AddressSpace::Handle => Some(Access::Texture),
         _ => None,
     };
     if access != Some(declared.access) {
@@ -90,6 +106,13 @@ fn compare_variable(
                 problems.push(format!("{}: elements of {stride} bytes, declared {size}", declared.name));
             }
             *base
+        }
+        TypeInner::Image { class: ImageClass::Sampled { kind, multi: false }, .. } => {
+            let Layout::Scalar(scalar) = declared.layout else {
+                problems.push(format!("{} is a texture, declared {:?}", declared.name, declared.layout));
+                return;
+            };
+            return compare_scalar(scalar, *kind, declared.name, problems);
         }
         _ => ty,
     };

@@ -4,7 +4,7 @@
 use std::marker::PhantomData;
 
 use crate::gpu::Compiled;
-use crate::{Gpu, GpuError, Layout, Timer};
+use crate::{Gpu, GpuError, Layout};
 
 /// How a kernel uses a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,6 +13,8 @@ pub enum Access {
     Read,
     /// `var<storage, read_write>`.
     ReadWrite,
+    /// `var` of type `texture_2d`, read without a sampler.
+    Texture,
 }
 
 /// One buffer of a kernel.
@@ -35,8 +37,12 @@ pub struct Declaration {
     pub module: &'static str,
     /// Its linked text.
     pub source: &'static str,
-    /// The entry point.
+    /// The entry point, of a drawing that of its vertices.
     pub entry: &'static str,
+    /// The entry point of a drawing's fragments, where it has any.
+    pub fragment: Option<&'static str>,
+    /// Whether it draws.
+    pub draws: bool,
     /// Its buffers.
     pub bindings: Vec<Binding>,
 }
@@ -47,8 +53,74 @@ pub trait Bindings {
     type Kernel;
     /// The declaration.
     fn declaration() -> Declaration;
-    /// The buffers in the order of the declaration.
-    fn buffers(&self) -> Vec<&wgpu::Buffer>;
+    /// The buffers and textures in the order of the declaration.
+    fn resources(&self) -> Vec<wgpu::BindingResource<'_>>;
+}
+
+/// What may stand in a declaration: a buffer or a texture.
+pub trait Resource {
+    /// How it is bound.
+    fn resource(&self) -> wgpu::BindingResource<'_>;
+}
+
+impl<T> Resource for crate::Buffer<T> {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        self.raw_buffer().as_entire_binding()
+    }
+}
+
+impl Resource for crate::Texture {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::TextureView(self.view())
+    }
+}
+
+/// The type of a field of a declaration.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! field_type {
+    (Texture $kind:ty) => { $crate::Texture };
+    ($access:ident $kind:ty) => { $crate::Buffer<$kind> };
+}
+
+/// What a kernel's and a drawing's declaration have in common.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! declare {
+    ($(#[$attribute:meta])* $visibility:vis struct $kernel:ident in $module:literal ($source:expr),
+     $entry:expr, $fragment:expr, $draws:literal {
+        $($index:literal $name:ident: $access:ident $kind:ty,)*
+    }) => {
+        $(#[$attribute])*
+        #[derive(Clone, Copy, Debug)]
+        $visibility struct $kernel<'a> {
+            $(#[allow(missing_docs)] pub $name: &'a $crate::field_type!($access $kind),)*
+        }
+
+        impl $crate::Bindings for $kernel<'_> {
+            type Kernel = $kernel<'static>;
+
+            fn declaration() -> $crate::Declaration {
+                $crate::Declaration {
+                    module: $module,
+                    source: $source,
+                    entry: $entry,
+                    fragment: $fragment,
+                    draws: $draws,
+                    bindings: vec![$($crate::Binding {
+                        index: $index,
+                        name: stringify!($name),
+                        access: $crate::Access::$access,
+                        layout: <$kind as $crate::Mirror>::layout(),
+                    },)*],
+                }
+            }
+
+            fn resources(&self) -> Vec<$crate::wgpu::BindingResource<'_>> {
+                vec![$($crate::Resource::resource(self.$name),)*]
+            }
+        }
+    };
 }
 
 /// Declares a kernel: a struct of the buffers that it is bound to.
@@ -68,31 +140,9 @@ macro_rules! kernel {
     ($(#[$attribute:meta])* $visibility:vis struct $kernel:ident in $module:literal ($source:expr), entry $entry:literal {
         $($index:literal $name:ident: $access:ident $kind:ty,)*
     }) => {
-        $(#[$attribute])*
-        #[derive(Clone, Copy, Debug)]
-        $visibility struct $kernel<'a> {
-            $(#[allow(missing_docs)] pub $name: &'a $crate::Buffer<$kind>,)*
-        }
-
-        impl $crate::Bindings for $kernel<'_> {
-            type Kernel = $kernel<'static>;
-
-            fn declaration() -> $crate::Declaration {
-                $crate::Declaration {
-                    module: $module,
-                    source: $source,
-                    entry: $entry,
-                    bindings: vec![$($crate::Binding {
-                        index: $index,
-                        name: stringify!($name),
-                        access: $crate::Access::$access,
-                        layout: <$kind as $crate::Mirror>::layout(),
-                    },)*],
-                }
-            }
-
-            fn buffers(&self) -> Vec<&$crate::wgpu::Buffer> {
-                vec![$(self.$name.raw(),)*]
+        $crate::declare! {
+            $(#[$attribute])* $visibility struct $kernel in $module ($source), $entry, None, false {
+                $($index $name: $access $kind,)*
             }
         }
     };
@@ -123,46 +173,17 @@ impl<B: Bindings<Kernel = B>> Kernel<B> {
     /// # Errors
     /// A buffer does not fit, or the device was lost.
     pub fn bind<C: Bindings<Kernel = B>>(&self, gpu: &Gpu, buffers: &C) -> Result<Bound, GpuError> {
-        let declaration = B::declaration();
-        let raw = buffers.buffers();
-        let group = gpu.guarded(declaration.entry, || {
-            let entries: Vec<_> = declaration
-                .bindings
-                .iter()
-                .zip(&raw)
-                .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                    binding: binding.index,
-                    resource: buffer.as_entire_binding(),
-                })
-                .collect();
-            gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(declaration.entry),
-                layout: &self.compiled.layout,
-                entries: &entries,
-            })
-        })?;
+        let group = bind_group(gpu, &self.compiled.layout, buffers)?;
         Ok(Bound { pipeline: self.compiled.pipeline.clone(), group })
     }
 }
 
 fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> Result<Compiled, GpuError> {
-    let Declaration { module, source, entry, bindings } = declaration;
+    let Declaration { module, entry, .. } = declaration;
     let made = gpu.guarded(module, || {
         let device = gpu.device();
-        let entries: Vec<_> = bindings.iter().map(entry_of).collect();
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(entry),
-            entries: &entries,
-        });
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(entry),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(module),
-            source: wgpu::ShaderSource::Wgsl((*source).into()),
-        });
+        let (layout, pipeline_layout) = layouts(device, declaration);
+        let shader = shader_module(device, declaration);
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(entry),
             layout: Some(&pipeline_layout),
@@ -177,77 +198,92 @@ fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> R
         });
         Compiled { pipeline, layout }
     });
-    made.map_err(|error| match error {
+    made.map_err(as_shader_error)
+}
+
+/// What the driver refuses about a pipeline is the shader's fault.
+pub(crate) fn as_shader_error(error: GpuError) -> GpuError {
+    match error {
         GpuError::Refused { adapter, what, message } => GpuError::Shader { adapter, module: what, message },
         other => other,
+    }
+}
+
+pub(crate) fn layouts(
+    device: &wgpu::Device,
+    declaration: &Declaration,
+) -> (wgpu::BindGroupLayout, wgpu::PipelineLayout) {
+    let entries: Vec<_> = declaration.bindings.iter().map(|binding| entry_of(binding, declaration)).collect();
+    let label = Some(declaration.entry);
+    let layout =
+        device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label, entries: &entries });
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label,
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    (layout, pipeline_layout)
+}
+
+pub(crate) fn shader_module(device: &wgpu::Device, declaration: &Declaration) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(declaration.module),
+        source: wgpu::ShaderSource::Wgsl(declaration.source.into()),
     })
 }
 
-fn entry_of(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
-    let ty = match binding.access {
-        Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
-        Access::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+pub(crate) fn bind_group<C: Bindings>(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    buffers: &C,
+) -> Result<wgpu::BindGroup, GpuError> {
+    let declaration = C::declaration();
+    let resources = buffers.resources();
+    gpu.guarded(declaration.entry, || {
+        let bindings = declaration.bindings.iter().zip(resources);
+        let entries: Vec<_> = bindings
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding.index, resource })
+            .collect();
+        gpu.device().create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(declaration.entry),
+            layout,
+            entries: &entries,
+        })
+    })
+}
+
+fn entry_of(binding: &Binding, declaration: &Declaration) -> wgpu::BindGroupLayoutEntry {
+    let buffer = |read_only| wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Storage { read_only },
+        has_dynamic_offset: false,
+        min_binding_size: None,
     };
-    wgpu::BindGroupLayoutEntry {
-        binding: binding.index,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    }
+    let visibility = match (declaration.draws, binding.access) {
+        (false, _) => wgpu::ShaderStages::COMPUTE,
+        (true, Access::Texture) => wgpu::ShaderStages::FRAGMENT,
+        (true, _) => wgpu::ShaderStages::VERTEX_FRAGMENT,
+    };
+    let ty = match binding.access {
+        Access::Read => buffer(true),
+        Access::ReadWrite => buffer(false),
+        Access::Texture => wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+    };
+    wgpu::BindGroupLayoutEntry { binding: binding.index, visibility, ty, count: None }
 }
 
 /// A kernel with its buffers, ready to run.
 #[derive(Clone, Debug)]
 pub struct Bound {
-    pipeline: wgpu::ComputePipeline,
-    group: wgpu::BindGroup,
+    pub(crate) pipeline: wgpu::ComputePipeline,
+    pub(crate) group: wgpu::BindGroup,
 }
 
-/// Records one submission.
-pub struct Recorder<'a> {
-    encoder: wgpu::CommandEncoder,
-    timer: Option<&'a Timer>,
-    dispatches: usize,
-}
-
-impl<'a> Recorder<'a> {
-    /// Starts to record; a timer takes the time of every stage.
-    pub fn new(gpu: &Gpu, timer: Option<&'a Timer>) -> Self {
-        let encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        Self { encoder, timer, dispatches: 0 }
-    }
-
-    /// Fills a buffer with zeros.
-    pub fn clear<T: bytemuck::Pod>(&mut self, buffer: &crate::Buffer<T>) {
-        self.encoder.clear_buffer(buffer.raw(), 0, None);
-    }
-
-    /// Records a stage: kernels and their numbers of workgroups, one after the other. Each sees
-    /// what those before it wrote.
-    pub fn stage(&mut self, name: &'static str, kernels: &[(Bound, [u32; 3])]) {
-        let timestamp_writes = self.timer.and_then(|timer| timer.next(name));
-        let mut pass = self
-            .encoder
-            .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(name), timestamp_writes });
-        for (bound, [x, y, z]) in kernels {
-            pass.set_pipeline(&bound.pipeline);
-            pass.set_bind_group(0, &bound.group, &[]);
-            pass.dispatch_workgroups(*x, *y, *z);
-            self.dispatches += 1;
-        }
-    }
-
-    /// Kernels recorded so far.
-    pub fn dispatches(&self) -> usize {
-        self.dispatches
-    }
-
-    /// Ends the recording; `last` may add copies.
-    pub fn finish(mut self, last: impl FnOnce(&mut wgpu::CommandEncoder)) -> wgpu::CommandBuffer {
-        last(&mut self.encoder);
-        self.encoder.finish()
-    }
-}
+/// Kernels with their buffers and their numbers of workgroups, in order.
+pub type Dispatches = Vec<(Bound, [u32; 3])>;
 
 /// Workgroups for a number of threads, in rows of no more than WebGPU's 65,535: the index of a
 /// workgroup is `x + y * num_workgroups.x`. Never none: an empty dispatch would leave reports unwritten.

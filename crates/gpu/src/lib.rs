@@ -6,22 +6,30 @@
 mod bandwidth;
 mod buffer;
 mod check;
+mod drawing;
 mod error;
 mod gpu;
 mod kernel;
 mod layout;
 mod list;
 mod readback;
+mod recorder;
+mod scan;
+mod texture;
 mod timer;
 
 pub use buffer::Buffer;
 pub use check::check;
+pub use drawing::{BoundDrawing, Drawing, Output};
 pub use error::GpuError;
 pub use gpu::Gpu;
-pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Kernel, Recorder, groups};
+pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Dispatches, Kernel, Resource, groups};
 pub use layout::{Field, Layout, Mirror};
 pub use list::Adapter;
-pub use readback::{Copied, Part, Readback};
+pub use readback::{Copied, Download, Part, Readback};
+pub use recorder::{Amount, Recorder, Targets};
+pub use scan::Scan;
+pub use texture::Texture;
 pub use timer::Timer;
 
 /// The crate that the host's device and queue come from.

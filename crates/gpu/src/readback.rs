@@ -92,3 +92,65 @@ impl Copied {
         bytemuck::pod_collect_to_vec(&self.bytes[part.bytes])
     }
 }
+
+/// Memory of the host's that copies go to again and again.
+#[derive(Debug)]
+pub struct Download {
+    gpu: Gpu,
+    staging: wgpu::Buffer,
+}
+
+impl Download {
+    /// Room for bytes.
+    ///
+    /// # Errors
+    /// The device was lost or has no memory left.
+    pub fn new(gpu: &Gpu, bytes: u64) -> Result<Self, GpuError> {
+        gpu.take_memory("the copy back", bytes)?;
+        let made = gpu.guarded("readback", || {
+            gpu.device().create_buffer(&wgpu::BufferDescriptor {
+                label: Some("readback"),
+                size: bytes,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        });
+        match made {
+            Ok(staging) => Ok(Self { gpu: gpu.clone(), staging }),
+            Err(error) => {
+                gpu.give_memory_back(bytes);
+                Err(error)
+            }
+        }
+    }
+
+    /// Where copies are to go.
+    pub fn raw(&self) -> &wgpu::Buffer {
+        &self.staging
+    }
+
+    /// Waits for the device and shows what was copied.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read<T>(&self, look: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
+        self.gpu.guarded("readback", || self.staging.slice(..).map_async(wgpu::MapMode::Read, |_| ()))?;
+        self.gpu.wait()?;
+        let result = match self.staging.slice(..).get_mapped_range() {
+            Ok(view) => Ok(look(&view)),
+            Err(error) => Err(GpuError::Refused {
+                adapter: self.gpu.name(),
+                what: "reading back".to_owned(),
+                message: error.to_string(),
+            }),
+        };
+        self.staging.unmap();
+        result
+    }
+}
+
+impl Drop for Download {
+    fn drop(&mut self) {
+        self.gpu.give_memory_back(self.staging.size());
+    }
+}

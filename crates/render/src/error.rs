@@ -27,6 +27,9 @@ pub enum RenderError {
         /// What is allowed \[MiB\].
         allowed: u64,
     },
+    /// Whatever the GPU refuses.
+    #[error(transparent)]
+    Gpu(#[from] strandline_gpu::GpuError),
     /// A picture could not be written.
     #[error("cannot write the picture: {reason}: {}", path.display())]
     Save {
@@ -35,4 +38,14 @@ pub enum RenderError {
         /// Where it should have gone.
         path: PathBuf,
     },
+}
+
+impl RenderError {
+    /// The GPU's refusal, if it is one.
+    pub fn gpu(&self) -> Option<&strandline_gpu::GpuError> {
+        match self {
+            Self::Gpu(error) => Some(error),
+            _ => None,
+        }
+    }
 }

@@ -30,6 +30,20 @@ pub struct FrameInput<'a> {
     pub level_of_detail: &'a LevelOfDetail,
 }
 
+impl FrameInput<'_> {
+    /// Checks everything but the points.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub(crate) fn validate(&self) -> Result<(), RenderError> {
+        self.camera.validate()?;
+        self.look.validate()?;
+        self.body_look.validate()?;
+        self.level_of_detail.validate()?;
+        self.lights.iter().try_for_each(Light::validate)
+    }
+}
+
 /// What a picture cost.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrameReport {
@@ -131,12 +145,9 @@ impl Renderer {
     /// # Errors
     /// A setting outside its range.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
-        input.camera.validate()?;
-        input.look.validate()?;
-        input.body_look.validate()?;
-        input.level_of_detail.validate()?;
-        input.lights.iter().try_for_each(Light::validate)?;
-        let distance = input.camera.position.distance(input.world_from_head.point(self.middle));
+        input.validate()?;
+        let middle = input.world_from_head.point(self.middle);
+        let distance = input.camera.position.distance(middle);
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
         let (guides, pose) = (&self.guides, &input.world_from_head);
         let Self { curves, strands, shadows, occlusion, draw, samples, settings, .. } = self;
@@ -147,7 +158,7 @@ impl Renderer {
         interpolate(curves, guides, pose, input.look, &level, strands);
         clock.lap("interpolate");
         draw.place_body(input.world_from_head);
-        opacity_depth(strands, draw.shadow_body(), input.lights, &input.look.shadow, shadows);
+        opacity_depth(strands, draw.shadow_body(), input.lights, middle, &input.look.shadow, shadows);
         clock.lap("opacity_depth");
         opacity_layers(strands, shadows);
         clock.lap("opacity_layers");
@@ -183,7 +194,7 @@ impl Renderer {
 }
 
 /// Middle of the box around all guide points \[m\].
-fn middle(guides: &Guides) -> Vec3 {
+pub(crate) fn middle(guides: &Guides) -> Vec3 {
     let points = (0..guides.strand_count())
         .flat_map(|strand| (0..guides.points_per_strand()).map(move |point| guides.position(strand, point)));
     let (min, max) =

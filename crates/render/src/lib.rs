@@ -2,6 +2,7 @@
 //! knows nothing of the simulation.
 
 pub mod cpu;
+pub mod gpu;
 
 mod body_look;
 mod camera;

@@ -29,8 +29,13 @@ pub fn interpolate(
     let strands_per_guide = level.strand_count();
     let points_per_strand = curves.points_per_curve;
     out.resize(curves.guide_count, strands_per_guide, points_per_strand);
-    let shared =
-        Shared { curves, look, level, tapers: tapers(curves, &look.clump), widening: widening(look, curves) };
+    let shared = Shared {
+        curves,
+        look,
+        level,
+        tapers: tapers(&curves.parameters, &look.clump),
+        widening: widening(look, curves.guide_count),
+    };
     let size = strands_per_guide * points_per_strand;
     out.positions
         .par_chunks_mut(size)
@@ -61,14 +66,16 @@ struct Shared<'a> {
     widening: f32,
 }
 
-fn tapers(curves: &Curves, clump: &Clump) -> Vec<f32> {
+/// Clump radius \[m\] at each parameter, 0 to 1.
+pub(crate) fn tapers(parameters: &[f32], clump: &Clump) -> Vec<f32> {
     let radius =
         |share: &f32| clump.root_radius + (clump.tip_radius - clump.root_radius) * share.powf(clump.taper);
-    curves.parameters.iter().map(radius).collect()
+    parameters.iter().map(radius).collect()
 }
 
-fn widening(look: &Look, curves: &Curves) -> f32 {
-    let drawn = curves.guide_count as f32 * look.follow_strands.max(1) as f32;
+/// Diameter of a drawn strand over that of a hair, at full detail.
+pub(crate) fn widening(look: &Look, guide_count: usize) -> f32 {
+    let drawn = guide_count as f32 * look.follow_strands.max(1) as f32;
     let stands_for = if look.hair_count == 0 { drawn } else { look.hair_count as f32 };
     look.width_scale * stands_for / drawn
 }

@@ -18,20 +18,21 @@ pub struct ShadowBody<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
-/// Fits each shadow light's maps to hair and body, and finds the first depths in them.
+/// Fits each shadow light's maps to hair and body, and finds the first depths in them. Point lights look
+/// at `middle` \[m\], world space.
 ///
 /// The hair has a map of its own, no larger than the hair, so that its texels are small.
 pub fn opacity_depth(
     strands: &Strands,
     body: Option<ShadowBody>,
     lights: &[Light],
+    middle: Vec3,
     settings: &Shadow,
     out: &mut Shadows,
 ) {
     out.casts.clear();
     out.casts.extend(lights.iter().map(|light| light.shadow));
     out.maps.resize_with(lights.len(), ShadowMap::default);
-    let middle = middle(&strands.positions);
     for (map, light) in out.maps.iter_mut().zip(lights) {
         map.view = LightView::new(light, middle);
         map.set(settings);
@@ -45,16 +46,6 @@ pub fn opacity_depth(
         }
         hair_depths(map, strands);
     });
-}
-
-fn middle(points: &[Vec3]) -> Vec3 {
-    // A few hundred points say where the hair is.
-    let stride = (points.len() / 256).max(1);
-    let bounds = points
-        .iter()
-        .step_by(stride)
-        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(min, max), &point| (min.min(point), max.max(point)));
-    if points.is_empty() { Vec3::ZERO } else { 0.5 * (bounds.0 + bounds.1) }
 }
 
 fn body_depths(map: &mut ShadowMap, body: ShadowBody) {

@@ -13,13 +13,13 @@ const NEAR: f32 = 1e-2;
 /// Where a light looks from, and how it maps points to its plane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LightView {
-    origin: Vec3,
-    right: Vec3,
-    up: Vec3,
-    forward: Vec3,
+    pub(crate) origin: Vec3,
+    pub(crate) right: Vec3,
+    pub(crate) up: Vec3,
+    pub(crate) forward: Vec3,
     parallel: bool,
     /// Greatest coordinate on the plane that the light reaches.
-    reach: f32,
+    pub(crate) reach: f32,
 }
 
 impl LightView {
@@ -63,7 +63,7 @@ impl LightView {
 /// The square part of a light's plane that a map covers.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Window {
-    min: Vec2,
+    pub(crate) min: Vec2,
     /// Texels in a plane unit.
     pub(crate) density: f32,
 }
@@ -127,6 +127,12 @@ impl ShadowMap {
         self.log_transmission = settings.log_transmission();
         self.body_bias = settings.body_bias;
         self.inverse_softness = 1.0 / settings.body_softness;
+    }
+
+    /// Hairs crossed in each of three layers and depth \[m\] of the first hair, 1e30 where there is none,
+    /// shape `[row][column]`.
+    pub fn texels(&self) -> &[Vec4] {
+        &self.texels
     }
 
     /// Hairs that the light crosses on its way to a point \[m\], world space.

@@ -39,10 +39,21 @@ pub struct Curves {
 /// Where a curve point lies in its guide: the first of four control points and their weights for
 /// position and tangent. Control point 0 stands before the guide's first.
 #[derive(Clone, Copy, Debug, Default)]
-struct Tap {
-    first: usize,
-    position: [f32; 4],
-    tangent: [f32; 4],
+pub(crate) struct Tap {
+    pub(crate) first: usize,
+    pub(crate) position: [f32; 4],
+    pub(crate) tangent: [f32; 4],
+}
+
+/// Where each point of a curve lies in its guide, and its parameter, 0 at the root to 1 at the tip.
+pub(crate) fn taps(points_per_strand: usize, level: &DetailLevel) -> impl Iterator<Item = (Tap, f32)> {
+    let span_count = points_per_strand - 1;
+    let segments = level.segment_count(points_per_strand);
+    let per_span = level.segments_per_span;
+    (0..=segments).map(move |point| {
+        let parameter = if point == segments { span_count as f32 } else { point as f32 / per_span };
+        (tap(parameter, span_count), parameter / span_count as f32)
+    })
 }
 
 impl Curves {
@@ -54,19 +65,13 @@ impl Curves {
     }
 
     fn resize(&mut self, guides: &Guides, level: &DetailLevel) {
-        let span_count = guides.points_per_strand() - 1;
         self.guide_count = guides.strand_count();
         self.points_per_curve = level.segment_count(guides.points_per_strand()) + 1;
         self.taps.clear();
         self.parameters.clear();
-        for point in 0..self.points_per_curve {
-            let parameter = if point + 1 == self.points_per_curve {
-                span_count as f32
-            } else {
-                point as f32 / level.segments_per_span
-            };
-            self.taps.push(tap(parameter, span_count));
-            self.parameters.push(parameter / span_count as f32);
+        for (tap, parameter) in taps(guides.points_per_strand(), level) {
+            self.taps.push(tap);
+            self.parameters.push(parameter);
         }
         let size = guides.block_count() * self.points_per_curve;
         self.positions.resize(size, Vec3Lanes::default());
@@ -166,8 +171,13 @@ fn root_axes(guides: &Guides, world_from_head: &Pose, block: usize, tangents: &V
 
 /// The skin's frame at a root in world space: its normal and two axes in the skin, right-handed.
 pub(crate) fn skin_frame(root_normal: Vec3, world_from_head: &Pose) -> [Vec3; 3] {
-    let (first, second) = root_normal.any_orthonormal_pair();
+    let [first, second] = skin_axes(root_normal);
     [root_normal, first, second].map(|axis| world_from_head.direction(axis))
+}
+
+/// Two axes in the skin at a root, head space.
+pub(crate) fn skin_axes(root_normal: Vec3) -> [Vec3; 2] {
+    root_normal.any_orthonormal_pair().into()
 }
 
 /// Turns `vector` by the least turn that takes the unit vector `from` to the unit vector `to`.

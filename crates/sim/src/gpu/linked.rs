@@ -16,7 +16,6 @@ modules! {
     INTEGRATE = "integrate",
     CONSTRAIN = "constrain",
     SPLAT = "splat",
-    SCAN = "scan",
     MARK = "mark",
     PCG = "pcg",
     ROOMS = "rooms",

@@ -14,7 +14,6 @@ mod mark;
 mod pcg;
 mod pose_roots;
 mod probe;
-mod scan;
 mod solids;
 mod solve_pressure;
 mod solver;
@@ -31,10 +30,8 @@ pub use probe::Probe;
 pub use solve_pressure::{Gradient, PressureState};
 pub use solver::{GpuSolver, declarations};
 pub use state::{Costs, GpuState};
+use strandline_gpu::Dispatches;
 use strandline_groom::LANES;
 
 /// Threads of a workgroup, as in common.wesl.
 const THREADS: usize = 64;
-
-/// Kernels with their buffers and their numbers of workgroups, in order.
-type Dispatches = Vec<(strandline_gpu::Bound, [u32; 3])>;

@@ -3,10 +3,10 @@
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel, mirror};
 
 use super::pcg::Pcg;
-use super::scan::Scan;
 use super::volume::{GridState, Volume};
 use super::{Buffers, Dispatches, THREADS};
 use crate::{Preconditioner, PressureReport};
+use strandline_gpu::Scan;
 
 mirror! {
     /// Where the solve stands. Mirrors `PressureState` in pressure.wesl.

@@ -2,11 +2,9 @@ use strandline_body::Pose;
 use strandline_gpu::{Bindings, Declaration, Gpu, GpuError};
 
 use super::buffers::Buffers;
-use super::scan::Scan;
-use super::{
-    GpuState, advance, constrain, gather, integrate, mark, pcg, pose_roots, scan, solve_pressure, splat,
-};
+use super::{GpuState, advance, constrain, gather, integrate, mark, pcg, pose_roots, solve_pressure, splat};
 use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport};
+use strandline_gpu::Scan;
 
 /// A solver whose stages run on a GPU.
 ///
@@ -160,9 +158,6 @@ pub fn declarations() -> Vec<Declaration> {
         pose_roots::PoseRoots::declaration(),
         integrate::Integrate::declaration(),
         constrain::Constrain::declaration(),
-        scan::ScanBlocks::declaration(),
-        scan::ScanTotals::declaration(),
-        scan::ScanAdd::declaration(),
         splat::Bounds::declaration(),
         splat::Follow::declaration(),
         splat::FindCells::declaration(),

@@ -3,9 +3,9 @@
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
 
 use super::inputs::Step;
-use super::scan::Scan;
 use super::volume::{GridState, SortedPoint};
 use super::{Buffers, Dispatches, THREADS};
+use strandline_gpu::Scan;
 
 kernel! {
     /// Boxes around the points of strands; one thread is one strand.

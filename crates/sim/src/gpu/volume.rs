@@ -3,10 +3,10 @@
 use strandline_gpu::{Buffer, Gpu, GpuError, mirror};
 
 use super::pcg::{MOST_WORKGROUPS, Spread};
-use super::scan::Scan;
 use super::solve_pressure::{Gradient, PressureState};
 use super::{LANES, THREADS};
 use crate::cpu::grid::{Grid, MIN_SPACING, ladder};
+use strandline_gpu::Scan;
 
 mirror! {
     /// The box. Mirrors `GridState` in grid.wesl.

@@ -1,15 +1,16 @@
-//! Prefix sums: where the points of each cell begin, how many fluid cells lie before each.
+//! Prefix sums: where the things of each cell begin in a counting sort, how many lie before each.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, groups, kernel};
+use crate::{Bindings, Buffer, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
-use super::Dispatches;
+/// The text of its module; it imports nothing.
+const SCAN: &str = include_str!("scan.wgsl");
 
 /// Numbers that one workgroup sums.
 const BLOCK: usize = 1024;
 
 kernel! {
     /// Sums within blocks.
-    pub(super) struct ScanBlocks in "scan" (super::linked::SCAN), entry "scan_blocks" {
+    pub struct ScanBlocks in "scan" (SCAN), entry "scan_blocks" {
         0 values: ReadWrite u32,
         1 totals: ReadWrite u32,
     }
@@ -17,27 +18,32 @@ kernel! {
 
 kernel! {
     /// Sums over the totals of the blocks.
-    pub(super) struct ScanTotals in "scan" (super::linked::SCAN), entry "scan_totals" {
+    pub struct ScanTotals in "scan" (SCAN), entry "scan_totals" {
         1 totals: ReadWrite u32,
     }
 }
 
 kernel! {
     /// Adds both.
-    pub(super) struct ScanAdd in "scan" (super::linked::SCAN), entry "scan_add" {
+    pub struct ScanAdd in "scan" (SCAN), entry "scan_add" {
         0 values: ReadWrite u32,
         1 totals: ReadWrite u32,
     }
 }
 
 /// Exclusive prefix sums in place.
-pub(super) struct Scan {
+#[derive(Debug)]
+pub struct Scan {
     blocks: Kernel<ScanBlocks<'static>>,
     totals: Kernel<ScanTotals<'static>>,
     add: Kernel<ScanAdd<'static>>,
 }
 
 impl Scan {
+    /// Compiles the kernels.
+    ///
+    /// # Errors
+    /// The driver does not take them, or the device was lost.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
             blocks: Kernel::new(gpu, &[])?,
@@ -46,11 +52,23 @@ impl Scan {
         })
     }
 
+    /// What is known of the kernels without a device.
+    pub fn declarations() -> [Declaration; 3] {
+        [ScanBlocks::declaration(), ScanTotals::declaration(), ScanAdd::declaration()]
+    }
+
     /// Room for the totals of the blocks of `count` numbers.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
     pub fn totals(gpu: &Gpu, count: usize) -> Result<Buffer<u32>, GpuError> {
         Buffer::new(gpu, "totals of blocks", count.div_ceil(BLOCK))
     }
 
+    /// Binds the three kernels that turn `values` into the sums of those before each.
+    ///
+    /// # Errors
+    /// A buffer does not fit, or the device was lost.
     pub fn bind(
         &self,
         gpu: &Gpu,

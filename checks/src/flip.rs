@@ -8,6 +8,9 @@ use strandline_render::Picture;
 /// becomes the golden one.
 ///
 /// `mean` and `p99` bound the mean error and the error that one pixel of a hundred exceeds, both 0 to 1.
+///
+/// # Panics
+/// The pictures differ by more, or there is no golden one.
 pub fn assert_flip(picture: &Picture, name: &str, mean: f32, p99: f32) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures/golden").join(format!("{name}.png"));
     if std::env::var_os("STRANDLINE_BLESS").is_some_and(|bless| bless == "1") {
@@ -23,13 +26,16 @@ pub fn assert_flip(picture: &Picture, name: &str, mean: f32, p99: f32) {
     let golden =
         Picture { width: golden.width(), height: golden.height(), pixels: golden.into_raw(), alpha: None };
     if let Err(message) = compare(picture, &golden, mean, p99) {
-        let drawn = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
+        let drawn = std::env::temp_dir().join(format!("{name}.png"));
         picture.save(&drawn).unwrap();
         panic!("{name}: {message}; drawn: {}", drawn.display());
     }
 }
 
 /// Compares two pictures; the message says what exceeds its bound.
+///
+/// # Errors
+/// They differ by more.
 pub fn compare(picture: &Picture, golden: &Picture, mean: f32, p99: f32) -> Result<(), String> {
     if (picture.width, picture.height) != (golden.width, golden.height) {
         return Err(format!(

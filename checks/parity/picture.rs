@@ -1,0 +1,303 @@
+//! The stages of a picture on both backends.
+
+use glam::{Quat, Vec3, Vec4};
+use strandline_body::{Mannequin, Mesh, Pose};
+use strandline_checks::flip::compare;
+use strandline_checks::gpu;
+use strandline_groom::{Guides, Style, StyleSettings};
+use strandline_render::cpu::{
+    Curves, Occlusion, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade, tessellate,
+};
+use strandline_render::gpu::GpuRenderer;
+use strandline_render::{
+    BodyLook, Camera, DetailLevel, FrameInput, LevelOfDetail, Light, LightKind, Look, Picture,
+    PictureSettings, Renderer, ToneMap,
+};
+
+/// Everything that a picture is made of, and what both backends make of it.
+struct Both {
+    guides: Guides,
+    mesh: Mesh,
+    pose: Pose,
+    look: Look,
+    lights: Vec<Light>,
+    camera: Camera,
+    detail: LevelOfDetail,
+    settings: PictureSettings,
+}
+
+impl Both {
+    fn new(style: Style, points: usize) -> Self {
+        let groom = StyleSettings { strand_count: 300, ..StyleSettings::new(style) }.grow().unwrap();
+        let camera = Camera::three_quarter();
+        let mut lights = Light::three_point(camera.target).to_vec();
+        lights.push(Light {
+            kind: LightKind::Point,
+            position: Vec3::new(0.5, 0.1, 0.6),
+            intensity: 0.2,
+            ..Light::default()
+        });
+        lights.push(Light { kind: LightKind::Directional, intensity: 0.3, ..lights[0] });
+        Self {
+            guides: Guides::resample(&groom, points).unwrap(),
+            mesh: Mannequin::new().mesh(),
+            // Turned, so that head and world space differ.
+            pose: Pose { rotation: Quat::from_rotation_y(0.4), translation: Vec3::new(0.02, -0.01, 0.03) },
+            look: Look { grey: 0.2, ..Look::brown() },
+            lights,
+            camera,
+            detail: LevelOfDetail::default(),
+            settings: PictureSettings::sized(256, 256),
+        }
+    }
+
+    /// Guide points as they hang at rest from the head's pose.
+    fn positions(&self) -> Vec<strandline_groom::Vec3Lanes> {
+        let mut placed = self.guides.positions().to_vec();
+        for lanes in &mut placed {
+            for lane in 0..strandline_groom::LANES {
+                lanes.set(lane, self.pose.point(lanes.get(lane)));
+            }
+        }
+        placed
+    }
+
+    fn input<'a>(&'a self, positions: &'a [strandline_groom::Vec3Lanes]) -> FrameInput<'a> {
+        FrameInput {
+            positions,
+            world_from_head: self.pose,
+            camera: &self.camera,
+            look: &self.look,
+            body_look: const { &BodyLook { color: Vec3::splat(0.3), wrap: 0.2, specular: 0.03, roughness: 0.5 } },
+            lights: &self.lights,
+            level_of_detail: &self.detail,
+        }
+    }
+
+    fn level(&self) -> DetailLevel {
+        let distance = self.camera.position.distance(self.middle());
+        self.detail.level(distance, self.look.follow_strands)
+    }
+
+    fn middle(&self) -> Vec3 {
+        let all = |f: fn(Vec3, Vec3) -> Vec3, start: Vec3| {
+            let count = self.guides.points_per_strand();
+            (0..self.guides.strand_count())
+                .flat_map(|strand| (0..count).map(move |point| (strand, point)))
+                .fold(start, |known, (strand, point)| f(known, self.guides.position(strand, point)))
+        };
+        self.pose.point(0.5 * (all(Vec3::min, Vec3::MAX) + all(Vec3::max, Vec3::MIN)))
+    }
+
+    /// What the CPU's stages make of it up to `shade`, with no body's shadow.
+    fn on_cpu(&self, positions: &[strandline_groom::Vec3Lanes]) -> (Curves, Strands, Shadows) {
+        let (mut curves, mut strands, mut shadows) =
+            (Curves::default(), Strands::default(), Shadows::default());
+        let level = self.level();
+        tessellate(positions, &self.guides, &self.pose, &level, &mut curves);
+        interpolate(&curves, &self.guides, &self.pose, &self.look, &level, &mut strands);
+        opacity_depth(&strands, None, &self.lights, self.middle(), &self.look.shadow, &mut shadows);
+        opacity_layers(&strands, &mut shadows);
+        let mut occlusion = Occlusion::default();
+        shade(&mut strands, &shadows, &self.lights, &self.look, self.camera.position, &mut occlusion);
+        (curves, strands, shadows)
+    }
+}
+
+fn drawn_on_gpu(both: &Both, positions: &[strandline_groom::Vec3Lanes], body: bool) -> Option<GpuRenderer> {
+    let gpu = gpu()?;
+    let mesh = body.then_some(&both.mesh);
+    let mut renderer = GpuRenderer::new(&gpu, &both.guides, mesh, &both.settings).unwrap();
+    renderer.draw(&both.input(positions)).unwrap();
+    Some(renderer)
+}
+
+fn greatest(pairs: impl Iterator<Item = (Vec3, Vec3)>) -> f32 {
+    pairs.fold(0.0, |most, (one, other)| most.max((one - other).abs().max_element()))
+}
+
+/// Twice the size of a head [m]: what 1e-6 is relative to.
+const SIZE: f32 = 0.5;
+
+#[test]
+fn tessellate_agrees_in_place_tangent_and_frame() {
+    for (style, points) in [(Style::Long, 16), (Style::Curly, 24), (Style::Pixie, 4)] {
+        let both = Both::new(style, points);
+        let positions = both.positions();
+        let Some(renderer) = drawn_on_gpu(&both, &positions, false) else { return };
+        let (curves, ..) = both.on_cpu(&positions);
+        let count = curves.points_per_curve;
+        let found = renderer.curves().unwrap();
+        // Frames are carried from point to point: their rounding adds up.
+        for (which, bound) in [1e-6 * SIZE, 1e-6, 1e-5].into_iter().enumerate() {
+            let all = (0..curves.guide_count).flat_map(|guide| (0..count).map(move |point| (guide, point)));
+            let expected = all.map(|(guide, point)| curves.point(guide, point)[which]);
+            assert_eq!(found[which].len(), curves.guide_count * count);
+            let off = greatest(expected.zip(found[which].iter().copied()));
+            assert!(off <= bound, "{style:?}: {which} is off by {off}");
+        }
+    }
+}
+
+#[test]
+fn interpolate_agrees_in_place_and_width() {
+    for (style, distance) in [(Style::Wavy, 1.0), (Style::Curly, 4.3), (Style::Bob, 9.0)] {
+        let mut both = Both::new(style, 12);
+        // Farther away fewer follow strands are drawn, the last of them thinner.
+        both.camera.position = both.camera.target + distance * Vec3::new(0.6, 0.2, 0.7).normalize();
+        let positions = both.positions();
+        let Some(renderer) = drawn_on_gpu(&both, &positions, false) else { return };
+        let (_, strands, _) = both.on_cpu(&positions);
+        let found = renderer.strands().unwrap();
+        assert_eq!(found.positions.len(), strands.positions.len());
+        let off = greatest(strands.positions.iter().copied().zip(found.positions.iter().copied()));
+        assert!(off <= 1e-6 * SIZE, "{style:?}: off by {off} m");
+        for (expected, width) in strands.widths.iter().zip(&found.widths) {
+            assert!((width - expected).abs() <= 1e-6 * expected, "{width} and {expected}");
+        }
+    }
+}
+
+/// Checks both opacity stages of every shadow light: rounding moves a piece of hair in ten thousand to
+/// the texel beside.
+fn check_maps(both: &Both, check: impl Fn(&[Vec4], &[Vec4])) {
+    let positions = both.positions();
+    let Some(renderer) = drawn_on_gpu(both, &positions, false) else { return };
+    let (.., shadows) = both.on_cpu(&positions);
+    let maps: Vec<_> = (0..both.lights.len()).filter_map(|light| shadows.map(light)).collect();
+    assert_eq!(maps.len(), 4);
+    for (slot, map) in maps.into_iter().enumerate() {
+        check(map.texels(), &renderer.opacity_texels(slot).unwrap());
+    }
+}
+
+#[test]
+fn opacity_depth_agrees_texel_by_texel() {
+    check_maps(&Both::new(Style::Wavy, 16), |expected, found| {
+        assert_eq!(expected.len(), found.len());
+        let off = expected.iter().zip(found).filter(|(one, other)| (one.w - other.w).abs() > 1e-6).count();
+        let filled = expected.iter().filter(|texel| texel.w < 1e3).count();
+        assert!(filled > 10_000 && off * 1000 <= filled, "{off} of {filled}");
+    });
+}
+
+#[test]
+fn opacity_layers_agree_texel_by_texel() {
+    check_maps(&Both::new(Style::Wavy, 16), |expected, found| {
+        let layers = |texel: &Vec4| texel.truncate();
+        let all: f32 = expected.iter().map(|texel| layers(texel).element_sum()).sum();
+        let off: f32 = expected
+            .iter()
+            .zip(found)
+            .map(|(one, other)| (layers(one) - layers(other)).abs().element_sum())
+            .sum();
+        assert!(all > 1e5 && off <= 1e-3 * all, "{off} of {all}");
+    });
+}
+
+#[test]
+fn shade_agrees_point_by_point() {
+    for style in [Style::Long, Style::Curly] {
+        let both = Both::new(style, 16);
+        let positions = both.positions();
+        let Some(renderer) = drawn_on_gpu(&both, &positions, false) else { return };
+        let (_, strands, _) = both.on_cpu(&positions);
+        let found = renderer.strands().unwrap().radiances;
+        let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
+        let pairs = strands.radiances.iter().zip(&found);
+        let off: f32 = pairs.clone().map(|(one, other)| (*one - *other).abs().element_sum()).sum();
+        // Half floats round by 2.4e-4 of the value at most, by half of that in the mean.
+        assert!(off <= 5e-4 * all, "{style:?}: {off} of {all}");
+        // Where a texel differs, light does by as much as one hair takes.
+        let worst = pairs.filter(|(one, other)| (**one - **other).abs().max_element() > 0.01).count();
+        assert!(worst * 10_000 <= found.len(), "{style:?}: {worst} of {}", found.len());
+    }
+}
+
+/// Both backends' pictures.
+fn pictures(both: &Both, body: bool) -> Option<[Picture; 2]> {
+    let (positions, mesh) = (both.positions(), body.then_some(&both.mesh));
+    let input = both.input(&positions);
+    let mut on_gpu = GpuRenderer::new(&gpu()?, &both.guides, mesh, &both.settings).unwrap();
+    let mut on_cpu = Renderer::new(&both.guides, mesh, &both.settings).unwrap();
+    Some([on_cpu.draw(&input).unwrap().0, on_gpu.draw(&input).unwrap().0])
+}
+
+/// What the two backends may differ by: skin is lit once a pixel on the CPU and once a sample on a GPU,
+/// blending rounds to half floats.
+const MEAN: f32 = 0.01;
+const ONE_IN_A_HUNDRED: f32 = 0.1;
+
+fn check_pictures(name: &str, both: &Both, body: bool) {
+    let Some([on_cpu, on_gpu]) = pictures(both, body) else { return };
+    compare(&on_gpu, &on_cpu, MEAN, ONE_IN_A_HUNDRED).unwrap_or_else(|message| panic!("{name}: {message}"));
+}
+
+#[test]
+fn draw_agrees_with_and_without_a_body() {
+    check_pictures("long hair on a head", &Both::new(Style::Long, 12), true);
+    check_pictures("curls alone", &Both::new(Style::Curly, 24), false);
+}
+
+#[test]
+fn draw_agrees_where_the_near_plane_cuts() {
+    let mut both = Both::new(Style::Pixie, 12);
+    both.camera.near = 1.0;
+    check_pictures("short hair cut open", &both, true);
+}
+
+#[test]
+fn draw_agrees_on_wide_ribbons_that_turn() {
+    let mut both = Both::new(Style::Curly, 24);
+    both.look = Look { width_scale: 12.0, hair_count: 0, follow_strands: 1, ..both.look };
+    check_pictures("wide curls", &both, false);
+}
+
+#[test]
+fn draw_agrees_far_away() {
+    let mut both = Both::new(Style::Wavy, 12);
+    both.camera.position *= 8.0;
+    both.camera.field_of_view = 5.0;
+    check_pictures("wavy hair from afar", &both, false);
+}
+
+#[test]
+fn draw_notices_another_width_and_a_missing_light() {
+    let both = Both::new(Style::Wavy, 12);
+    let Some([on_cpu, _]) = pictures(&both, true) else { return };
+    let mut thicker = Both::new(Style::Wavy, 12);
+    thicker.look.width_scale = 1.3;
+    let mut darker = Both::new(Style::Wavy, 12);
+    darker.lights.truncate(1);
+    for wrong in [thicker, darker] {
+        let Some([_, on_gpu]) = pictures(&wrong, true) else { return };
+        assert!(compare(&on_gpu, &on_cpu, MEAN, ONE_IN_A_HUNDRED).is_err());
+    }
+}
+
+#[test]
+fn resolve_agrees_at_every_setting() {
+    for (supersampling, transparent, exposure, tone_map) in [
+        (1, false, 0.0, ToneMap::Filmic),
+        (2, true, 0.0, ToneMap::Filmic),
+        (2, false, 1.5, ToneMap::Filmic),
+        (2, false, 0.7, ToneMap::Off),
+    ] {
+        let mut both = Both::new(Style::Bob, 8);
+        // An odd size: rows of pictures on the device are longer than those of the picture.
+        both.settings = PictureSettings {
+            supersampling,
+            transparent,
+            exposure,
+            tone_map,
+            ..PictureSettings::sized(131, 77)
+        };
+        let Some([on_cpu, on_gpu]) = pictures(&both, false) else { return };
+        compare(&on_gpu, &on_cpu, MEAN, ONE_IN_A_HUNDRED).unwrap();
+        assert_eq!(on_gpu.alpha.is_some(), transparent);
+        if let (Some(one), Some(other)) = (&on_cpu.alpha, &on_gpu.alpha) {
+            let off: u32 = one.iter().zip(other).map(|(one, other)| u32::from(one.abs_diff(*other))).sum();
+            assert!(off as usize <= one.len() / 4, "{off} steps of {} pixels", one.len());
+        }
+    }
+}

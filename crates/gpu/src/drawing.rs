@@ -1,0 +1,115 @@
+//! Drawings: vertices pulled from buffers, drawn as triangles.
+
+use std::marker::PhantomData;
+
+use crate::kernel::{as_shader_error, bind_group, layouts, shader_module};
+use crate::{Bindings, Declaration, Gpu, GpuError};
+
+/// Declares a drawing: a struct of the buffers and textures that it is bound to.
+///
+/// ```text
+/// drawing! {
+///     /// What it draws.
+///     pub struct Name in "module" (LINKED_TEXT), vertex "name_vertex", fragment Some("name") {
+///         0 frame: Read Frame,
+///         1 samples: Texture f32,
+///     }
+/// }
+/// ```
+#[macro_export]
+macro_rules! drawing {
+    ($(#[$attribute:meta])* $visibility:vis struct $drawing:ident in $module:literal ($source:expr),
+     vertex $vertex:literal, fragment $fragment:expr, {
+        $($index:literal $name:ident: $access:ident $kind:ty,)*
+    }) => {
+        $crate::declare! {
+            $(#[$attribute])* $visibility struct $drawing in $module ($source), $vertex, $fragment, true {
+                $($index $name: $access $kind,)*
+            }
+        }
+    };
+}
+
+/// What a drawing writes, and how.
+#[derive(Clone, Debug, Default)]
+pub struct Output {
+    /// Format of the colours and how they join what is there; none where only depth is drawn.
+    pub color: Option<(wgpu::TextureFormat, Option<wgpu::BlendState>)>,
+    /// Test against a depth texture.
+    pub depth: Option<wgpu::DepthStencilState>,
+}
+
+/// A compiled drawing; `B` is what [`drawing!`](crate::drawing) declared, with a static lifetime.
+#[derive(Debug)]
+pub struct Drawing<B> {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    bindings: PhantomData<fn(B)>,
+}
+
+/// A drawing with its buffers, ready to run.
+#[derive(Clone, Debug)]
+pub struct BoundDrawing {
+    pub(crate) pipeline: wgpu::RenderPipeline,
+    pub(crate) group: wgpu::BindGroup,
+}
+
+impl<B: Bindings<Kernel = B>> Drawing<B> {
+    /// Compiles a drawing with values for its `override` constants.
+    ///
+    /// # Errors
+    /// The driver does not take it, or the device was lost.
+    pub fn new(gpu: &Gpu, output: &Output, constants: &[(&str, f64)]) -> Result<Self, GpuError> {
+        let declaration = B::declaration();
+        let made = gpu.guarded(declaration.module, || pipeline(gpu, &declaration, output, constants));
+        let (pipeline, layout) = made.map_err(as_shader_error)?;
+        Ok(Self { pipeline, layout, bindings: PhantomData })
+    }
+
+    /// Binds a drawing to its buffers.
+    ///
+    /// # Errors
+    /// A buffer does not fit, or the device was lost.
+    pub fn bind<C: Bindings<Kernel = B>>(&self, gpu: &Gpu, buffers: &C) -> Result<BoundDrawing, GpuError> {
+        let group = bind_group(gpu, &self.layout, buffers)?;
+        Ok(BoundDrawing { pipeline: self.pipeline.clone(), group })
+    }
+}
+
+fn pipeline(
+    gpu: &Gpu,
+    declaration: &Declaration,
+    output: &Output,
+    constants: &[(&str, f64)],
+) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
+    let device = gpu.device();
+    let (layout, pipeline_layout) = layouts(device, declaration);
+    let module = &shader_module(device, declaration);
+    let compilation_options = wgpu::PipelineCompilationOptions { constants, ..Default::default() };
+    let target = output.color.map(|(format, blend)| {
+        Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
+    });
+    let fragment = declaration.fragment.map(|entry| wgpu::FragmentState {
+        module,
+        entry_point: Some(entry),
+        compilation_options: compilation_options.clone(),
+        targets: target.as_slice(),
+    });
+    let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(declaration.entry),
+        layout: Some(&pipeline_layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some(declaration.entry),
+            compilation_options: compilation_options.clone(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: output.depth.clone(),
+        multisample: wgpu::MultisampleState::default(),
+        fragment,
+        multiview_mask: None,
+        cache: None,
+    });
+    (pipeline, layout)
+}

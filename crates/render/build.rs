@@ -1,0 +1,26 @@
+//! Links the WESL modules of the stages into one WGSL text each.
+
+/// Modules with entry points; the others are imported by them.
+const MODULES: [&str; 12] = [
+    "tessellate",
+    "interpolate",
+    "fit",
+    "opacity_depth",
+    "opacity_layers",
+    "occlude",
+    "shade",
+    "sort",
+    "draw",
+    "body",
+    "background",
+    "resolve",
+];
+
+fn main() {
+    println!("cargo::rerun-if-changed=src/gpu");
+    let linker = wesl::Wesl::new("src/gpu");
+    for name in MODULES {
+        let module = format!("package::{name}").parse().expect("a name is a path");
+        linker.build_artifact(&module, name);
+    }
+}

@@ -1,0 +1,177 @@
+//! What lies on the device.
+
+use glam::Vec3;
+use strandline_body::Mesh;
+use strandline_gpu::{Buffer, Gpu, GpuError, Scan, Texture, wgpu};
+use strandline_groom::Guides;
+
+use super::inputs::{Frame, LightSource};
+use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
+use crate::cpu::tessellate::skin_axes;
+use crate::{PictureSettings, RenderError};
+
+/// Format of the samples: the widest that blends on every device.
+pub(super) const SAMPLES: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of depths.
+pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Numbers of the box around the hair, and of what each shadow light sees.
+const BOUNDS: usize = 6 + 8 * MAX_SHADOWS;
+/// Cells of the grid of the surroundings: 44 along each side.
+const CELLS: usize = 44 * 44 * 44;
+
+/// The buffers that depend on nothing but the groom and the body.
+pub(super) struct Groom {
+    pub frame: Buffer<Frame>,
+    pub lights: Buffer<LightSource>,
+    pub fitted: Buffer<[f32; 4]>,
+    pub bounds: Buffer<u32>,
+    pub cubes: Buffer<f32>,
+    pub areas: Buffer<u32>,
+    /// Guide points \[m\], world space, `[block][point][component][lane]`.
+    pub places: Buffer<f32>,
+    /// Three vectors a guide: see tessellate.wesl.
+    pub roots: Buffer<[f32; 4]>,
+    /// Per guide: see tessellate.wesl.
+    pub clumps: Buffer<[f32; 4]>,
+    pub triangles: Buffer<u32>,
+    /// Two vectors a vertex: position \[m\], unit normal, head space.
+    pub vertices: Buffer<[f32; 4]>,
+    /// Per place in the order of depth: see sort.wesl.
+    pub starts: Buffer<u32>,
+    pub start_totals: Buffer<u32>,
+}
+
+impl Groom {
+    pub fn new(gpu: &Gpu, guides: &Guides, body: Option<&Mesh>) -> Result<Self, GpuError> {
+        let roots: Vec<[f32; 4]> = guides
+            .root_normals()
+            .iter()
+            .zip(guides.widths())
+            .flat_map(|(&normal, &width)| {
+                let [first, second] = skin_axes(normal);
+                [normal.extend(width), first.extend(0.0), second.extend(0.0)].map(|vector| vector.to_array())
+            })
+            .collect();
+        let empty = Mesh::default();
+        let mesh = body.unwrap_or(&empty);
+        let vertices: Vec<[f32; 4]> = mesh
+            .positions
+            .iter()
+            .zip(&mesh.normals)
+            .flat_map(|(position, normal): (&Vec3, &Vec3)| {
+                [position, normal].map(|v| v.extend(0.0).to_array())
+            })
+            .collect();
+        Ok(Self {
+            frame: Buffer::new(gpu, "frame", 1)?,
+            lights: Buffer::new(gpu, "lights", MAX_LIGHTS)?,
+            fitted: Buffer::new(gpu, "fitted", 3 + 2 * MAX_SHADOWS)?,
+            bounds: Buffer::new(gpu, "bounds", BOUNDS)?,
+            cubes: Buffer::new(gpu, "surroundings", 8 * CELLS)?,
+            areas: Buffer::new(gpu, "areas", CELLS)?,
+            places: Buffer::from_slice(gpu, "guide points", floats(guides.positions()))?,
+            roots: Buffer::from_slice(gpu, "roots", &roots)?,
+            clumps: Buffer::new(gpu, "clumps", guides.strand_count())?,
+            triangles: Buffer::from_slice(gpu, "triangles", mesh.triangles.as_flattened())?,
+            vertices: Buffer::from_slice(gpu, "vertices", &vertices)?,
+            starts: Buffer::new(gpu, "starts", ORDER_STEPS)?,
+            start_totals: Scan::totals(gpu, ORDER_STEPS)?,
+        })
+    }
+
+    /// What the bounds start from: nothing.
+    pub fn no_bounds() -> Vec<u32> {
+        let planes = std::iter::repeat_n([u32::MAX, u32::MAX, 0, 0], 2 * MAX_SHADOWS).flatten();
+        [[u32::MAX; 3], [0; 3]].into_iter().flatten().chain(planes).collect()
+    }
+}
+
+/// Lanes as the numbers that they are.
+pub(super) fn floats(lanes: &[strandline_groom::Vec3Lanes]) -> &[f32] {
+    bytemuck::cast_slice(lanes)
+}
+
+/// The buffers that grow with the strands drawn.
+pub(super) struct Strands {
+    /// Strands of a guide and points of a strand that there is room for.
+    pub strands_per_guide: usize,
+    pub curve_points: usize,
+    /// Three vectors a curve point: see tessellate.wesl.
+    pub tables: Buffer<[f32; 4]>,
+    pub scales: Buffer<f32>,
+    pub curves: Buffer<[f32; 4]>,
+    /// Position \[m\] and diameter \[m\], shape `[strand][point]`.
+    pub points: Buffer<[f32; 4]>,
+    /// Half floats, shape `[strand][point]`.
+    pub radiances: Buffer<[u32; 2]>,
+    pub keys: Buffer<u32>,
+    pub order: Buffer<u32>,
+}
+
+/// Most points that a picture draws: an index with its marks is one number.
+pub(super) const MAX_POINTS: usize = 1 << 26;
+
+impl Strands {
+    pub fn new(
+        gpu: &Gpu,
+        guide_count: usize,
+        strands_per_guide: usize,
+        curve_points: usize,
+    ) -> Result<Self, GpuError> {
+        let strands = guide_count * strands_per_guide;
+        let (points, segments) = (strands * curve_points, strands * (curve_points - 1));
+        debug_assert!(points <= MAX_POINTS);
+        Ok(Self {
+            strands_per_guide,
+            curve_points,
+            points: Buffer::new(gpu, "points of all drawn strands", points)?,
+            tables: Buffer::new(gpu, "curve tables", 3 * curve_points)?,
+            scales: Buffer::new(gpu, "widths of follow strands", strands_per_guide)?,
+            curves: Buffer::new(gpu, "curves", 3 * guide_count * curve_points)?,
+            radiances: Buffer::new(gpu, "radiances", points)?,
+            keys: Buffer::new(gpu, "keys of segments", segments)?,
+            order: Buffer::new(gpu, "order of segments", segments)?,
+        })
+    }
+}
+
+/// The maps of the shadow lights.
+pub(super) struct Maps {
+    pub size: u32,
+    pub shadows: usize,
+    /// Four numbers a texel: see opacity_depth.wesl.
+    pub texels: Buffer<u32>,
+    /// Depths of the body, rows of [`super::opacity_depth::stride`].
+    pub body: Buffer<f32>,
+    pub body_depth: Texture,
+}
+
+impl Maps {
+    pub fn new(gpu: &Gpu, size: u32, shadows: usize) -> Result<Self, GpuError> {
+        let texels = shadows * (size * size) as usize;
+        let stride = super::opacity_depth::stride(size);
+        Ok(Self {
+            size,
+            shadows,
+            texels: Buffer::new(gpu, "the maps of all shadow lights", 4 * texels)?,
+            body: Buffer::new(gpu, "depths of the body", shadows * (stride * size) as usize)?,
+            body_depth: Texture::new(gpu, "depth of the body", [size; 2], DEPTH)?,
+        })
+    }
+}
+
+/// What a picture is drawn into.
+pub(super) struct Targets {
+    pub samples: Texture,
+    pub depth: Texture,
+}
+
+impl Targets {
+    pub fn new(gpu: &Gpu, settings: &PictureSettings) -> Result<Self, RenderError> {
+        let size = [settings.width, settings.height].map(|length| length * settings.supersampling);
+        Ok(Self {
+            samples: Texture::new(gpu, "samples", size, SAMPLES)?,
+            depth: Texture::new(gpu, "depths of samples", size, DEPTH)?,
+        })
+    }
+}

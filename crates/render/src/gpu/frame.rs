@@ -1,0 +1,120 @@
+//! A frame as a list of stages, recorded into one submission.
+
+use strandline_gpu::{Amount, Bound, BoundDrawing, Recorder, Targets, groups, wgpu};
+
+use super::buffers::Maps;
+use super::renderer::{GpuRenderer, Scene, Stages};
+use super::{THREADS, draw, fit, opacity_depth};
+
+/// What a frame is recorded from.
+pub(super) struct Bounds<'a> {
+    pub tessellate: Bound,
+    pub stages: &'a Stages,
+    pub resolve: &'a BoundDrawing,
+    pub maps: &'a Maps,
+    pub target: &'a wgpu::TextureView,
+    pub renderer: &'a GpuRenderer,
+}
+
+/// Records every stage in order.
+pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
+    let stages = bounds.stages;
+    let (strands, segments) = (scene.strand_count(), scene.strand_count() * (scene.curve_points() - 1));
+    let points = scene.strand_count() * scene.curve_points();
+    let one = |bound: &Bound, threads: usize| [(bound.clone(), groups(threads, THREADS))];
+    let groom = &bounds.renderer.groom;
+
+    recorder.stage("tessellate", &one(&bounds.tessellate, scene.guide_count));
+    recorder.stage("interpolate", &one(&stages.interpolate, points));
+    record_opacity(recorder, scene, stages, bounds.maps);
+    recorder.clear(&groom.areas);
+    recorder.stage("shade", &one(&stages.sum_areas, segments));
+    recorder.stage("shade", &[(stages.sweep.clone(), [6, 1, 1])]);
+    recorder.stage("shade", &one(&stages.shade, points));
+    recorder.clear(&groom.starts);
+    recorder.stage("draw", &one(&stages.list_segments, strands));
+    recorder.stage("draw", &stages.scan);
+    recorder.stage("draw", &one(&stages.order_segments, segments));
+    samples(recorder, scene, bounds, segments);
+    let target =
+        Targets { color: Some((bounds.target, wgpu::LoadOp::Clear(wgpu::Color::BLACK))), depth: None };
+    recorder.draw("resolve", &target, &[(bounds.resolve, Amount::Vertices { count: 3, instance: 0 })]);
+}
+
+/// Records the deep opacity maps of every light with shadow.
+pub(super) fn record_opacity(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &Maps) {
+    let strands = scene.strand_count();
+    let segments = groups(strands * (scene.curve_points() - 1), THREADS);
+    let lit = |bound: &Bound| [(bound.clone(), for_each_light(segments, scene))];
+    recorder.stage("opacity_depth", &fitting(scene, stages, strands * scene.curve_points()));
+    if scene.shadow_count() > 0 {
+        body_depths(recorder, scene, stages, maps);
+        recorder.stage("opacity_depth", &lit(&stages.opacity_depth));
+        recorder.stage("opacity_layers", &lit(&stages.opacity_layers));
+    }
+}
+
+/// The same workgroups for every light with shadow.
+fn for_each_light([x, y, _]: [u32; 3], scene: &Scene) -> [u32; 3] {
+    [x, y, scene.shadow_count().max(1) as u32]
+}
+
+/// Where everything lies, and empty maps.
+fn fitting(scene: &Scene, stages: &Stages, points: usize) -> Vec<(Bound, [u32; 3])> {
+    let measured = |count: usize| for_each_light(groups(count.div_ceil(fit::RUN), THREADS), scene);
+    let texels = scene.shadow_count() * (scene.input.look.shadow.map_size as usize).pow(2);
+    let mut list = vec![(stages.measure_hair.clone(), measured(points))];
+    if scene.vertex_count > 0 && scene.shadow_count() > 0 {
+        list.push((stages.measure_body.clone(), measured(scene.vertex_count)));
+    }
+    list.push((stages.fit.clone(), [1; 3]));
+    list.push((stages.clear_maps.clone(), groups(texels, THREADS)));
+    list
+}
+
+/// The body as each shadow light sees it, one after the other through one texture.
+fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &Maps) {
+    if scene.triangle_count == 0 {
+        return;
+    }
+    let count = 3 * scene.triangle_count as u32;
+    let row_bytes = 4 * opacity_depth::stride(maps.size);
+    for slot in 0..scene.shadow_count() {
+        let depth = Some((maps.body_depth.view(), wgpu::LoadOp::Clear(1.0)));
+        let amount = Amount::Vertices { count, instance: slot as u32 };
+        recorder.draw("opacity_depth", &Targets { color: None, depth }, &[(&stages.body_depth, amount)]);
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: slot as u64 * u64::from(row_bytes) * u64::from(maps.size),
+            bytes_per_row: Some(row_bytes),
+            rows_per_image: None,
+        };
+        recorder.encoder().copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo {
+                aspect: wgpu::TextureAspect::DepthOnly,
+                ..maps.body_depth.raw().as_image_copy()
+            },
+            wgpu::TexelCopyBufferInfo { buffer: maps.body.raw(), layout },
+            maps.body_depth.raw().size(),
+        );
+    }
+}
+
+/// Background, body and hair, in this order.
+fn samples(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds, segments: usize) {
+    let renderer = bounds.renderer;
+    let instances = segments.div_ceil(draw::BATCH) as u32;
+    let mut list = Vec::new();
+    if !scene.settings.transparent {
+        list.push((&bounds.stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
+    }
+    if scene.triangle_count > 0 {
+        let count = 3 * scene.triangle_count as u32;
+        list.push((&bounds.stages.body, Amount::Vertices { count, instance: 0 }));
+    }
+    list.push((&bounds.stages.hair, Amount::Instanced { indices: &renderer.indices, instances }));
+    let targets = Targets {
+        color: Some((renderer.targets.samples.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))),
+        depth: Some((renderer.targets.depth.view(), wgpu::LoadOp::Clear(0.0))),
+    };
+    recorder.draw("draw", &targets, &list);
+}

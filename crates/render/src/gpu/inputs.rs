@@ -1,0 +1,268 @@
+//! The settings of a frame as the kernels read them.
+
+use glam::{Affine3A, Mat3, Vec3};
+use strandline_body::Pose;
+use strandline_gpu::mirror;
+
+use super::renderer::Scene;
+use crate::cpu::shadow::LightView;
+use crate::{Highlight, LightKind, ToneMap};
+
+mirror! {
+    /// Rows of a rotation, each with its component of the translation \[m\] behind it.
+    pub(super) struct Rigid {
+        pub x: [f32; 4],
+        pub y: [f32; 4],
+        pub z: [f32; 4],
+    }
+}
+
+mirror! {
+    /// Mirrors `Frame` in common.wesl.
+    pub(super) struct Frame {
+        pub world_from_head: Rigid,
+        pub view_from_world: Rigid,
+        /// \[m\]
+        pub eye: [f32; 3],
+        /// Between the two buffers of guide points, 0 to 1.
+        pub share: f32,
+        /// \[sample\]
+        pub size: [f32; 2],
+        /// \[sample\]
+        pub focal: f32,
+        /// \[m\]
+        pub near: f32,
+        pub sky: [f32; 3],
+        pub tip_width: f32,
+        pub ground: [f32; 3],
+        pub lift: f32,
+        pub root_color: [f32; 3],
+        pub variation: f32,
+        pub tip_color: [f32; 3],
+        pub grey: f32,
+        /// Shift, sharpness and peak: see cpu/fibre.rs.
+        pub first_lobe: [f32; 3],
+        /// Greatest shift of the highlights along a strand, as a sum of sines.
+        pub jitter: f32,
+        pub second_lobe: [f32; 3],
+        pub sparkle: f32,
+        pub body_color: [f32; 3],
+        pub body_wrap: f32,
+        pub background_top: [f32; 3],
+        pub body_specular: f32,
+        pub background_bottom: [f32; 3],
+        pub body_roughness: f32,
+        /// Where the opacity layers end \[m\].
+        pub layers: [f32; 3],
+        /// Logarithm of what one hair lets through.
+        pub log_transmission: f32,
+        pub body_bias: f32,
+        pub inverse_softness: f32,
+        pub translucency: f32,
+        /// Share of light that is scattered as diffuse.
+        pub diffuse: f32,
+        pub wave_amplitude: f32,
+        pub wave_length: f32,
+        pub shorter: f32,
+        /// Diameter of a drawn strand over that of a hair, at full detail.
+        pub widening: f32,
+        pub seed: u32,
+        pub guide_count: u32,
+        pub guide_points: u32,
+        pub curve_points: u32,
+        pub strands_per_guide: u32,
+        pub full_strands: u32,
+        pub light_count: u32,
+        pub shadow_count: u32,
+        pub map_size: u32,
+        /// Texels from a row of the body's depths to the next.
+        pub body_stride: u32,
+        pub vertex_count: u32,
+        pub triangle_count: u32,
+        /// Exposure as a factor.
+        pub gain: f32,
+        pub supersampling: u32,
+        pub filmic: u32,
+        /// 0 none, 1 open, 2 closed: every edge joins two triangles.
+        pub body_kind: u32,
+    }
+}
+
+mirror! {
+    /// Mirrors `LightSource` in light.wesl.
+    pub(super) struct LightSource {
+        /// \[m\]
+        pub position: [f32; 3],
+        /// 0 directional, 1 spot, 2 point.
+        pub kind: u32,
+        /// Unit direction from the target to the light.
+        pub axis: [f32; 3],
+        /// Square of the distance to the target \[m^2\].
+        pub axis_square: f32,
+        pub radiance: [f32; 3],
+        /// Which shadow light it is, [`NO_MAP`] for none.
+        pub slot: u32,
+        pub right: [f32; 3],
+        /// Greatest coordinate on the plane that the light reaches.
+        pub reach: f32,
+        pub up: [f32; 3],
+        /// Cosine at the rim of the cone.
+        pub rim: f32,
+        pub forward: [f32; 3],
+        /// Cosine within which the cone is at its full.
+        pub full: f32,
+        /// Least depth that the map of the body holds, and how much more it can \[m\].
+        pub first_depth: f32,
+        pub depth_range: f32,
+        /// The light that is shadow light number (place of this element).
+        pub caster: u32,
+        /// Whether it casts shadows.
+        pub casts: u32,
+    }
+}
+
+/// No shadow.
+pub(super) const NO_MAP: u32 = u32::MAX;
+
+impl Rigid {
+    fn of_pose(pose: &Pose) -> Self {
+        Self::new(Mat3::from_quat(pose.rotation), pose.translation)
+    }
+
+    fn of_affine(affine: &Affine3A) -> Self {
+        Self::new(affine.matrix3.into(), affine.translation.into())
+    }
+
+    fn new(rotation: Mat3, translation: Vec3) -> Self {
+        let rows = rotation.transpose();
+        let row = |axis: Vec3, offset: f32| axis.extend(offset).to_array();
+        Self {
+            x: row(rows.x_axis, translation.x),
+            y: row(rows.y_axis, translation.y),
+            z: row(rows.z_axis, translation.z),
+        }
+    }
+}
+
+impl Frame {
+    /// What a frame needs.
+    pub fn new(scene: &Scene) -> Self {
+        let Scene { input, settings, level, .. } = scene;
+        let (look, body, shadow) = (input.look, input.body_look, &input.look.shadow);
+        let (width, height) = (settings.width as f32, settings.height as f32);
+        let scale = settings.supersampling as f32;
+        let share = look.first_highlight.strength + look.second_highlight.strength;
+        Self {
+            world_from_head: Rigid::of_pose(&input.world_from_head),
+            view_from_world: Rigid::of_affine(&input.camera.view_from_world()),
+            eye: input.camera.position.to_array(),
+            share: scene.share,
+            size: [width * scale, height * scale],
+            focal: 0.5 * height * scale * input.camera.focal(),
+            near: input.camera.near,
+            sky: look.environment.sky.to_array(),
+            tip_width: look.tip_width,
+            ground: look.environment.ground.to_array(),
+            lift: look.clump.lift,
+            root_color: look.root_color.to_array(),
+            variation: look.variation,
+            tip_color: look.tip_color.to_array(),
+            grey: look.grey,
+            first_lobe: lobe(&look.first_highlight),
+            jitter: 2.0 * look.highlight_noise.to_radians(),
+            second_lobe: lobe(&look.second_highlight),
+            sparkle: look.sparkle,
+            body_color: body.color.to_array(),
+            body_wrap: body.wrap,
+            background_top: settings.background.top.to_array(),
+            body_specular: body.specular,
+            background_bottom: settings.background.bottom.to_array(),
+            body_roughness: body.roughness,
+            layers: shadow.layers,
+            log_transmission: shadow.log_transmission(),
+            body_bias: shadow.body_bias,
+            inverse_softness: 1.0 / shadow.body_softness,
+            translucency: look.translucency,
+            diffuse: (1.0 - share).max(0.0),
+            wave_amplitude: look.clump.wave_amplitude,
+            wave_length: look.clump.wave_length,
+            shorter: look.clump.shorter,
+            widening: crate::cpu::interpolate::widening(look, scene.guide_count),
+            seed: look.seed,
+            guide_count: scene.guide_count as u32,
+            guide_points: scene.guide_points as u32,
+            curve_points: scene.curve_points() as u32,
+            strands_per_guide: level.strand_count() as u32,
+            full_strands: level.full_follow_strands as u32,
+            light_count: input.lights.len() as u32,
+            shadow_count: scene.shadow_count() as u32,
+            map_size: shadow.map_size,
+            body_stride: super::opacity_depth::stride(shadow.map_size),
+            vertex_count: scene.vertex_count as u32,
+            triangle_count: scene.triangle_count as u32,
+            gain: settings.exposure.exp2(),
+            supersampling: settings.supersampling,
+            filmic: u32::from(settings.tone_map == ToneMap::Filmic),
+            body_kind: scene.body_kind,
+        }
+    }
+}
+
+fn lobe(highlight: &Highlight) -> [f32; 3] {
+    use std::f32::consts::PI;
+    let deviation = 2.0 * highlight.width.to_radians().sin();
+    [
+        2.0 * highlight.shift.to_radians().sin(),
+        -0.5 / (deviation * deviation),
+        highlight.strength * PI / (deviation * (2.0 * PI).sqrt()),
+    ]
+}
+
+impl LightSource {
+    /// The lights of a frame; those with shadow are numbered in their order.
+    pub fn all(scene: &Scene) -> Vec<Self> {
+        let (center, radius) = scene.body_ball;
+        let center = scene.input.world_from_head.point(center);
+        let mut slot = 0;
+        let mut casters = Vec::new();
+        let mut sources = Vec::new();
+        for (index, light) in scene.input.lights.iter().enumerate() {
+            let view = LightView::new(light, scene.middle);
+            let depth = (center - view.origin).dot(view.forward) - radius;
+            let [rim, full] = light.cone_cosines();
+            let axis = light.position - light.target;
+            let mut source = Self {
+                position: light.position.to_array(),
+                kind: match light.kind {
+                    LightKind::Directional => 0,
+                    LightKind::Spot => 1,
+                    LightKind::Point => 2,
+                },
+                axis: axis.normalize_or(Vec3::Y).to_array(),
+                axis_square: axis.length_squared(),
+                radiance: (light.color * light.intensity).to_array(),
+                slot: NO_MAP,
+                right: view.right.to_array(),
+                reach: view.reach.min(f32::MAX),
+                up: view.up.to_array(),
+                rim,
+                forward: view.forward.to_array(),
+                full,
+                first_depth: depth,
+                depth_range: (2.0 * radius).max(1e-3),
+                caster: 0,
+                casts: u32::from(light.shadow),
+            };
+            if light.shadow {
+                source.slot = slot;
+                casters.push(index as u32);
+                slot += 1;
+            }
+            sources.push(source);
+        }
+        for (source, caster) in sources.iter_mut().zip(casters) {
+            source.caster = caster;
+        }
+        sources
+    }
+}

@@ -1,0 +1,18 @@
+//! `interpolate`: the strands that are drawn, grown about each guide's curve.
+
+use strandline_gpu::kernel;
+
+use super::inputs::Frame;
+
+kernel! {
+    /// One thread is one point of a drawn strand.
+    pub(super) struct Interpolate in "interpolate" (super::linked::INTERPOLATE), entry "interpolate" {
+        0 frame: Read Frame,
+        1 points: ReadWrite [f32; 4],
+        9 roots: Read [f32; 4],
+        10 tables: Read [f32; 4],
+        11 curves: Read [f32; 4],
+        12 clumps: Read [f32; 4],
+        13 scales: Read f32,
+    }
+}

@@ -1,0 +1,37 @@
+//! The stages as kernels and drawings, through wgpu; every one has a twin in plain Rust under the same
+//! name.
+//!
+//! A [`GpuRenderer`] keeps its buffers from frame to frame; a frame is one submission. Guide points may
+//! lie on the device already, and the picture may stay there.
+
+mod background;
+mod body;
+mod buffers;
+mod draw;
+mod fit;
+mod frame;
+mod inputs;
+mod interpolate;
+mod linked;
+mod occlude;
+mod opacity_depth;
+mod opacity_layers;
+mod probe;
+mod renderer;
+mod resolve;
+mod shade;
+mod sort;
+mod tessellate;
+
+pub use linked::modules;
+pub use renderer::{DevicePoints, GpuRenderer, declarations};
+
+/// Most lights of a picture.
+pub const MAX_LIGHTS: usize = 32;
+/// Most lights with shadow among them.
+pub const MAX_SHADOWS: usize = 8;
+
+/// Threads of a workgroup, as in common.wesl.
+const THREADS: usize = 64;
+/// Places in the order of depth, as in sort.wesl.
+const ORDER_STEPS: usize = 65_536;

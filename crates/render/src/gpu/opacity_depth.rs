@@ -1,0 +1,41 @@
+//! `opacity_depth`: for each light with shadow, the depth of the first hair and of the body.
+
+use strandline_gpu::{drawing, kernel};
+
+use super::inputs::{Frame, LightSource};
+
+kernel! {
+    /// One thread is one texel.
+    pub(super) struct ClearMaps in "opacity_depth" (super::linked::OPACITY_DEPTH), entry "clear_maps" {
+        0 frame: Read Frame,
+        4 maps: ReadWrite u32,
+    }
+}
+
+kernel! {
+    /// One thread is one segment for one light.
+    pub(super) struct OpacityDepth in "opacity_depth" (super::linked::OPACITY_DEPTH), entry "opacity_depth" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        2 lights: Read LightSource,
+        3 fitted: Read [f32; 4],
+        4 maps: ReadWrite u32,
+    }
+}
+
+drawing! {
+    /// The body's depth on the plane of a light.
+    pub(super) struct BodyDepth in "opacity_depth" (super::linked::OPACITY_DEPTH),
+    vertex "body_depth_vertex", fragment None, {
+        0 frame: Read Frame,
+        2 lights: Read LightSource,
+        3 fitted: Read [f32; 4],
+        7 triangles: Read u32,
+        8 vertices: Read [f32; 4],
+    }
+}
+
+/// Texels from a row of the body's depths to the next: copies of textures have rows of whole 256 bytes.
+pub(super) fn stride(map_size: u32) -> u32 {
+    map_size.next_multiple_of(64)
+}

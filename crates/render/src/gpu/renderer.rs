@@ -1,0 +1,546 @@
+use glam::Vec3;
+use strandline_body::Mesh;
+use strandline_gpu::{
+    Bindings, Bound, BoundDrawing, Buffer, Declaration, Dispatches, Drawing, Gpu, GpuError, Kernel, Recorder,
+    Scan, Timer, wgpu,
+};
+use strandline_groom::Guides;
+
+use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
+use super::frame::{Bounds, record, record_opacity};
+use super::inputs::{Frame, LightSource};
+use super::resolve::{Own, PICTURE, ToFormat};
+use super::{
+    MAX_LIGHTS, MAX_SHADOWS, background, body, draw, fit, interpolate, occlude, opacity_depth,
+    opacity_layers, resolve, shade, sort, tessellate,
+};
+use crate::cpu::{self, Shadows};
+use crate::frame::middle;
+use crate::{DetailLevel, FrameInput, FrameReport, Picture, PictureSettings, RenderError};
+
+/// Guide points that lie on the device, `[block][point][component][lane]` \[m\], world space: at the two
+/// states between which a picture lies.
+#[derive(Clone, Copy)]
+pub struct DevicePoints<'a> {
+    /// Before the moment shown.
+    pub before: &'a Buffer<f32>,
+    /// After it.
+    pub after: &'a Buffer<f32>,
+    /// Where the moment lies between them, 0 to 1.
+    pub share: f32,
+}
+
+/// Draws frames of one groom on one body on a GPU; keeps its buffers from frame to frame.
+pub struct GpuRenderer {
+    pub(super) gpu: Gpu,
+    pub(super) guides: Guides,
+    /// Middle of the guides at rest \[m\], head space.
+    middle: Vec3,
+    /// A ball around the body: middle \[m\], head space, and radius \[m\].
+    body_ball: (Vec3, f32),
+    vertex_count: usize,
+    triangle_count: usize,
+    body_kind: u32,
+    settings: PictureSettings,
+    pub(super) kernels: Kernels,
+    pub(super) groom: Groom,
+    pub(super) strands: Option<Strands>,
+    pub(super) maps: Option<Maps>,
+    pub(super) targets: Targets,
+    own: Option<Own>,
+    formats: Vec<ToFormat>,
+    pub(super) indices: Buffer<u32>,
+    stages: Option<Stages>,
+    /// `tessellate` bound to pairs of buffers of guide points.
+    tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
+    timer: Option<Timer>,
+    pub(super) drawn: Drawn,
+}
+
+/// What the last frame drew.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Drawn {
+    pub strands_per_guide: usize,
+    pub curve_points: usize,
+    pub shadows: usize,
+}
+
+/// What one frame shows, worked out on the host.
+pub(super) struct Scene<'a> {
+    pub input: &'a FrameInput<'a>,
+    pub settings: &'a PictureSettings,
+    pub level: DetailLevel,
+    pub share: f32,
+    pub guide_count: usize,
+    pub guide_points: usize,
+    pub vertex_count: usize,
+    pub triangle_count: usize,
+    /// 0 none, 1 open, 2 closed.
+    pub body_kind: u32,
+    pub body_ball: (Vec3, f32),
+    /// Middle of the hair \[m\], world space.
+    pub middle: Vec3,
+}
+
+impl Scene<'_> {
+    pub fn curve_points(&self) -> usize {
+        self.level.segment_count(self.guide_points) + 1
+    }
+
+    pub fn strand_count(&self) -> usize {
+        self.guide_count * self.level.strand_count()
+    }
+
+    pub fn shadow_count(&self) -> usize {
+        self.input.lights.iter().filter(|light| light.shadow).count()
+    }
+}
+
+/// Every kernel and drawing, compiled.
+pub(super) struct Kernels {
+    pub tessellate: Kernel<tessellate::Tessellate<'static>>,
+    pub interpolate: Kernel<interpolate::Interpolate<'static>>,
+    pub measure_hair: Kernel<fit::MeasureHair<'static>>,
+    pub measure_body: Kernel<fit::MeasureBody<'static>>,
+    pub fit: Kernel<fit::Fit<'static>>,
+    pub clear_maps: Kernel<opacity_depth::ClearMaps<'static>>,
+    pub opacity_depth: Kernel<opacity_depth::OpacityDepth<'static>>,
+    pub body_depth: Drawing<opacity_depth::BodyDepth<'static>>,
+    pub opacity_layers: Kernel<opacity_layers::OpacityLayers<'static>>,
+    pub sum_areas: Kernel<occlude::SumAreas<'static>>,
+    pub sweep: Kernel<occlude::Sweep<'static>>,
+    pub shade: Kernel<shade::Shade<'static>>,
+    pub list_segments: Kernel<sort::ListSegments<'static>>,
+    pub order_segments: Kernel<sort::OrderSegments<'static>>,
+    pub scan: Scan,
+    pub hair: Drawing<draw::Hair<'static>>,
+    pub body: Drawing<body::Body<'static>>,
+    pub backdrop: Drawing<background::Backdrop<'static>>,
+}
+
+impl Kernels {
+    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            tessellate: Kernel::new(gpu, &[])?,
+            interpolate: Kernel::new(gpu, &[])?,
+            measure_hair: Kernel::new(gpu, &[])?,
+            measure_body: Kernel::new(gpu, &[])?,
+            fit: Kernel::new(gpu, &[])?,
+            clear_maps: Kernel::new(gpu, &[])?,
+            opacity_depth: Kernel::new(gpu, &[])?,
+            body_depth: Drawing::new(gpu, &draw::body_depth_output(), &[])?,
+            opacity_layers: Kernel::new(gpu, &[])?,
+            sum_areas: Kernel::new(gpu, &[])?,
+            sweep: Kernel::new(gpu, &[])?,
+            shade: Kernel::new(gpu, &[])?,
+            list_segments: Kernel::new(gpu, &[])?,
+            order_segments: Kernel::new(gpu, &[])?,
+            scan: Scan::new(gpu)?,
+            hair: Drawing::new(gpu, &draw::hair_output(), &[])?,
+            body: Drawing::new(gpu, &draw::body_output(), &[])?,
+            backdrop: Drawing::new(gpu, &draw::background_output(), &[])?,
+        })
+    }
+}
+
+/// Every kernel but `tessellate`, bound to the buffers of the moment.
+pub(super) struct Stages {
+    pub interpolate: Bound,
+    pub measure_hair: Bound,
+    pub measure_body: Bound,
+    pub fit: Bound,
+    pub clear_maps: Bound,
+    pub opacity_depth: Bound,
+    pub body_depth: BoundDrawing,
+    pub opacity_layers: Bound,
+    pub sum_areas: Bound,
+    pub sweep: Bound,
+    pub shade: Bound,
+    pub list_segments: Bound,
+    pub scan: Dispatches,
+    pub order_segments: Bound,
+    pub hair: BoundDrawing,
+    pub body: BoundDrawing,
+    pub backdrop: BoundDrawing,
+}
+
+impl GpuRenderer {
+    /// A renderer of pictures of a groom's guides on a body in head space.
+    ///
+    /// # Errors
+    /// A setting outside its range; whatever the device refuses, such as a picture or a groom that is too
+    /// large for it.
+    pub fn new(
+        gpu: &Gpu,
+        guides: &Guides,
+        body: Option<&Mesh>,
+        settings: &PictureSettings,
+    ) -> Result<Self, RenderError> {
+        settings.validate()?;
+        Ok(Self {
+            middle: middle(guides),
+            body_ball: ball(body),
+            vertex_count: body.map_or(0, |mesh| mesh.positions.len()),
+            triangle_count: body.map_or(0, |mesh| mesh.triangles.len()),
+            body_kind: body.map_or(0, |mesh| 1 + u32::from(mesh.is_closed())),
+            settings: *settings,
+            kernels: Kernels::new(gpu)?,
+            groom: Groom::new(gpu, guides, body)?,
+            strands: None,
+            maps: None,
+            targets: Targets::new(gpu, settings)?,
+            own: None,
+            formats: Vec::new(),
+            indices: draw::indices(gpu)?,
+            stages: None,
+            tessellates: Vec::new(),
+            timer: Timer::new(gpu)?,
+            drawn: Drawn::default(),
+            guides: guides.clone(),
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// The size and tone of the pictures.
+    pub fn picture(&self) -> &PictureSettings {
+        &self.settings
+    }
+
+    /// Changes size, supersampling, exposure, tone map or background from the next picture on.
+    ///
+    /// # Errors
+    /// As for [`GpuRenderer::new`]; the settings then stay as they were.
+    pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
+        settings.validate()?;
+        let size = |settings: &PictureSettings| (settings.width, settings.height, settings.supersampling);
+        if size(settings) != size(&self.settings) {
+            let targets = Targets::new(&self.gpu, settings)?;
+            for format in &mut self.formats {
+                format.bind(&self.gpu, &self.groom, &targets)?;
+            }
+            self.targets = targets;
+            self.own = None;
+        }
+        self.settings = *settings;
+        Ok(())
+    }
+
+    /// Draws a picture.
+    ///
+    /// # Errors
+    /// A setting outside its range; whatever the device refuses.
+    pub fn draw(&mut self, input: &FrameInput) -> Result<(Picture, FrameReport), RenderError> {
+        let mut picture = Picture::default();
+        let report = self.draw_into(input, None, &mut picture)?;
+        Ok((picture, report))
+    }
+
+    /// Draws a picture into one that is there, whose memory is used again. Guide points on the device
+    /// stand for those of the input.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::draw`].
+    pub fn draw_into(
+        &mut self,
+        input: &FrameInput,
+        points: Option<DevicePoints>,
+        picture: &mut Picture,
+    ) -> Result<FrameReport, RenderError> {
+        let own = match self.own.take() {
+            Some(own) => own,
+            None => Own::new(&self.gpu, &self.settings)?,
+        };
+        let drawn = self.submit(input, points, own.texture.view(), PICTURE, Some(&own));
+        let own = self.own.insert(own);
+        let report = drawn?;
+        let seconds = own.read(self.timer.as_ref(), self.settings.transparent, picture)?;
+        Ok(FrameReport { seconds, ..report })
+    }
+
+    /// Draws into a texture of the host's, of the picture's size, and does not wait for it: the report
+    /// has no times.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::draw`]; a texture of another size.
+    pub fn draw_to(
+        &mut self,
+        input: &FrameInput,
+        points: Option<DevicePoints>,
+        target: &wgpu::TextureView,
+    ) -> Result<FrameReport, RenderError> {
+        let texture = target.texture();
+        if [texture.width(), texture.height()] != [self.settings.width, self.settings.height] {
+            return Err(RenderError::Setting {
+                name: "the target texture",
+                found: format!("{} x {}", texture.width(), texture.height()),
+                expected: "the width and height of the picture",
+            });
+        }
+        self.submit(input, points, target, texture.format(), None)
+    }
+
+    fn submit(
+        &mut self,
+        input: &FrameInput,
+        points: Option<DevicePoints>,
+        target: &wgpu::TextureView,
+        format: wgpu::TextureFormat,
+        own: Option<&Own>,
+    ) -> Result<FrameReport, RenderError> {
+        input.validate()?;
+        let settings = self.settings;
+        let scene = self.scene(input, &settings, points.map_or(1.0, |points| points.share));
+        self.prepare(&scene)?;
+        self.prepare_format(format)?;
+        self.write(&scene, points.is_none())?;
+        let tessellate = self.tessellate(points)?;
+        let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
+        let resolve =
+            &self.formats.iter().find(|known| known.format == format).expect("prepared above").bound;
+        let bounds = Bounds { tessellate, stages, resolve, maps, target, renderer: self };
+        let submitted = self.gpu.guarded("a frame", || {
+            let mut recorder = Recorder::new(&self.gpu, self.timer.as_ref());
+            self.timer.iter().for_each(Timer::restart);
+            record(&mut recorder, &scene, &bounds);
+            let commands = recorder.finish(|encoder| {
+                if let Some(own) = own {
+                    own.copy(encoder, self.timer.as_ref());
+                }
+            });
+            self.gpu.queue().submit([commands]);
+        });
+        submitted?;
+        let (strands, curve_points) = (scene.strand_count(), scene.curve_points());
+        self.drawn = Drawn {
+            strands_per_guide: scene.level.strand_count(),
+            curve_points,
+            shadows: scene.shadow_count(),
+        };
+        Ok(FrameReport { strands, segments: strands * (curve_points - 1), seconds: Vec::new() })
+    }
+
+    fn scene<'a>(&self, input: &'a FrameInput<'a>, settings: &'a PictureSettings, share: f32) -> Scene<'a> {
+        let middle = input.world_from_head.point(self.middle);
+        let distance = input.camera.position.distance(middle);
+        Scene {
+            input,
+            settings,
+            level: input.level_of_detail.level(distance, input.look.follow_strands),
+            share,
+            guide_count: self.guides.strand_count(),
+            guide_points: self.guides.points_per_strand(),
+            vertex_count: self.vertex_count,
+            triangle_count: self.triangle_count,
+            body_kind: self.body_kind,
+            body_ball: self.body_ball,
+            middle,
+        }
+    }
+
+    /// The shadows of strands as they are: `opacity_depth` and `opacity_layers` alone, for checks. The
+    /// shadow of the body is left out.
+    ///
+    /// # Errors
+    /// Whatever the device refuses.
+    pub fn shadows_of(&mut self, strands: &cpu::Strands, input: &FrameInput) -> Result<Shadows, RenderError> {
+        let settings = self.settings;
+        let scene = Scene {
+            level: DetailLevel::full(1, 1),
+            guide_count: strands.strand_count,
+            guide_points: strands.points_per_strand,
+            ..self.scene(input, &settings, 1.0)
+        };
+        self.strands = None;
+        self.prepare(&scene)?;
+        self.write(&scene, false)?;
+        let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
+        let with_width = strands.positions.iter().zip(&strands.widths);
+        let points: Vec<_> = with_width.map(|(point, &width)| point.extend(width).to_array()).collect();
+        self.strands.iter().try_for_each(|room| room.points.write(&points))?;
+        self.gpu.guarded("opacity maps", || {
+            let mut recorder = Recorder::new(&self.gpu, None);
+            record_opacity(&mut recorder, &scene, stages, maps);
+            self.gpu.queue().submit([recorder.finish(|_| ())]);
+        })?;
+        self.drawn = Drawn { shadows: scene.shadow_count(), ..Drawn::default() };
+        let shadows = self.shadows(input, scene.middle);
+        self.strands = None;
+        shadows
+    }
+
+    /// Makes room for a frame, and binds the stages where that changed.
+    fn prepare(&mut self, scene: &Scene) -> Result<(), RenderError> {
+        let limit =
+            |name, found: usize, expected| RenderError::Setting { name, found: found.to_string(), expected };
+        let (lights, shadows) = (scene.input.lights.len(), scene.shadow_count());
+        if lights > MAX_LIGHTS {
+            return Err(limit("number of lights", lights, "32 at most on a GPU"));
+        }
+        if shadows > MAX_SHADOWS {
+            return Err(limit("number of lights with shadow", shadows, "8 at most on a GPU"));
+        }
+        // Room for full detail, so that a change of distance never asks for memory.
+        let full =
+            DetailLevel::full(scene.input.level_of_detail.segments_per_span, scene.input.look.follow_strands);
+        let curve_points = (full.segment_count(scene.guide_points) + 1).max(scene.curve_points());
+        let strands_per_guide = full.strand_count().max(scene.level.strand_count());
+        let points = scene.guide_count * strands_per_guide * curve_points;
+        if points > MAX_POINTS {
+            return Err(limit("number of points to draw", points, "67108864 at most"));
+        }
+        if self.strands.as_ref().is_none_or(|strands| {
+            strands.strands_per_guide < strands_per_guide || strands.curve_points < curve_points
+        }) {
+            self.stages = None;
+            self.tessellates.clear();
+            self.strands = None;
+            self.strands = Some(Strands::new(&self.gpu, scene.guide_count, strands_per_guide, curve_points)?);
+        }
+        let size = scene.input.look.shadow.map_size;
+        if self.maps.as_ref().is_none_or(|maps| maps.size != size || maps.shadows < shadows) {
+            self.stages = None;
+            self.maps = None;
+            self.maps = Some(Maps::new(&self.gpu, size, shadows.max(1))?);
+        }
+        if self.stages.is_none() {
+            self.stages = Some(self.bind()?);
+        }
+        Ok(())
+    }
+
+    fn prepare_format(&mut self, format: wgpu::TextureFormat) -> Result<(), RenderError> {
+        if self.formats.iter().all(|known| known.format != format) {
+            self.formats.push(ToFormat::new(&self.gpu, format, &self.groom, &self.targets)?);
+        }
+        Ok(())
+    }
+
+    fn bind(&self) -> Result<Stages, GpuError> {
+        let (Some(strands), Some(maps)) = (&self.strands, &self.maps) else { unreachable!("made before") };
+        let (gpu, kernels, groom) = (&self.gpu, &self.kernels, &self.groom);
+        let Groom { frame, lights, fitted, bounds, cubes, areas, roots, clumps, .. } = groom;
+        let Groom { triangles, vertices, starts, .. } = groom;
+        let Strands { tables, scales, curves, points, radiances, keys, order, .. } = strands;
+        let Maps { texels, body: body_depths, .. } = maps;
+        let interpolate = interpolate::Interpolate { frame, points, roots, tables, curves, clumps, scales };
+        let depth = opacity_depth::OpacityDepth { frame, points, lights, fitted, maps: texels };
+        let layers = opacity_layers::OpacityLayers { frame, points, lights, fitted, maps: texels };
+        let body_depth = opacity_depth::BodyDepth { frame, lights, fitted, triangles, vertices };
+        let shade =
+            shade::Shade { frame, points, lights, fitted, maps: texels, body_depths, cubes, radiances };
+        let body =
+            body::Body { frame, lights, fitted, maps: texels, body_depths, cubes, triangles, vertices };
+        Ok(Stages {
+            interpolate: kernels.interpolate.bind(gpu, &interpolate)?,
+            measure_hair: kernels
+                .measure_hair
+                .bind(gpu, &fit::MeasureHair { frame, points, lights, bounds })?,
+            measure_body: kernels
+                .measure_body
+                .bind(gpu, &fit::MeasureBody { frame, lights, bounds, vertices })?,
+            fit: kernels.fit.bind(gpu, &fit::Fit { frame, lights, fitted, bounds })?,
+            clear_maps: kernels.clear_maps.bind(gpu, &opacity_depth::ClearMaps { frame, maps: texels })?,
+            opacity_depth: kernels.opacity_depth.bind(gpu, &depth)?,
+            body_depth: kernels.body_depth.bind(gpu, &body_depth)?,
+            opacity_layers: kernels.opacity_layers.bind(gpu, &layers)?,
+            sum_areas: kernels.sum_areas.bind(gpu, &occlude::SumAreas { frame, points, fitted, areas })?,
+            sweep: kernels.sweep.bind(gpu, &occlude::Sweep { frame, fitted, cubes, areas })?,
+            shade: kernels.shade.bind(gpu, &shade)?,
+            list_segments: kernels
+                .list_segments
+                .bind(gpu, &sort::ListSegments { frame, points, fitted, keys, starts })?,
+            scan: kernels.scan.bind(gpu, starts, &groom.start_totals)?,
+            order_segments: kernels
+                .order_segments
+                .bind(gpu, &sort::OrderSegments { frame, keys, starts, order })?,
+            hair: kernels.hair.bind(gpu, &draw::Hair { frame, points, radiances, starts, order })?,
+            body: kernels.body.bind(gpu, &body)?,
+            backdrop: kernels.backdrop.bind(gpu, &background::Backdrop { frame })?,
+        })
+    }
+
+    /// Writes what the host knows of a frame.
+    fn write(&self, scene: &Scene, host_points: bool) -> Result<(), RenderError> {
+        let Some(strands) = &self.strands else { unreachable!("made before") };
+        let groom = &self.groom;
+        groom.frame.write(&[Frame::new(scene)])?;
+        groom.lights.write(&LightSource::all(scene))?;
+        groom.bounds.write(&Groom::no_bounds())?;
+        strands.tables.write(&tessellate::tables(
+            scene.guide_points,
+            &scene.level,
+            &scene.input.look.clump,
+        ))?;
+        let scales = (0..scene.level.strand_count()).map(|index| scene.level.width_scale(index));
+        strands.scales.write(&scales.collect::<Vec<f32>>())?;
+        if host_points {
+            assert_eq!(scene.input.positions.len(), self.guides.positions().len());
+            groom.places.write(floats(scene.input.positions))?;
+        }
+        Ok(())
+    }
+
+    /// `tessellate`, bound to guide points; the last two pairs of buffers stay bound.
+    fn tessellate(&mut self, points: Option<DevicePoints>) -> Result<Bound, RenderError> {
+        let Some(strands) = &self.strands else { unreachable!("made before") };
+        let (before, after) = match &points {
+            Some(points) => (points.before, points.after),
+            None => (&self.groom.places, &self.groom.places),
+        };
+        let pair = [before.raw().clone(), after.raw().clone()];
+        if let Some((_, bound)) = self.tessellates.iter().find(|(known, _)| *known == pair) {
+            return Ok(bound.clone());
+        }
+        let Groom { frame, roots, clumps, .. } = &self.groom;
+        let Strands { tables, curves, scales, .. } = strands;
+        let buffers = tessellate::Tessellate { frame, before, after, roots, tables, curves, clumps, scales };
+        let bound = self.kernels.tessellate.bind(&self.gpu, &buffers)?;
+        if self.tessellates.len() > 1 {
+            self.tessellates.remove(0);
+        }
+        self.tessellates.push((pair, bound.clone()));
+        Ok(bound)
+    }
+}
+
+/// A ball around a mesh: the middle of its box and the way to a corner.
+fn ball(mesh: Option<&Mesh>) -> (Vec3, f32) {
+    let positions = mesh.map_or(&[][..], |mesh| &mesh.positions);
+    if positions.is_empty() {
+        return (Vec3::ZERO, 0.0);
+    }
+    let (low, high) = positions
+        .iter()
+        .fold((Vec3::MAX, Vec3::MIN), |(low, high), &point| (low.min(point), high.max(point)));
+    // A hundredth more keeps rounding inside.
+    (0.5 * (low + high), 0.505 * low.distance(high))
+}
+
+/// Every kernel's and drawing's declaration, to be held against its shader.
+pub fn declarations() -> Vec<Declaration> {
+    vec![
+        tessellate::Tessellate::declaration(),
+        interpolate::Interpolate::declaration(),
+        fit::MeasureHair::declaration(),
+        fit::MeasureBody::declaration(),
+        fit::Fit::declaration(),
+        opacity_depth::ClearMaps::declaration(),
+        opacity_depth::OpacityDepth::declaration(),
+        opacity_depth::BodyDepth::declaration(),
+        opacity_layers::OpacityLayers::declaration(),
+        occlude::SumAreas::declaration(),
+        occlude::Sweep::declaration(),
+        shade::Shade::declaration(),
+        sort::ListSegments::declaration(),
+        sort::OrderSegments::declaration(),
+        draw::Hair::declaration(),
+        body::Body::declaration(),
+        background::Backdrop::declaration(),
+        resolve::Resolve::declaration(),
+    ]
+}
