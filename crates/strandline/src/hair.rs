@@ -228,6 +228,18 @@ impl Hair {
         Ok(self.renderer.draw(&input)?)
     }
 
+    /// The opacity map of a light as it was for the last picture: the share of light that each of its
+    /// three layers takes away, as red, green and blue [Chen2011 fig. 8, 9]. `None` for a light
+    /// without shadow, for a number that no light has, and before the first picture.
+    pub fn opacity_map(&self, light: usize) -> Option<Picture> {
+        self.renderer.opacity_map(light)
+    }
+
+    /// The depth of the first hair in that map as grey, white the nearest; `None` as there.
+    pub fn depth_map(&self, light: usize) -> Option<Picture> {
+        self.renderer.depth_map(light)
+    }
+
     /// Changes size and finish of the pictures.
     ///
     /// # Errors

@@ -53,6 +53,11 @@ impl LightView {
         }
     }
 
+    /// Whether the second plane coordinate grows with height.
+    pub(crate) fn rows_rise(&self) -> bool {
+        self.up.y > 0.0
+    }
+
     /// Plane units a metre measures at a depth.
     #[inline]
     pub(crate) fn scale(&self, depth: f32) -> f32 {
@@ -127,6 +132,11 @@ impl ShadowMap {
         self.log_transmission = settings.log_transmission();
         self.body_bias = settings.body_bias;
         self.inverse_softness = 1.0 / settings.body_softness;
+    }
+
+    /// Logarithm of what one hair lets through.
+    pub(crate) fn log_transmission(&self) -> f32 {
+        self.log_transmission
     }
 
     /// Hairs that the light crosses on its way to a point \[m\], world space.
