@@ -8,7 +8,7 @@ fn main() -> Result<(), strandline::Error> {
     let mut scene = Scene::demo();
     scene.style.strand_count = if std::env::var_os("STRANDLINE_QUICK").is_some() { 100 } else { 2000 };
     // `Backend::Gpu(None)` would take a software adapter too, and fail where there is none.
-    let mut hair = Hair::from_scene(&scene, Prepared::new(&scene)?, &Backend::auto())?;
+    let mut hair = Hair::from_scene(&scene, Prepared::new(&scene)?, Backend::auto())?;
     let reports = hair.step(0.2, &Pose::IDENTITY)?;
     println!("simulated on {}", hair.simulated_on());
     for note in hair.take_notes() {

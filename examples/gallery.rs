@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             scene.style.strand_count = 50;
             scene.film.settle = 0.0;
         }
-        for event in Player::new(&scene, &Backend::auto(), true)? {
+        for event in Player::new(&scene, Backend::auto(), true)? {
             if let Event::Drawn { picture, .. } = event? {
                 picture.save(folder.join(format!("{}.png", style.name())))?;
             }

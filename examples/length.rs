@@ -7,7 +7,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quick = std::env::var_os("STRANDLINE_QUICK").is_some();
     let strand_count = if quick { 50 } else { 2000 };
     let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Long) }.grow()?;
-    let mut hair = Hair::new(&Backend::auto(), &groom, &Settings::default())?;
+    let mut hair = Hair::new(Backend::auto(), &groom, &Settings::default())?;
     let roots = groom.starts.iter().take(strand_count).map(|start| groom.points[*start as usize]);
     let scales: Vec<f32> = roots.map(|root| if root.x > 0.0 { 0.6 } else { 1.0 }).collect();
     hair.set_length_scale(&scales)?;

@@ -42,7 +42,10 @@ const RECIPES: [Recipe; 2] = [
     },
     Recipe {
         crate_folder: "crates/render",
-        backends: &[Backend { folder: "cpu", list: "src/frame.rs", endings: &["rs"] }],
+        backends: &[
+            Backend { folder: "cpu", list: "src/frame.rs", endings: &["rs"] },
+            Backend { folder: "gpu", list: "src/gpu/frame.rs", endings: &["rs", "wesl"] },
+        ],
         stages: &["tessellate", "interpolate", "opacity_depth", "opacity_layers", "shade", "draw", "resolve"],
     },
 ];

@@ -87,14 +87,18 @@ pub fn bless() -> bool {
     cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 
-/// The examples, by file name, in order.
+/// The examples, by the name of their file or folder, in order.
 fn examples() -> Vec<String> {
     let folder = root().join("examples");
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .into_iter()
         .flatten()
         .flatten()
-        .filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".rs").map(str::to_owned))
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            let folder = entry.path().join("main.rs").exists();
+            if folder { Some(name) } else { name.strip_suffix(".rs").map(str::to_owned) }
+        })
         .collect();
     names.sort();
     names

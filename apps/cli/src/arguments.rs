@@ -59,9 +59,15 @@ pub struct Inputs {
     /// Number of frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
-    /// Where it is simulated: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
+    /// Where it is simulated and drawn: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub backend: Option<Backend>,
+    /// Where it is simulated, when that is not where it is drawn.
+    #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
+    pub sim_device: Option<Backend>,
+    /// Where it is drawn, when that is not where it is simulated.
+    #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
+    pub render_device: Option<Backend>,
     /// Print one JSON object, and nothing else, to standard output.
     #[arg(long)]
     pub json: bool,
@@ -193,8 +199,11 @@ impl Inputs {
         if let Some(name) = self.motion {
             scene.motion.name = name;
         }
-        if let Some(backend) = self.backend {
+        if let Some(backend) = self.sim_device.or(self.backend) {
             scene.simulation.backend = backend;
+        }
+        if let Some(backend) = self.render_device.or(self.backend) {
+            scene.picture.backend = backend;
         }
         if let Some(frames) = self.frames {
             scene.film.frames = frames;

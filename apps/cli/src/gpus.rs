@@ -1,6 +1,6 @@
 //! `strandline gpus` and `strandline shaders`: what there is to simulate on, and what runs there.
 
-use strandline::{Error, gpu::Gpu, sim::gpu::modules};
+use strandline::{Error, gpu::Gpu, render, sim};
 
 use crate::arguments::ShaderOptions;
 
@@ -26,7 +26,7 @@ pub fn shaders(options: &ShaderOptions) -> anyhow::Result<()> {
         move |source| Error::Write { what: "the shader modules", path, source }
     };
     std::fs::create_dir_all(folder).map_err(failed(folder))?;
-    let modules = modules();
+    let modules: Vec<_> = sim::gpu::modules().into_iter().chain(render::gpu::modules()).collect();
     for (name, text) in &modules {
         let path = folder.join(name).with_extension("wgsl");
         std::fs::write(&path, text).map_err(failed(&path))?;

@@ -13,6 +13,7 @@ use crate::statistics::{Collector, Times};
 #[derive(Debug, Serialize)]
 struct RenderReport {
     backend: String,
+    render_backend: String,
     frames: usize,
     follow_strands: usize,
     segments: usize,
@@ -42,7 +43,7 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
 }
 
 fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
-    let mut player = Player::new(scene, &scene.simulation.backend, true)?;
+    let mut player = Player::new(scene, scene.devices(), true)?;
     for note in player.notes() {
         eprintln!("note: {note}");
     }
@@ -69,6 +70,7 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
     }
     let report = RenderReport {
         backend: player.hair().simulated_on(),
+        render_backend: player.hair().drawn_on(),
         frames: times.len(),
         follow_strands: strands,
         segments,
@@ -86,8 +88,8 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
 fn print(report: &RenderReport, folder: &Path) {
     let times = &report.ms_per_frame;
     println!(
-        "{} pictures of {} strands, {} segments, drawn on the cpu, simulated on {}",
-        report.frames, report.follow_strands, report.segments, report.backend
+        "{} pictures of {} strands, {} segments, drawn on {}, simulated on {}",
+        report.frames, report.follow_strands, report.segments, report.render_backend, report.backend
     );
     println!("a picture takes {:.0} ms (95 of 100 at most {:.0} ms)", times.median, times.p95);
     for (name, time) in times.stages.iter() {

@@ -48,7 +48,8 @@ fn render_writes_frames_a_sheet_and_a_moving_picture() {
     small(folder.path());
     let output = works(folder.path(), &["render", "--scene", "small.toml", "--json"]);
     let report: serde_json::Value = serde_json::from_str(&output).unwrap();
-    for key in ["backend", "frames", "follow_strands", "segments", "ms_per_frame", "files"] {
+    for key in ["backend", "render_backend", "frames", "follow_strands", "segments", "ms_per_frame", "files"]
+    {
         assert!(keys(&report).contains(&key), "{key} is missing in {output}");
     }
     assert_eq!((report["frames"].as_u64(), report["follow_strands"].as_u64()), (Some(2), Some(80)));
@@ -246,7 +247,11 @@ fn a_backend_is_named_on_the_command_line_or_in_the_scene() {
     let output = works(folder.path(), &["render", "--scene", "named.toml", "--json"]);
     assert!(output.contains("\"backend\":\"gpu:0"), "{output}");
     let output = works(folder.path(), &["render", "--scene", "named.toml", "--json", "--backend", "cpu"]);
-    assert!(output.contains("\"backend\":\"cpu\""), "{output}");
+    assert!(output.contains("\"backend\":\"cpu\",\"render_backend\":\"cpu\""), "{output}");
+    let drawn =
+        ["render", "--scene", "small.toml", "--json", "--sim-device", "cpu", "--render-device", "gpu"];
+    let output = works(folder.path(), &drawn);
+    assert!(output.contains("\"backend\":\"cpu\",\"render_backend\":\"gpu:0"), "{output}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 //!
 //! Everything keeps to WebGPU's default limits, whatever the adapter offers.
 
+mod backend;
 mod bandwidth;
 mod buffer;
 mod check;
@@ -18,6 +19,7 @@ mod scan;
 mod texture;
 mod timer;
 
+pub use backend::{Backend, UnknownBackend};
 pub use buffer::Buffer;
 pub use check::check;
 pub use drawing::{BoundDrawing, Drawing, Output};

@@ -27,6 +27,16 @@ pub enum RenderError {
         /// What is allowed \[MiB\].
         allowed: u64,
     },
+    /// More than a GPU draws; the CPU knows no such limit.
+    #[error("{found} {what}, at most {most} are drawn on a GPU: take fewer, or draw on the CPU")]
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many were given.
+        found: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// Whatever the GPU refuses.
     #[error(transparent)]
     Gpu(#[from] strandline_gpu::GpuError),
@@ -41,11 +51,8 @@ pub enum RenderError {
 }
 
 impl RenderError {
-    /// The GPU's refusal, if it is one.
-    pub fn gpu(&self) -> Option<&strandline_gpu::GpuError> {
-        match self {
-            Self::Gpu(error) => Some(error),
-            _ => None,
-        }
+    /// Whether it is the GPU's, so that the CPU might do it.
+    pub fn is_of_gpu(&self) -> bool {
+        matches!(self, Self::Gpu(_) | Self::TooMany { .. })
     }
 }

@@ -187,6 +187,18 @@ impl Renderer {
         })
     }
 
+    /// The opacity map of a light of the last picture: the share of light that each of its three
+    /// layers takes away, as red, green and blue [Chen2011 fig. 8, 9]. `None` for a light without
+    /// shadow, for a number that no light has, and before the first picture.
+    pub fn opacity_map(&self, light: usize) -> Option<Picture> {
+        Some(self.shadows.map(light)?.opacity_picture())
+    }
+
+    /// The depth of the first hair in that map as grey, white the nearest; `None` as there.
+    pub fn depth_map(&self, light: usize) -> Option<Picture> {
+        Some(self.shadows.map(light)?.depth_picture())
+    }
+
     /// The samples of the last picture, before `resolve`.
     pub fn samples(&self) -> &Samples {
         &self.samples
@@ -218,5 +230,40 @@ impl Clock {
         let now = Instant::now();
         self.seconds.push((stage, (now - self.last).as_secs_f64()));
         self.last = now;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use strandline_groom::Groom;
+
+    use super::*;
+
+    #[test]
+    fn only_lights_with_shadow_have_maps_and_only_after_a_picture() {
+        let mut groom = Groom::empty(8e-5);
+        groom.push((0..8).map(|point| Vec3::Y * (0.02 * point as f32)));
+        let guides = Guides::resample(&groom, 8).unwrap();
+        let mut renderer = Renderer::new(&guides, None, &PictureSettings::sized(16, 16)).unwrap();
+        assert!(renderer.opacity_map(0).is_none());
+        let look = Look { follow_strands: 1, ..Look::brown() };
+        let input = FrameInput {
+            positions: guides.positions(),
+            world_from_head: Pose::IDENTITY,
+            camera: &Camera::front(),
+            look: &look,
+            body_look: &BodyLook::default(),
+            lights: &[Light::default(), Light { shadow: false, ..Light::default() }],
+            level_of_detail: &LevelOfDetail::default(),
+        };
+        renderer.draw(&input).unwrap();
+        let (opacity, depth) = (renderer.opacity_map(0).unwrap(), renderer.depth_map(0).unwrap());
+        assert_eq!((opacity.width, opacity.height), (look.shadow.map_size, look.shadow.map_size));
+        for picture in [opacity, depth] {
+            assert!(picture.pixels.iter().any(|&byte| byte > 0));
+        }
+        for light in [1, 2] {
+            assert!(renderer.opacity_map(light).is_none() && renderer.depth_map(light).is_none());
+        }
     }
 }

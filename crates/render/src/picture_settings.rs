@@ -2,11 +2,14 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::RenderError;
+use strandline_gpu::Backend;
 
 /// How large a picture is and how light becomes colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PictureSettings {
+    /// Where pictures are drawn: auto (default), cpu, gpu, or gpu:0 and so on for one of several.
+    pub backend: Backend,
     /// Width \[pixel\], 1 to 16,384. Default 800.
     pub width: u32,
     /// Height \[pixel\], 1 to 16,384. Default 600.
@@ -53,6 +56,7 @@ impl Default for Background {
 impl Default for PictureSettings {
     fn default() -> Self {
         Self {
+            backend: Backend::Auto,
             width: 800,
             height: 600,
             supersampling: 2,

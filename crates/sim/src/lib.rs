@@ -6,7 +6,6 @@
 pub mod cpu;
 pub mod gpu;
 
-mod backend;
 mod clock;
 mod error;
 mod report;
@@ -15,10 +14,10 @@ mod solver;
 mod state;
 mod step;
 
-pub use backend::Backend;
 pub use clock::{Clock, Ticks};
 pub use error::SimError;
 pub use report::{PressureReport, StepReport};
 pub use settings::{Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, VolumeSettings};
 pub use solver::Solver;
 pub use state::{Drive, State};
+pub use strandline_gpu::Backend;

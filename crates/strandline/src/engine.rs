@@ -70,6 +70,14 @@ impl Engine {
         }
     }
 
+    /// Positions on the device \[m\] at the last state and at the one before it.
+    pub fn device_points(&self) -> Option<[&strandline_gpu::Buffer<f32>; 2]> {
+        match &self.place {
+            Place::Gpu(pair) => Some(pair.1.positions()),
+            Place::Cpu(_) => None,
+        }
+    }
+
     /// The state after the last run of steps.
     pub fn state(&self) -> &State {
         &self.state

@@ -1,15 +1,17 @@
 use glam::Vec3;
 
 use crate::{
-    Backend, Error, Scene,
+    Devices, Error, Scene,
     body::{Aabb, Collider, Mesh, Pose},
+    devices::{Opened, Pair},
     engine::Engine,
     gpu::Gpu,
     groom::{Groom, Guides, Vec3Lanes},
+    painter::Painter,
     prepare::{self, Prepared},
     render::{
         BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings,
-        Renderer,
+        gpu::DevicePoints,
     },
     sim::{Clock, Drive, Settings, Solver, State, StepReport},
 };
@@ -29,7 +31,7 @@ pub struct Hair {
     poses: [Pose; 2],
     end: Pose,
     shown: Vec<Vec3Lanes>,
-    renderer: Renderer,
+    painter: Painter,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
     /// The lights; three to begin with.
@@ -45,9 +47,9 @@ impl Hair {
     ///
     /// # Errors
     /// A setting outside its range, or a groom without strands.
-    pub fn new(backend: &Backend, groom: &Groom, settings: &Settings) -> Result<Self, Error> {
+    pub fn new(devices: impl Into<Devices>, groom: &Groom, settings: &Settings) -> Result<Self, Error> {
         let guides = Guides::resample(groom, POINTS_PER_STRAND)?;
-        Self::with_body(backend, guides, None, Vec::new(), settings)
+        Self::with_body(devices, guides, None, Vec::new(), settings)
     }
 
     /// Guides on a body: its drawn mesh, and the solids that hair hits.
@@ -55,23 +57,17 @@ impl Hair {
     /// # Errors
     /// A setting outside its range, or a GPU that is asked for by name and not there.
     pub fn with_body(
-        backend: &Backend,
+        devices: impl Into<Devices>,
         guides: Guides,
         mesh: Option<&Mesh>,
         colliders: Vec<Collider>,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let fall_back = *backend == Backend::Auto;
-        let (gpu, refused) = match backend.open() {
-            Err(error) if fall_back => (None, Some(error)),
-            opened => (opened?, None),
-        };
-        let mut hair = Self::placed(gpu.as_ref(), fall_back, guides, mesh, colliders, settings)?;
-        hair.engine.notes.extend(refused.map(|error| format!("simulating on the CPU: {error}")));
-        Ok(hair)
+        let pair = devices.into().open()?;
+        Self::placed(pair, guides, mesh, colliders, settings)
     }
 
-    /// As [`Hair::with_body`], simulated on a device that the host owns.
+    /// As [`Hair::with_body`], simulated and drawn on a device that the host owns.
     ///
     /// # Errors
     /// A setting outside its range, or whatever the device refuses.
@@ -82,23 +78,26 @@ impl Hair {
         colliders: Vec<Collider>,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        Self::placed(Some(gpu), false, guides, mesh, colliders, settings)
+        let opened = || Opened { gpu: Some(gpu.clone()), fall_back: false };
+        let pair = Pair { simulation: opened(), pictures: opened(), notes: Vec::new() };
+        Self::placed(pair, guides, mesh, colliders, settings)
     }
 
     fn placed(
-        gpu: Option<&Gpu>,
-        fall_back: bool,
+        devices: Pair,
         guides: Guides,
         mesh: Option<&Mesh>,
         colliders: Vec<Collider>,
         settings: &Settings,
     ) -> Result<Self, Error> {
-        let engine = Engine::new(gpu, Solver::new(&guides, settings, colliders)?, fall_back)?;
+        let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
+        let mut engine = Engine::new(gpu.as_ref(), Solver::new(&guides, settings, colliders)?, fall_back)?;
+        engine.notes.extend(notes);
         let bounds = prepare::bounds(&guides, mesh);
         Ok(Self {
             shown: guides.positions().to_vec(),
             lights: Light::three_point(prepare::center(bounds)).to_vec(),
-            renderer: Renderer::new(&guides, mesh, &PictureSettings::default())?,
+            painter: Painter::new(pictures, &guides, mesh)?,
             clock: Clock::new(settings.time_step),
             share: 1.0,
             poses: [Pose::IDENTITY; 2],
@@ -116,9 +115,9 @@ impl Hair {
     ///
     /// # Errors
     /// A setting of the scene outside its range.
-    pub fn from_scene(scene: &Scene, prepared: Prepared, backend: &Backend) -> Result<Self, Error> {
+    pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
         let Prepared { guides, mesh, colliders, .. } = prepared;
-        let mut hair = Self::with_body(backend, guides, mesh.as_ref(), colliders, &scene.simulation)?;
+        let mut hair = Self::with_body(devices, guides, mesh.as_ref(), colliders, &scene.simulation)?;
         if !scene.lights.is_empty() {
             hair.lights.clone_from(&scene.lights);
         }
@@ -170,9 +169,10 @@ impl Hair {
     }
 
     /// Whether the hair goes on on the CPU, from its last state, when the GPU fails; it does for
-    /// [`Backend::Auto`].
+    /// [`Backend::Auto`](crate::Backend::Auto).
     pub fn set_fall_back(&mut self, fall_back: bool) {
         self.engine.fall_back = fall_back;
+        self.painter.fall_back = fall_back;
     }
 
     /// The device that the hair is simulated on; none on the CPU.
@@ -182,12 +182,19 @@ impl Hair {
 
     /// Where the hair is simulated: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
-        self.gpu().map_or_else(|| "cpu".to_owned(), |gpu| gpu.adapter().to_string())
+        place(self.gpu())
+    }
+
+    /// Where pictures are drawn, likewise.
+    pub fn drawn_on(&self) -> String {
+        place(self.painter.gpu())
     }
 
     /// What happened to the backend since the last call, for a person to read.
     pub fn take_notes(&mut self) -> Vec<String> {
-        self.engine.take_notes()
+        let mut notes = self.engine.take_notes();
+        notes.append(&mut self.painter.notes);
+        notes
     }
 
     /// Changes how the hair moves; it goes on as it is.
@@ -215,7 +222,10 @@ impl Hair {
         camera: &Camera,
         look: &Look,
     ) -> Result<(Picture, FrameReport), Error> {
-        self.engine.state().interpolated(self.share, &mut self.shown);
+        let points = device_points(&self.engine, &self.painter, self.share);
+        if points.is_none() {
+            self.engine.state().interpolated(self.share, &mut self.shown);
+        }
         let input = FrameInput {
             positions: &self.shown,
             world_from_head: self.poses[0].toward(&self.poses[1], self.share),
@@ -225,7 +235,27 @@ impl Hair {
             lights: &self.lights,
             level_of_detail: &self.level_of_detail,
         };
-        Ok(self.renderer.draw(&input)?)
+        match self.painter.draw(&input, points) {
+            Ok(drawn) => Ok(drawn),
+            Err(failure) => {
+                self.painter.recover_from(failure)?;
+                self.picture_with_report(camera, look)
+            }
+        }
+    }
+
+    /// The opacity map of a light as it was for the last picture: the share of light that each of its
+    /// three layers takes away, as red, green and blue [Chen2011 fig. 8, 9]. `None` for a light
+    /// without shadow, for a number that no light has, and before the first picture.
+    pub fn opacity_map(&self, light: usize) -> Option<Picture> {
+        let [opacity, _] = self.painter.maps(light).ok()??;
+        Some(opacity)
+    }
+
+    /// The depth of the first hair in that map as grey, white the nearest; `None` as there.
+    pub fn depth_map(&self, light: usize) -> Option<Picture> {
+        let [_, depth] = self.painter.maps(light).ok()??;
+        Some(depth)
     }
 
     /// Changes size and finish of the pictures.
@@ -233,7 +263,7 @@ impl Hair {
     /// # Errors
     /// A setting outside its range; the settings then stay as they were.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), Error> {
-        Ok(self.renderer.set_picture(settings)?)
+        Ok(self.painter.set_picture(settings)?)
     }
 
     /// Scales the length of every strand at run time, near its tip only, shape `[strand]`
@@ -264,4 +294,15 @@ impl Hair {
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
+}
+
+fn place(gpu: Option<&Gpu>) -> String {
+    gpu.map_or_else(|| "cpu".to_owned(), |gpu| gpu.adapter().to_string())
+}
+
+/// The points of the simulation, where the pictures are drawn on the device that they lie on.
+fn device_points<'a>(engine: &'a Engine, painter: &Painter, share: f32) -> Option<DevicePoints<'a>> {
+    let [after, before] = engine.device_points()?;
+    let is_same = painter.gpu()?.device() == engine.gpu()?.device();
+    is_same.then_some(DevicePoints { before, after, share })
 }

@@ -6,7 +6,7 @@
 //! # fn main() -> Result<(), strandline::Error> {
 //! let mut groom = Groom::empty(8e-5); // or Groom::load("wavy.hair")?
 //! groom.push((0..16).map(|point| glam::Vec3::new(0.01 * point as f32, 0.0, 0.0)));
-//! let mut hair = Hair::new(&Backend::auto(), &groom, &Settings::default())?;
+//! let mut hair = Hair::new(Backend::auto(), &groom, &Settings::default())?;
 //! for _ in 0..24 {
 //!     hair.step(1.0 / 60.0, &Pose::IDENTITY)?;
 //! }
@@ -19,10 +19,12 @@
 //!
 //! A [`Scene`] holds everything that one run needs and is one TOML file; a [`Player`] plays it.
 
+mod devices;
 mod engine;
 mod error;
 mod film;
 mod hair;
+mod painter;
 mod player;
 mod prepare;
 
@@ -35,6 +37,7 @@ pub use strandline_render as render;
 pub use strandline_sim as sim;
 
 pub use body::{Motion, Pose};
+pub use devices::Devices;
 pub use error::Error;
 pub use film::{Film, FilmFiles};
 pub use groom::{Groom, Style};

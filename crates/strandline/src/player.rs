@@ -1,5 +1,5 @@
 use crate::{
-    Backend, Error, Hair, Scene,
+    Devices, Error, Hair, Scene,
     body::{Motion, Pose},
     prepare::Prepared,
     render::{Camera, FrameReport, Picture},
@@ -51,13 +51,13 @@ impl Player {
     ///
     /// # Errors
     /// Whatever the scene's parts refuse.
-    pub fn new(scene: &Scene, backend: &Backend, draw: bool) -> Result<Self, Error> {
+    pub fn new(scene: &Scene, devices: impl Into<Devices>, draw: bool) -> Result<Self, Error> {
         let mut prepared = Prepared::new(scene)?;
         let motion = prepared.motion.clone();
         let (pivot, bounds) = (prepared.pivot, prepared.bounds);
         let mut notes = std::mem::take(&mut prepared.notes);
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
-        let mut hair = Hair::from_scene(scene, prepared, backend)?;
+        let mut hair = Hair::from_scene(scene, prepared, devices)?;
         notes.extend(hair.take_notes());
         Ok(Self {
             hair,

@@ -1,7 +1,7 @@
 //! Hair on a GPU as the façade has it: the same motion, and what happens when the GPU goes away.
 
 use strandline::{
-    Backend, Event, Film, Hair, Player, Pose, Scene,
+    Backend, Devices, Event, Film, Hair, Picture, Player, Pose, Scene,
     gpu::Gpu,
     groom::{LANES, Vec3Lanes},
     scene::MotionName,
@@ -29,7 +29,8 @@ fn scene() -> Scene {
     scene.motion.name = MotionName::Shake;
     scene.film.frames = 4;
     scene.film.settle = 0.1;
-    scene.look.follow_strands = 1;
+    // A few thick strands.
+    (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene
 }
@@ -60,7 +61,7 @@ fn apart(a: &[Vec3Lanes], b: &[Vec3Lanes]) -> f32 {
 fn a_scene_moves_alike_on_both_backends() {
     let Some(_) = gpu() else { return };
     let play = |backend| -> State {
-        let mut player = Player::new(&scene(), &backend, false).unwrap();
+        let mut player = Player::new(&scene(), backend, false).unwrap();
         for event in player.by_ref() {
             if let Event::Stepped(report) = event.unwrap() {
                 assert_eq!(report.non_finite, 0);
@@ -89,8 +90,15 @@ fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
     assert!(error.contains(&gpu.adapter().name) && error.contains("lost"), "{error}");
     assert_eq!(hair.state().positions, before.positions);
     let camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
-    assert!(hair.picture(&camera, &strandline::Look::brown()).is_ok(), "the last state can be drawn");
+    let look = strandline::Look::brown();
+    let error = hair.picture(&camera, &look).unwrap_err().to_string();
+    assert!(error.contains(&gpu.adapter().name) && error.contains("lost"), "{error}");
     assert!(hair.step(0.1, &turned(0.4)).is_err(), "it stays lost");
+    hair.set_fall_back(true);
+    assert!(hair.picture(&camera, &look).is_ok(), "the last state can be drawn");
+    assert_eq!(hair.drawn_on(), "cpu");
+    let notes = hair.take_notes().join(" ");
+    assert!(notes.contains("drawing on the CPU from here on"), "{notes}");
 }
 
 #[test]
@@ -137,7 +145,7 @@ fn refused_memory_names_the_adapter_and_the_size() {
 fn a_film_keeps_its_finished_frames_when_the_gpu_goes_away() {
     let Some(_) = gpu() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let mut player = Player::new(&scene(), &Backend::Gpu(None), true).unwrap();
+    let mut player = Player::new(&scene(), Backend::Gpu(None), true).unwrap();
     let mut film = Film::new(folder.path(), player.frames(), 24.0).unwrap();
     let mut outcome = None;
     while let Some(event) = player.next() {
@@ -158,6 +166,108 @@ fn a_film_keeps_its_finished_frames_when_the_gpu_goes_away() {
         let path = folder.path().join(format!("frame_{frame:04}.png"));
         assert_eq!(image::open(path).unwrap().width(), 64);
     }
+}
+
+/// The pictures of a scene.
+fn pictures(devices: Devices) -> Vec<Picture> {
+    let player = Player::new(&scene(), devices, true).unwrap();
+    let drawn = |event| match event {
+        Ok(Event::Drawn { picture, report, .. }) => {
+            let stages: Vec<&str> = report.seconds.iter().map(|(name, _)| *name).collect();
+            let all =
+                ["tessellate", "interpolate", "opacity_depth", "opacity_layers", "shade", "draw", "resolve"];
+            assert_eq!(stages, all);
+            Some(picture)
+        }
+        event => {
+            event.unwrap();
+            None
+        }
+    };
+    player.filter_map(drawn).collect()
+}
+
+/// Mean difference of two pictures' bytes.
+fn unlike(one: &Picture, other: &Picture) -> f32 {
+    assert_eq!(one.pixels.len(), other.pixels.len());
+    let pairs = one.pixels.iter().zip(&other.pixels);
+    pairs.map(|(a, b)| f32::from(a.abs_diff(*b))).sum::<f32>() / one.pixels.len() as f32
+}
+
+#[test]
+fn a_scene_looks_alike_wherever_it_is_simulated_and_drawn() {
+    let Some(_) = gpu() else { return };
+    let on = |simulation, pictures_on| pictures(Devices { simulation, pictures: pictures_on });
+    let (cpu, gpu) = (Backend::Cpu, Backend::Gpu(None));
+    let expected = on(cpu, cpu);
+    let last = |pictures: &[Picture]| pictures.last().unwrap().clone();
+    assert_eq!(expected.len(), 4);
+    assert!(unlike(&expected[0], &last(&expected)) > 1.0, "the head moves");
+    // Points that stay on the device and points that are copied there.
+    for devices in [(cpu, gpu), (gpu, gpu), (gpu, Backend::Gpu(Some(0))), (gpu, cpu)] {
+        let found = on(devices.0, devices.1);
+        for (one, other) in expected.iter().zip(&found) {
+            // Levels of 255: strands of the two simulations differ by a millimetre or two.
+            assert!(unlike(one, other) < 1.0, "{devices:?}: {}", unlike(one, other));
+        }
+    }
+}
+
+#[test]
+fn more_lights_than_a_gpu_draws_are_refused_or_drawn_on_the_cpu() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    hair.lights = vec![hair.lights[0]; 9];
+    let camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
+    let look = strandline::Look { follow_strands: 1, ..strandline::Look::brown() };
+    let error = hair.picture(&camera, &look).unwrap_err().to_string();
+    assert!(error.contains("9 lights with shadow, at most 8"), "{error}");
+    hair.lights.truncate(8);
+    hair.picture(&camera, &look).unwrap();
+    hair.lights.push(hair.lights[0]);
+    hair.set_fall_back(true);
+    hair.picture(&camera, &look).unwrap();
+    assert_eq!(hair.drawn_on(), "cpu");
+}
+
+#[test]
+fn a_second_picture_asks_for_no_more_memory() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    let look = strandline::Look { follow_strands: 8, ..strandline::Look::brown() };
+    let mut camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
+    // Far away first: coming nearer needs the room that was made at once.
+    camera.position *= 9.0;
+    hair.picture(&camera, &look).unwrap();
+    let used = gpu.memory_used();
+    gpu.set_memory_limit(used);
+    for distance in [0.5, 0.2] {
+        camera.position *= distance;
+        hair.lights.truncate(2);
+        hair.picture(&camera, &look).unwrap();
+        assert_eq!(gpu.memory_used(), used);
+    }
+    let wider = strandline::render::PictureSettings::sized(4096, 4096);
+    let error = hair.set_picture(&wider).unwrap_err().to_string();
+    assert!(error.contains("out of memory"), "{error}");
+    assert!(hair.picture(&camera, &look).is_ok(), "the old size stays");
+    gpu.set_memory_limit(u64::MAX);
+    let error =
+        hair.set_picture(&strandline::render::PictureSettings::sized(8192, 64)).unwrap_err().to_string();
+    assert!(error.contains("samples") && error.contains("8192"), "{error}");
+}
+
+#[test]
+fn maps_of_a_gpu_can_be_looked_at() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    assert!(hair.opacity_map(0).is_none());
+    let camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
+    hair.picture(&camera, &strandline::Look::brown()).unwrap();
+    let maps = [hair.opacity_map(0).unwrap(), hair.depth_map(0).unwrap()];
+    assert!(maps.iter().all(|map| map.pixels.iter().any(|&byte| byte > 100)));
+    // The third light casts no shadow.
+    assert!(hair.opacity_map(2).is_none());
 }
 
 #[test]

@@ -70,7 +70,7 @@ fn save(path: &Path, text: &str) -> Result<(), Error> {
 
 /// Plays a scene on the CPU and measures its steps, and its pictures when `draw`.
 fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimReport, Times, usize), Error> {
-    let mut player = Player::new(scene, &Backend::Cpu, draw)?;
+    let mut player = Player::new(scene, Backend::Cpu, draw)?;
     let (mut steps, mut pictures) = (Steps::default(), Collector::default());
     let mut segments = 0;
     let mut progress = Progress::new(u64::from(player.frames()), what, false);

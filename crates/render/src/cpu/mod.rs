@@ -19,6 +19,7 @@ pub mod shade;
 pub mod shadow;
 mod shadow_body;
 mod shadow_hair;
+mod shadow_picture;
 pub mod skin;
 mod sort;
 pub mod strands;

@@ -53,6 +53,11 @@ impl LightView {
         }
     }
 
+    /// Whether the second plane coordinate grows with height.
+    pub(crate) fn rows_rise(&self) -> bool {
+        self.up.y > 0.0
+    }
+
     /// Plane units a metre measures at a depth.
     #[inline]
     pub(crate) fn scale(&self, depth: f32) -> f32 {
@@ -133,6 +138,11 @@ impl ShadowMap {
     /// shape `[row][column]`.
     pub fn texels(&self) -> &[Vec4] {
         &self.texels
+    }
+
+    /// Logarithm of what one hair lets through.
+    pub(crate) fn log_transmission(&self) -> f32 {
+        self.log_transmission
     }
 
     /// Hairs that the light crosses on its way to a point \[m\], world space.

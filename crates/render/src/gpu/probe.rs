@@ -5,7 +5,7 @@ use strandline_gpu::Buffer;
 
 use super::GpuRenderer;
 use crate::cpu::shadow::{LightView, ShadowMap, Shadows, Window};
-use crate::{FrameInput, RenderError, cpu};
+use crate::{Light, RenderError, Shadow, cpu};
 
 /// Half floats as they are stored.
 fn from_half(bits: u32) -> f32 {
@@ -87,14 +87,19 @@ impl GpuRenderer {
     }
 
     /// The maps of all shadow lights of the last frame as the CPU keeps them, without the body's.
-    pub(super) fn shadows(&self, input: &FrameInput, middle: Vec3) -> Result<Shadows, RenderError> {
+    pub(super) fn shadows(
+        &self,
+        lights: &[Light],
+        settings: &Shadow,
+        middle: Vec3,
+    ) -> Result<Shadows, RenderError> {
         let mut shadows = Shadows::default();
         let mut slot = 0;
-        for light in input.lights {
+        for light in lights {
             let mut map = ShadowMap::default();
             map.view = LightView::new(light, middle);
             if light.shadow {
-                map.set(&input.look.shadow);
+                map.set(settings);
                 map.texels = self.opacity_texels(slot)?;
                 let at = 3 + 2 * slot;
                 let [x, y, density, _] = Self::first(&self.groom.fitted, at + 1)?[at];

@@ -14,9 +14,9 @@ use super::{
     MAX_LIGHTS, MAX_SHADOWS, background, body, draw, fit, interpolate, occlude, opacity_depth,
     opacity_layers, resolve, shade, sort, tessellate,
 };
-use crate::cpu::{self, Shadows};
+use crate::cpu::{self, ShadowMap, Shadows};
 use crate::frame::middle;
-use crate::{DetailLevel, FrameInput, FrameReport, Picture, PictureSettings, RenderError};
+use crate::{DetailLevel, FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
 /// Guide points that lie on the device, `[block][point][component][lane]` \[m\], world space: at the two
 /// states between which a picture lies.
@@ -55,6 +55,8 @@ pub struct GpuRenderer {
     tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
     timer: Option<Timer>,
     pub(super) drawn: Drawn,
+    /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
+    lit: (Vec<Light>, Shadow, Vec3),
 }
 
 /// What the last frame drew.
@@ -196,6 +198,7 @@ impl GpuRenderer {
             tessellates: Vec::new(),
             timer: Timer::new(gpu)?,
             drawn: Drawn::default(),
+            lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
             guides: guides.clone(),
             gpu: gpu.clone(),
         })
@@ -321,6 +324,10 @@ impl GpuRenderer {
             curve_points,
             shadows: scene.shadow_count(),
         };
+        let middle = scene.middle;
+        self.lit.0.clear();
+        self.lit.0.extend_from_slice(input.lights);
+        (self.lit.1, self.lit.2) = (input.look.shadow, middle);
         Ok(FrameReport { strands, segments: strands * (curve_points - 1), seconds: Vec::new() })
     }
 
@@ -368,31 +375,44 @@ impl GpuRenderer {
             self.gpu.queue().submit([recorder.finish(|_| ())]);
         })?;
         self.drawn = Drawn { shadows: scene.shadow_count(), ..Drawn::default() };
-        let shadows = self.shadows(input, scene.middle);
+        let shadows = self.shadows(input.lights, &input.look.shadow, scene.middle);
         self.strands = None;
         shadows
     }
 
+    /// As [`Renderer::opacity_map`](crate::Renderer::opacity_map).
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn opacity_map(&self, light: usize) -> Result<Option<Picture>, RenderError> {
+        let (lights, settings, middle) = &self.lit;
+        Ok(self.shadows(lights, settings, *middle)?.map(light).map(ShadowMap::opacity_picture))
+    }
+
+    /// As [`Renderer::depth_map`](crate::Renderer::depth_map).
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn depth_map(&self, light: usize) -> Result<Option<Picture>, RenderError> {
+        let (lights, settings, middle) = &self.lit;
+        Ok(self.shadows(lights, settings, *middle)?.map(light).map(ShadowMap::depth_picture))
+    }
+
     /// Makes room for a frame, and binds the stages where that changed.
     fn prepare(&mut self, scene: &Scene) -> Result<(), RenderError> {
-        let limit =
-            |name, found: usize, expected| RenderError::Setting { name, found: found.to_string(), expected };
-        let (lights, shadows) = (scene.input.lights.len(), scene.shadow_count());
-        if lights > MAX_LIGHTS {
-            return Err(limit("number of lights", lights, "32 at most on a GPU"));
-        }
-        if shadows > MAX_SHADOWS {
-            return Err(limit("number of lights with shadow", shadows, "8 at most on a GPU"));
-        }
+        let limit = |what, found: usize, most: usize| {
+            if found > most { Err(RenderError::TooMany { what, found, most }) } else { Ok(()) }
+        };
+        let shadows = scene.shadow_count();
+        limit("lights", scene.input.lights.len(), MAX_LIGHTS)?;
+        limit("lights with shadow", shadows, MAX_SHADOWS)?;
         // Room for full detail, so that a change of distance never asks for memory.
         let full =
             DetailLevel::full(scene.input.level_of_detail.segments_per_span, scene.input.look.follow_strands);
         let curve_points = (full.segment_count(scene.guide_points) + 1).max(scene.curve_points());
         let strands_per_guide = full.strand_count().max(scene.level.strand_count());
         let points = scene.guide_count * strands_per_guide * curve_points;
-        if points > MAX_POINTS {
-            return Err(limit("number of points to draw", points, "67108864 at most"));
-        }
+        limit("points of strands", points, MAX_POINTS)?;
         if self.strands.as_ref().is_none_or(|strands| {
             strands.strands_per_guide < strands_per_guide || strands.curve_points < curve_points
         }) {

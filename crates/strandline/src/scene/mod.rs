@@ -16,7 +16,7 @@ pub use groom::GroomSection;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 
 use crate::{
-    Error,
+    Devices, Error,
     groom::StyleSettings,
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings},
     sim::Settings,
@@ -62,6 +62,11 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Where it says that it is simulated and drawn.
+    pub fn devices(&self) -> Devices {
+        Devices { simulation: self.simulation.backend, pictures: self.picture.backend }
+    }
+
     /// Loads a TOML file.
     ///
     /// # Errors

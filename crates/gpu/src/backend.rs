@@ -2,9 +2,16 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
-use strandline_gpu::{Gpu, GpuError};
 
-use crate::SimError;
+use crate::{Gpu, GpuError};
+
+/// A name that is no backend's.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("backend is `{found}`, expected auto, cpu, gpu, or gpu: and a number such as gpu:0")]
+pub struct UnknownBackend {
+    /// The name.
+    pub found: String,
+}
 
 /// Where stages run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -55,27 +62,25 @@ impl fmt::Display for Backend {
 }
 
 impl FromStr for Backend {
-    type Err = SimError;
+    type Err = UnknownBackend;
 
-    fn from_str(name: &str) -> Result<Self, SimError> {
+    fn from_str(name: &str) -> Result<Self, UnknownBackend> {
         let numbered = || name.strip_prefix("gpu:")?.parse().ok();
         match name {
             "auto" => Ok(Self::Auto),
             "cpu" => Ok(Self::Cpu),
             "gpu" => Ok(Self::Gpu(None)),
-            _ => numbered().map(|index| Self::Gpu(Some(index))).ok_or_else(|| SimError::Setting {
-                name: "backend",
-                found: format!("`{name}`"),
-                expected: "auto, cpu, gpu, or gpu: and a number such as gpu:0",
-            }),
+            _ => numbered()
+                .map(|index| Self::Gpu(Some(index)))
+                .ok_or_else(|| UnknownBackend { found: name.to_owned() }),
         }
     }
 }
 
 impl TryFrom<String> for Backend {
-    type Error = SimError;
+    type Error = UnknownBackend;
 
-    fn try_from(name: String) -> Result<Self, SimError> {
+    fn try_from(name: String) -> Result<Self, UnknownBackend> {
         name.parse()
     }
 }

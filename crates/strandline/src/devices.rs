@@ -1,0 +1,69 @@
+use strandline_gpu::{Gpu, GpuError};
+
+use crate::Backend;
+
+/// Where the simulation runs and where pictures are drawn. When both are on one GPU, points stay there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Devices {
+    /// Where hair is simulated.
+    pub simulation: Backend,
+    /// Where pictures are drawn.
+    pub pictures: Backend,
+}
+
+impl From<Backend> for Devices {
+    /// Both on one.
+    fn from(backend: Backend) -> Self {
+        Self { simulation: backend, pictures: backend }
+    }
+}
+
+/// A device and whether the work goes on on the CPU without it; none is the CPU from the start.
+pub(crate) struct Opened {
+    pub gpu: Option<Gpu>,
+    pub fall_back: bool,
+}
+
+/// Both devices, and what a person should know of them.
+pub(crate) struct Pair {
+    pub simulation: Opened,
+    pub pictures: Opened,
+    pub notes: Vec<String>,
+}
+
+impl Devices {
+    /// Opens both; the same adapter once.
+    pub(crate) fn open(self) -> Result<Pair, GpuError> {
+        let mut notes = Vec::new();
+        let simulation = open(self.simulation, "simulating", &mut notes)?;
+        let is_shared = match (self.pictures, &simulation.gpu) {
+            (pictures, Some(_)) if pictures == self.simulation => true,
+            (Backend::Gpu(Some(index)), Some(gpu)) => gpu.adapter().index == index,
+            (Backend::Gpu(None), Some(gpu)) => gpu.adapter().index == 0,
+            _ => false,
+        };
+        let pictures = if is_shared {
+            Opened { gpu: simulation.gpu.clone(), fall_back: self.pictures == Backend::Auto }
+        } else {
+            let opened = open(self.pictures, "drawing", &mut notes)?;
+            let software = opened.gpu.iter().map(Gpu::adapter).filter(|adapter| adapter.software);
+            notes.extend(software.map(|adapter| {
+                format!("{adapter}: for tests; `--render-device cpu` is several times faster")
+            }));
+            opened
+        };
+        Ok(Pair { simulation, pictures, notes })
+    }
+}
+
+fn open(backend: Backend, doing: &str, notes: &mut Vec<String>) -> Result<Opened, GpuError> {
+    let fall_back = backend == Backend::Auto;
+    let gpu = match backend.open() {
+        Err(error) if fall_back => {
+            notes.push(format!("{doing} on the CPU: {error}"));
+            None
+        }
+        opened => opened?,
+    };
+    Ok(Opened { gpu, fall_back })
+}

@@ -1,0 +1,115 @@
+//! Pictures on whichever backend draws them.
+
+use strandline_gpu::Gpu;
+
+use crate::{
+    body::Mesh,
+    devices::Opened,
+    groom::Guides,
+    render::{
+        FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
+        gpu::{DevicePoints, GpuRenderer},
+    },
+};
+
+/// A renderer and what it takes to start another one on the CPU.
+pub(crate) struct Painter {
+    place: Place,
+    guides: Guides,
+    mesh: Option<Mesh>,
+    settings: PictureSettings,
+    /// Whether pictures are drawn on the CPU when the GPU fails.
+    pub fall_back: bool,
+    /// What happened on the way, for a person to read.
+    pub notes: Vec<String>,
+}
+
+enum Place {
+    Cpu(Box<Renderer>),
+    Gpu(Box<GpuRenderer>),
+}
+
+impl Painter {
+    /// A painter on a device, or on the CPU without one.
+    pub fn new(device: Opened, guides: &Guides, mesh: Option<&Mesh>) -> Result<Self, RenderError> {
+        let settings = PictureSettings::default();
+        let mut notes = Vec::new();
+        let placed = match &device.gpu {
+            Some(gpu) => match GpuRenderer::new(gpu, guides, mesh, &settings) {
+                Err(error) if device.fall_back => {
+                    notes.push(format!("drawing on the CPU: {error}"));
+                    None
+                }
+                made => Some(Place::Gpu(made?.into())),
+            },
+            None => None,
+        };
+        let place = match placed {
+            Some(place) => place,
+            None => Place::Cpu(Renderer::new(guides, mesh, &settings)?.into()),
+        };
+        let (guides, mesh) = (guides.clone(), mesh.cloned());
+        Ok(Self { place, guides, mesh, settings, fall_back: device.fall_back, notes })
+    }
+
+    /// The device, while pictures are drawn on one.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        match &self.place {
+            Place::Gpu(renderer) => Some(renderer.gpu()),
+            Place::Cpu(_) => None,
+        }
+    }
+
+    /// Changes size and finish of the pictures; nothing changes when that fails.
+    pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
+        let changed = match &mut self.place {
+            Place::Cpu(renderer) => renderer.set_picture(settings),
+            Place::Gpu(renderer) => renderer.set_picture(settings),
+        };
+        if let Err(failure) = changed {
+            self.recover(failure, settings)?;
+        }
+        self.settings = *settings;
+        Ok(())
+    }
+
+    /// Draws a picture. `points` are those of the input, where they lie on the same device; `None` where
+    /// the input holds them. When the GPU fails it is the caller's to draw again, if [`Painter::recover`]
+    /// can help.
+    pub fn draw(
+        &mut self,
+        input: &FrameInput,
+        points: Option<DevicePoints>,
+    ) -> Result<(Picture, FrameReport), RenderError> {
+        let mut picture = Picture::default();
+        let report = match &mut self.place {
+            Place::Cpu(renderer) => renderer.draw_into(input, &mut picture),
+            Place::Gpu(renderer) => renderer.draw_into(input, points, &mut picture),
+        }?;
+        Ok((picture, report))
+    }
+
+    /// The opacity map of a light, and the depths of its first hair.
+    pub fn maps(&self, light: usize) -> Result<Option<[Picture; 2]>, RenderError> {
+        let pair = match &self.place {
+            Place::Cpu(renderer) => (renderer.opacity_map(light), renderer.depth_map(light)),
+            Place::Gpu(renderer) => (renderer.opacity_map(light)?, renderer.depth_map(light)?),
+        };
+        Ok(pair.0.zip(pair.1).map(|(opacity, depth)| [opacity, depth]))
+    }
+
+    /// Goes on on the CPU, if that is wanted and the failure is the GPU's.
+    pub fn recover_from(&mut self, failure: RenderError) -> Result<(), RenderError> {
+        let settings = self.settings;
+        self.recover(failure, &settings)
+    }
+
+    fn recover(&mut self, failure: RenderError, settings: &PictureSettings) -> Result<(), RenderError> {
+        if !(self.fall_back && failure.is_of_gpu() && self.gpu().is_some()) {
+            return Err(failure);
+        }
+        self.place = Place::Cpu(Renderer::new(&self.guides, self.mesh.as_ref(), settings)?.into());
+        self.notes.push(format!("drawing on the CPU from here on: {failure}"));
+        Ok(())
+    }
+}

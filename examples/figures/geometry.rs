@@ -1,0 +1,72 @@
+//! Figures of what is drawn: detail, samples, segments and follow strands.
+
+use glam::Vec3;
+use strandline::{Camera, Look, Picture, Style, render::PictureSettings, scene::MotionName};
+
+use crate::strip::{joined, magnified};
+use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
+
+/// The same hair from 1, 2, 4 and 8 times as far: as large as it is, then the far ones magnified.
+pub fn level_of_detail(studio: &Studio) -> Figure {
+    let mut hair = studio.resting(Style::Wavy, 240, 240)?;
+    let (mut natural, mut large) = (Vec::new(), Vec::new());
+    for times in [1, 2, 4, 8] {
+        let near = bust(THREE_QUARTER);
+        let position = near.target + times as f32 * (near.position - near.target);
+        let picture = hair.picture(&Camera { position, ..near }, &Look::blonde())?;
+        let share = 1.0 / times as f32;
+        let part = [0.5 - 0.5 * share, 0.5 - 0.5 * share, share, share];
+        natural.push(magnified(&picture, part, 1));
+        large.push(magnified(&picture, part, times));
+    }
+    natural.extend_from_slice(&large[1..]);
+    Ok(joined(&natural))
+}
+
+/// One sample a pixel, and two by two; four times magnified.
+pub fn supersampling(studio: &Studio) -> Figure {
+    let mut moving = studio.settled(&studio.scene(Style::Wavy, MotionName::Still), 300, 300)?;
+    let mut pictures = Vec::new();
+    for supersampling in [1, 2] {
+        moving.hair.set_picture(&PictureSettings { supersampling, ..moving.picture })?;
+        let picture = moving.hair.picture(&bust(THREE_QUARTER), &Look::black())?;
+        pictures.push(magnified(&picture, [0.25, 0.24, 0.4, 0.3], 4));
+    }
+    Ok(joined(&pictures))
+}
+
+/// One segment on each span between two points, and four.
+pub fn tessellation(studio: &Studio) -> Figure {
+    let mut scene = studio.scene(Style::Wavy, MotionName::Still);
+    scene.groom.points_per_strand = 12;
+    let mut hair = studio.settled(&scene, 360, 240)?.hair;
+    let mut draw = |segments| -> Figure {
+        hair.level_of_detail.segments_per_span = segments;
+        let camera = close(THREE_QUARTER, Vec3::new(0.1, -0.1, 0.06), 0.08);
+        Ok(hair.picture(&camera, &Look::red())?)
+    };
+    Ok(joined(&[draw(1)?, draw(4)?]))
+}
+
+/// A look whose strands are as wide as those of 16 strands a guide, however many there are.
+fn with_follow_strands(count: u32) -> Look {
+    let whole = Look::red();
+    Look { follow_strands: count, hair_count: whole.hair_count * count / 16, ..whole }
+}
+
+fn with_counts(studio: &Studio, size: [u32; 2], camera: &Camera, counts: &[u32]) -> Figure {
+    let mut hair = studio.resting(Style::Wavy, size[0], size[1])?;
+    let mut draw = |&count| hair.picture(camera, &with_follow_strands(count));
+    Ok(joined(&counts.iter().map(&mut draw).collect::<Result<Vec<Picture>, _>>()?))
+}
+
+/// Guides alone, and 16 strands a guide, near.
+pub fn follow_strands(studio: &Studio) -> Figure {
+    let camera = close(THREE_QUARTER, Vec3::new(0.05, -0.12, 0.05), 0.25);
+    with_counts(studio, [400, 266], &camera, &[1, 16])
+}
+
+/// 1, 4, 8 and 16 strands a guide.
+pub fn follow_counts(studio: &Studio) -> Figure {
+    with_counts(studio, [256, 256], &bust(THREE_QUARTER), &[1, 4, 8, 16])
+}

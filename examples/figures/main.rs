@@ -1,0 +1,53 @@
+//! Our version of each picture of [Chen2011], the pictures of docs/gallery/figures.
+//! `cargo run --release -p strandline --example figures [auto|cpu|gpu|gpu:N] [NAME...]`
+#![allow(clippy::print_stdout)]
+
+mod geometry;
+mod motion;
+mod shading;
+mod strip;
+mod studio;
+
+use std::time::Instant;
+
+use strandline::Backend;
+use studio::{Figure, Studio};
+
+/// Draws a figure.
+type Draw = fn(&Studio) -> Figure;
+
+/// Every figure by the name of its file, with its number in the thesis.
+const FIGURES: [(&str, &str, Draw); 13] = [
+    ("opacity_map", "8, 9", shading::opacity_map),
+    ("head_shake", "34", motion::head_shake),
+    ("level_of_detail", "37", geometry::level_of_detail),
+    ("supersampling", "38", geometry::supersampling),
+    ("tessellation", "39", geometry::tessellation),
+    ("follow_strands", "40", geometry::follow_strands),
+    ("follow_counts", "41", geometry::follow_counts),
+    ("light_directions", "42", shading::light_directions),
+    ("colors", "43", shading::colors),
+    ("highlights", "44", shading::highlights),
+    ("lengths", "45", motion::lengths),
+    ("front", "46", motion::front),
+    ("back", "47", motion::back),
+];
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let backend: Backend = arguments.next().as_deref().unwrap_or("auto").parse()?;
+    let wanted: Vec<String> = arguments.collect();
+    let studio = Studio { backend, quick: std::env::var_os("STRANDLINE_QUICK").is_some() };
+    let folder =
+        std::path::Path::new(if studio.quick { "out/examples/figures" } else { "docs/gallery/figures" });
+    std::fs::create_dir_all(folder)?;
+    for (name, number, draw) in FIGURES {
+        if !wanted.is_empty() && !wanted.iter().any(|wanted| wanted == name) {
+            continue;
+        }
+        let start = Instant::now();
+        draw(&studio)?.save(folder.join(format!("{name}.png")))?;
+        println!("{name:<18} [Chen2011 fig. {number}] {:>6.1} s", start.elapsed().as_secs_f64());
+    }
+    Ok(())
+}

@@ -1,0 +1,53 @@
+//! Figures of hair that moves.
+
+use glam::Vec3;
+use strandline::{Camera, Look, Scene, Style, scene::MotionName};
+
+use crate::strip::joined;
+use crate::studio::{Figure, Moving, Studio, bust};
+
+/// Pictures at times \[s\] that rise.
+fn at_times(moving: &mut Moving, camera: &Camera, look: &Look, times: &[f64]) -> Figure {
+    let mut pictures = Vec::new();
+    for &time in times {
+        moving.play_to(time)?;
+        pictures.push(moving.hair.picture(camera, look)?);
+    }
+    Ok(joined(&pictures))
+}
+
+/// The thesis's scene: six times of a head shake.
+pub fn head_shake(studio: &Studio) -> Figure {
+    let mut moving = studio.settled(&Scene::thesis(), 196, 196)?;
+    let camera = bust(Vec3::new(0.0, 0.1, 1.0));
+    at_times(&mut moving, &camera, &Look::brown(), &[0.0, 0.2, 0.4, 0.6, 0.8, 1.0])
+}
+
+fn long_hair(studio: &Studio, direction: Vec3) -> Figure {
+    let mut moving = studio.settled(&studio.scene(Style::Long, MotionName::Shake), 236, 236)?;
+    at_times(&mut moving, &bust(direction), &Look::brown(), &[0.0, 0.25, 0.5, 0.75, 1.0])
+}
+
+/// Long hair in a head shake, from the front.
+pub fn front(studio: &Studio) -> Figure {
+    long_hair(studio, Vec3::new(0.0, 0.1, 1.0))
+}
+
+/// The same from behind.
+pub fn back(studio: &Studio) -> Figure {
+    long_hair(studio, Vec3::new(0.0, 0.14, -1.0))
+}
+
+/// Hair that is cut twice while the head shakes.
+pub fn lengths(studio: &Studio) -> Figure {
+    let mut moving = studio.settled(&studio.scene(Style::Long, MotionName::Shake), 304, 304)?;
+    let strand_count = moving.hair.guides().strand_count();
+    let camera = bust(Vec3::new(0.62, 0.14, 0.78));
+    let mut pictures = Vec::new();
+    for (time, scale) in [(0.42, 1.0), (1.25, 0.7), (2.08, 0.45)] {
+        moving.hair.set_length_scale(&vec![scale; strand_count])?;
+        moving.play_to(time)?;
+        pictures.push(moving.hair.picture(&camera, &Look::brown())?);
+    }
+    Ok(joined(&pictures))
+}

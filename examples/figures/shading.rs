@@ -1,0 +1,67 @@
+//! Figures of light: opacity maps, directions, colours and highlights.
+
+use glam::Vec3;
+use strandline::{
+    Camera, Hair, Light, Look, Picture, Style,
+    render::{Environment, Highlight},
+};
+
+use crate::strip::joined;
+use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
+
+/// The map of one light: opacity of its three layers as red, green and blue, and the first depth.
+pub fn opacity_map(studio: &Studio) -> Figure {
+    let mut hair = studio.resting(Style::Wavy, 288, 288)?;
+    let mut look = Look::brown();
+    look.shadow.map_size = if studio.quick { 60 } else { 288 };
+    let picture = hair.picture(&bust(THREE_QUARTER), &look)?;
+    let maps = [hair.opacity_map(0), hair.depth_map(0)];
+    Ok(joined(&maps.into_iter().flatten().chain([picture]).collect::<Vec<_>>()))
+}
+
+/// One light from the front, the left, above and behind.
+pub fn light_directions(studio: &Studio) -> Figure {
+    let mut hair = studio.resting(Style::Wavy, 256, 256)?;
+    let environment = Environment { sky: Vec3::splat(0.06), ground: Vec3::splat(0.04) };
+    let look = Look { environment, ..Look::brown() };
+    let target = Vec3::new(0.0, -0.09, 0.0);
+    let mut draw = |direction: [f32; 3]| -> Figure {
+        let position = target + 2.0 * Vec3::from(direction).normalize();
+        hair.lights = vec![Light { position, target, intensity: 1.8, ..Light::default() }];
+        Ok(hair.picture(&bust(THREE_QUARTER), &look)?)
+    };
+    Ok(joined(&[
+        draw([0.2, 0.4, 1.0])?,
+        draw([1.0, 0.4, 0.1])?,
+        draw([0.1, 1.0, 0.1])?,
+        draw([1.0, 0.8, -1.0])?,
+    ]))
+}
+
+fn with_looks(hair: &mut Hair, camera: &Camera, looks: &[Look]) -> Figure {
+    let mut draw = |look| hair.picture(camera, look);
+    Ok(joined(&looks.iter().map(&mut draw).collect::<Result<Vec<Picture>, _>>()?))
+}
+
+/// Black, red and blonde.
+pub fn colors(studio: &Studio) -> Figure {
+    let mut hair = studio.resting(Style::Wavy, 304, 304)?;
+    with_looks(&mut hair, &bust(THREE_QUARTER), &[Look::black(), Look::red(), Look::blonde()])
+}
+
+/// The first highlight, the second, and both, in one light from behind and above.
+pub fn highlights(studio: &Studio) -> Figure {
+    let mut hair = studio.resting(Style::Bob, 304, 304)?;
+    let position = Vec3::new(0.5, 1.2, -1.6);
+    hair.lights = vec![Light { position, intensity: 2.0, ..Light::default() }];
+    let environment = Environment { sky: Vec3::splat(0.12), ground: Vec3::splat(0.06) };
+    let both = Look { environment, ..Look::brown() };
+    let none = |highlight: Highlight| Highlight { strength: 0.0, ..highlight };
+    let first = Look { second_highlight: none(both.second_highlight), ..both.clone() };
+    let second = Look { first_highlight: none(both.first_highlight), ..both.clone() };
+    with_looks(
+        &mut hair,
+        &close(Vec3::new(0.35, 0.3, -1.0), Vec3::new(0.0, -0.03, -0.02), 0.38),
+        &[first, second, both],
+    )
+}

@@ -1,0 +1,95 @@
+//! What all figures share: scenes at rest or in motion, cameras and sizes.
+
+use glam::Vec3;
+use strandline::{
+    Backend, Camera, Hair, Motion, Picture, Pose, Prepared, Scene, Style, render::PictureSettings,
+    scene::MotionName,
+};
+
+/// A finished figure, or why there is none.
+pub type Figure = Result<Picture, Box<dyn std::error::Error>>;
+
+/// Seconds between two moves of the head.
+const FRAME: f64 = 1.0 / 60.0;
+
+/// Where figures are made.
+pub struct Studio {
+    /// Where hair is simulated.
+    pub backend: Backend,
+    /// Whether pictures are small and strands few.
+    pub quick: bool,
+}
+
+impl Studio {
+    /// A style whose head moves as named.
+    pub fn scene(&self, style: Style, motion: MotionName) -> Scene {
+        let mut scene = Scene::demo();
+        scene.set_style(style);
+        scene.motion.name = motion;
+        scene
+    }
+
+    /// Hair of a scene after it hung on the resting head, with pictures of a size \[pixel\].
+    pub fn settled(&self, scene: &Scene, width: u32, height: u32) -> Result<Moving, strandline::Error> {
+        let mut scene = scene.clone();
+        (scene.picture.width, scene.picture.height) = self.size(width, height);
+        if self.quick {
+            scene.style.strand_count = 50;
+        }
+        let prepared = Prepared::new(&scene)?;
+        let (motion, pivot) = (prepared.motion.clone(), prepared.pivot);
+        let mut hair = Hair::from_scene(&scene, prepared, self.backend)?;
+        for _ in 0..if self.quick { 1 } else { 60 } {
+            hair.step(FRAME, &Pose::IDENTITY)?;
+        }
+        Ok(Moving { hair, motion, pivot, picture: scene.picture, time: 0.0 })
+    }
+
+    /// A style that hangs on the resting head, with pictures of a size \[pixel\].
+    pub fn resting(&self, style: Style, width: u32, height: u32) -> Result<Hair, strandline::Error> {
+        Ok(self.settled(&self.scene(style, MotionName::Still), width, height)?.hair)
+    }
+
+    /// The size \[pixel\] at which a picture is drawn.
+    fn size(&self, width: u32, height: u32) -> (u32, u32) {
+        if self.quick { (width / 5, height / 5) } else { (width, height) }
+    }
+}
+
+/// Hair on a head that moves.
+pub struct Moving {
+    /// The hair.
+    pub hair: Hair,
+    /// Size and finish of its pictures.
+    pub picture: PictureSettings,
+    motion: Motion,
+    pivot: Vec3,
+    time: f64,
+}
+
+impl Moving {
+    /// Lets the head move on to a time \[s\].
+    pub fn play_to(&mut self, time: f64) -> Result<(), strandline::Error> {
+        while self.time < time - 0.5 * FRAME {
+            let (begin, motion, pivot) = (self.time, &self.motion, self.pivot);
+            self.hair.step_along(FRAME, |share| motion.pose(begin + FRAME * f64::from(share), pivot))?;
+            self.time += FRAME;
+        }
+        Ok(())
+    }
+}
+
+/// The whole bust in a square picture, from a direction.
+pub fn bust(direction: Vec3) -> Camera {
+    close(direction, Vec3::new(0.0, -0.09, -0.05), 0.54)
+}
+
+/// What lies about `target` \[m\] from a direction, `height` \[m\] high.
+pub fn close(direction: Vec3, target: Vec3, height: f32) -> Camera {
+    let camera = Camera { target, field_of_view: 25.0, ..Camera::front() };
+    let position = target + direction.normalize() * (0.5 * height * camera.focal());
+    Camera { position, ..camera }
+}
+
+/// From the front, a little to the head's left and above.
+pub const THREE_QUARTER: Vec3 = Vec3::new(0.62, 0.14, 0.78);
