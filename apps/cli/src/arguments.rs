@@ -146,7 +146,8 @@ pub struct ShaderOptions {
 
 #[derive(Args, Debug)]
 pub struct BenchOptions {
-    /// The thesis's tables 1 to 4 beside ours, or how cost grows with strands and cells.
+    /// The thesis's tables 1 to 4 beside ours; how cost grows with strands and cells; or the thesis's
+    /// table 5, frames per second by viewing distance and picture size.
     #[arg(value_enum, default_value = "thesis")]
     pub what: Bench,
     /// Which GPU is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,
@@ -163,10 +164,12 @@ pub struct BenchOptions {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Bench {
-    /// The thesis's tables.
+    /// The thesis's tables 1 to 4.
     Thesis,
     /// Cost against strands and cells.
     Scaling,
+    /// Frames per second against viewing distance and picture size, beside the thesis's table 5.
+    View,
 }
 
 /// A wrong use of the command line that clap does not see; ends with code 2.

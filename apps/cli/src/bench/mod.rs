@@ -4,6 +4,7 @@ mod gpu;
 mod machine;
 mod scaling;
 mod thesis;
+mod view;
 
 use std::path::Path;
 
@@ -34,6 +35,7 @@ pub fn bench(options: &BenchOptions) -> anyhow::Result<()> {
     let device = device.as_ref();
     match options.what {
         Bench::Thesis => write(options, device, "thesis", thesis::run(device, options.quick)?),
+        Bench::View => write(options, device, "view", view::run(device, options.quick)?),
         Bench::Scaling => write(options, device, "scaling", scaling::run(device, options.quick)?),
     }
 }
