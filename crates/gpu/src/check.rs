@@ -119,9 +119,41 @@ fn compare_variable(
     compare_type(module, &declared.layout, element, declared.name, problems);
 }
 
-/// Whether a name is the declared one; names of imported modules stand before it.
+/// Whether a name is the declared one. The linker puts the names of modules before those of imported
+/// things, joined by underscores; a part that has underscores itself starts with their number, as in
+/// `package_shadow__1body_depths`.
 fn is_named(found: &str, declared: &str) -> bool {
-    found == declared || (found.starts_with("package_") && found.ends_with(&format!("_{declared}")))
+    if found == declared {
+        return true;
+    }
+    let own = match declared.matches('_').count() {
+        0 => format!("_{declared}"),
+        count => format!("__{count}{declared}"),
+    };
+    let Some(modules) = found.strip_prefix("package").and_then(|rest| rest.strip_suffix(&own)) else {
+        return false;
+    };
+    // The end of a longer name is not the name: its part would lack some of its underscores.
+    let part = modules.rsplit("__").next().unwrap_or_default();
+    let (digits, _) = part.split_at(part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len()));
+    modules.is_empty() || digits.parse().map_or(true, |count: usize| part.matches('_').count() >= count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_named;
+
+    #[test]
+    fn names_of_modules_stand_before_names() {
+        for found in ["body_depths", "package_shadow__1body_depths", "package__1opacity_depth__1body_depths"]
+        {
+            assert!(is_named(found, "body_depths"), "{found}");
+            assert!(!is_named(found, "depths"), "{found}");
+        }
+        assert!(is_named("package_strands_points", "points"));
+        assert!(is_named("package__1opacity_depth_maps", "maps"));
+        assert!(!is_named("endpoints", "points") && !is_named("package_strands_endpoints", "points"));
+    }
 }
 
 fn size_of_layout(layout: &Layout) -> usize {
