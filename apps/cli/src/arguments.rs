@@ -146,8 +146,8 @@ pub struct ShaderOptions {
 
 #[derive(Args, Debug)]
 pub struct BenchOptions {
-    /// The thesis's tables 1 to 4 beside ours; how cost grows with strands and cells; or the thesis's
-    /// table 5, frames per second by viewing distance and picture size.
+    /// The thesis's tables 1 to 4 beside ours; how cost grows with strands and cells; the thesis's
+    /// table 5, frames per second by viewing distance and picture size; or what two workers gain.
     #[arg(value_enum, default_value = "thesis")]
     pub what: Bench,
     /// Which GPU is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,
@@ -170,6 +170,8 @@ pub enum Bench {
     Scaling,
     /// Frames per second against viewing distance and picture size, beside the thesis's table 5.
     View,
+    /// What is gained by simulating a frame while the one before is drawn, for pairs of devices.
+    Workers,
 }
 
 /// A wrong use of the command line that clap does not see; ends with code 2.

@@ -69,8 +69,8 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
         eprintln!("note: {note}");
     }
     let report = RenderReport {
-        backend: player.hair().simulated_on(),
-        render_backend: player.hair().drawn_on(),
+        backend: player.simulated_on(),
+        render_backend: player.drawn_on(),
         frames: times.len(),
         follow_strands: strands,
         segments,

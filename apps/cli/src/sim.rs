@@ -107,9 +107,8 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
         progress.reached(u64::from(player.frames_done()));
     }
     drop(progress);
-    let guides = player.hair().guides();
-    let report =
-        steps.report(player.hair().simulated_on(), guides.strand_count(), guides.points_per_strand());
+    let guides = player.guides();
+    let report = steps.report(player.simulated_on(), guides.strand_count(), guides.points_per_strand());
     if inputs.json {
         println!("{}", serde_json::to_string(&report)?);
     } else {

@@ -139,23 +139,6 @@ fn is_named(found: &str, declared: &str) -> bool {
     modules.is_empty() || digits.parse().map_or(true, |count: usize| part.matches('_').count() >= count)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::is_named;
-
-    #[test]
-    fn names_of_modules_stand_before_names() {
-        for found in ["body_depths", "package_shadow__1body_depths", "package__1opacity_depth__1body_depths"]
-        {
-            assert!(is_named(found, "body_depths"), "{found}");
-            assert!(!is_named(found, "depths"), "{found}");
-        }
-        assert!(is_named("package_strands_points", "points"));
-        assert!(is_named("package__1opacity_depth_maps", "maps"));
-        assert!(!is_named("endpoints", "points") && !is_named("package_strands_endpoints", "points"));
-    }
-}
-
 fn size_of_layout(layout: &Layout) -> usize {
     match layout {
         Layout::Scalar(_) => 4,
@@ -217,5 +200,22 @@ fn compare_scalar(declared: &str, found: ScalarKind, path: &str, problems: &mut 
     };
     if declared != expected {
         problems.push(format!("{path} is {expected}, declared {declared}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_named;
+
+    #[test]
+    fn names_of_modules_stand_before_names() {
+        for found in ["body_depths", "package_shadow__1body_depths", "package__1opacity_depth__1body_depths"]
+        {
+            assert!(is_named(found, "body_depths"), "{found}");
+            assert!(!is_named(found, "depths"), "{found}");
+        }
+        assert!(is_named("package_strands_points", "points"));
+        assert!(is_named("package__1opacity_depth_maps", "maps"));
+        assert!(!is_named("endpoints", "points") && !is_named("package_strands_endpoints", "points"));
     }
 }

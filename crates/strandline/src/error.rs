@@ -42,6 +42,12 @@ pub enum Error {
         /// What the system said.
         source: std::io::Error,
     },
+    /// The system gave no thread for the simulation.
+    #[error("cannot start the simulation's thread: {0}")]
+    Thread(std::io::Error),
+    /// The simulation's thread ended in the middle: a fault of ours.
+    #[error("the simulation stopped with an error of the program's own; frames already drawn are complete")]
+    WorkerGone,
     /// From the body.
     #[error(transparent)]
     Body(#[from] BodyError),

@@ -6,14 +6,15 @@ use crate::{
     devices::{Opened, Pair},
     engine::Engine,
     gpu::Gpu,
-    groom::{Groom, Guides, Vec3Lanes},
+    groom::{Groom, Guides},
     painter::Painter,
     prepare::{self, Prepared},
     render::{
         BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings,
         gpu::DevicePoints,
     },
-    sim::{Clock, Drive, Settings, Solver, State, StepReport},
+    sim::{Settings, Solver, State, StepReport},
+    simulation::{Moment, Simulation},
 };
 
 /// Points of a guide when nothing else is said.
@@ -21,17 +22,9 @@ const POINTS_PER_STRAND: usize = 16;
 
 /// A head of hair that moves and can be drawn: solver, state and renderer in one.
 pub struct Hair {
-    guides: Guides,
-    bounds: Aabb,
-    engine: Engine,
-    clock: Clock,
-    /// Where the picture lies between the last two states.
-    share: f32,
-    /// Poses of the head at the last two states, and where the last call of `step` ended.
-    poses: [Pose; 2],
-    end: Pose,
-    shown: Vec<Vec3Lanes>,
-    painter: Painter,
+    simulation: Simulation,
+    studio: Studio,
+    moment: Moment,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
     /// The lights; three to begin with.
@@ -40,6 +33,52 @@ pub struct Hair {
     pub body_look: BodyLook,
     /// How detail falls with distance.
     pub level_of_detail: LevelOfDetail,
+}
+
+/// What draws, and everything that is drawn but the hair itself.
+pub(crate) struct Studio {
+    pub guides: Guides,
+    pub bounds: Aabb,
+    pub painter: Painter,
+    pub lights: Vec<Light>,
+    pub body_look: BodyLook,
+    pub level_of_detail: LevelOfDetail,
+}
+
+impl Studio {
+    /// Draws a moment, on the CPU when the GPU fails and that is wanted.
+    pub fn draw(
+        &mut self,
+        moment: &Moment,
+        camera: &Camera,
+        look: &Look,
+    ) -> Result<(Picture, FrameReport), Error> {
+        self.draw_points(moment, moment.device_points(), camera, look)
+    }
+
+    fn draw_points(
+        &mut self,
+        moment: &Moment,
+        points: Option<DevicePoints>,
+        camera: &Camera,
+        look: &Look,
+    ) -> Result<(Picture, FrameReport), Error> {
+        let input = FrameInput {
+            positions: &moment.positions,
+            world_from_head: moment.world_from_head,
+            camera,
+            look,
+            body_look: &self.body_look,
+            lights: &self.lights,
+            level_of_detail: &self.level_of_detail,
+        };
+        let failure = match self.painter.draw(&input, points) {
+            Ok(drawn) => return Ok(drawn),
+            Err(failure) => failure,
+        };
+        self.painter.recover_from(failure)?;
+        Ok(self.painter.draw(&input, None)?)
+    }
 }
 
 impl Hair {
@@ -94,21 +133,36 @@ impl Hair {
         let mut engine = Engine::new(gpu.as_ref(), Solver::new(&guides, settings, colliders)?, fall_back)?;
         engine.notes.extend(notes);
         let bounds = prepare::bounds(&guides, mesh);
-        Ok(Self {
-            shown: guides.positions().to_vec(),
-            lights: Light::three_point(prepare::center(bounds)).to_vec(),
+        let studio = Studio {
             painter: Painter::new(pictures, &guides, mesh)?,
-            clock: Clock::new(settings.time_step),
-            share: 1.0,
-            poses: [Pose::IDENTITY; 2],
-            end: Pose::IDENTITY,
+            guides,
+            bounds,
+            lights: Vec::new(),
+            body_look: BodyLook::default(),
+            level_of_detail: LevelOfDetail::default(),
+        };
+        Ok(Self {
+            simulation: Simulation::new(engine, settings.time_step),
+            studio,
+            moment: Moment::default(),
+            lights: Light::three_point(prepare::center(bounds)).to_vec(),
             wind: Vec3::ZERO,
             body_look: BodyLook::default(),
             level_of_detail: LevelOfDetail::default(),
-            guides,
-            bounds,
-            engine,
         })
+    }
+
+    /// The two that a [`Player`](crate::Player) lets work side by side.
+    pub(crate) fn into_parts(mut self) -> (Simulation, Studio) {
+        self.set_stage();
+        (self.simulation, self.studio)
+    }
+
+    /// Hands what a user may have changed to the studio.
+    fn set_stage(&mut self) {
+        self.studio.lights.clone_from(&self.lights);
+        self.studio.body_look = self.body_look;
+        self.studio.level_of_detail = self.level_of_detail;
     }
 
     /// All that a scene names.
@@ -134,7 +188,7 @@ impl Hair {
     /// # Errors
     /// The GPU failed and [`Hair::set_fall_back`] was not asked for; the hair keeps its last state.
     pub fn step(&mut self, seconds: f64, world_from_head: &Pose) -> Result<Vec<StepReport>, Error> {
-        let (start, end) = (self.end, *world_from_head);
+        let (start, end) = (self.simulation.end(), *world_from_head);
         self.step_along(seconds, |share| start.toward(&end, share))
     }
 
@@ -143,41 +197,19 @@ impl Hair {
     /// # Errors
     /// As [`Hair::step`].
     pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Result<Vec<StepReport>, Error> {
-        let before = self.clock;
-        let ticks = self.clock.advance(seconds);
-        let waited = f64::from(ticks.share) * self.clock.step_time(1);
-        let drive = |step| {
-            // The last step ends `waited` before the end of the frame.
-            let left = self.clock.step_time(u64::from(ticks.count - 1 - step)) + waited;
-            let share = (1.0 - left / seconds).clamp(0.0, 1.0);
-            Drive { world_from_head: pose(share as f32), wind: self.wind }
-        };
-        let drives: Vec<Drive> = (0..ticks.count).map(drive).collect();
-        let reports = match self.engine.run(&drives) {
-            Ok(reports) => reports,
-            Err(error) => {
-                self.clock = before;
-                return Err(error.into());
-            }
-        };
-        for drive in &drives {
-            self.poses = [self.poses[1], drive.world_from_head];
-        }
-        self.share = ticks.share;
-        self.end = pose(1.0);
-        Ok(reports)
+        Ok(self.simulation.step_along(seconds, self.wind, &pose)?)
     }
 
     /// Whether the hair goes on on the CPU, from its last state, when the GPU fails; it does for
     /// [`Backend::Auto`](crate::Backend::Auto).
     pub fn set_fall_back(&mut self, fall_back: bool) {
-        self.engine.fall_back = fall_back;
-        self.painter.fall_back = fall_back;
+        self.simulation.engine.fall_back = fall_back;
+        self.studio.painter.fall_back = fall_back;
     }
 
     /// The device that the hair is simulated on; none on the CPU.
     pub fn gpu(&self) -> Option<&Gpu> {
-        self.engine.gpu()
+        self.simulation.engine.gpu()
     }
 
     /// Where the hair is simulated: cpu, or the adapter's number and name.
@@ -187,13 +219,13 @@ impl Hair {
 
     /// Where pictures are drawn, likewise.
     pub fn drawn_on(&self) -> String {
-        place(self.painter.gpu())
+        place(self.studio.painter.gpu())
     }
 
     /// What happened to the backend since the last call, for a person to read.
     pub fn take_notes(&mut self) -> Vec<String> {
-        let mut notes = self.engine.take_notes();
-        notes.append(&mut self.painter.notes);
+        let mut notes = self.simulation.engine.take_notes();
+        notes.append(&mut self.studio.painter.notes);
         notes
     }
 
@@ -202,7 +234,7 @@ impl Hair {
     /// # Errors
     /// A setting outside its range, then nothing changes; or the GPU failed.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), Error> {
-        Ok(self.engine.set_settings(settings)?)
+        Ok(self.simulation.engine.set_settings(settings)?)
     }
 
     /// Draws the hair as it is now.
@@ -222,39 +254,23 @@ impl Hair {
         camera: &Camera,
         look: &Look,
     ) -> Result<(Picture, FrameReport), Error> {
-        let points = device_points(&self.engine, &self.painter, self.share);
-        if points.is_none() {
-            self.engine.state().interpolated(self.share, &mut self.shown);
-        }
-        let input = FrameInput {
-            positions: &self.shown,
-            world_from_head: self.poses[0].toward(&self.poses[1], self.share),
-            camera,
-            look,
-            body_look: &self.body_look,
-            lights: &self.lights,
-            level_of_detail: &self.level_of_detail,
-        };
-        match self.painter.draw(&input, points) {
-            Ok(drawn) => Ok(drawn),
-            Err(failure) => {
-                self.painter.recover_from(failure)?;
-                self.picture_with_report(camera, look)
-            }
-        }
+        self.simulation.show(&mut self.moment);
+        self.set_stage();
+        let points = device_points(&self.simulation, &self.studio.painter);
+        self.studio.draw_points(&self.moment, points, camera, look)
     }
 
     /// The opacity map of a light as it was for the last picture: the share of light that each of its
     /// three layers takes away, as red, green and blue [Chen2011 fig. 8, 9]. `None` for a light
     /// without shadow, for a number that no light has, and before the first picture.
     pub fn opacity_map(&self, light: usize) -> Option<Picture> {
-        let [opacity, _] = self.painter.maps(light).ok()??;
+        let [opacity, _] = self.studio.painter.maps(light).ok()??;
         Some(opacity)
     }
 
     /// The depth of the first hair in that map as grey, white the nearest; `None` as there.
     pub fn depth_map(&self, light: usize) -> Option<Picture> {
-        let [_, depth] = self.painter.maps(light).ok()??;
+        let [_, depth] = self.studio.painter.maps(light).ok()??;
         Some(depth)
     }
 
@@ -263,7 +279,7 @@ impl Hair {
     /// # Errors
     /// A setting outside its range; the settings then stay as they were.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), Error> {
-        Ok(self.painter.set_picture(settings)?)
+        Ok(self.studio.painter.set_picture(settings)?)
     }
 
     /// Scales the length of every strand at run time, near its tip only, shape `[strand]`
@@ -272,37 +288,38 @@ impl Hair {
     /// # Errors
     /// Another number of scales than strands, or a scale outside 0.05 to 1.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), Error> {
-        Ok(self.engine.set_length_scale(scales)?)
+        Ok(self.simulation.engine.set_length_scale(scales)?)
     }
 
     /// The simulated strands at rest.
     pub fn guides(&self) -> &Guides {
-        &self.guides
+        &self.studio.guides
     }
 
     /// The state of the simulation.
     pub fn state(&self) -> &State {
-        self.engine.state()
+        self.simulation.engine.state()
     }
 
     /// The settings of the simulation.
     pub fn settings(&self) -> &Settings {
-        self.engine.solver().settings()
+        self.simulation.engine.solver().settings()
     }
 
     /// The box around hair and body at rest \[m\], head space.
     pub fn bounds(&self) -> Aabb {
-        self.bounds
+        self.studio.bounds
     }
 }
 
-fn place(gpu: Option<&Gpu>) -> String {
+/// Where something runs, for a person to read.
+pub(crate) fn place(gpu: Option<&Gpu>) -> String {
     gpu.map_or_else(|| "cpu".to_owned(), |gpu| gpu.adapter().to_string())
 }
 
 /// The points of the simulation, where the pictures are drawn on the device that they lie on.
-fn device_points<'a>(engine: &'a Engine, painter: &Painter, share: f32) -> Option<DevicePoints<'a>> {
-    let [after, before] = engine.device_points()?;
-    let is_same = painter.gpu()?.device() == engine.gpu()?.device();
-    is_same.then_some(DevicePoints { before, after, share })
+fn device_points<'a>(simulation: &'a Simulation, painter: &Painter) -> Option<DevicePoints<'a>> {
+    let [after, before] = simulation.engine.device_points()?;
+    let is_same = painter.gpu()?.device() == after.gpu().device();
+    is_same.then_some(DevicePoints { before, after, share: simulation.share() })
 }

@@ -27,6 +27,8 @@ mod hair;
 mod painter;
 mod player;
 mod prepare;
+mod simulation;
+mod worker;
 
 pub mod scene;
 

@@ -1,10 +1,16 @@
+use glam::Vec3;
+
 use crate::{
     Devices, Error, Hair, Scene,
-    body::{Motion, Pose},
+    body::Pose,
+    gpu::Gpu,
+    groom::Guides,
+    hair::Studio,
     prepare::Prepared,
-    render::{Camera, FrameReport, Picture},
-    scene::WindSection,
-    sim::StepReport,
+    render::{Camera, FrameReport, Look, Picture},
+    sim::{Settings, SimError, State, StepReport},
+    simulation::{Moment, Simulation},
+    worker::{Gone, Work, Worker},
 };
 
 /// What a [`Player`] tells while it plays.
@@ -26,24 +32,91 @@ pub enum Event {
 }
 
 /// Plays a scene: an iterator of events, frame after frame, until the film is over.
+///
+/// Two workers share the work [Chen2011 §5]: while one frame is drawn the next one is simulated on a
+/// thread of its own, on another device or on the same.
 pub struct Player {
-    hair: Hair,
-    motion: Motion,
-    pivot: glam::Vec3,
-    wind: WindSection,
+    worker: Worker<Simulation>,
+    studio: Studio,
+    /// Changed by [`Player::set_settings`] before the next frame is simulated.
+    change: Option<Settings>,
+    course: Course,
     camera: Camera,
-    look: crate::render::Look,
+    look: Look,
     draw: bool,
-    frame_seconds: f64,
-    settle_seconds: f64,
+    overlap: bool,
     frames: u32,
-    frame: u32,
+    /// Frames whose simulation was started, and taken.
+    started: u32,
+    taken: u32,
+    /// Moments that nobody works on.
+    spare: Vec<Moment>,
+    /// The moment to be drawn.
+    shown: Option<Moment>,
     waiting: std::vec::IntoIter<StepReport>,
     told: std::vec::IntoIter<String>,
     /// Whether the simulation cannot go on.
     failed: bool,
-    drawn: bool,
     notes: Vec<String>,
+}
+
+/// Where the head and the wind are at every time.
+#[derive(Clone)]
+struct Course {
+    pose: std::sync::Arc<dyn Fn(f64) -> Pose + Send + Sync>,
+    wind: std::sync::Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
+    frame_seconds: f64,
+    settle_seconds: f64,
+}
+
+/// One frame to be simulated.
+pub(crate) struct Job {
+    frame: u32,
+    course: Course,
+    change: Option<Settings>,
+    /// The device that the pictures are drawn on.
+    gpu: Option<Gpu>,
+    moment: Moment,
+}
+
+/// One frame that was.
+pub(crate) struct Done {
+    moment: Moment,
+    reports: Result<Vec<StepReport>, SimError>,
+    notes: Vec<String>,
+}
+
+impl Work for Simulation {
+    type Job = Job;
+    type Done = Done;
+
+    fn run(&mut self, job: Job) -> Done {
+        let Job { frame, course, change, gpu, mut moment } = job;
+        let reports = change
+            .map_or(Ok(()), |settings| self.engine.set_settings(&settings))
+            .and_then(|()| course.run(self, frame));
+        self.show_on(gpu.as_ref(), &mut moment);
+        Done { moment, reports, notes: self.engine.take_notes() }
+    }
+}
+
+impl Course {
+    /// Moves to a frame; the first one lets the hair hang on the resting head before, in steps that are
+    /// not told.
+    fn run(&self, simulation: &mut Simulation, frame: u32) -> Result<Vec<StepReport>, SimError> {
+        if frame == 0 {
+            let count = (self.settle_seconds / self.frame_seconds).ceil();
+            let (rest, still) = ((self.pose)(0.0), (self.wind)(0.0));
+            for _ in 0..count as u64 {
+                let start = simulation.end();
+                let toward = |share: f32| start.toward(&rest, share);
+                simulation.step_along(self.settle_seconds / count, still, &toward)?;
+            }
+        }
+        let begin = f64::from(frame) * self.frame_seconds;
+        let pose = |share: f32| (self.pose)(begin + self.frame_seconds * f64::from(share));
+        simulation.step_along(self.frame_seconds, (self.wind)(begin), &pose)
+    }
 }
 
 impl Player {
@@ -53,40 +126,84 @@ impl Player {
     /// Whatever the scene's parts refuse.
     pub fn new(scene: &Scene, devices: impl Into<Devices>, draw: bool) -> Result<Self, Error> {
         let mut prepared = Prepared::new(scene)?;
-        let motion = prepared.motion.clone();
-        let (pivot, bounds) = (prepared.pivot, prepared.bounds);
+        let (motion, pivot) = (prepared.motion.clone(), prepared.pivot);
         let mut notes = std::mem::take(&mut prepared.notes);
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
+        let camera = scene.camera.camera(prepared.bounds, aspect);
         let mut hair = Hair::from_scene(scene, prepared, devices)?;
         notes.extend(hair.take_notes());
+        let (simulation, studio) = hair.into_parts();
+        let wind = scene.wind;
         Ok(Self {
-            hair,
-            motion,
-            pivot,
-            wind: scene.wind,
-            camera: scene.camera.camera(bounds, aspect),
+            worker: Worker::new(simulation).map_err(Error::Thread)?,
+            studio,
+            change: None,
+            course: Course {
+                pose: std::sync::Arc::new(move |time| motion.pose(time, pivot)),
+                wind: std::sync::Arc::new(move |time| wind.at(time)),
+                frame_seconds: 1.0 / f64::from(scene.film.frames_per_second),
+                settle_seconds: f64::from(scene.film.settle),
+            },
+            camera,
             look: scene.look.clone(),
             draw,
-            frame_seconds: 1.0 / f64::from(scene.film.frames_per_second),
-            settle_seconds: f64::from(scene.film.settle),
+            overlap: true,
             frames: scene.film.frames,
-            frame: 0,
+            started: 0,
+            taken: 0,
+            spare: vec![Moment::default(), Moment::default()],
+            shown: None,
             waiting: Vec::new().into_iter(),
             told: Vec::new().into_iter(),
             failed: false,
-            drawn: true,
             notes,
         })
     }
 
-    /// The hair that is played.
-    pub fn hair(&self) -> &Hair {
-        &self.hair
+    /// Whether a frame is simulated while the one before is drawn; it is unless told otherwise.
+    pub fn set_overlap(&mut self, overlap: bool) {
+        self.overlap = overlap;
     }
 
-    /// The hair that is played, to change while it moves.
-    pub fn hair_mut(&mut self) -> &mut Hair {
-        &mut self.hair
+    /// Changes how the hair moves, from the next frame on whose simulation starts. The hair goes on as it
+    /// is; a setting outside its range ends the film with its error.
+    pub fn set_settings(&mut self, settings: Settings) {
+        self.change = Some(settings);
+    }
+
+    /// Changes the hair's look, from the next picture on.
+    pub fn set_look(&mut self, look: Look) {
+        self.look = look;
+    }
+
+    /// Changes the view, from the next picture on.
+    pub fn set_camera(&mut self, camera: Camera) {
+        self.camera = camera;
+    }
+
+    /// The simulated strands at rest.
+    pub fn guides(&self) -> &Guides {
+        &self.studio.guides
+    }
+
+    /// The state of the simulation: as long as a frame is on its way, of that frame.
+    pub fn state(&self) -> State {
+        self.worker.work().engine.state().clone()
+    }
+
+    /// The device that the hair is simulated on; none on the CPU.
+    pub fn gpu(&self) -> Option<Gpu> {
+        self.worker.work().engine.gpu().cloned()
+    }
+
+    /// Where the hair is simulated: cpu, or the adapter's number and name.
+    pub fn simulated_on(&self) -> String {
+        crate::hair::place(self.worker.work().engine.gpu())
+    }
+
+    /// Where pictures are drawn, likewise.
+    pub fn drawn_on(&self) -> String {
+        crate::hair::place(self.studio.painter.gpu())
     }
 
     /// Number of frames of the film.
@@ -96,7 +213,7 @@ impl Player {
 
     /// Frames of which every event was told.
     pub fn frames_done(&self) -> u32 {
-        self.frame - u32::from(!self.drawn)
+        self.taken - u32::from(self.shown.is_some())
     }
 
     /// What was mended or left out while loading.
@@ -104,37 +221,53 @@ impl Player {
         &self.notes
     }
 
-    /// Lets the hair hang on the resting head; the steps are not told.
-    fn settle(&mut self) -> Result<(), Error> {
-        let rest = self.motion.pose(0.0, self.pivot);
-        self.hair.wind = self.wind.at(0.0);
-        let frames = (self.settle_seconds / self.frame_seconds).ceil();
-        for _ in 0..frames as u64 {
-            self.hair.step(self.settle_seconds / frames, &rest)?;
+    /// Starts the simulation of the next frame, if there is one.
+    fn start(&mut self) -> Result<(), Gone> {
+        if self.started == self.frames || self.failed {
+            return Ok(());
         }
-        Ok(())
+        let job = Job {
+            frame: self.started,
+            course: self.course.clone(),
+            change: self.change.take(),
+            gpu: self.studio.painter.gpu().cloned(),
+            moment: self.spare.pop().unwrap_or_default(),
+        };
+        self.started += 1;
+        self.worker.start(job)
     }
 
-    /// Moves the hair to the next frame.
+    /// Takes the next frame from the worker and starts the one after it.
     fn advance(&mut self) -> Result<(), Error> {
-        if self.frame == 0 {
-            self.settle()?;
+        if self.worker.started() == 0 {
+            self.start().map_err(|Gone| Error::WorkerGone)?;
         }
-        let begin = f64::from(self.frame) * self.frame_seconds;
-        self.hair.wind = self.wind.at(begin);
-        let (motion, pivot, length) = (&self.motion, self.pivot, self.frame_seconds);
-        let pose = |share: f32| -> Pose { motion.pose(begin + length * f64::from(share), pivot) };
-        self.waiting = self.hair.step_along(length, pose)?.into_iter();
-        self.told = self.hair.take_notes().into_iter();
-        self.drawn = !self.draw;
-        self.frame += 1;
-        Ok(())
+        let Done { moment, reports, notes } = self.worker.finish().map_err(|Gone| Error::WorkerGone)?;
+        self.told = notes.into_iter();
+        let reports = match reports {
+            Ok(reports) => reports,
+            Err(error) => {
+                self.spare.push(moment);
+                return Err(error.into());
+            }
+        };
+        self.waiting = reports.into_iter();
+        self.taken += 1;
+        if self.draw {
+            self.shown = Some(moment);
+        } else {
+            self.spare.push(moment);
+        }
+        if self.overlap { self.start().map_err(|Gone| Error::WorkerGone) } else { Ok(()) }
     }
 
-    fn picture(&mut self) -> Result<Event, Error> {
-        self.drawn = true;
-        let (picture, report) = self.hair.picture_with_report(&self.camera, &self.look)?;
-        Ok(Event::Drawn { frame: self.frame - 1, picture, report })
+    /// Draws a moment and hands it back.
+    fn picture(&mut self, moment: Moment) -> Result<Event, Error> {
+        let drawn = self.studio.draw(&moment, &self.camera, &self.look);
+        self.told = std::mem::take(&mut self.studio.painter.notes).into_iter();
+        self.spare.push(moment);
+        let (picture, report) = drawn?;
+        Ok(Event::Drawn { frame: self.taken - 1, picture, report })
     }
 }
 
@@ -149,10 +282,12 @@ impl Iterator for Player {
             if let Some(report) = self.waiting.next() {
                 return Some(Ok(Event::Stepped(report)));
             }
-            if !self.drawn {
-                return Some(self.picture());
+            if let Some(moment) = self.shown.take() {
+                let event = self.picture(moment);
+                self.failed |= event.is_err();
+                return Some(event);
             }
-            if self.frame == self.frames || self.failed {
+            if self.taken == self.frames || self.failed {
                 return None;
             }
             if let Err(error) = self.advance() {

@@ -68,7 +68,7 @@ fn a_scene_moves_alike_on_both_backends() {
                 assert!(!report.seconds.is_empty());
             }
         }
-        player.hair().state().clone()
+        player.state()
     };
     let (cpu, gpu) = (play(Backend::Cpu), play(Backend::Gpu(None)));
     assert_eq!(cpu.time, gpu.time);
@@ -153,7 +153,7 @@ fn a_film_keeps_its_finished_frames_when_the_gpu_goes_away() {
             Ok(Event::Drawn { frame, picture, .. }) => {
                 film.add(&picture).unwrap();
                 if frame == 1 {
-                    player.hair().gpu().unwrap().destroy();
+                    player.gpu().unwrap().destroy();
                 }
             }
             Ok(_) => {}

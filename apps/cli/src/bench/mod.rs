@@ -5,6 +5,7 @@ mod machine;
 mod scaling;
 mod thesis;
 mod view;
+mod workers;
 
 use std::path::Path;
 
@@ -36,6 +37,7 @@ pub fn bench(options: &BenchOptions) -> anyhow::Result<()> {
     match options.what {
         Bench::Thesis => write(options, device, "thesis", thesis::run(device, options.quick)?),
         Bench::View => write(options, device, "view", view::run(device, options.quick)?),
+        Bench::Workers => write(options, device, "workers", workers::run(device, options.quick)?),
         Bench::Scaling => write(options, device, "scaling", scaling::run(device, options.quick)?),
     }
 }
@@ -87,7 +89,7 @@ fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimReport, 
         }
         progress.reached(u64::from(player.frames_done()));
     }
-    let guides = player.hair().guides();
+    let guides = player.guides();
     let report = steps.report("cpu".to_owned(), guides.strand_count(), guides.points_per_strand());
     Ok((report, pictures.times(), segments))
 }

@@ -1,0 +1,132 @@
+//! Two workers on one or two devices: what a frame takes when the next one is simulated while it is drawn,
+//! against the sum and the greater of both [Chen2011 §5].
+
+use std::time::Instant;
+
+use serde::Serialize;
+use strandline::{Backend, Devices, Event, Player, Scene};
+
+use super::gpu::Device;
+use crate::progress::Progress;
+use crate::statistics::median;
+
+/// Frames of a run; on a software adapter; in a short run.
+const FRAMES: [u32; 3] = [60, 8, 3];
+
+#[derive(Debug, Serialize)]
+pub struct Results {
+    pairs: Vec<Pair>,
+}
+
+/// Medians of one pair of devices \[ms\].
+#[derive(Debug, Serialize)]
+struct Pair {
+    simulation: String,
+    pictures: String,
+    ms_to_simulate: f64,
+    ms_to_draw: f64,
+    ms_a_frame: f64,
+    /// Over the sum of both, and over the greater of both.
+    of_sum: f64,
+    of_greater: f64,
+    /// Points that cross from one device to the other on their way to the picture \[byte\].
+    bytes_per_frame: usize,
+}
+
+pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
+    let mut chosen = vec![(Backend::Cpu, Backend::Cpu)];
+    let mut frames = FRAMES[0];
+    if let Some(device) = device {
+        let gpu = Backend::Gpu(Some(device.gpu.adapter().index));
+        chosen.extend([(Backend::Cpu, gpu), (gpu, Backend::Cpu), (gpu, gpu)]);
+        frames = if device.adapter.software { FRAMES[1] } else { frames };
+    }
+    let frames = if quick { FRAMES[2] } else { frames };
+    println!("\nTwo workers: the thesis's scene, medians of {frames} frames [ms]");
+    println!(
+        "{:<12}{:<12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>14}",
+        "simulated", "drawn", "simulate", "draw", "frame", "of sum", "of greater", "bytes a frame"
+    );
+    let mut pairs = Vec::new();
+    for (simulation, pictures) in chosen {
+        let pair = measure(Devices { simulation, pictures }, frames)?;
+        println!(
+            "{:<12}{:<12}{:>10.2}{:>10.2}{:>10.2}{:>10.2}{:>12.2}{:>14}",
+            simulation.to_string(),
+            pictures.to_string(),
+            pair.ms_to_simulate,
+            pair.ms_to_draw,
+            pair.ms_a_frame,
+            pair.of_sum,
+            pair.of_greater,
+            pair.bytes_per_frame
+        );
+        pairs.push(pair);
+    }
+    Ok(Results { pairs })
+}
+
+fn measure(devices: Devices, frames: u32) -> anyhow::Result<Pair> {
+    let alone = play(devices, frames, false)?;
+    let both = play(devices, frames, true)?;
+    let (ms_to_simulate, ms_to_draw) = (median(&alone.simulate), median(&alone.draw));
+    let ms_a_frame = median(&both.frame);
+    let crosses = devices.pictures != devices.simulation && devices.pictures != Backend::Cpu;
+    Ok(Pair {
+        simulation: both.simulated_on,
+        pictures: both.drawn_on,
+        ms_to_simulate,
+        ms_to_draw,
+        ms_a_frame,
+        of_sum: ms_a_frame / (ms_to_simulate + ms_to_draw),
+        of_greater: ms_a_frame / ms_to_simulate.max(ms_to_draw),
+        bytes_per_frame: if crosses { both.point_bytes } else { 0 },
+    })
+}
+
+/// Times of every frame \[ms\], by the host's clock.
+#[derive(Default)]
+struct Run {
+    simulate: Vec<f64>,
+    draw: Vec<f64>,
+    frame: Vec<f64>,
+    simulated_on: String,
+    drawn_on: String,
+    point_bytes: usize,
+}
+
+fn play(devices: Devices, frames: u32, overlap: bool) -> anyhow::Result<Run> {
+    let mut scene = Scene::thesis();
+    // The first frame compiles and settles; it is left out.
+    scene.film.frames = frames + 1;
+    scene.film.frames_per_second = 60.0;
+    let mut player = Player::new(&scene, devices, true)?;
+    player.set_overlap(overlap);
+    let mut run = Run {
+        simulated_on: player.simulated_on(),
+        drawn_on: player.drawn_on(),
+        point_bytes: size_of_val(player.guides().positions()),
+        ..Run::default()
+    };
+    let what = if overlap { "frames, both at once" } else { "frames, one after the other" };
+    let mut progress = Progress::new(u64::from(frames) + 1, what, false);
+    let (mut last, mut simulated) = (Instant::now(), None);
+    for event in player {
+        match event? {
+            Event::Note(note) => progress.note(&note),
+            Event::Stepped(_) => simulated = simulated.or(Some(Instant::now())),
+            Event::Drawn { frame, .. } => {
+                let (now, between) = (Instant::now(), simulated.take().unwrap_or(last));
+                if frame > 0 {
+                    let ms = |from: Instant, to: Instant| 1e3 * (to - from).as_secs_f64();
+                    run.simulate.push(ms(last, between));
+                    run.draw.push(ms(between, now));
+                    run.frame.push(ms(last, now));
+                }
+                last = now;
+                progress.reached(u64::from(frame) + 1);
+            }
+        }
+    }
+    Ok(run)
+}

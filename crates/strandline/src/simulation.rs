@@ -1,0 +1,143 @@
+//! Hair that moves, apart from how it is drawn.
+
+use glam::Vec3;
+use strandline_gpu::{Buffer, Gpu, GpuError};
+
+use crate::{
+    body::Pose,
+    engine::Engine,
+    groom::Vec3Lanes,
+    render::gpu::DevicePoints,
+    sim::{Clock, Drive, SimError, StepReport},
+};
+
+/// A simulation in time: steps of fixed length, and the moment between two of them that is shown.
+pub(crate) struct Simulation {
+    pub engine: Engine,
+    clock: Clock,
+    /// Where the moment lies between the last two states.
+    share: f32,
+    /// Poses of the head at the last two states, and where the last run ended.
+    poses: [Pose; 2],
+    end: Pose,
+}
+
+/// What a picture is drawn from.
+#[derive(Default)]
+pub(crate) struct Moment {
+    /// Guide points \[m\], world space, shape `[block][point]` of lanes.
+    pub positions: Vec<Vec3Lanes>,
+    pub world_from_head: Pose,
+    device: Option<OnDevice>,
+}
+
+/// The two states around a moment, copied on their device.
+struct OnDevice {
+    before: Buffer<f32>,
+    after: Buffer<f32>,
+    share: f32,
+}
+
+impl Moment {
+    /// The guide points where they lie on a device.
+    pub fn device_points(&self) -> Option<DevicePoints<'_>> {
+        let OnDevice { before, after, share } = self.device.as_ref()?;
+        Some(DevicePoints { before, after, share: *share })
+    }
+}
+
+impl Simulation {
+    pub fn new(engine: Engine, time_step: f32) -> Self {
+        Self {
+            engine,
+            clock: Clock::new(time_step),
+            share: 1.0,
+            poses: [Pose::IDENTITY; 2],
+            end: Pose::IDENTITY,
+        }
+    }
+
+    /// Where the last run ended.
+    pub fn end(&self) -> Pose {
+        self.end
+    }
+
+    /// Where the moment shown lies between the last two states, 0 to 1.
+    pub fn share(&self) -> f32 {
+        self.share
+    }
+
+    /// Lets `seconds` pass with the head's pose for each share (0 to 1) of them and a wind \[m/s\].
+    pub fn step_along(
+        &mut self,
+        seconds: f64,
+        wind: Vec3,
+        pose: &dyn Fn(f32) -> Pose,
+    ) -> Result<Vec<StepReport>, SimError> {
+        let before = self.clock;
+        let ticks = self.clock.advance(seconds);
+        let waited = f64::from(ticks.share) * self.clock.step_time(1);
+        let drive = |step| {
+            // The last step ends `waited` before the end of the frame.
+            let left = self.clock.step_time(u64::from(ticks.count - 1 - step)) + waited;
+            let share = (1.0 - left / seconds).clamp(0.0, 1.0);
+            Drive { world_from_head: pose(share as f32), wind }
+        };
+        let drives: Vec<Drive> = (0..ticks.count).map(drive).collect();
+        let reports = match self.engine.run(&drives) {
+            Ok(reports) => reports,
+            Err(error) => {
+                self.clock = before;
+                return Err(error);
+            }
+        };
+        for drive in &drives {
+            self.poses = [self.poses[1], drive.world_from_head];
+        }
+        self.share = ticks.share;
+        self.end = pose(1.0);
+        Ok(reports)
+    }
+
+    /// Fills a moment with what is to be shown now.
+    pub fn show(&self, moment: &mut Moment) {
+        self.engine.state().interpolated(self.share, &mut moment.positions);
+        moment.world_from_head = self.poses[0].toward(&self.poses[1], self.share);
+        moment.device = None;
+    }
+
+    /// As [`Simulation::show`]; on a device the points are copied there too, so that the next step may
+    /// begin while they are drawn.
+    pub fn show_on(&self, gpu: Option<&Gpu>, moment: &mut Moment) {
+        let kept = moment.device.take();
+        self.show(moment);
+        let Some([after, before]) = self.engine.device_points() else { return };
+        let Some(gpu) = gpu.filter(|gpu| gpu.device() == after.gpu().device()) else { return };
+        // What cannot be copied there is drawn from the host's copy.
+        moment.device = copied(gpu, [before, after], kept, self.share).ok();
+    }
+}
+
+fn copied(
+    gpu: &Gpu,
+    [before, after]: [&Buffer<f32>; 2],
+    kept: Option<OnDevice>,
+    share: f32,
+) -> Result<OnDevice, GpuError> {
+    let copy = match kept.filter(|kept| kept.after.len() == after.len()) {
+        Some(kept) => OnDevice { share, ..kept },
+        None => OnDevice {
+            before: Buffer::new(gpu, "points before", before.len())?,
+            after: Buffer::new(gpu, "points after", after.len())?,
+            share,
+        },
+    };
+    gpu.guarded("copying points", || {
+        let mut encoder = gpu.device().create_command_encoder(&Default::default());
+        for (from, to) in [(before, &copy.before), (after, &copy.after)] {
+            encoder.copy_buffer_to_buffer(from.raw(), 0, to.raw(), 0, from.raw().size());
+        }
+        gpu.queue().submit([encoder.finish()]);
+    })?;
+    Ok(copy)
+}
