@@ -7,7 +7,8 @@ use strandline_checks::gpu;
 use strandline_gpu::{Download, Gpu, Texture, wgpu};
 use strandline_groom::{Guides, Style, StyleSettings};
 use strandline_render::cpu::{
-    Curves, Occlusion, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade, tessellate,
+    Curves, Occlusion, ShadowBody, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade,
+    tessellate,
 };
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
@@ -92,12 +93,20 @@ impl Both {
 
     /// What the CPU's stages make of it up to `shade`, with no body's shadow.
     fn on_cpu(&self, positions: &[strandline_groom::Vec3Lanes]) -> (Curves, Strands, Shadows) {
+        self.shadowed_on_cpu(positions, None)
+    }
+
+    fn shadowed_on_cpu(
+        &self,
+        positions: &[strandline_groom::Vec3Lanes],
+        body: Option<ShadowBody>,
+    ) -> (Curves, Strands, Shadows) {
         let (mut curves, mut strands, mut shadows) =
             (Curves::default(), Strands::default(), Shadows::default());
         let level = self.level();
         tessellate(positions, &self.guides, &self.pose, &level, &mut curves);
         interpolate(&curves, &self.guides, &self.pose, &self.look, &level, &mut strands);
-        opacity_depth(&strands, None, &self.lights, self.middle(), &self.look.shadow, &mut shadows);
+        opacity_depth(&strands, body, &self.lights, self.middle(), &self.look.shadow, &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
         shade(&mut strands, &shadows, &self.lights, &self.look, self.camera.position, &mut occlusion);
@@ -159,8 +168,8 @@ fn interpolate_agrees_in_place_and_width() {
     }
 }
 
-/// Checks both opacity stages of every shadow light: rounding moves a piece of hair in ten thousand to
-/// the texel beside.
+/// Checks both opacity stages of every shadow light. Where rounding moves a piece of hair to the texel
+/// beside, two texels differ: some ten of 30,000 do.
 fn check_maps(both: &Both, check: impl Fn(&[Vec4], &[Vec4])) {
     let positions = both.positions();
     let Some(renderer) = drawn_on_gpu(both, &positions, false) else { return };
@@ -215,6 +224,49 @@ fn shade_agrees_point_by_point() {
     }
 }
 
+#[test]
+fn shade_agrees_in_the_shadow_of_the_body() {
+    let mut both = Both::new(Style::Wavy, 12);
+    // Rows of the body's depths are longer than those of the map.
+    both.look.shadow.map_size = 300;
+    let positions = both.positions();
+    let Some(mut renderer) = drawn_on_gpu(&both, &positions, true) else { return };
+    let placed: Vec<Vec3> = both.mesh.positions.iter().map(|&point| both.pose.point(point)).collect();
+    // Another size of the maps in the same renderer, and back.
+    for map_size in [300, 128, 300] {
+        both.look.shadow.map_size = map_size;
+        let body = ShadowBody { positions: &placed, triangles: &both.mesh.triangles };
+        let (_, strands, shadows) = both.shadowed_on_cpu(&positions, Some(body));
+        renderer.draw(&both.input(&positions)).unwrap();
+        let found = renderer.strands().unwrap().radiances;
+        let dark = strands
+            .positions
+            .iter()
+            .filter(|&&point| shadows.map(0).is_some_and(|map| map.body_visibility(point) < 0.5));
+        assert!(dark.count() * 10 > strands.positions.len(), "the head shades its hair");
+        let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
+        let pairs = strands.radiances.iter().zip(&found);
+        let off: f32 = pairs.map(|(one, other)| (*one - *other).abs().element_sum()).sum();
+        // As above; outlines of the head fall on one texel or the next.
+        assert!(off <= 2e-3 * all, "{map_size}: {off} of {all}");
+    }
+}
+
+#[test]
+fn interpolate_fills_more_than_a_row_of_workgroups() {
+    let mut both = Both::new(Style::Pixie, 16);
+    // 300 x 256 strands of 61 points: more than 65,535 workgroups of 64.
+    both.look.follow_strands = 256;
+    both.settings = PictureSettings::sized(16, 16);
+    let positions = both.positions();
+    let Some(renderer) = drawn_on_gpu(&both, &positions, false) else { return };
+    let (_, strands, _) = both.on_cpu(&positions);
+    assert!(strands.positions.len() > 64 * 65_535);
+    let found = renderer.strands().unwrap();
+    let off = greatest(strands.positions.iter().copied().zip(found.positions.iter().copied()));
+    assert!(off <= 1e-6 * SIZE, "off by {off} m");
+}
+
 /// Both backends' pictures.
 fn pictures(both: &Both, body: bool) -> Option<[Picture; 2]> {
     let (positions, mesh) = (both.positions(), body.then_some(&both.mesh));
@@ -252,6 +304,38 @@ fn draw_agrees_on_wide_ribbons_that_turn() {
     let mut both = Both::new(Style::Curly, 24);
     both.look = Look { width_scale: 12.0, hair_count: 0, follow_strands: 1, ..both.look };
     check_pictures("wide curls", &both, false);
+}
+
+#[test]
+fn draw_agrees_on_an_open_body_in_blinding_light() {
+    let mut both = Both::new(Style::Pixie, 12);
+    // The back of the head is cut away, so that its inside shows.
+    let half = both
+        .mesh
+        .triangles
+        .iter()
+        .filter(|corners| corners.iter().all(|&corner| both.mesh.positions[corner as usize].z > -0.03));
+    both.mesh.triangles = half.copied().collect();
+    assert!(!both.mesh.is_closed());
+    for light in &mut both.lights {
+        light.intensity *= 1e5;
+    }
+    // One sample a pixel: both light the skin at the same points.
+    both.settings.supersampling = 1;
+    both.settings.exposure = -14.0;
+    both.camera = Camera::back();
+    check_pictures("an open head in blinding light", &both, true);
+    both.settings.exposure = 0.0;
+    check_pictures("all white", &both, true);
+}
+
+#[test]
+fn draw_agrees_on_hair_before_the_lens() {
+    let mut both = Both::new(Style::Wavy, 12);
+    // Hair from the near plane on: places in the order must not be spent on the first millimetres.
+    both.camera = Camera { position: Vec3::new(0.02, 0.0, 0.14), near: 1e-4, ..both.camera };
+    both.look.hair_count = 0;
+    check_pictures("hair before the lens", &both, false);
 }
 
 #[test]
@@ -298,6 +382,7 @@ fn resolve_agrees_at_every_setting() {
         assert_eq!(on_gpu.alpha.is_some(), transparent);
         if let (Some(one), Some(other)) = (&on_cpu.alpha, &on_gpu.alpha) {
             let off: u32 = one.iter().zip(other).map(|(one, other)| u32::from(one.abs_diff(*other))).sum();
+            // Half floats hold opacity to a quarter of a step of 255.
             assert!(off as usize <= one.len() / 4, "{off} steps of {} pixels", one.len());
         }
     }
@@ -321,7 +406,7 @@ fn drawn_to_host(
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
         view_formats: &[],
     });
-    renderer.draw_to(input, None, &texture.create_view(&Default::default())).unwrap();
+    renderer.draw_to(input, None, &texture.create_view(&Default::default()), format).unwrap();
     let download = Download::new(gpu, u64::from(4 * width * height)).unwrap();
     let mut encoder = gpu.device().create_command_encoder(&Default::default());
     let layout =
@@ -357,7 +442,10 @@ fn resolve_draws_into_a_hosts_texture_of_either_kind() {
     }
     renderer.set_picture(&PictureSettings::sized(64, 64)).unwrap();
     let texture = Texture::new(&gpu, "of the host", [128, 64], wgpu::TextureFormat::Rgba8Unorm).unwrap();
-    let error = renderer.draw_to(&input, None, texture.view()).unwrap_err().to_string();
+    let error = renderer
+        .draw_to(&input, None, texture.view(), wgpu::TextureFormat::Rgba8Unorm)
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("128 x 64"), "{error}");
 }
 

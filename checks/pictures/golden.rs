@@ -67,7 +67,8 @@ fn check(name: &str, style: Style, points_per_strand: usize, camera: Camera) {
     let settings = PictureSettings::sized(256, 256);
     assert_flip(&sitting.on_cpu(&settings), name, MEAN, ONE_IN_A_HUNDRED);
     if let Some(picture) = sitting.on_gpu(&settings) {
-        assert_flip(&picture, name, MEAN, ONE_IN_A_HUNDRED);
+        // What is promised of the two backends.
+        assert_flip(&picture, name, 0.01, 0.1);
     }
 }
 

@@ -15,7 +15,7 @@ pub fn opacity_map(studio: &Studio) -> Figure {
     let mut look = Look::brown();
     look.shadow.map_size = if studio.quick { 60 } else { 288 };
     let picture = hair.picture(&bust(THREE_QUARTER), &look)?;
-    let maps = [hair.opacity_map(0), hair.depth_map(0)];
+    let maps = [hair.opacity_map(0)?, hair.depth_map(0)?];
     Ok(joined(&maps.into_iter().flatten().chain([picture]).collect::<Vec<_>>()))
 }
 

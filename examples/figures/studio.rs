@@ -14,7 +14,7 @@ const FRAME: f64 = 1.0 / 60.0;
 
 /// Where figures are made.
 pub struct Studio {
-    /// Where hair is simulated.
+    /// Where hair is simulated and drawn.
     pub backend: Backend,
     /// Whether pictures are small and strands few.
     pub quick: bool,

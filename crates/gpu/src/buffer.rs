@@ -1,4 +1,5 @@
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 use bytemuck::Pod;
 
@@ -7,11 +8,24 @@ use crate::{Gpu, GpuError, Readback};
 /// Elements of one type on the device.
 #[derive(Debug)]
 pub struct Buffer<T> {
-    gpu: Gpu,
+    lease: Arc<Lease>,
     raw: wgpu::Buffer,
     name: &'static str,
     len: usize,
     element: PhantomData<T>,
+}
+
+/// Memory that is given back with the last of those who use it.
+#[derive(Debug)]
+struct Lease {
+    gpu: Gpu,
+    bytes: u64,
+}
+
+impl Drop for Lease {
+    fn drop(&mut self) {
+        self.gpu.give_memory_back(self.bytes);
+    }
 }
 
 impl<T: Pod> Buffer<T> {
@@ -23,6 +37,7 @@ impl<T: Pod> Buffer<T> {
         let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
         gpu.check_size(name, bytes)?;
         gpu.take_memory(name, bytes)?;
+        let lease = Arc::new(Lease { gpu: gpu.clone(), bytes });
         let descriptor = wgpu::BufferDescriptor {
             label: Some(name),
             size: bytes,
@@ -35,16 +50,11 @@ impl<T: Pod> Buffer<T> {
         };
         let made = gpu.guarded(name, || gpu.device().create_buffer(&descriptor));
         match made {
-            Ok(raw) => Ok(Self { gpu: gpu.clone(), raw, name, len, element: PhantomData }),
-            Err(error) => {
-                gpu.give_memory_back(bytes);
-                Err(match error {
-                    GpuError::OutOfMemory { adapter, what, .. } => {
-                        GpuError::OutOfMemory { adapter, what, bytes }
-                    }
-                    other => other,
-                })
+            Ok(raw) => Ok(Self { lease, raw, name, len, element: PhantomData }),
+            Err(GpuError::OutOfMemory { adapter, what, .. }) => {
+                Err(GpuError::OutOfMemory { adapter, what, bytes })
             }
+            Err(other) => Err(other),
         }
     }
 
@@ -56,6 +66,13 @@ impl<T: Pod> Buffer<T> {
         let buffer = Self::new(gpu, name, elements.len())?;
         buffer.write(elements)?;
         Ok(buffer)
+    }
+
+    /// The same memory as elements of another type.
+    pub fn viewed_as<U: Pod>(&self) -> Buffer<U> {
+        let len = self.len * size_of::<T>() / size_of::<U>();
+        let (lease, raw) = (self.lease.clone(), self.raw.clone());
+        Buffer { lease, raw, name: self.name, len, element: PhantomData }
     }
 
     /// Number of elements.
@@ -70,7 +87,7 @@ impl<T: Pod> Buffer<T> {
 
     /// The device that it lies on.
     pub fn gpu(&self) -> &Gpu {
-        &self.gpu
+        &self.lease.gpu
     }
 
     /// What it is called.
@@ -92,7 +109,7 @@ impl<T: Pod> Buffer<T> {
         if bytes.is_empty() {
             return Ok(());
         }
-        self.gpu.guarded(self.name, || self.gpu.queue().write_buffer(&self.raw, 0, bytes))
+        self.gpu().guarded(self.name, || self.gpu().queue().write_buffer(&self.raw, 0, bytes))
     }
 
     /// Waits for the device and copies all elements back.
@@ -110,7 +127,7 @@ impl<T: Pod> Buffer<T> {
     pub fn read_first(&self, count: usize) -> Result<Vec<T>, GpuError> {
         let mut batch = Readback::new();
         let part = batch.add(self, count);
-        Ok(batch.read(&self.gpu)?.take(part))
+        Ok(batch.read(self.gpu())?.take(part))
     }
 }
 
@@ -118,11 +135,5 @@ impl<T> Buffer<T> {
     /// As [`Buffer::raw`], whatever it holds.
     pub(crate) fn raw_buffer(&self) -> &wgpu::Buffer {
         &self.raw
-    }
-}
-
-impl<T> Drop for Buffer<T> {
-    fn drop(&mut self) {
-        self.gpu.give_memory_back(self.raw.size());
     }
 }

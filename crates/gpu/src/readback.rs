@@ -136,16 +136,15 @@ impl Download {
     pub fn read<T>(&self, look: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
         self.gpu.guarded("readback", || self.staging.slice(..).map_async(wgpu::MapMode::Read, |_| ()))?;
         self.gpu.wait()?;
-        let result = match self.staging.slice(..).get_mapped_range() {
-            Ok(view) => Ok(look(&view)),
-            Err(error) => Err(GpuError::Refused {
-                adapter: self.gpu.name(),
-                what: "reading back".to_owned(),
-                message: error.to_string(),
-            }),
-        };
+        let view = self.staging.slice(..).get_mapped_range().map_err(|error| GpuError::Refused {
+            adapter: self.gpu.name(),
+            what: "reading back".to_owned(),
+            message: error.to_string(),
+        })?;
+        let result = look(&view);
+        drop(view);
         self.staging.unmap();
-        result
+        Ok(result)
     }
 }
 

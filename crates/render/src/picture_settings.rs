@@ -8,7 +8,8 @@ use strandline_gpu::Backend;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PictureSettings {
-    /// Where pictures are drawn: auto (default), cpu, gpu, or gpu:0 and so on for one of several.
+    /// Where pictures of a scene are drawn: auto (default), cpu, gpu, or gpu:0 and so on for one of
+    /// several. A renderer that is there already stays where it is.
     pub backend: Backend,
     /// Width \[pixel\], 1 to 16,384. Default 800.
     pub width: u32,

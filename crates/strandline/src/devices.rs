@@ -40,6 +40,8 @@ impl Devices {
             (pictures, Some(_)) if pictures == self.simulation => true,
             (Backend::Gpu(Some(index)), Some(gpu)) => gpu.adapter().index == index,
             (Backend::Gpu(None), Some(gpu)) => gpu.adapter().index == 0,
+            // Hardware comes first: what auto would open.
+            (Backend::Auto, Some(gpu)) => gpu.adapter().index == 0 && !gpu.adapter().software,
             _ => false,
         };
         let pictures = if is_shared {

@@ -240,7 +240,7 @@ impl Hair {
     /// Draws the hair as it is now.
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// A setting outside its range; the GPU failed and [`Hair::set_fall_back`] was not asked for.
     pub fn picture(&mut self, camera: &Camera, look: &Look) -> Result<Picture, Error> {
         Ok(self.picture_with_report(camera, look)?.0)
     }
@@ -248,7 +248,7 @@ impl Hair {
     /// Draws the hair as it is now, and says what it cost.
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// As [`Hair::picture`].
     pub fn picture_with_report(
         &mut self,
         camera: &Camera,
@@ -263,21 +263,25 @@ impl Hair {
     /// The opacity map of a light as it was for the last picture: the share of light that each of its
     /// three layers takes away, as red, green and blue [Chen2011 fig. 8, 9]. `None` for a light
     /// without shadow, for a number that no light has, and before the first picture.
-    pub fn opacity_map(&self, light: usize) -> Option<Picture> {
-        let [opacity, _] = self.studio.painter.maps(light).ok()??;
-        Some(opacity)
+    ///
+    /// # Errors
+    /// The GPU that drew it was lost.
+    pub fn opacity_map(&self, light: usize) -> Result<Option<Picture>, Error> {
+        Ok(self.studio.painter.maps(light)?.map(|[opacity, _]| opacity))
     }
 
     /// The depth of the first hair in that map as grey, white the nearest; `None` as there.
-    pub fn depth_map(&self, light: usize) -> Option<Picture> {
-        let [_, depth] = self.studio.painter.maps(light).ok()??;
-        Some(depth)
-    }
-
-    /// Changes size and finish of the pictures.
     ///
     /// # Errors
-    /// A setting outside its range; the settings then stay as they were.
+    /// As there.
+    pub fn depth_map(&self, light: usize) -> Result<Option<Picture>, Error> {
+        Ok(self.studio.painter.maps(light)?.map(|[_, depth]| depth))
+    }
+
+    /// Changes size and finish of the pictures; where they are drawn stays.
+    ///
+    /// # Errors
+    /// A setting outside its range, or more than the GPU holds; the settings then stay as they were.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), Error> {
         Ok(self.studio.painter.set_picture(settings)?)
     }

@@ -7,7 +7,7 @@ use crate::{
     groom::Guides,
     hair::Studio,
     prepare::Prepared,
-    render::{Camera, FrameReport, Look, Picture},
+    render::{Camera, FrameReport, Look, Picture, PictureSettings},
     sim::{Settings, SimError, State, StepReport},
     simulation::{Moment, Simulation},
     worker::{Gone, Work, Worker},
@@ -169,6 +169,14 @@ impl Player {
     /// is; a setting outside its range ends the film with its error.
     pub fn set_settings(&mut self, settings: Settings) {
         self.change = Some(settings);
+    }
+
+    /// Changes size and finish of the pictures, from the next one on; where they are drawn stays.
+    ///
+    /// # Errors
+    /// A setting outside its range, or more than the GPU holds; the settings then stay as they were.
+    pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), Error> {
+        Ok(self.studio.painter.set_picture(settings)?)
     }
 
     /// Changes the hair's look, from the next picture on.

@@ -261,13 +261,15 @@ fn a_second_picture_asks_for_no_more_memory() {
 fn maps_of_a_gpu_can_be_looked_at() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
-    assert!(hair.opacity_map(0).is_none());
+    assert!(hair.opacity_map(0).unwrap().is_none());
     let camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
     hair.picture(&camera, &strandline::Look::brown()).unwrap();
-    let maps = [hair.opacity_map(0).unwrap(), hair.depth_map(0).unwrap()];
+    let maps = [hair.opacity_map(0), hair.depth_map(0)].map(|map| map.unwrap().unwrap());
     assert!(maps.iter().all(|map| map.pixels.iter().any(|&byte| byte > 100)));
     // The third light casts no shadow.
-    assert!(hair.opacity_map(2).is_none());
+    assert!(hair.opacity_map(2).unwrap().is_none());
+    gpu.destroy();
+    assert!(hair.opacity_map(0).is_err());
 }
 
 #[test]

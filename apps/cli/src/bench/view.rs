@@ -3,11 +3,12 @@
 
 use std::time::Instant;
 
+use glam::Vec3;
 use serde::Serialize;
 use strandline::{
-    Backend, Camera, Hair, Pose, Prepared, Scene,
+    Backend, Camera, Event, Player, Scene,
     gpu::Gpu,
-    render::{LevelOfDetail, PictureSettings},
+    render::{FrameReport, LevelOfDetail, PictureSettings},
 };
 
 use super::gpu::Device;
@@ -47,7 +48,7 @@ struct Row {
     height: u32,
     distance_m: f32,
     segments: usize,
-    /// Step and picture, one after the other, by the host's clock.
+    /// Pictures, the next frame being simulated beside, by the host's clock.
     frames_per_second: f64,
     ms_per_picture: Times,
 }
@@ -56,6 +57,8 @@ struct Row {
 struct Promised {
     segments: usize,
     most_ms: f64,
+    most_mb: f64,
+    /// Sum of the stages by the device's clock.
     ms_per_picture: Times,
     /// Of all buffers and textures, those of the simulation among them.
     device_mb: f64,
@@ -73,62 +76,66 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     Ok(Results { backends, promised })
 }
 
-/// The thesis's scene while it moves.
+/// The thesis's scene while it moves: a frame is simulated while the one before is drawn.
 struct View {
-    hair: Hair,
-    scene: Scene,
-    /// Pose of the head at a time \[s\].
-    pose: Box<dyn Fn(f64) -> Pose>,
-    time: f64,
+    player: Player,
+    middle: Vec3,
 }
 
 impl View {
-    fn new(gpu: Option<&Gpu>, follow_strands: u32) -> anyhow::Result<Self> {
+    fn new(gpu: Option<&Gpu>, follow_strands: u32, level: LevelOfDetail) -> anyhow::Result<Self> {
         let mut scene = Scene::thesis();
         scene.look.follow_strands = follow_strands;
-        let prepared = Prepared::new(&scene)?;
-        let (motion, pivot) = (prepared.motion.clone(), prepared.pivot);
-        let pose = Box::new(move |time| motion.pose(time, pivot));
+        scene.level_of_detail = level;
+        scene.film.frames = u32::MAX;
+        scene.film.frames_per_second = 60.0;
         let backend = gpu.map_or(Backend::Cpu, |gpu| Backend::Gpu(Some(gpu.adapter().index)));
-        let mut hair = Hair::from_scene(&scene, prepared, backend)?;
-        hair.level_of_detail = LevelOfDetail::default();
-        Ok(Self { hair, scene, pose, time: 0.0 })
+        let player = Player::new(&scene, backend, true)?;
+        let guides = player.guides();
+        let points = (0..guides.strand_count())
+            .flat_map(|strand| (0..guides.points_per_strand()).map(move |p| guides.position(strand, p)));
+        let (low, high) =
+            points.fold((Vec3::MAX, Vec3::MIN), |(low, high), point| (low.min(point), high.max(point)));
+        Ok(Self { player, middle: 0.5 * (low + high) })
     }
 
-    /// Seconds of a step and a picture, and what the picture cost.
-    fn frame(&mut self, camera: &Camera) -> anyhow::Result<(f64, strandline::render::FrameReport)> {
+    /// Seconds until the next picture is there, and what it cost.
+    fn frame(&mut self) -> anyhow::Result<(f64, FrameReport)> {
         let begin = Instant::now();
-        self.time += 1.0 / 60.0;
-        self.hair.step(1.0 / 60.0, &(self.pose)(self.time))?;
-        let (_, report) = self.hair.picture_with_report(camera, &self.scene.look)?;
-        Ok((begin.elapsed().as_secs_f64(), report))
+        loop {
+            match self.player.next() {
+                Some(Ok(Event::Drawn { report, .. })) => return Ok((begin.elapsed().as_secs_f64(), report)),
+                Some(event) => drop(event?),
+                None => anyhow::bail!("the film ended"),
+            }
+        }
     }
 
-    /// The scene's camera, as far from the middle of the hair.
-    fn camera(&self, distance: f32) -> Camera {
+    /// Looks from between front and side, as far from the middle of the hair.
+    fn look_from(&mut self, distance: f32) {
         let camera = Camera::three_quarter();
-        let middle = 0.5 * (self.hair.bounds().min + self.hair.bounds().max);
         let way = (camera.position - camera.target).normalize();
-        Camera { position: middle + way * distance, target: middle, ..camera }
+        let position = self.middle + way * distance;
+        self.player.set_camera(Camera { position, target: self.middle, ..camera });
     }
 }
 
 fn on_backend(gpu: Option<&Gpu>, quick: bool) -> anyhow::Result<OnBackend> {
-    let mut view = View::new(gpu, 16)?;
+    let mut view = View::new(gpu, 16, LevelOfDetail::default())?;
     let software = gpu.is_some_and(|gpu| gpu.adapter().software);
     let frames = FRAMES[if quick { 2 } else { usize::from(software) }];
-    let backend = view.hair.drawn_on();
+    let backend = view.player.drawn_on();
     let mut rows = Vec::new();
     let mut progress = Progress::new((SIZES.len() * DISTANCES.len()) as u64, "views", false);
     for (width, height, _) in SIZES {
-        view.hair.set_picture(&PictureSettings::sized(width, height))?;
+        view.player.set_picture(&PictureSettings::sized(width, height))?;
         for distance_m in DISTANCES {
-            let camera = view.camera(distance_m);
+            view.look_from(distance_m);
             // The first makes room and compiles.
-            view.frame(&camera)?;
+            view.frame()?;
             let (mut seconds, mut pictures, mut segments) = (Vec::new(), Collector::default(), 0);
             for _ in 0..frames {
-                let (taken, report) = view.frame(&camera)?;
+                let (taken, report) = view.frame()?;
                 seconds.push(taken);
                 pictures.add(&report.seconds);
                 segments = report.segments;
@@ -146,7 +153,7 @@ fn on_backend(gpu: Option<&Gpu>, quick: bool) -> anyhow::Result<OnBackend> {
 }
 
 fn print(measured: &OnBackend) {
-    println!("\nTable 5: frames per second by distance [m], step and picture, on {}", measured.backend);
+    println!("\nTable 5: frames per second by distance [m], on {}", measured.backend);
     print!("{:<24}", "");
     DISTANCES.iter().for_each(|distance| print!("{distance:>9.1}"));
     println!();
@@ -170,18 +177,17 @@ fn row(name: &str, values: impl Iterator<Item = f64>) {
 
 /// A picture of 1280x968 with two shadow lights, by the device's own clock.
 fn promise(gpu: &Gpu, follow_strands: u32, most_ms: f64, most_mb: f64) -> anyhow::Result<Promised> {
-    let mut view = View::new(Some(gpu), follow_strands)?;
-    view.hair.level_of_detail = LevelOfDetail::full();
-    view.hair.set_picture(&PictureSettings::sized(1280, 968))?;
-    let camera = view.camera(1.0);
-    view.frame(&camera)?;
+    let mut view = View::new(Some(gpu), follow_strands, LevelOfDetail::full())?;
+    view.player.set_picture(&PictureSettings::sized(1280, 968))?;
+    view.look_from(1.0);
+    view.frame()?;
     let (mut pictures, mut segments) = (Collector::default(), 0);
     for _ in 0..if gpu.adapter().software { 2 } else { 20 } {
-        let (_, report) = view.frame(&camera)?;
+        let (_, report) = view.frame()?;
         pictures.add(&report.seconds);
         segments = report.segments;
     }
-    let device_mb = view.hair.gpu().map_or(0.0, |gpu| gpu.memory_used() as f64 * 1e-6);
+    let device_mb = view.player.gpu().map_or(0.0, |gpu| gpu.memory_used() as f64 * 1e-6);
     let ms_per_picture = pictures.times();
     println!("\n{segments} segments, two shadow lights, 1280x968, 2x2 samples, on {}", gpu.adapter());
     println!("a picture {:>10.3} ms, at most {most_ms} ms promised of a current GPU", ms_per_picture.median);
@@ -189,5 +195,5 @@ fn promise(gpu: &Gpu, follow_strands: u32, most_ms: f64, most_mb: f64) -> anyhow
         println!("  {name:<15}{time:>10.3} ms");
     }
     println!("on the device {device_mb:>6.0} MB, at most {most_mb} MB");
-    Ok(Promised { segments, most_ms, ms_per_picture, device_mb })
+    Ok(Promised { segments, most_ms, most_mb, ms_per_picture, device_mb })
 }

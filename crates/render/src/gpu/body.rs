@@ -10,9 +10,9 @@ drawing! {
         0 frame: Read Frame,
         2 lights: Read LightSource,
         3 fitted: Read [f32; 4],
-        4 maps: Read u32,
+        4 maps: Read [u32; 4],
         5 body_depths: Read f32,
-        6 cubes: Read f32,
+        6 cubes: Read [f32; 4],
         7 triangles: Read u32,
         8 vertices: Read [f32; 4],
     }

@@ -25,7 +25,8 @@ pub(super) struct Groom {
     pub lights: Buffer<LightSource>,
     pub fitted: Buffer<[f32; 4]>,
     pub bounds: Buffer<u32>,
-    pub cubes: Buffer<f32>,
+    /// Eight numbers a cell, of which six are used: see surroundings.wesl.
+    pub cubes: Buffer<[f32; 4]>,
     pub areas: Buffer<u32>,
     /// Guide points \[m\], world space, `[block][point][component][lane]`.
     pub places: Buffer<f32>,
@@ -67,7 +68,7 @@ impl Groom {
             lights: Buffer::new(gpu, "lights", MAX_LIGHTS)?,
             fitted: Buffer::new(gpu, "fitted", 3 + 2 * MAX_SHADOWS)?,
             bounds: Buffer::new(gpu, "bounds", BOUNDS)?,
-            cubes: Buffer::new(gpu, "surroundings", 8 * CELLS)?,
+            cubes: Buffer::new(gpu, "surroundings", 2 * CELLS)?,
             areas: Buffer::new(gpu, "areas", CELLS)?,
             places: Buffer::from_slice(gpu, "guide points", floats(guides.positions()))?,
             roots: Buffer::from_slice(gpu, "roots", &roots)?,
@@ -140,7 +141,7 @@ pub(super) struct Maps {
     pub size: u32,
     pub shadows: usize,
     /// Four numbers a texel: see opacity_depth.wesl.
-    pub texels: Buffer<u32>,
+    pub texels: Buffer<[u32; 4]>,
     /// Depths of the body, rows of [`super::opacity_depth::stride`].
     pub body: Buffer<f32>,
     pub body_depth: Texture,
@@ -153,7 +154,7 @@ impl Maps {
         Ok(Self {
             size,
             shadows,
-            texels: Buffer::new(gpu, "the maps of all shadow lights", 4 * texels)?,
+            texels: Buffer::new(gpu, "the maps of all shadow lights", texels)?,
             body: Buffer::new(gpu, "depths of the body", shadows * (stride * size) as usize)?,
             body_depth: Texture::new(gpu, "depth of the body", [size; 2], DEPTH)?,
         })

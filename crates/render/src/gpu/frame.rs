@@ -3,7 +3,8 @@
 use strandline_gpu::{Amount, Bound, BoundDrawing, Recorder, Targets, groups, wgpu};
 
 use super::buffers::Maps;
-use super::renderer::{GpuRenderer, Scene, Stages};
+use super::renderer::{GpuRenderer, Scene};
+use super::stages::Stages;
 use super::{THREADS, draw, fit, opacity_depth};
 
 /// What a frame is recorded from.

@@ -56,12 +56,16 @@ mirror! {
         pub layers: [f32; 3],
         /// Logarithm of what one hair lets through.
         pub log_transmission: f32,
+        /// \[m\]
         pub body_bias: f32,
+        /// \[1/m\]
         pub inverse_softness: f32,
         pub translucency: f32,
         /// Share of light that is scattered as diffuse.
         pub diffuse: f32,
+        /// \[m\]
         pub wave_amplitude: f32,
+        /// \[m\]
         pub wave_length: f32,
         pub shorter: f32,
         /// Diameter of a drawn strand over that of a hair, at full detail.
@@ -116,8 +120,8 @@ mirror! {
         pub depth_range: f32,
         /// The light that is shadow light number (place of this element).
         pub caster: u32,
-        /// Whether it casts shadows.
-        pub casts: u32,
+        /// One over `depth_range` \[1/m\].
+        pub depth_scale: f32,
     }
 }
 
@@ -251,7 +255,7 @@ impl LightSource {
                 first_depth: depth,
                 depth_range: (2.0 * radius).max(1e-3),
                 caster: 0,
-                casts: u32::from(light.shadow),
+                depth_scale: 1.0 / (2.0 * radius).max(1e-3),
             };
             if light.shadow {
                 source.slot = slot;

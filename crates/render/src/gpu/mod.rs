@@ -21,10 +21,12 @@ mod renderer;
 mod resolve;
 mod shade;
 mod sort;
+mod stages;
 mod tessellate;
 
 pub use linked::modules;
-pub use renderer::{DevicePoints, GpuRenderer, declarations};
+pub use renderer::{DevicePoints, GpuRenderer};
+pub use stages::declarations;
 
 /// Most lights of a picture.
 pub const MAX_LIGHTS: usize = 32;

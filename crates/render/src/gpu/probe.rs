@@ -1,11 +1,13 @@
 //! What the stages left on the device, for checks and pictures of it.
 
 use glam::{Vec2, Vec3, Vec4};
-use strandline_gpu::Buffer;
+use strandline_gpu::{Buffer, Recorder};
 
 use super::GpuRenderer;
+use super::frame::record_opacity;
+use super::renderer::{Drawn, Scene};
 use crate::cpu::shadow::{LightView, ShadowMap, Shadows, Window};
-use crate::{Light, RenderError, Shadow, cpu};
+use crate::{DetailLevel, FrameInput, Light, Picture, RenderError, Shadow, cpu};
 
 /// Half floats as they are stored.
 fn from_half(bits: u32) -> f32 {
@@ -76,14 +78,13 @@ impl GpuRenderer {
         let Some(maps) = self.maps.as_ref().filter(|_| slot < self.drawn.shadows) else {
             return Ok(Vec::new());
         };
-        let size = 4 * (maps.size * maps.size) as usize;
+        let size = (maps.size * maps.size) as usize;
         let all = Self::first(&maps.texels, (slot + 1) * size)?;
-        let (texels, _) = all[slot * size..].as_chunks::<4>();
         let depth = |bits: u32| f32::from_bits(if bits >> 31 == 1 { bits & 0x7fff_ffff } else { !bits });
         let texel = |&[first, a, b, c]: &[u32; 4]| {
             (Vec3::new(a as f32, b as f32, c as f32) / 65_536.0).extend(depth(first))
         };
-        Ok(texels.iter().map(texel).collect())
+        Ok(all[slot * size..].iter().map(texel).collect())
     }
 
     /// The maps of all shadow lights of the last frame as the CPU keeps them, without the body's.
@@ -110,5 +111,54 @@ impl GpuRenderer {
             shadows.casts.push(light.shadow);
         }
         Ok(shadows)
+    }
+
+    /// The shadows of strands as they are: `opacity_depth` and `opacity_layers` alone, for checks. The
+    /// shadow of the body is left out.
+    ///
+    /// # Errors
+    /// Whatever the device refuses.
+    pub fn shadows_of(&mut self, strands: &cpu::Strands, input: &FrameInput) -> Result<Shadows, RenderError> {
+        let settings = self.settings;
+        let scene = Scene {
+            level: DetailLevel::full(1, 1),
+            guide_count: strands.strand_count,
+            guide_points: strands.points_per_strand,
+            ..self.scene(input, &settings, 1.0)
+        };
+        self.strands = None;
+        self.prepare(&scene)?;
+        self.write(&scene, false)?;
+        let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
+        let with_width = strands.positions.iter().zip(&strands.widths);
+        let points: Vec<_> = with_width.map(|(point, &width)| point.extend(width).to_array()).collect();
+        self.strands.iter().try_for_each(|room| room.points.write(&points))?;
+        self.gpu.guarded("opacity maps", || {
+            let mut recorder = Recorder::new(&self.gpu, None);
+            record_opacity(&mut recorder, &scene, stages, maps);
+            self.gpu.queue().submit([recorder.finish(|_| ())]);
+        })?;
+        self.drawn = Drawn { shadows: scene.shadow_count(), ..Drawn::default() };
+        let shadows = self.shadows(input.lights, &input.look.shadow, scene.middle);
+        self.strands = None;
+        shadows
+    }
+
+    /// As [`Renderer::opacity_map`](crate::Renderer::opacity_map).
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn opacity_map(&self, light: usize) -> Result<Option<Picture>, RenderError> {
+        let (lights, settings, middle) = &self.lit;
+        Ok(self.shadows(lights, settings, *middle)?.map(light).map(ShadowMap::opacity_picture))
+    }
+
+    /// As [`Renderer::depth_map`](crate::Renderer::depth_map).
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn depth_map(&self, light: usize) -> Result<Option<Picture>, RenderError> {
+        let (lights, settings, middle) = &self.lit;
+        Ok(self.shadows(lights, settings, *middle)?.map(light).map(ShadowMap::depth_picture))
     }
 }

@@ -1,20 +1,14 @@
 use glam::Vec3;
 use strandline_body::Mesh;
-use strandline_gpu::{
-    Bindings, Bound, BoundDrawing, Buffer, Declaration, Dispatches, Drawing, Gpu, GpuError, Kernel, Recorder,
-    Scan, Timer, wgpu,
-};
+use strandline_gpu::{Bound, Buffer, Gpu, Recorder, Timer, wgpu};
 use strandline_groom::Guides;
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
-use super::frame::{Bounds, record, record_opacity};
+use super::frame::{Bounds, record};
 use super::inputs::{Frame, LightSource};
 use super::resolve::{Own, PICTURE, ToFormat};
-use super::{
-    MAX_LIGHTS, MAX_SHADOWS, background, body, draw, fit, interpolate, occlude, opacity_depth,
-    opacity_layers, resolve, shade, sort, tessellate,
-};
-use crate::cpu::{self, ShadowMap, Shadows};
+use super::stages::{Kernels, Stages};
+use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
 use crate::frame::middle;
 use crate::{DetailLevel, FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
@@ -41,7 +35,7 @@ pub struct GpuRenderer {
     vertex_count: usize,
     triangle_count: usize,
     body_kind: u32,
-    settings: PictureSettings,
+    pub(super) settings: PictureSettings,
     pub(super) kernels: Kernels,
     pub(super) groom: Groom,
     pub(super) strands: Option<Strands>,
@@ -50,13 +44,13 @@ pub struct GpuRenderer {
     own: Option<Own>,
     formats: Vec<ToFormat>,
     pub(super) indices: Buffer<u32>,
-    stages: Option<Stages>,
+    pub(super) stages: Option<Stages>,
     /// `tessellate` bound to pairs of buffers of guide points.
     tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
     timer: Option<Timer>,
     pub(super) drawn: Drawn,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
-    lit: (Vec<Light>, Shadow, Vec3),
+    pub(super) lit: (Vec<Light>, Shadow, Vec3),
 }
 
 /// What the last frame drew.
@@ -96,74 +90,6 @@ impl Scene<'_> {
     pub fn shadow_count(&self) -> usize {
         self.input.lights.iter().filter(|light| light.shadow).count()
     }
-}
-
-/// Every kernel and drawing, compiled.
-pub(super) struct Kernels {
-    pub tessellate: Kernel<tessellate::Tessellate<'static>>,
-    pub interpolate: Kernel<interpolate::Interpolate<'static>>,
-    pub measure_hair: Kernel<fit::MeasureHair<'static>>,
-    pub measure_body: Kernel<fit::MeasureBody<'static>>,
-    pub fit: Kernel<fit::Fit<'static>>,
-    pub clear_maps: Kernel<opacity_depth::ClearMaps<'static>>,
-    pub opacity_depth: Kernel<opacity_depth::OpacityDepth<'static>>,
-    pub body_depth: Drawing<opacity_depth::BodyDepth<'static>>,
-    pub opacity_layers: Kernel<opacity_layers::OpacityLayers<'static>>,
-    pub sum_areas: Kernel<occlude::SumAreas<'static>>,
-    pub sweep: Kernel<occlude::Sweep<'static>>,
-    pub shade: Kernel<shade::Shade<'static>>,
-    pub list_segments: Kernel<sort::ListSegments<'static>>,
-    pub order_segments: Kernel<sort::OrderSegments<'static>>,
-    pub scan: Scan,
-    pub hair: Drawing<draw::Hair<'static>>,
-    pub body: Drawing<body::Body<'static>>,
-    pub backdrop: Drawing<background::Backdrop<'static>>,
-}
-
-impl Kernels {
-    fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self {
-            tessellate: Kernel::new(gpu, &[])?,
-            interpolate: Kernel::new(gpu, &[])?,
-            measure_hair: Kernel::new(gpu, &[])?,
-            measure_body: Kernel::new(gpu, &[])?,
-            fit: Kernel::new(gpu, &[])?,
-            clear_maps: Kernel::new(gpu, &[])?,
-            opacity_depth: Kernel::new(gpu, &[])?,
-            body_depth: Drawing::new(gpu, &draw::body_depth_output(), &[])?,
-            opacity_layers: Kernel::new(gpu, &[])?,
-            sum_areas: Kernel::new(gpu, &[])?,
-            sweep: Kernel::new(gpu, &[])?,
-            shade: Kernel::new(gpu, &[])?,
-            list_segments: Kernel::new(gpu, &[])?,
-            order_segments: Kernel::new(gpu, &[])?,
-            scan: Scan::new(gpu)?,
-            hair: Drawing::new(gpu, &draw::hair_output(), &[])?,
-            body: Drawing::new(gpu, &draw::body_output(), &[])?,
-            backdrop: Drawing::new(gpu, &draw::background_output(), &[])?,
-        })
-    }
-}
-
-/// Every kernel but `tessellate`, bound to the buffers of the moment.
-pub(super) struct Stages {
-    pub interpolate: Bound,
-    pub measure_hair: Bound,
-    pub measure_body: Bound,
-    pub fit: Bound,
-    pub clear_maps: Bound,
-    pub opacity_depth: Bound,
-    pub body_depth: BoundDrawing,
-    pub opacity_layers: Bound,
-    pub sum_areas: Bound,
-    pub sweep: Bound,
-    pub shade: Bound,
-    pub list_segments: Bound,
-    pub scan: Dispatches,
-    pub order_segments: Bound,
-    pub hair: BoundDrawing,
-    pub body: BoundDrawing,
-    pub backdrop: BoundDrawing,
 }
 
 impl GpuRenderer {
@@ -223,8 +149,10 @@ impl GpuRenderer {
         let size = |settings: &PictureSettings| (settings.width, settings.height, settings.supersampling);
         if size(settings) != size(&self.settings) {
             let targets = Targets::new(&self.gpu, settings)?;
-            for format in &mut self.formats {
-                format.bind(&self.gpu, &self.groom, &targets)?;
+            let bind = |format: &ToFormat| format.bind(&self.gpu, &self.groom, &targets);
+            let bound = self.formats.iter().map(bind).collect::<Result<Vec<_>, _>>()?;
+            for (format, bound) in self.formats.iter_mut().zip(bound) {
+                format.bound = bound;
             }
             self.targets = targets;
             self.own = None;
@@ -265,8 +193,8 @@ impl GpuRenderer {
         Ok(FrameReport { seconds, ..report })
     }
 
-    /// Draws into a texture of the host's, of the picture's size, and does not wait for it: the report
-    /// has no times.
+    /// Draws into a texture of the host's, of the picture's size and seen in a format, and does not wait for
+    /// it: the report has no times.
     ///
     /// # Errors
     /// As [`GpuRenderer::draw`]; a texture of another size.
@@ -275,6 +203,7 @@ impl GpuRenderer {
         input: &FrameInput,
         points: Option<DevicePoints>,
         target: &wgpu::TextureView,
+        format: wgpu::TextureFormat,
     ) -> Result<FrameReport, RenderError> {
         let texture = target.texture();
         if [texture.width(), texture.height()] != [self.settings.width, self.settings.height] {
@@ -284,7 +213,7 @@ impl GpuRenderer {
                 expected: "the width and height of the picture",
             });
         }
-        self.submit(input, points, target, texture.format(), None)
+        self.submit(input, points, target, format, None)
     }
 
     fn submit(
@@ -296,6 +225,7 @@ impl GpuRenderer {
         own: Option<&Own>,
     ) -> Result<FrameReport, RenderError> {
         input.validate()?;
+        self.check_points(input, points)?;
         let settings = self.settings;
         let scene = self.scene(input, &settings, points.map_or(1.0, |points| points.share));
         self.prepare(&scene)?;
@@ -331,7 +261,33 @@ impl GpuRenderer {
         Ok(FrameReport { strands, segments: strands * (curve_points - 1), seconds: Vec::new() })
     }
 
-    fn scene<'a>(&self, input: &'a FrameInput<'a>, settings: &'a PictureSettings, share: f32) -> Scene<'a> {
+    /// Guide points must be those of the renderer's guides, and on its device.
+    fn check_points(&self, input: &FrameInput, points: Option<DevicePoints>) -> Result<(), RenderError> {
+        let expected = self.groom.places.len();
+        let (found, here) = match points {
+            None => (floats(input.positions).len(), true),
+            Some(DevicePoints { before, after, .. }) => (
+                if before.len() == expected { after.len() } else { before.len() },
+                [before, after].iter().all(|buffer| buffer.gpu().device() == self.gpu.device()),
+            ),
+        };
+        if found == expected && here {
+            return Ok(());
+        }
+        let device = if here { "" } else { " on another device" };
+        Err(RenderError::Setting {
+            name: "number of guide points",
+            found: format!("{}{device}", found / 3),
+            expected: "those of the renderer's guides, on its device",
+        })
+    }
+
+    pub(super) fn scene<'a>(
+        &self,
+        input: &'a FrameInput<'a>,
+        settings: &'a PictureSettings,
+        share: f32,
+    ) -> Scene<'a> {
         let middle = input.world_from_head.point(self.middle);
         let distance = input.camera.position.distance(middle);
         Scene {
@@ -349,57 +305,8 @@ impl GpuRenderer {
         }
     }
 
-    /// The shadows of strands as they are: `opacity_depth` and `opacity_layers` alone, for checks. The
-    /// shadow of the body is left out.
-    ///
-    /// # Errors
-    /// Whatever the device refuses.
-    pub fn shadows_of(&mut self, strands: &cpu::Strands, input: &FrameInput) -> Result<Shadows, RenderError> {
-        let settings = self.settings;
-        let scene = Scene {
-            level: DetailLevel::full(1, 1),
-            guide_count: strands.strand_count,
-            guide_points: strands.points_per_strand,
-            ..self.scene(input, &settings, 1.0)
-        };
-        self.strands = None;
-        self.prepare(&scene)?;
-        self.write(&scene, false)?;
-        let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
-        let with_width = strands.positions.iter().zip(&strands.widths);
-        let points: Vec<_> = with_width.map(|(point, &width)| point.extend(width).to_array()).collect();
-        self.strands.iter().try_for_each(|room| room.points.write(&points))?;
-        self.gpu.guarded("opacity maps", || {
-            let mut recorder = Recorder::new(&self.gpu, None);
-            record_opacity(&mut recorder, &scene, stages, maps);
-            self.gpu.queue().submit([recorder.finish(|_| ())]);
-        })?;
-        self.drawn = Drawn { shadows: scene.shadow_count(), ..Drawn::default() };
-        let shadows = self.shadows(input.lights, &input.look.shadow, scene.middle);
-        self.strands = None;
-        shadows
-    }
-
-    /// As [`Renderer::opacity_map`](crate::Renderer::opacity_map).
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn opacity_map(&self, light: usize) -> Result<Option<Picture>, RenderError> {
-        let (lights, settings, middle) = &self.lit;
-        Ok(self.shadows(lights, settings, *middle)?.map(light).map(ShadowMap::opacity_picture))
-    }
-
-    /// As [`Renderer::depth_map`](crate::Renderer::depth_map).
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn depth_map(&self, light: usize) -> Result<Option<Picture>, RenderError> {
-        let (lights, settings, middle) = &self.lit;
-        Ok(self.shadows(lights, settings, *middle)?.map(light).map(ShadowMap::depth_picture))
-    }
-
     /// Makes room for a frame, and binds the stages where that changed.
-    fn prepare(&mut self, scene: &Scene) -> Result<(), RenderError> {
+    pub(super) fn prepare(&mut self, scene: &Scene) -> Result<(), RenderError> {
         let limit = |what, found: usize, most: usize| {
             if found > most { Err(RenderError::TooMany { what, found, most }) } else { Ok(()) }
         };
@@ -416,21 +323,30 @@ impl GpuRenderer {
         if self.strands.as_ref().is_none_or(|strands| {
             strands.strands_per_guide < strands_per_guide || strands.curve_points < curve_points
         }) {
-            self.stages = None;
+            self.forget();
             self.tessellates.clear();
             self.strands = None;
             self.strands = Some(Strands::new(&self.gpu, scene.guide_count, strands_per_guide, curve_points)?);
         }
         let size = scene.input.look.shadow.map_size;
         if self.maps.as_ref().is_none_or(|maps| maps.size != size || maps.shadows < shadows) {
-            self.stages = None;
+            self.forget();
             self.maps = None;
             self.maps = Some(Maps::new(&self.gpu, size, shadows.max(1))?);
         }
-        if self.stages.is_none() {
-            self.stages = Some(self.bind()?);
+        if self.stages.is_none()
+            && let (Some(strands), Some(maps)) = (&self.strands, &self.maps)
+        {
+            self.stages = Some(Stages::new(&self.gpu, &self.kernels, &self.groom, strands, maps)?);
         }
         Ok(())
+    }
+
+    /// What was drawn is lost with the buffers that held it.
+    fn forget(&mut self) {
+        self.stages = None;
+        self.drawn = Drawn::default();
+        self.lit.0.clear();
     }
 
     fn prepare_format(&mut self, format: wgpu::TextureFormat) -> Result<(), RenderError> {
@@ -440,52 +356,8 @@ impl GpuRenderer {
         Ok(())
     }
 
-    fn bind(&self) -> Result<Stages, GpuError> {
-        let (Some(strands), Some(maps)) = (&self.strands, &self.maps) else { unreachable!("made before") };
-        let (gpu, kernels, groom) = (&self.gpu, &self.kernels, &self.groom);
-        let Groom { frame, lights, fitted, bounds, cubes, areas, roots, clumps, .. } = groom;
-        let Groom { triangles, vertices, starts, .. } = groom;
-        let Strands { tables, scales, curves, points, radiances, keys, order, .. } = strands;
-        let Maps { texels, body: body_depths, .. } = maps;
-        let interpolate = interpolate::Interpolate { frame, points, roots, tables, curves, clumps, scales };
-        let depth = opacity_depth::OpacityDepth { frame, points, lights, fitted, maps: texels };
-        let layers = opacity_layers::OpacityLayers { frame, points, lights, fitted, maps: texels };
-        let body_depth = opacity_depth::BodyDepth { frame, lights, fitted, triangles, vertices };
-        let shade =
-            shade::Shade { frame, points, lights, fitted, maps: texels, body_depths, cubes, radiances };
-        let body =
-            body::Body { frame, lights, fitted, maps: texels, body_depths, cubes, triangles, vertices };
-        Ok(Stages {
-            interpolate: kernels.interpolate.bind(gpu, &interpolate)?,
-            measure_hair: kernels
-                .measure_hair
-                .bind(gpu, &fit::MeasureHair { frame, points, lights, bounds })?,
-            measure_body: kernels
-                .measure_body
-                .bind(gpu, &fit::MeasureBody { frame, lights, bounds, vertices })?,
-            fit: kernels.fit.bind(gpu, &fit::Fit { frame, lights, fitted, bounds })?,
-            clear_maps: kernels.clear_maps.bind(gpu, &opacity_depth::ClearMaps { frame, maps: texels })?,
-            opacity_depth: kernels.opacity_depth.bind(gpu, &depth)?,
-            body_depth: kernels.body_depth.bind(gpu, &body_depth)?,
-            opacity_layers: kernels.opacity_layers.bind(gpu, &layers)?,
-            sum_areas: kernels.sum_areas.bind(gpu, &occlude::SumAreas { frame, points, fitted, areas })?,
-            sweep: kernels.sweep.bind(gpu, &occlude::Sweep { frame, fitted, cubes, areas })?,
-            shade: kernels.shade.bind(gpu, &shade)?,
-            list_segments: kernels
-                .list_segments
-                .bind(gpu, &sort::ListSegments { frame, points, fitted, keys, starts })?,
-            scan: kernels.scan.bind(gpu, starts, &groom.start_totals)?,
-            order_segments: kernels
-                .order_segments
-                .bind(gpu, &sort::OrderSegments { frame, keys, starts, order })?,
-            hair: kernels.hair.bind(gpu, &draw::Hair { frame, points, radiances, starts, order })?,
-            body: kernels.body.bind(gpu, &body)?,
-            backdrop: kernels.backdrop.bind(gpu, &background::Backdrop { frame })?,
-        })
-    }
-
     /// Writes what the host knows of a frame.
-    fn write(&self, scene: &Scene, host_points: bool) -> Result<(), RenderError> {
+    pub(super) fn write(&self, scene: &Scene, host_points: bool) -> Result<(), RenderError> {
         let Some(strands) = &self.strands else { unreachable!("made before") };
         let groom = &self.groom;
         groom.frame.write(&[Frame::new(scene)])?;
@@ -499,7 +371,6 @@ impl GpuRenderer {
         let scales = (0..scene.level.strand_count()).map(|index| scene.level.width_scale(index));
         strands.scales.write(&scales.collect::<Vec<f32>>())?;
         if host_points {
-            assert_eq!(scene.input.positions.len(), self.guides.positions().len());
             groom.places.write(floats(scene.input.positions))?;
         }
         Ok(())
@@ -539,28 +410,4 @@ fn ball(mesh: Option<&Mesh>) -> (Vec3, f32) {
         .fold((Vec3::MAX, Vec3::MIN), |(low, high), &point| (low.min(point), high.max(point)));
     // A hundredth more keeps rounding inside.
     (0.5 * (low + high), 0.505 * low.distance(high))
-}
-
-/// Every kernel's and drawing's declaration, to be held against its shader.
-pub fn declarations() -> Vec<Declaration> {
-    vec![
-        tessellate::Tessellate::declaration(),
-        interpolate::Interpolate::declaration(),
-        fit::MeasureHair::declaration(),
-        fit::MeasureBody::declaration(),
-        fit::Fit::declaration(),
-        opacity_depth::ClearMaps::declaration(),
-        opacity_depth::OpacityDepth::declaration(),
-        opacity_depth::BodyDepth::declaration(),
-        opacity_layers::OpacityLayers::declaration(),
-        occlude::SumAreas::declaration(),
-        occlude::Sweep::declaration(),
-        shade::Shade::declaration(),
-        sort::ListSegments::declaration(),
-        sort::OrderSegments::declaration(),
-        draw::Hair::declaration(),
-        body::Body::declaration(),
-        background::Backdrop::declaration(),
-        resolve::Resolve::declaration(),
-    ]
 }

@@ -40,9 +40,8 @@ impl ToFormat {
     }
 
     /// Binds the stage to other samples.
-    pub fn bind(&mut self, gpu: &Gpu, groom: &Groom, targets: &Targets) -> Result<(), GpuError> {
-        self.bound = self.drawing.bind(gpu, &Resolve { frame: &groom.frame, samples: &targets.samples })?;
-        Ok(())
+    pub fn bind(&self, gpu: &Gpu, groom: &Groom, targets: &Targets) -> Result<BoundDrawing, GpuError> {
+        self.drawing.bind(gpu, &Resolve { frame: &groom.frame, samples: &targets.samples })
     }
 }
 

@@ -11,9 +11,9 @@ kernel! {
         1 points: Read [f32; 4],
         2 lights: Read LightSource,
         3 fitted: Read [f32; 4],
-        4 maps: Read u32,
+        4 maps: Read [u32; 4],
         5 body_depths: Read f32,
-        6 cubes: Read f32,
+        6 cubes: Read [f32; 4],
         7 radiances: ReadWrite [u32; 2],
     }
 }

@@ -27,7 +27,7 @@ pub(super) fn tables(points_per_strand: usize, level: &DetailLevel, clump: &Clum
     let tapers = tapers(&parameters, clump);
     let rows = taps.iter().zip(parameters).zip(tapers);
     rows.flat_map(|((tap, parameter), taper)| {
-        [tap.position, tap.tangent, [f32::from_bits(tap.first as u32), parameter, taper, 0.0]]
+        [tap.position, tap.tangent, [tap.first as f32, parameter, taper, 0.0]]
     })
     .collect()
 }
