@@ -8,7 +8,8 @@ use strandline::{Backend, Scene, Style, scene::MotionName};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
-/// Without a command it runs the demo: a head of hair shakes for 4 s; pictures go to out/demo.
+/// Without a command it opens the window on the demo; without a display a head of hair shakes for 4 s and
+/// pictures go to out/demo.
 #[derive(Debug, Parser)]
 #[command(version, about, long_about)]
 pub struct Arguments {
@@ -18,6 +19,8 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Open a window in which hair moves and everything can be changed.
+    View(ViewOptions),
     /// Simulate and draw a scene: frames, a contact sheet and a video.
     Render(RenderOptions),
     /// Simulate a scene without pictures, and report quality and cost.
@@ -83,6 +86,12 @@ pub struct RenderOptions {
     /// Folder of the pictures [default: out/ and the scene's name].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub struct ViewOptions {
+    #[command(flatten)]
+    pub inputs: Inputs,
 }
 
 #[derive(Args, Debug)]

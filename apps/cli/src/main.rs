@@ -1,4 +1,4 @@
-//! The `strandline` program: demo, render, sim, groom, convert, info, bench, gpus, shaders.
+//! The `strandline` program: view, render, sim, groom, convert, info, bench, gpus, shaders.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
@@ -10,6 +10,7 @@ mod progress;
 mod render;
 mod sim;
 mod statistics;
+mod view;
 
 use std::process::ExitCode;
 
@@ -31,7 +32,8 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.command {
-        None => render::demo(),
+        None => view::view_or_demo(),
+        Some(Command::View(options)) => view::view(options),
         Some(Command::Render(options)) => render::render(options),
         Some(Command::Sim(options)) => sim::sim(options),
         Some(Command::Groom(options)) => files::groom(options),

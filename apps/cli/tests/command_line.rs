@@ -255,6 +255,28 @@ fn a_backend_is_named_on_the_command_line_or_in_the_scene() {
 }
 
 #[test]
+fn without_a_display_the_window_says_so_and_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    small(folder.path());
+    let view = |scene: &str| {
+        Command::new(env!("CARGO_BIN_EXE_strandline"))
+            .args(["view", "--scene", scene])
+            .current_dir(folder.path())
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .output()
+            .unwrap()
+    };
+    let output = view("small.toml");
+    let error = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    assert!(error.contains("no window") && error.contains("`strandline render` needs no display"), "{error}");
+    let output = view("missing.toml");
+    assert!(text(&output.stderr).contains("missing.toml"));
+}
+
+#[test]
 fn shader_modules_are_written_to_be_read() {
     let folder = tempfile::tempdir().unwrap();
     works(folder.path(), &["shaders", "linked"]);

@@ -119,6 +119,19 @@ impl Engine {
         self.set_settings(settings)
     }
 
+    /// Puts every strand back to rest under a pose of the head.
+    pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
+        self.state = self.solver().rest_state(pose);
+        let failure = match &mut self.place {
+            Place::Cpu(_) => return Ok(()),
+            Place::Gpu(pair) => match pair.1.write(&pair.0, &self.state) {
+                Ok(()) => return Ok(()),
+                Err(failure) => failure,
+            },
+        };
+        self.recover(failure)
+    }
+
     /// Scales the length of every strand.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), SimError> {
         let failure = match &mut self.place {

@@ -9,8 +9,8 @@ use crate::{
     prepare::Prepared,
     render::{Camera, FrameReport, Look, Picture, PictureSettings},
     sim::{Settings, SimError, State, StepReport},
-    simulation::{Moment, Simulation},
-    worker::{Gone, Work, Worker},
+    simulation::{Done, Job, Moment, Simulation},
+    worker::{Gone, Worker},
 };
 
 /// What a [`Player`] tells while it plays.
@@ -67,37 +67,6 @@ struct Course {
     wind: std::sync::Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
     frame_seconds: f64,
     settle_seconds: f64,
-}
-
-/// One frame to be simulated.
-pub(crate) struct Job {
-    frame: u32,
-    course: Course,
-    change: Option<Settings>,
-    /// The device that the pictures are drawn on.
-    gpu: Option<Gpu>,
-    moment: Moment,
-}
-
-/// One frame that was.
-pub(crate) struct Done {
-    moment: Moment,
-    reports: Result<Vec<StepReport>, SimError>,
-    notes: Vec<String>,
-}
-
-impl Work for Simulation {
-    type Job = Job;
-    type Done = Done;
-
-    fn run(&mut self, job: Job) -> Done {
-        let Job { frame, course, change, gpu, mut moment } = job;
-        let reports = change
-            .map_or(Ok(()), |settings| self.engine.set_settings(&settings))
-            .and_then(|()| course.run(self, frame));
-        self.show_on(gpu.as_ref(), &mut moment);
-        Done { moment, reports, notes: self.engine.take_notes() }
-    }
 }
 
 impl Course {
@@ -234,15 +203,16 @@ impl Player {
         if self.started == self.frames || self.failed {
             return Ok(());
         }
-        let job = Job {
-            frame: self.started,
-            course: self.course.clone(),
-            change: self.change.take(),
-            gpu: self.studio.painter.gpu().cloned(),
-            moment: self.spare.pop().unwrap_or_default(),
+        let (frame, course, change) = (self.started, self.course.clone(), self.change.take());
+        let act = move |simulation: &mut Simulation| {
+            change
+                .map_or(Ok(()), |settings| simulation.engine.set_settings(&settings))
+                .and_then(|()| course.run(simulation, frame))
         };
+        let gpu = self.studio.painter.gpu().cloned();
+        let moment = self.spare.pop().unwrap_or_default();
         self.started += 1;
-        self.worker.start(job)
+        self.worker.start(Job { act: Box::new(act), gpu, moment })
     }
 
     /// Takes the next frame from the worker and starts the one after it.
@@ -250,7 +220,7 @@ impl Player {
         if self.worker.started() == 0 {
             self.start().map_err(|Gone| Error::WorkerGone)?;
         }
-        let Done { moment, reports, notes } = self.worker.finish().map_err(|Gone| Error::WorkerGone)?;
+        let Done { moment, reports, notes, .. } = self.worker.finish().map_err(|Gone| Error::WorkerGone)?;
         self.told = notes.into_iter();
         let reports = match reports {
             Ok(reports) => reports,

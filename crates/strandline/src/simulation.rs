@@ -9,6 +9,7 @@ use crate::{
     groom::Vec3Lanes,
     render::gpu::DevicePoints,
     sim::{Clock, Drive, SimError, StepReport},
+    worker::Work,
 };
 
 /// A simulation in time: steps of fixed length, and the moment between two of them that is shown.
@@ -46,6 +47,39 @@ impl Moment {
     }
 }
 
+/// Something that is done to a simulation.
+pub(crate) type Act = Box<dyn FnOnce(&mut Simulation) -> Result<Vec<StepReport>, SimError> + Send>;
+
+/// Something to be done, and room for what it leads to.
+pub(crate) struct Job {
+    pub act: Act,
+    /// The device that the pictures are drawn on.
+    pub gpu: Option<Gpu>,
+    pub moment: Moment,
+}
+
+/// What it led to; after a failure the moment is that of the last state.
+pub(crate) struct Done {
+    pub moment: Moment,
+    pub reports: Result<Vec<StepReport>, SimError>,
+    pub notes: Vec<String>,
+    /// Where it was done: cpu, or the adapter.
+    pub place: String,
+}
+
+impl Work for Simulation {
+    type Job = Job;
+    type Done = Done;
+
+    fn run(&mut self, job: Job) -> Done {
+        let Job { act, gpu, mut moment } = job;
+        let reports = act(self);
+        self.show_on(gpu.as_ref(), &mut moment);
+        let place = crate::hair::place(self.engine.gpu());
+        Done { moment, reports, notes: self.engine.take_notes(), place }
+    }
+}
+
 impl Simulation {
     pub fn new(engine: Engine, time_step: f32) -> Self {
         Self {
@@ -55,6 +89,13 @@ impl Simulation {
             poses: [Pose::IDENTITY; 2],
             end: Pose::IDENTITY,
         }
+    }
+
+    /// Goes back to rest under a pose of the head; time goes on.
+    pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
+        self.engine.reset(pose)?;
+        (self.poses, self.end, self.share) = ([pose; 2], pose, 1.0);
+        Ok(())
     }
 
     /// Where the last run ended.

@@ -1,0 +1,230 @@
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use eframe::egui;
+use strandline::{Camera, Command, Error, Live, Look, News, Scene, Shown, render::PictureSettings};
+
+use crate::{panels, stage, strip};
+
+/// The window's state: what plays, and what a person made of it.
+pub struct App {
+    pub(crate) live: Live,
+    /// What is seen, as a scene: it can be saved at any time.
+    pub(crate) scene: Scene,
+    pub(crate) camera: Camera,
+    pub(crate) playing: bool,
+    /// Turn of the head by hand \[radians\].
+    pub(crate) turn: [f32; 2],
+    /// Length of the strands over their own.
+    pub(crate) length: f32,
+    /// The scene before the one that is on its way.
+    pub(crate) before: Option<Box<Scene>>,
+    /// Whether a scene is on its way.
+    pub(crate) loading: bool,
+    pub(crate) error: Option<String>,
+    pub(crate) notes: Vec<String>,
+    pub(crate) shown: Option<Shown>,
+    pub(crate) texture: Option<egui::TextureHandle>,
+    /// Pictures a second, smoothed.
+    pub(crate) rate: f32,
+    last: Option<Instant>,
+    /// Whether pictures may be simpler while the hair moves.
+    pub(crate) adapts: bool,
+    /// Whether they are: fewer follow strands, one sample a pixel.
+    pub(crate) draft: bool,
+    /// Where the next picture and scene are saved.
+    pub folder: PathBuf,
+}
+
+/// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
+const SLOW: f64 = 0.08;
+/// Follow strands of a guide in a simpler picture.
+const FEW: u32 = 4;
+
+impl App {
+    /// Starts to play a scene.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn new(scene: Scene, context: &egui::Context) -> Result<Self, Error> {
+        let context = context.clone();
+        let live = Live::new(scene.clone(), move || context.request_repaint())?;
+        Ok(Self {
+            live,
+            scene,
+            camera: Camera::front(),
+            playing: true,
+            turn: [0.0; 2],
+            length: 1.0,
+            before: None,
+            loading: true,
+            error: None,
+            notes: Vec::new(),
+            shown: None,
+            texture: None,
+            rate: 0.0,
+            last: None,
+            adapts: true,
+            draft: false,
+            folder: PathBuf::from("out"),
+        })
+    }
+
+    /// The scene that a file stands for: itself, or `scene` with another groom or body.
+    ///
+    /// # Errors
+    /// A scene that cannot be read; a file of another kind.
+    pub fn scene_of(scene: &Scene, file: &Path) -> Result<Scene, Error> {
+        let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let mut scene = scene.clone();
+        let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+        match ending.as_deref() {
+            Some("toml") => return Scene::load(file),
+            Some("hair" | "tfx") => scene.groom.file = Some(absolute),
+            Some("obj" | "gltf" | "glb") => scene.body.file = Some(absolute),
+            _ => {
+                return Err(Error::Value {
+                    key: "the file",
+                    found: file.display().to_string(),
+                    expected: "a .toml scene, a .hair or .tfx groom, or an .obj, .gltf or .glb body"
+                        .to_owned(),
+                });
+            }
+        }
+        Ok(scene)
+    }
+
+    /// Hands the look over, with fewer strands as long as pictures are to be simple.
+    pub(crate) fn send_look(&self) {
+        let look = &self.scene.look;
+        let follow_strands = if self.draft { look.follow_strands.min(FEW) } else { look.follow_strands };
+        self.live.tell(Command::Look(Box::new(Look { follow_strands, ..look.clone() })));
+    }
+
+    /// Hands the picture's size and finish over, with one sample a pixel as long as it is to be simple.
+    pub(crate) fn send_picture(&self) {
+        let picture = self.scene.picture;
+        let supersampling = if self.draft { 1 } else { picture.supersampling };
+        self.live.tell(Command::Picture(PictureSettings { supersampling, ..picture }));
+    }
+
+    /// Draws simpler while the hair moves and a picture takes long; as it should be when it stands still.
+    fn adapt(&mut self) {
+        let seconds = self
+            .shown
+            .as_ref()
+            .map_or(0.0, |shown| shown.drawing.seconds.iter().map(|(_, seconds)| seconds).sum::<f64>());
+        let draft = self.adapts && self.playing && (self.draft || seconds > SLOW);
+        if draft != self.draft {
+            self.draft = draft;
+            self.send_look();
+            self.send_picture();
+        }
+    }
+
+    /// What is seen at the moment, if there is anything.
+    pub fn shown(&self) -> Option<&Shown> {
+        self.shown.as_ref()
+    }
+
+    /// What went wrong last, until it is put away.
+    pub fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// Whether the hair moves.
+    pub fn is_playing(&self) -> bool {
+        self.playing
+    }
+
+    /// Loads another scene; the old one stays until it is there.
+    pub(crate) fn load(&mut self, scene: Scene) {
+        self.loading = true;
+        self.error = None;
+        self.live.tell(Command::Load(Box::new(scene.clone())));
+        let before = std::mem::replace(&mut self.scene, scene);
+        self.before.get_or_insert_with(|| Box::new(before));
+    }
+
+    /// Loads what was dropped on the window.
+    fn take_files(&mut self, ui: &egui::Ui) {
+        let dropped = ui.input(|input| input.raw.dropped_files.clone());
+        for file in dropped.iter().map(|file| file.path()) {
+            match Self::scene_of(&self.scene, file) {
+                Ok(scene) => self.load(scene),
+                Err(error) => self.error = Some(error.to_string()),
+            }
+        }
+    }
+
+    fn take_news(&mut self) {
+        for news in self.live.take_news() {
+            match news {
+                News::Loaded(camera, _, notes) => {
+                    (self.camera, self.loading, self.before) = (camera, false, None);
+                    (self.turn, self.length) = ([0.0; 2], 1.0);
+                    self.notes = notes;
+                    // The scene brings its own; the window's size and a simpler look go on.
+                    self.send_picture();
+                    self.send_look();
+                    self.live.tell(Command::Play(self.playing));
+                }
+                News::Note(note) => self.notes.push(note),
+                News::Error(error) => {
+                    // What plays is still what played before.
+                    if let Some(before) = self.before.take() {
+                        self.scene = *before;
+                    }
+                    self.loading = false;
+                    self.error = Some(error);
+                }
+            }
+        }
+    }
+
+    fn take_picture(&mut self, context: &egui::Context) {
+        let Some(shown) = self.live.take_shown() else { return };
+        let size = [shown.picture.width as usize, shown.picture.height as usize];
+        let image = egui::ColorImage::from_rgb(size, &shown.picture.pixels);
+        match &mut self.texture {
+            Some(texture) => texture.set(image, egui::TextureOptions::LINEAR),
+            None => {
+                self.texture = Some(context.load_texture("picture", image, egui::TextureOptions::LINEAR));
+            }
+        }
+        let now = Instant::now();
+        if let Some(last) = self.last.replace(now) {
+            let rate = 1.0 / (now - last).as_secs_f32().max(1e-3);
+            self.rate += (rate - self.rate) * if self.rate == 0.0 { 1.0 } else { 0.1 };
+        }
+        let step = shown.step.clone().or(self.shown.take().and_then(|old| old.step));
+        self.shown = Some(Shown { step, ..shown });
+    }
+
+    /// The scene with the view as it is.
+    pub fn seen(&self) -> Scene {
+        let mut scene = self.scene.clone();
+        scene.camera.position = Some(self.camera.position);
+        scene.camera.target = Some(self.camera.target);
+        scene.camera.field_of_view = Some(self.camera.field_of_view);
+        scene
+    }
+
+    /// Draws the window.
+    pub fn show(&mut self, ui: &mut egui::Ui) {
+        self.take_files(ui);
+        self.take_news();
+        self.take_picture(ui.ctx());
+        self.adapt();
+        stage::keys(self, ui);
+        egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
+        egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
+        egui::CentralPanel::default().show(ui, |ui| stage::show(self, ui));
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}

@@ -1,0 +1,222 @@
+//! The window as a person uses it, without a display: its contents are laid out and fed events.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+use strandline::{Live, Picture, Scene};
+use strandline_viewer::App;
+
+/// A window of 900 x 600 points.
+struct Window {
+    context: egui::Context,
+    app: App,
+}
+
+/// A file that a person drops.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+fn scene() -> Scene {
+    let mut scene = Scene::demo();
+    scene.style.strand_count = 60;
+    scene.body.spacing = 0.01;
+    scene.simulation.volume.cells = [12; 3];
+    scene.simulation.backend = strandline::Backend::Cpu;
+    scene.picture.backend = strandline::Backend::Cpu;
+    (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    scene
+}
+
+impl Window {
+    fn new() -> Self {
+        Self::on(scene())
+    }
+
+    fn on(scene: Scene) -> Self {
+        let context = egui::Context::default();
+        let app = App::new(scene, &context).unwrap();
+        Self { context, app }
+    }
+
+    /// Lays the window out once with events, as a display would.
+    fn pass(&mut self, events: Vec<egui::Event>, dropped: Option<&Path>) {
+        let mut input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(900.0, 600.0))),
+            events,
+            ..Default::default()
+        };
+        if let Some(path) = dropped {
+            input.dropped_files.push(Arc::new(Dropped(path.to_owned())));
+        }
+        let app = &mut self.app;
+        let mut output = self.context.run_ui(input, |ui| app.show(ui));
+        // Shapes and textures are for a painter; here they only have to be made.
+        output.textures_delta.clear();
+    }
+
+    /// Lets time pass until something holds, for at most a minute.
+    fn until(&mut self, what: &str, holds: impl Fn(&App) -> bool) {
+        let begin = Instant::now();
+        while !holds(&self.app) {
+            assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}");
+            self.pass(Vec::new(), None);
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn press(&mut self, key: egui::Key) {
+        for pressed in [true, false] {
+            let modifiers = egui::Modifiers::default();
+            let event = egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
+            self.pass(vec![event], None);
+        }
+    }
+
+    fn frame(&self) -> u64 {
+        self.app.shown().map_or(0, |shown| shown.frame)
+    }
+
+    fn picture(&self) -> Picture {
+        self.app.shown().unwrap().picture.clone()
+    }
+
+    /// Waits until nothing comes any more.
+    fn settle(&mut self) {
+        let (mut last, mut since) = (self.frame(), Instant::now());
+        while since.elapsed() < Duration::from_millis(400) {
+            self.pass(Vec::new(), None);
+            if self.frame() != last {
+                (last, since) = (self.frame(), Instant::now());
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+}
+
+#[test]
+fn it_opens_plays_and_stands_still_at_the_space_bar() {
+    let mut window = Window::new();
+    window.until("a picture", |app| app.shown().is_some());
+    let first = window.frame();
+    window.until("it plays", |app| app.shown().is_some_and(|shown| shown.frame > first + 2));
+    window.press(egui::Key::Space);
+    assert!(!window.app.is_playing());
+    window.settle();
+    let picture = window.picture();
+    // The picture fills the room beside the panels.
+    assert!(picture.width >= 480 && picture.width < 640 && picture.height >= 480, "{}", picture.width);
+    window.press(egui::Key::Period);
+    let frame = window.frame();
+    window.until("one more frame", |app| app.shown().is_some_and(|shown| shown.frame > frame));
+    assert!(window.picture() != picture);
+}
+
+#[test]
+fn dragging_turns_the_view() {
+    let mut window = Window::new();
+    window.until("a picture", |app| app.shown().is_some());
+    window.press(egui::Key::Space);
+    window.settle();
+    let before = window.picture();
+    let at = |x: f32| egui::pos2(x, 300.0);
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::default(),
+    };
+    window.pass(vec![egui::Event::PointerMoved(at(600.0)), button(at(600.0), true)], None);
+    for step in 1..8 {
+        window.pass(vec![egui::Event::PointerMoved(at(600.0 + 12.0 * step as f32))], None);
+    }
+    window.pass(vec![button(at(684.0), false)], None);
+    window.settle();
+    assert!(window.picture() != before);
+}
+
+#[test]
+fn a_dropped_groom_is_loaded_and_a_bad_file_shows_its_error_while_the_old_hair_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let groom = folder.path().join("strands.hair");
+    strandline::groom::StyleSettings { strand_count: 40, ..scene().style }
+        .grow()
+        .unwrap()
+        .save(&groom)
+        .unwrap();
+    let mut window = Window::new();
+    window.until("a picture", |app| app.shown().is_some());
+    window.press(egui::Key::Space);
+    window.settle();
+    let before = window.picture();
+
+    let bad = folder.path().join("bad.hair");
+    std::fs::write(&bad, b"PK nothing").unwrap();
+    window.pass(Vec::new(), Some(&bad));
+    window.until("the error", |app| app.error().is_some());
+    assert!(window.app.error().unwrap().contains("bad.hair"), "{:?}", window.app.error());
+    window.settle();
+    // The strip with the message takes room from the picture.
+    assert_eq!(window.app.shown().unwrap().drawing.strands, 60, "the old hair stays");
+    assert_ne!(window.picture(), before);
+    assert_eq!(window.app.seen().groom.file, None, "a scene that is saved now is that of the old hair");
+    let text = folder.path().join("notes.txt");
+    std::fs::write(&text, b"x").unwrap();
+    window.pass(Vec::new(), Some(&text));
+    assert!(window.app.error().unwrap().contains(".toml scene"));
+
+    window.pass(Vec::new(), Some(&groom));
+    let segments = |app: &App| app.shown().map_or(0, |shown| shown.drawing.strands);
+    window.until("the groom", |app| segments(app) == 40);
+    assert_eq!(window.app.error(), None);
+}
+
+#[test]
+fn a_saved_scene_makes_the_picture_that_was_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut still = scene();
+    still.motion.name = strandline::scene::MotionName::Still;
+    let mut window = Window::on(still);
+    window.app.folder = folder.path().join("saved");
+    window.until("a picture", |app| app.shown().is_some());
+    window.press(egui::Key::Space);
+    window.press(egui::Key::ArrowLeft);
+    window.press(egui::Key::R);
+    window.settle();
+    let saved = window.app.save_scene().unwrap();
+    assert!(window.app.save_picture().unwrap().ends_with("view_000.png"));
+    assert!(window.app.save_picture().unwrap().ends_with("view_001.png"));
+    let seen = window.picture();
+
+    let live = Live::new(Scene::load(&saved).unwrap(), || ()).unwrap();
+    live.tell(strandline::Command::Play(false));
+    live.tell(strandline::Command::Reset);
+    let begin = Instant::now();
+    let mut same = false;
+    while !same && begin.elapsed() < Duration::from_secs(60) {
+        same = live.take_shown().is_some_and(|shown| shown.picture == seen);
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(same, "the saved scene shows something else");
+}
+
+#[test]
+fn it_closes_in_the_middle_of_loading() {
+    for wait in [0, 30, 300] {
+        let mut window = Window::new();
+        window.pass(Vec::new(), None);
+        std::thread::sleep(Duration::from_millis(wait));
+        drop(window);
+    }
+}
