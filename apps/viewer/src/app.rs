@@ -28,6 +28,8 @@ pub struct App {
     /// Pictures a second, smoothed.
     pub(crate) rate: f32,
     last: Option<Instant>,
+    /// What is typed as the path of a file.
+    pub(crate) path: String,
     /// Whether pictures may be simpler while the hair moves.
     pub(crate) adapts: bool,
     /// Whether they are: fewer follow strands, one sample a pixel.
@@ -64,6 +66,7 @@ impl App {
             texture: None,
             rate: 0.0,
             last: None,
+            path: String::new(),
             adapts: true,
             draft: false,
             folder: PathBuf::from("out"),
@@ -149,11 +152,14 @@ impl App {
     /// Loads what was dropped on the window.
     fn take_files(&mut self, ui: &egui::Ui) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
-        for file in dropped.iter().map(|file| file.path()) {
-            match Self::scene_of(&self.scene, file) {
-                Ok(scene) => self.load(scene),
-                Err(error) => self.error = Some(error.to_string()),
-            }
+        dropped.iter().for_each(|file| self.open_file(file.path()));
+    }
+
+    /// Loads a scene, or another groom or body into the one that is there.
+    pub(crate) fn open_file(&mut self, file: &Path) {
+        match Self::scene_of(&self.scene, file) {
+            Ok(scene) => self.load(scene),
+            Err(error) => self.error = Some(error.to_string()),
         }
     }
 

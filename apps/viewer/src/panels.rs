@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use eframe::egui::{self, Slider, Ui};
 use glam::Vec3;
 use strandline::{
-    Command, Look, Motion, Settings, Style,
+    Command, Look, Motion, Scene, Settings, Style,
     render::{Light, LightKind},
 };
 
@@ -89,6 +89,22 @@ fn scene(app: &mut App, ui: &mut Ui) {
         scene.set_style(chosen);
         app.load(scene);
     }
+    ui.horizontal(|ui| {
+        let scenes = [("demo", Scene::demo as fn() -> Scene), ("thesis", Scene::thesis)];
+        for (name, make) in scenes {
+            if ui.button(name).on_hover_text("a scene of the program's own").clicked() {
+                app.load(make());
+            }
+        }
+    });
+    ui.horizontal(|ui| {
+        let field = egui::TextEdit::singleline(&mut app.path).hint_text("file").desired_width(180.0);
+        let entered = ui.add(field).on_hover_text("path of a scene, groom or body").lost_focus()
+            && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        if ui.button("Open").on_hover_text("loads the file").clicked() || entered {
+            app.open_file(&std::path::PathBuf::from(app.path.trim()));
+        }
+    });
     ui.small("Drop a .toml scene, a .hair or .tfx groom or an .obj, .gltf or .glb body on the window.");
     ui.small("Drag: orbit. Right or middle button: pan. Wheel: zoom. Shift and drag: turn the head.");
 }

@@ -12,6 +12,7 @@ mod error;
 mod gpu;
 mod kernel;
 mod layout;
+mod linked;
 mod list;
 mod readback;
 mod recorder;

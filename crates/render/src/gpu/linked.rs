@@ -1,17 +1,6 @@
 //! The linked text of every shader module, as `build.rs` left it.
 
-macro_rules! modules {
-    ($($name:ident = $file:literal,)*) => {
-        $(pub(super) const $name: &str = include_str!(concat!(env!("OUT_DIR"), "/", $file, ".wgsl"));)*
-
-        /// Every linked module: its name and its text.
-        pub fn modules() -> Vec<(&'static str, &'static str)> {
-            vec![$(($file, $name),)*]
-        }
-    };
-}
-
-modules! {
+strandline_gpu::linked! {
     TESSELLATE = "tessellate",
     INTERPOLATE = "interpolate",
     FIT = "fit",
