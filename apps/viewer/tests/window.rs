@@ -95,7 +95,7 @@ impl Window {
     /// Waits until nothing comes any more.
     fn settle(&mut self) {
         let (mut last, mut since) = (self.frame(), Instant::now());
-        while since.elapsed() < Duration::from_millis(400) {
+        while since.elapsed() < Duration::from_millis(1500) {
             self.pass(Vec::new(), None);
             if self.frame() != last {
                 (last, since) = (self.frame(), Instant::now());
