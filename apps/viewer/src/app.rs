@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use eframe::egui;
-use strandline::{Camera, Command, Error, Live, Look, News, Scene, Shown, render::PictureSettings};
+use strandline::{Camera, Command, Error, Light, Live, Look, News, Scene, Shown, render::PictureSettings};
 
 use crate::{panels, stage, strip};
 
@@ -166,7 +166,11 @@ impl App {
     fn take_news(&mut self) {
         for news in self.live.take_news() {
             match news {
-                News::Loaded(camera, _, notes) => {
+                News::Loaded(camera, bounds, notes) => {
+                    if self.scene.lights.is_empty() {
+                        // Those that it is lit with, for the panel to change.
+                        self.scene.lights = Light::three_point(0.5 * (bounds.min + bounds.max)).to_vec();
+                    }
                     (self.camera, self.loading, self.before) = (camera, false, None);
                     (self.turn, self.length) = ([0.0; 2], 1.0);
                     self.notes = notes;

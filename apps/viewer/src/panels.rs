@@ -225,9 +225,6 @@ fn look(app: &mut App, ui: &mut Ui) {
 }
 
 fn lights(app: &mut App, ui: &mut Ui) {
-    if app.scene.lights.is_empty() {
-        app.scene.lights = Light::three_point(app.camera.target).to_vec();
-    }
     let lights = &mut app.scene.lights;
     let before = lights.clone();
     let mut gone = None;

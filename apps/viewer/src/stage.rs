@@ -10,7 +10,7 @@ const ORBIT: f32 = 0.008;
 /// Pictures have sides of whole multiples of this \[pixel\], so that they do not change with every point.
 const GRAIN: f32 = 16.0;
 
-/// Space plays and pauses, the full stop makes one frame, R goes back to rest, F frames the hair.
+/// Space plays and pauses, the full stop makes one frame, R goes back to rest, arrows orbit.
 pub fn keys(app: &mut App, ui: &egui::Ui) {
     if ui.ctx().egui_wants_keyboard_input() {
         return;

@@ -99,6 +99,8 @@ struct Out {
 enum Message {
     Command(Command),
     Loaded(Result<Box<Stage>, Error>),
+    /// Nobody looks any more.
+    End,
 }
 
 impl Live {
@@ -142,9 +144,9 @@ impl Live {
 
 impl Drop for Live {
     fn drop(&mut self) {
-        // The thread holds a sender too: it is told by a message that it takes for the end.
+        // The thread holds a sender too, so that it does not end by itself.
         if let Some(commands) = self.commands.take() {
-            let _ = commands.send(Message::Loaded(Err(Error::WorkerGone)));
+            let _ = commands.send(Message::End);
         }
         let _ = self.thread.take().map(JoinHandle::join);
     }
@@ -272,9 +274,7 @@ impl Desk {
             let mut next = self.messages.recv_timeout(patience);
             loop {
                 match next {
-                    Ok(Message::Loaded(Err(Error::WorkerGone))) | Err(RecvTimeoutError::Disconnected) => {
-                        return;
-                    }
+                    Ok(Message::End) | Err(RecvTimeoutError::Disconnected) => return,
                     Ok(message) => self.hear(&mut course, message),
                     Err(RecvTimeoutError::Timeout) => break,
                 }
@@ -298,6 +298,7 @@ impl Desk {
                 return;
             }
             Message::Loaded(Err(error)) => return self.say(News::Error(error.to_string())),
+            Message::End => return,
         };
         match command {
             Command::Load(scene) => self.load(scene),
