@@ -65,7 +65,7 @@ fn depth_below(
     let mut deepest = 0.0_f32;
     for step in 1..=240 {
         let world_from_head = motion.pose(f64::from(step) / 60.0, Vec3::NEG_Y * 0.1);
-        let report = rig.step(&Drive { world_from_head, wind: Vec3::ZERO });
+        let report = rig.step(&Drive { world_from_head, ..Drive::default() });
         assert_eq!(report.non_finite, 0);
         if step < 120 {
             continue;

@@ -6,7 +6,7 @@ use strandline_groom::{Groom, Guides};
 use strandline_sim::{Drive, Settings, Solver};
 
 /// A curl of eight turns: radius 9 mm, 4 cm of hair a turn, hanging from the origin.
-fn curl() -> Guides {
+pub fn curl() -> Guides {
     let mut groom = Groom::empty(8e-5);
     let root = [Vec3::ZERO, vec3(0.0, -0.004, 0.0)];
     let turns = (1..=96).map(|step| {

@@ -3,6 +3,7 @@
 mod contact;
 mod curl;
 mod free_strand;
+mod grab;
 mod pendulum;
 mod poisson;
 mod shake;

@@ -232,7 +232,7 @@ fn projected_on(gpu: &Gpu, tolerance: f32) -> [f32; 2] {
     let solver = cloud.stand_in(gpu, settings, vec![collider]);
     let mut probe = cloud.probe(&solver);
     let end = Pose { translation: vec3(0.002, 0.0, 0.0), ..Pose::IDENTITY };
-    let drive = Drive { world_from_head: end, wind: Vec3::ZERO };
+    let drive = Drive { world_from_head: end, ..Drive::default() };
     let size = 34;
     let largest = |probe: &Probe| {
         let (faces, kinds) = (probe.faces().unwrap(), probe.kinds().unwrap());

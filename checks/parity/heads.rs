@@ -45,6 +45,7 @@ pub fn drive(step: usize) -> Drive {
     Drive {
         world_from_head: Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), turned),
         wind: Vec3::new(0.4, 0.1, -0.2),
+        hand: None,
     }
 }
 

@@ -1,5 +1,6 @@
 //! A simulation on either backend, so that a law is written once.
 
+use glam::Vec3;
 use strandline_body::Pose;
 use strandline_gpu::Gpu;
 use strandline_sim::gpu::{GpuSolver, GpuState};
@@ -102,6 +103,22 @@ impl Rig {
         change(&mut self.state);
         if let Place::Gpu(pair) = &mut self.place {
             pair.1.write(&pair.0, &self.state).unwrap();
+        }
+    }
+
+    /// Takes hair into a hand; the number of strands.
+    ///
+    /// # Panics
+    /// The device refuses.
+    pub fn grab(&mut self, hand: Vec3, radius: f32) -> usize {
+        self.state();
+        match &mut self.place {
+            Place::Cpu(solver) => self.state.grab(solver, hand, radius),
+            Place::Gpu(pair) => {
+                let count = self.state.grab(pair.0.solver(), hand, radius);
+                pair.1.write_grab(&self.state).unwrap();
+                count
+            }
         }
     }
 

@@ -8,6 +8,7 @@ pub mod gpu;
 
 mod clock;
 mod error;
+mod grab;
 mod report;
 mod settings;
 mod solver;

@@ -4,6 +4,7 @@ use strandline_body::{Carrier, Collider, Pose};
 use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 
 use crate::cpu::contacts::Contacts;
+use crate::grab::Grab;
 use crate::state::Scratch;
 use crate::{Drive, Settings, SimError, State, StepReport};
 
@@ -149,6 +150,7 @@ impl Solver {
             world_from_head,
             time: 0.0,
             length_scale: vec![Lanes([1.0; LANES]); blocks],
+            grab: Grab::default(),
             scratch: Scratch {
                 predicted: positions.clone(),
                 contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),

@@ -6,6 +6,7 @@ use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 use crate::cpu::Volume;
 use crate::cpu::contacts::Contacts;
 use crate::cpu::vec3x8::{Vec3x8, splat};
+use crate::grab::Grab;
 use crate::{SimError, Solver};
 
 /// What the world does to the hair during one step.
@@ -15,16 +16,20 @@ pub struct Drive {
     pub world_from_head: Pose,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
+    /// Where the hand that holds hair is at the end of the step \[m\], world space; with none it
+    /// stays where it is. See [`State::grab`].
+    pub hand: Option<Vec3>,
 }
 
 impl Drive {
-    /// This drive, where it is finite; else a head that stays and air that rests.
+    /// This drive, where it is finite; else a head and a hand that stay and air that rests.
     pub(crate) fn or_still_at(&self, start: Pose) -> Self {
         let pose = &self.world_from_head;
         let posed = pose.rotation.is_finite() && pose.translation.is_finite();
         Self {
             world_from_head: if posed { *pose } else { start },
             wind: if self.wind.is_finite() { self.wind } else { Vec3::ZERO },
+            hand: self.hand.filter(|hand| hand.is_finite()),
         }
     }
 }
@@ -44,6 +49,7 @@ pub struct State {
     pub time: f64,
     /// Length over rest length of each strand, shape `[block]` of lanes.
     pub(crate) length_scale: Vec<Lanes>,
+    pub(crate) grab: Grab,
     pub(crate) scratch: Scratch,
 }
 
@@ -76,6 +82,28 @@ impl State {
     /// stages between `pose_roots` and `advance` work on.
     pub fn predicted(&self) -> &[Vec3Lanes] {
         &self.scratch.predicted
+    }
+
+    /// Takes hair into a hand, and lets go of what it held: of every strand that comes within `radius`
+    /// \[m\] of `hand` \[m\], world space, the nearest point follows [`Drive::hand`] from now on. It keeps
+    /// its place beside the hand, outside the solids, and lags behind a hand that the strand does not
+    /// reach. Returns the number of strands; none when a number is not finite.
+    pub fn grab(&mut self, solver: &Solver, hand: Vec3, radius: f32) -> usize {
+        self.grab = Grab::default();
+        if hand.is_finite() && radius.is_finite() {
+            self.grab = Grab::new(solver, &self.positions, hand, radius);
+        }
+        self.grab.count()
+    }
+
+    /// Lets go of the hair in the hand.
+    pub fn release(&mut self) {
+        self.grab = Grab::default();
+    }
+
+    /// Strands in the hand.
+    pub fn grabbed(&self) -> usize {
+        self.grab.count()
     }
 
     /// Length over rest length of a strand.
@@ -225,7 +253,7 @@ mod tests {
     fn pictures_lie_between_the_last_two_steps() {
         let (solver, mut state) = two_strands();
         let pose = Pose { translation: Vec3::new(0.1, 0.0, 0.0), ..Pose::IDENTITY };
-        solver.step(&mut state, &Drive { world_from_head: pose, wind: Vec3::ZERO });
+        solver.step(&mut state, &Drive { world_from_head: pose, ..Drive::default() });
         let mut between = Vec::new();
         state.interpolated(0.25, &mut between);
         assert!((between[0].get(0).x - 0.025).abs() < 1e-6);
@@ -252,7 +280,8 @@ mod tests {
     fn a_drive_that_is_not_finite_leaves_the_head_where_it_is() {
         let (solver, mut state) = two_strands();
         let pose = Pose { translation: Vec3::splat(f32::NAN), ..Pose::IDENTITY };
-        let report = solver.step(&mut state, &Drive { world_from_head: pose, wind: Vec3::NAN });
+        let report =
+            solver.step(&mut state, &Drive { world_from_head: pose, wind: Vec3::NAN, hand: Some(Vec3::NAN) });
         assert_eq!(report.non_finite, 0);
         assert_eq!(state.world_from_head, Pose::IDENTITY);
     }

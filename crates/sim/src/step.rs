@@ -22,6 +22,7 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
         end: drive.world_from_head,
         time_step: solver.settings.time_step,
     };
+    state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
     let mut report = StepReport::default();
     let seconds = &mut report.seconds;
     timed(seconds, "pose_roots", || pose_roots(solver, state, &drive.world_from_head));

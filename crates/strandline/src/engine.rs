@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use glam::Vec3;
 use strandline_gpu::Gpu;
 
 use crate::{
@@ -130,6 +131,32 @@ impl Engine {
             },
         };
         self.recover(failure)
+    }
+
+    /// Takes hair into a hand; returns the number of strands.
+    pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, SimError> {
+        let count = match &self.place {
+            Place::Cpu(solver) => self.state.grab(solver, hand, radius),
+            Place::Gpu(pair) => self.state.grab(pair.0.solver(), hand, radius),
+        };
+        self.hold().map(|()| count)
+    }
+
+    /// Lets go of it.
+    pub fn release(&mut self) -> Result<(), SimError> {
+        self.state.release();
+        self.hold()
+    }
+
+    /// Holds on the device what the state's hand holds.
+    fn hold(&mut self) -> Result<(), SimError> {
+        match &mut self.place {
+            Place::Cpu(_) => Ok(()),
+            Place::Gpu(pair) => match pair.1.write_grab(&self.state) {
+                Ok(()) => Ok(()),
+                Err(failure) => self.recover(failure),
+            },
+        }
     }
 
     /// Scales the length of every strand.

@@ -200,6 +200,28 @@ impl Hair {
         Ok(self.simulation.step_along(seconds, self.wind, &pose)?)
     }
 
+    /// Takes hair into a hand, and lets go of what it held: the strands that come within `radius` \[m\]
+    /// of `hand` \[m\], world space, each at its nearest point. Returns how many there are.
+    ///
+    /// # Errors
+    /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
+    pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, Error> {
+        Ok(self.simulation.grab(hand, radius)?)
+    }
+
+    /// Moves the hand to a place \[m\], world space, evenly over the next [`Hair::step`].
+    pub fn move_hand(&mut self, hand: Vec3) {
+        self.simulation.move_hand(hand);
+    }
+
+    /// Lets go of the hair in the hand.
+    ///
+    /// # Errors
+    /// As [`Hair::grab`].
+    pub fn release(&mut self) -> Result<(), Error> {
+        Ok(self.simulation.release()?)
+    }
+
     /// Whether the hair goes on on the CPU, from its last state, when the GPU fails; it does for
     /// [`Backend::Auto`](crate::Backend::Auto).
     pub fn set_fall_back(&mut self, fall_back: bool) {

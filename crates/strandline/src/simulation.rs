@@ -21,6 +21,8 @@ pub(crate) struct Simulation {
     /// Poses of the head at the last two states, and where the last run ended.
     poses: [Pose; 2],
     end: Pose,
+    /// Where the hand that holds hair is, and where it goes in the next run \[m\]; none holds nothing.
+    hand: Option<[Vec3; 2]>,
 }
 
 /// What a picture is drawn from.
@@ -88,6 +90,7 @@ impl Simulation {
             share: 1.0,
             poses: [Pose::IDENTITY; 2],
             end: Pose::IDENTITY,
+            hand: None,
         }
     }
 
@@ -95,7 +98,28 @@ impl Simulation {
     pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
         self.engine.reset(pose)?;
         (self.poses, self.end, self.share) = ([pose; 2], pose, 1.0);
+        self.hand = None;
         Ok(())
+    }
+
+    /// Takes the hair within `radius` \[m\] of a place \[m\] into a hand; the number of strands.
+    pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, SimError> {
+        let count = self.engine.grab(hand, radius)?;
+        self.hand = (count > 0).then_some([hand; 2]);
+        Ok(count)
+    }
+
+    /// Moves the hand to a place \[m\], evenly over the next run.
+    pub fn move_hand(&mut self, hand: Vec3) {
+        if let Some([_, to]) = &mut self.hand {
+            *to = hand;
+        }
+    }
+
+    /// Lets go of what the hand holds.
+    pub fn release(&mut self) -> Result<(), SimError> {
+        self.hand = None;
+        self.engine.release()
     }
 
     /// Where the last run ended.
@@ -122,7 +146,8 @@ impl Simulation {
             // The last step ends `waited` before the end of the frame.
             let left = self.clock.step_time(u64::from(ticks.count - 1 - step)) + waited;
             let share = (1.0 - left / seconds).clamp(0.0, 1.0);
-            Drive { world_from_head: pose(share as f32), wind }
+            let hand = self.hand.map(|[from, to]| from.lerp(to, share as f32));
+            Drive { world_from_head: pose(share as f32), wind, hand }
         };
         let drives: Vec<Drive> = (0..ticks.count).map(drive).collect();
         let reports = match self.engine.run(&drives) {
@@ -135,6 +160,7 @@ impl Simulation {
         for drive in &drives {
             self.poses = [self.poses[1], drive.world_from_head];
         }
+        self.hand = self.hand.map(|[_, to]| [to; 2]);
         self.share = ticks.share;
         self.end = pose(1.0);
         Ok(reports)

@@ -87,7 +87,7 @@ impl Device {
             let begin = Instant::now();
             let drive = |step: usize| {
                 let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
-                Drive { world_from_head: motion.pose(time, pivot), wind: scene.wind.at(time) }
+                Drive { world_from_head: motion.pose(time, pivot), wind: scene.wind.at(time), hand: None }
             };
             for report in self.run(&solver, &mut state, queued, drive)? {
                 steps.add(&report);

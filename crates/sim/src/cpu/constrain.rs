@@ -10,6 +10,7 @@ use super::length_pass::Follow;
 use super::lengths::Segments;
 use super::vec3x8::{Vec3x8, load, splat};
 use super::{Obstacles, advance};
+use crate::grab::Pinned;
 use crate::{Solver, State};
 
 /// Projects the predicted positions onto the constraints and derives the velocities from them.
@@ -22,7 +23,7 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> u
     let settings = &solver.settings;
     let solids = Solids::new(obstacles, points);
     let bends = Bends::new(&settings.angles, settings.time_step, settings.iterations, obstacles.end.rotation);
-    let scratch = &mut state.scratch;
+    let (scratch, grab) = (&mut state.scratch, &state.grab);
     let lengths = &scratch.lengths.stretch;
     scratch
         .predicted
@@ -50,6 +51,9 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> u
                     },
                     solids: &solids,
                 };
+                work.pinned.clear();
+                let Segments { lengths, .. } = strands.segments;
+                work.pinned.extend(grab.pinned(block, predicted, lengths, strands.joints.inverse_mass));
                 strands.solve(block, predicted, start, velocities, planes, work);
                 advance::recover(solver, &obstacles.end, block, predicted, velocities)
             },
@@ -57,8 +61,13 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> u
         .sum()
 }
 
+/// Passes that draw a held strand tight, from the hand and from the head in turn. Gravity bends a strand
+/// of 16 segments that is pulled straight by 5 % of its length; without these passes by 11 %.
+const SWEEPS: usize = 31;
+
 /// What a thread works in.
 struct Workspace {
+    pinned: Vec<Pinned>,
     touches: Vec<(usize, Touch)>,
     margins: Vec<f32x8>,
     corrections: Vec<Vec3x8>,
@@ -67,6 +76,7 @@ struct Workspace {
 impl Workspace {
     fn new(points: usize) -> Self {
         Self {
+            pinned: Vec::with_capacity(LANES),
             touches: Vec::with_capacity(points),
             margins: vec![splat(0.0); points],
             corrections: vec![Vec3x8::ZERO; points + 1],
@@ -99,6 +109,9 @@ impl Strands<'_> {
             if let Some(bends) = self.bends.filter(|_| round % ROUNDS_PER_PASS == 0) {
                 bends.project(self.joints, predicted);
             }
+            for Pinned { lane, point, goal } in &work.pinned {
+                predicted[*point].set(*lane, *goal);
+            }
             for (point, touch) in &work.touches {
                 touch.resolve(Vec3x8::load(&predicted[*point])).store(&mut predicted[*point]);
             }
@@ -106,10 +119,14 @@ impl Strands<'_> {
         let pass = &self.solver.settings.length_pass;
         work.corrections.fill(Vec3x8::ZERO);
         if pass.enabled {
+            for pinned in &work.pinned {
+                self.draw_tight(*pinned, predicted);
+            }
             let follow = Follow {
                 lengths: self.segments.lengths,
                 inverse_mass: self.joints.inverse_mass,
                 margins: &work.margins,
+                pinned: last_pinned(&work.pinned),
                 solids: self.solids,
             };
             let held = self.bends.and_then(|bends| bends.held(self.joints.directions));
@@ -123,6 +140,25 @@ impl Strands<'_> {
             // [Mueller2012 eq. 9]
             let velocity = (moved - work.corrections[point + 1] * returned) * rate;
             velocity.or(free, moved * rate).store(&mut velocities[point]);
+        }
+    }
+
+    /// Draws a strand tight between head and hand: its points are placed at their lengths from the hand
+    /// on, then from the head on, and so forth [Aristidou2011]. The length pass is the last from the head.
+    fn draw_tight(&self, Pinned { lane, point: last, goal }: Pinned, predicted: &mut [Vec3Lanes]) {
+        let free = |point: &usize| self.joints.inverse_mass[*point].0[lane] > 0.0;
+        let Some(root) = (0..last).rev().find(|point| !free(point)) else { return };
+        let length = |lower: usize| self.segments.lengths[lower].0[lane];
+        for sweep in 0..SWEEPS {
+            let (back, mut here) = (sweep % 2 == 0, [predicted[root].get(lane), goal][1 - sweep % 2]);
+            for step in 1..=last - root {
+                let point = if back { last - step } else { root + step };
+                let across = predicted[point].get(lane) - here;
+                here += across * (length(if back { point } else { point - 1 }) / across.length());
+                if point != root {
+                    predicted[point].set(lane, here);
+                }
+            }
         }
     }
 
@@ -157,6 +193,13 @@ impl Strands<'_> {
             }
         }
     }
+}
+
+/// The point of each strand that is held, -1 where none is.
+fn last_pinned(pinned: &[Pinned]) -> f32x8 {
+    let mut points = [-1.0; LANES];
+    pinned.iter().for_each(|pinned| points[pinned.lane] = pinned.point as f32);
+    f32x8::from(points)
 }
 
 /// Strands of a block that carry hair, as lanes.

@@ -16,6 +16,8 @@ pub struct Follow<'a> {
     pub inverse_mass: &'a [Lanes],
     /// Distance \[m\] that points keep from solids.
     pub margins: &'a [f32x8],
+    /// The point of each strand that is held by a hand, -1 where none is.
+    pub pinned: f32x8,
     pub solids: &'a Solids<'a>,
 }
 
@@ -23,7 +25,7 @@ impl Follow<'_> {
     /// Moves each point to its length from the one before and tells how far \[m\] it moved.
     ///
     /// A held shape turns the segments first; that turn is no correction of a length and gives
-    /// no velocity back.
+    /// no velocity back. Segments between the head and a hand go where the hand pulls them.
     pub fn place(
         &self,
         mut held: Option<Held>,
@@ -38,7 +40,8 @@ impl Follow<'_> {
             let free = load(&self.inverse_mass[point]).simd_gt(splat(0.0));
             let length = load(&self.lengths[point - 1]);
             if let Some(held) = &held {
-                found = (before + held.turn(point, found - before)).or(free, found);
+                let shaped = free & splat(point as f32).simd_gt(self.pinned);
+                found = (before + held.turn(point, found - before)).or(shaped, found);
             }
             let across = found - before;
             let mut placed = before + across * (length / across.length());

@@ -8,6 +8,7 @@ use super::inputs::Step;
 use super::solve_pressure::PressureState;
 use super::volume::Volume;
 use super::{THREADS, solids};
+use crate::grab::{Grab, Grip, NO_POINT};
 use crate::{SimError, Solver, State};
 
 /// Steps whose reports the device keeps until they are read.
@@ -36,6 +37,8 @@ pub(super) struct Buffers {
     pub velocities: Buffer<f32>,
     /// Five numbers: see constrain.wesl.
     pub planes: Buffer<f32>,
+    /// Per strand, from the hand to the point \[m\] that it holds, and its number; below 0 for none.
+    pub grips: Buffer<[f32; 4]>,
     /// Per workgroup of strands: see splat.wesl.
     pub boxes: Buffer<[f32; 4]>,
     /// Per workgroup of strands: see advance.wesl.
@@ -70,6 +73,7 @@ impl Buffers {
             ],
             velocities: vectors("velocities", &state.velocities)?,
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
+            grips: Buffer::new(gpu, "grips", lane_count)?,
             boxes: Buffer::new(gpu, "boxes", 2 * solver.strand_count.div_ceil(THREADS))?,
             outcomes: Buffer::new(gpu, "outcomes", workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
@@ -77,6 +81,7 @@ impl Buffers {
             volume: None,
         };
         buffers.write_rest(solver, &state.scratch.lengths)?;
+        buffers.write_grips(&state.grab)?;
         Ok(buffers)
     }
 
@@ -121,6 +126,23 @@ impl Buffers {
         self.mass.write(bytemuck::cast_slice(&solver.rest.mass))?;
         Ok(())
     }
+
+    /// Writes what a hand holds; with an empty hand nobody reads it.
+    pub fn write_grips(&self, grab: &Grab) -> Result<(), SimError> {
+        if grab.grips.is_empty() {
+            return Ok(());
+        }
+        let grips: Vec<_> =
+            grab.grips.iter().flat_map(|block| (0..LANES).map(|lane| grip(block, lane))).collect();
+        Ok(self.grips.write(&grips)?)
+    }
+}
+
+/// A grip as the kernel reads it.
+fn grip(grip: &Grip, lane: usize) -> [f32; 4] {
+    let point = grip.points[lane];
+    let number = if point == NO_POINT { -1.0 } else { point as f32 };
+    grip.offsets.get(lane).extend(number).to_array()
 }
 
 /// Vectors as the numbers that they are.

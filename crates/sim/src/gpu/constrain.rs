@@ -15,6 +15,7 @@ kernel! {
         5 predicted: ReadWrite f32,
         6 velocities: ReadWrite f32,
         7 planes: ReadWrite f32,
+        8 grips: Read [f32; 4],
     }
 }
 
@@ -41,6 +42,7 @@ impl Stage {
                 predicted: &buffers.places[1 - side],
                 velocities: &buffers.velocities,
                 planes: &buffers.planes,
+                grips: &buffers.grips,
             },
         )?;
         Ok(vec![(bound, groups(buffers.lane_count, self.strands_per_workgroup))])

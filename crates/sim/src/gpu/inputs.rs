@@ -6,6 +6,7 @@ use strandline_gpu::mirror;
 
 use crate::cpu::angles::BendShares;
 use crate::cpu::contacts::Care;
+use crate::grab::Grab;
 use crate::{Drive, Preconditioner, Solver, Spring};
 
 mirror! {
@@ -59,6 +60,10 @@ mirror! {
         pub preconditioner: u32,
         /// Where the report goes.
         pub slot: u32,
+        /// Whether a hand holds hair.
+        pub holds: u32,
+        /// Where the hand is \[m\].
+        pub hand: [f32; 3],
         pub unused_a: u32,
     }
 }
@@ -77,7 +82,7 @@ impl Rigid {
 
 impl Step {
     /// What a step needs that starts at a pose of the head.
-    pub fn new(solver: &Solver, start: &Pose, drive: &Drive, slot: usize) -> Self {
+    pub fn new(solver: &Solver, start: &Pose, drive: &Drive, grab: &Grab, slot: usize) -> Self {
         let settings = &solver.settings;
         let end = drive.world_from_head;
         let from_start = |a: &Pose, b: Pose| Pose {
@@ -124,6 +129,8 @@ impl Step {
                 Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => 2,
             },
             slot: slot as u32,
+            holds: u32::from(!grab.grips.is_empty()),
+            hand: grab.hand.to_array(),
             ..Self::default()
         }
     }

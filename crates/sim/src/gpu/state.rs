@@ -8,6 +8,7 @@ use super::solver::GpuSolver;
 use super::step::Stages;
 use super::volume::Volume;
 use super::{Gradient, Spread};
+use crate::grab::Grab;
 use crate::{SimError, Solver, State, StepReport};
 
 /// All that changes with time, on the device.
@@ -20,6 +21,7 @@ pub struct GpuState {
     pub(super) world_from_head: Pose,
     pub(super) time: f64,
     length_scale: Vec<Lanes>,
+    pub(super) grab: Grab,
     /// The rest shape with the length scales applied.
     pub(super) lengths: RestShape,
     timer: Option<Timer>,
@@ -54,6 +56,7 @@ impl GpuState {
             world_from_head: state.world_from_head,
             time: state.time,
             length_scale: state.length_scale.clone(),
+            grab: state.grab.clone(),
             lengths: state.scratch.lengths.clone(),
             timer: Timer::new(gpu)?,
             marks: Buffer::new(gpu, "times of stages", REPORTS * Timer::BYTES as usize / size_of::<u64>())?,
@@ -171,6 +174,7 @@ impl GpuState {
     pub(super) fn to_host(&self, solver: &Solver) -> Result<State, SimError> {
         let mut state = solver.rest_state(self.world_from_head);
         state.length_scale.clone_from(&self.length_scale);
+        state.grab.clone_from(&self.grab);
         state.scratch.lengths.clone_from(&self.lengths);
         self.read_into(&mut state)?;
         Ok(state)
@@ -193,6 +197,7 @@ impl GpuState {
         floats_mut(&mut state.velocities).copy_from_slice(&velocities);
         state.world_from_head = self.world_from_head;
         state.time = self.time;
+        state.grab.hand = self.grab.hand;
         Ok(())
     }
 
@@ -209,6 +214,16 @@ impl GpuState {
         self.lengths.clone_from(&state.scratch.lengths);
         self.world_from_head = state.world_from_head;
         self.time = state.time;
+        self.write_grab(state)
+    }
+
+    /// Holds on the device what the hand of a state of the host holds: see [`State::grab`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn write_grab(&mut self, state: &State) -> Result<(), SimError> {
+        self.buffers.write_grips(&state.grab)?;
+        self.grab.clone_from(&state.grab);
         Ok(())
     }
 }

@@ -52,7 +52,8 @@ pub(super) fn run(
 ) -> Result<(), SimError> {
     state.prepare(solver)?;
     let drive = drive.or_still_at(state.world_from_head);
-    let uniform = Step::new(&solver.solver, &state.world_from_head, &drive, state.pending);
+    state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
+    let uniform = Step::new(&solver.solver, &state.world_from_head, &drive, &state.grab, state.pending);
     state.buffers.step.write(&[uniform])?;
     let mut costs = Costs { bytes: state.buffers.bytes_of_step(), ..Costs::default() };
     solver.gpu.guarded("a step", || {

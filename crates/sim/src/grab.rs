@@ -1,0 +1,107 @@
+//! Hair in a hand: one point of every strand that it holds follows it.
+
+use glam::Vec3;
+use rayon::prelude::*;
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
+
+use crate::Solver;
+
+/// Stands for the point of a strand that is not held.
+pub(crate) const NO_POINT: u32 = u32::MAX;
+
+/// A hand and the strands in it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Grab {
+    /// Where the hand is \[m\], world space.
+    pub hand: Vec3,
+    /// What it holds, shape `[block]`; empty when it holds nothing.
+    pub grips: Vec<Grip>,
+}
+
+/// The points of a block of strands that are held.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grip {
+    /// The point of each strand, or [`NO_POINT`].
+    pub points: [u32; LANES],
+    /// From the hand to the point \[m\], world space.
+    pub offsets: Vec3Lanes,
+}
+
+/// A point that is held and where it has to be \[m\], world space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pinned {
+    pub lane: usize,
+    pub point: usize,
+    pub goal: Vec3,
+}
+
+impl Grip {
+    const NOTHING: Self = Self {
+        points: [NO_POINT; LANES],
+        offsets: Vec3Lanes { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES] },
+    };
+
+    pub fn count(&self) -> usize {
+        self.points.iter().filter(|point| **point != NO_POINT).count()
+    }
+}
+
+impl Grab {
+    /// Takes the nearest free point of every strand that has one within `radius` \[m\] of the hand.
+    pub fn new(solver: &Solver, positions: &[Vec3Lanes], hand: Vec3, radius: f32) -> Self {
+        let points = solver.points_per_strand;
+        let grips: Vec<Grip> = positions
+            .par_chunks(points)
+            .enumerate()
+            .with_min_len(64)
+            .map(|(block, positions)| {
+                let mut grip = Grip::NOTHING;
+                let live = crate::cpu::constrain::live_lanes(solver, block);
+                for lane in 0..live {
+                    let free = |point: &usize| solver.inverse_mass[block * points + point].0[lane] > 0.0;
+                    let offset = |point: usize| positions[point].get(lane) - hand;
+                    let nearest = (0..points).filter(free).map(|point| (offset(point).length(), point));
+                    let nearest = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
+                    if let Some((_, point)) = nearest.filter(|(distance, _)| *distance <= radius) {
+                        grip.points[lane] = point as u32;
+                        grip.offsets.set(lane, offset(point));
+                    }
+                }
+                grip
+            })
+            .collect();
+        let holds = grips.iter().any(|grip| grip.count() > 0);
+        Self { hand, grips: if holds { grips } else { Vec::new() } }
+    }
+
+    /// Strands in the hand.
+    pub fn count(&self) -> usize {
+        self.grips.iter().map(Grip::count).sum()
+    }
+
+    /// What is held of a block of strands, whose points are `positions` \[m\]: no farther from the head
+    /// than the strand reaches, which a hand cannot stretch. `lengths` are those of its segments \[m\].
+    pub fn pinned(
+        &self,
+        block: usize,
+        positions: &[Vec3Lanes],
+        lengths: &[Lanes],
+        inverse_mass: &[Lanes],
+    ) -> impl Iterator<Item = Pinned> {
+        let grip = self.grips.get(block).copied().unwrap_or(Grip::NOTHING);
+        let lanes = (0..LANES).filter(move |lane| grip.points[*lane] != NO_POINT);
+        lanes.map(move |lane| {
+            let point = grip.points[lane] as usize;
+            let goal = self.hand + grip.offsets.get(lane);
+            let mut reach = 0.0;
+            for before in (0..point).rev() {
+                reach += lengths[before].0[lane];
+                if inverse_mass[before].0[lane] == 0.0 {
+                    let root = positions[before].get(lane);
+                    return Pinned { lane, point, goal: root + (goal - root).clamp_length_max(reach) };
+                }
+            }
+            Pinned { lane, point, goal }
+        })
+    }
+}
