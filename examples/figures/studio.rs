@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline::{
-    Backend, Camera, Hair, Motion, Picture, Pose, Prepared, Scene, Style, render::PictureSettings,
+    Backend, Camera, Hair, HeadMotion, Picture, Pose, Prepared, Scene, Style, render::PictureSettings,
     scene::MotionName,
 };
 
@@ -37,12 +37,12 @@ impl Studio {
             scene.style.strand_count = 50;
         }
         let prepared = Prepared::new(&scene)?;
-        let (motion, pivot) = (prepared.motion.clone(), prepared.pivot);
+        let head = prepared.head.clone();
         let mut hair = Hair::from_scene(&scene, prepared, self.backend)?;
         for _ in 0..if self.quick { 1 } else { 60 } {
             hair.step(FRAME, &Pose::IDENTITY)?;
         }
-        Ok(Moving { hair, motion, pivot, picture: scene.picture, time: 0.0 })
+        Ok(Moving { hair, head, picture: scene.picture, time: 0.0 })
     }
 
     /// A style that hangs on the resting head, with pictures of a size \[pixel\].
@@ -62,8 +62,7 @@ pub struct Moving {
     pub hair: Hair,
     /// Size and finish of its pictures.
     pub picture: PictureSettings,
-    motion: Motion,
-    pivot: Vec3,
+    head: HeadMotion,
     time: f64,
 }
 
@@ -71,8 +70,8 @@ impl Moving {
     /// Lets the head move on to a time \[s\].
     pub fn play_to(&mut self, time: f64) -> Result<(), strandline::Error> {
         while self.time < time - 0.5 * FRAME {
-            let (begin, motion, pivot) = (self.time, &self.motion, self.pivot);
-            self.hair.step_along(FRAME, |share| motion.pose(begin + FRAME * f64::from(share), pivot))?;
+            let (begin, head) = (self.time, &self.head);
+            self.hair.step_along(FRAME, |share| head.pose(begin + FRAME * f64::from(share)))?;
             self.time += FRAME;
         }
         Ok(())

@@ -120,9 +120,13 @@ impl Engine {
         self.set_settings(settings)
     }
 
-    /// Puts every strand back to rest under a pose of the head.
+    /// Puts every strand back to rest under a pose of the head; their lengths stay.
     pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
-        self.state = self.solver().rest_state(pose);
+        let scales = (0..self.solver().strand_count()).map(|strand| self.state.length_scale(strand));
+        let scales: Vec<f32> = scales.collect();
+        let mut state = self.solver().rest_state(pose);
+        state.set_length_scale(self.solver(), &scales)?;
+        self.state = state;
         let failure = match &mut self.place {
             Place::Cpu(_) => return Ok(()),
             Place::Gpu(pair) => match pair.1.write(&pair.0, &self.state) {

@@ -28,7 +28,8 @@ const ANIMATION_SPEED: i32 = 10;
 /// Every file is complete once its call has returned; one that could not be finished is removed.
 pub struct Film {
     folder: PathBuf,
-    frames: u32,
+    /// Number of frames; none while nobody knows it.
+    frames: Option<u32>,
     frames_per_second: f32,
     files: Vec<PathBuf>,
     thumbnails: Vec<RgbImage>,
@@ -58,6 +59,18 @@ impl Film {
     /// # Errors
     /// The folder cannot be made or written.
     pub fn new(folder: &Path, frames: u32, frames_per_second: f32) -> Result<Self, Error> {
+        Self::open(folder, Some(frames), frames_per_second)
+    }
+
+    /// A film that goes on until it is finished; without a contact sheet.
+    ///
+    /// # Errors
+    /// As [`Film::new`].
+    pub fn endless(folder: &Path, frames_per_second: f32) -> Result<Self, Error> {
+        Self::open(folder, None, frames_per_second)
+    }
+
+    fn open(folder: &Path, frames: Option<u32>, frames_per_second: f32) -> Result<Self, Error> {
         fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
         let probe = folder.join(".strandline-probe");
         fs::write(&probe, b"").map_err(Error::write("into the output folder", folder))?;
@@ -81,10 +94,10 @@ impl Film {
         let path = self.folder.join(format!("frame_{index:04}.png"));
         picture.save(&path)?;
         self.files.push(path);
-        if is_on_sheet(index, self.frames) {
+        if self.frames.is_some_and(|frames| is_on_sheet(index, frames)) {
             self.thumbnails.push(thumbnail(picture, SHEET_WIDTH));
         }
-        if self.frames > 1 {
+        if self.frames != Some(1) {
             self.add_to_moving(picture)?;
         }
         Ok(())

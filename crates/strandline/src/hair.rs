@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use crate::{
-    Devices, Error, Scene,
+    Devices, Error, Ray, Scene,
     body::{Aabb, Collider, Mesh, Pose},
     devices::{Opened, Pair},
     engine::Engine,
@@ -155,7 +155,7 @@ impl Hair {
     /// The two that a [`Player`](crate::Player) lets work side by side.
     pub(crate) fn into_parts(mut self) -> (Simulation, Studio) {
         self.set_stage();
-        (self.simulation, self.studio)
+        (self.simulation.with_threads(), self.studio)
     }
 
     /// Hands what a user may have changed to the studio.
@@ -178,6 +178,9 @@ impl Hair {
         hair.body_look = scene.body_look;
         hair.level_of_detail = scene.level_of_detail;
         hair.set_picture(&scene.picture)?;
+        if scene.groom.length != 1.0 {
+            hair.set_length_scale(&vec![scene.groom.length; hair.guides().strand_count()])?;
+        }
         Ok(hair)
     }
 
@@ -207,6 +210,16 @@ impl Hair {
     /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
     pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, Error> {
         Ok(self.simulation.grab(hand, radius)?)
+    }
+
+    /// The hair that a line of sight meets first before the body \[m\], world space: where a hand takes
+    /// what lies within `radius` \[m\] of it. The picture of [`Ray::new`] is the one of now.
+    pub fn pick(&mut self, ray: &Ray, radius: f32) -> Option<Vec3> {
+        self.simulation.show(&mut self.moment);
+        let guides = &self.studio.guides;
+        let body = self.studio.painter.mesh().map(|mesh| (mesh, &self.moment.world_from_head));
+        let shape = [guides.strand_count(), guides.points_per_strand()];
+        ray.hair(&self.moment.positions, shape, radius, body)
     }
 
     /// Moves the hand to a place \[m\], world space, evenly over the next [`Hair::step`].

@@ -60,6 +60,11 @@ impl Painter {
         }
     }
 
+    /// The body that is drawn, head space.
+    pub fn mesh(&self) -> Option<&Mesh> {
+        self.mesh.as_ref()
+    }
+
     /// Changes size and finish of the pictures; nothing changes when that fails.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
         let changed = match &mut self.place {

@@ -95,7 +95,7 @@ impl Player {
     /// Whatever the scene's parts refuse.
     pub fn new(scene: &Scene, devices: impl Into<Devices>, draw: bool) -> Result<Self, Error> {
         let mut prepared = Prepared::new(scene)?;
-        let (motion, pivot) = (prepared.motion.clone(), prepared.pivot);
+        let head = prepared.head.clone();
         let mut notes = std::mem::take(&mut prepared.notes);
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
         let camera = scene.camera.camera(prepared.bounds, aspect);
@@ -108,7 +108,7 @@ impl Player {
             studio,
             change: None,
             course: Course {
-                pose: std::sync::Arc::new(move |time| motion.pose(time, pivot)),
+                pose: std::sync::Arc::new(move |time| head.pose(time)),
                 wind: std::sync::Arc::new(move |time| wind.at(time)),
                 frame_seconds: 1.0 / f64::from(scene.film.frames_per_second),
                 settle_seconds: f64::from(scene.film.settle),

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 
 use crate::{
-    Error, Scene,
-    body::{Aabb, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Motion, Shape},
+    Error, HeadMotion, Scene,
+    body::{Aabb, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape},
     groom::{
         Groom, Guides,
         format::{self, LoadOptions},
@@ -26,9 +26,7 @@ pub struct Prepared {
     /// Everything that hair hits.
     pub colliders: Vec<Collider>,
     /// How the head moves.
-    pub motion: Motion,
-    /// Point about which the head turns \[m\], head space.
-    pub pivot: Vec3,
+    pub head: HeadMotion,
     /// The box around hair and drawn body at rest \[m\], head space.
     pub bounds: Aabb,
     /// What was mended or left out while loading, for a person to read.
@@ -73,8 +71,8 @@ impl Prepared {
         let mesh = body.mesh.filter(|_| scene.body.visible);
         let bounds = bounds(&guides, mesh.as_ref());
         let pivot = scene.motion.pivot.or(body.pivot).unwrap_or_else(|| low_center(bounds));
-        let motion = scene.motion.motion(pivot)?;
-        Ok(Self { guides, mesh, colliders, motion, pivot, bounds, notes })
+        let head = HeadMotion::new(&scene.motion, pivot)?;
+        Ok(Self { guides, mesh, colliders, head, bounds, notes })
     }
 }
 

@@ -23,6 +23,8 @@ pub(crate) struct Simulation {
     end: Pose,
     /// Where the hand that holds hair is, and where it goes in the next run \[m\]; none holds nothing.
     hand: Option<[Vec3; 2]>,
+    /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
+    threads: Option<rayon::ThreadPool>,
 }
 
 /// What a picture is drawn from.
@@ -65,6 +67,8 @@ pub(crate) struct Done {
     pub moment: Moment,
     pub reports: Result<Vec<StepReport>, SimError>,
     pub notes: Vec<String>,
+    /// Strands in the hand.
+    pub grabbed: usize,
     /// Where it was done: cpu, or the adapter.
     pub place: String,
 }
@@ -75,10 +79,20 @@ impl Work for Simulation {
 
     fn run(&mut self, job: Job) -> Done {
         let Job { act, gpu, mut moment } = job;
-        let reports = act(self);
-        self.show_on(gpu.as_ref(), &mut moment);
+        let threads = self.threads.take();
+        let run = || {
+            let reports = act(self);
+            self.show_on(gpu.as_ref(), &mut moment);
+            reports
+        };
+        let reports = match &threads {
+            Some(threads) => threads.install(run),
+            None => run(),
+        };
+        self.threads = threads;
         let place = crate::hair::place(self.engine.gpu());
-        Done { moment, reports, notes: self.engine.take_notes(), place }
+        let grabbed = self.engine.state().grabbed();
+        Done { moment, reports, notes: self.engine.take_notes(), grabbed, place }
     }
 }
 
@@ -91,7 +105,14 @@ impl Simulation {
             poses: [Pose::IDENTITY; 2],
             end: Pose::IDENTITY,
             hand: None,
+            threads: None,
         }
+    }
+
+    /// Prepares it to work beside a thread that draws; without threads of its own it shares them.
+    pub fn with_threads(self) -> Self {
+        let threads = rayon::ThreadPoolBuilder::new().thread_name(|_| "simulation".to_owned()).build();
+        Self { threads: threads.ok(), ..self }
     }
 
     /// Goes back to rest under a pose of the head; time goes on.

@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use strandline::{Camera, Command, Live, Look, Motion, News, Scene, Shown};
+use strandline::scene::{MotionName, MotionSection};
+use strandline::{Camera, Command, Live, Look, News, Scene, Shown};
 
 fn scene() -> Scene {
     let mut scene = Scene::demo();
@@ -80,15 +81,21 @@ fn every_change_shows_in_the_next_pictures() {
         assert!(shown.picture != last);
         last = shown.picture;
     }
-    let length = |live: &Live| {
-        live.tell(Command::Reset);
-        next(live).picture
-    };
-    assert!(length(&live) != first.picture, "lengths stay through a reset of places");
-    for command in [Command::Motion(Motion::Nod), Command::Turn(0.5, 0.1)] {
-        live.tell(command);
-        live.tell(Command::Step);
-        let shown = wait(|| live.take_shown().filter(|shown| shown.step.is_some()));
+    live.tell(Command::Reset);
+    assert_eq!(next(&live).picture, last, "lengths stay through a reset of places");
+    let nod = MotionSection { name: MotionName::Nod, ..scene().motion };
+    let turned = MotionSection { rotation: glam::Vec3::new(10.0, 30.0, 0.0), ..nod.clone() };
+    for command in [Command::Motion(Box::new(nod)), Command::Motion(Box::new(turned))] {
+        let before = live.tell(command);
+        // The head is at its place a little later.
+        let steps = (0..20).map(|_| live.tell(Command::Step)).last().unwrap();
+        assert!(steps > before);
+        let mut made = 0;
+        let shown = wait(|| {
+            let shown = live.take_shown()?;
+            made += u32::from(shown.heard >= steps);
+            (made == 15).then_some(shown)
+        });
         assert!(shown.picture != last);
         last = shown.picture;
     }
@@ -102,7 +109,7 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
     let error = |live: &Live| {
         wait(|| {
             live.take_news().into_iter().find_map(|news| match news {
-                News::Error(error) => Some(error),
+                News::Error(error) | News::NotLoaded(error) => Some(error),
                 _ => None,
             })
         })
@@ -149,10 +156,165 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
                 4 => Command::Length(0.5 + 0.4 * (round as f32 / 12.0)),
                 5 => Command::Load(Box::new(scene())),
                 6 => Command::Settings(Box::new(scene().simulation)),
-                _ => Command::Turn(0.1 * round as f32, 0.0),
+                _ => Command::Motion(Box::new(MotionSection {
+                    rotation: glam::Vec3::Y * 5.0 * round as f32,
+                    ..scene().motion
+                })),
             });
             std::thread::sleep(Duration::from_micros(state >> 52));
         }
         drop(live);
     }
+}
+
+#[test]
+fn a_command_shows_within_two_pictures() {
+    let live = Live::new(scene(), || ()).unwrap();
+    let mut last = next(&live);
+    for turn in 0..20_u64 {
+        // At any time of a frame.
+        std::thread::sleep(Duration::from_micros(turn * 613 % 7000));
+        last = live.take_shown().unwrap_or(last);
+        let number = live.tell(Command::Camera(Camera::front().orbit(0.1 * turn as f32, 0.0)));
+        let shows = wait(|| live.take_shown().filter(|shown| shown.heard >= number));
+        // One may have been on its way, and one finished but not taken.
+        assert!(shows.frame <= last.frame + 3, "told at {}, shown at {}", last.frame, shows.frame);
+        last = shows;
+    }
+}
+
+#[test]
+fn a_setting_shows_within_two_frames() {
+    let live = Live::new(scene(), || ()).unwrap();
+    let mut on = true;
+    next(&live);
+    for _ in 0..10 {
+        on = !on;
+        let mut settings = scene().simulation;
+        settings.volume.enabled = on;
+        let number = live.tell(Command::Settings(Box::new(settings)));
+        let heard = wait(|| live.take_shown().filter(|shown| shown.heard >= number));
+        let has_volume = |shown: &Shown| {
+            let step = shown.step.as_ref();
+            step.is_some_and(|step| step.seconds.iter().any(|(stage, _)| *stage == "splat"))
+        };
+        // The picture drawn when it was heard shows a step from before; the next one shows it.
+        let shows = if has_volume(&heard) == on { heard.clone() } else { next(&live) };
+        assert_eq!(has_volume(&shows), on);
+        assert!(shows.frame <= heard.frame + 1);
+    }
+}
+
+#[test]
+fn a_setting_that_is_refused_does_not_stop_it() {
+    let live = Live::new(scene(), || ()).unwrap();
+    next(&live);
+    live.tell(Command::Settings(Box::new(strandline::Settings { time_step: -1.0, ..scene().simulation })));
+    wait(|| live.take_news().into_iter().find(|news| matches!(news, News::Error(_))));
+    let frame = next(&live).frame;
+    wait(|| live.take_shown().filter(|shown| shown.frame > frame + 3 && shown.step.is_some()));
+    assert!(!live.take_news().contains(&News::Paused));
+}
+
+#[test]
+fn of_two_scenes_on_their_way_the_last_one_stays() {
+    let (live, _) = still();
+    live.take_news();
+    let (mut slow, mut fast) = (scene(), scene());
+    slow.body.spacing = 0.004;
+    (slow.style.strand_count, fast.style.strand_count) = (300, 30);
+    live.tell(Command::Load(Box::new(slow)));
+    live.tell(Command::Load(Box::new(fast)));
+    wait(|| live.take_shown().filter(|shown| shown.drawing.strands == 30));
+    // Long enough for the other one, which is left out without a word.
+    std::thread::sleep(Duration::from_secs(3));
+    let shown = live.take_shown();
+    assert!(shown.is_none_or(|shown| shown.drawing.strands == 30));
+    assert_eq!(live.take_news().iter().filter(|news| matches!(news, News::Loaded(..))).count(), 1);
+}
+
+#[test]
+fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
+    let mut slow = scene();
+    slow.style.strand_count = 800;
+    (slow.look.follow_strands, slow.picture.width, slow.picture.height) = (64, 640, 480);
+    let live = Live::new(slow, || ()).unwrap();
+    live.tell(Command::Adapt(true));
+    let draft = wait(|| live.take_shown().filter(|shown| shown.draft));
+    assert_eq!((draft.picture.width, draft.picture.height), (320, 240));
+    live.tell(Command::Play(false));
+    let full = wait(|| live.take_shown().filter(|shown| !shown.draft));
+    assert_eq!((full.picture.width, full.picture.height), (640, 480));
+    assert!(full.drawing.strands >= 4 * draft.drawing.strands, "{} strands", draft.drawing.strands);
+    live.tell(Command::Camera(Camera::back()));
+    wait(|| live.take_shown().filter(|shown| shown.draft));
+    wait(|| live.take_shown().filter(|shown| !shown.draft));
+    live.tell(Command::Adapt(false));
+    live.tell(Command::Camera(Camera::front()));
+    assert!(!next(&live).draft);
+}
+
+#[test]
+fn hair_is_pulled_by_a_hand() {
+    let mut long = scene();
+    long.motion.name = strandline::scene::MotionName::Still;
+    let live = Live::new(long, || ()).unwrap();
+    let camera = wait(|| {
+        live.take_news().into_iter().find_map(|news| match news {
+            News::Loaded(camera, ..) => Some(camera),
+            _ => None,
+        })
+    });
+    let ray = |x: f32, y: f32| strandline::Ray::new(&camera, glam::Vec2::new(x, y));
+    // Beside the head, where there is nothing; then in the middle of the hair.
+    live.tell(Command::Grab(ray(2.0, 0.9), 0.02));
+    next(&live);
+    assert_eq!(next(&live).grabbed, 0);
+    live.tell(Command::Grab(ray(0.0, 0.25), 0.03));
+    let held = wait(|| live.take_shown().filter(|shown| shown.grabbed > 0));
+    live.tell(Command::Drag(ray(0.9, 0.3)));
+    let pulled = wait(|| live.take_shown().filter(|shown| shown.frame > held.frame + 20));
+    assert_eq!(pulled.grabbed, held.grabbed);
+    live.tell(Command::Release);
+    wait(|| live.take_shown().filter(|shown| shown.grabbed == 0));
+    assert!(live.take_news().is_empty());
+}
+
+#[test]
+fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let live = Live::new(scene(), || ()).unwrap();
+    next(&live);
+    let files = |name: &str| {
+        let list = std::fs::read_dir(folder.path().join(name)).unwrap();
+        list.map(|file| file.unwrap().file_name().into_string().unwrap()).collect::<Vec<_>>()
+    };
+    live.tell(Command::Record(folder.path().join("one")));
+    // The size stays, whatever the window wants.
+    live.tell(Command::Picture(strandline::render::PictureSettings { width: 96, ..scene().picture }));
+    wait(|| live.take_shown().filter(|shown| shown.recorded >= Some(4)));
+    live.tell(Command::StopRecording);
+    wait(|| live.take_news().into_iter().find(|news| *news == News::Recorded));
+    let found = files("one");
+    let frames = found.iter().filter(|name| name.starts_with("frame_")).count();
+    assert!(frames >= 4, "{found:?}");
+    assert!(found.iter().any(|name| name.starts_with("video.") || name.starts_with("animation.gif")));
+    let first = image_size(&folder.path().join("one/frame_0000.png"));
+    assert_eq!(first, (64, 48));
+    // Closing the window in the middle finishes the film.
+    live.tell(Command::Record(folder.path().join("two")));
+    wait(|| live.take_shown().filter(|shown| shown.recorded >= Some(2)));
+    drop(live);
+    assert!(files("two").iter().any(|name| name.starts_with("video.") || name == "animation.gif"));
+    // Where nothing can be written it is told, and it plays on.
+    let live = Live::new(scene(), || ()).unwrap();
+    std::fs::write(folder.path().join("file"), b"x").unwrap();
+    live.tell(Command::Record(folder.path().join("file/three")));
+    let news = wait(|| Some(live.take_news()).filter(|news| news.contains(&News::Recorded)));
+    assert!(news.iter().any(|news| matches!(news, News::Error(text) if text.contains("three"))));
+    assert_eq!(next(&live).recorded, None);
+}
+
+fn image_size(path: &std::path::Path) -> (u32, u32) {
+    image::image_dimensions(path).unwrap()
 }

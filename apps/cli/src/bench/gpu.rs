@@ -72,9 +72,9 @@ impl Device {
 
     /// Plays a scene without pictures.
     pub fn measure(&self, scene: &Scene, gradient: Gradient, what: &'static str) -> anyhow::Result<GpuRun> {
-        let Prepared { guides, colliders, motion, pivot, .. } = Prepared::new(scene)?;
+        let Prepared { guides, colliders, head, .. } = Prepared::new(scene)?;
         let solver = GpuSolver::new(&self.gpu, Solver::new(&guides, &scene.simulation, colliders)?)?;
-        let mut state = solver.rest_state(motion.pose(0.0, pivot))?;
+        let mut state = solver.rest_state(head.pose(0.0))?;
         state.set_gradient(gradient);
         let mut steps = Steps::default();
         let count = scene.film.frames as usize;
@@ -87,7 +87,7 @@ impl Device {
             let begin = Instant::now();
             let drive = |step: usize| {
                 let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
-                Drive { world_from_head: motion.pose(time, pivot), wind: scene.wind.at(time), hand: None }
+                Drive { world_from_head: head.pose(time), wind: scene.wind.at(time), hand: None }
             };
             for report in self.run(&solver, &mut state, queued, drive)? {
                 steps.add(&report);

@@ -26,6 +26,8 @@ pub struct GroomSection {
     pub guide_every: u32,
     /// Points on each guide, 4 to 64.
     pub points_per_strand: u32,
+    /// Length of every strand over its own, 0.05 to 1.
+    pub length: f32,
 }
 
 impl Default for GroomSection {
@@ -37,6 +39,7 @@ impl Default for GroomSection {
             translation: Vec3::ZERO,
             guide_every: 1,
             points_per_strand: 16,
+            length: 1.0,
         }
     }
 }
@@ -44,6 +47,8 @@ impl Default for GroomSection {
 impl GroomSection {
     pub(super) fn check(&self) -> Result<(), Error> {
         within("groom.guide_every", f64::from(self.guide_every), 1.0..=1e6)?;
-        within("groom.points_per_strand", f64::from(self.points_per_strand), 4.0..=64.0)
+        within("groom.points_per_strand", f64::from(self.points_per_strand), 4.0..=64.0)?;
+        // As a number of 32 bits, 0.05 is a little more.
+        within("groom.length", f64::from(self.length), f64::from(0.05_f32)..=1.0)
     }
 }

@@ -105,6 +105,7 @@ impl Scene {
         self.groom.check()?;
         self.body.check()?;
         self.film.check()?;
+        self.motion.check()?;
         self.wind.check()
     }
 

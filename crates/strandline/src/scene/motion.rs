@@ -1,10 +1,11 @@
-use glam::{EulerRot, Quat, Vec3};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::within;
 use crate::{
     Error,
     body::{Keyframe, Motion, Pose},
+    head::rotation,
 };
 
 /// The name of a motion.
@@ -65,11 +66,20 @@ pub struct MotionSection {
     /// or a point low in the body's or the groom's box.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pivot: Option<Vec3>,
+    /// Rotation of the head besides its motion, about the pivot: pitch (about x), yaw (about y), roll (about z)
+    /// \[degrees\].
+    pub rotation: Vec3,
     /// Poses, in the order of their times; used by "keyframes".
     pub keyframes: Vec<KeyframeSection>,
 }
 
 impl MotionSection {
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let most = f64::from(self.rotation.abs().max_element());
+        // A maximum passes over what is not a number.
+        within("motion.rotation", if self.rotation.is_nan() { f64::NAN } else { most }, 0.0..=360.0)
+    }
+
     /// The motion itself; rotations of keyframes happen about `pivot` \[m\].
     ///
     /// # Errors
@@ -89,9 +99,7 @@ impl MotionSection {
 
 impl KeyframeSection {
     fn keyframe(&self, pivot: Vec3) -> Keyframe {
-        let [pitch, yaw, roll] = self.rotation.to_array().map(f32::to_radians);
-        let turn = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
-        let mut world_from_head = Pose::rotation_about(pivot, turn);
+        let mut world_from_head = Pose::rotation_about(pivot, rotation(self.rotation));
         world_from_head.translation += self.translation;
         Keyframe { time: self.time, world_from_head }
     }

@@ -1,0 +1,316 @@
+//! The drawing thread.
+
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use super::recorder::Recorder;
+use super::stage::Stage;
+use super::{Command, FRAME, News, Out, Shown};
+use crate::{Error, FilmFiles, hair::place, render::PictureSettings, sim::StepReport, worker::Gone};
+
+/// What the drawing thread is told.
+pub(super) enum Message {
+    Command(Command),
+    /// The scene of the load with this number.
+    Loaded(u64, Result<Box<Stage>, Error>),
+    /// A film is over.
+    Recorded(Result<FilmFiles, Error>),
+    /// Nobody looks any more.
+    End,
+}
+
+/// The drawing thread.
+pub(super) struct Desk {
+    messages: Receiver<Message>,
+    own: Sender<Message>,
+    out: Arc<Mutex<Out>>,
+    wake: Box<dyn Fn() + Send>,
+}
+
+/// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
+const SLOW: f64 = 0.08;
+/// How long \[s\] nothing may happen before what stands still is drawn in full.
+const MOMENT: Duration = Duration::from_millis(200);
+
+/// What the thread goes on with.
+struct Course {
+    stage: Option<Box<Stage>>,
+    playing: bool,
+    /// Frames to be made while it stands still.
+    steps: u32,
+    /// Whether the picture is older than what it shows.
+    stale: bool,
+    /// Whether pictures may be simpler, and whether full ones take too long.
+    adapts: bool,
+    slow: bool,
+    /// Whether the last picture was simpler.
+    draft: bool,
+    frame: u64,
+    heard: u64,
+    /// Number of the last load.
+    load: u64,
+    recorder: Option<Recorder>,
+    /// Films that are being finished.
+    finishing: Vec<JoinHandle<()>>,
+}
+
+impl Course {
+    const START: Self = Self {
+        stage: None,
+        playing: true,
+        steps: 0,
+        stale: false,
+        adapts: false,
+        slow: false,
+        draft: false,
+        frame: 0,
+        heard: 0,
+        load: 0,
+        recorder: None,
+        finishing: Vec::new(),
+    };
+
+    /// How long to wait for a message before going on.
+    fn patience(&self) -> Duration {
+        // Every message wakes it.
+        const LONG: Duration = Duration::from_secs(3600);
+        match self.stage {
+            Some(_) if self.playing || self.steps > 0 || self.stale => Duration::ZERO,
+            Some(_) if self.draft => MOMENT,
+            _ => LONG,
+        }
+    }
+}
+
+/// A command that leaves the pictures as large as they are.
+fn of_size(command: Command, kept: PictureSettings) -> Command {
+    match command {
+        Command::Picture(settings) => {
+            let PictureSettings { width, height, .. } = kept;
+            Command::Picture(PictureSettings { width, height, ..settings })
+        }
+        other => other,
+    }
+}
+
+impl Desk {
+    pub fn new(
+        messages: Receiver<Message>,
+        own: Sender<Message>,
+        out: Arc<Mutex<Out>>,
+        wake: Box<dyn Fn() + Send>,
+    ) -> Self {
+        Self { messages, own, out, wake }
+    }
+
+    pub fn run(self) {
+        let mut course = Course::START;
+        self.play(&mut course);
+        // Films under way are finished.
+        course.finishing.extend(course.recorder.take().map(Recorder::finish));
+        for film in course.finishing {
+            let _ = film.join();
+        }
+    }
+
+    fn play(&self, course: &mut Course) {
+        loop {
+            let mut next = self.messages.recv_timeout(course.patience());
+            // Nothing happened for a moment: what was drawn simpler is drawn in full.
+            let rests = next.is_err() && !course.playing && course.steps == 0;
+            let mut full = rests && course.draft && !course.stale;
+            course.stale |= full;
+            loop {
+                match next {
+                    Ok(Message::End) | Err(RecvTimeoutError::Disconnected) => return,
+                    Ok(message) => {
+                        full = false;
+                        self.hear(course, message);
+                    }
+                    Err(RecvTimeoutError::Timeout) => break,
+                }
+                next = self.messages.recv_timeout(Duration::ZERO);
+            }
+            let draft = course.adapts && course.slow && !full && course.recorder.is_none();
+            if let Err(error) = self.frame(course, draft) {
+                self.say(News::Error(error.to_string()));
+                self.say(News::Paused);
+                // What fails now fails again: it waits to be told something else.
+                (course.playing, course.steps, course.stale, course.draft) = (false, 0, false, false);
+            }
+        }
+    }
+
+    fn hear(&self, course: &mut Course, message: Message) {
+        let command = match message {
+            Message::Command(command) => command,
+            Message::Loaded(load, stage) => return self.take_stage(course, load, stage),
+            Message::Recorded(film) => return self.tell_film(course, film),
+            Message::End => return,
+        };
+        course.heard += 1;
+        match command {
+            Command::Load(scene) => {
+                course.load += 1;
+                self.load(scene, course.load);
+            }
+            Command::Play(playing) => course.playing = playing,
+            Command::Step => course.steps += 1,
+            Command::Adapt(adapts) => course.adapts = adapts,
+            Command::Record(folder) => self.record(course, &folder),
+            Command::StopRecording => course.finishing.extend(course.recorder.take().map(Recorder::finish)),
+            other => {
+                course.stale = true;
+                let fixed = course.recorder.is_some();
+                let Some(stage) = &mut course.stage else { return };
+                let other = if fixed { of_size(other, stage.picture()) } else { other };
+                self.change(stage, other);
+            }
+        }
+    }
+
+    fn change(&self, stage: &mut Stage, command: Command) {
+        if let Err(error) = stage.change(command) {
+            self.say(News::Error(error.to_string()));
+        }
+    }
+
+    fn take_stage(&self, course: &mut Course, load: u64, loaded: Result<Box<Stage>, Error>) {
+        match loaded {
+            // Another scene was asked for since.
+            _ if load != course.load => {}
+            Ok(mut stage) => {
+                self.say(News::Loaded(stage.camera, stage.bounds, stage.notes.clone()));
+                if let (Some(old), Some(_)) = (&course.stage, &course.recorder) {
+                    let picture = Command::Picture(stage.picture());
+                    self.change(&mut stage, of_size(picture, old.picture()));
+                }
+                course.stage = Some(stage);
+                (course.stale, course.slow) = (true, false);
+            }
+            Err(error) => self.say(News::NotLoaded(error.to_string())),
+        }
+    }
+
+    /// Loads on a thread of its own, so that what plays goes on.
+    fn load(&self, scene: Box<crate::Scene>, number: u64) {
+        let own = self.own.clone();
+        let job = move || {
+            let loaded = Stage::new(&scene).map(Box::new);
+            // Nobody waits for it any more when the window is closed.
+            let _ = own.send(Message::Loaded(number, loaded));
+        };
+        if let Err(error) = std::thread::Builder::new().name("loading".to_owned()).spawn(job) {
+            self.say(News::NotLoaded(Error::Thread(error).to_string()));
+        }
+    }
+
+    fn record(&self, course: &mut Course, folder: &Path) {
+        if course.recorder.is_some() {
+            return;
+        }
+        let own = self.own.clone();
+        let done = move |film| {
+            let _ = own.send(Message::Recorded(film));
+        };
+        match Recorder::new(folder, (1.0 / FRAME) as f32, done) {
+            Ok(recorder) => course.recorder = Some(recorder),
+            Err(error) => {
+                self.say(News::Error(error.to_string()));
+                self.say(News::Recorded);
+            }
+        }
+    }
+
+    fn tell_film(&self, course: &mut Course, film: Result<FilmFiles, Error>) {
+        course.finishing.retain(|thread| !thread.is_finished());
+        match film {
+            Ok(film) => {
+                let files = film.files.last().map(|path| format!("wrote {}", path.display()));
+                film.notes.into_iter().chain(files).for_each(|note| self.say(News::Note(note)));
+            }
+            Err(error) => {
+                // It ended by itself.
+                course.finishing.extend(course.recorder.take().map(Recorder::finish));
+                self.say(News::Error(error.to_string()));
+            }
+        }
+        self.say(News::Recorded);
+    }
+
+    /// Simulates and draws one frame, as far as there is anything to do.
+    fn frame(&self, course: &mut Course, draft: bool) -> Result<(), Error> {
+        let Some(stage) = &mut course.stage else { return Ok(()) };
+        let gone = |Gone| Error::WorkerGone;
+        let mut step = None;
+        if (course.playing || course.steps > 0) && stage.worker.started() == 0 {
+            stage.start().map_err(gone)?;
+            course.steps = course.steps.saturating_sub(1);
+        }
+        while stage.worker.started() > 0 {
+            step = self.take(stage)?.or(step);
+            course.stale = true;
+        }
+        if !course.stale {
+            return Ok(());
+        }
+        if course.playing {
+            stage.start().map_err(gone)?;
+        }
+        let (picture, drawing) = stage.draw(draft)?;
+        std::mem::take(&mut stage.studio.painter.notes)
+            .into_iter()
+            .for_each(|note| self.say(News::Note(note)));
+        let seconds: f64 = drawing.seconds.iter().map(|(_, seconds)| seconds).sum();
+        // A full picture takes about four times as long as a simpler one.
+        course.slow = seconds * if draft { 4.0 } else { 1.0 } > SLOW;
+        if let (Some(recorder), Some(_)) = (&mut course.recorder, &step) {
+            recorder.add(&picture);
+        }
+        (course.stale, course.draft) = (false, draft);
+        course.frame += 1;
+        self.show(Shown {
+            picture,
+            frame: course.frame,
+            heard: course.heard,
+            draft,
+            recorded: course.recorder.as_ref().map(|recorder| recorder.frames),
+            drawing,
+            step,
+            grabbed: stage.grabbed,
+            places: [stage.simulated_on.clone(), place(stage.studio.painter.gpu())],
+        });
+        Ok(())
+    }
+
+    /// Takes a result of the simulation: a setting that was refused is told, a device that failed ends it.
+    fn take(&self, stage: &mut Stage) -> Result<Option<StepReport>, Error> {
+        let (reports, notes) = stage.take().map_err(|Gone| Error::WorkerGone)?;
+        notes.into_iter().for_each(|note| self.say(News::Note(note)));
+        match reports {
+            Ok(mut reports) => Ok(reports.pop()),
+            Err(error) if error.gpu().is_none() => {
+                self.say(News::Error(error.to_string()));
+                Ok(None)
+            }
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn say(&self, news: News) {
+        self.out.lock().unwrap_or_else(PoisonError::into_inner).news.push_back(news);
+        (self.wake)();
+    }
+
+    fn show(&self, shown: Shown) {
+        let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
+        // A step that nobody saw is still told.
+        let unseen = out.shown.take().and_then(|old| old.step);
+        out.shown = Some(Shown { step: shown.step.clone().or(unseen), ..shown });
+        drop(out);
+        (self.wake)();
+    }
+}

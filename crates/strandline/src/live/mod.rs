@@ -1,0 +1,177 @@
+//! Hair that plays until it is told otherwise, for windows: nothing here makes its caller wait.
+
+mod desk;
+mod recorder;
+mod stage;
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use desk::{Desk, Message};
+
+use crate::{
+    Error, Ray, Scene,
+    body::Aabb,
+    render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
+    scene::{MotionSection, WindSection},
+    sim::{Settings, StepReport},
+};
+
+/// Time that passes in a frame \[s\].
+const FRAME: f64 = 1.0 / 60.0;
+
+/// What a [`Live`] may be told. Everything shows within two frames.
+pub enum Command {
+    /// Loads a scene; what plays goes on until it is there, and stays when it cannot be loaded.
+    Load(Box<Scene>),
+    /// Goes on, or stands still.
+    Play(bool),
+    /// One frame, while it stands still.
+    Step,
+    /// Back to rest.
+    Reset,
+    /// Another view.
+    Camera(Camera),
+    /// Another look of the hair.
+    Look(Box<Look>),
+    /// Another look of the body.
+    BodyLook(BodyLook),
+    /// Other lights.
+    Lights(Vec<Light>),
+    /// Another level of detail.
+    LevelOfDetail(LevelOfDetail),
+    /// Another size or finish of the pictures.
+    Picture(PictureSettings),
+    /// Other settings of the simulation.
+    Settings(Box<Settings>),
+    /// Another length of all strands, 0.05 to 1 of their own.
+    Length(f32),
+    /// Another wind.
+    Wind(WindSection),
+    /// Another motion of the head, from its beginning, or another turn besides the one that there is; the
+    /// pivot stays.
+    Motion(Box<MotionSection>),
+    /// Takes the hair that a line of sight meets first, and all within a distance \[m\] of it, into a hand.
+    Grab(Ray, f32),
+    /// Moves the hand to a line of sight, as far from the camera as it is.
+    Drag(Ray),
+    /// Lets go of the hair.
+    Release,
+    /// Whether pictures are simpler while the hair moves or is changed and a full one takes longer than
+    /// 80 ms; they are not unless this is told. What stands still is drawn in full after a moment.
+    Adapt(bool),
+    /// Writes every frame from the next one on, in full, to a folder: as pictures and a video. Frames are
+    /// 1/60 s of the hair's time apart, however long they take. The size of the pictures stays.
+    Record(PathBuf),
+    /// Finishes the video.
+    StopRecording,
+}
+
+/// What a [`Live`] shows.
+#[derive(Clone, Debug, Default)]
+pub struct Shown {
+    /// The picture.
+    pub picture: Picture,
+    /// Pictures drawn so far.
+    pub frame: u64,
+    /// Commands that were heard before it was drawn: see [`Live::tell`].
+    pub heard: u64,
+    /// Whether it is simpler than it was asked to be.
+    pub draft: bool,
+    /// Frames that the video has so far, while one is recorded.
+    pub recorded: Option<u32>,
+    /// What the picture cost.
+    pub drawing: FrameReport,
+    /// The last step, if one was made for this picture.
+    pub step: Option<StepReport>,
+    /// Strands in the hand.
+    pub grabbed: usize,
+    /// Where the hair is simulated and drawn.
+    pub places: [String; 2],
+}
+
+/// What a [`Live`] has to tell, in its order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum News {
+    /// A scene is there: its camera, the box around hair and body \[m\], and what a person should read.
+    Loaded(Camera, Aabb, Vec<String>),
+    /// Something that a person should read.
+    Note(String),
+    /// A scene could not be loaded; what was there stays.
+    NotLoaded(String),
+    /// Something could not be done; what was there stays.
+    Error(String),
+    /// It stands still, since going on failed: the error was told before.
+    Paused,
+    /// The video is over.
+    Recorded,
+}
+
+/// A scene that plays on threads of its own: one simulates, one draws [Chen2011 §5].
+pub struct Live {
+    commands: Option<Sender<Message>>,
+    told: AtomicU64,
+    out: Arc<Mutex<Out>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Default)]
+struct Out {
+    shown: Option<Shown>,
+    news: VecDeque<News>,
+}
+
+impl Live {
+    /// Starts the threads and loads a scene. `wake` is called when there is something new.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn new(scene: Scene, wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
+        let (commands, messages) = channel();
+        let out = Arc::new(Mutex::new(Out::default()));
+        let desk = Desk::new(messages, commands.clone(), out.clone(), Box::new(wake));
+        let thread = std::thread::Builder::new()
+            .name("drawing".to_owned())
+            .spawn(move || desk.run())
+            .map_err(Error::Thread)?;
+        let live = Self { commands: Some(commands), told: AtomicU64::new(0), out, thread: Some(thread) };
+        live.tell(Command::Load(Box::new(scene)));
+        Ok(live)
+    }
+
+    /// Tells it something; never waits. Returns the command's number: pictures that were drawn after it was
+    /// heard have at least this [`Shown::heard`].
+    pub fn tell(&self, command: Command) -> u64 {
+        // Without a thread there is nobody to tell: its last words are in the news.
+        let _ = self.commands.as_ref().map(|commands| commands.send(Message::Command(command)));
+        self.told.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    /// The newest picture, if there is one that was not taken yet.
+    pub fn take_shown(&self) -> Option<Shown> {
+        self.out().shown.take()
+    }
+
+    /// What happened since the last call.
+    pub fn take_news(&self) -> Vec<News> {
+        self.out().news.drain(..).collect()
+    }
+
+    fn out(&self) -> std::sync::MutexGuard<'_, Out> {
+        self.out.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        // The thread holds a sender too, so that it does not end by itself.
+        if let Some(commands) = self.commands.take() {
+            let _ = commands.send(Message::End);
+        }
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}

@@ -1,0 +1,232 @@
+//! A scene on stage: what is simulated on one thread and drawn on another.
+
+use glam::Vec3;
+
+use super::{Command, FRAME};
+use crate::{
+    Error, Hair, HeadMotion, Ray, Scene,
+    body::Aabb,
+    hair::{Studio, place},
+    prepare::Prepared,
+    render::{Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
+    scene::{MotionSection, WindSection},
+    sim::{SimError, StepReport},
+    simulation::{Act, Done, Job, Moment, Simulation},
+    worker::{Gone, Worker},
+};
+
+/// The reports of a job, and what a person should read.
+pub(super) type Taken = (Result<Vec<StepReport>, SimError>, Vec<String>);
+
+/// A scene on stage.
+pub(super) struct Stage {
+    pub worker: Worker<Simulation>,
+    pub studio: Studio,
+    pub camera: Camera,
+    look: Look,
+    level_of_detail: LevelOfDetail,
+    picture: PictureSettings,
+    /// Whether pictures are simpler than these three say.
+    draft: bool,
+    wind: WindSection,
+    motion: MotionSection,
+    head: HeadMotion,
+    /// Time of motion and wind \[s\], at the end of the last frame that was started.
+    time: f64,
+    /// Where the hand is that holds hair \[m\], world space.
+    hand: Option<Vec3>,
+    pub grabbed: usize,
+    spare: Vec<Moment>,
+    shown: Option<Moment>,
+    pub simulated_on: String,
+    pub bounds: Aabb,
+    pub notes: Vec<String>,
+}
+
+/// A simpler picture has at most so many follow strands of a guide and segments of a span, and shadow maps
+/// of so many texels a side; it has one sample for four pixels.
+const FEW_STRANDS: u32 = 8;
+const FEW_SEGMENTS: u32 = 2;
+const SMALL_MAP: u32 = 256;
+
+impl Stage {
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let mut prepared = Prepared::new(scene)?;
+        let (head, bounds) = (prepared.head.clone(), prepared.bounds);
+        let mut notes = std::mem::take(&mut prepared.notes);
+        let aspect = scene.picture.width as f32 / scene.picture.height as f32;
+        let camera = scene.camera.camera(bounds, aspect);
+        let mut hair = Hair::from_scene(scene, prepared, scene.devices())?;
+        notes.extend(hair.take_notes());
+        let (simulation, studio) = hair.into_parts();
+        let mut shown = Moment::default();
+        simulation.show(&mut shown);
+        let simulated_on = place(simulation.engine.gpu());
+        Ok(Self {
+            worker: Worker::new(simulation).map_err(Error::Thread)?,
+            studio,
+            camera,
+            look: scene.look.clone(),
+            level_of_detail: scene.level_of_detail,
+            picture: scene.picture,
+            draft: false,
+            wind: scene.wind,
+            motion: scene.motion.clone(),
+            head,
+            time: 0.0,
+            hand: None,
+            grabbed: 0,
+            spare: vec![Moment::default()],
+            shown: Some(shown),
+            simulated_on,
+            bounds,
+            notes,
+        })
+    }
+
+    /// Starts one frame.
+    pub fn start(&mut self) -> Result<(), Gone> {
+        let (begin, hand) = (self.time, self.hand);
+        let (wind, end) = (self.wind.at(begin), self.head.pose(begin + FRAME));
+        self.time += FRAME;
+        self.act(Box::new(move |simulation| {
+            let start = simulation.end();
+            hand.into_iter().for_each(|hand| simulation.move_hand(hand));
+            simulation.step_along(FRAME, wind, &|share| start.toward(&end, share))
+        }))
+    }
+
+    fn act(&mut self, act: Act) -> Result<(), Gone> {
+        let (gpu, moment) = (self.studio.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
+        self.worker.start(Job { act, gpu, moment })
+    }
+
+    /// Takes the next result; the moment shown before is free.
+    pub fn take(&mut self) -> Result<Taken, Gone> {
+        let Done { moment, reports, notes, grabbed, place } = self.worker.finish()?;
+        (self.simulated_on, self.grabbed) = (place, grabbed);
+        self.spare.extend(self.shown.replace(moment));
+        Ok((reports, notes))
+    }
+
+    /// Draws what is to be shown, simpler where `draft`.
+    pub fn draw(&mut self, draft: bool) -> Result<(Picture, FrameReport), Error> {
+        if self.draft != draft {
+            self.studio.painter.set_picture(&self.picture_settings(draft))?;
+            self.draft = draft;
+        }
+        let Some(moment) = &self.shown else { return Ok(Default::default()) };
+        if !draft {
+            self.studio.level_of_detail = self.level_of_detail;
+            return self.studio.draw(moment, &self.camera, &self.look);
+        }
+        let segments_per_span = self.level_of_detail.segments_per_span.min(FEW_SEGMENTS);
+        self.studio.level_of_detail = LevelOfDetail { segments_per_span, ..self.level_of_detail };
+        let mut look = self.look.clone();
+        look.follow_strands = look.follow_strands.min(FEW_STRANDS);
+        look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
+        self.studio.draw(moment, &self.camera, &look)
+    }
+
+    fn picture_settings(&self, draft: bool) -> PictureSettings {
+        let PictureSettings { width, height, .. } = self.picture;
+        let half = |side: u32| side.div_ceil(2);
+        let small =
+            PictureSettings { width: half(width), height: half(height), supersampling: 1, ..self.picture };
+        if draft { small } else { self.picture }
+    }
+
+    /// Size and finish of the pictures.
+    pub fn picture(&self) -> PictureSettings {
+        self.picture
+    }
+
+    fn set_picture(&mut self, settings: PictureSettings) -> Result<(), Error> {
+        let before = std::mem::replace(&mut self.picture, settings);
+        // What is refused is refused at once, though it may be drawn only later.
+        let tried = self.picture.validate().map_err(Error::from);
+        let set = tried.and_then(|()| {
+            let drawn = self.picture_settings(self.draft);
+            Ok(self.studio.painter.set_picture(&drawn)?)
+        });
+        if set.is_err() {
+            self.picture = before;
+        }
+        set
+    }
+
+    /// Takes the hair that a line of sight meets into the hand.
+    fn grab(&mut self, ray: Ray, radius: f32) -> Result<(), Gone> {
+        let Some(moment) = &self.shown else { return Ok(()) };
+        let guides = &self.studio.guides;
+        let body = self.studio.painter.mesh().map(|mesh| (mesh, &moment.world_from_head));
+        let shape = [guides.strand_count(), guides.points_per_strand()];
+        self.hand = ray.hair(&moment.positions, shape, radius, body);
+        let Some(hand) = self.hand else { return Ok(()) };
+        self.act(Box::new(move |simulation| simulation.grab(hand, radius).map(|_| Vec::new())))
+    }
+
+    fn release(&mut self) -> Result<(), Gone> {
+        match self.hand.take() {
+            Some(_) => self.act(Box::new(|simulation| simulation.release().map(|()| Vec::new()))),
+            None => Ok(()),
+        }
+    }
+
+    /// Another motion of the head begins at its beginning; another turn does not disturb it.
+    fn set_motion(&mut self, motion: MotionSection) -> Result<(), Error> {
+        self.head = HeadMotion::new(&motion, self.head.pivot())?;
+        if motion.name != self.motion.name {
+            self.time = 0.0;
+        }
+        self.motion = motion;
+        Ok(())
+    }
+
+    /// Does what a command says.
+    pub fn change(&mut self, command: Command) -> Result<(), Error> {
+        let gone = |Gone| Error::WorkerGone;
+        match command {
+            Command::Camera(camera) => camera.validate().map(|()| self.camera = camera)?,
+            Command::Look(look) => look.validate().map(|()| self.look = *look)?,
+            Command::BodyLook(look) => look.validate().map(|()| self.studio.body_look = look)?,
+            Command::Lights(lights) => {
+                lights.iter().try_for_each(Light::validate)?;
+                self.studio.lights = lights;
+            }
+            Command::LevelOfDetail(level) => level.validate().map(|()| self.level_of_detail = level)?,
+            Command::Picture(settings) => self.set_picture(settings)?,
+            Command::Wind(wind) => self.wind = wind,
+            Command::Motion(motion) => self.set_motion(*motion)?,
+            Command::Drag(ray) => {
+                let hand = self.hand.and_then(|hand| ray.at_depth_of(&self.camera, hand));
+                self.hand = hand.or(self.hand);
+            }
+            Command::Grab(ray, radius) => self.grab(ray, radius).map_err(gone)?,
+            Command::Release => self.release().map_err(gone)?,
+            simulated => self.change_simulation(simulated).map_err(gone)?,
+        }
+        Ok(())
+    }
+
+    /// Does what a command says to the simulation, behind what it does now.
+    fn change_simulation(&mut self, command: Command) -> Result<(), Gone> {
+        match command {
+            Command::Settings(settings) => self.act(Box::new(move |simulation| {
+                simulation.engine.set_settings(&settings).map(|()| Vec::new())
+            })),
+            Command::Length(scale) => {
+                let scales = vec![scale; self.studio.guides.strand_count()];
+                self.act(Box::new(move |simulation| {
+                    simulation.engine.set_length_scale(&scales).map(|()| Vec::new())
+                }))
+            }
+            Command::Reset => {
+                self.hand = None;
+                let pose = self.head.pose(self.time);
+                self.act(Box::new(move |simulation| simulation.reset(pose).map(|()| Vec::new())))
+            }
+            _ => Ok(()),
+        }
+    }
+}

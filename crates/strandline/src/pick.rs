@@ -1,0 +1,141 @@
+//! What lies under a place of the picture.
+
+use glam::{Vec2, Vec3};
+
+use crate::{
+    body::{Mesh, Pose},
+    groom::{LANES, Vec3Lanes},
+    render::Camera,
+};
+
+/// A line of sight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it begins \[m\], world space.
+    pub origin: Vec3,
+    /// Its unit direction, world space.
+    pub direction: Vec3,
+}
+
+impl Ray {
+    /// The line through a place of the picture, given from its middle in halves of its height, y up.
+    pub fn new(camera: &Camera, place: Vec2) -> Self {
+        let across = place.extend(-camera.focal());
+        let direction = camera.view_from_world().inverse().transform_vector3(across);
+        Self { origin: camera.position, direction: direction.normalize_or(Vec3::NEG_Z) }
+    }
+
+    /// Where it meets the plane through a point that faces the camera \[m\]; none behind it.
+    pub(crate) fn at_depth_of(&self, camera: &Camera, point: Vec3) -> Option<Vec3> {
+        let forward = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
+        let along = (point - self.origin).dot(forward) / self.direction.dot(forward);
+        (along.is_finite() && along > 0.0).then(|| self.origin + self.direction * along)
+    }
+
+    /// Distance along it \[m\] to a triangle, if it meets it [Moeller1997].
+    fn meets(&self, [a, b, c]: [Vec3; 3]) -> Option<f32> {
+        let (to_b, to_c) = (b - a, c - a);
+        let normal = self.direction.cross(to_c);
+        let volume = to_b.dot(normal);
+        let from_a = self.origin - a;
+        let u = from_a.dot(normal) / volume;
+        let turned = from_a.cross(to_b);
+        let v = self.direction.dot(turned) / volume;
+        let along = to_c.dot(turned) / volume;
+        let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+        (inside && along > 0.0 && along.is_finite()).then_some(along)
+    }
+
+    /// Distance along it \[m\] to a body that a pose carries; infinity when it passes by.
+    fn to_body(self, mesh: &Mesh, world_from_head: &Pose) -> f32 {
+        let head_from_world = world_from_head.inverse();
+        let inside = Self {
+            origin: head_from_world.point(self.origin),
+            direction: head_from_world.rotation * self.direction,
+        };
+        let corners = |triangle: &[u32; 3]| triangle.map(|corner| mesh.positions[corner as usize]);
+        let along = mesh.triangles.iter().filter_map(|triangle| inside.meets(corners(triangle)));
+        along.fold(f32::INFINITY, f32::min)
+    }
+
+    /// The hair that it meets first before the body: the guide point \[m\] within `radius` \[m\] of it that is
+    /// nearest to its beginning and to itself. `positions` are those of `strands` guides, world space,
+    /// shape `[block][point]` of lanes, of so many points each.
+    pub(crate) fn hair(
+        self,
+        positions: &[Vec3Lanes],
+        [strands, points]: [usize; 2],
+        radius: f32,
+        body: Option<(&Mesh, &Pose)>,
+    ) -> Option<Vec3> {
+        let mut nearest: Option<(f32, Vec3)> = None;
+        let limit = body.map_or(f32::INFINITY, |(mesh, pose)| self.to_body(mesh, pose));
+        for (index, lanes) in positions.iter().enumerate() {
+            let live = (strands - (index / points * LANES).min(strands)).min(LANES);
+            for point in (0..live).map(|lane| lanes.get(lane)) {
+                let along = (point - self.origin).dot(self.direction);
+                let aside = (self.origin + self.direction * along).distance(point);
+                // What is off the line counts as farther away, so that the hand takes what it points at.
+                let cost = along + 2.0 * aside;
+                let before = along > 0.0 && along < limit + radius && aside < radius;
+                if before && nearest.is_none_or(|(least, _)| cost < least) {
+                    nearest = Some((cost, point));
+                }
+            }
+        }
+        nearest.map(|(_, point)| point)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Looks from z = 1 m at the origin.
+    fn camera() -> Camera {
+        Camera { position: Vec3::Z, target: Vec3::ZERO, ..Camera::front() }
+    }
+
+    fn strand(points: &[Vec3]) -> Vec<Vec3Lanes> {
+        points.iter().map(|point| Vec3Lanes::splat(*point)).collect()
+    }
+
+    #[test]
+    fn a_ray_goes_where_the_picture_shows_it() {
+        let camera = camera();
+        let world = Vec3::new(0.1, -0.05, 0.2);
+        let view = camera.view_from_world().transform_point3(world);
+        let place = Vec2::new(view.x, view.y) * camera.focal() / -view.z;
+        let ray = Ray::new(&camera, place);
+        let along = (world - ray.origin).dot(ray.direction);
+        assert!((ray.origin + ray.direction * along).distance(world) < 1e-6);
+        assert!(ray.at_depth_of(&camera, world).unwrap().distance(world) < 1e-6);
+        assert_eq!(ray.at_depth_of(&camera, Vec3::Z * 2.0), None, "behind the camera");
+    }
+
+    #[test]
+    fn the_hair_in_front_is_taken_and_none_behind_the_body() {
+        let ray = Ray::new(&camera(), Vec2::ZERO);
+        let hair = strand(&[Vec3::Z * -0.2, Vec3::new(0.01, 0.0, 0.1), Vec3::new(0.0, 0.3, 0.2)]);
+        let found = ray.hair(&hair, [1, 3], 0.02, None);
+        assert_eq!(found, Some(Vec3::new(0.01, 0.0, 0.1)));
+        assert_eq!(ray.hair(&hair[..1], [1, 1], 0.02, None), Some(Vec3::Z * -0.2));
+        assert_eq!(ray.hair(&hair[2..], [1, 1], 0.02, None), None, "beside it");
+        let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 2.0, 0.0)];
+        let wall = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        let pose = Pose::IDENTITY;
+        assert_eq!(ray.hair(&hair[..1], [1, 1], 0.02, Some((&wall, &pose))), None, "behind the wall");
+        assert!(ray.hair(&hair, [1, 3], 0.02, Some((&wall, &pose))).is_some(), "before it");
+        let aside = Pose { translation: Vec3::X * 5.0, ..Pose::IDENTITY };
+        assert!(ray.hair(&hair[..1], [1, 1], 0.02, Some((&wall, &aside))).is_some(), "the wall is elsewhere");
+    }
+
+    #[test]
+    fn lanes_that_carry_no_hair_are_not_taken() {
+        let ray = Ray::new(&camera(), Vec2::ZERO);
+        let mut lanes = Vec3Lanes::splat(Vec3::ZERO);
+        lanes.set(0, Vec3::X);
+        assert_eq!(ray.hair(&[lanes], [1, 1], 0.02, None), None);
+        assert!(ray.hair(&[lanes], [2, 1], 0.02, None).is_some());
+    }
+}
