@@ -29,7 +29,10 @@ mod painter;
 mod player;
 mod prepare;
 mod simulation;
+mod sync;
 mod worker;
+#[cfg(test)]
+mod worker_tests;
 
 pub mod scene;
 
