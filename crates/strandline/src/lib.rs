@@ -31,7 +31,10 @@ mod pick;
 mod player;
 mod prepare;
 mod simulation;
+mod sync;
 mod worker;
+#[cfg(test)]
+mod worker_tests;
 
 pub mod scene;
 
