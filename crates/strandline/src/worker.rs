@@ -30,7 +30,7 @@ pub(crate) struct Gone;
 pub(crate) struct Worker<W: Work> {
     work: Arc<Mutex<W>>,
     jobs: Option<Sender<W::Job>>,
-    results: Receiver<W::Done>,
+    results: Option<Receiver<W::Done>>,
     thread: Option<JoinHandle<()>>,
     started: usize,
 }
@@ -43,7 +43,7 @@ impl<W: Work> Worker<W> {
         let (done, results) = channel();
         let own = work.clone();
         let thread = Builder::new().name("simulation".to_owned()).spawn(move || {
-            // Ends with the senders; an unread result ends it too.
+            // Ends with the senders, or when nobody takes results any more.
             for job in waiting {
                 let result = lock(&own).run(job);
                 if done.send(result).is_err() {
@@ -51,7 +51,7 @@ impl<W: Work> Worker<W> {
                 }
             }
         })?;
-        Ok(Self { work, jobs: Some(jobs), results, thread: Some(thread), started: 0 })
+        Ok(Self { work, jobs: Some(jobs), results: Some(results), thread: Some(thread), started: 0 })
     }
 
     /// Hands a job over; it begins when those before it have ended.
@@ -71,7 +71,7 @@ impl<W: Work> Worker<W> {
 
     /// Waits for the oldest job that was started.
     pub fn finish(&mut self) -> Result<W::Done, Gone> {
-        let result = self.results.recv().map_err(|_| Gone)?;
+        let result = self.results.as_ref().and_then(|results| results.recv().ok()).ok_or(Gone)?;
         self.started -= 1;
         Ok(result)
     }
@@ -89,7 +89,8 @@ fn lock<W>(work: &Mutex<W>) -> MutexGuard<'_, W> {
 
 impl<W: Work> Drop for Worker<W> {
     fn drop(&mut self) {
-        drop(self.jobs.take());
+        // The job that runs is waited for, and those behind it are not begun.
+        drop((self.jobs.take(), self.results.take()));
         // A panic of the thread was told as `Gone`.
         let _ = self.thread.take().map(JoinHandle::join);
     }
