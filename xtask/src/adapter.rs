@@ -1,4 +1,5 @@
-//! Whether there is a GPU to test on, and the software one that can be installed where there is none.
+//! Whether there is a GPU to test on and a display to open windows on, and what can be installed where there
+//! is none.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -12,15 +13,24 @@ pub const REQUIRED: &str = "STRANDLINE_REQUIRE_GPU";
 pub const UNTESTED: &str =
     "no GPU adapter: the parity checks, the laws on the GPU and the backend tests compared nothing";
 
+/// What the tests of the window ask of the machine: a missing display is a failure.
+pub const DISPLAY_REQUIRED: &str = "STRANDLINE_REQUIRE_DISPLAY";
+
+/// What is left out without a display.
+pub const NO_WINDOW: &str = "no Xvfb or no X libraries: the window was not opened";
+
 /// Debian's software Vulkan.
-const PACKAGES: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
+const VULKAN: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
+/// Debian's display without a screen, and the libraries that a window loads.
+const DISPLAY: [&str; 5] = ["xvfb", "libx11-xcb1", "libxcursor1", "libxi6", "libxkbcommon-x11-0"];
+const LIBRARIES: [&str; 4] = ["libX11-xcb.so.1", "libXcursor.so.1", "libXi.so.6", "libxkbcommon-x11.so.0"];
 
 /// What to do about the adapter before the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plan {
     /// There is one, or none is asked for.
     Go,
-    /// Install the software driver, with these words before the package manager's name.
+    /// Install what is missing, with these words before the package manager's name.
     Install(&'static [&'static str]),
     /// One is required, and cannot be installed from here.
     GiveUp(&'static str),
@@ -30,6 +40,8 @@ pub enum Plan {
 #[derive(Clone, Copy, Debug)]
 pub struct Machine {
     pub adapter: bool,
+    /// Whether windows can be opened without a screen.
+    pub display: bool,
     pub apt: bool,
     pub root: bool,
     pub sudo: bool,
@@ -38,37 +50,65 @@ pub struct Machine {
 /// Decides, with or without `--setup`, and where an adapter is `required` anyway.
 pub fn plan(setup: bool, required: bool, machine: Machine) -> Plan {
     match machine {
-        Machine { adapter: true, .. } => Plan::Go,
+        Machine { adapter: true, display: true, .. } => Plan::Go,
+        Machine { adapter: true, .. } if !setup => Plan::Go,
         _ if !setup && required => Plan::GiveUp("a GPU is required and there is none; try --setup"),
         _ if !setup => Plan::Go,
         Machine { apt: false, .. } => Plan::GiveUp(
-            "there is no GPU and no apt-get: install a Vulkan driver by hand, such as Mesa's lavapipe",
+            "there is no apt-get: install a Vulkan driver, such as Mesa's lavapipe, and Xvfb by hand",
         ),
         Machine { root: true, .. } => Plan::Install(&[]),
         Machine { sudo: true, .. } => Plan::Install(&["sudo", "-n"]),
         _ => Plan::GiveUp(
-            "there is no GPU and no right to install one: run \
-             `sudo apt-get install --no-install-recommends mesa-vulkan-drivers libvulkan1`",
+            "no right to install what is missing: run `sudo apt-get install --no-install-recommends \
+             mesa-vulkan-drivers libvulkan1 xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0`",
         ),
     }
 }
 
-/// Sees to it that there is an adapter, as far as that is asked for: whether there is one, or why the
+/// What the tests can use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct There {
+    pub adapter: bool,
+    pub display: bool,
+}
+
+/// Sees to it that there is an adapter and a display, as far as that is asked for: what there is, or why the
 /// tests cannot start.
-pub fn prepare(setup: bool) -> Result<bool, String> {
+pub fn prepare(setup: bool) -> Result<There, String> {
     let required = std::env::var_os(REQUIRED).is_some_and(|value| value == "1");
-    let adapter = is_there()?;
-    match plan(setup, required, look(adapter)) {
-        Plan::Go => Ok(adapter),
+    let there = There { adapter: is_there()?, display: has_display() };
+    match plan(setup, required, look(there)) {
+        Plan::Go => Ok(there),
         Plan::GiveUp(why) => Err(why.to_owned()),
         Plan::Install(before) => {
-            println!("\nthere is no GPU: installing {}, a software one", PACKAGES.join(" and "));
-            if !install(before) {
-                return Err("the package manager could not install the software driver".to_owned());
+            let mut packages = Vec::new();
+            packages.extend(VULKAN.iter().filter(|_| !there.adapter));
+            packages.extend(DISPLAY.iter().filter(|_| !there.display));
+            println!("\ninstalling {}", packages.join(", "));
+            if !install(before, &packages) {
+                return Err(format!("the package manager could not install {}", packages.join(", ")));
             }
-            if is_there()? { Ok(true) } else { Err("the software driver shows no adapter".to_owned()) }
+            if !is_there()? {
+                return Err("the software driver shows no adapter".to_owned());
+            }
+            if !has_display() {
+                return Err(NO_WINDOW.to_owned());
+            }
+            Ok(There { adapter: true, display: true })
         }
     }
+}
+
+/// Whether there is Xvfb, and the libraries that a window loads.
+fn has_display() -> bool {
+    let mut server = Command::new("Xvfb");
+    let server =
+        server.arg("-help").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    let known = Command::new("ldconfig").arg("-p").output();
+    let known = known.or_else(|_| Command::new("/sbin/ldconfig").arg("-p").output());
+    let known = known.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    server.is_ok() && LIBRARIES.iter().all(|library| known.contains(library))
 }
 
 /// Asks the kit for the adapters, and prints them; why it cannot be asked.
@@ -82,7 +122,7 @@ fn is_there() -> Result<bool, String> {
     }
 }
 
-fn look(adapter: bool) -> Machine {
+fn look(There { adapter, display }: There) -> Machine {
     let succeeds = |program: &str, arguments: &[&str]| {
         let mut command = Command::new(program);
         command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
@@ -91,6 +131,7 @@ fn look(adapter: bool) -> Machine {
     let user = Command::new("id").arg("-u").output();
     Machine {
         adapter,
+        display,
         apt: succeeds("apt-get", &["--version"]),
         root: user.is_ok_and(|output| output.stdout.trim_ascii() == b"0"),
         sudo: succeeds("sudo", &["-n", "true"]),
@@ -98,7 +139,7 @@ fn look(adapter: bool) -> Machine {
 }
 
 /// Installs from the package lists that there are, and renews them when that fails.
-fn install(before: &[&str]) -> bool {
+fn install(before: &[&str], packages: &[&str]) -> bool {
     let apt = |arguments: &[&str]| {
         let words = [before, &["env", "DEBIAN_FRONTEND=noninteractive", "apt-get"], arguments].concat();
         println!("{}", words.join(" "));
@@ -106,7 +147,7 @@ fn install(before: &[&str]) -> bool {
         command.args(&words[1..]).stdin(Stdio::null()).current_dir(root());
         command.status().is_ok_and(|status| status.success())
     };
-    let packages = [&["install", "--yes", "--no-install-recommends"], &PACKAGES[..]].concat();
+    let packages = [&["install", "--yes", "--no-install-recommends"], packages].concat();
     let listed = Path::new("/var/lib/apt/lists").read_dir().is_ok_and(|mut lists| lists.next().is_some());
     (listed && apt(&packages)) || (apt(&["update"]) && apt(&packages))
 }
@@ -115,13 +156,17 @@ fn install(before: &[&str]) -> bool {
 mod tests {
     use super::*;
 
-    const BARE: Machine = Machine { adapter: false, apt: true, root: false, sudo: false };
+    const BARE: Machine = Machine { adapter: false, display: false, apt: true, root: false, sudo: false };
 
     #[test]
-    fn an_adapter_is_enough() {
+    fn an_adapter_and_a_display_are_enough() {
         for (setup, required) in [(false, false), (false, true), (true, false), (true, true)] {
-            assert_eq!(plan(setup, required, Machine { adapter: true, ..BARE }), Plan::Go);
+            let machine = Machine { adapter: true, display: true, ..BARE };
+            assert_eq!(plan(setup, required, machine), Plan::Go);
         }
+        let machine = Machine { adapter: true, root: true, ..BARE };
+        assert_eq!(plan(false, true, machine), Plan::Go);
+        assert_eq!(plan(true, false, machine), Plan::Install(&[]), "a display is missing");
     }
 
     #[test]

@@ -12,8 +12,9 @@ const USAGE: &str = "usage: cargo xtask COMMAND
 
   test     format, lints, names, all tests, doc tests, examples; closes with a summary.
            Tests of the GPU backend run on any adapter, and say so where there is none.
-           --setup installs Debian's software Vulkan where there is no adapter; one that is
-           still missing then fails the tests, as with STRANDLINE_REQUIRE_GPU=1
+           --setup installs Debian's software Vulkan where there is no adapter, and Xvfb where
+           there is none to open windows on; what is still missing then fails the tests, as
+           with STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1
   ci       test --setup
   bless    record the golden pictures anew; look at each before you commit it
   names    check that every stage has one name everywhere";

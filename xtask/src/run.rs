@@ -39,14 +39,14 @@ impl Tally {
 /// Everything that must hold before a change lands. False when anything failed. `setup` installs an
 /// adapter to test on where there is none.
 pub fn test(setup: bool) -> bool {
-    let adapter = match adapter::prepare(setup) {
-        Ok(adapter) => adapter,
+    let there = match adapter::prepare(setup) {
+        Ok(there) => there,
         Err(why) => {
             println!("FAILED: {why}\ntests: 0 passed, 1 failed, 0 skipped");
             return false;
         }
     };
-    let required = [(adapter::REQUIRED, "1")];
+    let required = [(adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")];
     let required = if setup { &required[..] } else { &[] };
     let begin = Instant::now();
     let mut tally = Tally::default();
@@ -70,8 +70,11 @@ pub fn test(setup: bool) -> bool {
         step(&format!("example {name}"), cargo(&run, &[("STRANDLINE_QUICK", "1")], &mut tally));
     }
     println!("\ntook {:.0} s", begin.elapsed().as_secs_f64());
-    if !adapter {
+    if !there.adapter {
         println!("NOT TESTED: {}", adapter::UNTESTED);
+    }
+    if !there.display {
+        println!("NOT TESTED: {}", adapter::NO_WINDOW);
     }
     for name in &broken {
         println!("FAILED: {name}");

@@ -90,6 +90,9 @@ pub struct RenderOptions {
 
 #[derive(Args, Debug)]
 pub struct ViewOptions {
+    /// A .toml scene, or a .hair, .tfx, .obj, .gltf or .glb file in place of the scene's.
+    #[arg(value_name = "FILE")]
+    pub file: Option<PathBuf>,
     #[command(flatten)]
     pub inputs: Inputs,
 }

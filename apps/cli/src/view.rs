@@ -6,7 +6,15 @@ use crate::{arguments::ViewOptions, render};
 
 /// Opens the window on what the command line names.
 pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
-    let scene = options.inputs.scene()?;
+    let mut inputs = options.inputs.clone();
+    if let Some(file) = options.file.as_deref().filter(|file| strandline::scene::is_file(file)) {
+        // What else is on the command line replaces parts of it.
+        inputs.scene = file.display().to_string();
+    }
+    let mut scene = inputs.scene()?;
+    if let Some(file) = options.file.as_deref().filter(|file| !strandline::scene::is_file(file)) {
+        scene = strandline_viewer::App::scene_of(&scene, file)?;
+    }
     strandline_viewer::open(scene)
         .map_err(|error| anyhow::anyhow!("no window: {error}; `strandline render` needs no display"))
 }

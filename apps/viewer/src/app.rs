@@ -2,27 +2,34 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use eframe::egui;
-use strandline::{Camera, Command, Error, Light, Live, Look, News, Scene, Shown, render::PictureSettings};
+use strandline::{Camera, Command, Error, Light, Live, News, Scene, Shown};
 
-use crate::{panels, stage, strip};
+use crate::{files, messages, panels, stage, strip};
 
 /// The window's state: what plays, and what a person made of it.
 pub struct App {
     pub(crate) live: Live,
     /// What is seen, as a scene: it can be saved at any time.
     pub(crate) scene: Scene,
+    /// The scene as it was loaded: what the controls are set to by default.
+    pub(crate) base: Scene,
     pub(crate) camera: Camera,
+    /// The view of the scene.
+    pub(crate) home: Camera,
     pub(crate) playing: bool,
-    /// Turn of the head by hand \[radians\].
-    pub(crate) turn: [f32; 2],
-    /// Length of the strands over their own.
-    pub(crate) length: f32,
+    /// What the mouse does when no key is held.
+    pub(crate) tool: Tool,
+    /// Where a drag in the picture was at the last pass.
+    pub(crate) dragged_to: Option<egui::Pos2>,
+    /// Whether the mouse holds hair, and the radius \[m\] of the hand.
+    pub(crate) grabs: bool,
+    pub(crate) radius: f32,
     /// The scene before the one that is on its way.
     pub(crate) before: Option<Box<Scene>>,
     /// Whether a scene is on its way.
     pub(crate) loading: bool,
     pub(crate) error: Option<String>,
-    pub(crate) notes: Vec<String>,
+    pub(crate) notes: Vec<messages::Note>,
     pub(crate) shown: Option<Shown>,
     pub(crate) texture: Option<egui::TextureHandle>,
     /// Pictures a second, smoothed.
@@ -32,18 +39,32 @@ pub struct App {
     pub(crate) path: String,
     /// Whether pictures may be simpler while the hair moves.
     pub(crate) adapts: bool,
-    /// Whether they are: fewer follow strands, one sample a pixel.
-    pub(crate) draft: bool,
+    /// Whether a video is recorded, and how many are being finished.
+    pub(crate) recording: bool,
+    pub(crate) finishing: u32,
+    /// The picture that is to be saved once it is drawn in full: to a path, or into the folder.
+    pub(crate) saving: Option<Option<PathBuf>>,
+    pub(crate) dialog: Option<files::Dialog>,
     /// Where the next picture and scene are saved.
     pub folder: PathBuf,
 }
 
-/// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
-const SLOW: f64 = 0.08;
-/// Follow strands of a guide in a simpler picture.
-const FEW: u32 = 4;
+/// What the mouse does in the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tool {
+    /// Goes around the head.
+    #[default]
+    Orbit,
+    /// Takes hair into a hand.
+    Grab,
+    /// Turns the head.
+    Turn,
+}
 
 impl App {
+    /// Radius of the hand \[m\] to begin with.
+    pub(crate) const RADIUS: f32 = 0.012;
+
     /// Starts to play a scene.
     ///
     /// # Errors
@@ -51,13 +72,18 @@ impl App {
     pub fn new(scene: Scene, context: &egui::Context) -> Result<Self, Error> {
         let context = context.clone();
         let live = Live::new(scene.clone(), move || context.request_repaint())?;
+        live.tell(Command::Adapt(true));
         Ok(Self {
             live,
+            base: scene.clone(),
             scene,
             camera: Camera::front(),
+            home: Camera::front(),
             playing: true,
-            turn: [0.0; 2],
-            length: 1.0,
+            tool: Tool::default(),
+            dragged_to: None,
+            grabs: false,
+            radius: Self::RADIUS,
             before: None,
             loading: true,
             error: None,
@@ -68,7 +94,10 @@ impl App {
             last: None,
             path: String::new(),
             adapts: true,
-            draft: false,
+            recording: false,
+            finishing: 0,
+            saving: None,
+            dialog: None,
             folder: PathBuf::from("out"),
         })
     }
@@ -97,32 +126,16 @@ impl App {
         Ok(scene)
     }
 
-    /// Hands the look over, with fewer strands as long as pictures are to be simple.
     pub(crate) fn send_look(&self) {
-        let look = &self.scene.look;
-        let follow_strands = if self.draft { look.follow_strands.min(FEW) } else { look.follow_strands };
-        self.live.tell(Command::Look(Box::new(Look { follow_strands, ..look.clone() })));
+        self.live.tell(Command::Look(Box::new(self.scene.look.clone())));
     }
 
-    /// Hands the picture's size and finish over, with one sample a pixel as long as it is to be simple.
     pub(crate) fn send_picture(&self) {
-        let picture = self.scene.picture;
-        let supersampling = if self.draft { 1 } else { picture.supersampling };
-        self.live.tell(Command::Picture(PictureSettings { supersampling, ..picture }));
+        self.live.tell(Command::Picture(self.scene.picture));
     }
 
-    /// Draws simpler while the hair moves and a picture takes long; as it should be when it stands still.
-    fn adapt(&mut self) {
-        let seconds = self
-            .shown
-            .as_ref()
-            .map_or(0.0, |shown| shown.drawing.seconds.iter().map(|(_, seconds)| seconds).sum::<f64>());
-        let draft = self.adapts && self.playing && (self.draft || seconds > SLOW);
-        if draft != self.draft {
-            self.draft = draft;
-            self.send_look();
-            self.send_picture();
-        }
+    pub(crate) fn send_motion(&self) {
+        self.live.tell(Command::Motion(Box::new(self.scene.motion.clone())));
     }
 
     /// What is seen at the moment, if there is anything.
@@ -171,16 +184,17 @@ impl App {
                         // Those that it is lit with, for the panel to change.
                         self.scene.lights = Light::three_point(0.5 * (bounds.min + bounds.max)).to_vec();
                     }
-                    (self.camera, self.loading, self.before) = (camera, false, None);
-                    (self.turn, self.length) = ([0.0; 2], 1.0);
-                    self.notes = notes;
-                    // The scene brings its own; the window's size and a simpler look go on.
+                    self.base = self.scene.clone();
+                    (self.camera, self.home, self.loading, self.before) = (camera, camera, false, None);
+                    self.grabs = false;
+                    self.notes = Vec::new();
+                    notes.into_iter().for_each(|note| self.note(note));
+                    // The scene brings its own; the window's size goes on.
                     self.send_picture();
-                    self.send_look();
                     self.live.tell(Command::Play(self.playing));
                 }
-                News::Note(note) => self.notes.push(note),
-                News::Error(error) => {
+                News::Note(note) => self.note(note),
+                News::NotLoaded(error) => {
                     // What plays is still what played before.
                     if let Some(before) = self.before.take() {
                         self.scene = *before;
@@ -188,6 +202,10 @@ impl App {
                     self.loading = false;
                     self.error = Some(error);
                 }
+                News::Error(error) => self.error = Some(error),
+                News::Paused => self.playing = false,
+                News::Recorded if self.finishing > 0 => self.finishing -= 1,
+                News::Recorded => self.recording = false,
             }
         }
     }
@@ -209,6 +227,7 @@ impl App {
         }
         let step = shown.step.clone().or(self.shown.take().and_then(|old| old.step));
         self.shown = Some(Shown { step, ..shown });
+        self.save_if_full();
     }
 
     /// The scene with the view as it is.
@@ -225,7 +244,7 @@ impl App {
         self.take_files(ui);
         self.take_news();
         self.take_picture(ui.ctx());
-        self.adapt();
+        files::take_answer(self);
         stage::keys(self, ui);
         egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
         egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));

@@ -1,11 +1,15 @@
 //! The window in which a person plays with hair: panels only, all else is the library's.
 
 mod app;
+mod controls;
+mod files;
+mod messages;
 mod panels;
 mod stage;
 mod strip;
+mod wind;
 
-pub use app::App;
+pub use app::{App, Tool};
 use eframe::egui;
 use strandline::Scene;
 

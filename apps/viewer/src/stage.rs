@@ -1,41 +1,78 @@
 //! The picture, and what mouse and keys do to it.
 
-use eframe::egui;
-use strandline::{Camera, Command, render::PictureSettings};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
+use glam::Vec2;
+use strandline::{Camera, Command, Ray, render::PictureSettings};
 
-use crate::App;
+use crate::{App, Tool, controls::button, files, messages, wind};
 
-/// Turn of the view for a point that the mouse moves \[radians\].
+/// Turn of the view or the head for a point that the mouse moves \[radians\].
 const ORBIT: f32 = 0.008;
 /// Pictures have sides of whole multiples of this \[pixel\], so that they do not change with every point.
 const GRAIN: f32 = 16.0;
 
-/// Space plays and pauses, the full stop makes one frame, R goes back to rest, arrows orbit.
+/// Does what a key says: the panel lists them.
 pub fn keys(app: &mut App, ui: &egui::Ui) {
     if ui.ctx().egui_wants_keyboard_input() {
         return;
     }
-    let pressed = |key| ui.input(|input| input.key_pressed(key));
-    if pressed(egui::Key::Space) {
+    // The modifiers are those of the moment of the press, however long a pass takes.
+    let pressed = |modifiers, key| ui.input_mut(|input| input.consume_key(modifiers, key));
+    file_keys(app, ui, |key| pressed(Modifiers::COMMAND, key));
+    for (key, way) in [
+        (Key::ArrowLeft, Vec2::NEG_X),
+        (Key::ArrowRight, Vec2::X),
+        (Key::ArrowUp, Vec2::Y),
+        (Key::ArrowDown, Vec2::NEG_Y),
+    ] {
+        let camera = app.camera;
+        if pressed(Modifiers::SHIFT, key) {
+            look(app, pan(&camera, 0.1 * way));
+        } else if pressed(Modifiers::NONE, key) {
+            look(app, camera.orbit(0.1 * way.x, 0.1 * way.y));
+        }
+    }
+    plain_keys(app, |key| pressed(Modifiers::NONE, key));
+}
+
+fn file_keys(app: &mut App, ui: &egui::Ui, pressed: impl Fn(Key) -> bool) {
+    if pressed(Key::O) {
+        files::ask(app, files::Wanted::Open, ui.ctx());
+    }
+    if pressed(Key::S) {
+        let saved = app.save_scene(None);
+        app.tell_saved(saved);
+    }
+    if pressed(Key::P) {
+        app.ask_for_picture(None);
+    }
+}
+
+fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
+    if pressed(Key::Space) {
         play(app, !app.playing);
     }
-    if pressed(egui::Key::Period) {
+    if pressed(Key::Period) {
         play(app, false);
         app.live.tell(Command::Step);
     }
-    if pressed(egui::Key::R) {
+    if pressed(Key::R) {
         app.live.tell(Command::Reset);
     }
-    let turns = [
-        (egui::Key::ArrowLeft, [-0.1, 0.0]),
-        (egui::Key::ArrowRight, [0.1, 0.0]),
-        (egui::Key::ArrowUp, [0.0, 0.1]),
-        (egui::Key::ArrowDown, [0.0, -0.1]),
-    ];
-    for (key, [yaw, pitch]) in turns {
-        if pressed(key) {
-            look(app, app.camera.orbit(yaw, pitch));
-        }
+    if pressed(Key::G) {
+        app.tool = if app.tool == Tool::Grab { Tool::Orbit } else { Tool::Grab };
+    }
+    if pressed(Key::V) {
+        app.record();
+    }
+    if pressed(Key::Plus) || pressed(Key::Equals) {
+        zoom(app, 0.9);
+    }
+    if pressed(Key::Minus) {
+        zoom(app, 1.0 / 0.9);
+    }
+    if pressed(Key::F) {
+        look(app, app.home);
     }
 }
 
@@ -50,55 +87,152 @@ fn look(app: &mut App, camera: Camera) {
     app.live.tell(Command::Camera(camera));
 }
 
+/// The camera moved across, in half heights of the picture.
+fn pan(camera: &Camera, halves: Vec2) -> Camera {
+    // A point of the picture is as far at the target as it looks.
+    let scale = camera.position.distance(camera.target) / camera.focal();
+    let world_from_view = camera.view_from_world().inverse();
+    let shift = world_from_view.transform_vector3(halves.extend(0.0) * scale);
+    Camera { position: camera.position + shift, target: camera.target + shift, ..*camera }
+}
+
+fn zoom(app: &mut App, share: f32) {
+    let camera = app.camera;
+    let offset = ((camera.position - camera.target) * share).clamp_length(0.05, 20.0);
+    look(app, Camera { position: camera.target + offset, ..camera });
+}
+
 /// The picture as large as there is room.
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
-    let room = ui.available_size();
-    fit(app, room, ui.ctx().pixels_per_point());
+    let room = ui.available_rect_before_wrap();
+    fit(app, room.size(), ui.ctx().pixels_per_point());
+    messages::show(app, ui, room);
     let Some(texture) = &app.texture else {
         ui.centered_and_justified(|ui| ui.spinner());
         return;
     };
-    let image = egui::Image::new(texture).fit_to_exact_size(room).sense(egui::Sense::drag());
+    let image = egui::Image::new(texture).fit_to_exact_size(room.size()).sense(egui::Sense::drag());
     let response = ui.add(image);
-    drag(app, ui, &response);
+    mouse(app, ui, &response);
     if response.hovered() {
         let scroll = ui.input(|input| input.smooth_scroll_delta().y);
         if scroll != 0.0 {
-            let (camera, share) = (app.camera, (-0.002 * scroll).exp());
-            let offset = (camera.position - camera.target) * share;
-            let offset = offset.clamp_length(0.05, 20.0);
-            look(app, Camera { position: camera.target + offset, ..camera });
+            zoom(app, (-0.002 * scroll).exp());
         }
+    }
+    tools(app, ui, room);
+    wind::show(app, ui, room);
+}
+
+/// What the mouse does, in the upper left corner of the picture.
+fn tools(app: &mut App, ui: &mut egui::Ui, room: Rect) {
+    let corner = Rect::from_min_size(room.min + egui::vec2(8.0, 8.0), egui::vec2(260.0, 24.0));
+    let mut row = ui.new_child(egui::UiBuilder::new().max_rect(corner));
+    row.horizontal(|ui| {
+        let tools = [
+            (Tool::Orbit, "Orbit", "drag: around the head; right or middle button: across; wheel: nearer"),
+            (Tool::Grab, "Grab", "drag: pulls the hair under the mouse; G, or ctrl with any tool"),
+            (Tool::Turn, "Turn head", "drag: turns the head; or shift with any tool"),
+        ];
+        for (tool, name, tip) in tools {
+            ui.selectable_value(&mut app.tool, tool, name).on_hover_text(tip);
+        }
+        if app.camera != app.home && button(ui, "View", "back to the view of the scene: F") {
+            look(app, app.home);
+        }
+    });
+}
+
+fn mouse(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
+    let modifiers = ui.input(|input| input.modifiers);
+    let tool = match app.tool {
+        _ if modifiers.command => Tool::Grab,
+        _ if modifiers.shift => Tool::Turn,
+        tool => tool,
+    };
+    if response.drag_started_by(PointerButton::Primary)
+        && tool == Tool::Grab
+        && let Some(ray) = ray(app, response)
+    {
+        app.grabs = true;
+        app.live.tell(Command::Grab(ray, app.radius));
+    }
+    if app.grabs {
+        grab(app, ui, response);
+    } else {
+        drag(app, ui, response, tool);
     }
 }
 
-fn drag(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
-    let moved = response.drag_delta();
+/// Moves the hand, or lets go.
+fn grab(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
+    if !response.dragged() {
+        app.grabs = false;
+        app.live.tell(Command::Release);
+        return;
+    }
+    if response.drag_delta() != egui::Vec2::ZERO
+        && let Some(ray) = ray(app, response)
+    {
+        app.live.tell(Command::Drag(ray));
+    }
+    if let Some(pointer) = response.interact_pointer_pos() {
+        let holds = app.shown.as_ref().is_some_and(|shown| shown.grabbed > 0);
+        let colour = if holds { egui::Color32::WHITE } else { egui::Color32::GRAY };
+        ui.painter().circle_stroke(pointer, hand_points(app, response.rect), egui::Stroke::new(1.5, colour));
+    }
+}
+
+/// Radius of the hand in the picture \[point\].
+fn hand_points(app: &App, room: Rect) -> f32 {
+    let distance = app.camera.position.distance(app.camera.target);
+    app.radius * app.camera.focal() / distance * 0.5 * room.height()
+}
+
+/// The line of sight under the mouse.
+fn ray(app: &App, response: &egui::Response) -> Option<Ray> {
+    let pointer: Pos2 = response.interact_pointer_pos()?;
+    let halves = (pointer - response.rect.center()) / (0.5 * response.rect.height().max(1.0));
+    Some(Ray::new(&app.camera, Vec2::new(halves.x, -halves.y)))
+}
+
+/// How far \[point\] the mouse was dragged since the last pass, or since the press: what it moved before,
+/// in the same pass, is no drag.
+fn dragged(app: &mut App, ui: &egui::Ui, response: &egui::Response) -> egui::Vec2 {
+    let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) else {
+        app.dragged_to = None;
+        return egui::Vec2::ZERO;
+    };
+    let press = ui.input(|input| input.pointer.press_origin());
+    let before = app.dragged_to.replace(pointer).or(press).unwrap_or(pointer);
+    pointer - before
+}
+
+fn drag(app: &mut App, ui: &egui::Ui, response: &egui::Response, tool: Tool) {
+    let moved = dragged(app, ui, response);
     if moved == egui::Vec2::ZERO {
         return;
     }
-    let aside = response.dragged_by(egui::PointerButton::Secondary)
-        || response.dragged_by(egui::PointerButton::Middle);
+    let aside = response.dragged_by(PointerButton::Secondary) || response.dragged_by(PointerButton::Middle);
     if aside {
-        let camera = app.camera;
-        let world_from_view = camera.view_from_world().inverse();
-        // A point of the picture is as far at the target as it looks.
-        let distance = camera.position.distance(camera.target);
-        let scale = 2.0 * distance / (camera.focal() * response.rect.height().max(1.0));
-        let shift = world_from_view.transform_vector3(glam::Vec3::new(-moved.x, moved.y, 0.0) * scale);
-        look(app, Camera { position: camera.position + shift, target: camera.target + shift, ..camera });
-    } else if ui.input(|input| input.modifiers.shift) {
-        let [yaw, pitch] = app.turn;
-        let near = |angle: f32| angle.clamp(-1.2, 1.2);
-        app.turn = [near(yaw + ORBIT * moved.x), near(pitch + ORBIT * moved.y)];
-        app.live.tell(Command::Turn(app.turn[0], app.turn[1]));
-    } else {
+        let halves = 2.0 / response.rect.height().max(1.0) * Vec2::new(-moved.x, moved.y);
+        look(app, pan(&app.camera, halves));
+    } else if tool == Tool::Turn {
+        let most = crate::panels::FARTHEST;
+        let turn = |angle: f32, points: f32| (angle + (ORBIT * points).to_degrees()).clamp(-most, most);
+        let rotation = &mut app.scene.motion.rotation;
+        (rotation.y, rotation.x) = (turn(rotation.y, moved.x), turn(rotation.x, moved.y));
+        app.send_motion();
+    } else if tool == Tool::Orbit {
         look(app, app.camera.orbit(-ORBIT * moved.x, ORBIT * moved.y));
     }
 }
 
-/// Makes pictures as large as the room for them.
+/// Makes pictures as large as the room for them; those of a video stay as they are.
 fn fit(app: &mut App, room: egui::Vec2, pixels_per_point: f32) {
+    if app.recording {
+        return;
+    }
     let side = |points: f32| ((points * pixels_per_point / GRAIN).floor() * GRAIN).clamp(64.0, 4096.0) as u32;
     let (width, height) = (side(room.x), side(room.y));
     let picture = &mut app.scene.picture;

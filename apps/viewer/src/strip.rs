@@ -4,15 +4,7 @@ use eframe::egui;
 
 use crate::App;
 
-pub fn show(app: &mut App, ui: &mut egui::Ui) {
-    if let Some(error) = app.error.clone() {
-        ui.horizontal_wrapped(|ui| {
-            ui.colored_label(egui::Color32::LIGHT_RED, error);
-            if ui.small_button("x").on_hover_text("put the message away").clicked() {
-                app.error = None;
-            }
-        });
-    }
+pub fn show(app: &App, ui: &mut egui::Ui) {
     ui.horizontal_wrapped(|ui| {
         if app.loading {
             ui.spinner();
@@ -21,9 +13,23 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
         let Some(shown) = &app.shown else { return };
         ui.label(format!("{:.1} pictures/s", app.rate)).on_hover_text("pictures a second, smoothed");
         let [simulated, drawn] = &shown.places;
-        ui.label(format!("simulated on {simulated}, drawn on {drawn}"));
-        if app.draft {
+        let place = match [simulated.as_str(), drawn.as_str()] {
+            ["cpu", "cpu"] => "simulated and drawn on the CPU".to_owned(),
+            _ if simulated == drawn => format!("simulated and drawn on {simulated}"),
+            _ => format!("simulated on {simulated}, drawn on {drawn}"),
+        };
+        ui.label(place).on_hover_text("another device: --sim-device and --render-device");
+        if shown.draft {
             ui.label("simpler while it moves").on_hover_text("see Detail; full when it stands still");
+        }
+        if shown.grabbed > 0 {
+            ui.label(format!("{} strands in hand", shown.grabbed));
+        }
+        if let Some(frames) = shown.recorded {
+            ui.colored_label(
+                egui::Color32::LIGHT_RED,
+                format!("recording, {:.1} s", f64::from(frames) / 60.0),
+            );
         }
         let drawing: f64 = shown.drawing.seconds.iter().map(|(_, seconds)| seconds).sum();
         ui.label(format!("{} segments in {:.1} ms", shown.drawing.segments, 1e3 * drawing))
@@ -39,9 +45,6 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
                 .on_hover_text("deepest point inside a solid");
         }
     });
-    for note in &app.notes {
-        ui.small(note);
-    }
 }
 
 fn stages(seconds: &[(&'static str, f64)]) -> String {

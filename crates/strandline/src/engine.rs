@@ -125,7 +125,10 @@ impl Engine {
         let scales = (0..self.solver().strand_count()).map(|strand| self.state.length_scale(strand));
         let scales: Vec<f32> = scales.collect();
         let mut state = self.solver().rest_state(pose);
-        state.set_length_scale(self.solver(), &scales)?;
+        // Points slide along their strands, which is exact but for rounding.
+        if scales.iter().any(|scale| *scale != 1.0) {
+            state.set_length_scale(self.solver(), &scales)?;
+        }
         self.state = state;
         let failure = match &mut self.place {
             Place::Cpu(_) => return Ok(()),

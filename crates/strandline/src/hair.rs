@@ -170,7 +170,7 @@ impl Hair {
     /// # Errors
     /// A setting of the scene outside its range.
     pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
-        let Prepared { guides, mesh, colliders, .. } = prepared;
+        let Prepared { guides, mesh, colliders, head, .. } = prepared;
         let mut hair = Self::with_body(devices, guides, mesh.as_ref(), colliders, &scene.simulation)?;
         if !scene.lights.is_empty() {
             hair.lights.clone_from(&scene.lights);
@@ -180,6 +180,11 @@ impl Hair {
         hair.set_picture(&scene.picture)?;
         if scene.groom.length != 1.0 {
             hair.set_length_scale(&vec![scene.groom.length; hair.guides().strand_count()])?;
+        }
+        // A head that is turned at first does not whip its hair there.
+        let start = head.pose(0.0);
+        if start != Pose::IDENTITY {
+            hair.simulation.reset(start)?;
         }
         Ok(hair)
     }

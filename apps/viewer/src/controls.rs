@@ -1,0 +1,90 @@
+//! Controls that tell their unit and what they are set to by default.
+
+use std::ops::RangeInclusive;
+
+use eframe::egui::{self, Response, Slider, SliderClamping, Ui};
+use glam::Vec3;
+
+/// A section of the panel.
+pub fn section(ui: &mut Ui, name: &str, open: bool, add: impl FnOnce(&mut Ui)) {
+    egui::CollapsingHeader::new(name).default_open(open).show(ui, add);
+}
+
+/// A slider for a value with a default; true when it was moved. A value outside the range, as a scene may
+/// have it, stays until it is moved.
+pub fn slide<N: egui::emath::Numeric>(
+    ui: &mut Ui,
+    (value, default): (&mut N, N),
+    range: RangeInclusive<N>,
+    name: &str,
+    tip: &str,
+) -> bool {
+    let slider = Slider::new(value, range).text(name).clamping(SliderClamping::Edits);
+    let response = ui.add(slider).on_hover_text(tip_of(tip, &number(default.to_f64())));
+    set_back(ui, &response, (value, default)) || response.changed()
+}
+
+/// A box to tick; true when it changed.
+pub fn tick(ui: &mut Ui, (value, default): (&mut bool, bool), name: &str, tip: &str) -> bool {
+    let response = ui.checkbox(value, name);
+    let response = response.on_hover_text(tip_of(tip, if default { "on" } else { "off" }));
+    set_back(ui, &response, (value, default)) || response.changed()
+}
+
+/// A colour, linear RGB; true when it changed.
+pub fn colour(ui: &mut Ui, (value, default): (&mut Vec3, Vec3), name: &str, tip: &str) -> bool {
+    ui.horizontal(|ui| {
+        let mut rgb = value.to_array();
+        let response = ui.color_edit_button_rgb(&mut rgb);
+        let [red, green, blue] = default.to_array().map(|part| number(f64::from(part)));
+        let response = response.on_hover_text(tip_of(tip, &format!("{red}, {green}, {blue}")));
+        ui.label(name);
+        let changed = response.changed();
+        if changed {
+            *value = rgb.into();
+        }
+        set_back(ui, &response, (value, default)) || changed
+    })
+    .inner
+}
+
+/// A button with a tip; true when it was pressed.
+pub fn button(ui: &mut Ui, name: &str, tip: &str) -> bool {
+    ui.button(name).on_hover_text(tip).clicked()
+}
+
+fn tip_of(tip: &str, default: &str) -> String {
+    format!("{tip}\ndefault {default}; a right click sets it")
+}
+
+/// Sets a value to its default at a right click; true when it did.
+fn set_back<T>(ui: &Ui, response: &Response, (value, default): (&mut T, T)) -> bool {
+    let wanted = response.contains_pointer() && ui.input(|input| input.pointer.secondary_clicked());
+    if wanted {
+        *value = default;
+    }
+    wanted
+}
+
+/// A number with no more digits than a person reads.
+pub fn number(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 {
+        return format!("{value:.1e}");
+    }
+    let text = format!("{value:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [(0.0, "0"), (20.0, "20"), (0.95, "0.95"), (-9.81, "-9.81"), (2e-5, "2.0e-5")];
+        for (value, text) in cases {
+            assert_eq!(number(value), text);
+        }
+        assert_eq!(number(f64::from(0.3_f32)), "0.3");
+    }
+}

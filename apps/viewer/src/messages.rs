@@ -1,0 +1,55 @@
+//! What a person should read, over the foot of the picture: nothing moves aside for it.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui::{self, Align2, Color32, Rect};
+
+use crate::App;
+
+/// How long a note is shown.
+const READING: Duration = Duration::from_secs(8);
+/// Notes that are shown at once.
+const MOST: usize = 5;
+
+/// Something to read, and since when.
+pub struct Note {
+    text: String,
+    since: Instant,
+}
+
+impl App {
+    /// Shows a line for a while.
+    pub(crate) fn note(&mut self, text: String) {
+        if self.notes.len() == MOST {
+            self.notes.remove(0);
+        }
+        self.notes.push(Note { text, since: Instant::now() });
+    }
+}
+
+/// Shows the notes for a while, and the last error until it is put away.
+pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
+    app.notes.retain(|note| note.since.elapsed() < READING);
+    if app.notes.is_empty() && app.error.is_none() {
+        return;
+    }
+    ui.ctx().request_repaint_after(READING);
+    let corner = room.left_bottom() + egui::vec2(10.0, -10.0);
+    let width = (room.width() - 150.0).max(200.0);
+    let area = egui::Area::new(ui.scope_id().with("messages")).fixed_pos(corner).pivot(Align2::LEFT_BOTTOM);
+    area.show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).show(ui, |ui| {
+            ui.set_max_width(width);
+            for note in &app.notes {
+                ui.label(&note.text);
+            }
+            let Some(error) = app.error.clone() else { return };
+            ui.horizontal_wrapped(|ui| {
+                ui.colored_label(Color32::LIGHT_RED, error);
+                if ui.small_button("x").on_hover_text("puts the message away").clicked() {
+                    app.error = None;
+                }
+            });
+        });
+    });
+}

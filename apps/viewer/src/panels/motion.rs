@@ -1,0 +1,111 @@
+//! What moves the hair: the head, the wind, the length of the strands, a hand.
+
+use eframe::egui::{DragValue, Ui};
+use strandline::{
+    Command,
+    scene::{KeyframeSection, MotionName, MotionSection},
+};
+
+use crate::{
+    App,
+    controls::{button, slide},
+};
+
+/// Turn of the head by hand \[degrees\], to either side.
+pub const FARTHEST: f32 = 70.0;
+
+pub fn show(app: &mut App, ui: &mut Ui) {
+    let before = app.scene.motion.clone();
+    names(&mut app.scene.motion, ui);
+    let (motion, base) = (&mut app.scene.motion, &app.base.motion);
+    let tip = "of the head by hand, besides its motion [degrees]";
+    slide(ui, (&mut motion.rotation.y, base.rotation.y), -FARTHEST..=FARTHEST, "turn", tip);
+    slide(ui, (&mut motion.rotation.x, base.rotation.x), -FARTHEST..=FARTHEST, "nod", tip);
+    if motion.name == MotionName::Keyframes {
+        keyframes(motion, ui);
+    }
+    if app.scene.motion != before {
+        app.send_motion();
+    }
+    wind(app, ui);
+    let tip = "of every strand over its own";
+    if slide(ui, (&mut app.scene.groom.length, app.base.groom.length), 0.05..=1.0, "length", tip) {
+        app.live.tell(Command::Length(app.scene.groom.length));
+    }
+    slide(ui, (&mut app.radius, App::RADIUS), 0.002..=0.05, "hand", "its radius, for grabbing [m]");
+}
+
+fn names(motion: &mut MotionSection, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        let names = [
+            ("still", MotionName::Still),
+            ("shake", MotionName::Shake),
+            ("nod", MotionName::Nod),
+            ("turn", MotionName::Turn),
+            ("keyframes", MotionName::Keyframes),
+        ];
+        for (text, name) in names {
+            let chosen = ui.selectable_label(motion.name == name, text);
+            if chosen.on_hover_text("motion of the head\ndefault shake").clicked() {
+                motion.name = name;
+                if name == MotionName::Keyframes && motion.keyframes.is_empty() {
+                    // A look to the left and back.
+                    motion.keyframes = [0.0, 40.0, 0.0].iter().enumerate().map(key).collect();
+                }
+            }
+        }
+    });
+}
+
+fn key((index, yaw): (usize, &f32)) -> KeyframeSection {
+    let rotation = glam::Vec3::new(0.0, *yaw, 0.0);
+    KeyframeSection { time: index as f64, rotation, ..KeyframeSection::default() }
+}
+
+/// The poses, one in a row; their order is that of their times.
+fn keyframes(motion: &mut MotionSection, ui: &mut Ui) {
+    let mut gone = None;
+    let count = motion.keyframes.len();
+    for (index, key) in motion.keyframes.iter_mut().enumerate() {
+        ui.horizontal(|ui| {
+            let time = DragValue::new(&mut key.time).speed(0.02).range(0.0..=3600.0).suffix(" s");
+            ui.add(time).on_hover_text("when [s]");
+            for (axis, tip) in ["pitch [degrees]", "yaw [degrees]", "roll [degrees]"].into_iter().enumerate()
+            {
+                let angle = DragValue::new(&mut key.rotation[axis]).speed(0.5).range(-180.0..=180.0);
+                ui.add(angle.max_decimals(0)).on_hover_text(tip);
+            }
+            if count > 1 && button(ui, "x", "takes the pose out") {
+                gone = Some(index);
+            }
+        });
+    }
+    gone.map(|index| motion.keyframes.remove(index));
+    if button(ui, "Add pose", "a second later: the head as it is turned by hand") {
+        let time = motion.keyframes.last().map_or(0.0, |key| key.time + 1.0);
+        let rotation = motion.rotation;
+        motion.keyframes.push(KeyframeSection { time, rotation, ..KeyframeSection::default() });
+        motion.rotation = glam::Vec3::ZERO;
+    }
+    motion.keyframes.sort_by(|a, b| a.time.total_cmp(&b.time));
+    for index in 1..motion.keyframes.len() {
+        // Two poses at one time would be none.
+        let least = motion.keyframes[index - 1].time + 0.01;
+        motion.keyframes[index].time = motion.keyframes[index].time.max(least);
+    }
+}
+
+fn wind(app: &mut App, ui: &mut Ui) {
+    let before = app.scene.wind;
+    let (wind, base) = (&mut app.scene.wind, &app.base.wind);
+    for (axis, name) in ["wind x", "wind y", "wind z"].into_iter().enumerate() {
+        let tip = "mean velocity [m/s]; or drag the arrow in the picture";
+        slide(ui, (&mut wind.velocity[axis], base.velocity[axis]), -10.0..=10.0, name, tip);
+    }
+    slide(ui, (&mut wind.gust, base.gust), 0.0..=1.0, "gusts", "share of the wind that comes and goes");
+    let tip = "time from gust to gust [s]";
+    slide(ui, (&mut wind.gust_period, base.gust_period), 0.2..=10.0, "gust period", tip);
+    if *wind != before {
+        app.live.tell(Command::Wind(app.scene.wind));
+    }
+}

@@ -1,0 +1,47 @@
+//! What plays: styles, scenes and files.
+
+use eframe::egui::{self, Ui};
+use strandline::{Scene, Style};
+
+use crate::{App, controls::button, files};
+
+pub fn show(app: &mut App, ui: &mut Ui) {
+    let mut chosen = app.scene.style.style;
+    let grown = app.scene.groom.file.is_none();
+    let menu =
+        egui::ComboBox::from_label("style").selected_text(if grown { chosen.name() } else { "from a file" });
+    let mut picked = false;
+    let menu = menu.show_ui(ui, |ui| {
+        for style in Style::ALL {
+            picked |= ui.selectable_value(&mut chosen, style, style.name()).clicked();
+        }
+    });
+    menu.response.on_hover_text(format!("grown on the head\ndefault {}", app.base.style.style.name()));
+    if picked && (!grown || chosen != app.scene.style.style) {
+        let mut scene = app.scene.clone();
+        scene.groom.file = None;
+        scene.set_style(chosen);
+        app.load(scene);
+    }
+    ui.horizontal(|ui| {
+        for (name, make) in [("demo", Scene::demo as fn() -> Scene), ("thesis", Scene::thesis)] {
+            if button(ui, name, "a scene of the program's own") {
+                app.load(make());
+            }
+        }
+        if button(ui, "Open...", "a scene, groom or body: ctrl O") {
+            files::ask(app, files::Wanted::Open, ui.ctx());
+        }
+    });
+    ui.horizontal(|ui| {
+        let field =
+            egui::TextEdit::singleline(&mut app.path).hint_text("path of a file").desired_width(180.0);
+        let tip = "path of a scene, groom or body\ndefault none";
+        let entered = ui.add(field).on_hover_text(tip).lost_focus()
+            && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        if button(ui, "Load", "loads the file") || entered {
+            app.open_file(&std::path::PathBuf::from(app.path.trim()));
+        }
+    });
+    ui.small("Drop a .toml scene, a .hair or .tfx groom or an .obj, .gltf or .glb body on the window.");
+}
