@@ -159,7 +159,8 @@ pub struct ShaderOptions {
 #[derive(Args, Debug)]
 pub struct BenchOptions {
     /// The thesis's tables 1 to 4 beside ours; how cost grows with strands and cells; the thesis's
-    /// table 5, frames per second by viewing distance and picture size; or what two workers gain.
+    /// table 5, frames per second by viewing distance and picture size; what two workers gain; or how the
+    /// window fares over ten minutes.
     #[arg(value_enum, default_value = "thesis")]
     pub what: Bench,
     /// Which GPU is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,
@@ -184,6 +185,9 @@ pub enum Bench {
     View,
     /// What is gained by simulating a frame while the one before is drawn, for pairs of devices.
     Workers,
+    /// Ten minutes of play as in the window: time to the first picture, pictures a second, how soon a move
+    /// shows, and whether memory grows.
+    Window,
 }
 
 /// A wrong use of the command line that clap does not see; ends with code 2.

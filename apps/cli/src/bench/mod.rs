@@ -5,6 +5,7 @@ mod machine;
 mod scaling;
 mod thesis;
 mod view;
+mod window;
 mod workers;
 
 use std::path::Path;
@@ -38,6 +39,7 @@ pub fn bench(options: &BenchOptions) -> anyhow::Result<()> {
         Bench::Thesis => write(options, device, "thesis", thesis::run(device, options.quick)?),
         Bench::View => write(options, device, "view", view::run(device, options.quick)?),
         Bench::Workers => write(options, device, "workers", workers::run(device, options.quick)?),
+        Bench::Window => write(options, device, "window", window::run(device, options.quick)?),
         Bench::Scaling => write(options, device, "scaling", scaling::run(device, options.quick)?),
     }
 }

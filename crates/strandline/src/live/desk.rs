@@ -188,8 +188,9 @@ impl Desk {
                     let picture = Command::Picture(stage.picture());
                     self.change(&mut stage, of_size(picture, old.picture()));
                 }
+                // Until one is drawn nobody knows how long it takes: the first is there sooner when simple.
+                (course.stale, course.slow) = (true, stage.studio.painter.gpu().is_none());
                 course.stage = Some(stage);
-                (course.stale, course.slow) = (true, false);
             }
             Err(error) => self.say(News::NotLoaded(error.to_string())),
         }

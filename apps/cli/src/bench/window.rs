@@ -1,0 +1,177 @@
+//! What a window on the demo sees while somebody plays: how soon there is a picture, how fast pictures come,
+//! how many pass from a hand's move to the one that shows it, and whether memory grows.
+
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
+use strandline::{Backend, Camera, Command, Live, News, Ray, Scene, Shown};
+
+use super::gpu::Device;
+use super::machine::Machine;
+use crate::progress::Progress;
+use crate::statistics::{median, quantile};
+
+/// Seconds of play; of a short run.
+const SECONDS: [u64; 2] = [600, 6];
+/// The picture of a window of 1280 x 800 points.
+const SIZE: [u32; 2] = [960, 752];
+/// How long nobody does anything.
+const REST: Duration = Duration::from_millis(300);
+
+#[derive(Debug, Serialize)]
+pub struct Results {
+    simulated_on: String,
+    drawn_on: String,
+    seconds: f64,
+    seconds_to_first_picture: f64,
+    pictures_per_second: f64,
+    /// Pictures from a move to the one that shows it, that one included: the middle and the most.
+    pictures_to_show: [f64; 2],
+    /// Time from a move to the picture that shows it \[ms\]: the middle, and what 95 of 100 keep to.
+    ms_to_show: [f64; 2],
+    /// Largest memory \[MB\] after a tenth of the time and at the end, where the system tells it.
+    peak_memory_mb: [Option<f64>; 2],
+}
+
+pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
+    let backend = device.map_or(Backend::Cpu, |device| Backend::Gpu(Some(device.gpu.adapter().index)));
+    let mut scene = Scene::demo();
+    (scene.simulation.backend, scene.picture.backend) = (backend, backend);
+    [scene.picture.width, scene.picture.height] = SIZE;
+    let results = Play::begin(scene)?.on(SECONDS[usize::from(quick)])?;
+    let text = |memory: Option<f64>| memory.map_or("unknown".to_owned(), |mb| format!("{mb:.0} MB"));
+    println!("\nThe window's demo, played for {:.0} s: {}", results.seconds, results.drawn_on);
+    println!("first picture after     {:>8.2} s", results.seconds_to_first_picture);
+    println!("pictures a second       {:>8.1}", results.pictures_per_second);
+    let [pictures, most] = results.pictures_to_show;
+    println!("from a move to its picture {pictures:>5.0} pictures, at most {most:.0}");
+    let [middle, late] = results.ms_to_show;
+    println!("                        {middle:>8.0} ms, 95 of 100 within {late:.0} ms");
+    let [early, end] = results.peak_memory_mb;
+    println!("peak memory after a tenth of it {}, at the end {}", text(early), text(end));
+    Ok(results)
+}
+
+/// Somebody at play.
+struct Play {
+    live: Live,
+    camera: Camera,
+    scene: Scene,
+    /// Frames and times, from a move to its picture.
+    frames: Vec<f64>,
+    ms: Vec<f64>,
+    shown: Shown,
+    opened: f64,
+}
+
+impl Play {
+    /// Opens the scene and waits for its first picture.
+    fn begin(scene: Scene) -> anyhow::Result<Self> {
+        let begin = Instant::now();
+        let live = Live::new(scene.clone(), || ())?;
+        live.tell(Command::Adapt(true));
+        let mut play = Self {
+            live,
+            camera: Camera::front(),
+            scene,
+            frames: Vec::new(),
+            ms: Vec::new(),
+            shown: Shown::default(),
+            opened: 0.0,
+        };
+        play.next(0)?;
+        play.opened = begin.elapsed().as_secs_f64();
+        Ok(play)
+    }
+
+    /// Waits for a picture that was drawn after a command was heard.
+    fn next(&mut self, heard: u64) -> anyhow::Result<()> {
+        loop {
+            for news in self.live.take_news() {
+                match news {
+                    News::Loaded(camera, ..) => self.camera = camera,
+                    News::NotLoaded(error) | News::Error(error) => anyhow::bail!("{error}"),
+                    _ => {}
+                }
+            }
+            if let Some(shown) = self.live.take_shown() {
+                let there = shown.heard >= heard;
+                self.shown = shown;
+                if there {
+                    return Ok(());
+                }
+            }
+            std::thread::sleep(Duration::from_micros(200));
+        }
+    }
+
+    /// Does something and waits for the picture that shows it.
+    fn act(&mut self, command: Command) -> anyhow::Result<()> {
+        // Whatever is finished is seen before.
+        if let Some(shown) = self.live.take_shown() {
+            self.shown = shown;
+        }
+        let (before, begin) = (self.shown.frame, Instant::now());
+        let number = self.live.tell(command);
+        self.next(number)?;
+        self.frames.push((self.shown.frame - before) as f64);
+        self.ms.push(1e3 * begin.elapsed().as_secs_f64());
+        Ok(())
+    }
+
+    fn on(mut self, seconds: u64) -> anyhow::Result<Results> {
+        let (begin, first) = (Instant::now(), self.shown.frame);
+        let mut early = None;
+        let mut progress = Progress::new(seconds, "seconds of play", false);
+        let mut count = 0_u32;
+        while begin.elapsed().as_secs() < seconds {
+            self.play(count)?;
+            count += 1;
+            std::thread::sleep(REST);
+            if begin.elapsed().as_secs() * 10 >= seconds && early.is_none() {
+                early = Some(Machine::here().peak_memory_mb);
+            }
+            progress.reached(begin.elapsed().as_secs());
+        }
+        drop(progress);
+        let passed = begin.elapsed().as_secs_f64();
+        let [simulated_on, drawn_on] = self.shown.places.clone();
+        Ok(Results {
+            simulated_on,
+            drawn_on,
+            seconds: passed,
+            seconds_to_first_picture: self.opened,
+            pictures_per_second: (self.shown.frame - first) as f64 / passed,
+            pictures_to_show: [median(&self.frames), quantile(&self.frames, 1.0)],
+            ms_to_show: [median(&self.ms), quantile(&self.ms, 0.95)],
+            peak_memory_mb: [early.flatten(), Machine::here().peak_memory_mb],
+        })
+    }
+
+    /// One of the things that a person does, in turn.
+    fn play(&mut self, count: u32) -> anyhow::Result<()> {
+        let share = (0.7 * count as f32).sin();
+        match count % 8 {
+            0 => {
+                let mut settings = self.scene.simulation.clone();
+                settings.iterations = 20 + count / 8 % 2;
+                self.act(Command::Settings(Box::new(settings)))
+            }
+            1 => {
+                let ray = Ray::new(&self.camera, glam::Vec2::new(-0.25, -0.4));
+                self.act(Command::Grab(ray, 0.012))
+            }
+            2 | 3 => {
+                let ray = Ray::new(&self.camera, glam::Vec2::new(-0.6 + 0.2 * share, -0.2));
+                self.act(Command::Drag(ray))
+            }
+            4 => self.act(Command::Release),
+            5 => {
+                let look = strandline::Look { sparkle: 0.5 + 0.4 * share, ..self.scene.look.clone() };
+                self.act(Command::Look(Box::new(look)))
+            }
+            6 => self.act(Command::Length(0.75 + 0.25 * share)),
+            _ => self.act(Command::Camera(self.camera.orbit(0.5 * share, 0.0))),
+        }
+    }
+}
