@@ -1,5 +1,6 @@
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
 
 use eframe::egui;
 use strandline::{Camera, Command, Error, Light, Live, News, Scene, Shown};
@@ -9,6 +10,8 @@ use crate::{files, messages, panels, stage, strip};
 /// The window's state: what plays, and what a person made of it.
 pub struct App {
     pub(crate) live: Live,
+    /// The window, once it is there: the scene is loaded before.
+    context: Arc<OnceLock<egui::Context>>,
     /// What is seen, as a scene: it can be saved at any time.
     pub(crate) scene: Scene,
     /// The scene as it was loaded: what the controls are set to by default.
@@ -49,6 +52,9 @@ pub struct App {
     pub folder: PathBuf,
 }
 
+/// How long a new picture waits to be shown.
+const SOON: Duration = Duration::from_millis(1);
+
 /// What the mouse does in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
@@ -69,12 +75,18 @@ impl App {
     ///
     /// # Errors
     /// The system gives no thread.
-    pub fn new(scene: Scene, context: &egui::Context) -> Result<Self, Error> {
-        let context = context.clone();
-        let live = Live::new(scene.clone(), move || context.request_repaint())?;
+    pub fn new(scene: Scene) -> Result<Self, Error> {
+        let context = Arc::new(OnceLock::<egui::Context>::new());
+        let known = context.clone();
+        // At once would be two passes, the second one for nothing.
+        let wake = move || {
+            known.get().into_iter().for_each(|context| context.request_repaint_after(SOON));
+        };
+        let live = Live::new(scene.clone(), wake)?;
         live.tell(Command::Adapt(true));
         Ok(Self {
             live,
+            context,
             base: scene.clone(),
             scene,
             camera: Camera::front(),
@@ -241,6 +253,7 @@ impl App {
 
     /// Draws the window.
     pub fn show(&mut self, ui: &mut egui::Ui) {
+        self.context.get_or_init(|| ui.ctx().clone());
         self.take_files(ui);
         self.take_news();
         self.take_picture(ui.ctx());

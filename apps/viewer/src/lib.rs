@@ -19,6 +19,9 @@ pub enum ViewError {
     /// The system shows none.
     #[error("there is no display")]
     NoDisplay,
+    /// The system gives no thread.
+    #[error(transparent)]
+    NotStarted(strandline::Error),
     /// The display takes none, or nothing draws it.
     #[error("{0}")]
     Refused(eframe::Error),
@@ -35,10 +38,9 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
         .with_min_inner_size([640.0, 400.0])
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions { viewport, ..Default::default() };
-    let make = |context: &eframe::CreationContext| {
-        let app = App::new(scene, &context.egui_ctx)?;
-        Ok(Box::new(app) as Box<dyn eframe::App>)
-    };
+    // Hair grows while the system makes the window.
+    let app = App::new(scene).map_err(ViewError::NotStarted)?;
+    let make = |_: &eframe::CreationContext| Ok(Box::new(app) as Box<dyn eframe::App>);
     eframe::run_native("strandline", options, Box::new(make)).map_err(|error| match error {
         eframe::Error::WinitEventLoop(_) => ViewError::NoDisplay,
         other => ViewError::Refused(other),

@@ -108,7 +108,8 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     fit(app, room.size(), ui.ctx().pixels_per_point());
     messages::show(app, ui, room);
     let Some(texture) = &app.texture else {
-        ui.centered_and_justified(|ui| ui.spinner());
+        // Nothing that turns: it would take from the loading what it needs.
+        ui.centered_and_justified(|ui| ui.label("growing hair ..."));
         return;
     };
     let image = egui::Image::new(texture).fit_to_exact_size(room.size()).sense(egui::Sense::drag());

@@ -7,8 +7,7 @@ use crate::App;
 pub fn show(app: &App, ui: &mut egui::Ui) {
     ui.horizontal_wrapped(|ui| {
         if app.loading {
-            ui.spinner();
-            ui.label("loading");
+            ui.label("loading ...");
         }
         let Some(shown) = &app.shown else { return };
         ui.label(format!("{:.1} pictures/s", app.rate)).on_hover_text("pictures a second, smoothed");

@@ -46,7 +46,7 @@ impl Window {
 
     fn on(scene: Scene) -> Self {
         let context = egui::Context::default();
-        let app = App::new(scene, &context).unwrap();
+        let app = App::new(scene).unwrap();
         Self { context, app }
     }
 
