@@ -302,6 +302,36 @@ fn lengths_change_on_a_gpu_too() {
 }
 
 #[test]
+fn a_hand_holds_on_a_gpu_and_when_it_goes_away() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    hair.set_fall_back(true);
+    hair.step(0.05, &Pose::IDENTITY).unwrap();
+    let points = hair.guides().points_per_strand();
+    let tip = |hair: &Hair| hair.state().positions[points - 1].get(0);
+    let (hand, aside) = (tip(&hair), glam::Vec3::new(0.02, 0.04, 0.05));
+    assert!(hair.grab(hand, 0.002).unwrap() >= 1);
+    let held = |hair: &Hair, place: glam::Vec3| {
+        let missed = tip(hair).distance(place);
+        assert!(missed < 0.005, "{} misses the hand by {missed} m", hair.simulated_on());
+    };
+    hair.move_hand(hand + aside);
+    hair.step(0.2, &Pose::IDENTITY).unwrap();
+    hair.step(0.3, &Pose::IDENTITY).unwrap();
+    held(&hair, hand + aside);
+    gpu.destroy();
+    hair.move_hand(hand + 1.2 * aside);
+    hair.step(0.1, &Pose::IDENTITY).unwrap();
+    hair.step(0.3, &Pose::IDENTITY).unwrap();
+    assert_eq!(hair.simulated_on(), "cpu");
+    held(&hair, hand + 1.2 * aside);
+    hair.release().unwrap();
+    assert_eq!(hair.state().grabbed(), 0);
+    hair.step(0.3, &Pose::IDENTITY).unwrap();
+    assert!(tip(&hair).distance(hand + 1.2 * aside) > 0.01, "it falls when it is let go of");
+}
+
+#[test]
 fn mic0_is_for_the_cpu_and_auto_takes_it_there() {
     let Some(gpu) = gpu() else { return };
     let mut scene = scene();
