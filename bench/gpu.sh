@@ -18,7 +18,7 @@ if target/release/strandline gpus | head -n 1 | grep -q software; then
     folder=$(mktemp -d)
 fi
 STRANDLINE_REQUIRE_GPU=1 cargo test --release --package strandline-checks --test parity
-for what in thesis scaling view workers; do
+for what in thesis scaling view workers window; do
     target/release/strandline bench "$what" --backend "$backend" $quick --json "$folder/gpu-$what.json"
 done
 echo "the measurements are in $folder"

@@ -3,7 +3,9 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use strandline::{Camera, Command, Error, Light, Live, News, Scene, Shown};
+use strandline::{
+    Backend, Camera, Command, Error, Light, Live, News, Scene, Shown, body::Aabb, render::PictureSettings,
+};
 
 use crate::{files, messages, panels, stage, strip};
 
@@ -27,10 +29,8 @@ pub struct App {
     /// Whether the mouse holds hair, and the radius \[m\] of the hand.
     pub(crate) grabs: bool,
     pub(crate) radius: f32,
-    /// The scene before the one that is on its way.
-    pub(crate) before: Option<Box<Scene>>,
-    /// Whether a scene is on its way.
-    pub(crate) loading: bool,
+    /// The scene that is on its way, and the number of its command.
+    pending: Option<(u64, Box<Scene>)>,
     pub(crate) error: Option<String>,
     pub(crate) notes: Vec<messages::Note>,
     pub(crate) shown: Option<Shown>,
@@ -88,7 +88,7 @@ impl App {
             live,
             context,
             base: scene.clone(),
-            scene,
+            scene: scene.clone(),
             camera: Camera::front(),
             home: Camera::front(),
             playing: true,
@@ -96,8 +96,7 @@ impl App {
             dragged_to: None,
             grabs: false,
             radius: Self::RADIUS,
-            before: None,
-            loading: true,
+            pending: Some((1, Box::new(scene))),
             error: None,
             notes: Vec::new(),
             shown: None,
@@ -142,8 +141,9 @@ impl App {
         self.live.tell(Command::Look(Box::new(self.scene.look.clone())));
     }
 
+    /// Has pictures drawn as the scene says, with something behind them.
     pub(crate) fn send_picture(&self) {
-        self.live.tell(Command::Picture(self.scene.picture));
+        self.live.tell(Command::Picture(PictureSettings { transparent: false, ..self.scene.picture }));
     }
 
     pub(crate) fn send_motion(&self) {
@@ -165,13 +165,28 @@ impl App {
         self.playing
     }
 
-    /// Loads another scene; the old one stays until it is there.
-    pub(crate) fn load(&mut self, scene: Scene) {
-        self.loading = true;
+    /// Whether a scene is on its way.
+    pub(crate) fn is_loading(&self) -> bool {
+        self.pending.is_some()
+    }
+
+    /// Loads another scene; the old one stays, and is what the controls change, until it is there.
+    pub(crate) fn load(&mut self, mut scene: Scene) {
         self.error = None;
-        self.live.tell(Command::Load(Box::new(scene.clone())));
-        let before = std::mem::replace(&mut self.scene, scene);
-        self.before.get_or_insert_with(|| Box::new(before));
+        // The window's size and the devices that the program was started with go on.
+        let PictureSettings { width, height, .. } = self.scene.picture;
+        (scene.picture.width, scene.picture.height) = (width, height);
+        for (new, old) in [
+            (&mut scene.simulation.backend, self.scene.simulation.backend),
+            (&mut scene.picture.backend, self.scene.picture.backend),
+        ] {
+            if *new == Backend::Auto {
+                *new = old;
+            }
+        }
+        let drawn = PictureSettings { transparent: false, ..scene.picture };
+        let number = self.live.tell(Command::Load(Box::new(Scene { picture: drawn, ..scene.clone() })));
+        self.pending = Some((number, Box::new(scene)));
     }
 
     /// Loads what was dropped on the window.
@@ -182,7 +197,9 @@ impl App {
 
     /// Loads a scene, or another groom or body into the one that is there.
     pub(crate) fn open_file(&mut self, file: &Path) {
-        match Self::scene_of(&self.scene, file) {
+        // A body dropped right after a groom goes with it.
+        let onto = self.pending.as_ref().map_or(&self.scene, |(_, scene)| scene);
+        match Self::scene_of(onto, file) {
             Ok(scene) => self.load(scene),
             Err(error) => self.error = Some(error.to_string()),
         }
@@ -191,27 +208,14 @@ impl App {
     fn take_news(&mut self) {
         for news in self.live.take_news() {
             match news {
-                News::Loaded(camera, bounds, notes) => {
-                    if self.scene.lights.is_empty() {
-                        // Those that it is lit with, for the panel to change.
-                        self.scene.lights = Light::three_point(0.5 * (bounds.min + bounds.max)).to_vec();
-                    }
-                    self.base = self.scene.clone();
-                    (self.camera, self.home, self.loading, self.before) = (camera, camera, false, None);
-                    self.grabs = false;
-                    self.notes = Vec::new();
+                News::Loaded(number, camera, bounds, notes) => {
+                    self.take_scene(number, camera, bounds);
                     notes.into_iter().for_each(|note| self.note(note));
-                    // The scene brings its own; the window's size goes on.
-                    self.send_picture();
-                    self.live.tell(Command::Play(self.playing));
                 }
                 News::Note(note) => self.note(note),
-                News::NotLoaded(error) => {
+                News::NotLoaded(number, error) => {
                     // What plays is still what played before.
-                    if let Some(before) = self.before.take() {
-                        self.scene = *before;
-                    }
-                    self.loading = false;
+                    self.pending.take_if(|(pending, _)| *pending == number);
                     self.error = Some(error);
                 }
                 News::Error(error) => self.error = Some(error),
@@ -220,6 +224,20 @@ impl App {
                 News::Recorded => self.recording = false,
             }
         }
+    }
+
+    /// Makes the scene that has come the one that the controls change.
+    fn take_scene(&mut self, number: u64, camera: Camera, bounds: Aabb) {
+        let Some((_, scene)) = self.pending.take_if(|(pending, _)| *pending == number) else { return };
+        self.scene = *scene;
+        if self.scene.lights.is_empty() {
+            // Those that it is lit with, for the panel to change.
+            self.scene.lights = Light::three_point(0.5 * (bounds.min + bounds.max)).to_vec();
+        }
+        self.base = self.scene.clone();
+        (self.camera, self.home, self.grabs) = (camera, camera, false);
+        self.notes.clear();
+        self.live.tell(Command::Play(self.playing));
     }
 
     fn take_picture(&mut self, context: &egui::Context) {
@@ -248,6 +266,14 @@ impl App {
         scene.camera.position = Some(self.camera.position);
         scene.camera.target = Some(self.camera.target);
         scene.camera.field_of_view = Some(self.camera.field_of_view);
+        // It may be saved elsewhere.
+        let absolute = |path: &PathBuf| {
+            let path = self.scene.folder.join(path);
+            std::path::absolute(&path).unwrap_or(path)
+        };
+        for file in [&mut scene.groom.file, &mut scene.body.file, &mut scene.body.collider_file] {
+            *file = file.as_ref().map(absolute);
+        }
         scene
     }
 

@@ -109,11 +109,17 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     messages::show(app, ui, room);
     let Some(texture) = &app.texture else {
         // Nothing that turns: it would take from the loading what it needs.
-        ui.centered_and_justified(|ui| ui.label("growing hair ..."));
+        let text = if app.is_loading() { "growing hair ..." } else { "nothing to show yet: open a scene" };
+        ui.centered_and_justified(|ui| ui.label(text));
         return;
     };
-    let image = egui::Image::new(texture).fit_to_exact_size(room.size()).sense(egui::Sense::drag());
-    let response = ui.add(image);
+    // A picture whose size stays, as a video's does, keeps its shape too.
+    let shape = texture.size_vec2();
+    let share = (room.width() / shape.x).min(room.height() / shape.y);
+    let place =
+        Rect::from_center_size(room.center(), if app.recording { shape * share } else { room.size() });
+    let image = egui::Image::new(texture).fit_to_exact_size(place.size()).sense(egui::Sense::drag());
+    let response = ui.put(place, image);
     mouse(app, ui, &response);
     if response.hovered() {
         let scroll = ui.input(|input| input.smooth_scroll_delta().y);
@@ -220,7 +226,10 @@ fn drag(app: &mut App, ui: &egui::Ui, response: &egui::Response, tool: Tool) {
         look(app, pan(&app.camera, halves));
     } else if tool == Tool::Turn {
         let most = crate::panels::FARTHEST;
-        let turn = |angle: f32, points: f32| (angle + (ORBIT * points).to_degrees()).clamp(-most, most);
+        // An angle of the scene beyond that is not pulled back.
+        let turn = |angle: f32, points: f32| {
+            (angle + (ORBIT * points).to_degrees()).clamp(angle.min(-most), angle.max(most))
+        };
         let rotation = &mut app.scene.motion.rotation;
         (rotation.y, rotation.x) = (turn(rotation.y, moved.x), turn(rotation.x, moved.y));
         app.send_motion();
@@ -238,7 +247,7 @@ fn fit(app: &mut App, room: egui::Vec2, pixels_per_point: f32) {
     let (width, height) = (side(room.x), side(room.y));
     let picture = &mut app.scene.picture;
     if (picture.width, picture.height) != (width, height) {
-        *picture = PictureSettings { width, height, transparent: false, ..*picture };
+        *picture = PictureSettings { width, height, ..*picture };
         app.send_picture();
     }
 }

@@ -6,7 +6,7 @@ use crate::App;
 
 pub fn show(app: &App, ui: &mut egui::Ui) {
     ui.horizontal_wrapped(|ui| {
-        if app.loading {
+        if app.is_loading() {
             ui.label("loading ...");
         }
         let Some(shown) = &app.shown else { return };

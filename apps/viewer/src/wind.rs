@@ -20,24 +20,22 @@ pub fn dial(room: Rect) -> Rect {
 pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     let rect = dial(room);
     let response = ui.interact(rect, ui.scope_id().with("wind"), Sense::click_and_drag());
-    let before = app.scene.wind.velocity;
     let view = app.camera.view_from_world();
-    let mut seen = view.transform_vector3(before);
+    let mut seen = view.transform_vector3(app.scene.wind.velocity);
+    let scroll = if response.hovered() { ui.input(|input| input.smooth_scroll_delta().y) } else { 0.0 };
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) {
         let place = (pointer - rect.center()) / RADIUS * STRONGEST;
         (seen.x, seen.y) = (place.x, -place.y);
     }
-    if response.hovered() {
-        // The wheel blows into the picture and out of it.
-        seen.z += 0.02 * ui.input(|input| input.smooth_scroll_delta().y);
-    }
-    let mut wind = view.inverse().transform_vector3(seen).clamp_length_max(STRONGEST);
+    // The wheel blows into the picture and out of it.
+    seen.z += 0.02 * scroll;
     if response.double_clicked() {
-        wind = Vec3::ZERO;
+        seen = Vec3::ZERO;
     }
-    // To the view and back is not exact: what nobody moved stays.
-    if response.dragged() || response.double_clicked() || wind.distance(before) > 1e-3 {
-        app.scene.wind.velocity = wind;
+    // What nobody moved stays as it is, however strong.
+    if response.dragged() || response.double_clicked() || scroll != 0.0 {
+        let wind = view.inverse().transform_vector3(seen);
+        app.scene.wind.velocity = wind.clamp_length_max(STRONGEST);
         app.live.tell(Command::Wind(app.scene.wind));
     }
     response.on_hover_text(
@@ -51,6 +49,7 @@ fn draw(ui: &egui::Ui, rect: Rect, seen: Vec3) {
     let (middle, dark) = (rect.center(), Color32::from_black_alpha(90));
     painter.circle(middle, RADIUS, dark, Stroke::new(1.0, Color32::from_white_alpha(90)));
     let tip = middle + RADIUS / STRONGEST * egui::vec2(seen.x, -seen.y);
+    let tip = middle + (tip - middle).normalized() * (tip - middle).length().min(RADIUS);
     let bright = Color32::from_rgb(190, 220, 255);
     painter.arrow(middle, tip - middle, Stroke::new(2.0, bright));
     painter.circle_filled(tip, 4.0, bright);

@@ -46,8 +46,16 @@ impl Grip {
     }
 }
 
+/// Distance \[m\] of the origin from a segment.
+fn to_segment(start: Vec3, end: Vec3) -> f32 {
+    let across = end - start;
+    let share = (-start.dot(across) / across.length_squared().max(1e-30)).clamp(0.0, 1.0);
+    (start + across * share).length()
+}
+
 impl Grab {
-    /// Takes the nearest free point of every strand that has one within `radius` \[m\] of the hand.
+    /// Takes every strand that comes within `radius` \[m\] of the hand, by the nearest free end of the segment
+    /// that is nearest to it.
     pub fn new(solver: &Solver, positions: &[Vec3Lanes], hand: Vec3, radius: f32) -> Self {
         let points = solver.points_per_strand;
         let grips: Vec<Grip> = positions
@@ -60,9 +68,14 @@ impl Grab {
                 for lane in 0..live {
                     let free = |point: &usize| solver.inverse_mass[block * points + point].0[lane] > 0.0;
                     let offset = |point: usize| positions[point].get(lane) - hand;
-                    let nearest = (0..points).filter(free).map(|point| (offset(point).length(), point));
+                    let segments = (1..points).filter(|end| free(end) || free(&(end - 1)));
+                    let nearest = segments.map(|end| (to_segment(offset(end - 1), offset(end)), end));
                     let nearest = nearest.min_by(|a, b| a.0.total_cmp(&b.0));
-                    if let Some((_, point)) = nearest.filter(|(distance, _)| *distance <= radius) {
+                    if let Some((_, end)) = nearest.filter(|(distance, _)| *distance <= radius) {
+                        let ends = [end - 1, end].into_iter().filter(free);
+                        let nearer =
+                            |a: &usize, b: &usize| offset(*a).length().total_cmp(&offset(*b).length());
+                        let Some(point) = ends.min_by(nearer) else { continue };
                         grip.points[lane] = point as u32;
                         grip.offsets.set(lane, offset(point));
                     }

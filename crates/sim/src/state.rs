@@ -85,7 +85,7 @@ impl State {
     }
 
     /// Takes hair into a hand, and lets go of what it held: of every strand that comes within `radius`
-    /// \[m\] of `hand` \[m\], world space, the nearest point follows [`Drive::hand`] from now on. It keeps
+    /// \[m\] of `hand` \[m\], world space, the point nearest there follows [`Drive::hand`] from now on. It keeps
     /// its place beside the hand, outside the solids, and lags behind a hand that the strand does not
     /// reach. Returns the number of strands; none when a number is not finite.
     pub fn grab(&mut self, solver: &Solver, hand: Vec3, radius: f32) -> usize {

@@ -149,10 +149,16 @@ impl Film {
                 Ok(())
             }
             Moving::Animation(encoder, path) => {
+                // Centiseconds are all that it can tell, and fewer than two are not kept to.
+                let (rate, index) = (self.frames_per_second, self.files.len() - 1);
+                let stride = (rate / 50.0).ceil().max(1.0) as usize;
+                if !index.is_multiple_of(stride) {
+                    return Ok(());
+                }
+                let at = |index: usize| (100.0 * index as f32 / rate).round();
                 let small = image::DynamicImage::ImageRgb8(thumbnail(picture, ANIMATION_WIDTH)).into_rgba8();
-                let delay = Delay::from_saturating_duration(std::time::Duration::from_secs_f32(
-                    1.0 / self.frames_per_second,
-                ));
+                let shown = std::time::Duration::from_millis(10 * (at(index + stride) - at(index)) as u64);
+                let delay = Delay::from_saturating_duration(shown);
                 let frame = image::Frame::from_parts(small, 0, 0, delay);
                 encoder
                     .encode_frame(frame)

@@ -170,6 +170,11 @@ impl Hair {
     /// # Errors
     /// A setting of the scene outside its range.
     pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
+        // What only pictures need is refused now too, not when the first one is drawn.
+        scene.look.validate()?;
+        scene.body_look.validate()?;
+        scene.level_of_detail.validate()?;
+        scene.lights.iter().try_for_each(Light::validate)?;
         let Prepared { guides, mesh, colliders, head, .. } = prepared;
         let mut hair = Self::with_body(devices, guides, mesh.as_ref(), colliders, &scene.simulation)?;
         if !scene.lights.is_empty() {
@@ -224,7 +229,7 @@ impl Hair {
         let guides = &self.studio.guides;
         let body = self.studio.painter.mesh().map(|mesh| (mesh, &self.moment.world_from_head));
         let shape = [guides.strand_count(), guides.points_per_strand()];
-        ray.hair(&self.moment.positions, shape, radius, body)
+        ray.hair(&self.moment.positions, shape, radius, body).map(|picked| picked.point)
     }
 
     /// Moves the hand to a place \[m\], world space, evenly over the next [`Hair::step`].
@@ -274,7 +279,7 @@ impl Hair {
     /// # Errors
     /// A setting outside its range, then nothing changes; or the GPU failed.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), Error> {
-        Ok(self.simulation.engine.set_settings(settings)?)
+        Ok(self.simulation.set_settings(settings)?)
     }
 
     /// Draws the hair as it is now.

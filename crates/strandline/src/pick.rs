@@ -58,33 +58,57 @@ impl Ray {
         along.fold(f32::INFINITY, f32::min)
     }
 
-    /// The hair that it meets first before the body: the guide point \[m\] within `radius` \[m\] of it that is
-    /// nearest to its beginning and to itself. `positions` are those of `strands` guides, world space,
-    /// shape `[block][point]` of lanes, of so many points each.
+    /// The hair that it meets first before the body: the end of a segment that comes within `radius` \[m\] of
+    /// it, the nearest to its beginning and to itself. `positions` \[m\] are those of `strands` guides, world
+    /// space, shape `[block][point]` of lanes, of so many points each.
     pub(crate) fn hair(
         self,
         positions: &[Vec3Lanes],
         [strands, points]: [usize; 2],
         radius: f32,
         body: Option<(&Mesh, &Pose)>,
-    ) -> Option<Vec3> {
-        let mut nearest: Option<(f32, Vec3)> = None;
-        let limit = body.map_or(f32::INFINITY, |(mesh, pose)| self.to_body(mesh, pose));
-        for (index, lanes) in positions.iter().enumerate() {
+    ) -> Option<Picked> {
+        let mut nearest: Option<(f32, Picked)> = None;
+        let limit = body.map_or(f32::INFINITY, |(mesh, pose)| self.to_body(mesh, pose)) + radius;
+        for index in (1..positions.len()).filter(|index| index % points > 0) {
             let live = (strands - (index / points * LANES).min(strands)).min(LANES);
-            for point in (0..live).map(|lane| lanes.get(lane)) {
-                let along = (point - self.origin).dot(self.direction);
-                let aside = (self.origin + self.direction * along).distance(point);
+            for lane in 0..live {
+                let ends = [index - 1, index].map(|index| positions[index].get(lane));
+                let (along, aside, share) = self.to_segment(ends);
                 // What is off the line counts as farther away, so that the hand takes what it points at.
                 let cost = along + 2.0 * aside;
-                let before = along > 0.0 && along < limit + radius && aside < radius;
-                if before && nearest.is_none_or(|(least, _)| cost < least) {
-                    nearest = Some((cost, point));
+                let before = along > 0.0 && along < limit && aside < radius;
+                if before && nearest.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    let end = usize::from(share > 0.5);
+                    let picked = Picked { point: ends[end], index: index - 1 + end, lane };
+                    nearest = Some((cost, picked));
                 }
             }
         }
-        nearest.map(|(_, point)| point)
+        nearest.map(|(_, picked)| picked)
     }
+
+    /// Where a segment comes nearest to the line: how far along the line, how far aside \[m\], and at which
+    /// share of the segment.
+    fn to_segment(self, [start, end]: [Vec3; 2]) -> (f32, f32, f32) {
+        let across = end - start;
+        // Across the line, where only the distance counts.
+        let flat = |vector: Vec3| vector - self.direction * self.direction.dot(vector);
+        let (from, way) = (flat(start - self.origin), flat(across));
+        let share = (-from.dot(way) / way.length_squared().max(1e-30)).clamp(0.0, 1.0);
+        let point = start + across * share;
+        ((point - self.origin).dot(self.direction), (from + way * share).length(), share)
+    }
+}
+
+/// A point of a guide under the mouse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Picked {
+    /// Where it is \[m\], world space.
+    pub point: Vec3,
+    /// Its place in `[block][point]`, and its lane.
+    pub index: usize,
+    pub lane: usize,
 }
 
 #[cfg(test)]
@@ -116,26 +140,33 @@ mod tests {
     #[test]
     fn the_hair_in_front_is_taken_and_none_behind_the_body() {
         let ray = Ray::new(&camera(), Vec2::ZERO);
-        let hair = strand(&[Vec3::Z * -0.2, Vec3::new(0.01, 0.0, 0.1), Vec3::new(0.0, 0.3, 0.2)]);
-        let found = ray.hair(&hair, [1, 3], 0.02, None);
-        assert_eq!(found, Some(Vec3::new(0.01, 0.0, 0.1)));
-        assert_eq!(ray.hair(&hair[..1], [1, 1], 0.02, None), Some(Vec3::Z * -0.2));
-        assert_eq!(ray.hair(&hair[2..], [1, 1], 0.02, None), None, "beside it");
+        // Across the line behind the middle, and before it; and beside it.
+        let (x, y) = (Vec3::X, Vec3::Y);
+        let back = strand(&[Vec3::Z * -0.2 - x * 0.01, Vec3::Z * -0.2 + x * 0.3]);
+        let front = strand(&[Vec3::Z * 0.1 - x * 0.05, Vec3::Z * 0.1 + x * 0.03]);
+        let aside = strand(&[y * 0.3, y * 0.4]);
+        let hair = [back.clone(), front, aside.clone()].concat();
+        let point = |hair: &[Vec3Lanes], body| ray.hair(hair, [hair.len() * 4, 2], 0.02, body);
+        let found = point(&hair, None).unwrap();
+        // Its middle is under the mouse, and its nearer end is taken.
+        assert_eq!((found.point, found.index), (Vec3::new(0.03, 0.0, 0.1), 3));
+        assert_eq!(point(&back, None).unwrap().index, 0);
+        assert_eq!(point(&aside, None), None, "beside it");
         let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 2.0, 0.0)];
         let wall = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
         let pose = Pose::IDENTITY;
-        assert_eq!(ray.hair(&hair[..1], [1, 1], 0.02, Some((&wall, &pose))), None, "behind the wall");
-        assert!(ray.hair(&hair, [1, 3], 0.02, Some((&wall, &pose))).is_some(), "before it");
-        let aside = Pose { translation: Vec3::X * 5.0, ..Pose::IDENTITY };
-        assert!(ray.hair(&hair[..1], [1, 1], 0.02, Some((&wall, &aside))).is_some(), "the wall is elsewhere");
+        assert_eq!(point(&back, Some((&wall, &pose))), None, "behind the wall");
+        assert!(point(&hair, Some((&wall, &pose))).is_some(), "before it");
+        let away = Pose { translation: Vec3::X * 5.0, ..Pose::IDENTITY };
+        assert!(point(&back, Some((&wall, &away))).is_some(), "the wall is elsewhere");
     }
 
     #[test]
     fn lanes_that_carry_no_hair_are_not_taken() {
         let ray = Ray::new(&camera(), Vec2::ZERO);
-        let mut lanes = Vec3Lanes::splat(Vec3::ZERO);
-        lanes.set(0, Vec3::X);
-        assert_eq!(ray.hair(&[lanes], [1, 1], 0.02, None), None);
-        assert!(ray.hair(&[lanes], [2, 1], 0.02, None).is_some());
+        let mut lanes = [Vec3Lanes::splat(Vec3::ZERO), Vec3Lanes::splat(Vec3::Y)];
+        lanes.iter_mut().for_each(|lanes| lanes.set(0, Vec3::X));
+        assert_eq!(ray.hair(&lanes, [1, 2], 0.02, None), None);
+        assert!(ray.hair(&lanes, [2, 2], 0.02, None).is_some());
     }
 }

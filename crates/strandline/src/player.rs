@@ -163,7 +163,7 @@ impl Player {
         &self.studio.guides
     }
 
-    /// The state of the simulation: as long as a frame is on its way, of that frame.
+    /// The state of the simulation: as long as a frame is on its way, before it or after.
     pub fn state(&self) -> State {
         self.worker.work().engine.state().clone()
     }
@@ -206,13 +206,13 @@ impl Player {
         let (frame, course, change) = (self.started, self.course.clone(), self.change.take());
         let act = move |simulation: &mut Simulation| {
             change
-                .map_or(Ok(()), |settings| simulation.engine.set_settings(&settings))
+                .map_or(Ok(()), |settings| simulation.set_settings(&settings))
                 .and_then(|()| course.run(simulation, frame))
         };
         let gpu = self.studio.painter.gpu().cloned();
         let moment = self.spare.pop().unwrap_or_default();
         self.started += 1;
-        self.worker.start(Job { act: Box::new(act), gpu, moment })
+        self.worker.start(Job { act: Box::new(act), gpu, moment, is_frame: true, heard: 0 })
     }
 
     /// Takes the next frame from the worker and starts the one after it.

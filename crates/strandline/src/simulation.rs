@@ -8,7 +8,7 @@ use crate::{
     engine::Engine,
     groom::Vec3Lanes,
     render::gpu::DevicePoints,
-    sim::{Clock, Drive, SimError, StepReport},
+    sim::{Clock, Drive, Settings, SimError, StepReport},
     worker::Work,
 };
 
@@ -60,6 +60,10 @@ pub(crate) struct Job {
     /// The device that the pictures are drawn on.
     pub gpu: Option<Gpu>,
     pub moment: Moment,
+    /// Whether it is a frame of the film.
+    pub is_frame: bool,
+    /// Commands that were heard before.
+    pub heard: u64,
 }
 
 /// What it led to; after a failure the moment is that of the last state.
@@ -69,6 +73,9 @@ pub(crate) struct Done {
     pub notes: Vec<String>,
     /// Strands in the hand.
     pub grabbed: usize,
+    /// As in the job.
+    pub is_frame: bool,
+    pub heard: u64,
     /// Where it was done: cpu, or the adapter.
     pub place: String,
 }
@@ -78,7 +85,7 @@ impl Work for Simulation {
     type Done = Done;
 
     fn run(&mut self, job: Job) -> Done {
-        let Job { act, gpu, mut moment } = job;
+        let Job { act, gpu, mut moment, is_frame, heard } = job;
         let threads = self.threads.take();
         let run = || {
             let reports = act(self);
@@ -92,7 +99,7 @@ impl Work for Simulation {
         self.threads = threads;
         let place = crate::hair::place(self.engine.gpu());
         let grabbed = self.engine.state().grabbed();
-        Done { moment, reports, notes: self.engine.take_notes(), grabbed, place }
+        Done { moment, reports, notes: self.engine.take_notes(), grabbed, is_frame, heard, place }
     }
 }
 
@@ -113,6 +120,16 @@ impl Simulation {
     pub fn with_threads(self) -> Self {
         let threads = rayon::ThreadPoolBuilder::new().thread_name(|_| "simulation".to_owned()).build();
         Self { threads: threads.ok(), ..self }
+    }
+
+    /// Changes the settings; steps of another length take that long from now on.
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
+        let before = self.engine.solver().settings().time_step;
+        self.engine.set_settings(settings)?;
+        if settings.time_step != before {
+            self.clock = Clock::new(settings.time_step);
+        }
+        Ok(())
     }
 
     /// Goes back to rest under a pose of the head; time goes on.

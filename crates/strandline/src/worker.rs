@@ -71,8 +71,10 @@ impl<W: Work> Worker<W> {
 
     /// Waits for the oldest job that was started.
     pub fn finish(&mut self) -> Result<W::Done, Gone> {
-        let result = self.results.as_ref().and_then(|results| results.recv().ok()).ok_or(Gone)?;
-        self.started -= 1;
+        let result = self.results.as_ref().and_then(|results| results.recv().ok()).ok_or(Gone);
+        // Nothing more comes from a thread that is gone.
+        self.started = if result.is_ok() { self.started - 1 } else { 0 };
+        let result = result?;
         Ok(result)
     }
 

@@ -33,6 +33,18 @@ fn next(live: &Live) -> Shown {
     wait(|| live.take_shown())
 }
 
+/// The last picture before nothing comes any more.
+fn settled(live: &Live) -> Shown {
+    let (mut last, mut since) = (next(live), Instant::now());
+    while since.elapsed() < Duration::from_millis(1500) {
+        if let Some(shown) = live.take_shown() {
+            (last, since) = (shown, Instant::now());
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    last
+}
+
 /// A scene that stands still, and its first picture.
 fn still() -> (Live, Shown) {
     let live = Live::new(scene(), || ()).unwrap();
@@ -90,12 +102,8 @@ fn every_change_shows_in_the_next_pictures() {
         // The head is at its place a little later.
         let steps = (0..20).map(|_| live.tell(Command::Step)).last().unwrap();
         assert!(steps > before);
-        let mut made = 0;
-        let shown = wait(|| {
-            let shown = live.take_shown()?;
-            made += u32::from(shown.heard >= steps);
-            (made == 15).then_some(shown)
-        });
+        let shown = settled(&live);
+        assert!(shown.heard >= steps);
         assert!(shown.picture != last);
         last = shown.picture;
     }
@@ -109,7 +117,7 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
     let error = |live: &Live| {
         wait(|| {
             live.take_news().into_iter().find_map(|news| match news {
-                News::Error(error) | News::NotLoaded(error) => Some(error),
+                News::Error(error) | News::NotLoaded(_, error) => Some(error),
                 _ => None,
             })
         })
@@ -124,9 +132,16 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
     assert!(error(&live).contains("time_step"));
     live.tell(Command::Length(7.0));
     assert!(error(&live).contains("7"));
+    let bad_motion = MotionSection { rotation: glam::Vec3::NAN, ..scene().motion };
+    live.tell(Command::Motion(Box::new(bad_motion)));
+    assert!(error(&live).contains("motion.rotation"));
+    let mut undrawable = scene();
+    undrawable.look.sparkle = 7.0;
+    live.tell(Command::Load(Box::new(undrawable)));
+    assert!(error(&live).contains("sparkle"));
     // After all that it still draws what it drew.
-    live.tell(Command::Camera(first_camera(&live)));
-    let again = next(&live);
+    let number = live.tell(Command::Camera(first_camera()));
+    let again = wait(|| live.take_shown().filter(|shown| shown.heard >= number));
     assert_eq!(again.picture, first.picture);
     let mut other = scene();
     other.style.strand_count = 30;
@@ -136,7 +151,7 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
 }
 
 /// The camera that the scene has for itself.
-fn first_camera(_: &Live) -> Camera {
+fn first_camera() -> Camera {
     let prepared = strandline::Prepared::new(&scene()).unwrap();
     scene().camera.camera(prepared.bounds, 64.0 / 48.0)
 }
@@ -167,41 +182,49 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
     }
 }
 
-#[test]
-fn a_command_shows_within_two_pictures() {
+/// How often of twenty times something told shows within so many pictures that come after it. The machine
+/// may be busy: then pictures pass that this thread does not see.
+fn in_time(pictures: u64, tell: impl Fn(&Live, u64) -> u64, shows: impl Fn(&Shown, u64) -> bool) -> usize {
     let live = Live::new(scene(), || ()).unwrap();
     let mut last = next(&live);
+    let mut count = 0;
     for turn in 0..20_u64 {
         // At any time of a frame.
         std::thread::sleep(Duration::from_micros(turn * 613 % 7000));
         last = live.take_shown().unwrap_or(last);
-        let number = live.tell(Command::Camera(Camera::front().orbit(0.1 * turn as f32, 0.0)));
-        let shows = wait(|| live.take_shown().filter(|shown| shown.heard >= number));
-        // One may have been on its way, and one finished but not taken.
-        assert!(shows.frame <= last.frame + 3, "told at {}, shown at {}", last.frame, shows.frame);
-        last = shows;
+        let number = tell(&live, turn);
+        let shown = wait(|| live.take_shown().filter(|shown| shows(shown, number)));
+        count += usize::from(shown.frame <= last.frame + pictures);
+        last = shown;
     }
+    count
 }
 
 #[test]
-fn a_setting_shows_within_two_frames() {
-    let live = Live::new(scene(), || ()).unwrap();
-    let mut on = true;
-    next(&live);
-    for _ in 0..10 {
-        on = !on;
+fn a_view_shows_in_the_next_picture_that_is_begun() {
+    let turn =
+        |live: &Live, turn: u64| live.tell(Command::Camera(Camera::front().orbit(0.1 * turn as f32, 0.0)));
+    // The first picture to come is under way.
+    assert!(in_time(2, turn, |shown, number| shown.heard >= number) > 12);
+    assert!(in_time(0, turn, |shown, number| shown.heard >= number) == 0, "no picture is enough");
+}
+
+#[test]
+fn a_setting_shows_in_the_picture_after_that() {
+    let settings = |turn: u64| {
         let mut settings = scene().simulation;
-        settings.volume.enabled = on;
-        let number = live.tell(Command::Settings(Box::new(settings)));
-        let heard = wait(|| live.take_shown().filter(|shown| shown.heard >= number));
-        let has_volume = |shown: &Shown| {
-            let step = shown.step.as_ref();
-            step.is_some_and(|step| step.seconds.iter().any(|(stage, _)| *stage == "splat"))
-        };
-        // The picture drawn when it was heard shows a step from before; the next one shows it.
-        let shows = if has_volume(&heard) == on { heard.clone() } else { next(&live) };
-        assert_eq!(has_volume(&shows), on);
-        assert!(shows.frame <= heard.frame + 1);
+        settings.volume.enabled = turn.is_multiple_of(2);
+        settings
+    };
+    let set = |live: &Live, turn: u64| live.tell(Command::Settings(Box::new(settings(turn))));
+    assert!(in_time(3, set, |shown, number| shown.felt >= number) > 12);
+    // The step that has felt it is one with the setting.
+    let live = Live::new(scene(), || ()).unwrap();
+    for turn in 0..6 {
+        let number = set(&live, turn);
+        let shown = wait(|| live.take_shown().filter(|shown| shown.felt >= number && shown.step.is_some()));
+        let has_volume = shown.step.unwrap().seconds.iter().any(|(stage, _)| *stage == "splat");
+        assert_eq!(has_volume, settings(turn).volume.enabled, "turn {turn}");
     }
 }
 
@@ -258,10 +281,11 @@ fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
 fn hair_is_pulled_by_a_hand() {
     let mut long = scene();
     long.motion.name = strandline::scene::MotionName::Still;
+    long.look.width_scale = 60.0;
     let live = Live::new(long, || ()).unwrap();
     let camera = wait(|| {
         live.take_news().into_iter().find_map(|news| match news {
-            News::Loaded(camera, ..) => Some(camera),
+            News::Loaded(_, camera, ..) => Some(camera),
             _ => None,
         })
     });
@@ -270,11 +294,19 @@ fn hair_is_pulled_by_a_hand() {
     live.tell(Command::Grab(ray(2.0, 0.9), 0.02));
     next(&live);
     assert_eq!(next(&live).grabbed, 0);
-    live.tell(Command::Grab(ray(0.0, 0.25), 0.03));
+    live.tell(Command::Grab(ray(-0.25, -0.4), 0.05));
     let held = wait(|| live.take_shown().filter(|shown| shown.grabbed > 0));
-    live.tell(Command::Drag(ray(0.9, 0.3)));
+    live.tell(Command::Drag(ray(-1.0, 0.2)));
     let pulled = wait(|| live.take_shown().filter(|shown| shown.frame > held.frame + 20));
     assert_eq!(pulled.grabbed, held.grabbed);
+    let differ = pulled.picture.pixels.iter().zip(&held.picture.pixels).filter(|(a, b)| a.abs_diff(**b) > 30);
+    let differ = differ.count();
+    assert!(differ > 60, "the hair does not follow the hand: {differ}, {} held", held.grabbed);
+    // A hand that finds nothing lets go of what it held.
+    live.tell(Command::Grab(ray(2.0, 0.9), 0.02));
+    wait(|| live.take_shown().filter(|shown| shown.grabbed == 0));
+    live.tell(Command::Grab(ray(-0.25, -0.4), 0.05));
+    wait(|| live.take_shown().filter(|shown| shown.grabbed > 0));
     live.tell(Command::Release);
     wait(|| live.take_shown().filter(|shown| shown.grabbed == 0));
     assert!(live.take_news().is_empty());

@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use x11rb::connection::Connection;
@@ -22,6 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// An X server that draws into memory.
 pub struct Display {
+    _turn: MutexGuard<'static, ()>,
     server: Child,
     name: String,
 }
@@ -30,6 +32,9 @@ impl Display {
     /// Starts one; none where there is no Xvfb or nothing to draw with, unless a display is required.
     pub fn start() -> Option<Self> {
         strandline_checks::gpu()?;
+        // One window at a time: pictures come as fast as they can.
+        static TURN: Mutex<()> = Mutex::new(());
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let size = format!("{}x{}x24", SIZE[0], SIZE[1]);
         let server = Command::new("Xvfb")
             .args(["-displayfd", "1", "-screen", "0", &size, "-nolisten", "tcp", "-noreset"])
@@ -49,7 +54,7 @@ impl Display {
         // It tells its number once it is ready.
         let mut number = String::new();
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
-        Some(Self { server, name: format!(":{}", number.trim()) })
+        Some(Self { _turn: turn, server, name: format!(":{}", number.trim()) })
     }
 
     /// Opens the program's window and waits for it.
@@ -190,6 +195,15 @@ impl Person {
     pub fn release(&mut self, button: u8) {
         std::thread::sleep(MOMENT);
         self.fake(5, button, [0; 2]);
+        std::thread::sleep(MOMENT);
+    }
+
+    /// Clicks: a button that is held for long is none.
+    pub fn click(&mut self, place: [i16; 2]) {
+        self.point(place);
+        std::thread::sleep(MOMENT);
+        self.fake(4, 1, [0; 2]);
+        self.fake(5, 1, [0; 2]);
         std::thread::sleep(MOMENT);
     }
 

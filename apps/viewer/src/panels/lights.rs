@@ -22,10 +22,12 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let before = app.scene.lights.clone();
     let (lights, camera) = (&mut app.scene.lights, &app.camera);
     let mut gone = None;
+    // A scene without lights is lit by three.
+    let is_last = lights.len() == 1;
     for (index, light) in lights.iter_mut().enumerate() {
         let base = app.base.lights.get(index).copied().unwrap_or_default();
         ui.push_id(index, |ui| {
-            if one(light, &base, camera, index, ui) {
+            if one(light, &base, camera, (index, is_last), ui) {
                 gone = Some(index);
             }
         });
@@ -41,14 +43,20 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 }
 
 /// The controls of one light; true when it is to be removed.
-fn one(light: &mut Light, base: &Light, camera: &Camera, index: usize, ui: &mut Ui) -> bool {
+fn one(
+    light: &mut Light,
+    base: &Light,
+    camera: &Camera,
+    (index, is_last): (usize, bool),
+    ui: &mut Ui,
+) -> bool {
     let mut gone = false;
     ui.horizontal(|ui| {
         ball(light, camera, ui);
         ui.vertical(|ui| {
             ui.horizontal(|ui| {
                 ui.strong(format!("light {}", index + 1));
-                gone = button(ui, "x", "removes this light");
+                gone = !is_last && button(ui, "x", "removes this light");
             });
             kinds(light, ui);
             tick(ui, (&mut light.shadow, base.shadow), "shadow", "of hair and body");

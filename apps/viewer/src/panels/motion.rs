@@ -11,6 +11,8 @@ use crate::{
     controls::{button, slide},
 };
 
+/// Least time between two poses \[s\].
+const SHORTEST: f64 = 0.01;
 /// Turn of the head by hand \[degrees\], to either side.
 pub const FARTHEST: f32 = 70.0;
 
@@ -62,20 +64,24 @@ fn key((index, yaw): (usize, &f32)) -> KeyframeSection {
     KeyframeSection { time: index as f64, rotation, ..KeyframeSection::default() }
 }
 
-/// The poses, one in a row; their order is that of their times.
+/// The poses, one in a row. A time stays between those before and after it; what nobody moves stays.
 fn keyframes(motion: &mut MotionSection, ui: &mut Ui) {
+    let times: Vec<f64> = motion.keyframes.iter().map(|key| key.time).collect();
     let mut gone = None;
-    let count = motion.keyframes.len();
     for (index, key) in motion.keyframes.iter_mut().enumerate() {
+        let least = index.checked_sub(1).map_or(0.0, |before| times[before] + SHORTEST);
+        let most = times.get(index + 1).map_or(3600.0, |after| after - SHORTEST);
         ui.horizontal(|ui| {
-            let time = DragValue::new(&mut key.time).speed(0.02).range(0.0..=3600.0).suffix(" s");
+            let time = DragValue::new(&mut key.time).speed(0.02).suffix(" s");
+            let time = time.range(least..=most.max(least)).clamp_existing_to_range(false);
             ui.add(time).on_hover_text("when [s]");
             for (axis, tip) in ["pitch [degrees]", "yaw [degrees]", "roll [degrees]"].into_iter().enumerate()
             {
-                let angle = DragValue::new(&mut key.rotation[axis]).speed(0.5).range(-180.0..=180.0);
-                ui.add(angle.max_decimals(0)).on_hover_text(tip);
+                let angle = DragValue::new(&mut key.rotation[axis]).speed(0.5).max_decimals(0);
+                let angle = angle.range(-180.0..=180.0).clamp_existing_to_range(false);
+                ui.add(angle).on_hover_text(format!("{tip}\ndefault 0"));
             }
-            if count > 1 && button(ui, "x", "takes the pose out") {
+            if times.len() > 1 && button(ui, "x", "takes the pose out") {
                 gone = Some(index);
             }
         });
@@ -86,12 +92,6 @@ fn keyframes(motion: &mut MotionSection, ui: &mut Ui) {
         let rotation = motion.rotation;
         motion.keyframes.push(KeyframeSection { time, rotation, ..KeyframeSection::default() });
         motion.rotation = glam::Vec3::ZERO;
-    }
-    motion.keyframes.sort_by(|a, b| a.time.total_cmp(&b.time));
-    for index in 1..motion.keyframes.len() {
-        // Two poses at one time would be none.
-        let least = motion.keyframes[index - 1].time + 0.01;
-        motion.keyframes[index].time = motion.keyframes[index].time.max(least);
     }
 }
 

@@ -78,7 +78,12 @@ impl App {
             self.live.tell(Command::StopRecording);
             return;
         }
-        match self.free_path("video", "") {
+        let folder = self.free_path("video", "").and_then(|folder| {
+            // It is taken from now on.
+            std::fs::create_dir(&folder).map_err(|error| format!("cannot make the folder: {error}"))?;
+            Ok(folder)
+        });
+        match folder {
             Ok(folder) => {
                 self.recording = true;
                 self.live.tell(Command::Record(folder));

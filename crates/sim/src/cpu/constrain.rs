@@ -144,7 +144,8 @@ impl Strands<'_> {
     }
 
     /// Draws a strand tight between head and hand: its points are placed at their lengths from the hand
-    /// on, then from the head on, and so forth [Aristidou2011]. The length pass is the last from the head.
+    /// on, then from the head on, and so forth [Aristidou2011]. The length pass is the
+    /// last from the head; it aims the held point at where the pass before left it.
     fn draw_tight(&self, Pinned { lane, point: last, goal }: Pinned, predicted: &mut [Vec3Lanes]) {
         let free = |point: &usize| self.joints.inverse_mass[*point].0[lane] > 0.0;
         let Some(root) = (0..last).rev().find(|point| !free(point)) else { return };

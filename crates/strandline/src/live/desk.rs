@@ -1,10 +1,11 @@
 //! The drawing thread.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::recorder::Recorder;
 use super::stage::Stage;
@@ -16,8 +17,8 @@ pub(super) enum Message {
     Command(Command),
     /// The scene of the load with this number.
     Loaded(u64, Result<Box<Stage>, Error>),
-    /// A film is over.
-    Recorded(Result<FilmFiles, Error>),
+    /// The film with this number is over.
+    Recorded(u64, Result<FilmFiles, Error>),
     /// Nobody looks any more.
     End,
 }
@@ -46,6 +47,8 @@ struct Course {
     /// Whether pictures may be simpler, and whether full ones take too long.
     adapts: bool,
     slow: bool,
+    /// Whether that was seen of the scene and the look as they are.
+    tried: bool,
     /// Whether the last picture was simpler.
     draft: bool,
     frame: u64,
@@ -53,6 +56,8 @@ struct Course {
     /// Number of the last load.
     load: u64,
     recorder: Option<Recorder>,
+    /// Number of the last film.
+    film: u64,
     /// Films that are being finished.
     finishing: Vec<JoinHandle<()>>,
 }
@@ -65,13 +70,26 @@ impl Course {
         stale: false,
         adapts: false,
         slow: false,
+        tried: false,
         draft: false,
         frame: 0,
         heard: 0,
         load: 0,
         recorder: None,
+        film: 0,
         finishing: Vec::new(),
     };
+
+    /// Notes how long \[s\] a picture took.
+    fn judge(&mut self, seconds: f64, draft: bool) {
+        if !draft {
+            self.slow = seconds > SLOW;
+            self.tried = true;
+        } else if !self.tried && 4.0 * seconds < SLOW {
+            // A full one takes some four times as long: it is tried, once.
+            self.slow = false;
+        }
+    }
 
     /// How long to wait for a message before going on.
     fn patience(&self) -> Duration {
@@ -83,6 +101,12 @@ impl Course {
             _ => LONG,
         }
     }
+}
+
+/// Whether pictures may take another time after a command.
+fn changes_cost(command: &Command) -> bool {
+    use Command::{LevelOfDetail, Lights, Look, Picture};
+    matches!(command, Look(_) | LevelOfDetail(_) | Lights(_) | Picture(_))
 }
 
 /// A command that leaves the pictures as large as they are.
@@ -108,7 +132,11 @@ impl Desk {
 
     pub fn run(self) {
         let mut course = Course::START;
-        self.play(&mut course);
+        let played = catch_unwind(AssertUnwindSafe(|| self.play(&mut course)));
+        if played.is_err() {
+            self.say(News::Error(Error::WorkerGone.to_string()));
+            self.say(News::Paused);
+        }
         // Films under way are finished.
         course.finishing.extend(course.recorder.take().map(Recorder::finish));
         for film in course.finishing {
@@ -148,22 +176,23 @@ impl Desk {
         let command = match message {
             Message::Command(command) => command,
             Message::Loaded(load, stage) => return self.take_stage(course, load, stage),
-            Message::Recorded(film) => return self.tell_film(course, film),
+            Message::Recorded(film, files) => return self.tell_film(course, film, files),
             Message::End => return,
         };
         course.heard += 1;
         match command {
             Command::Load(scene) => {
-                course.load += 1;
+                course.load = course.heard;
                 self.load(scene, course.load);
             }
             Command::Play(playing) => course.playing = playing,
-            Command::Step => course.steps += 1,
+            Command::Step => course.steps += u32::from(!course.playing),
             Command::Adapt(adapts) => course.adapts = adapts,
             Command::Record(folder) => self.record(course, &folder),
             Command::StopRecording => course.finishing.extend(course.recorder.take().map(Recorder::finish)),
             other => {
                 course.stale = true;
+                course.tried &= !changes_cost(&other);
                 let fixed = course.recorder.is_some();
                 let Some(stage) = &mut course.stage else { return };
                 let other = if fixed { of_size(other, stage.picture()) } else { other };
@@ -183,16 +212,17 @@ impl Desk {
             // Another scene was asked for since.
             _ if load != course.load => {}
             Ok(mut stage) => {
-                self.say(News::Loaded(stage.camera, stage.bounds, stage.notes.clone()));
+                self.say(News::Loaded(load, stage.camera, stage.bounds, stage.notes.clone()));
                 if let (Some(old), Some(_)) = (&course.stage, &course.recorder) {
                     let picture = Command::Picture(stage.picture());
                     self.change(&mut stage, of_size(picture, old.picture()));
                 }
                 // Until one is drawn nobody knows how long it takes: the first is there sooner when simple.
-                (course.stale, course.slow) = (true, stage.studio.painter.gpu().is_none());
+                (course.stale, course.tried) = (true, false);
+                course.slow = stage.studio.painter.gpu().is_none();
                 course.stage = Some(stage);
             }
-            Err(error) => self.say(News::NotLoaded(error.to_string())),
+            Err(error) => self.say(News::NotLoaded(load, error.to_string())),
         }
     }
 
@@ -200,12 +230,12 @@ impl Desk {
     fn load(&self, scene: Box<crate::Scene>, number: u64) {
         let own = self.own.clone();
         let job = move || {
-            let loaded = Stage::new(&scene).map(Box::new);
+            let loaded = catch_unwind(|| Stage::new(&scene)).unwrap_or(Err(Error::WorkerGone)).map(Box::new);
             // Nobody waits for it any more when the window is closed.
             let _ = own.send(Message::Loaded(number, loaded));
         };
         if let Err(error) = std::thread::Builder::new().name("loading".to_owned()).spawn(job) {
-            self.say(News::NotLoaded(Error::Thread(error).to_string()));
+            self.say(News::NotLoaded(number, Error::Thread(error).to_string()));
         }
     }
 
@@ -214,8 +244,10 @@ impl Desk {
             return;
         }
         let own = self.own.clone();
-        let done = move |film| {
-            let _ = own.send(Message::Recorded(film));
+        course.film += 1;
+        let film = course.film;
+        let done = move |files| {
+            let _ = own.send(Message::Recorded(film, files));
         };
         match Recorder::new(folder, (1.0 / FRAME) as f32, done) {
             Ok(recorder) => course.recorder = Some(recorder),
@@ -226,7 +258,7 @@ impl Desk {
         }
     }
 
-    fn tell_film(&self, course: &mut Course, film: Result<FilmFiles, Error>) {
+    fn tell_film(&self, course: &mut Course, number: u64, film: Result<FilmFiles, Error>) {
         course.finishing.retain(|thread| !thread.is_finished());
         match film {
             Ok(film) => {
@@ -234,8 +266,10 @@ impl Desk {
                 film.notes.into_iter().chain(files).for_each(|note| self.say(News::Note(note)));
             }
             Err(error) => {
-                // It ended by itself.
-                course.finishing.extend(course.recorder.take().map(Recorder::finish));
+                if number == course.film {
+                    // It may have ended by itself.
+                    course.finishing.extend(course.recorder.take().map(Recorder::finish));
+                }
                 self.say(News::Error(error.to_string()));
             }
         }
@@ -246,29 +280,30 @@ impl Desk {
     fn frame(&self, course: &mut Course, draft: bool) -> Result<(), Error> {
         let Some(stage) = &mut course.stage else { return Ok(()) };
         let gone = |Gone| Error::WorkerGone;
-        let mut step = None;
+        let (mut step, mut is_frame) = (None, false);
         if (course.playing || course.steps > 0) && stage.worker.started() == 0 {
-            stage.start().map_err(gone)?;
+            stage.start(course.heard).map_err(gone)?;
             course.steps = course.steps.saturating_sub(1);
         }
         while stage.worker.started() > 0 {
-            step = self.take(stage)?.or(step);
+            let (made, frame) = self.take(stage)?;
+            step = made.or(step);
+            is_frame |= frame;
             course.stale = true;
         }
         if !course.stale {
             return Ok(());
         }
         if course.playing {
-            stage.start().map_err(gone)?;
+            stage.start(course.heard).map_err(gone)?;
         }
+        let begin = Instant::now();
         let (picture, drawing) = stage.draw(draft)?;
         std::mem::take(&mut stage.studio.painter.notes)
             .into_iter()
             .for_each(|note| self.say(News::Note(note)));
-        let seconds: f64 = drawing.seconds.iter().map(|(_, seconds)| seconds).sum();
-        // A full picture takes about four times as long as a simpler one.
-        course.slow = seconds * if draft { 4.0 } else { 1.0 } > SLOW;
-        if let (Some(recorder), Some(_)) = (&mut course.recorder, &step) {
+        let seconds = begin.elapsed().as_secs_f64();
+        if let Some(recorder) = course.recorder.as_mut().filter(|_| is_frame) {
             recorder.add(&picture);
         }
         (course.stale, course.draft) = (false, draft);
@@ -277,6 +312,7 @@ impl Desk {
             picture,
             frame: course.frame,
             heard: course.heard,
+            felt: stage.felt,
             draft,
             recorded: course.recorder.as_ref().map(|recorder| recorder.frames),
             drawing,
@@ -284,18 +320,19 @@ impl Desk {
             grabbed: stage.grabbed,
             places: [stage.simulated_on.clone(), place(stage.studio.painter.gpu())],
         });
+        course.judge(seconds, draft);
         Ok(())
     }
 
     /// Takes a result of the simulation: a setting that was refused is told, a device that failed ends it.
-    fn take(&self, stage: &mut Stage) -> Result<Option<StepReport>, Error> {
-        let (reports, notes) = stage.take().map_err(|Gone| Error::WorkerGone)?;
+    fn take(&self, stage: &mut Stage) -> Result<(Option<StepReport>, bool), Error> {
+        let (reports, notes, is_frame) = stage.take().map_err(|Gone| Error::WorkerGone)?;
         notes.into_iter().for_each(|note| self.say(News::Note(note)));
         match reports {
-            Ok(mut reports) => Ok(reports.pop()),
+            Ok(mut reports) => Ok((reports.pop(), is_frame)),
             Err(error) if error.gpu().is_none() => {
                 self.say(News::Error(error.to_string()));
-                Ok(None)
+                Ok((None, false))
             }
             Err(error) => Err(error.into()),
         }

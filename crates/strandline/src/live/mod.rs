@@ -24,7 +24,8 @@ use crate::{
 /// Time that passes in a frame \[s\].
 const FRAME: f64 = 1.0 / 60.0;
 
-/// What a [`Live`] may be told. Everything shows within two frames.
+/// What a [`Live`] may be told. What changes the picture shows in the next one that is begun, what changes
+/// the motion in the one after it.
 pub enum Command {
     /// Loads a scene; what plays goes on until it is there, and stays when it cannot be loaded.
     Load(Box<Scene>),
@@ -80,13 +81,16 @@ pub struct Shown {
     pub frame: u64,
     /// Commands that were heard before it was drawn: see [`Live::tell`].
     pub heard: u64,
+    /// Those of them that the step it shows had heard: a picture behind, since the next step is made while
+    /// one is drawn.
+    pub felt: u64,
     /// Whether it is simpler than it was asked to be.
     pub draft: bool,
     /// Frames that the video has so far, while one is recorded.
     pub recorded: Option<u32>,
     /// What the picture cost.
     pub drawing: FrameReport,
-    /// The last step, if one was made for this picture.
+    /// The last step of which nobody was told before.
     pub step: Option<StepReport>,
     /// Strands in the hand.
     pub grabbed: usize,
@@ -97,12 +101,13 @@ pub struct Shown {
 /// What a [`Live`] has to tell, in its order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
-    /// A scene is there: its camera, the box around hair and body \[m\], and what a person should read.
-    Loaded(Camera, Aabb, Vec<String>),
+    /// The scene of the command with this number is there: its camera, the box around hair and body \[m\],
+    /// and what a person should read.
+    Loaded(u64, Camera, Aabb, Vec<String>),
     /// Something that a person should read.
     Note(String),
-    /// A scene could not be loaded; what was there stays.
-    NotLoaded(String),
+    /// The scene of the command with this number could not be loaded; what was there stays.
+    NotLoaded(u64, String),
     /// Something could not be done; what was there stays.
     Error(String),
     /// It stands still, since going on failed: the error was told before.

@@ -18,6 +18,9 @@ pub(super) struct Recorder {
 
 impl Recorder {
     /// Begins a film. `done` is called on its thread when it is over.
+    ///
+    /// # Errors
+    /// The folder cannot be made or written; the system gives no thread.
     pub fn new(
         folder: &Path,
         frames_per_second: f32,

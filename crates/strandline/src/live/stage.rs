@@ -15,8 +15,8 @@ use crate::{
     worker::{Gone, Worker},
 };
 
-/// The reports of a job, and what a person should read.
-pub(super) type Taken = (Result<Vec<StepReport>, SimError>, Vec<String>);
+/// What a job led to: its reports, what a person should read, and whether it was a frame.
+pub(super) type Taken = (Result<Vec<StepReport>, SimError>, Vec<String>, bool);
 
 /// A scene on stage.
 pub(super) struct Stage {
@@ -36,6 +36,8 @@ pub(super) struct Stage {
     /// Where the hand is that holds hair \[m\], world space.
     hand: Option<Vec3>,
     pub grabbed: usize,
+    /// Commands that what is shown has heard.
+    pub felt: u64,
     spare: Vec<Moment>,
     shown: Option<Moment>,
     pub simulated_on: String,
@@ -76,6 +78,7 @@ impl Stage {
             time: 0.0,
             hand: None,
             grabbed: 0,
+            felt: 0,
             spare: vec![Moment::default()],
             shown: Some(shown),
             simulated_on,
@@ -85,28 +88,39 @@ impl Stage {
     }
 
     /// Starts one frame.
-    pub fn start(&mut self) -> Result<(), Gone> {
+    ///
+    /// # Errors
+    /// The simulation's thread is no more.
+    pub fn start(&mut self, heard: u64) -> Result<(), Gone> {
         let (begin, hand) = (self.time, self.hand);
         let (wind, end) = (self.wind.at(begin), self.head.pose(begin + FRAME));
         self.time += FRAME;
-        self.act(Box::new(move |simulation| {
+        let act: Act = Box::new(move |simulation| {
             let start = simulation.end();
             hand.into_iter().for_each(|hand| simulation.move_hand(hand));
             simulation.step_along(FRAME, wind, &|share| start.toward(&end, share))
-        }))
+        });
+        self.hand_over(act, true, heard)
     }
 
     fn act(&mut self, act: Act) -> Result<(), Gone> {
+        self.hand_over(act, false, 0)
+    }
+
+    fn hand_over(&mut self, act: Act, is_frame: bool, heard: u64) -> Result<(), Gone> {
         let (gpu, moment) = (self.studio.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
-        self.worker.start(Job { act, gpu, moment })
+        self.worker.start(Job { act, gpu, moment, is_frame, heard })
     }
 
     /// Takes the next result; the moment shown before is free.
+    ///
+    /// # Errors
+    /// The simulation's thread is no more.
     pub fn take(&mut self) -> Result<Taken, Gone> {
-        let Done { moment, reports, notes, grabbed, place } = self.worker.finish()?;
-        (self.simulated_on, self.grabbed) = (place, grabbed);
+        let Done { moment, reports, notes, grabbed, is_frame, heard, place } = self.worker.finish()?;
+        (self.simulated_on, self.grabbed, self.felt) = (place, grabbed, self.felt.max(heard));
         self.spare.extend(self.shown.replace(moment));
-        Ok((reports, notes))
+        Ok((reports, notes, is_frame))
     }
 
     /// Draws what is to be shown, simpler where `draft`.
@@ -161,9 +175,13 @@ impl Stage {
         let guides = &self.studio.guides;
         let body = self.studio.painter.mesh().map(|mesh| (mesh, &moment.world_from_head));
         let shape = [guides.strand_count(), guides.points_per_strand()];
-        self.hand = ray.hair(&moment.positions, shape, radius, body);
-        let Some(hand) = self.hand else { return Ok(()) };
-        self.act(Box::new(move |simulation| simulation.grab(hand, radius).map(|_| Vec::new())))
+        let Some(picked) = ray.hair(&moment.positions, shape, radius, body) else { return self.release() };
+        self.hand = Some(picked.point);
+        self.act(Box::new(move |simulation| {
+            // The hair has moved on since it was seen.
+            let now = simulation.engine.state().positions[picked.index].get(picked.lane);
+            simulation.grab(now, radius).map(|_| Vec::new())
+        }))
     }
 
     fn release(&mut self) -> Result<(), Gone> {
@@ -175,8 +193,9 @@ impl Stage {
 
     /// Another motion of the head begins at its beginning; another turn does not disturb it.
     fn set_motion(&mut self, motion: MotionSection) -> Result<(), Error> {
+        motion.check()?;
         self.head = HeadMotion::new(&motion, self.head.pivot())?;
-        if motion.name != self.motion.name {
+        if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             self.time = 0.0;
         }
         self.motion = motion;
@@ -184,6 +203,9 @@ impl Stage {
     }
 
     /// Does what a command says.
+    ///
+    /// # Errors
+    /// It cannot be done, and nothing has changed; or the simulation's thread is no more.
     pub fn change(&mut self, command: Command) -> Result<(), Error> {
         let gone = |Gone| Error::WorkerGone;
         match command {
@@ -196,7 +218,7 @@ impl Stage {
             }
             Command::LevelOfDetail(level) => level.validate().map(|()| self.level_of_detail = level)?,
             Command::Picture(settings) => self.set_picture(settings)?,
-            Command::Wind(wind) => self.wind = wind,
+            Command::Wind(wind) => wind.check().map(|()| self.wind = wind)?,
             Command::Motion(motion) => self.set_motion(*motion)?,
             Command::Drag(ray) => {
                 let hand = self.hand.and_then(|hand| ray.at_depth_of(&self.camera, hand));
@@ -212,9 +234,9 @@ impl Stage {
     /// Does what a command says to the simulation, behind what it does now.
     fn change_simulation(&mut self, command: Command) -> Result<(), Gone> {
         match command {
-            Command::Settings(settings) => self.act(Box::new(move |simulation| {
-                simulation.engine.set_settings(&settings).map(|()| Vec::new())
-            })),
+            Command::Settings(settings) => {
+                self.act(Box::new(move |simulation| simulation.set_settings(&settings).map(|()| Vec::new())))
+            }
             Command::Length(scale) => {
                 let scales = vec![scale; self.studio.guides.strand_count()];
                 self.act(Box::new(move |simulation| {

@@ -74,7 +74,7 @@ pub struct MotionSection {
 }
 
 impl MotionSection {
-    pub(super) fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         let most = f64::from(self.rotation.abs().max_element());
         // A maximum passes over what is not a number.
         within("motion.rotation", if self.rotation.is_nan() { f64::NAN } else { most }, 0.0..=360.0)
@@ -124,7 +124,7 @@ impl Default for WindSection {
 }
 
 impl WindSection {
-    pub(super) fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         within("wind.velocity", f64::from(self.velocity.length()), 0.0..=100.0)?;
         within("wind.gust", f64::from(self.gust), 0.0..=1.0)?;
         within("wind.gust_period", f64::from(self.gust_period), 0.05..=1000.0)
