@@ -32,7 +32,13 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             }
         });
     }
-    gone.map(|index| lights.remove(index));
+    if let Some(index) = gone {
+        lights.remove(index);
+        // The others keep their own defaults.
+        if index < app.base.lights.len() {
+            app.base.lights.remove(index);
+        }
+    }
     if lights.len() < MOST && button(ui, "Add", "a spot with shadow that stands where you look from") {
         let (position, target) = (camera.position, camera.target);
         lights.push(Light { kind: LightKind::Spot, position, target, ..Light::default() });

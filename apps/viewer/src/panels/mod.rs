@@ -41,7 +41,7 @@ fn play(app: &mut App, ui: &mut Ui) {
             stage::play(app, false);
             app.live.tell(Command::Step);
         }
-        if button(ui, "Reset", "back to rest: R") {
+        if button(ui, "Reset", "back to rest, and to the beginning of the motion: R") {
             app.live.tell(Command::Reset);
         }
         let (name, tip) = match app.recording {

@@ -33,7 +33,7 @@ pub enum Command {
     Play(bool),
     /// One frame, while it stands still.
     Step,
-    /// Back to rest.
+    /// Back to rest, and to the beginning of the motion.
     Reset,
     /// Another view.
     Camera(Camera),

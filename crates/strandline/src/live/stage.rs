@@ -244,8 +244,8 @@ impl Stage {
                 }))
             }
             Command::Reset => {
-                self.hand = None;
-                let pose = self.head.pose(self.time);
+                (self.hand, self.time) = (None, 0.0);
+                let pose = self.head.pose(0.0);
                 self.act(Box::new(move |simulation| simulation.reset(pose).map(|()| Vec::new())))
             }
             _ => Ok(()),
