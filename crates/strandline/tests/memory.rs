@@ -55,9 +55,10 @@ fn next(live: &Live) -> Shown {
     }
 }
 
-/// Plays so many pictures with a hand that does something at each; what is held at most \[byte\].
+/// Plays so many pictures with a hand that does something at each; what is held at
+/// least \[byte\]: what a picture needs while it is drawn may be seen or not.
 fn play(live: &Live, pictures: u32) -> isize {
-    let mut most = 0;
+    let mut least = isize::MAX;
     for count in 0..pictures {
         let share = (0.7 * count as f32).sin();
         let ray = Ray::new(&Camera::front(), glam::Vec2::new(0.3 * share, 0.2));
@@ -71,16 +72,17 @@ fn play(live: &Live, pictures: u32) -> isize {
         });
         drop(next(live));
         live.take_news();
-        most = most.max(HELD.load(Relaxed));
+        least = least.min(HELD.load(Relaxed));
     }
-    most
+    least
 }
 
 #[test]
 fn play_holds_no_more_than_at_its_beginning() {
     let live = Live::new(scene(), || ()).unwrap();
-    let first = play(&live, 120);
-    let last = (0..5).map(|_| play(&live, 120)).last().unwrap();
+    // Lists that follow the hair have grown to their sizes after as many pictures again.
+    let first = play(&live, 120).max(play(&live, 120));
+    let last = (0..4).map(|_| play(&live, 120)).last().unwrap();
     // 2 % is promised over ten minutes: `strandline bench window` plays them.
     assert!(last as f64 <= 1.02 * first as f64, "{first} bytes, then {last}");
     // What is kept is seen: a tenth of the room.

@@ -13,6 +13,9 @@ use crate::{Environment, Shadow};
 
 /// Cells along the longest side of the box around the hair.
 const LONGEST: u32 = 40;
+/// Cells at most: the box and the empty cells around it. Room for all is taken once, so that hair which
+/// spreads while it moves asks for no more.
+const MOST_CELLS: usize = (LONGEST as usize + 4).pow(3);
 /// Parts that the strands are shared out to.
 const PARTS: usize = 4;
 /// Whole numbers make sums that do not depend on their order: parts of a square metre.
@@ -43,8 +46,7 @@ impl Occlusion {
     pub fn fill(&mut self, strands: &Strands, settings: &Shadow) {
         self.fit(&strands.positions);
         self.sum(strands, settings.log_transmission());
-        self.cubes.clear();
-        self.cubes.resize(self.logs.len(), [1.0; 8]);
+        refill(&mut self.cubes, self.logs.len(), [1.0; 8]);
         for axis in 0..3 {
             self.sweep(axis, true);
             self.sweep(axis, false);
@@ -117,8 +119,7 @@ impl Occlusion {
         let count = strands.points_per_strand;
         self.parts.resize_with(PARTS, Vec::new);
         self.parts.par_iter_mut().enumerate().for_each(|(part, areas)| {
-            areas.clear();
-            areas.resize(cells, 0);
+            refill(areas, cells, 0);
             let range = strands.strand_count * part / PARTS..strands.strand_count * (part + 1) / PARTS;
             for segment in range.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
                 let (start, end) = (strands.positions[segment], strands.positions[segment + 1]);
@@ -132,6 +133,7 @@ impl Occlusion {
         let face = self.cell * self.cell;
         let scale = MEAN_SINE * log_transmission / (UNITS * face);
         self.logs.clear();
+        self.logs.reserve_exact(MOST_CELLS);
         self.logs.extend((0..cells).map(|cell| {
             let units: u64 = self.parts.iter().map(|part| part[cell]).sum();
             units as f32 * scale
@@ -168,6 +170,13 @@ impl Occlusion {
             std::mem::swap(light, next);
         }
     }
+}
+
+/// So many of one value, in room for all cells there may be.
+fn refill<T: Clone>(values: &mut Vec<T>, count: usize, value: T) {
+    values.clear();
+    values.reserve_exact(MOST_CELLS);
+    values.resize(count, value);
 }
 
 #[inline]
