@@ -213,9 +213,11 @@ impl Inputs {
         // Paths given here are relative to the current folder, not to the scene's.
         if let Some(file) = &self.groom {
             scene.groom.file = Some(std::path::absolute(file)?);
+            scene.begin_at_rest();
         }
         if let Some(file) = &self.body {
             scene.body.file = Some(std::path::absolute(file)?);
+            scene.begin_at_rest();
         }
         if let Some(name) = self.motion {
             scene.motion.name = name;

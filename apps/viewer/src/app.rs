@@ -7,13 +7,13 @@ use strandline::{
     Backend, Camera, Command, Error, Light, Live, News, Scene, Shown, body::Aabb, render::PictureSettings,
 };
 
-use crate::{files, messages, panels, stage, strip};
+use crate::{files, messages, panels, saves, stage, strip};
 
 /// The window's state: what plays, and what a person made of it.
 pub struct App {
     pub(crate) live: Live,
     /// The window, once it is there: the scene is loaded before.
-    context: Arc<OnceLock<egui::Context>>,
+    pub(crate) context: Arc<OnceLock<egui::Context>>,
     /// What is seen, as a scene: it can be saved at any time.
     pub(crate) scene: Scene,
     /// The scene as it was loaded: what the controls are set to by default.
@@ -47,6 +47,7 @@ pub struct App {
     pub(crate) finishing: u32,
     /// The picture that is to be saved once it is drawn in full: to a path, or into the folder.
     pub(crate) saving: Option<Option<PathBuf>>,
+    pub(crate) saves: saves::Saves,
     pub(crate) dialog: Option<files::Dialog>,
     /// Where the next picture and scene are saved.
     pub folder: PathBuf,
@@ -108,6 +109,7 @@ impl App {
             recording: false,
             finishing: 0,
             saving: None,
+            saves: saves::Saves::default(),
             dialog: None,
             folder: PathBuf::from("out"),
         })
@@ -134,6 +136,7 @@ impl App {
                 });
             }
         }
+        scene.begin_at_rest();
         Ok(scene)
     }
 
@@ -220,6 +223,7 @@ impl App {
                 }
                 News::Error(error) => self.error = Some(error),
                 News::Paused => self.playing = false,
+                News::Saved(path) => self.note(format!("wrote {}", path.display())),
                 News::Recorded if self.finishing > 0 => self.finishing -= 1,
                 News::Recorded => self.recording = false,
             }
@@ -284,6 +288,7 @@ impl App {
         self.take_news();
         self.take_picture(ui.ctx());
         files::take_answer(self);
+        self.take_saved();
         stage::keys(self, ui);
         egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
         egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));

@@ -5,6 +5,7 @@ mod controls;
 mod files;
 mod messages;
 mod panels;
+mod saves;
 mod stage;
 mod strip;
 mod wind;

@@ -40,8 +40,7 @@ fn file_keys(app: &mut App, ui: &egui::Ui, pressed: impl Fn(Key) -> bool) {
         files::ask(app, files::Wanted::Open, ui.ctx());
     }
     if pressed(Key::S) {
-        let saved = app.save_scene(None);
-        app.tell_saved(saved);
+        app.save_scene(None);
     }
     if pressed(Key::P) {
         app.ask_for_picture(None);

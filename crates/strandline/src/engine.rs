@@ -8,6 +8,7 @@ use strandline_gpu::Gpu;
 use crate::{
     Error,
     body::Pose,
+    hair_pose::HairPose,
     sim::{
         Drive, Settings, SimError, Solver, State, StepReport,
         gpu::{GpuSolver, GpuState},
@@ -122,6 +123,19 @@ impl Engine {
 
     /// Puts every strand back to rest under a pose of the head; their lengths stay.
     pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
+        let state = self.rest(pose)?;
+        self.set_state(state)
+    }
+
+    /// Puts every strand where a pose of hair has it, under a pose of the head; their lengths stay.
+    pub fn place(&mut self, world_from_head: Pose, hair: &HairPose) -> Result<(), SimError> {
+        let mut state = self.rest(world_from_head)?;
+        hair.place(&world_from_head, &mut state.positions, &mut state.velocities);
+        state.previous_positions.clone_from(&state.positions);
+        self.set_state(state)
+    }
+
+    fn rest(&self, pose: Pose) -> Result<State, SimError> {
         let scales = (0..self.solver().strand_count()).map(|strand| self.state.length_scale(strand));
         let scales: Vec<f32> = scales.collect();
         let mut state = self.solver().rest_state(pose);
@@ -129,6 +143,10 @@ impl Engine {
         if scales.iter().any(|scale| *scale != 1.0) {
             state.set_length_scale(self.solver(), &scales)?;
         }
+        Ok(state)
+    }
+
+    fn set_state(&mut self, state: State) -> Result<(), SimError> {
         self.state = state;
         let failure = match &mut self.place {
             Place::Cpu(_) => return Ok(()),

@@ -32,6 +32,24 @@ pub enum Error {
         /// What may be given.
         expected: String,
     },
+    /// The file with where the hair is could not be read, or is for other hair.
+    #[error("cannot read the pose of the hair: {message}: {}", path.display())]
+    HairPose {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        message: String,
+    },
+    /// A scene, or where its hair is, could not be saved.
+    #[error("cannot save {what}: {source}: {}", path.display())]
+    Save {
+        /// What was being saved.
+        what: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
     /// An output file or folder could not be written.
     #[error("cannot write {what}: {source}; frames already written are complete: {}", path.display())]
     Write {
@@ -63,6 +81,12 @@ pub enum Error {
 }
 
 impl Error {
+    /// For `map_err` on what saves to `path`.
+    pub(crate) fn save(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Save { what, path, source }
+    }
+
     /// For `map_err` on what writes to `path`.
     pub(crate) fn write(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();

@@ -1,7 +1,7 @@
 //! Writes a film as it is drawn: frames, a contact sheet, and a video or an animated image.
 
 use std::fs;
-use std::io::Write;
+use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
@@ -11,7 +11,7 @@ use image::{
     imageops::{self, FilterType},
 };
 
-use crate::{Error, render::Picture};
+use crate::{Error, render::Picture, whole};
 
 /// Most pictures on a contact sheet, and how many stand in a row.
 const SHEET_PICTURES: u32 = 12;
@@ -111,7 +111,7 @@ impl Film {
         let mut notes = Vec::new();
         if self.thumbnails.len() > 1 {
             let path = self.folder.join("sheet.png");
-            save_image(&sheet(&self.thumbnails), &path)?;
+            save_sheet(&sheet(&self.thumbnails), &path)?;
             self.files.push(path);
         }
         match std::mem::replace(&mut self.moving, Moving::None) {
@@ -243,16 +243,13 @@ fn sheet(thumbnails: &[RgbImage]) -> RgbImage {
     sheet
 }
 
-/// Writes a picture under a temporary name, then renames it: a file is whole or not there.
-fn save_image(image: &RgbImage, path: &Path) -> Result<(), Error> {
-    let part = path.with_extension("part");
-    image
-        .save_with_format(&part, image::ImageFormat::Png)
-        .and_then(|()| Ok(fs::rename(&part, path)?))
-        .map_err(|error| {
-            let _ = fs::remove_file(&part);
-            Error::write("the contact sheet", path)(std::io::Error::other(error))
-        })
+fn save_sheet(sheet: &RgbImage, path: &Path) -> Result<(), Error> {
+    let mut bytes = Cursor::new(Vec::new());
+    sheet
+        .write_to(&mut bytes, image::ImageFormat::Png)
+        .map_err(std::io::Error::other)
+        .and_then(|()| whole::write(path, bytes.get_ref()))
+        .map_err(Error::write("the contact sheet", path))
 }
 
 #[cfg(test)]

@@ -1,3 +1,5 @@
+use std::path::Path;
+
 use glam::Vec3;
 
 use crate::{
@@ -175,7 +177,7 @@ impl Hair {
         scene.body_look.validate()?;
         scene.level_of_detail.validate()?;
         scene.lights.iter().try_for_each(Light::validate)?;
-        let Prepared { guides, mesh, colliders, head, .. } = prepared;
+        let Prepared { guides, mesh, colliders, head, pose, .. } = prepared;
         let mut hair = Self::with_body(devices, guides, mesh.as_ref(), colliders, &scene.simulation)?;
         if !scene.lights.is_empty() {
             hair.lights.clone_from(&scene.lights);
@@ -187,9 +189,11 @@ impl Hair {
             hair.set_length_scale(&vec![scene.groom.length; hair.guides().strand_count()])?;
         }
         // A head that is turned at first does not whip its hair there.
-        let start = head.pose(0.0);
-        if start != Pose::IDENTITY {
-            hair.simulation.reset(start)?;
+        let start = head.pose(scene.film.start);
+        match &pose {
+            Some(pose) => hair.simulation.place(start, pose)?,
+            None if start != Pose::IDENTITY => hair.simulation.reset(start)?,
+            None => {}
         }
         Ok(hair)
     }
@@ -348,6 +352,16 @@ impl Hair {
     /// The state of the simulation.
     pub fn state(&self) -> &State {
         self.simulation.engine.state()
+    }
+
+    /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Two tensors of the
+    /// safetensors format, `positions` \[m\] and `velocities` \[m/s\], head space, shape
+    /// `[strand][point][3]`.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn save_pose(&self, path: &Path) -> Result<(), Error> {
+        self.simulation.hair_pose().save(path)
     }
 
     /// The settings of the simulation.

@@ -24,6 +24,7 @@ mod engine;
 mod error;
 mod film;
 mod hair;
+mod hair_pose;
 mod head;
 mod live;
 mod painter;
@@ -32,6 +33,7 @@ mod player;
 mod prepare;
 mod simulation;
 mod sync;
+mod whole;
 mod worker;
 #[cfg(test)]
 mod worker_tests;

@@ -67,22 +67,29 @@ struct Course {
     wind: std::sync::Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
     frame_seconds: f64,
     settle_seconds: f64,
+    /// Time of motion and wind at the beginning \[s\].
+    start: f64,
+    /// Whether the first picture shows hair as it begins.
+    posed: bool,
 }
 
 impl Course {
     /// Moves to a frame; the first one lets the hair hang on the resting head before, in steps that are
-    /// not told.
+    /// not told. Hair that begins in a pose is shown in it first.
     fn run(&self, simulation: &mut Simulation, frame: u32) -> Result<Vec<StepReport>, SimError> {
+        if frame == 0 && self.posed {
+            return Ok(Vec::new());
+        }
         if frame == 0 {
             let count = (self.settle_seconds / self.frame_seconds).ceil();
-            let (rest, still) = ((self.pose)(0.0), (self.wind)(0.0));
+            let (rest, still) = ((self.pose)(self.start), (self.wind)(self.start));
             for _ in 0..count as u64 {
                 let start = simulation.end();
                 let toward = |share: f32| start.toward(&rest, share);
                 simulation.step_along(self.settle_seconds / count, still, &toward)?;
             }
         }
-        let begin = f64::from(frame) * self.frame_seconds;
+        let begin = self.start + f64::from(frame - u32::from(self.posed)) * self.frame_seconds;
         let pose = |share: f32| (self.pose)(begin + self.frame_seconds * f64::from(share));
         simulation.step_along(self.frame_seconds, (self.wind)(begin), &pose)
     }
@@ -112,6 +119,8 @@ impl Player {
                 wind: std::sync::Arc::new(move |time| wind.at(time)),
                 frame_seconds: 1.0 / f64::from(scene.film.frames_per_second),
                 settle_seconds: f64::from(scene.film.settle),
+                start: scene.film.start,
+                posed: scene.groom.pose.is_some(),
             },
             camera,
             look: scene.look.clone(),

@@ -11,6 +11,7 @@ use crate::{
         Groom, Guides,
         format::{self, LoadOptions},
     },
+    hair_pose::HairPose,
     scene::Model,
 };
 
@@ -27,6 +28,8 @@ pub struct Prepared {
     pub colliders: Vec<Collider>,
     /// How the head moves.
     pub head: HeadMotion,
+    /// Where the strands are to begin with; none at rest.
+    pub(crate) pose: Option<HairPose>,
     /// The box around hair and drawn body at rest \[m\], head space.
     pub bounds: Aabb,
     /// What was mended or left out while loading, for a person to read.
@@ -59,6 +62,9 @@ impl Prepared {
                 .collect();
             guides.set_root_normals(normals);
         }
+        let shape = [guides.strand_count(), guides.points_per_strand()];
+        let pose = scene.groom.pose.as_ref().map(|file| HairPose::load(&scene.path(file), shape));
+        let pose = pose.transpose()?;
         let mut colliders = Vec::new();
         if scene.body.solid
             && let Some(shape) = body.shape
@@ -72,7 +78,7 @@ impl Prepared {
         let bounds = bounds(&guides, mesh.as_ref());
         let pivot = scene.motion.pivot.or(body.pivot).unwrap_or_else(|| low_center(bounds));
         let head = HeadMotion::new(&scene.motion, pivot)?;
-        Ok(Self { guides, mesh, colliders, head, bounds, notes })
+        Ok(Self { guides, mesh, colliders, head, pose, bounds, notes })
     }
 }
 

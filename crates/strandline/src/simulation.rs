@@ -7,6 +7,7 @@ use crate::{
     body::Pose,
     engine::Engine,
     groom::Vec3Lanes,
+    hair_pose::HairPose,
     render::gpu::DevicePoints,
     sim::{Clock, Drive, Settings, SimError, StepReport},
     worker::Work,
@@ -135,9 +136,29 @@ impl Simulation {
     /// Goes back to rest under a pose of the head; time goes on.
     pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
         self.engine.reset(pose)?;
+        self.begin_at(pose);
+        Ok(())
+    }
+
+    /// Puts the hair where a pose has it, under a pose of the head; time goes on.
+    pub fn place(&mut self, pose: Pose, hair: &HairPose) -> Result<(), SimError> {
+        self.engine.place(pose, hair)?;
+        self.begin_at(pose);
+        Ok(())
+    }
+
+    fn begin_at(&mut self, pose: Pose) {
         (self.poses, self.end, self.share) = ([pose; 2], pose, 1.0);
         self.hand = None;
-        Ok(())
+    }
+
+    /// Where the hair of the moment that is shown is, and how it moves.
+    pub fn hair_pose(&self) -> HairPose {
+        let (mut moment, solver) = (Moment::default(), self.engine.solver());
+        self.show(&mut moment);
+        let shape = [solver.strand_count(), solver.points_per_strand()];
+        let velocities = &self.engine.state().velocities;
+        HairPose::new(shape, &moment.positions, velocities, &moment.world_from_head)
     }
 
     /// Takes the hair within `radius` \[m\] of a place \[m\] into a hand; the number of strands.

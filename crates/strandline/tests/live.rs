@@ -353,3 +353,32 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
 fn image_size(path: &std::path::Path) -> (u32, u32) {
     image::image_dimensions(path).unwrap()
 }
+
+#[test]
+fn a_scene_is_saved_even_when_nobody_waits_for_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kept.toml");
+    let live = Live::new(scene(), || ()).unwrap();
+    while next(&live).frame < 10 {}
+    live.tell(Command::Save(Box::new(scene()), folder.path().join("nowhere/kept.toml")));
+    let refused = wait(|| {
+        live.take_news().into_iter().find_map(|news| match news {
+            News::Error(error) => Some(error),
+            _ => None,
+        })
+    });
+    assert!(refused.starts_with("cannot save the hair"), "{refused}");
+    live.tell(Command::Save(Box::new(scene()), path.clone()));
+    drop(live);
+    let saved = Scene::load(&path).unwrap();
+    assert_eq!(saved.groom.pose, Some("kept.safetensors".into()));
+    // Ten frames at least, shown a step behind.
+    assert!(saved.film.start > 9.0 / 60.0 - 1e-6, "{}", saved.film.start);
+    let live = Live::new(saved, || ()).unwrap();
+    next(&live);
+    live.tell(Command::Save(Box::new(scene()), path.clone()));
+    assert_eq!(
+        wait(|| live.take_news().into_iter().find(|news| matches!(news, News::Saved(_)))),
+        News::Saved(path)
+    );
+}

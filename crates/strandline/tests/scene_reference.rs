@@ -8,6 +8,7 @@ const REFERENCE: &str = include_str!("../../../docs/scene.md");
 fn full() -> toml::Table {
     let mut scene = Scene::demo();
     scene.groom.file = Some("a.hair".into());
+    scene.groom.pose = Some("a.safetensors".into());
     scene.body.file = Some("a.obj".into());
     scene.body.collider_file = Some("b.obj".into());
     scene.motion.pivot = Some(glam::Vec3::ZERO);

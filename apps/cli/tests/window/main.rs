@@ -159,12 +159,14 @@ fn a_saved_scene_makes_the_picture_that_was_saved() {
     let mut person = open(&display, &folder);
     person.drag(&[LENGTH[0], [80, 380]]);
     person.drag(&[[900, 200], [860, 190]]);
-    // Turned by hand, in full quality.
+    // Turned by hand, and stopped in the middle of a nod.
     person.drag(&[[76, 219], [90, 219]]);
+    let still = rest(&mut person);
+    person.click([146, 173]);
+    person.see("the head nods", |screen| screen.changed(&still, STAGE) > 2000);
     person.point([700, 300]);
     person.key(0x20);
-    person.key(0x72);
-    rest(&mut person);
+    assert!(rest(&mut person).changed(&still, STAGE) > 2000);
     person.with_control(0x73);
     person.with_control(0x70);
     let out = folder.join("out");
@@ -179,8 +181,9 @@ fn a_saved_scene_makes_the_picture_that_was_saved() {
         Command::new(env!("CARGO_BIN_EXE_strandline")).args(render).current_dir(&folder).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let again = load(&folder.join("again/frame_0000.png"));
-    // A mean of 0.01 is promised; on the CPU nothing is rounded otherwise.
-    strandline_checks::flip::compare(&again, &seen, 1e-4, 1e-3).unwrap();
+    // A mean of 0.01 is promised. The head that was seen lies between those of two steps, a tenth of a
+    // millimetre beside that of the time in the file.
+    strandline_checks::flip::compare(&again, &seen, 2e-3, 0.03).unwrap();
 }
 
 #[test]

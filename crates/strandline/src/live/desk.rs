@@ -1,7 +1,7 @@
 //! The drawing thread.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::recorder::Recorder;
 use super::stage::Stage;
 use super::{Command, FRAME, News, Out, Shown};
-use crate::{Error, FilmFiles, hair::place, render::PictureSettings, sim::StepReport, worker::Gone};
+use crate::{Error, FilmFiles, Scene, hair::place, render::PictureSettings, sim::StepReport, worker::Gone};
 
 /// What the drawing thread is told.
 pub(super) enum Message {
@@ -56,6 +56,8 @@ struct Course {
     /// Number of the last load.
     load: u64,
     recorder: Option<Recorder>,
+    /// Scenes to be saved, and where.
+    saves: Vec<(Box<Scene>, PathBuf)>,
     /// Number of the last film.
     film: u64,
     /// Films that are being finished.
@@ -76,6 +78,7 @@ impl Course {
         heard: 0,
         load: 0,
         recorder: None,
+        saves: Vec::new(),
         film: 0,
         finishing: Vec::new(),
     };
@@ -137,7 +140,8 @@ impl Desk {
             self.say(News::Error(Error::WorkerGone.to_string()));
             self.say(News::Paused);
         }
-        // Films under way are finished.
+        // What was to be saved is saved, and films under way are finished.
+        self.save(&mut course);
         course.finishing.extend(course.recorder.take().map(Recorder::finish));
         for film in course.finishing {
             let _ = film.join();
@@ -188,6 +192,7 @@ impl Desk {
             Command::Play(playing) => course.playing = playing,
             Command::Step => course.steps += u32::from(!course.playing),
             Command::Adapt(adapts) => course.adapts = adapts,
+            Command::Save(scene, path) => course.saves.push((scene, path)),
             Command::Record(folder) => self.record(course, &folder),
             Command::StopRecording => course.finishing.extend(course.recorder.take().map(Recorder::finish)),
             other => {
@@ -227,7 +232,7 @@ impl Desk {
     }
 
     /// Loads on a thread of its own, so that what plays goes on.
-    fn load(&self, scene: Box<crate::Scene>, number: u64) {
+    fn load(&self, scene: Box<Scene>, number: u64) {
         let own = self.own.clone();
         let job = move || {
             let loaded = catch_unwind(|| Stage::new(&scene)).unwrap_or(Err(Error::WorkerGone)).map(Box::new);
@@ -276,13 +281,26 @@ impl Desk {
         self.say(News::Recorded);
     }
 
-    /// Simulates and draws one frame, as far as there is anything to do.
-    fn frame(&self, course: &mut Course, draft: bool) -> Result<(), Error> {
-        let Some(stage) = &mut course.stage else { return Ok(()) };
-        let gone = |Gone| Error::WorkerGone;
+    /// Saves the scenes that are to be saved, between two frames.
+    fn save(&self, course: &mut Course) {
+        for (scene, path) in course.saves.drain(..) {
+            let Some(stage) = &course.stage else {
+                self.say(News::Error("there is no hair to save yet".to_owned()));
+                continue;
+            };
+            self.say(match stage.save(*scene, &path) {
+                Ok(()) => News::Saved(path),
+                Err(error) => News::Error(error.to_string()),
+            });
+        }
+    }
+
+    /// Simulates one frame, as far as there is anything to do: its last step, and whether it was one.
+    fn simulate(&self, course: &mut Course) -> Result<(Option<StepReport>, bool), Error> {
         let (mut step, mut is_frame) = (None, false);
+        let Some(stage) = &mut course.stage else { return Ok((step, is_frame)) };
         if (course.playing || course.steps > 0) && stage.worker.started() == 0 {
-            stage.start(course.heard).map_err(gone)?;
+            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
             course.steps = course.steps.saturating_sub(1);
         }
         while stage.worker.started() > 0 {
@@ -291,11 +309,17 @@ impl Desk {
             is_frame |= frame;
             course.stale = true;
         }
-        if !course.stale {
-            return Ok(());
-        }
+        Ok((step, is_frame))
+    }
+
+    /// Simulates and draws one frame, as far as there is anything to do.
+    fn frame(&self, course: &mut Course, draft: bool) -> Result<(), Error> {
+        let simulated = self.simulate(course);
+        self.save(course);
+        let (step, is_frame) = simulated?;
+        let Some(stage) = course.stage.as_mut().filter(|_| course.stale) else { return Ok(()) };
         if course.playing {
-            stage.start(course.heard).map_err(gone)?;
+            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
         }
         let begin = Instant::now();
         let (picture, drawing) = stage.draw(draft)?;

@@ -62,6 +62,9 @@ pub enum Command {
     Drag(Ray),
     /// Lets go of the hair.
     Release,
+    /// Saves a scene as TOML with the hair as it is in the next picture, or in the one that is seen where
+    /// nothing moves: `groom.pose` names a file of the same name beside it, and `film.start` is set.
+    Save(Box<Scene>, PathBuf),
     /// Whether pictures are simpler while the hair moves or is changed and a full one takes longer than
     /// 80 ms; they are not unless this is told. What stands still is drawn in full after a moment.
     Adapt(bool),
@@ -112,6 +115,8 @@ pub enum News {
     Error(String),
     /// It stands still, since going on failed: the error was told before.
     Paused,
+    /// The scene is saved there.
+    Saved(PathBuf),
     /// The video is over.
     Recorded,
 }

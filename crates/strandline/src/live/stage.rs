@@ -1,5 +1,7 @@
 //! A scene on stage: what is simulated on one thread and drawn on another.
 
+use std::path::{Path, PathBuf};
+
 use glam::Vec3;
 
 use super::{Command, FRAME};
@@ -12,6 +14,7 @@ use crate::{
     scene::{MotionSection, WindSection},
     sim::{SimError, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
+    whole,
     worker::{Gone, Worker},
 };
 
@@ -31,7 +34,8 @@ pub(super) struct Stage {
     wind: WindSection,
     motion: MotionSection,
     head: HeadMotion,
-    /// Time of motion and wind \[s\], at the end of the last frame that was started.
+    /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was started.
+    begun: f64,
     time: f64,
     /// Where the hand is that holds hair \[m\], world space.
     hand: Option<Vec3>,
@@ -75,7 +79,8 @@ impl Stage {
             wind: scene.wind,
             motion: scene.motion.clone(),
             head,
-            time: 0.0,
+            begun: scene.film.start,
+            time: scene.film.start,
             hand: None,
             grabbed: 0,
             felt: 0,
@@ -121,6 +126,22 @@ impl Stage {
         (self.simulated_on, self.grabbed, self.felt) = (place, grabbed, self.felt.max(heard));
         self.spare.extend(self.shown.replace(moment));
         Ok((reports, notes, is_frame))
+    }
+
+    /// Saves a scene that begins with the hair as the last result of the simulation has it.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn save(&self, mut scene: Scene, path: &Path) -> Result<(), Error> {
+        let pose_file = path.with_extension("safetensors");
+        let simulation = self.worker.work();
+        simulation.hair_pose().save(&pose_file)?;
+        // What is shown lies a step behind the end of a frame.
+        let step = f64::from(simulation.engine.solver().settings().time_step);
+        drop(simulation);
+        scene.film.start = (self.time - step).max(self.begun);
+        scene.groom.pose = pose_file.file_name().map(PathBuf::from);
+        whole::write(path, scene.to_toml().as_bytes()).map_err(Error::save("the scene", path))
     }
 
     /// Draws what is to be shown, simpler where `draft`.
@@ -196,7 +217,7 @@ impl Stage {
         motion.check()?;
         self.head = HeadMotion::new(&motion, self.head.pivot())?;
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
-            self.time = 0.0;
+            (self.begun, self.time) = (0.0, 0.0);
         }
         self.motion = motion;
         Ok(())
@@ -244,7 +265,7 @@ impl Stage {
                 }))
             }
             Command::Reset => {
-                (self.hand, self.time) = (None, 0.0);
+                (self.hand, self.begun, self.time) = (None, 0.0, 0.0);
                 let pose = self.head.pose(0.0);
                 self.act(Box::new(move |simulation| simulation.reset(pose).map(|()| Vec::new())))
             }

@@ -71,13 +71,16 @@ pub struct FilmSection {
     pub frames: u32,
     /// Pictures per second of the scene's time.
     pub frames_per_second: f32,
-    /// Time that passes with the head at rest before the first picture \[s\].
+    /// Time that passes with the head at rest before the first picture \[s\]; none does before hair that
+    /// begins in a pose.
     pub settle: f32,
+    /// Time of motion and wind at the beginning \[s\].
+    pub start: f64,
 }
 
 impl Default for FilmSection {
     fn default() -> Self {
-        Self { frames: 120, frames_per_second: 30.0, settle: 1.0 }
+        Self { frames: 120, frames_per_second: 30.0, settle: 1.0, start: 0.0 }
     }
 }
 
@@ -85,6 +88,7 @@ impl FilmSection {
     pub(super) fn check(&self) -> Result<(), Error> {
         within("film.frames", f64::from(self.frames), 1.0..=1e6)?;
         within("film.frames_per_second", f64::from(self.frames_per_second), 1.0..=1000.0)?;
-        within("film.settle", f64::from(self.settle), 0.0..=3600.0)
+        within("film.settle", f64::from(self.settle), 0.0..=3600.0)?;
+        within("film.start", self.start, 0.0..=1e6)
     }
 }

@@ -28,6 +28,10 @@ pub struct GroomSection {
     pub points_per_strand: u32,
     /// Length of every strand over its own, 0.05 to 1.
     pub length: f32,
+    /// Where the simulated points are to begin with and how they move, as the window saves it; without it
+    /// hair begins at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pose: Option<PathBuf>,
 }
 
 impl Default for GroomSection {
@@ -40,6 +44,7 @@ impl Default for GroomSection {
             guide_every: 1,
             points_per_strand: 16,
             length: 1.0,
+            pose: None,
         }
     }
 }

@@ -109,6 +109,11 @@ impl Scene {
         self.wind.check()
     }
 
+    /// Lets hair and motion begin at their beginning, not where a saved scene has them: for other hair.
+    pub fn begin_at_rest(&mut self) {
+        (self.groom.pose, self.film.start) = (None, 0.0);
+    }
+
     /// A path of the scene, from the scene's folder.
     pub(crate) fn path(&self, path: &Path) -> PathBuf {
         self.folder.join(path)

@@ -1,0 +1,128 @@
+//! Hair that begins where other hair was left.
+
+use strandline::{
+    Backend, Error, Event, Hair, Picture, Player, Pose, Prepared, Scene,
+    groom::{LANES, Vec3Lanes},
+};
+
+const STRANDS: usize = 60;
+/// Length of a step \[s\].
+const STEP: f64 = (1.0_f32 / 60.0) as f64;
+
+fn scene(backend: Backend) -> Scene {
+    let mut scene = Scene::demo();
+    scene.style.strand_count = STRANDS;
+    scene.body.spacing = 0.01;
+    scene.simulation.volume.cells = [12; 3];
+    (scene.simulation.backend, scene.picture.backend) = (backend, Backend::Cpu);
+    scene.groom.length = 0.8;
+    (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    (scene.picture.width, scene.picture.height) = (64, 48);
+    scene
+}
+
+fn hair(scene: &Scene) -> Result<Hair, Error> {
+    Hair::from_scene(scene, Prepared::new(scene)?, scene.devices())
+}
+
+/// The largest difference between the strands of two sets of lanes.
+fn apart(a: &[Vec3Lanes], b: &[Vec3Lanes]) -> f32 {
+    let points = a.len() / STRANDS.div_ceil(LANES);
+    let lanes = |index: usize| (0..LANES).filter(move |lane| index / points * LANES + lane < STRANDS);
+    let each = a.iter().zip(b).enumerate();
+    each.flat_map(|(index, (a, b))| lanes(index).map(move |lane| (a.get(lane) - b.get(lane)).length()))
+        .fold(0.0, f32::max)
+}
+
+fn first_picture(scene: &Scene) -> Picture {
+    let mut player = Player::new(scene, scene.devices(), true).unwrap();
+    let drawn = |event| match event {
+        Ok(Event::Drawn { picture, .. }) => Some(picture),
+        _ => None,
+    };
+    player.find_map(drawn).unwrap()
+}
+
+fn goes_on(backend: Backend) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("swing.safetensors");
+    let mut left = match hair(&scene(backend)) {
+        Ok(hair) => hair,
+        Err(error) => {
+            assert!(backend != Backend::Cpu && !required(), "{error}");
+            #[allow(clippy::print_stderr)] // it tells what is not tested
+            return eprintln!("not tested on {backend}: {error}");
+        }
+    };
+    // The head is turned in the pose, and back at the beginning of the scene: what is kept is the hair as the
+    // head sees it.
+    let turned = Pose { rotation: glam::Quat::from_rotation_y(0.4), ..Pose::IDENTITY };
+    for _ in 0..12 {
+        left.step(STEP, &turned).unwrap();
+    }
+    // Just a step each: what is shown is the state before the last.
+    left.save_pose(&file).unwrap();
+    let mut posed = scene(backend);
+    posed.groom.pose = Some(file.clone());
+    posed.motion.pivot = Some(glam::Vec3::ZERO);
+    posed.motion.rotation.y = 0.4_f32.to_degrees();
+    posed.motion.name = strandline::scene::MotionName::Still;
+    let mut again = hair(&posed).unwrap();
+    // Through the head's space and back at 0.3 m: some steps of 3e-8 m.
+    let (there, here) = (&left.state().previous_positions, &again.state().positions);
+    assert!(apart(there, here) < 3e-7, "{}", apart(there, here));
+    // Velocities are those of the last state; at 1 m/s, a few steps of 6e-8.
+    let (there, here) = (&left.state().velocities, &again.state().velocities);
+    assert!(apart(there, here) < 1e-6, "{}", apart(there, here));
+    let fast = apart(there, &vec![Vec3Lanes::default(); there.len()]);
+    assert!(fast > 0.1, "nothing moved: {fast} m/s");
+    assert_eq!(again.state().length_scale(7), 0.8);
+    // It goes on without a jerk: gravity and the volume change no velocity by 3 m/s in a step.
+    let before = again.state().positions.clone();
+    again.step(STEP, &turned).unwrap();
+    let moved = apart(&before, &again.state().positions);
+    assert!(moved > 0.1 / 60.0 && moved < (fast + 3.0) / 60.0, "{moved} m at {fast} m/s");
+    // A film begins with it, whatever time settling may take.
+    posed.film.settle = 1.0;
+    let shown = first_picture(&posed);
+    let mut fresh = hair(&posed).unwrap();
+    let camera = posed.camera.camera(fresh.bounds(), 64.0 / 48.0);
+    assert_eq!(shown, fresh.picture(&camera, &posed.look).unwrap());
+    posed.begin_at_rest();
+    assert!(first_picture(&posed) != shown);
+}
+
+fn required() -> bool {
+    std::env::var_os("STRANDLINE_REQUIRE_GPU").is_some_and(|value| value == "1")
+}
+
+#[test]
+fn hair_goes_on_where_it_was_left_on_the_cpu() {
+    goes_on(Backend::Cpu);
+}
+
+#[test]
+fn hair_goes_on_where_it_was_left_on_a_gpu() {
+    goes_on(Backend::Gpu(None));
+}
+
+#[test]
+fn a_pose_of_other_hair_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("swing.safetensors");
+    hair(&scene(Backend::Cpu)).unwrap().save_pose(&file).unwrap();
+    let mut other = scene(Backend::Cpu);
+    other.groom.pose = Some(file);
+    other.style.strand_count = STRANDS + 1;
+    let refused = hair(&other).err().unwrap().to_string();
+    assert!(
+        refused.contains("the scene's hair has [61, ") && refused.contains("swing.safetensors"),
+        "{refused}"
+    );
+    other.groom.pose = Some(folder.path().join("none"));
+    let refused = hair(&other).err().unwrap().to_string();
+    assert!(refused.starts_with("cannot read the pose of the hair"), "{refused}");
+    let nowhere = folder.path().join("nowhere/a.safetensors");
+    let refused = hair(&scene(Backend::Cpu)).unwrap().save_pose(&nowhere).unwrap_err().to_string();
+    assert!(refused.starts_with("cannot save the hair"), "{refused}");
+}
