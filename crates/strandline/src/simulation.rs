@@ -133,14 +133,14 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes back to rest under a pose of the head; time goes on.
+    /// Goes back to rest under a pose of the head: what follows is what followed the first time.
     pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
         self.engine.reset(pose)?;
         self.begin_at(pose);
         Ok(())
     }
 
-    /// Puts the hair where a pose has it, under a pose of the head; time goes on.
+    /// Puts the hair where a pose has it, under a pose of the head.
     pub fn place(&mut self, pose: Pose, hair: &HairPose) -> Result<(), SimError> {
         self.engine.place(pose, hair)?;
         self.begin_at(pose);
@@ -148,6 +148,7 @@ impl Simulation {
     }
 
     fn begin_at(&mut self, pose: Pose) {
+        self.clock = Clock::new(self.engine.solver().settings().time_step);
         (self.poses, self.end, self.share) = ([pose; 2], pose, 1.0);
         self.hand = None;
     }

@@ -189,13 +189,19 @@ impl Desk {
                 course.load = course.heard;
                 self.load(scene, course.load);
             }
-            Command::Play(playing) => course.playing = playing,
+            // Steps that were asked for before are among those it plays.
+            Command::Play(true) => (course.playing, course.steps) = (true, 0),
+            Command::Play(false) => course.playing = false,
             Command::Step => course.steps += u32::from(!course.playing),
             Command::Adapt(adapts) => course.adapts = adapts,
             Command::Save(scene, path) => course.saves.push((scene, path)),
             Command::Record(folder) => self.record(course, &folder),
             Command::StopRecording => course.finishing.extend(course.recorder.take().map(Recorder::finish)),
             other => {
+                if matches!(other, Command::Reset) {
+                    // Steps before it lead to nothing.
+                    course.steps = 0;
+                }
                 course.stale = true;
                 course.tried &= !changes_cost(&other);
                 let fixed = course.recorder.is_some();
