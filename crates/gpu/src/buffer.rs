@@ -109,6 +109,7 @@ impl<T: Pod> Buffer<T> {
         if bytes.is_empty() {
             return Ok(());
         }
+        self.gpu().count_to_device(bytes.len());
         self.gpu().guarded(self.name, || self.gpu().queue().write_buffer(&self.raw, 0, bytes))
     }
 

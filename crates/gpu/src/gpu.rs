@@ -1,4 +1,5 @@
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -22,6 +23,8 @@ struct Shared {
     /// Why the device is gone, once it is.
     lost: Arc<Mutex<Option<String>>>,
     memory: Mutex<Memory>,
+    /// Bytes that went to the device and came from it.
+    crossed: [AtomicU64; 2],
     kernels: Mutex<HashMap<String, Compiled>>,
 }
 
@@ -37,6 +40,15 @@ pub(crate) struct Compiled {
 struct Memory {
     used: u64,
     most: u64,
+}
+
+/// Bytes that crossed between a host and a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Crossed {
+    /// To the device.
+    pub to_device: u64,
+    /// From the device.
+    pub from_device: u64,
 }
 
 impl Gpu {
@@ -84,8 +96,8 @@ impl Gpu {
         lost: Arc<Mutex<Option<String>>>,
     ) -> Self {
         let memory = Mutex::new(Memory { used: 0, most: u64::MAX });
-        let kernels = Mutex::default();
-        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory, kernels }) }
+        let (crossed, kernels) = Default::default();
+        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory, crossed, kernels }) }
     }
 
     /// The first that suits and starts; else why the first of them did not.
@@ -164,6 +176,20 @@ impl Gpu {
     /// Bytes that all buffers together hold.
     pub fn memory_used(&self) -> u64 {
         self.memory().used
+    }
+
+    /// Bytes that all buffers and pictures together took to the device, and back from it, since it was opened.
+    pub fn crossed(&self) -> Crossed {
+        let [to_device, from_device] = self.shared.crossed.each_ref().map(|bytes| bytes.load(Relaxed));
+        Crossed { to_device, from_device }
+    }
+
+    pub(crate) fn count_to_device(&self, bytes: usize) {
+        self.shared.crossed[0].fetch_add(bytes as u64, Relaxed);
+    }
+
+    pub(crate) fn count_from_device(&self, bytes: usize) {
+        self.shared.crossed[1].fetch_add(bytes as u64, Relaxed);
     }
 
     /// Gives the device up; whatever is asked of it afterwards is an error.

@@ -25,7 +25,7 @@ pub use buffer::Buffer;
 pub use check::check;
 pub use drawing::{BoundDrawing, Drawing, Output};
 pub use error::GpuError;
-pub use gpu::Gpu;
+pub use gpu::{Crossed, Gpu};
 pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Dispatches, Kernel, Resource, groups};
 pub use layout::{Field, Layout, Mirror};
 pub use list::Adapter;

@@ -82,6 +82,7 @@ impl<'a> Readback<'a> {
             what: "reading back".to_owned(),
             message: error.to_string(),
         })?;
+        gpu.count_from_device(view.len());
         Ok(Copied { bytes: view.to_vec() })
     }
 }
@@ -141,6 +142,7 @@ impl Download {
             what: "reading back".to_owned(),
             message: error.to_string(),
         })?;
+        self.gpu.count_from_device(view.len());
         let result = look(&view);
         drop(view);
         self.staging.unmap();

@@ -226,3 +226,14 @@ fn a_copy_takes_time() {
     assert!(gpu.copy_bandwidth(1).unwrap() > 1e6);
     assert_eq!(gpu.memory_used(), used);
 }
+
+#[test]
+fn what_crosses_is_counted() {
+    let Some(gpu) = gpu() else { return };
+    let before = gpu.crossed();
+    let buffer: Buffer<f32> = Buffer::new(&gpu, "numbers", 100).unwrap();
+    buffer.write(&[1.0; 60]).unwrap();
+    buffer.read_first(10).unwrap();
+    let after = gpu.crossed();
+    assert_eq!([after.to_device - before.to_device, after.from_device - before.from_device], [240, 40]);
+}

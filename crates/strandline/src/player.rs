@@ -182,6 +182,11 @@ impl Player {
         self.worker.work().engine.gpu().cloned()
     }
 
+    /// The device that the pictures are drawn on, likewise.
+    pub fn picture_gpu(&self) -> Option<Gpu> {
+        self.studio.painter.gpu().cloned()
+    }
+
     /// Where the hair is simulated: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
         crate::hair::place(self.worker.work().engine.gpu())

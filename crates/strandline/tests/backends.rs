@@ -80,6 +80,32 @@ fn a_scene_moves_alike_on_both_backends() {
 }
 
 #[test]
+fn points_cross_to_a_gpu_that_only_draws_and_stay_on_one_that_simulates() {
+    let Some(_) = gpu() else { return };
+    let mut scene = scene();
+    scene.style.strand_count = 600;
+    let points = 600 * u64::from(scene.groom.points_per_strand) * 12;
+    let a_frame = |simulation| {
+        let devices = Devices { simulation, pictures: Backend::Gpu(None) };
+        let mut player = Player::new(&scene, devices, true).unwrap();
+        player.set_overlap(false);
+        let gpu = player.picture_gpu().unwrap();
+        let mut crossed = Vec::new();
+        for event in player {
+            if matches!(event.unwrap(), Event::Drawn { .. }) {
+                crossed.push(gpu.crossed().to_device);
+            }
+        }
+        crossed[3] - crossed[2]
+    };
+    // Parameters of the stages and the step take some 2 kB.
+    let parameters = 6000;
+    let [drawn, both] = [a_frame(Backend::Cpu), a_frame(Backend::Gpu(None))];
+    assert!(both < parameters, "{both}");
+    assert!((points..points + parameters).contains(&drawn), "{drawn} of {points} bytes");
+}
+
+#[test]
 fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);

@@ -4,7 +4,10 @@
 use std::time::Instant;
 
 use serde::Serialize;
-use strandline::{Backend, Devices, Event, Player, Scene};
+use strandline::{
+    Backend, Devices, Event, Player, Scene,
+    gpu::{Crossed, Gpu},
+};
 
 use super::gpu::Device;
 use crate::progress::Progress;
@@ -29,8 +32,12 @@ struct Pair {
     /// Over the sum of both, and over the greater of both.
     of_sum: f64,
     of_greater: f64,
-    /// Points that cross from one device to the other on their way to the picture \[byte\].
-    bytes_per_frame: usize,
+    /// What crosses from the host to the GPUs in a frame, counted \[byte\]: points where only pictures are
+    /// drawn there.
+    bytes_to_gpus: u64,
+    /// And back: the picture, and where it is simulated there a copy of the state, from which it goes on
+    /// when the GPU fails.
+    bytes_from_gpus: u64,
 }
 
 pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
@@ -44,14 +51,14 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let frames = if quick { FRAMES[2] } else { frames };
     println!("\nTwo workers: the thesis's scene, medians of {frames} frames [ms]");
     println!(
-        "{:<12}{:<12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>14}",
-        "simulated", "drawn", "simulate", "draw", "frame", "of sum", "of greater", "bytes a frame"
+        "{:<12}{:<12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>14}{:>14}",
+        "simulated", "drawn", "simulate", "draw", "frame", "of sum", "of greater", "bytes to GPU", "from GPU"
     );
     let mut pairs = Vec::new();
     for (simulation, pictures) in chosen {
         let pair = measure(Devices { simulation, pictures }, frames)?;
         println!(
-            "{:<12}{:<12}{:>10.2}{:>10.2}{:>10.2}{:>10.2}{:>12.2}{:>14}",
+            "{:<12}{:<12}{:>10.2}{:>10.2}{:>10.2}{:>10.2}{:>12.2}{:>14}{:>14}",
             simulation.to_string(),
             pictures.to_string(),
             pair.ms_to_simulate,
@@ -59,7 +66,8 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
             pair.ms_a_frame,
             pair.of_sum,
             pair.of_greater,
-            pair.bytes_per_frame
+            pair.bytes_to_gpus,
+            pair.bytes_from_gpus
         );
         pairs.push(pair);
     }
@@ -71,7 +79,6 @@ fn measure(devices: Devices, frames: u32) -> anyhow::Result<Pair> {
     let both = play(devices, frames, true)?;
     let (ms_to_simulate, ms_to_draw) = (median(&alone.simulate), median(&alone.draw));
     let ms_a_frame = median(&both.frame);
-    let crosses = devices.pictures != devices.simulation && devices.pictures != Backend::Cpu;
     Ok(Pair {
         simulation: both.simulated_on,
         pictures: both.drawn_on,
@@ -80,7 +87,8 @@ fn measure(devices: Devices, frames: u32) -> anyhow::Result<Pair> {
         ms_a_frame,
         of_sum: ms_a_frame / (ms_to_simulate + ms_to_draw),
         of_greater: ms_a_frame / ms_to_simulate.max(ms_to_draw),
-        bytes_per_frame: if crosses { both.point_bytes } else { 0 },
+        bytes_to_gpus: alone.crossed.to_device,
+        bytes_from_gpus: alone.crossed.from_device,
     })
 }
 
@@ -92,7 +100,18 @@ struct Run {
     frame: Vec<f64>,
     simulated_on: String,
     drawn_on: String,
-    point_bytes: usize,
+    /// Bytes of a frame.
+    crossed: Crossed,
+}
+
+/// Bytes that crossed to and from all devices so far.
+fn crossed(gpus: &[Gpu]) -> Crossed {
+    let mut sum = Crossed::default();
+    for crossed in gpus.iter().map(Gpu::crossed) {
+        sum.to_device += crossed.to_device;
+        sum.from_device += crossed.from_device;
+    }
+    sum
 }
 
 fn play(devices: Devices, frames: u32, overlap: bool) -> anyhow::Result<Run> {
@@ -102,14 +121,12 @@ fn play(devices: Devices, frames: u32, overlap: bool) -> anyhow::Result<Run> {
     scene.film.frames_per_second = 60.0;
     let mut player = Player::new(&scene, devices, true)?;
     player.set_overlap(overlap);
-    let mut run = Run {
-        simulated_on: player.simulated_on(),
-        drawn_on: player.drawn_on(),
-        point_bytes: size_of_val(player.guides().positions()),
-        ..Run::default()
-    };
+    let mut run = Run { simulated_on: player.simulated_on(), drawn_on: player.drawn_on(), ..Run::default() };
     let what = if overlap { "frames, both at once" } else { "frames, one after the other" };
     let mut progress = Progress::new(u64::from(frames) + 1, what, false);
+    let mut gpus: Vec<Gpu> = player.gpu().into_iter().chain(player.picture_gpu()).collect();
+    gpus.dedup_by(|one, other| one.device() == other.device());
+    let mut before = Crossed::default();
     let (mut last, mut simulated) = (Instant::now(), None);
     for event in player {
         match event? {
@@ -117,7 +134,9 @@ fn play(devices: Devices, frames: u32, overlap: bool) -> anyhow::Result<Run> {
             Event::Stepped(_) => simulated = simulated.or(Some(Instant::now())),
             Event::Drawn { frame, .. } => {
                 let (now, between) = (Instant::now(), simulated.take().unwrap_or(last));
-                if frame > 0 {
+                if frame == 0 {
+                    before = crossed(&gpus);
+                } else {
                     let ms = |from: Instant, to: Instant| 1e3 * (to - from).as_secs_f64();
                     run.simulate.push(ms(last, between));
                     run.draw.push(ms(between, now));
@@ -128,5 +147,10 @@ fn play(devices: Devices, frames: u32, overlap: bool) -> anyhow::Result<Run> {
             }
         }
     }
+    let (after, frames) = (crossed(&gpus), u64::from(frames));
+    run.crossed = Crossed {
+        to_device: (after.to_device - before.to_device) / frames,
+        from_device: (after.from_device - before.from_device) / frames,
+    };
     Ok(run)
 }
