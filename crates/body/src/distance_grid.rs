@@ -26,8 +26,16 @@ impl DistanceGrid {
     pub fn from_field(field: &dyn SignedDistance, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         let lattice = Lattice::around(field.bounds(), spacing, padding)?;
         let mut distances = vec![0.0; lattice.len()];
-        distances.par_iter_mut().enumerate().for_each(|(index, distance)| {
-            *distance = field.distance(lattice.position(lattice.node(index)));
+        let columns = lattice.node_count.x as usize;
+        let is_symmetric = field.is_symmetric() && lattice.is_centered();
+        let looked_up = if is_symmetric { columns.div_ceil(2) } else { columns };
+        distances.par_chunks_mut(columns).enumerate().for_each(|(row, distances)| {
+            for (column, distance) in distances[..looked_up].iter_mut().enumerate() {
+                *distance = field.distance(lattice.position(lattice.node(row * columns + column)));
+            }
+            // The other side is the same, the far border first.
+            let (near, far) = distances.split_at_mut(looked_up);
+            far.iter_mut().rev().zip(near).for_each(|(distance, mirrored)| *distance = *mirrored);
         });
         Ok(Self::from_distances(lattice, &distances))
     }

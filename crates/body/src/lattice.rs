@@ -52,6 +52,11 @@ impl Lattice {
         Ok(Self { origin, spacing, node_count: cells.as_uvec3() + 1 })
     }
 
+    /// Whether the nodes on either side of the plane x = 0 are each other's mirror images.
+    pub fn is_centered(&self) -> bool {
+        self.origin.x == -0.5 * self.spacing * (self.node_count.x - 1) as f32
+    }
+
     /// Nodes in all.
     pub fn len(&self) -> usize {
         let [x, y, z] = self.node_count.to_array().map(|count| count as usize);

@@ -83,6 +83,10 @@ impl SignedDistance for Mannequin {
         (distance, field.gradient.normalize_or(Vec3::Y))
     }
 
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Aabb {
         Aabb { min: Vec3::new(-0.217, -0.265, -0.115), max: Vec3::new(0.217, 0.112, 0.122) }
     }

@@ -31,40 +31,72 @@ pub(super) fn mesh(mannequin: &Mannequin) -> Mesh {
     Mesh { positions, normals, triangles }
 }
 
+/// Sides of the bricks \[cells\], the large ones first.
+const BRICKS: [u32; 2] = [8, 2];
+
 /// Values on a grid, x fastest. Bricks that the skin cannot reach are filled from one sample.
 fn sample(mannequin: &Mannequin, origin: Vec3, size: UVec3) -> Vec<f32> {
-    const BRICK: u32 = 4;
-    let row = (size.x * size.y) as usize;
-    let mut samples = vec![0.0; row * size.z as usize];
-    let bricks = UVec3::new(size.x.div_ceil(BRICK), size.y.div_ceil(BRICK), 0);
-    let reach = 0.5 * (BRICK as f32) * SPACING * 3f32.sqrt();
-    samples.par_chunks_mut(row * BRICK as usize).enumerate().for_each(|(slab, values)| {
-        let depth = (values.len() / row) as u32;
-        let first_layer = slab as u32 * BRICK;
-        for brick_y in 0..bricks.y {
-            for brick_x in 0..bricks.x {
-                let corner = UVec3::new(brick_x * BRICK, brick_y * BRICK, first_layer);
-                let middle = origin + (corner.as_vec3() + 0.5 * BRICK as f32) * SPACING;
-                let value = mannequin.distance(middle);
+    let layer = (size.x * size.y) as usize;
+    let mut samples = vec![0.0; layer * size.z as usize];
+    let depth = BRICKS[0] as usize;
+    samples.par_chunks_mut(layer * depth).enumerate().for_each(|(slab, values)| {
+        let first_layer = (slab * depth) as u32;
+        let size = UVec3::new(size.x, size.y, (values.len() / layer) as u32);
+        let mut slab = Slab { mannequin, origin, first_layer, size, values };
+        slab.fill(UVec3::ZERO, size, &BRICKS);
+    });
+    samples
+}
+
+/// Some layers of the grid.
+struct Slab<'a> {
+    mannequin: &'a Mannequin,
+    /// Place of the grid's first sample \[m\].
+    origin: Vec3,
+    first_layer: u32,
+    size: UVec3,
+    values: &'a mut [f32],
+}
+
+impl Slab<'_> {
+    /// Fills a box in bricks of the first size given, and what the skin may reach in the next smaller ones.
+    fn fill(&mut self, from: UVec3, to: UVec3, bricks: &[u32]) {
+        let Some((&side, smaller)) = bricks.split_first() else { return self.write(from, to, None) };
+        let reach = 0.5 * side as f32 * SPACING * 3f32.sqrt();
+        let starts = |axis: usize| (from[axis]..to[axis]).step_by(side as usize);
+        for z in starts(2) {
+            for (y, x) in starts(1).flat_map(|y| starts(0).map(move |x| (y, x))) {
+                let corner = UVec3::new(x, y, z);
+                let value = self.mannequin.distance(self.place(corner.as_vec3() + 0.5 * side as f32));
+                let end = (corner + side).min(to);
                 // The field may rise a little faster than a distance: keep a margin of a half.
-                let far = value.abs() > 1.5 * reach;
-                for z in 0..depth {
-                    for y in corner.y..(corner.y + BRICK).min(size.y) {
-                        for x in corner.x..(corner.x + BRICK).min(size.x) {
-                            let cell = UVec3::new(x, y, first_layer + z);
-                            let index = z as usize * row + (y * size.x + x) as usize;
-                            values[index] = if far {
-                                value
-                            } else {
-                                mannequin.distance(origin + cell.as_vec3() * SPACING)
-                            };
-                        }
-                    }
+                if value.abs() > 1.5 * reach {
+                    self.write(corner, end, Some(value));
+                } else {
+                    self.fill(corner, end, smaller);
                 }
             }
         }
-    });
-    samples
+    }
+
+    /// A place \[m\] from one in the slab \[cells\].
+    fn place(&self, mut at: Vec3) -> Vec3 {
+        at.z += self.first_layer as f32;
+        self.origin + at * SPACING
+    }
+
+    /// Writes a value to a box, or the ones that are there.
+    fn write(&mut self, from: UVec3, to: UVec3, value: Option<f32>) {
+        for z in from.z..to.z {
+            for y in from.y..to.y {
+                for x in from.x..to.x {
+                    let index = ((z * self.size.y + y) * self.size.x + x) as usize;
+                    let place = self.place(UVec3::new(x, y, z).as_vec3());
+                    self.values[index] = value.unwrap_or_else(|| self.mannequin.distance(place));
+                }
+            }
+        }
+    }
 }
 
 /// Carries a point near the skin onto it; the point and the normal there.

@@ -1,7 +1,7 @@
 //! Signed distance of meshes against what is known of them.
 
 use glam::Vec3;
-use strandline_body::{Aabb, BodyError, DistanceGrid, Mesh, SignedDistance};
+use strandline_body::{Aabb, BodyError, DistanceGrid, Mannequin, Mesh, SignedDistance};
 
 use crate::shapes::{ball, distance_by_search, inside_out, part, supplied, together, winding_number};
 
@@ -69,6 +69,19 @@ fn a_field_is_sampled() {
     assert!(
         grid.cells().cmpge(glam::UVec3::splat(65)).all() && grid.cells().cmple(glam::UVec3::splat(66)).all()
     );
+}
+
+#[test]
+fn both_sides_of_a_symmetric_field_are_at_their_nodes() {
+    let bust = Mannequin::new();
+    for (spacing, odd) in [(0.02, 1), (0.021, 0)] {
+        let grid = DistanceGrid::from_field(&*bust, spacing, 0.0).unwrap();
+        assert_eq!((grid.cells().x + 1) % 2, odd, "with a column in the middle and without");
+        for (node, sample) in nodes(&grid).zip(grid.nodes()) {
+            // Mirrored places differ by their rounding.
+            assert!((sample.w - bust.distance(node)).abs() < 1e-6, "{node}");
+        }
+    }
 }
 
 #[test]
