@@ -31,7 +31,7 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
             );
         }
         let drawing: f64 = shown.drawing.seconds.iter().map(|(_, seconds)| seconds).sum();
-        ui.label(format!("{} segments in {:.1} ms", shown.drawing.segments, 1e3 * drawing))
+        ui.label(format!("{} segments in {:.1} ms", grouped(shown.drawing.segments), 1e3 * drawing))
             .on_hover_text(stages(&shown.drawing.seconds));
         if let Some(step) = &shown.step {
             let seconds: f64 = step.seconds.iter().map(|(_, seconds)| seconds).sum();
@@ -40,13 +40,26 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
                 .on_hover_text("of the pressure solve");
             ui.label(format!("stretch {:.2} %", 100.0 * step.stretch_max))
                 .on_hover_text("the largest, over rest");
-            ui.label(format!("depth {:.1} mm", 1e3 * step.penetration_max))
+            ui.label(format!("penetration {:.1} mm", 1e3 * step.penetration_max))
                 .on_hover_text("deepest point inside a solid");
         }
     });
 }
 
+/// A number with its thousands set apart.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
+    groups.join(",")
+}
+
 fn stages(seconds: &[(&'static str, f64)]) -> String {
     let line = |(name, seconds): &(&str, f64)| format!("{name}: {:.2} ms", 1e3 * seconds);
     seconds.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn thousands_are_set_apart() {
+    assert_eq!([0, 999, 1000, 1_440_000].map(grouped), ["0", "999", "1,000", "1,440,000"]);
 }

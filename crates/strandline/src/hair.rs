@@ -268,7 +268,7 @@ impl Hair {
 
     /// Where pictures are drawn, likewise.
     pub fn drawn_on(&self) -> String {
-        place(self.studio.painter.gpu())
+        self.studio.painter.drawn_on()
     }
 
     /// What happened to the backend since the last call, for a person to read.

@@ -6,6 +6,7 @@ use crate::{
     body::Mesh,
     devices::Opened,
     groom::Guides,
+    hair::place,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
         gpu::{DevicePoints, GpuRenderer},
@@ -15,6 +16,8 @@ use crate::{
 /// A renderer and what it takes to start another one on the CPU.
 pub(crate) struct Painter {
     place: Place,
+    /// Draws what is more than the GPU draws, as long as it is.
+    stand_in: Option<Box<Renderer>>,
     guides: Guides,
     mesh: Option<Mesh>,
     settings: PictureSettings,
@@ -49,10 +52,15 @@ impl Painter {
             None => Place::Cpu(Renderer::new(guides, mesh, &settings)?.into()),
         };
         let (guides, mesh) = (guides.clone(), mesh.cloned());
-        Ok(Self { place, guides, mesh, settings, fall_back: device.fall_back, notes })
+        Ok(Self { place, stand_in: None, guides, mesh, settings, fall_back: device.fall_back, notes })
     }
 
-    /// The device, while pictures are drawn on one.
+    /// Where the last picture was drawn, for a person to read.
+    pub fn drawn_on(&self) -> String {
+        if self.stand_in.is_some() { place(None) } else { place(self.gpu()) }
+    }
+
+    /// The device, unless all pictures are drawn on the CPU.
     pub fn gpu(&self) -> Option<&Gpu> {
         match &self.place {
             Place::Gpu(renderer) => Some(renderer.gpu()),
@@ -75,6 +83,7 @@ impl Painter {
             self.recover(failure, settings)?;
         }
         self.settings = *settings;
+        self.stand_in = None;
         Ok(())
     }
 
@@ -87,18 +96,40 @@ impl Painter {
         points: Option<DevicePoints>,
     ) -> Result<(Picture, FrameReport), RenderError> {
         let mut picture = Picture::default();
-        let report = match &mut self.place {
+        let drawn = match &mut self.place {
             Place::Cpu(renderer) => renderer.draw_into(input, &mut picture),
             Place::Gpu(renderer) => renderer.draw_into(input, points, &mut picture),
-        }?;
+        };
+        let report = match drawn {
+            Err(failure @ RenderError::TooMany { .. }) if self.fall_back => {
+                self.stand_in(failure)?.draw_into(input, &mut picture)?
+            }
+            drawn => {
+                self.stand_in = None;
+                drawn?
+            }
+        };
         Ok((picture, report))
+    }
+
+    /// The renderer that draws what is more than the GPU draws.
+    fn stand_in(&mut self, failure: RenderError) -> Result<&mut Renderer, RenderError> {
+        match &mut self.stand_in {
+            Some(renderer) => Ok(renderer),
+            none => {
+                self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
+                let renderer = Renderer::new(&self.guides, self.mesh.as_ref(), &self.settings)?;
+                Ok(none.insert(renderer.into()))
+            }
+        }
     }
 
     /// The opacity map of a light, and the depths of its first hair.
     pub fn maps(&self, light: usize) -> Result<Option<[Picture; 2]>, RenderError> {
-        let pair = match &self.place {
-            Place::Cpu(renderer) => (renderer.opacity_map(light), renderer.depth_map(light)),
-            Place::Gpu(renderer) => (renderer.opacity_map(light)?, renderer.depth_map(light)?),
+        let pair = match (&self.place, &self.stand_in) {
+            (_, Some(renderer)) => (renderer.opacity_map(light), renderer.depth_map(light)),
+            (Place::Cpu(renderer), None) => (renderer.opacity_map(light), renderer.depth_map(light)),
+            (Place::Gpu(renderer), None) => (renderer.opacity_map(light)?, renderer.depth_map(light)?),
         };
         Ok(pair.0.zip(pair.1).map(|(opacity, depth)| [opacity, depth]))
     }

@@ -194,7 +194,7 @@ impl Player {
 
     /// Where pictures are drawn, likewise.
     pub fn drawn_on(&self) -> String {
-        crate::hair::place(self.studio.painter.gpu())
+        self.studio.painter.drawn_on()
     }
 
     /// Number of frames of the film.

@@ -252,8 +252,17 @@ fn more_lights_than_a_gpu_draws_are_refused_or_drawn_on_the_cpu() {
     hair.picture(&camera, &look).unwrap();
     hair.lights.push(hair.lights[0]);
     hair.set_fall_back(true);
+    hair.take_notes();
+    for _ in 0..2 {
+        hair.picture(&camera, &look).unwrap();
+        assert_eq!(hair.drawn_on(), "cpu");
+        assert!(hair.opacity_map(8).unwrap().is_some(), "the map of a light that a GPU does not draw");
+    }
+    let notes = hair.take_notes();
+    assert!(notes.len() == 1 && notes[0].contains("as long as it is so: 9 lights"), "{notes:?}");
+    hair.lights.truncate(8);
     hair.picture(&camera, &look).unwrap();
-    assert_eq!(hair.drawn_on(), "cpu");
+    assert!(hair.drawn_on().starts_with("gpu:"), "{}", hair.drawn_on());
 }
 
 #[test]

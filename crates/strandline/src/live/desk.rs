@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::recorder::Recorder;
 use super::stage::Stage;
 use super::{Command, FRAME, News, Out, Shown};
-use crate::{Error, FilmFiles, Scene, hair::place, render::PictureSettings, sim::StepReport, worker::Gone};
+use crate::{Error, FilmFiles, Scene, render::PictureSettings, sim::StepReport, worker::Gone};
 
 /// What the drawing thread is told.
 pub(super) enum Message {
@@ -348,7 +348,7 @@ impl Desk {
             drawing,
             step,
             grabbed: stage.grabbed,
-            places: [stage.simulated_on.clone(), place(stage.studio.painter.gpu())],
+            places: [stage.simulated_on.clone(), stage.studio.painter.drawn_on()],
         });
         course.judge(seconds, draft);
         Ok(())
