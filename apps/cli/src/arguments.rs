@@ -221,6 +221,8 @@ impl Inputs {
         }
         if let Some(name) = self.motion {
             scene.motion.name = name;
+            // It begins at its beginning.
+            scene.film.start = 0.0;
         }
         if let Some(backend) = self.sim_device.or(self.backend) {
             scene.simulation.backend = backend;

@@ -45,9 +45,11 @@ pub struct App {
     /// Whether a video is recorded, and how many are being finished.
     pub(crate) recording: bool,
     pub(crate) finishing: u32,
-    /// The picture that is to be saved once it is drawn in full: to a path, or into the folder.
-    pub(crate) saving: Option<Option<PathBuf>>,
+    /// Number of the load that the scene comes from.
+    pub(crate) loaded: u64,
     pub(crate) saves: saves::Saves,
+    /// Number of the last step that was asked for by dragging while nothing plays.
+    pub(crate) stepped: u64,
     pub(crate) dialog: Option<files::Dialog>,
     /// Where the next picture and scene are saved.
     pub folder: PathBuf,
@@ -108,8 +110,9 @@ impl App {
             adapts: true,
             recording: false,
             finishing: 0,
-            saving: None,
+            loaded: 1,
             saves: saves::Saves::default(),
+            stepped: 0,
             dialog: None,
             folder: PathBuf::from("out"),
         })
@@ -149,8 +152,17 @@ impl App {
         self.live.tell(Command::Picture(PictureSettings { transparent: false, ..self.scene.picture }));
     }
 
-    pub(crate) fn send_motion(&self) {
+    pub(crate) fn send_motion(&mut self) {
         self.live.tell(Command::Motion(Box::new(self.scene.motion.clone())));
+        self.step_on();
+    }
+
+    /// Lets a frame of time pass where nothing plays, so that hair follows what is dragged; one at a time.
+    pub(crate) fn step_on(&mut self) {
+        let heard = self.shown.as_ref().map_or(0, |shown| shown.heard);
+        if !self.playing && self.stepped <= heard {
+            self.stepped = self.live.tell(Command::Step);
+        }
     }
 
     /// What is seen at the moment, if there is anything.
@@ -233,7 +245,7 @@ impl App {
     /// Makes the scene that has come the one that the controls change.
     fn take_scene(&mut self, number: u64, camera: Camera, bounds: Aabb) {
         let Some((_, scene)) = self.pending.take_if(|(pending, _)| *pending == number) else { return };
-        self.scene = *scene;
+        (self.scene, self.loaded) = (*scene, number);
         if self.scene.lights.is_empty() {
             // Those that it is lit with, for the panel to change.
             self.scene.lights = Light::three_point(0.5 * (bounds.min + bounds.max)).to_vec();

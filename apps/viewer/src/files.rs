@@ -82,7 +82,7 @@ pub fn take_answer(app: &mut App) {
     app.dialog = None;
     match (answer, wanted) {
         (Some(file), Wanted::Open) => app.open_file(&file),
-        (Some(file), Wanted::Picture) => app.ask_for_picture(Some(file)),
+        (Some(file), Wanted::Picture) => app.save_picture(Some(file)),
         (Some(file), Wanted::Scene) => app.save_scene(Some(&file)),
         (None, Wanted::Open) if since.elapsed() < AT_ONCE => {
             app.note("this system has no file dialog: type a path, or drop a file on the window".to_owned());

@@ -2,60 +2,87 @@
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use strandline::Command;
 
 use crate::{App, stage};
 
-/// Pictures that are being written, and names that are given away.
-#[derive(Default)]
+/// What a picture's writing led to: its path, or what went wrong.
+type Saved = Result<PathBuf, String>;
+
+/// Pictures that are to be saved, and names that are given away.
 pub struct Saves {
-    threads: Vec<JoinHandle<Result<PathBuf, String>>>,
+    /// Those that wait for a picture in full: paths, or none for one in the folder.
+    waiting: Vec<Option<PathBuf>>,
+    threads: Vec<JoinHandle<()>>,
+    told: (Sender<Saved>, Receiver<Saved>),
     taken: HashSet<PathBuf>,
 }
 
-impl Drop for Saves {
+/// How long a window that is closed waits for a picture in full.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+impl Default for Saves {
+    fn default() -> Self {
+        let (waiting, threads, taken) = Default::default();
+        Self { waiting, threads, told: channel(), taken }
+    }
+}
+
+impl Drop for App {
     /// What a person saved is written, though the window is closed.
     fn drop(&mut self) {
-        for thread in self.threads.drain(..) {
-            let _ = thread.join();
+        let begin = Instant::now();
+        while !self.saves.waiting.is_empty() && begin.elapsed() < PATIENCE {
+            match self.live.take_shown() {
+                Some(shown) => {
+                    self.shown = Some(shown);
+                    self.save_if_full();
+                }
+                None => std::thread::sleep(Duration::from_millis(2)),
+            }
         }
+        self.saves.threads.drain(..).for_each(|thread| drop(thread.join()));
     }
 }
 
 impl App {
-    /// Saves the next picture that is drawn in full, which may need the hair to stand still; into a free
-    /// file of the folder when no path is given.
-    pub(crate) fn ask_for_picture(&mut self, path: Option<PathBuf>) {
-        self.saving = Some(path);
-        if self.shown.as_ref().is_some_and(|shown| shown.draft) {
-            stage::play(self, false);
-        }
+    /// Saves the next picture that is drawn in full, or the one that is seen where it is; into a free file of
+    /// the folder when no path is given.
+    pub fn save_picture(&mut self, path: Option<PathBuf>) {
+        self.saves.waiting.push(path);
+        self.send_adapt();
         self.save_if_full();
     }
 
-    /// Saves the picture that is wanted, if it is there.
-    pub(crate) fn save_if_full(&mut self) {
-        if self.shown.as_ref().is_none_or(|shown| !shown.draft)
-            && let Some(path) = self.saving.take()
-        {
-            self.save_picture(path.as_deref());
-        }
+    /// Has pictures be simpler, unless one is to be saved.
+    pub(crate) fn send_adapt(&self) {
+        self.live.tell(Command::Adapt(self.adapts && self.saves.waiting.is_empty()));
     }
 
-    /// Saves the picture that is seen, or tells why not.
-    pub fn save_picture(&mut self, path: Option<&Path>) {
-        let Some(picture) = self.shown.as_ref().map(|shown| shown.picture.clone()) else {
-            self.error = Some("there is no picture yet".to_owned());
+    /// Saves the pictures that are wanted, if they are there.
+    pub(crate) fn save_if_full(&mut self) {
+        if self.saves.waiting.is_empty() || self.shown.as_ref().is_none_or(|shown| shown.draft) {
             return;
-        };
+        }
+        for path in std::mem::take(&mut self.saves.waiting) {
+            self.write_picture(path.as_deref());
+        }
+        self.send_adapt();
+    }
+
+    fn write_picture(&mut self, path: Option<&Path>) {
         let Some(path) = self.path_or_free(path, "view", "png") else { return };
-        let context = self.context.clone();
+        let Some(picture) = self.shown.as_ref().map(|shown| shown.picture.clone()) else { return };
+        let (context, told) = (self.context.clone(), self.saves.told.0.clone());
         let write = move || {
             let saved = picture.save(&path).map(|()| path).map_err(|error| error.to_string());
+            // The window may be gone.
+            let _ = told.send(saved);
             context.get().into_iter().for_each(eframe::egui::Context::request_repaint);
-            saved
         };
         match std::thread::Builder::new().name("saving".to_owned()).spawn(write) {
             Ok(thread) => self.saves.threads.push(thread),
@@ -66,17 +93,17 @@ impl App {
     /// Saves what is seen as a scene, or tells why not.
     pub fn save_scene(&mut self, path: Option<&Path>) {
         if let Some(path) = self.path_or_free(path, "view", "toml") {
-            self.live.tell(Command::Save(Box::new(self.seen()), path));
+            self.live.tell(Command::Save(Box::new(self.seen()), self.loaded, path));
         }
     }
 
     /// Tells of the pictures that are written.
     pub(crate) fn take_saved(&mut self) {
-        while let Some(index) = self.saves.threads.iter().position(JoinHandle::is_finished) {
-            match self.saves.threads.swap_remove(index).join() {
-                Ok(Ok(path)) => self.note(format!("wrote {}", path.display())),
-                Ok(Err(error)) => self.error = Some(error),
-                Err(_) => self.error = Some("cannot save the picture: a fault of the program".to_owned()),
+        self.saves.threads.retain(|thread| !thread.is_finished());
+        while let Ok(saved) = self.saves.told.1.try_recv() {
+            match saved {
+                Ok(path) => self.note(format!("wrote {}", path.display())),
+                Err(error) => self.error = Some(error),
             }
         }
     }

@@ -43,7 +43,7 @@ fn file_keys(app: &mut App, ui: &egui::Ui, pressed: impl Fn(Key) -> bool) {
         app.save_scene(None);
     }
     if pressed(Key::P) {
-        app.ask_for_picture(None);
+        app.save_picture(None);
     }
 }
 
@@ -158,8 +158,10 @@ fn mouse(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
     };
     if response.drag_started_by(PointerButton::Primary)
         && tool == Tool::Grab
-        && let Some(ray) = ray(app, response)
+        // In a slow pass the mouse has moved on since.
+        && let Some(press) = ui.input(|input| input.pointer.press_origin())
     {
+        let ray = ray(app, response.rect, press);
         app.grabs = true;
         app.live.tell(Command::Grab(ray, app.radius));
     }
@@ -178,9 +180,11 @@ fn grab(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
         return;
     }
     if response.drag_delta() != egui::Vec2::ZERO
-        && let Some(ray) = ray(app, response)
+        && let Some(pointer) = response.interact_pointer_pos()
     {
+        let ray = ray(app, response.rect, pointer);
         app.live.tell(Command::Drag(ray));
+        app.step_on();
     }
     if let Some(pointer) = response.interact_pointer_pos() {
         let holds = app.shown.as_ref().is_some_and(|shown| shown.grabbed > 0);
@@ -196,10 +200,9 @@ fn hand_points(app: &App, room: Rect) -> f32 {
 }
 
 /// The line of sight under the mouse.
-fn ray(app: &App, response: &egui::Response) -> Option<Ray> {
-    let pointer: Pos2 = response.interact_pointer_pos()?;
-    let halves = (pointer - response.rect.center()) / (0.5 * response.rect.height().max(1.0));
-    Some(Ray::new(&app.camera, Vec2::new(halves.x, -halves.y)))
+fn ray(app: &App, room: Rect, pointer: Pos2) -> Ray {
+    let halves = (pointer - room.center()) / (0.5 * room.height().max(1.0));
+    Ray::new(&app.camera, Vec2::new(halves.x, -halves.y))
 }
 
 /// How far \[point\] the mouse was dragged since the last pass, or since the press: what it moved before,

@@ -108,6 +108,65 @@ impl Window {
     }
 }
 
+/// The left button, pressed or let go.
+fn button(pos: egui::Pos2, pressed: bool) -> egui::Event {
+    let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::default());
+    egui::Event::PointerButton { pos, button, pressed, modifiers }
+}
+
+#[test]
+fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays() {
+    let mut window = Window::new();
+    window.until("a picture", |app| app.shown().is_some());
+    window.press(egui::Key::Space);
+    window.settle();
+    window.press(egui::Key::G);
+    let picture = window.picture();
+    // Brown on grey, in the lower half, where there is no skin behind it.
+    let is_hair = |index: usize| {
+        let pixel = &picture.pixels[3 * index..3 * index + 3];
+        pixel[0] < 150 && i16::from(pixel[0]) - i16::from(pixel[2]) > 20
+    };
+    let width = picture.width as usize;
+    let hair =
+        (picture.height as usize * width / 2..picture.height as usize * width).find(|index| is_hair(*index));
+    let hair = hair.expect("hair in the picture");
+    // Between the panels, the strip and the margins.
+    let room = egui::Rect::from_min_max(egui::pos2(303.0, 8.0), egui::pos2(892.0, 567.0));
+    let scale = egui::vec2(room.width() / width as f32, room.height() / picture.height as f32);
+    let place = room.min + egui::vec2((hair % width) as f32 + 0.5, (hair / width) as f32 + 0.5) * scale;
+    // The whole way in one pass, as in a slow one.
+    let away = egui::pos2(320.0, 300.0);
+    window.pass(
+        vec![egui::Event::PointerMoved(place), button(place, true), egui::Event::PointerMoved(away)],
+        None,
+    );
+    window.until("hair in the hand", |app| app.shown().is_some_and(|shown| shown.grabbed > 0));
+    let before = window.picture();
+    window.pass(vec![egui::Event::PointerMoved(away + egui::vec2(-20.0, 0.0))], None);
+    window.until("it follows", |app| app.shown().is_some_and(|shown| shown.picture != before));
+    assert!(!window.app.is_playing());
+    window.pass(vec![button(away, false)], None);
+    window.until("it is let go", |app| app.shown().is_some_and(|shown| shown.grabbed == 0));
+}
+
+#[test]
+fn pictures_are_saved_in_full_while_it_plays_though_the_window_is_closed() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = Window::new();
+    window.app.folder = folder.path().to_owned();
+    window.until("a picture", |app| app.shown().is_some());
+    window.app.save_picture(Some(folder.path().join("named")));
+    window.app.save_picture(None);
+    window.app.save_picture(None);
+    assert!(window.app.is_playing());
+    drop(window);
+    for name in ["named.png", "view_000.png", "view_001.png"] {
+        let picture = image::open(folder.path().join(name)).unwrap();
+        assert!(picture.width() >= 480, "{name}");
+    }
+}
+
 #[test]
 fn it_opens_plays_and_stands_still_at_the_space_bar() {
     let mut window = Window::new();
@@ -134,12 +193,6 @@ fn dragging_turns_the_view() {
     window.settle();
     let before = window.picture();
     let at = |x: f32| egui::pos2(x, 300.0);
-    let button = |pos, pressed| egui::Event::PointerButton {
-        pos,
-        button: egui::PointerButton::Primary,
-        pressed,
-        modifiers: egui::Modifiers::default(),
-    };
     window.pass(vec![egui::Event::PointerMoved(at(600.0)), button(at(600.0), true)], None);
     for step in 1..8 {
         window.pass(vec![egui::Event::PointerMoved(at(600.0 + 12.0 * step as f32))], None);
@@ -212,12 +265,10 @@ fn a_scene_saved_in_mid_swing_begins_with_the_picture_that_was_seen() {
         });
         first.unwrap()
     };
-    // Where the hair is goes into the head's space and back: rounding, no more.
-    strandline_checks::flip::compare(&seen, &first(&saved), 1e-3, 1e-2).unwrap();
-    // At rest it looks otherwise.
+    assert!(first(&saved) == seen, "the saved scene shows something else");
     let mut rest = saved.clone();
     rest.begin_at_rest();
-    assert!(strandline_checks::flip::compare(&seen, &first(&rest), 1e-3, 1e-2).is_err());
+    assert!(first(&rest) != seen);
 }
 
 #[test]

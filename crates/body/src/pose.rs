@@ -36,8 +36,11 @@ impl Pose {
     }
 
     /// The pose on the way to `end`: linear in translation, spherical in rotation;
-    /// `share` is 0 here and 1 at `end`.
+    /// `share` is 0 here and 1 at `end`. Between a pose and itself nothing is rounded.
     pub fn toward(&self, end: &Self, share: f32) -> Self {
+        if self == end {
+            return *self;
+        }
         Self {
             rotation: self.rotation.slerp(end.rotation, share),
             translation: self.translation.lerp(end.translation, share),

@@ -1,11 +1,10 @@
-use std::fs::File;
-use std::io::{BufWriter, ErrorKind, Write};
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 
-use crate::RenderError;
+use crate::{RenderError, WholeFile};
 
 /// A finished picture: 8-bit sRGB, rows from the top, shape `[row][column][channel]`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -28,20 +27,9 @@ impl Picture {
     /// no half-written file is left behind.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), RenderError> {
         let path = path.as_ref();
-        let mut name = path.file_name().unwrap_or_default().to_os_string();
-        name.push(format!(".{}.part", std::process::id()));
-        let partial = path.with_file_name(name);
-        self.write(&partial).and_then(|()| std::fs::rename(&partial, path)).map_err(|error| {
-            // The first error is the one to tell; a file that never came to be needs no removal.
-            let _ = std::fs::remove_file(&partial);
-            RenderError::Save { reason: reason(&error), path: path.to_path_buf() }
-        })
-    }
-
-    fn write(&self, path: &Path) -> std::io::Result<()> {
-        let mut file = BufWriter::new(File::create(path)?);
-        self.encode(&mut file)?;
-        file.into_inner()?.sync_all()
+        WholeFile::write(path, |file| self.encode(file))
+            .and_then(WholeFile::keep)
+            .map_err(|error| RenderError::Save { reason: reason(&error), path: path.to_path_buf() })
     }
 
     /// Writes the picture as PNG to `sink`.
@@ -118,11 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_disk_leaves_no_part_behind() {
-        let full = Path::new("/dev/full");
-        if full.exists() {
-            let error = gradient(false).write(full).unwrap_err();
-            assert!(reason(&error).contains("disk is full"), "{error}");
-        }
+    fn a_full_disk_is_told_with_its_remedy() {
+        assert!(reason(&ErrorKind::StorageFull.into()).contains("disk is full"));
     }
 }

@@ -127,10 +127,10 @@ impl Engine {
         self.set_state(state)
     }
 
-    /// Puts every strand where a pose of hair has it, under a pose of the head; their lengths stay.
-    pub fn place(&mut self, world_from_head: Pose, hair: &HairPose) -> Result<(), SimError> {
-        let mut state = self.rest(world_from_head)?;
-        hair.place(&world_from_head, &mut state.positions, &mut state.velocities);
+    /// Puts every strand where a pose of hair has it; their lengths stay.
+    pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
+        let mut state = self.rest(hair.world_from_head())?;
+        hair.place(&mut state.positions, &mut state.velocities);
         state.previous_positions.clone_from(&state.positions);
         self.set_state(state)
     }

@@ -1,7 +1,7 @@
 //! Writes a film as it is drawn: frames, a contact sheet, and a video or an animated image.
 
 use std::fs;
-use std::io::{Cursor, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
@@ -11,7 +11,10 @@ use image::{
     imageops::{self, FilterType},
 };
 
-use crate::{Error, render::Picture, whole};
+use crate::{
+    Error,
+    render::{Picture, WholeFile},
+};
 
 /// Most pictures on a contact sheet, and how many stand in a row.
 const SHEET_PICTURES: u32 = 12;
@@ -244,12 +247,8 @@ fn sheet(thumbnails: &[RgbImage]) -> RgbImage {
 }
 
 fn save_sheet(sheet: &RgbImage, path: &Path) -> Result<(), Error> {
-    let mut bytes = Cursor::new(Vec::new());
-    sheet
-        .write_to(&mut bytes, image::ImageFormat::Png)
-        .map_err(std::io::Error::other)
-        .and_then(|()| whole::write(path, bytes.get_ref()))
-        .map_err(Error::write("the contact sheet", path))
+    let write = |file: &mut _| sheet.write_to(file, image::ImageFormat::Png).map_err(std::io::Error::other);
+    WholeFile::write(path, write).and_then(WholeFile::keep).map_err(Error::write("the contact sheet", path))
 }
 
 #[cfg(test)]

@@ -191,7 +191,7 @@ impl Hair {
         // A head that is turned at first does not whip its hair there.
         let start = head.pose(scene.film.start);
         match &pose {
-            Some(pose) => hair.simulation.place(start, pose)?,
+            Some(pose) => hair.simulation.place(pose)?,
             None if start != Pose::IDENTITY => hair.simulation.reset(start)?,
             None => {}
         }
@@ -354,14 +354,16 @@ impl Hair {
         self.simulation.engine.state()
     }
 
-    /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Two tensors of the
-    /// safetensors format, `positions` \[m\] and `velocities` \[m/s\], head space, shape
-    /// `[strand][point][3]`.
+    /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Three tensors of the
+    /// safetensors format, 32-bit floats: `positions` \[m\] and `velocities` \[m/s\], world space, shape
+    /// `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and a translation
+    /// \[m\]. A hand that holds hair is not in it.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn save_pose(&self, path: &Path) -> Result<(), Error> {
-        self.simulation.hair_pose().save(path)
+        let file = self.simulation.hair_pose().write(path)?;
+        file.keep().map_err(Error::save("the hair", path))
     }
 
     /// The settings of the simulation.

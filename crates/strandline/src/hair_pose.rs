@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use safetensors::{
     SafeTensors, serialize,
     tensor::{Dtype, TensorView},
@@ -15,13 +15,14 @@ use crate::{
     Error,
     body::Pose,
     groom::{LANES, Vec3Lanes},
-    whole,
+    render::WholeFile,
 };
 
-/// Where guides are and how they move, as seen from the head.
+/// Where guides are, how they move, and where the head is.
 ///
-/// Its file holds two tensors of the safetensors format, `positions` \[m\] and `velocities` \[m/s\], head
-/// space, shape `[strand][point][3]`, 32-bit floats: `safetensors.numpy.load_file` reads it.
+/// Its file holds three tensors of the safetensors format, 32-bit floats: `positions` \[m\] and `velocities`
+/// \[m/s\], world space, shape `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion
+/// x, y, z, w and a translation \[m\]. `safetensors.numpy.load_file` reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HairPose {
     /// Strands, and points of each.
@@ -29,6 +30,7 @@ pub(crate) struct HairPose {
     /// Shape `[strand][point]`.
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
+    world_from_head: Pose,
 }
 
 /// Room for the names and shapes in a file \[byte\]; ours take some 200.
@@ -45,54 +47,72 @@ impl HairPose {
         velocities: &[Vec3Lanes],
         world_from_head: &Pose,
     ) -> Self {
-        let head_from_world = world_from_head.inverse();
         let [strands, points] = shape;
-        let each = |lanes: &[Vec3Lanes], carry: &dyn Fn(Vec3) -> Vec3| {
+        let each = |lanes: &[Vec3Lanes]| {
             (0..strands)
                 .flat_map(|strand| (0..points).map(move |point| (strand, point)))
-                .map(|(strand, point)| carry(lanes[strand / LANES * points + point].get(strand % LANES)))
+                .map(|(strand, point)| lanes[strand / LANES * points + point].get(strand % LANES))
                 .collect()
         };
         Self {
             shape,
-            positions: each(positions, &|point| head_from_world.point(point)),
-            velocities: each(velocities, &|velocity| head_from_world.rotation * velocity),
+            positions: each(positions),
+            velocities: each(velocities),
+            world_from_head: *world_from_head,
         }
+    }
+
+    /// Where the head is.
+    pub fn world_from_head(&self) -> Pose {
+        self.world_from_head
     }
 
     /// Fills lanes of positions \[m\] and velocities \[m/s\], world space; lanes without a strand take the
     /// last one.
-    pub fn place(&self, world_from_head: &Pose, positions: &mut [Vec3Lanes], velocities: &mut [Vec3Lanes]) {
+    pub fn place(&self, positions: &mut [Vec3Lanes], velocities: &mut [Vec3Lanes]) {
         let [strands, points] = self.shape;
         for index in 0..positions.len() {
             for lane in 0..LANES {
                 let strand = (index / points * LANES + lane).min(strands - 1);
                 let from = strand * points + index % points;
-                positions[index].set(lane, world_from_head.point(self.positions[from]));
-                velocities[index].set(lane, world_from_head.rotation * self.velocities[from]);
+                positions[index].set(lane, self.positions[from]);
+                velocities[index].set(lane, self.velocities[from]);
             }
         }
     }
 
-    /// Writes the file.
+    /// Writes the file, which is to be kept.
     ///
     /// # Errors
-    /// It cannot be written.
-    pub fn save(&self, path: &Path) -> Result<(), Error> {
-        self.to_bytes().and_then(|bytes| whole::write(path, &bytes)).map_err(Error::save("the hair", path))
+    /// It cannot be written; hair that no file may hold.
+    pub fn write(&self, path: &Path) -> Result<WholeFile, Error> {
+        self.to_bytes()
+            .and_then(|bytes| WholeFile::write(path, |file| file.write_all(&bytes)))
+            .map_err(Error::save("the hair", path))
     }
 
     fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
-        let bytes = |values: &[Vec3]| -> Vec<u8> {
-            values.iter().flat_map(|value| value.to_array()).flat_map(f32::to_le_bytes).collect()
-        };
+        let numbers = |values: &[Vec3]| values.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
+        let Pose { rotation, translation } = self.world_from_head;
+        let head = [&rotation.to_array()[..], &translation.to_array()[..]].concat();
         let [strands, points] = self.shape;
-        let (positions, velocities) = (bytes(&self.positions), bytes(&self.velocities));
-        let view = |bytes| TensorView::new(Dtype::F32, vec![strands, points, 3], bytes);
-        let tensors = view(&positions)
-            .and_then(|positions| Ok([("positions", positions), ("velocities", view(&velocities)?)]));
-        let about = HashMap::from([("strandline".to_owned(), "hair in head space, m and m/s".to_owned())]);
-        tensors.and_then(|tensors| serialize(tensors, Some(about))).map_err(std::io::Error::other)
+        let mut tensors = Vec::new();
+        for (name, shape, numbers) in [
+            ("positions", vec![strands, points, 3], numbers(&self.positions)),
+            ("velocities", vec![strands, points, 3], numbers(&self.velocities)),
+            ("world_from_head", vec![7], head),
+        ] {
+            check(name, &numbers).map_err(std::io::Error::other)?;
+            tensors.push((name, shape, numbers.into_iter().flat_map(f32::to_le_bytes).collect::<Vec<u8>>()));
+        }
+        let views = tensors.iter().map(|(name, shape, bytes)| {
+            TensorView::new(Dtype::F32, shape.clone(), bytes).map(|view| (*name, view))
+        });
+        let about = HashMap::from([("strandline".to_owned(), "hair in world space, m and m/s".to_owned())]);
+        views
+            .collect::<Result<Vec<_>, _>>()
+            .and_then(|views| serialize(views, Some(about)))
+            .map_err(std::io::Error::other)
     }
 
     /// Reads a file that has a pose for guides of this shape.
@@ -107,32 +127,49 @@ impl HairPose {
 
     fn parse(bytes: &[u8], shape: [usize; 2]) -> Result<Self, String> {
         let tensors = SafeTensors::deserialize(bytes).map_err(|error| error.to_string())?;
-        let tensor = |name: &str| {
-            let tensor = tensors.tensor(name).map_err(|error| error.to_string())?;
-            match tensor.shape() {
-                [strands, points, 3] if [*strands, *points] == shape => {}
-                found => {
-                    let [strands, points] = shape;
-                    return Err(format!(
-                        "{name} of shape {found:?}, but the scene's hair has [{strands}, {points}, 3]: \
-                         take `pose` out of [groom] to begin at rest"
-                    ));
-                }
-            }
-            if tensor.dtype() != Dtype::F32 {
-                return Err(format!("{name} of type {:?}, expected F32", tensor.dtype()));
-            }
-            let numbers: Vec<f32> = tensor
-                .data()
-                .chunks_exact(4)
-                .map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
-                .collect();
-            match numbers.iter().find(|number| !(number.abs() <= MOST)) {
-                Some(number) => Err(format!("{name} hold {number}, expected no more than {MOST}")),
-                None => Ok(numbers.chunks_exact(3).map(Vec3::from_slice).collect()),
-            }
+        let [strands, points] = shape;
+        let vectors = |name| {
+            let numbers = numbers(&tensors, name, &[strands, points, 3])?;
+            Ok::<_, String>(numbers.chunks_exact(3).map(Vec3::from_slice).collect())
         };
-        Ok(Self { shape, positions: tensor("positions")?, velocities: tensor("velocities")? })
+        let head = numbers(&tensors, "world_from_head", &[7])?;
+        // As it is, to the bit: what is drawn is then what was.
+        let rotation = Quat::from_slice(&head[..4]);
+        if !rotation.is_normalized() {
+            return Err(format!("world_from_head with the quaternion {rotation}, expected one of length 1"));
+        }
+        let world_from_head = Pose { rotation, translation: Vec3::from_slice(&head[4..]) };
+        Ok(Self {
+            shape,
+            positions: vectors("positions")?,
+            velocities: vectors("velocities")?,
+            world_from_head,
+        })
+    }
+}
+
+/// The numbers of a tensor that has to have a shape.
+fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Vec<f32>, String> {
+    let tensor = tensors.tensor(name).map_err(|error| error.to_string())?;
+    if tensor.shape() != shape {
+        let found = tensor.shape();
+        return Err(format!(
+            "{name} of shape {found:?}, but the scene's hair has {shape:?}: take `pose` out of [groom] to begin \
+             at rest"
+        ));
+    }
+    if tensor.dtype() != Dtype::F32 {
+        return Err(format!("{name} of type {:?}, expected F32", tensor.dtype()));
+    }
+    let number = |four: &[u8]| f32::from_le_bytes([four[0], four[1], four[2], four[3]]);
+    let numbers: Vec<f32> = tensor.data().chunks_exact(4).map(number).collect();
+    check(name, &numbers).map(|()| numbers)
+}
+
+fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
+    match numbers.iter().find(|number| !(number.abs() <= MOST)) {
+        Some(number) => Err(format!("{name} hold {number}, expected no more than {MOST}")),
+        None => Ok(()),
     }
 }
 
@@ -150,8 +187,6 @@ fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, String> {
 
 #[cfg(test)]
 mod tests {
-    use glam::Quat;
-
     use super::*;
 
     const SHAPE: [usize; 2] = [11, 5];
@@ -163,27 +198,28 @@ mod tests {
             shape: SHAPE,
             positions: (0..count).map(value).collect(),
             velocities: (0..count).map(|index| -value(index)).collect(),
+            world_from_head: Pose {
+                rotation: Quat::from_rotation_y(1.2),
+                translation: Vec3::new(0.3, 0.1, 0.0),
+            },
         }
     }
 
     #[test]
     fn it_survives_its_file_and_its_lanes() {
         let pose = pose();
-        assert_eq!(HairPose::parse(&pose.to_bytes().unwrap(), SHAPE), Ok(pose.clone()));
-        let world_from_head =
-            Pose { rotation: Quat::from_rotation_y(1.2), translation: Vec3::new(0.3, 0.1, 0.0) };
+        let read = HairPose::parse(&pose.to_bytes().unwrap(), SHAPE).unwrap();
+        assert_eq!((&read.positions, &read.velocities), (&pose.positions, &pose.velocities));
+        let (found, wanted) = (read.world_from_head, pose.world_from_head);
+        assert!(found.rotation.angle_between(wanted.rotation) < 1e-3);
+        assert_eq!(found.translation, wanted.translation);
         let mut lanes = [(); 2].map(|()| vec![Vec3Lanes::default(); 2 * SHAPE[1]]);
         let [positions, velocities] = &mut lanes;
-        pose.place(&world_from_head, positions, velocities);
+        pose.place(positions, velocities);
         // The last lanes have no strand of their own.
         assert_eq!(positions[SHAPE[1]].get(7), positions[SHAPE[1]].get(2));
-        let again = HairPose::new(SHAPE, positions, velocities, &world_from_head);
-        for (found, wanted) in again.positions.iter().zip(&pose.positions) {
-            assert!(found.distance(*wanted) < 1e-6);
-        }
-        for (found, wanted) in again.velocities.iter().zip(&pose.velocities) {
-            assert!(found.distance(*wanted) < 1e-6);
-        }
+        let again = HairPose::new(SHAPE, positions, velocities, &pose.world_from_head);
+        assert_eq!(again, pose);
     }
 
     #[test]
@@ -198,8 +234,16 @@ mod tests {
         assert!(refused(&good, [11, 6]).contains("[11, 5, 3], but the scene's hair has [11, 6, 3]"));
         assert!(refused(&good, [1, 4]).contains("but the scene's hair"));
         assert!(refused(&vec![0; 70_000], SHAPE).contains("larger than 11 strands"));
-        let wild = HairPose { velocities: vec![Vec3::NAN; 55], ..pose() };
-        assert!(refused(&wild.to_bytes().unwrap(), SHAPE).contains("velocities hold NaN"));
+        let mut wild = good.clone();
+        let end = wild.len();
+        // The last number is one of the last tensor in the file.
+        wild[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());
+        assert!(refused(&wild, SHAPE).contains("hold NaN"));
+        let unheard = HairPose { velocities: vec![Vec3::splat(1e9); 55], ..pose() };
+        assert!(unheard.to_bytes().unwrap_err().to_string().contains("velocities hold 1000000000"));
+        let squeezed = Pose { rotation: Quat::from_xyzw(0.0, 0.0, 0.0, 0.5), ..Pose::IDENTITY };
+        let squeezed = HairPose { world_from_head: squeezed, ..pose() };
+        assert!(refused(&squeezed.to_bytes().unwrap(), SHAPE).contains("length 1"));
         let absent = HairPose::load(&folder.path().join("b"), SHAPE).unwrap_err().to_string();
         assert!(absent.contains("cannot read the pose of the hair"), "{absent}");
         // Cut anywhere, or with any byte of the header changed, it is refused or read: nothing panics.

@@ -33,7 +33,6 @@ mod player;
 mod prepare;
 mod simulation;
 mod sync;
-mod whole;
 mod worker;
 #[cfg(test)]
 mod worker_tests;

@@ -83,7 +83,8 @@ impl Painter {
             self.recover(failure, settings)?;
         }
         self.settings = *settings;
-        self.stand_in = None;
+        // Its picture may fit the GPU now: the next one shows.
+        self.stand_in.take_if(|renderer| renderer.set_picture(settings).is_err());
         Ok(())
     }
 

@@ -140,10 +140,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Puts the hair where a pose has it, under a pose of the head.
-    pub fn place(&mut self, pose: Pose, hair: &HairPose) -> Result<(), SimError> {
-        self.engine.place(pose, hair)?;
-        self.begin_at(pose);
+    /// Puts hair and head where a pose has them.
+    pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
+        self.engine.place(hair)?;
+        self.begin_at(hair.world_from_head());
         Ok(())
     }
 

@@ -1,11 +1,14 @@
-//! Ten thousand pictures of small hair, while everything is changed that can be changed, at random.
+//! Ten thousand pictures of small hair, while all that a person may change is changed at random.
 
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
-use strandline::scene::{MotionName, MotionSection, WindSection};
-use strandline::{Backend, Camera, Command, Light, Live, News, Picture, Ray, Scene, Shown, body};
+use strandline::render::{BodyLook, LevelOfDetail, PictureSettings};
+use strandline::scene::{Model, MotionName, MotionSection, WindSection};
+use strandline::{
+    Backend, Camera, Command, Event, Light, Live, Look, News, Picture, Ray, Scene, Shown, body,
+};
 
 const PICTURES: u64 = 10_000;
 /// So often everything is set back and compared.
@@ -15,31 +18,64 @@ const CHECK: u64 = 1250;
 fn scene() -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = 20;
-    scene.body.model = strandline::scene::Model::None;
+    scene.body.model = Model::None;
     scene.groom.points_per_strand = 6;
     scene.simulation.volume.cells = [8; 3];
     scene.simulation.iterations = 8;
     (scene.simulation.backend, scene.picture.backend) = (Backend::Cpu, Backend::Cpu);
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 60.0);
     scene.look.shadow.map_size = 32;
+    scene.lights = Light::three_point(Vec3::ZERO).to_vec();
+    let camera = Camera::front();
+    (scene.camera.position, scene.camera.target) = (Some(camera.position), Some(camera.target));
+    scene.camera.field_of_view = Some(camera.field_of_view);
     (scene.picture.width, scene.picture.height) = (32, 24);
     scene
 }
 
-struct Player {
+struct Person {
     live: Live,
     random: body::Random,
+    folder: PathBuf,
     told: u64,
     last: Shown,
     /// Commands that cannot be done, and errors that came.
     refused: u64,
     errors: u64,
+    /// Numbers of the last load that can be done, and of the last that was.
+    load: u64,
     loaded: u64,
+    loads: u64,
+    saves: u64,
+    saved: u64,
 }
 
-impl Player {
+impl Person {
+    fn new(folder: PathBuf) -> Self {
+        Self {
+            live: Live::new(scene(), || ()).unwrap(),
+            random: body::Random::new(5, 0),
+            folder,
+            told: 1,
+            last: Shown::default(),
+            refused: 0,
+            errors: 0,
+            load: 1,
+            loaded: 0,
+            loads: 0,
+            saves: 0,
+            saved: 0,
+        }
+    }
+
     fn tell(&mut self, command: Command) {
         self.told = self.live.tell(command);
+    }
+
+    /// Tells what has to be refused.
+    fn refuse(&mut self, command: Command) {
+        self.refused += 1;
+        self.tell(command);
     }
 
     fn share(&mut self) -> f32 {
@@ -53,10 +89,15 @@ impl Player {
     fn take_news(&mut self) {
         for news in self.live.take_news() {
             match news {
-                News::Loaded(number, ..) => self.loaded = number,
+                News::Loaded(number, ..) => {
+                    (self.loaded, self.loads) = (number, self.loads + 1);
+                }
+                News::NotLoaded(_, error) => assert!(error.contains("bad.hair"), "{error}"),
+                News::Error(error) if error.contains("save again") => self.saved += 1,
                 News::Error(_) => self.errors += 1,
+                News::Saved(_) => self.saved += 1,
                 News::Paused => panic!("it stopped by itself"),
-                _ => {}
+                News::Note(_) | News::Recorded => {}
             }
         }
     }
@@ -64,113 +105,151 @@ impl Player {
     /// Waits for what is wanted, for at most a minute: nothing else would tell a deadlock.
     fn wait(&mut self, wanted: impl Fn(&Self) -> bool) {
         let begin = Instant::now();
-        while !wanted(self) {
+        loop {
+            let shown = self.live.take_shown();
+            // What was told before a picture is heard before it.
             self.take_news();
-            if let Some(shown) = self.live.take_shown() {
+            let came = shown.is_some();
+            if let Some(shown) = shown {
                 assert!(shown.frame > self.last.frame, "pictures come in their order");
                 assert!(shown.heard >= self.last.heard && shown.heard <= self.told);
-                assert_eq!(shown.picture.pixels.len() as u32, 3 * shown.picture.width * shown.picture.height);
+                let Picture { width, height, pixels, .. } = &shown.picture;
+                assert_eq!(pixels.len() as u32, 3 * width * height);
                 self.last = shown;
-            } else {
-                assert!(
-                    begin.elapsed() < Duration::from_secs(60),
-                    "nothing came: picture {}, {} of {} heard",
-                    self.last.frame,
-                    self.last.heard,
-                    self.told
-                );
+            }
+            if wanted(self) {
+                return;
+            }
+            let Shown { frame, heard, .. } = self.last;
+            let waited = begin.elapsed();
+            assert!(waited.as_secs() < 60, "nothing came: picture {frame}, {heard} of {} heard", self.told);
+            if !came {
                 std::thread::sleep(Duration::from_micros(100));
             }
         }
     }
 
-    /// Does something that a person may do.
-    fn act(&mut self, bad_groom: &Path) {
+    /// Changes what is drawn and how.
+    fn look_around(&mut self) {
         let (base, share, other) = (scene(), self.share(), self.share());
-        let ray = Ray::new(&Camera::front(), Vec2::new(share - 0.5, other - 0.5));
-        let mut settings = base.simulation.clone();
-        let command = match self.below(24) {
+        let command = match self.below(7) {
             0 => Command::Camera(Camera::front().orbit(6.0 * share, other - 0.5)),
-            1 => Command::Look(Box::new(strandline::Look {
-                follow_strands: 1 + (9.0 * share) as u32,
-                ..base.look
-            })),
-            2 => Command::BodyLook(base.body_look),
+            1 => Command::Look(Box::new(Look { follow_strands: 1 + (9.0 * share) as u32, ..base.look })),
+            2 => Command::BodyLook(BodyLook { color: Vec3::splat(share), ..base.body_look }),
             3 => Command::Lights(Light::three_point(Vec3::splat(share))[..(4.0 * other) as usize].to_vec()),
-            4 => Command::LevelOfDetail(strandline::render::LevelOfDetail {
-                segments_per_span: 1 + (4.0 * share) as u32,
-                ..base.level_of_detail
-            }),
+            4 => {
+                let segments_per_span = 1 + (4.0 * share) as u32;
+                Command::LevelOfDetail(LevelOfDetail { segments_per_span, ..base.level_of_detail })
+            }
             5 => {
                 // Now and then large: the side that draws is the slow one.
                 let (width, height) = if share < 0.1 { (400, 300) } else { (16 + (60.0 * share) as u32, 24) };
-                Command::Picture(strandline::render::PictureSettings { width, height, ..base.picture })
+                Command::Picture(PictureSettings { width, height, ..base.picture })
             }
-            6 => {
-                // Likewise the side that simulates.
+            _ => Command::Adapt(share < 0.5),
+        };
+        self.tell(command);
+    }
+
+    /// Changes how hair and head move.
+    fn meddle(&mut self) {
+        let (share, other) = (self.share(), self.share());
+        let mut settings = scene().simulation;
+        let command = match self.below(6) {
+            0 => {
+                // Now and then the side that simulates is the slow one.
                 settings.iterations = if share < 0.2 { 2000 } else { 1 + (20.0 * share) as u32 };
                 settings.volume.enabled = other < 0.5;
                 Command::Settings(Box::new(settings))
             }
-            7 => {
+            1 => {
                 settings.time_step = [1.0 / 120.0, 1.0 / 60.0, 1.0 / 30.0][(3.0 * share) as usize];
                 Command::Settings(Box::new(settings))
             }
-            8 => Command::Length(0.05 + 0.95 * share),
-            9 => Command::Wind(WindSection { velocity: Vec3::X * 8.0 * share, ..WindSection::default() }),
-            10 => {
-                let name = [MotionName::Still, MotionName::Shake, MotionName::Nod, MotionName::Turn]
-                    [(4.0 * share) as usize];
+            2 => Command::Length(0.05 + 0.95 * share),
+            3 => Command::Wind(WindSection { velocity: Vec3::X * 8.0 * share, ..WindSection::default() }),
+            4 => {
+                let names = [MotionName::Still, MotionName::Shake, MotionName::Nod, MotionName::Turn];
+                let name = names[(4.0 * share) as usize];
                 Command::Motion(Box::new(MotionSection { name, ..MotionSection::default() }))
             }
-            11 => Command::Motion(Box::new(MotionSection {
-                rotation: Vec3::new(0.0, 60.0 * (share - 0.5), 0.0),
-                ..MotionSection::default()
-            })),
-            12 | 13 => Command::Grab(ray, 0.1 * share),
-            14..=16 => Command::Drag(ray),
-            17 => Command::Release,
-            18 => Command::Reset,
-            19 => Command::Adapt(share < 0.5),
-            20 => {
-                self.tell(Command::Play(false));
-                for _ in 0..(4.0 * share) as u32 {
-                    self.tell(Command::Step);
-                }
-                Command::Play(true)
-            }
-            21 if share < 0.1 => Command::Load(Box::new(base)),
-            21 if share < 0.2 => {
-                let mut bad = base;
-                bad.groom.file = Some(bad_groom.to_owned());
-                Command::Load(Box::new(bad))
-            }
-            22 => {
-                settings.iterations = 0;
-                self.refused += 1;
-                Command::Settings(Box::new(settings))
-            }
-            23 => {
-                self.refused += 1;
-                match (4.0 * share) as u32 {
-                    0 => Command::Length(1.5),
-                    1 => Command::Camera(Camera { field_of_view: f32::NAN, ..Camera::front() }),
-                    2 => Command::Wind(WindSection { gust: 7.0, ..WindSection::default() }),
-                    _ => Command::Picture(strandline::render::PictureSettings { width: 0, ..base.picture }),
-                }
-            }
             _ => {
-                std::thread::sleep(Duration::from_millis((10.0 * share) as u64));
-                Command::Drag(ray)
+                let rotation = Vec3::new(0.0, 60.0 * (share - 0.5), 0.0);
+                Command::Motion(Box::new(MotionSection { rotation, ..MotionSection::default() }))
             }
         };
         self.tell(command);
     }
 
-    /// Sets everything back; the picture at rest and the one some steps later.
-    fn set_back(&mut self) -> [Picture; 2] {
+    /// Pulls at the hair.
+    fn pull(&mut self) {
+        let (share, other) = (self.share(), self.share());
+        let ray = Ray::new(&Camera::front(), Vec2::new(share - 0.5, other - 0.5));
+        let command = match self.below(6) {
+            0 | 1 => Command::Grab(ray, 0.1 * share),
+            2..=4 => Command::Drag(ray),
+            _ => Command::Release,
+        };
+        self.tell(command);
+    }
+
+    /// Plays, steps, loads and saves.
+    fn play(&mut self) {
+        let share = self.share();
+        match self.below(5) {
+            0 => self.tell(Command::Reset),
+            1 => {
+                self.tell(Command::Play(false));
+                (0..(4.0 * share) as u32).for_each(|_| self.tell(Command::Step));
+                self.tell(Command::Play(true));
+            }
+            2 if share < 0.1 => {
+                self.tell(Command::Load(Box::new(scene())));
+                self.load = self.told;
+            }
+            2 if share < 0.2 => {
+                let mut bad = scene();
+                bad.groom.file = Some(self.folder.join("bad.hair"));
+                self.tell(Command::Load(Box::new(bad)));
+                // It is the last one that counts.
+                self.load = self.loaded;
+            }
+            3 if share < 0.2 => self.save("any.toml"),
+            3 if share < 0.25 => {
+                let folder = self.folder.join(format!("film{}", self.told));
+                self.tell(Command::Record(folder));
+                self.tell(Command::Step);
+                self.tell(Command::StopRecording);
+            }
+            _ => std::thread::sleep(Duration::from_millis((6.0 * share) as u64)),
+        }
+    }
+
+    /// Asks for what cannot be done.
+    fn err(&mut self) {
+        let (base, share) = (scene(), self.share());
+        let mut settings = base.simulation.clone();
+        settings.iterations = 0;
+        self.refuse(match (5.0 * share) as u32 {
+            0 => Command::Length(1.5),
+            1 => Command::Camera(Camera { field_of_view: f32::NAN, ..Camera::front() }),
+            2 => Command::Wind(WindSection { gust: 7.0, ..WindSection::default() }),
+            3 => Command::Picture(PictureSettings { width: 0, ..base.picture }),
+            _ => Command::Settings(Box::new(settings)),
+        });
+    }
+
+    fn save(&mut self, name: &str) {
+        self.saves += 1;
+        let path = self.folder.join(name);
+        self.tell(Command::Save(Box::new(scene()), self.loaded, path));
+    }
+
+    /// Sets everything back but the hair, in mid-swing, and saves it: the picture of the saved scene is the
+    /// one that is seen, though the head has not come to its place yet.
+    fn keep(&mut self) {
         let base = scene();
-        let light = Light::three_point(Vec3::ZERO).to_vec();
+        self.wait(|person| person.loaded >= person.load);
         for command in [
             Command::Play(false),
             Command::Release,
@@ -178,25 +257,39 @@ impl Player {
             Command::Settings(Box::new(base.simulation.clone())),
             Command::Length(1.0),
             Command::Wind(base.wind),
-            // One that it cannot be at.
-            Command::Motion(Box::new(MotionSection { name: MotionName::Turn, ..base.motion.clone() })),
-            Command::Motion(Box::new(base.motion.clone())),
             Command::Look(Box::new(base.look.clone())),
             Command::BodyLook(base.body_look),
-            Command::Lights(light),
+            Command::Lights(base.lights.clone()),
             Command::LevelOfDetail(base.level_of_detail),
             Command::Picture(base.picture),
             Command::Camera(Camera::front()),
-            Command::Reset,
+            // One that it cannot be at.
+            Command::Motion(Box::new(MotionSection { name: MotionName::Turn, ..base.motion.clone() })),
+            Command::Motion(Box::new(base.motion.clone())),
         ] {
             self.tell(command);
         }
-        self.wait(|player| player.last.heard == player.told);
+        self.wait(|person| person.last.heard == person.told);
+        self.save("kept.toml");
+        self.wait(|person| person.saved == person.saves);
+        let saved = Scene::load(&self.folder.join("kept.toml")).unwrap();
+        let mut player = strandline::Player::new(&saved, saved.devices(), true).unwrap();
+        let drawn = player.find_map(|event| match event.unwrap() {
+            Event::Drawn { picture, .. } => Some(picture),
+            _ => None,
+        });
+        assert_eq!(apart(&drawn.unwrap(), &self.last.picture), 0, "what was saved is what was seen");
+    }
+
+    /// The picture at rest and the one some steps later.
+    fn begin_again(&mut self) -> [Picture; 2] {
+        self.tell(Command::Reset);
+        self.wait(|person| person.last.heard == person.told);
         let rest = self.last.picture.clone();
-        // A step at a time: of several told at once only the last may be seen.
+        // A step at a time: of several the picture of the first may be the last that has to be waited for.
         for _ in 0..20 {
             self.tell(Command::Step);
-            self.wait(|player| player.last.heard == player.told);
+            self.wait(|person| person.last.heard == person.told);
         }
         [rest, self.last.picture.clone()]
     }
@@ -211,30 +304,36 @@ fn apart(a: &Picture, b: &Picture) -> u8 {
 #[test]
 fn ten_thousand_pictures_with_changes_at_random() {
     let folder = tempfile::tempdir().unwrap();
-    let bad_groom = folder.path().join("bad.hair");
-    std::fs::write(&bad_groom, b"PK nothing").unwrap();
-    let live = Live::new(scene(), || ()).unwrap();
-    let random = body::Random::new(5, 0);
-    let last = Shown::default();
-    let mut player = Player { live, random, told: 1, last, refused: 0, errors: 0, loaded: 0 };
-    player.wait(|player| player.last.frame > 0);
-    let first = player.set_back();
+    std::fs::write(folder.path().join("bad.hair"), b"PK nothing").unwrap();
+    let mut person = Person::new(folder.path().to_owned());
+    person.wait(|person| person.last.frame > 0);
+    person.keep();
+    let first = person.begin_again();
     assert!(apart(&first[0], &first[1]) > 20, "nothing moves: {}", apart(&first[0], &first[1]));
-    player.tell(Command::Play(true));
+    person.tell(Command::Play(true));
     let mut checked = 0;
-    while player.last.frame < PICTURES {
-        player.act(&bad_groom);
-        let (seen, wait) = (player.last.frame, u64::from(player.below(3)));
+    while person.last.frame < PICTURES {
+        match person.below(8) {
+            0 | 1 => person.look_around(),
+            2 | 3 => person.meddle(),
+            4 | 5 => person.pull(),
+            6 => person.play(),
+            _ => person.err(),
+        }
+        let (seen, wait) = (person.last.frame, u64::from(person.below(3)));
         // The window may be the slow one.
-        std::thread::sleep(Duration::from_micros(100 * u64::from(player.below(8))));
-        player.wait(|player| player.last.frame >= seen + wait);
-        if player.last.frame / CHECK > checked {
-            checked = player.last.frame / CHECK;
-            let now = player.set_back();
+        std::thread::sleep(Duration::from_micros(100 * u64::from(person.below(8))));
+        person.wait(|person| person.last.frame >= seen + wait);
+        if person.last.frame / CHECK > checked {
+            checked = person.last.frame / CHECK;
+            person.keep();
+            let now = person.begin_again();
             assert_eq!(apart(&now[0], &first[0]), 0, "at rest it is what it was");
             assert_eq!(apart(&now[1], &first[1]), 0, "it moves as it did the first time");
-            assert_eq!(player.errors, player.refused, "what is refused is told once, and nothing else");
-            player.tell(Command::Play(true));
+            // What is refused is told once, and nothing else; a scene that goes away takes its last errors along.
+            let untold = person.refused - person.errors;
+            assert!(untold <= person.loads, "{untold} of {}, {} loads", person.refused, person.loads);
+            person.tell(Command::Play(true));
         }
     }
     assert_eq!(checked, PICTURES / CHECK);

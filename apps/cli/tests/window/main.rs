@@ -181,9 +181,7 @@ fn a_saved_scene_makes_the_picture_that_was_saved() {
         Command::new(env!("CARGO_BIN_EXE_strandline")).args(render).current_dir(&folder).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let again = load(&folder.join("again/frame_0000.png"));
-    // A mean of 0.01 is promised. The head that was seen lies between those of two steps, a tenth of a
-    // millimetre beside that of the time in the file.
-    strandline_checks::flip::compare(&again, &seen, 2e-3, 0.03).unwrap();
+    assert!(again == seen, "a FLIP of 0.01 is promised; on the CPU nothing differs");
 }
 
 #[test]

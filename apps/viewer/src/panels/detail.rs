@@ -30,6 +30,6 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         app.send_picture();
     }
     if app.adapts != before.2 {
-        app.live.tell(Command::Adapt(app.adapts));
+        app.send_adapt();
     }
 }

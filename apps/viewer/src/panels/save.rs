@@ -7,7 +7,7 @@ use crate::{App, controls::button, files};
 pub fn show(app: &mut App, ui: &mut Ui) {
     ui.horizontal(|ui| {
         if button(ui, "Picture", "as PNG into out/, in full: ctrl P") {
-            app.ask_for_picture(None);
+            app.save_picture(None);
         }
         if button(ui, "as...", "as PNG, to a place of your choice") {
             files::ask(app, files::Wanted::Picture, ui.ctx());

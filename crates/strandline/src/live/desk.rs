@@ -53,11 +53,13 @@ struct Course {
     draft: bool,
     frame: u64,
     heard: u64,
-    /// Number of the last load.
+    /// Number of the last load, and of the one that is on stage.
     load: u64,
+    staged: u64,
     recorder: Option<Recorder>,
-    /// Scenes to be saved, and where.
-    saves: Vec<(Box<Scene>, PathBuf)>,
+    /// The last step, and whether there is a frame, of which no picture was drawn yet.
+    step: Option<StepReport>,
+    is_frame: bool,
     /// Number of the last film.
     film: u64,
     /// Films that are being finished.
@@ -77,8 +79,10 @@ impl Course {
         frame: 0,
         heard: 0,
         load: 0,
+        staged: 0,
         recorder: None,
-        saves: Vec::new(),
+        step: None,
+        is_frame: false,
         film: 0,
         finishing: Vec::new(),
     };
@@ -140,8 +144,7 @@ impl Desk {
             self.say(News::Error(Error::WorkerGone.to_string()));
             self.say(News::Paused);
         }
-        // What was to be saved is saved, and films under way are finished.
-        self.save(&mut course);
+        // Films under way are finished.
         course.finishing.extend(course.recorder.take().map(Recorder::finish));
         for film in course.finishing {
             let _ = film.join();
@@ -194,7 +197,7 @@ impl Desk {
             Command::Play(false) => course.playing = false,
             Command::Step => course.steps += u32::from(!course.playing),
             Command::Adapt(adapts) => course.adapts = adapts,
-            Command::Save(scene, path) => course.saves.push((scene, path)),
+            Command::Save(scene, load, path) => self.save(course, *scene, load, path),
             Command::Record(folder) => self.record(course, &folder),
             Command::StopRecording => course.finishing.extend(course.recorder.take().map(Recorder::finish)),
             other => {
@@ -231,7 +234,8 @@ impl Desk {
                 // Until one is drawn nobody knows how long it takes: the first is there sooner when simple.
                 (course.stale, course.tried) = (true, false);
                 course.slow = stage.studio.painter.gpu().is_none();
-                course.stage = Some(stage);
+                (course.stage, course.staged) = (Some(stage), load);
+                (course.step, course.is_frame) = (None, false);
             }
             Err(error) => self.say(News::NotLoaded(load, error.to_string())),
         }
@@ -287,42 +291,55 @@ impl Desk {
         self.say(News::Recorded);
     }
 
-    /// Saves the scenes that are to be saved, between two frames.
-    fn save(&self, course: &mut Course) {
-        for (scene, path) in course.saves.drain(..) {
-            let Some(stage) = &course.stage else {
-                self.say(News::Error("there is no hair to save yet".to_owned()));
-                continue;
-            };
-            self.say(match stage.save(*scene, &path) {
+    /// Saves a scene, with the hair as the commands before this one left it.
+    fn save(&self, course: &mut Course, scene: Scene, load: u64, path: PathBuf) {
+        if let Err(error) = self.catch_up(course).and_then(|()| self.make_steps(course)) {
+            // The last good state is still there.
+            self.say(News::Error(error.to_string()));
+        }
+        self.say(match &course.stage {
+            Some(stage) if course.staged == load => match stage.save(scene, &path) {
                 Ok(()) => News::Saved(path),
                 Err(error) => News::Error(error.to_string()),
-            });
-        }
+            },
+            Some(_) => News::Error("not saved, as another scene has just come: save again".to_owned()),
+            None => News::Error("there is no hair to save yet".to_owned()),
+        });
     }
 
-    /// Simulates one frame, as far as there is anything to do: its last step, and whether it was one.
-    fn simulate(&self, course: &mut Course) -> Result<(Option<StepReport>, bool), Error> {
-        let (mut step, mut is_frame) = (None, false);
-        let Some(stage) = &mut course.stage else { return Ok((step, is_frame)) };
-        if (course.playing || course.steps > 0) && stage.worker.started() == 0 {
-            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
-            course.steps = course.steps.saturating_sub(1);
-        }
+    /// Waits for all that the simulation has begun.
+    fn catch_up(&self, course: &mut Course) -> Result<(), Error> {
+        let Some(stage) = &mut course.stage else { return Ok(()) };
         while stage.worker.started() > 0 {
-            let (made, frame) = self.take(stage)?;
-            step = made.or(step);
-            is_frame |= frame;
             course.stale = true;
+            let (step, is_frame) = self.take(stage)?;
+            course.step = step.or(course.step.take());
+            course.is_frame |= is_frame;
         }
-        Ok((step, is_frame))
+        Ok(())
+    }
+
+    /// Makes the steps that were asked for, without pictures between them.
+    fn make_steps(&self, course: &mut Course) -> Result<(), Error> {
+        while course.steps > 0 {
+            course.steps -= 1;
+            let Some(stage) = &mut course.stage else { break };
+            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
+            self.catch_up(course)?;
+        }
+        Ok(())
     }
 
     /// Simulates and draws one frame, as far as there is anything to do.
     fn frame(&self, course: &mut Course, draft: bool) -> Result<(), Error> {
-        let simulated = self.simulate(course);
-        self.save(course);
-        let (step, is_frame) = simulated?;
+        let Some(stage) = &mut course.stage else { return Ok(()) };
+        let moves = (course.playing || course.steps > 0) && !course.is_frame;
+        if moves && stage.worker.started() == 0 {
+            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
+            course.steps = course.steps.saturating_sub(1);
+        }
+        self.catch_up(course)?;
+        let (step, is_frame) = (course.step.take(), std::mem::take(&mut course.is_frame));
         let Some(stage) = course.stage.as_mut().filter(|_| course.stale) else { return Ok(()) };
         if course.playing {
             stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;

@@ -62,9 +62,10 @@ pub enum Command {
     Drag(Ray),
     /// Lets go of the hair.
     Release,
-    /// Saves a scene as TOML with the hair as it is in the next picture, or in the one that is seen where
-    /// nothing moves: `groom.pose` names a file of the same name beside it, and `film.start` is set.
-    Save(Box<Scene>, PathBuf),
+    /// Saves a scene as TOML, after all commands before it: `groom.pose` names a file beside it with the
+    /// hair as it is then, which is what is seen where nothing moves; `film.start` is the time. Hair in a
+    /// hand is let go in it. The number is that of the load that the scene goes back to.
+    Save(Box<Scene>, u64, PathBuf),
     /// Whether pictures are simpler while the hair moves or is changed and a full one takes longer than
     /// 80 ms; they are not unless this is told. What stands still is drawn in full after a moment.
     Adapt(bool),

@@ -1,5 +1,6 @@
 //! A scene on stage: what is simulated on one thread and drawn on another.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
@@ -10,11 +11,10 @@ use crate::{
     body::Aabb,
     hair::{Studio, place},
     prepare::Prepared,
-    render::{Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
+    render::{Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings, WholeFile},
     scene::{MotionSection, WindSection},
     sim::{SimError, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
-    whole,
     worker::{Gone, Worker},
 };
 
@@ -123,25 +123,35 @@ impl Stage {
     /// The simulation's thread is no more.
     pub fn take(&mut self) -> Result<Taken, Gone> {
         let Done { moment, reports, notes, grabbed, is_frame, heard, place } = self.worker.finish()?;
+        if is_frame && reports.is_err() {
+            // Its time did not pass.
+            self.time = (self.time - FRAME).max(self.begun);
+        }
         (self.simulated_on, self.grabbed, self.felt) = (place, grabbed, self.felt.max(heard));
         self.spare.extend(self.shown.replace(moment));
         Ok((reports, notes, is_frame))
     }
 
-    /// Saves a scene that begins with the hair as the last result of the simulation has it.
+    /// Saves a scene that begins with the hair as it is, and with the motion at the time that it is at; all
+    /// results of the simulation have been taken.
     ///
     /// # Errors
-    /// A file cannot be written.
+    /// A file cannot be written; then what was there before stays.
     pub fn save(&self, mut scene: Scene, path: &Path) -> Result<(), Error> {
-        let pose_file = path.with_extension("safetensors");
+        let pose_path = pose_path(path);
         let simulation = self.worker.work();
-        simulation.hair_pose().save(&pose_file)?;
+        let pose = simulation.hair_pose().write(&pose_path)?;
         // What is shown lies a step behind the end of a frame.
         let step = f64::from(simulation.engine.solver().settings().time_step);
         drop(simulation);
         scene.film.start = (self.time - step).max(self.begun);
-        scene.groom.pose = pose_file.file_name().map(PathBuf::from);
-        whole::write(path, scene.to_toml().as_bytes()).map_err(Error::save("the scene", path))
+        scene.groom.pose = pose_path.file_name().map(PathBuf::from);
+        let text = scene.to_toml();
+        let scene = WholeFile::write(path, |file| file.write_all(text.as_bytes()));
+        let failed = |path| Error::save("the scene", path);
+        let scene = scene.map_err(failed(path))?;
+        pose.keep().map_err(Error::save("the hair", &pose_path))?;
+        scene.keep().map_err(failed(path))
     }
 
     /// Draws what is to be shown, simpler where `draft`.
@@ -272,4 +282,17 @@ impl Stage {
             _ => Ok(()),
         }
     }
+}
+
+/// Where the pose of a scene's hair is saved: beside it, and not over a file that is not its own.
+fn pose_path(scene: &Path) -> PathBuf {
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    let before = Scene::load(scene).ok().and_then(|before| before.groom.pose).map(|pose| folder.join(pose));
+    let stem = scene.file_stem().unwrap_or_default().to_string_lossy();
+    let name = |number: u32| match number {
+        0 => format!("{stem}.safetensors"),
+        number => format!("{stem}_{number}.safetensors"),
+    };
+    let mut paths = (0..).map(|number| folder.join(name(number)));
+    paths.find(|path| !path.exists() || Some(path) == before.as_ref()).unwrap_or_default()
 }
