@@ -48,8 +48,10 @@ pub struct App {
     /// Number of the load that the scene comes from.
     pub(crate) loaded: u64,
     pub(crate) saves: saves::Saves,
-    /// Number of the last step that was asked for by dragging while nothing plays.
-    pub(crate) stepped: u64,
+    /// Number of the last step that was asked for by dragging while nothing plays, and whether another one
+    /// is wanted once its picture is there.
+    stepped: u64,
+    wants_step: bool,
     pub(crate) dialog: Option<files::Dialog>,
     /// Where the next picture and scene are saved.
     pub folder: PathBuf,
@@ -110,9 +112,10 @@ impl App {
             adapts: true,
             recording: false,
             finishing: 0,
-            loaded: 1,
+            loaded: 0,
             saves: saves::Saves::default(),
             stepped: 0,
+            wants_step: false,
             dialog: None,
             folder: PathBuf::from("out"),
         })
@@ -160,7 +163,8 @@ impl App {
     /// Lets a frame of time pass where nothing plays, so that hair follows what is dragged; one at a time.
     pub(crate) fn step_on(&mut self) {
         let heard = self.shown.as_ref().map_or(0, |shown| shown.heard);
-        if !self.playing && self.stepped <= heard {
+        self.wants_step = !self.playing && self.stepped > heard;
+        if !self.playing && !self.wants_step {
             self.stepped = self.live.tell(Command::Step);
         }
     }
@@ -232,9 +236,15 @@ impl App {
                     // What plays is still what played before.
                     self.pending.take_if(|(pending, _)| *pending == number);
                     self.error = Some(error);
+                    if self.shown.is_none() {
+                        self.give_up_pictures();
+                    }
                 }
                 News::Error(error) => self.error = Some(error),
-                News::Paused => self.playing = false,
+                News::Paused => {
+                    self.playing = false;
+                    self.give_up_pictures();
+                }
                 News::Saved(path) => self.note(format!("wrote {}", path.display())),
                 News::Recorded if self.finishing > 0 => self.finishing -= 1,
                 News::Recorded => self.recording = false,
@@ -274,6 +284,9 @@ impl App {
         let step = shown.step.clone().or(self.shown.take().and_then(|old| old.step));
         self.shown = Some(Shown { step, ..shown });
         self.save_if_full();
+        if self.wants_step {
+            self.step_on();
+        }
     }
 
     /// The scene with the view as it is.
@@ -296,8 +309,8 @@ impl App {
     /// Draws the window.
     pub fn show(&mut self, ui: &mut egui::Ui) {
         self.context.get_or_init(|| ui.ctx().clone());
-        self.take_files(ui);
         self.take_news();
+        self.take_files(ui);
         self.take_picture(ui.ctx());
         files::take_answer(self);
         self.take_saved();

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use strandline::Command;
+use strandline::{Command, News};
 
 use crate::{App, stage};
 
@@ -33,18 +33,21 @@ impl Default for Saves {
 }
 
 impl Drop for App {
-    /// What a person saved is written, though the window is closed.
+    /// What a person saved is written, though the window is closed; after [`PATIENCE`] as it is seen.
     fn drop(&mut self) {
         let begin = Instant::now();
         while !self.saves.waiting.is_empty() && begin.elapsed() < PATIENCE {
-            match self.live.take_shown() {
-                Some(shown) => {
-                    self.shown = Some(shown);
-                    self.save_if_full();
-                }
-                None => std::thread::sleep(Duration::from_millis(2)),
+            if let Some(shown) = self.live.take_shown() {
+                self.shown = Some(shown);
+                self.save_if_full();
             }
+            let fails = |news: &News| matches!(news, News::Paused | News::NotLoaded(..));
+            if self.live.take_news().iter().any(fails) {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(2));
         }
+        self.write_pictures();
         self.saves.threads.drain(..).for_each(|thread| drop(thread.join()));
     }
 }
@@ -53,9 +56,23 @@ impl App {
     /// Saves the next picture that is drawn in full, or the one that is seen where it is; into a free file of
     /// the folder when no path is given.
     pub fn save_picture(&mut self, path: Option<PathBuf>) {
+        if self.shown.is_none() && !self.is_loading() {
+            self.error = Some("there is no picture yet".to_owned());
+            return;
+        }
         self.saves.waiting.push(path);
         self.send_adapt();
         self.save_if_full();
+    }
+
+    /// Tells that pictures are not saved, after the error that is the reason.
+    pub(crate) fn give_up_pictures(&mut self) {
+        if !self.saves.waiting.is_empty() {
+            self.saves.waiting.clear();
+            let reason = self.error.take().unwrap_or_default();
+            self.error = Some(format!("no picture was saved: {reason}"));
+            self.send_adapt();
+        }
     }
 
     /// Has pictures be simpler, unless one is to be saved.
@@ -68,10 +85,15 @@ impl App {
         if self.saves.waiting.is_empty() || self.shown.as_ref().is_none_or(|shown| shown.draft) {
             return;
         }
+        self.write_pictures();
+        self.send_adapt();
+    }
+
+    /// Writes the picture that is seen to all files that wait for one.
+    fn write_pictures(&mut self) {
         for path in std::mem::take(&mut self.saves.waiting) {
             self.write_picture(path.as_deref());
         }
-        self.send_adapt();
     }
 
     fn write_picture(&mut self, path: Option<&Path>) {

@@ -94,6 +94,11 @@ impl HairPose {
     fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
         let numbers = |values: &[Vec3]| values.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
         let Pose { rotation, translation } = self.world_from_head;
+        if !rotation.is_normalized() {
+            return Err(std::io::Error::other(format!(
+                "the head has the quaternion {rotation}, not of length 1"
+            )));
+        }
         let head = [&rotation.to_array()[..], &translation.to_array()[..]].concat();
         let [strands, points] = self.shape;
         let mut tensors = Vec::new();
@@ -150,13 +155,11 @@ impl HairPose {
 
 /// The numbers of a tensor that has to have a shape.
 fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Vec<f32>, String> {
-    let tensor = tensors.tensor(name).map_err(|error| error.to_string())?;
+    const REMEDY: &str = "take `pose` out of [groom] to begin at rest";
+    let tensor = tensors.tensor(name).map_err(|error| format!("{error}: {REMEDY}"))?;
     if tensor.shape() != shape {
         let found = tensor.shape();
-        return Err(format!(
-            "{name} of shape {found:?}, but the scene's hair has {shape:?}: take `pose` out of [groom] to begin \
-             at rest"
-        ));
+        return Err(format!("{name} of shape {found:?}, but the scene's hair has {shape:?}: {REMEDY}"));
     }
     if tensor.dtype() != Dtype::F32 {
         return Err(format!("{name} of type {:?}, expected F32", tensor.dtype()));
@@ -243,7 +246,12 @@ mod tests {
         assert!(unheard.to_bytes().unwrap_err().to_string().contains("velocities hold 1000000000"));
         let squeezed = Pose { rotation: Quat::from_xyzw(0.0, 0.0, 0.0, 0.5), ..Pose::IDENTITY };
         let squeezed = HairPose { world_from_head: squeezed, ..pose() };
-        assert!(refused(&squeezed.to_bytes().unwrap(), SHAPE).contains("length 1"));
+        assert!(squeezed.to_bytes().unwrap_err().to_string().contains("not of length 1"));
+        let mut squeezed = good.clone();
+        let at =
+            squeezed.windows(4).rposition(|four| four == pose().world_from_head.rotation.w.to_le_bytes());
+        squeezed[at.unwrap()..][..4].copy_from_slice(&5.0_f32.to_le_bytes());
+        assert!(refused(&squeezed, SHAPE).contains("expected one of length 1"));
         let absent = HairPose::load(&folder.path().join("b"), SHAPE).unwrap_err().to_string();
         assert!(absent.contains("cannot read the pose of the hair"), "{absent}");
         // Cut anywhere, or with any byte of the header changed, it is refused or read: nothing panics.

@@ -16,8 +16,9 @@ use crate::{
 /// A renderer and what it takes to start another one on the CPU.
 pub(crate) struct Painter {
     place: Place,
-    /// Draws what is more than the GPU draws, as long as it is.
+    /// Draws what is more than the GPU draws, and whether it drew the last picture.
     stand_in: Option<Box<Renderer>>,
+    stands_in: bool,
     guides: Guides,
     mesh: Option<Mesh>,
     settings: PictureSettings,
@@ -52,12 +53,22 @@ impl Painter {
             None => Place::Cpu(Renderer::new(guides, mesh, &settings)?.into()),
         };
         let (guides, mesh) = (guides.clone(), mesh.cloned());
-        Ok(Self { place, stand_in: None, guides, mesh, settings, fall_back: device.fall_back, notes })
+        let stand_in = None;
+        Ok(Self {
+            place,
+            stand_in,
+            stands_in: false,
+            guides,
+            mesh,
+            settings,
+            fall_back: device.fall_back,
+            notes,
+        })
     }
 
     /// Where the last picture was drawn, for a person to read.
     pub fn drawn_on(&self) -> String {
-        if self.stand_in.is_some() { place(None) } else { place(self.gpu()) }
+        if self.stands_in { place(None) } else { place(self.gpu()) }
     }
 
     /// The device, unless all pictures are drawn on the CPU.
@@ -83,7 +94,6 @@ impl Painter {
             self.recover(failure, settings)?;
         }
         self.settings = *settings;
-        // Its picture may fit the GPU now: the next one shows.
         self.stand_in.take_if(|renderer| renderer.set_picture(settings).is_err());
         Ok(())
     }
@@ -101,14 +111,10 @@ impl Painter {
             Place::Cpu(renderer) => renderer.draw_into(input, &mut picture),
             Place::Gpu(renderer) => renderer.draw_into(input, points, &mut picture),
         };
+        self.stands_in = self.fall_back && matches!(drawn, Err(RenderError::TooMany { .. }));
         let report = match drawn {
-            Err(failure @ RenderError::TooMany { .. }) if self.fall_back => {
-                self.stand_in(failure)?.draw_into(input, &mut picture)?
-            }
-            drawn => {
-                self.stand_in = None;
-                drawn?
-            }
+            Err(failure) if self.stands_in => self.stand_in(failure)?.draw_into(input, &mut picture)?,
+            drawn => drawn?,
         };
         Ok((picture, report))
     }
@@ -127,7 +133,7 @@ impl Painter {
 
     /// The opacity map of a light, and the depths of its first hair.
     pub fn maps(&self, light: usize) -> Result<Option<[Picture; 2]>, RenderError> {
-        let pair = match (&self.place, &self.stand_in) {
+        let pair = match (&self.place, self.stand_in.as_ref().filter(|_| self.stands_in)) {
             (_, Some(renderer)) => (renderer.opacity_map(light), renderer.depth_map(light)),
             (Place::Cpu(renderer), None) => (renderer.opacity_map(light), renderer.depth_map(light)),
             (Place::Gpu(renderer), None) => (renderer.opacity_map(light)?, renderer.depth_map(light)?),

@@ -90,7 +90,12 @@ impl Course {
             }
         }
         let begin = self.start + f64::from(frame - u32::from(self.posed)) * self.frame_seconds;
-        let pose = |share: f32| (self.pose)(begin + self.frame_seconds * f64::from(share));
+        let start = simulation.end();
+        let pose = |share: f32| match frame {
+            // The scene may say otherwise than where the head is.
+            1 if self.posed => start.toward(&(self.pose)(begin + self.frame_seconds), share),
+            _ => (self.pose)(begin + self.frame_seconds * f64::from(share)),
+        };
         simulation.step_along(self.frame_seconds, (self.wind)(begin), &pose)
     }
 }

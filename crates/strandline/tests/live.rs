@@ -341,6 +341,20 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     wait(|| live.take_shown().filter(|shown| shown.recorded >= Some(2)));
     drop(live);
     assert!(files("two").iter().any(|name| name.starts_with("video.") || name == "animation.gif"));
+    // Steps before a scene is saved are frames of it, however fast they are told.
+    let (live, _) = still();
+    live.tell(Command::Record(folder.path().join("steps")));
+    for _ in 0..3 {
+        live.tell(Command::Step);
+    }
+    live.tell(Command::Save(Box::new(scene()), 1, folder.path().join("saved.toml")));
+    live.tell(Command::StopRecording);
+    drop(live);
+    let frames = files("steps").iter().filter(|name| name.starts_with("frame_")).count();
+    assert_eq!(frames, 3);
+    let start = Scene::load(&folder.path().join("saved.toml")).unwrap().film.start;
+    // Three frames, seen a step later.
+    assert!((start - 2.0 / 60.0).abs() < 1e-6, "{start}");
     // Where nothing can be written it is told, and it plays on.
     let live = Live::new(scene(), || ()).unwrap();
     std::fs::write(folder.path().join("file"), b"x").unwrap();

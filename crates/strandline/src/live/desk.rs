@@ -319,9 +319,13 @@ impl Desk {
         Ok(())
     }
 
-    /// Makes the steps that were asked for, without pictures between them.
+    /// Makes the steps that were asked for, without pictures between them unless they are recorded.
     fn make_steps(&self, course: &mut Course) -> Result<(), Error> {
-        while course.steps > 0 {
+        while course.steps > 0 && course.stage.is_some() {
+            if course.recorder.is_some() {
+                self.frame(course, false)?;
+                continue;
+            }
             course.steps -= 1;
             let Some(stage) = &mut course.stage else { break };
             stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;

@@ -136,7 +136,7 @@ impl Stage {
     /// results of the simulation have been taken.
     ///
     /// # Errors
-    /// A file cannot be written; then what was there before stays.
+    /// A file cannot be written; then what was there before stays, unless only the last renaming fails.
     pub fn save(&self, mut scene: Scene, path: &Path) -> Result<(), Error> {
         let pose_path = pose_path(path);
         let simulation = self.worker.work();
