@@ -33,7 +33,7 @@ impl Default for Saves {
 }
 
 impl Drop for App {
-    /// What a person saved is written, though the window is closed; after [`PATIENCE`] as it is seen.
+    /// What a person saved is written, though the window is closed; after ten seconds as it is seen.
     fn drop(&mut self) {
         let begin = Instant::now();
         while !self.saves.waiting.is_empty() && begin.elapsed() < PATIENCE {
