@@ -1,0 +1,163 @@
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{Error, ErrorKind, Read, Result, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use crate::parts::{self, Writer};
+
+/// The file that is locked.
+const NAME: &str = ".strandline-lock";
+/// Bytes of a lock's mark that are read.
+const MARK: u64 = 256;
+
+/// A folder that one run writes at a time.
+///
+/// The lock is the system's, on a file in the folder: it ends with the process, whatever ends that. The file is
+/// removed with the lock; one that an ended run left is taken over.
+#[derive(Debug)]
+pub struct FolderLock {
+    path: PathBuf,
+    /// Holds the lock while it is open; none where the file system knows no locks.
+    file: Option<File>,
+}
+
+impl FolderLock {
+    /// Locks a folder that is there, and removes what ended runs left of files there.
+    ///
+    /// # Errors
+    /// `ResourceBusy`: another run holds it. Else whatever the system reports: the folder cannot be written.
+    pub fn take(folder: &Path) -> Result<Self> {
+        let path = folder.join(NAME);
+        loop {
+            let Some(mut file) = open(&path)? else { continue };
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(ErrorKind::ResourceBusy.into()),
+                Err(TryLockError::Error(_)) => {
+                    fs::remove_file(&path)?;
+                    return Ok(Self { path, file: None });
+                }
+            }
+            // Whoever held it before may have removed it after it was opened here, and a third may have made
+            // another: then this one locks nobody out.
+            if is_there(&mut file, &path) {
+                parts::hold().add(&path);
+                mark(&mut file)?;
+                parts::clear(folder, Writer::Here);
+                parts::clear(folder, Writer::Foreign);
+                return Ok(Self { path, file: Some(file) });
+            }
+        }
+    }
+
+    /// Whether the lock keeps others out: not every file system knows locks.
+    pub fn is_held(&self) -> bool {
+        self.file.is_some()
+    }
+}
+
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        if self.file.is_some() {
+            // Removed before it is given back.
+            let _ = fs::remove_file(&self.path);
+            parts::hold().forget(&self.path);
+        }
+    }
+}
+
+/// The file of a lock, made if it is not there; none when it went meanwhile.
+fn open(path: &Path) -> Result<Option<File>> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true);
+    match options.clone().create_new(true).open(path) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+        made => return made.map(Some),
+    }
+    match fs::symlink_metadata(path) {
+        Ok(found) if found.is_file() => {}
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        // A link is not followed: what it leads to is not ours to lock.
+        _ => return Err(Error::other(format!("{NAME} in the folder is no plain file: remove it"))),
+    }
+    match options.open(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        opened => opened.map(Some),
+    }
+}
+
+/// Writes what no other lock has.
+fn mark(file: &mut File) -> Result<()> {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_nanos());
+    file.rewind()?;
+    file.set_len(0)?;
+    write!(file, "strandline, process {}, {now}", std::process::id())
+}
+
+/// Whether the file that is open is still the one of that name: both have the same mark.
+fn is_there(file: &mut File, path: &Path) -> bool {
+    let read = |file: &mut File| {
+        let mut bytes = Vec::new();
+        file.take(MARK).read_to_end(&mut bytes).map(|_| bytes)
+    };
+    let here = read(file);
+    match File::open(path).map(|mut named| read(&mut named)) {
+        Err(_) => false,
+        Ok(Ok(there)) => here.is_ok_and(|here| here == there),
+        // Systems that let nobody read what is locked let nobody remove what is open either.
+        Ok(Err(_)) => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_is_locked_once_and_free_afterwards() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = FolderLock::take(folder.path()).unwrap();
+        assert!(first.is_held());
+        assert_eq!(FolderLock::take(folder.path()).unwrap_err().kind(), ErrorKind::ResourceBusy);
+        assert!(FolderLock::take(&folder.path().join("absent")).is_err());
+        drop(first);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        // One that an ended run left is taken over, with what it did not finish.
+        fs::write(folder.path().join(NAME), b"of another").unwrap();
+        fs::write(folder.path().join("video.1-1.strandline-foreign-part"), b"half").unwrap();
+        fs::write(folder.path().join("frame.1-1.strandline-part"), b"half").unwrap();
+        drop(FolderLock::take(folder.path()).unwrap());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn of_many_at_once_one_has_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let inside = std::sync::atomic::AtomicU32::new(0);
+        let run = || {
+            let mut taken = 0;
+            while taken < 50 {
+                let Ok(lock) = FolderLock::take(folder.path()) else { continue };
+                assert_eq!(inside.fetch_add(1, std::sync::atomic::Ordering::SeqCst), 0);
+                std::thread::yield_now();
+                assert_eq!(inside.fetch_sub(1, std::sync::atomic::Ordering::SeqCst), 1);
+                drop(lock);
+                taken += 1;
+            }
+        };
+        std::thread::scope(|scope| (0..3).for_each(|_| drop(scope.spawn(run))));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_in_place_of_the_lock_is_refused_and_not_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("target");
+        fs::write(&target, b"mine").unwrap();
+        std::os::unix::fs::symlink(&target, folder.path().join(NAME)).unwrap();
+        let error = FolderLock::take(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("no plain file: remove it"), "{error}");
+        assert_eq!(fs::read(&target).unwrap(), b"mine");
+    }
+}

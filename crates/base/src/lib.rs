@@ -1,0 +1,16 @@
+//! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
+//! that one run writes at a time, text that is safe to print. No hair, no GPU, nothing of ours below it.
+
+#![forbid(unsafe_code)]
+
+mod folder_lock;
+mod parts;
+mod plain_file;
+mod printable;
+mod whole_file;
+
+pub use folder_lock::FolderLock;
+pub use parts::{Abandoned, abandon_parts};
+pub use plain_file::{open_plain, read_plain};
+pub use printable::printable;
+pub use whole_file::WholeFile;

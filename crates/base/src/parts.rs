@@ -1,0 +1,219 @@
+//! Files under a temporary name: which are ours, which this process writes, and which a run that was ended
+//! left behind.
+
+use std::collections::HashSet;
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, OpenOptions};
+use std::io::{ErrorKind, Result};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The end of every temporary name.
+const SUFFIX: &str = ".strandline-part";
+/// The end of the temporary name of a file that another program writes.
+const FOREIGN_SUFFIX: &str = ".strandline-foreign-part";
+/// Bytes of the file's own name in its temporary one: most systems allow 255 in all.
+const NAME_BYTES: usize = 160;
+/// Folders that are remembered as cleared.
+const FOLDERS: usize = 1024;
+
+/// What this process must remove when it ends at once, and the folders that it cleared. A process has one: a
+/// thread that handles signals knows nothing else of what the others write.
+static PARTS: Mutex<Option<Parts>> = Mutex::new(None);
+
+#[derive(Debug, Default)]
+pub(crate) struct Parts {
+    written: Vec<PathBuf>,
+    cleared: HashSet<PathBuf>,
+    count: u64,
+}
+
+/// The parts of this process, for as long as it is held.
+pub(crate) struct Held(MutexGuard<'static, Option<Parts>>);
+
+pub(crate) fn hold() -> Held {
+    Held(PARTS.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+impl Held {
+    fn parts(&mut self) -> &mut Parts {
+        self.0.get_or_insert_default()
+    }
+
+    /// Lets a file be removed when the process ends at once.
+    pub fn add(&mut self, path: &Path) {
+        self.parts().written.push(path.to_owned());
+    }
+
+    /// A file has its own name, or is no more.
+    pub fn forget(&mut self, path: &Path) {
+        self.parts().written.retain(|part| part != path);
+    }
+
+    /// A number that no other part of this process has.
+    fn number(&mut self) -> u64 {
+        let parts = self.parts();
+        parts.count += 1;
+        parts.count
+    }
+}
+
+/// Keeps this process from writing files, as long as it lives.
+pub struct Abandoned {
+    _held: Held,
+}
+
+/// Removes every file that this process is writing and has not finished, and lets none begin or get its name
+/// until the value is dropped: for a process that is about to end at once.
+pub fn abandon_parts() -> Abandoned {
+    let mut held = hold();
+    for part in std::mem::take(&mut held.parts().written) {
+        // What is gone already need not be removed.
+        let _ = fs::remove_file(part);
+    }
+    Abandoned { _held: held }
+}
+
+/// Who writes a part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Writer {
+    /// This process, which holds a lock on it.
+    Here,
+    /// Another program, whom a lock would keep out on some systems.
+    Foreign,
+}
+
+/// Creates a part of `path` beside it, under a name that nothing else has.
+pub(crate) fn create(path: &Path, writer: Writer) -> Result<(PathBuf, File)> {
+    let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
+    clear_once(folder_of(path));
+    loop {
+        let mut held = hold();
+        let part = path.with_file_name(part_name(name, std::process::id(), held.number(), writer));
+        let file = match OpenOptions::new().write(true).create_new(true).open(&part) {
+            // Another process of the same number, in a container of its own.
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
+            created => created?,
+        };
+        held.add(&part);
+        drop(held);
+        if writer == Writer::Here {
+            // Where a file system has no locks, its parts are left to a person.
+            let _ = file.lock();
+        }
+        // A run that clears may have taken it for that of an ended one before it was locked.
+        if fs::symlink_metadata(&part).is_ok() {
+            return Ok((part, file));
+        }
+        hold().forget(&part);
+    }
+}
+
+/// The folder in which a file lies.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Clears a folder the first time that this process writes into it.
+fn clear_once(folder: &Path) {
+    let mut held = hold();
+    let cleared = &mut held.parts().cleared;
+    if cleared.len() >= FOLDERS {
+        cleared.clear();
+    }
+    if cleared.insert(folder.to_owned()) {
+        drop(held);
+        clear(folder, Writer::Here);
+    }
+}
+
+/// Removes what runs that were ended left in a folder. A part whose writer lives is locked; the system frees
+/// the lock of a process that is no more, whatever ended it. Parts that another program writes have no lock:
+/// `Writer::Foreign` is for those who hold the folder's.
+pub(crate) fn clear(folder: &Path, writer: Writer) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if !is_part(&entry.file_name(), writer) || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            continue;
+        }
+        let part = entry.path();
+        // One that cannot be opened or locked may be somebody's.
+        let Ok(file) = OpenOptions::new().write(true).open(&part) else { continue };
+        if file.try_lock().is_ok() {
+            // Removed before the lock is given back.
+            let _ = fs::remove_file(&part);
+        }
+    }
+}
+
+fn suffix(writer: Writer) -> &'static str {
+    match writer {
+        Writer::Here => SUFFIX,
+        Writer::Foreign => FOREIGN_SUFFIX,
+    }
+}
+
+/// `wavy.hair` becomes `wavy.hair.1234-1.strandline-part`; a long name is cut.
+fn part_name(name: &OsStr, process: u32, number: u64, writer: Writer) -> OsString {
+    let name = name.to_string_lossy();
+    let stem = &name[..name.floor_char_boundary(NAME_BYTES)];
+    format!("{stem}.{process}-{number}{}", suffix(writer)).into()
+}
+
+fn is_part(name: &OsStr, writer: Writer) -> bool {
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    name.to_str()
+        .and_then(|name| name.strip_suffix(suffix(writer))?.rsplit_once('.')?.1.split_once('-'))
+        .is_some_and(|(process, number)| is_number(process) && is_number(number))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_of_the_pattern_are_parts() {
+        for name in ["a", "wavy.hair", &"ä".repeat(200)] {
+            for writer in [Writer::Here, Writer::Foreign] {
+                let part = part_name(OsStr::new(name), 12, 3, writer);
+                assert!(is_part(&part, writer) && part.len() < 255, "{part:?}");
+            }
+            assert!(!is_part(&part_name(OsStr::new(name), 12, 3, Writer::Foreign), Writer::Here));
+        }
+        for name in
+            ["z.part", "a.1-2.part", ".strandline-part", "a.1.strandline-part", "a.x-1.strandline-part"]
+        {
+            assert!(!is_part(OsStr::new(name), Writer::Here), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_part_is_cleared_when_its_writer_is_gone_and_not_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let (alive, lock) = create(&folder.path().join("a"), Writer::Here).unwrap();
+        let (gone, ended) = create(&folder.path().join("a"), Writer::Here).unwrap();
+        let foreign = folder.path().join("a.1-1.strandline-foreign-part");
+        let own = folder.path().join("a.part");
+        fs::write(&foreign, b"").unwrap();
+        fs::write(&own, b"notes").unwrap();
+        drop(ended);
+        clear(folder.path(), Writer::Here);
+        assert!(alive.exists() && !gone.exists() && own.exists() && foreign.exists());
+        clear(folder.path(), Writer::Foreign);
+        assert!(alive.exists() && own.exists() && !foreign.exists());
+        drop(lock);
+        clear(folder.path(), Writer::Here);
+        assert!(!alive.exists() && own.exists());
+    }
+
+    #[test]
+    fn a_folder_is_cleared_by_the_first_file_that_is_written_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let left = folder.path().join("other.1-1.strandline-part");
+        fs::write(&left, b"half").unwrap();
+        create(&folder.path().join("a"), Writer::Here).unwrap();
+        assert!(!left.exists());
+    }
+}
