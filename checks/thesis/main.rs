@@ -1,3 +1,4 @@
-//! The thesis's own examples.
+//! The thesis's own examples, and what is cited from its text.
 
+mod citations;
 mod sort;

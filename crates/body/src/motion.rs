@@ -68,7 +68,7 @@ impl Motion {
     /// neck. The built-in motions keep it where it is. Keyframes give the whole pose at their times
     /// whatever the pivot; between them the rotation is interpolated about it.
     pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
-        // [Chen2011] shows the head shake in its pictures and gives no angle; these are a quick "no".
+        // [Chen2011 fig. 34] shows the head shake and gives no angle; these are a quick "no".
         let (axis, degrees) = match self {
             Self::Still => return Pose::IDENTITY,
             Self::Keyframes(keys) => return keyframes::pose(keys, time, pivot),

@@ -66,7 +66,7 @@ pub struct Illumination {
 }
 
 impl Light {
-    /// Three lights about a head at `target` \[m\] that faces +z [Chen2011 §1.2]: a warm key and a cool rim, two spot lights
+    /// Three lights about a head at `target` \[m\] that faces +z [Chen2011 §6]: a warm key and a cool rim, two spot lights
     /// with shadows, and a fill without.
     pub fn three_point(target: Vec3) -> [Self; 3] {
         let light = |x, y, z| Self { position: target + Vec3::new(x, y, z), target, ..Self::default() };

@@ -14,7 +14,7 @@ pub struct Settings {
     pub backend: Backend,
     /// Length of a step \[s\], 1e-5 to 0.1; default 1/60.
     pub time_step: f32,
-    /// Rounds of the constraints in a step, 1 to 10,000; default 20 [Chen2011 §4].
+    /// Rounds of the constraints in a step, 1 to 10,000; default 20 [Chen2011 §6].
     pub iterations: u32,
     /// Gravity \[m/s^2\], world space; default (0, -9.81, 0).
     pub gravity: Vec3,
@@ -63,7 +63,7 @@ impl Settings {
     }
 
     /// The thesis as printed: 20 rounds of distance constraints, springs, no shape and no length
-    /// pass [Chen2011 §4].
+    /// pass [Chen2011 §4, §6].
     pub fn thesis() -> Self {
         Self {
             angles: Angles::OFF,
@@ -196,7 +196,7 @@ impl Default for LengthPass {
     }
 }
 
-/// The fluid volume that keeps strands apart [Chen2011 §4, McAdams2009].
+/// The fluid volume that keeps strands apart [Chen2011 §4.2, McAdams2009].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct VolumeSettings {

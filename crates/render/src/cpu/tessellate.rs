@@ -85,7 +85,7 @@ fn tap(parameter: f32, span_count: usize) -> Tap {
     let first = (parameter as usize).min(span_count - 1);
     let t = parameter - first as f32;
     let r = 1.0 - t;
-    // [Chen2011 appendix C]
+    // [Chen2011 fig. 52]
     let position = [
         r * r * r / 6.0,
         (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,

@@ -1,4 +1,4 @@
-//! Lengths, bends and solids, then v* = (x* - x) / dt [Mueller2007; Chen2011 §4].
+//! Lengths, bends and solids, then v* = (x* - x) / dt [Mueller2007; Chen2011 §4.1].
 
 use rayon::prelude::*;
 use strandline_groom::{LANES, Vec3Lanes};

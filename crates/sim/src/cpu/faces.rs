@@ -58,7 +58,7 @@ pub struct Stencil {
 
 impl Stencil {
     /// The weights of a point for the component along `AXIS`: faces of that axis lie on cell
-    /// borders, in the other axes half a cell further [Chen2011 §4].
+    /// borders, in the other axes half a cell further [Chen2011 §4.2.2].
     #[inline]
     pub fn new<const AXIS: usize>(place: &Place, strides: [usize; 3]) -> Self {
         let mut base = place.cell;

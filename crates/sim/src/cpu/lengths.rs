@@ -13,7 +13,7 @@ pub struct Segments<'a> {
 }
 
 impl Segments<'_> {
-    /// One round over the two independent sets: even segments, then odd ones [Chen2011 eq. 1-2].
+    /// One round over the two independent sets: even segments, then odd ones [Chen2011 eq. 1-2, fig. 15-17].
     #[inline]
     pub fn project(&self, positions: &mut [Vec3Lanes]) {
         self.project_set(positions, 0);

@@ -6,7 +6,7 @@ use super::obstacles::Obstacles;
 use super::volume::{Kind, Volume};
 
 /// Marks the cells, and gives the faces of solid cells the velocity of the solid
-/// [McAdams2009, Bridson2008].
+/// [Chen2011 fig. 21, McAdams2009, Bridson2008].
 ///
 /// A cell that holds points is fluid unless its middle lies deeper in a solid than one cell: hair
 /// lies on the skin, so the cells of its roots straddle the surface, and were they solid the hair

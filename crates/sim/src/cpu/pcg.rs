@@ -1,4 +1,4 @@
-//! Preconditioned conjugate gradients [Bridson2008, Chen2011 §4.3].
+//! Preconditioned conjugate gradients [Bridson2008, Chen2011 §4.2.3].
 //!
 //! Everything runs in the order of the unknowns on one thread: the substitutions of MIC(0) are a
 //! chain by nature, and sums do not depend on the number of threads.

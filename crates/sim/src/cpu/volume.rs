@@ -22,7 +22,7 @@ pub enum Kind {
     Solid,
 }
 
-/// The fluid volume [Chen2011 §4, McAdams2009]. Its memory is kept from step to step; what a step
+/// The fluid volume [Chen2011 §4.2, McAdams2009]. Its memory is kept from step to step; what a step
 /// costs follows the cells that hold hair, not the size of the box.
 #[derive(Clone, Debug)]
 pub struct Volume {
