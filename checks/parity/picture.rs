@@ -5,6 +5,7 @@ use strandline_body::{Mannequin, Mesh, Pose};
 use strandline_checks::flip::compare;
 use strandline_checks::gpu;
 use strandline_groom::{Guides, Style, StyleSettings};
+use strandline_render::cpu::layer_colors::{LAYER_COLORS, layer_colors};
 use strandline_render::cpu::{
     Curves, Occlusion, ShadowBody, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade,
     tessellate,
@@ -253,6 +254,41 @@ fn shade_agrees_in_the_shadow_of_the_body() {
         // As above; outlines of the head fall on one texel or the next.
         assert!(off <= 2e-3 * all, "{map_size}: {off} of {all}");
     }
+}
+
+#[test]
+fn shade_agrees_on_the_colours_of_layers() {
+    // Small, since only points are compared.
+    let both = Both { settings: PictureSettings::sized(16, 16), ..Both::new(Style::Wavy, 12) };
+    let positions = both.positions();
+    let Some(mut renderer) = drawn_on_gpu(&both, &positions, false) else { return };
+    let lit = renderer.strands().unwrap().radiances;
+    let (_, strands, shadows) = both.on_cpu(&positions);
+    let mut colored = |light| {
+        renderer.show_layers(Some(light));
+        renderer.draw(&both.input(&positions)).unwrap();
+        renderer.strands().unwrap().radiances
+    };
+    // Half floats round by 2.4e-4 of a colour's components; colours differ by 0.15 and more.
+    let off = |one: &[Vec3], other: &[Vec3]| {
+        one.iter().zip(other).filter(|(one, other)| (**one - **other).abs().max_element() > 1e-3).count()
+    };
+    for light in [0, 3, 4] {
+        let mut expected = strands.clone();
+        layer_colors(&mut expected, shadows.map(light).unwrap());
+        let found = colored(light);
+        // A point that lies on the border of a layer or of a texel to the last bit may fall to either side.
+        let different = off(&expected.radiances, &found);
+        assert!(different * 1000 <= found.len(), "{light}: {different} of {}", found.len());
+        for color in &LAYER_COLORS[..3] {
+            let count = expected.radiances.iter().filter(|found| *found == color).count();
+            assert!(count * 100 > found.len(), "light {light} shows {count} points in {color}");
+        }
+        assert!(off(&lit, &found) * 2 > found.len(), "light {light} still lights");
+    }
+    let [first, last] = [0, 4].map(&mut colored);
+    assert!(off(&first, &last) * 100 > first.len(), "two lights have the same layers");
+    assert_eq!(off(&lit, &colored(2)), 0, "a light without shadow has no layers");
 }
 
 #[test]

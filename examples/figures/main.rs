@@ -17,8 +17,9 @@ use studio::{Figure, Studio};
 type Draw = fn(&Studio) -> Figure;
 
 /// Every figure by the name of its file, with its number in the thesis.
-const FIGURES: [(&str, &str, Draw); 13] = [
-    ("opacity_map", "8, 9", shading::opacity_map),
+const FIGURES: [(&str, &str, Draw); 14] = [
+    ("layers", "8", shading::layers),
+    ("opacity_map", "9", shading::opacity_map),
     ("head_shake", "34", motion::head_shake),
     ("level_of_detail", "37", geometry::level_of_detail),
     ("supersampling", "38", geometry::supersampling),

@@ -9,7 +9,18 @@ use strandline::{
 use crate::strip::joined;
 use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
 
-/// The map of one light: opacity of its three layers as red, green and blue, and the first depth.
+/// Hair by the layer of the key light's map, seen from that light, from the side and from behind it.
+pub fn layers(studio: &Studio) -> Figure {
+    let mut hair = studio.resting(Style::Wavy, 288, 288)?;
+    let key = hair.lights[0];
+    hair.show_layers(Some(0));
+    let along = key.position - key.target;
+    let side = along.cross(Vec3::Y);
+    let mut draw = |direction: Vec3| hair.picture(&bust(direction), &Look::brown());
+    Ok(joined(&[draw(along)?, draw(side)?, draw(-along + 0.6 * side)?]))
+}
+
+/// The map of one light: opacity down to the end of each layer as red, green and blue, and the first depth.
 pub fn opacity_map(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 288, 288)?;
     let mut look = Look::brown();
@@ -19,7 +30,7 @@ pub fn opacity_map(studio: &Studio) -> Figure {
     Ok(joined(&maps.into_iter().flatten().chain([picture]).collect::<Vec<_>>()))
 }
 
-/// One light from the front, the left, above and behind.
+/// One light from the head's left, the front, the right and behind.
 pub fn light_directions(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 256, 256)?;
     let environment = Environment { sky: Vec3::splat(0.06), ground: Vec3::splat(0.04) };
@@ -28,13 +39,13 @@ pub fn light_directions(studio: &Studio) -> Figure {
     let mut draw = |direction: [f32; 3]| -> Figure {
         let position = target + 2.0 * Vec3::from(direction).normalize();
         hair.lights = vec![Light { position, target, intensity: 1.8, ..Light::default() }];
-        Ok(hair.picture(&bust(THREE_QUARTER), &look)?)
+        Ok(hair.picture(&bust(Vec3::new(0.0, 0.12, 1.0)), &look)?)
     };
     Ok(joined(&[
-        draw([0.2, 0.4, 1.0])?,
         draw([1.0, 0.4, 0.1])?,
-        draw([0.1, 1.0, 0.1])?,
-        draw([1.0, 0.8, -1.0])?,
+        draw([0.0, 0.4, 1.0])?,
+        draw([-1.0, 0.4, 0.1])?,
+        draw([0.3, 0.8, -1.0])?,
     ]))
 }
 
@@ -43,10 +54,10 @@ fn with_looks(hair: &mut Hair, camera: &Camera, looks: &[Look]) -> Figure {
     Ok(joined(&looks.iter().map(&mut draw).collect::<Result<Vec<Picture>, _>>()?))
 }
 
-/// Black, red and blonde.
+/// Brown, black and blonde.
 pub fn colors(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 304, 304)?;
-    with_looks(&mut hair, &bust(THREE_QUARTER), &[Look::black(), Look::red(), Look::blonde()])
+    with_looks(&mut hair, &bust(THREE_QUARTER), &[Look::brown(), Look::black(), Look::blonde()])
 }
 
 /// The first highlight, the second, and both, in one light from behind and above.

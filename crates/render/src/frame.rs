@@ -6,8 +6,8 @@ use strandline_groom::{Guides, Vec3Lanes};
 
 use crate::cpu::skin::Skin;
 use crate::cpu::{
-    Curves, Draw, DrawInput, Occlusion, Resolve, Samples, Shadows, Strands, interpolate, opacity_depth,
-    opacity_layers, shade, tessellate,
+    Curves, Draw, DrawInput, Occlusion, Resolve, Samples, Shadows, Strands, interpolate, layer_colors,
+    opacity_depth, opacity_layers, shade, tessellate,
 };
 use crate::{BodyLook, Camera, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
 
@@ -66,6 +66,7 @@ pub struct Renderer {
     strands: Strands,
     shadows: Shadows,
     occlusion: Occlusion,
+    layers_of: Option<usize>,
     samples: Samples,
     draw: Draw,
     resolve: Resolve,
@@ -89,6 +90,7 @@ impl Renderer {
             strands: Strands::default(),
             shadows: Shadows::default(),
             occlusion: Occlusion::default(),
+            layers_of: None,
             samples: Samples::default(),
             draw: Draw::new(body.cloned()),
             resolve: Resolve::default(),
@@ -150,7 +152,7 @@ impl Renderer {
         let distance = input.camera.position.distance(middle);
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
         let (guides, pose) = (&self.guides, &input.world_from_head);
-        let Self { curves, strands, shadows, occlusion, draw, samples, settings, .. } = self;
+        let Self { curves, strands, shadows, occlusion, layers_of, draw, samples, settings, .. } = self;
         let mut clock = Clock::start();
 
         tessellate(input.positions, guides, pose, &level, curves);
@@ -163,6 +165,9 @@ impl Renderer {
         opacity_layers(strands, shadows);
         clock.lap("opacity_layers");
         shade(strands, shadows, input.lights, input.look, input.camera.position, occlusion);
+        if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
+            layer_colors(strands, map);
+        }
         clock.lap("shade");
         let draw_input = DrawInput {
             strands,
@@ -187,9 +192,17 @@ impl Renderer {
         })
     }
 
-    /// The opacity map of a light of the last picture: the share of light that each of its three
-    /// layers takes away, as red, green and blue [Chen2011 fig. 8, 9]. `None` for a light without
-    /// shadow, for a number that no light has, and before the first picture.
+    /// Colours hair by the layer of a light's opacity map in which it lies instead of lighting it, from the
+    /// next picture on [Chen2011 fig. 8]: red, green and blue from the first layer to the third, grey behind
+    /// it. `None`, the default, lights it, and so does a light without shadow.
+    pub fn show_layers(&mut self, light: Option<usize>) {
+        self.layers_of = light;
+    }
+
+    /// The opacity map of a light of the last picture [Chen2011 fig. 9]: the share of light that its first
+    /// layer takes away as red, its first two as green, all three as blue, so that the first is white, the
+    /// second cyan and the third blue. `None` for a light without shadow, for a number that no light has,
+    /// and before the first picture.
     pub fn opacity_map(&self, light: usize) -> Option<Picture> {
         Some(self.shadows.map(light)?.opacity_picture())
     }

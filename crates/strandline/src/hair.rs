@@ -309,9 +309,17 @@ impl Hair {
         self.studio.draw_points(&self.moment, points, camera, look)
     }
 
-    /// The opacity map of a light as it was for the last picture: the share of light that each of its
-    /// three layers takes away, as red, green and blue [Chen2011 fig. 8, 9]. `None` for a light
-    /// without shadow, for a number that no light has, and before the first picture.
+    /// Colours hair by the layer of a light's opacity map in which it lies instead of lighting it, from the
+    /// next picture on [Chen2011 fig. 8]: red, green and blue from the first layer to the third, grey behind
+    /// it. `None`, the default, lights it, and so does a light without shadow.
+    pub fn show_layers(&mut self, light: Option<usize>) {
+        self.studio.painter.layers_of = light;
+    }
+
+    /// The opacity map of a light as it was for the last picture [Chen2011 fig. 9]: the share of light that
+    /// its first layer takes away as red, its first two as green, all three as blue, so that the first is
+    /// white, the second cyan and the third blue. `None` for a light without shadow, for a number that no
+    /// light has, and before the first picture.
     ///
     /// # Errors
     /// The GPU that drew it was lost.

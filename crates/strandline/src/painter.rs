@@ -22,6 +22,8 @@ pub(crate) struct Painter {
     guides: Guides,
     mesh: Option<Mesh>,
     settings: PictureSettings,
+    /// The light whose layers colour the hair.
+    pub layers_of: Option<usize>,
     /// Whether pictures are drawn on the CPU when the GPU fails.
     pub fall_back: bool,
     /// What happened on the way, for a person to read.
@@ -61,6 +63,7 @@ impl Painter {
             guides,
             mesh,
             settings,
+            layers_of: None,
             fall_back: device.fall_back,
             notes,
         })
@@ -108,8 +111,14 @@ impl Painter {
     ) -> Result<(Picture, FrameReport), RenderError> {
         let mut picture = Picture::default();
         let drawn = match &mut self.place {
-            Place::Cpu(renderer) => renderer.draw_into(input, &mut picture),
-            Place::Gpu(renderer) => renderer.draw_into(input, points, &mut picture),
+            Place::Cpu(renderer) => {
+                renderer.show_layers(self.layers_of);
+                renderer.draw_into(input, &mut picture)
+            }
+            Place::Gpu(renderer) => {
+                renderer.show_layers(self.layers_of);
+                renderer.draw_into(input, points, &mut picture)
+            }
         };
         self.stands_in = self.fall_back && matches!(drawn, Err(RenderError::TooMany { .. }));
         let report = match drawn {
@@ -121,14 +130,16 @@ impl Painter {
 
     /// The renderer that draws what is more than the GPU draws.
     fn stand_in(&mut self, failure: RenderError) -> Result<&mut Renderer, RenderError> {
-        match &mut self.stand_in {
-            Some(renderer) => Ok(renderer),
+        let renderer = match &mut self.stand_in {
+            Some(renderer) => renderer,
             none => {
                 self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
                 let renderer = Renderer::new(&self.guides, self.mesh.as_ref(), &self.settings)?;
-                Ok(none.insert(renderer.into()))
+                none.insert(renderer.into())
             }
-        }
+        };
+        renderer.show_layers(self.layers_of);
+        Ok(renderer)
     }
 
     /// The opacity map of a light, and the depths of its first hair.

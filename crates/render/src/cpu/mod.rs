@@ -7,6 +7,7 @@ mod fast_math;
 pub mod fibre;
 pub mod interpolate;
 mod lanes;
+pub mod layer_colors;
 mod noise;
 pub mod occlusion;
 pub mod opacity_depth;
@@ -28,6 +29,7 @@ mod tiles;
 
 pub use draw::{Draw, DrawInput};
 pub use interpolate::interpolate;
+pub use layer_colors::layer_colors;
 pub use occlusion::Occlusion;
 pub use opacity_depth::{ShadowBody, opacity_depth};
 pub use opacity_layers::opacity_layers;

@@ -10,11 +10,13 @@ use crate::Picture;
 const FARTHEST: f32 = 0.15;
 
 impl ShadowMap {
-    /// The share of light that each of the three layers takes away, as red, green and blue
-    /// [Chen2011 fig. 8, 9]: black holds no hair. Neither tone map nor transfer curve is applied.
+    /// The share of light that the first layer takes away as red, the first two as green and all three
+    /// as blue [Chen2011 fig. 9]: what lies in the first layer is white, in the second cyan, in the third
+    /// blue, and black holds no hair. Neither tone map nor transfer curve is applied.
     pub fn opacity_picture(&self) -> Picture {
         self.picture(|texel| {
-            [texel.x, texel.y, texel.z].map(|crossings| 1.0 - exp(crossings * self.log_transmission()))
+            [texel.x, texel.x + texel.y, texel.x + texel.y + texel.z]
+                .map(|crossings| 1.0 - exp(crossings * self.log_transmission()))
         })
     }
 
@@ -61,10 +63,13 @@ mod tests {
     /// Two upright strands one behind the other in the light of +z, each as wide as a texel; the one
     /// behind is half as high.
     fn map(light: Light) -> ShadowMap {
+        map_of(&[Vec3::ZERO, Vec3::Y * 0.14, Vec3::new(0.0, 0.0, -0.03), Vec3::new(0.0, 0.07, -0.03)], light)
+    }
+
+    fn map_of(points: &[Vec3], light: Light) -> ShadowMap {
         let mut strands = Strands::default();
-        strands.resize(2, 1, 2);
-        strands.positions =
-            vec![Vec3::ZERO, Vec3::Y * 0.14, Vec3::new(0.0, 0.0, -0.03), Vec3::new(0.0, 0.07, -0.03)];
+        strands.resize(points.len() / 2, 1, 2);
+        strands.positions = points.to_vec();
         strands.widths.fill(0.01);
         let mut shadows = Shadows::default();
         let settings = Shadow { map_size: SIZE, ..Shadow::default() };
@@ -82,14 +87,19 @@ mod tests {
     }
 
     #[test]
-    fn a_strand_is_red_and_one_behind_it_green() {
-        // A hair as wide as a texel takes 0.3 of the light: 76.5 of 255; rounding and the last bits
-        // of the texel's coverage may go either way.
-        let full = |byte: u8| (75..=78).contains(&byte);
+    fn a_strand_is_white_one_behind_it_adds_cyan_and_the_last_layer_blue() {
+        // A hair as wide as a texel takes 0.3 of the light, 76.5 of 255, two take 0.51, three 0.657;
+        // rounding and the last bits of the texel's coverage may go either way.
+        let near = |byte: u8, expected: u8| byte.abs_diff(expected) <= 2;
+        let is = |pixel: [u8; 3], expected: [u8; 3]| (0..3).all(|i| near(pixel[i], expected[i]));
         let pixels = column(&map(light(1.0)).opacity_picture());
         assert_eq!((pixels[0], pixels[15]), ([0; 3], [0; 3]));
-        assert!(full(pixels[4][0]) && pixels[4][1..] == [0, 0], "{:?}", pixels[4]);
-        assert!(full(pixels[12][0]) && full(pixels[12][1]) && pixels[12][2] == 0, "{:?}", pixels[12]);
+        assert!(is(pixels[4], [77, 77, 77]), "{:?}", pixels[4]);
+        assert!(is(pixels[12], [77, 130, 130]), "{:?}", pixels[12]);
+        let three = [0.0, 0.03, 0.1].map(|depth| Vec3::new(0.0, 0.0, -depth));
+        let points: Vec<Vec3> = three.iter().flat_map(|foot| [*foot, *foot + Vec3::Y * 0.14]).collect();
+        let pixels = column(&map_of(&points, light(1.0)).opacity_picture());
+        assert!(is(pixels[4], [77, 130, 168]), "{:?}", pixels[4]);
     }
 
     #[test]

@@ -10,6 +10,8 @@ use super::{THREADS, draw, fit, opacity_depth};
 /// What a frame is recorded from.
 pub(super) struct Bounds<'a> {
     pub tessellate: Bound,
+    /// What colours the hair by layers, where that is asked for.
+    pub layer_colors: Option<Bound>,
     pub stages: &'a Stages,
     pub resolve: &'a BoundDrawing,
     pub maps: &'a Maps,
@@ -32,6 +34,9 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     recorder.stage("shade", &one(&stages.sum_areas, segments));
     recorder.stage("shade", &[(stages.sweep.clone(), [6, 1, 1])]);
     recorder.stage("shade", &one(&stages.shade, points));
+    if let Some(layer_colors) = &bounds.layer_colors {
+        recorder.stage("shade", &one(layer_colors, points));
+    }
     recorder.clear(&groom.starts);
     recorder.stage("draw", &one(&stages.list_segments, strands));
     recorder.stage("draw", &stages.scan);

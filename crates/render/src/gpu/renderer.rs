@@ -1,12 +1,13 @@
 use glam::Vec3;
 use strandline_body::Mesh;
-use strandline_gpu::{Bound, Buffer, Gpu, Recorder, Timer, wgpu};
+use strandline_gpu::{Bound, Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
 use strandline_groom::Guides;
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::frame::{Bounds, record};
 use super::inputs::{Frame, LightSource};
 use super::resolve::{Own, PICTURE, ToFormat};
+use super::shade::LayerColors;
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
 use crate::frame::middle;
@@ -48,6 +49,9 @@ pub struct GpuRenderer {
     /// `tessellate` bound to pairs of buffers of guide points.
     tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
     timer: Option<Timer>,
+    /// The light whose layers colour the hair, and the kernel that does so.
+    pub(super) layers_of: Option<usize>,
+    pub(super) layer_colors: Option<(usize, Kernel<LayerColors<'static>>)>,
     pub(super) drawn: Drawn,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
     pub(super) lit: (Vec<Light>, Shadow, Vec3),
@@ -123,6 +127,8 @@ impl GpuRenderer {
             stages: None,
             tessellates: Vec::new(),
             timer: Timer::new(gpu)?,
+            layers_of: None,
+            layer_colors: None,
             drawn: Drawn::default(),
             lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
             guides: guides.clone(),
@@ -232,10 +238,11 @@ impl GpuRenderer {
         self.prepare_format(format)?;
         self.write(&scene, points.is_none())?;
         let tessellate = self.tessellate(points)?;
+        let layer_colors = self.layer_colors(input.lights)?;
         let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
         let resolve =
             &self.formats.iter().find(|known| known.format == format).expect("prepared above").bound;
-        let bounds = Bounds { tessellate, stages, resolve, maps, target, renderer: self };
+        let bounds = Bounds { tessellate, layer_colors, stages, resolve, maps, target, renderer: self };
         let submitted = self.gpu.guarded("a frame", || {
             let mut recorder = Recorder::new(&self.gpu, self.timer.as_ref());
             self.timer.iter().for_each(Timer::restart);

@@ -149,6 +149,7 @@ pub fn declarations() -> Vec<Declaration> {
         occlude::SumAreas::declaration(),
         occlude::Sweep::declaration(),
         shade::Shade::declaration(),
+        shade::LayerColors::declaration(),
         sort::ListSegments::declaration(),
         sort::OrderSegments::declaration(),
         draw::Hair::declaration(),
