@@ -35,6 +35,7 @@ impl Head {
         fresh.positions = state.positions;
         fresh.previous_positions = state.previous_positions;
         fresh.velocities = state.velocities;
+        fresh.corrections = state.corrections;
         fresh
     }
 }

@@ -89,6 +89,8 @@ fn constrain_agrees() {
             };
             assert!(distance < limit, "{}: {distance}", head.name);
             assert!(speed < limit / head.settings.time_step, "{}: {speed}", head.name);
+            let correction = apart(&state.corrections, &probe.corrections().unwrap(), &head.guides);
+            assert!(correction < limit / head.settings.time_step, "{}: {correction}", head.name);
             let mean = mean_apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
             assert!(mean < 1e-5, "{}: {mean}", head.name);
         });

@@ -1,7 +1,7 @@
 //! The stages of the fluid volume.
 
 use strandline_checks::gpu;
-use strandline_groom::LANES;
+use strandline_groom::{LANES, Vec3Lanes};
 use strandline_sim::cpu::{
     Kind, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
     pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
@@ -26,6 +26,11 @@ fn constrained(head: &Head) -> (Solver, State, Volume) {
 
 fn splat_cpu(solver: &Solver, state: &State, volume: &mut Volume) {
     splat(volume, state.predicted(), &state.velocities, &solver.rest().mass);
+}
+
+fn gather_cpu(solver: &Solver, volume: &Volume, state: &mut State, positions: &[Vec3Lanes]) {
+    let time_step = solver.settings().time_step;
+    gather(volume, time_step, solver.inverse_mass(), positions, &mut state.velocities);
 }
 
 /// The fastest point \[m/s\], 1 at least: what velocities are rounded by.
@@ -265,7 +270,7 @@ fn nothing_to_solve_is_solved() {
 fn gather_agrees() {
     let Some(gpu) = gpu() else { return };
     for head in heads() {
-        let (_, mut state, mut volume) = marked(&head);
+        let (solver, mut state, mut volume) = marked(&head);
         solve_pressure(&mut volume);
         let gpu_solver = head.gpu_solver(&gpu);
         let mut probe = Probe::new(&gpu_solver, &state).unwrap();
@@ -273,7 +278,7 @@ fn gather_agrees() {
         probe.run(&drive(6), &["gather"]).unwrap();
         let before = state.velocities.clone();
         let predicted = state.predicted().to_vec();
-        gather(&volume, &predicted, &mut state.velocities);
+        gather_cpu(&solver, &volume, &mut state, &predicted);
         // A lone strand's volume gives it back what it gave.
         let changed = apart(&before, &state.velocities, &head.guides);
         assert!(changed > 1e-3 || head.guides.strand_count() == 1, "{}: {changed}", head.name);
@@ -321,6 +326,6 @@ fn points_outside_and_on_borders_of_cells_go_where_they_belong() {
     assert!(velocity < 1e-5, "{velocity}");
     // Points outside keep their velocities.
     probe.run(&drive(6), &["gather"]).unwrap();
-    gather(&volume, &predicted, &mut state.velocities);
+    gather_cpu(&solver, &volume, &mut state, &predicted);
     assert!(apart(&state.velocities, &probe.velocities().unwrap(), &head.guides) < 1e-5);
 }

@@ -185,8 +185,10 @@ impl Default for Angles {
 pub struct LengthPass {
     /// False leaves it out: strands stretch as in the thesis; default true.
     pub enabled: bool,
-    /// Share of the correction of a point that the velocity of the point before it gives back, 0
-    /// to 1; default 0.9 [Mueller2012 eq. 9].
+    /// Share of the correction of a point that the next prediction of the point before it gives back,
+    /// 0 to 1; default 0.9 [Mueller2012 eq. 9]. It is the same share in a step of any length: what
+    /// the pass corrects is an acceleration times the square of the step, so that what it keeps back
+    /// adds up to as much velocity in a second.
     pub correction: f32,
 }
 
@@ -204,7 +206,9 @@ pub struct VolumeSettings {
     pub enabled: bool,
     /// Cells along x, y and z, each 4 to 512; default 32, 32, 32.
     pub cells: [u32; 3],
-    /// FLIP share of the velocity update, 0 (PIC) to 1 (FLIP); default 0.95 [Chen2011 eq. 5].
+    /// FLIP share of the velocity update in a step of 1/60 s, 0 (PIC) to 1 (FLIP); default 0.95
+    /// [Chen2011 eq. 5]. A step of another length takes as much of PIC in a second, and no more than
+    /// all.
     pub flip_share: f32,
     /// Relative residual at which the pressure solve stops, 1e-12 to 1; default 1e-5.
     pub tolerance: f32,
@@ -213,6 +217,16 @@ pub struct VolumeSettings {
     /// Preconditioner of the conjugate gradients: auto (default), mic0 (CPU only), jacobi, chebyshev
     /// or none. Auto is the one that is faster: mic0 on the CPU, chebyshev on a GPU.
     pub preconditioner: Preconditioner,
+}
+
+impl VolumeSettings {
+    /// FLIP share of the velocity update in a step of a length \[s\].
+    ///
+    /// A PIC step smooths by the same amount however long it is, so its share is a rate: that of
+    /// 1/60 s for each 1/60 s.
+    pub(crate) fn flip_share_in(&self, time_step: f32) -> f32 {
+        1.0 - ((1.0 - self.flip_share) * 60.0 * time_step).min(1.0)
+    }
 }
 
 impl Default for VolumeSettings {

@@ -124,6 +124,12 @@ impl Solver {
         &self.rest
     }
 
+    /// 1 over the mass \[1/kg\] of each point, 0 where the head carries it, shape `[block][point]` of
+    /// lanes.
+    pub fn inverse_mass(&self) -> &[Lanes] {
+        &self.inverse_mass
+    }
+
     /// Number of strands.
     pub fn strand_count(&self) -> usize {
         self.strand_count
@@ -146,6 +152,7 @@ impl Solver {
         let blocks = positions.len() / self.points_per_strand;
         State {
             velocities: vec![Vec3Lanes::default(); positions.len()],
+            corrections: vec![Vec3Lanes::default(); positions.len()],
             previous_positions: positions.clone(),
             world_from_head,
             time: 0.0,

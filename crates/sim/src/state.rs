@@ -41,6 +41,10 @@ pub struct State {
     pub positions: Vec<Vec3Lanes>,
     /// Velocities \[m/s\], world space, shape `[block][point]` of lanes.
     pub velocities: Vec<Vec3Lanes>,
+    /// What the next prediction adds to the velocities \[m/s\], world space, shape `[block][point]` of
+    /// lanes: the length pass gives it back for the corrections that it made \[Mueller2012 eq. 9\]. It is
+    /// no motion of the hair, so that neither volume nor air nor springs see it.
+    pub corrections: Vec<Vec3Lanes>,
     /// Positions \[m\] one step ago, world space, shape `[block][point]` of lanes.
     pub previous_positions: Vec<Vec3Lanes>,
     /// Pose of the head now.

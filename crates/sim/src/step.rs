@@ -33,7 +33,8 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
         timed(seconds, "splat", || splat(&mut volume, positions, velocities, &solver.rest.mass));
         timed(seconds, "mark", || mark(&mut volume, &obstacles));
         report.pressure = timed(seconds, "solve_pressure", || solve_pressure(&mut volume));
-        timed(seconds, "gather", || gather(&volume, positions, velocities));
+        let (time_step, weights) = (solver.settings.time_step, &solver.inverse_mass);
+        timed(seconds, "gather", || gather(&volume, time_step, weights, positions, velocities));
         state.scratch.volume = Some(volume);
     }
     let outcome = timed(seconds, "advance", || advance(solver, state, &obstacles));

@@ -130,8 +130,7 @@ impl Engine {
     /// Puts every strand where a pose of hair has it; their lengths stay.
     pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
         let mut state = self.rest(hair.world_from_head())?;
-        hair.place(&mut state.positions, &mut state.velocities);
-        state.previous_positions.clone_from(&state.positions);
+        hair.place(&mut state);
         self.set_state(state)
     }
 

@@ -362,9 +362,9 @@ impl Hair {
         self.simulation.engine.state()
     }
 
-    /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Three tensors of the
-    /// safetensors format, 32-bit floats: `positions` \[m\] and `velocities` \[m/s\], world space, shape
-    /// `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and a translation
+    /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Four tensors of the
+    /// safetensors format, 32-bit floats: `positions` \[m\], `velocities` \[m/s\] and `corrections`, what the
+    /// next step's prediction adds to them \[m/s\], world space, shape `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and a translation
     /// \[m\]. A hand that holds hair is not in it.
     ///
     /// # Errors

@@ -16,13 +16,15 @@ use crate::{
     body::Pose,
     groom::{LANES, Vec3Lanes},
     render::WholeFile,
+    sim::State,
 };
 
 /// Where guides are, how they move, and where the head is.
 ///
-/// Its file holds three tensors of the safetensors format, 32-bit floats: `positions` \[m\] and `velocities`
-/// \[m/s\], world space, shape `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion
-/// x, y, z, w and a translation \[m\]. `safetensors.numpy.load_file` reads it.
+/// Its file holds four tensors of the safetensors format, 32-bit floats: `positions` \[m\], `velocities`
+/// \[m/s\] and `corrections`, what the next prediction adds to them \[m/s\], world space, shape
+/// `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and a translation
+/// \[m\]. A file without `corrections` has none. `safetensors.numpy.load_file` reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HairPose {
     /// Strands, and points of each.
@@ -30,6 +32,7 @@ pub(crate) struct HairPose {
     /// Shape `[strand][point]`.
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
+    corrections: Vec<Vec3>,
     world_from_head: Pose,
 }
 
@@ -39,14 +42,9 @@ const HEADER: u64 = 65_536;
 const MOST: f32 = 1e4;
 
 impl HairPose {
-    /// Takes what a state shows: lanes of positions \[m\] and velocities \[m/s\], world space, shape
-    /// `[block][point]`.
-    pub fn new(
-        shape: [usize; 2],
-        positions: &[Vec3Lanes],
-        velocities: &[Vec3Lanes],
-        world_from_head: &Pose,
-    ) -> Self {
+    /// Takes positions \[m\] that are shown, world space, shape `[block][point]` of lanes, and how a
+    /// state moves.
+    pub fn new(shape: [usize; 2], positions: &[Vec3Lanes], state: &State, world_from_head: &Pose) -> Self {
         let [strands, points] = shape;
         let each = |lanes: &[Vec3Lanes]| {
             (0..strands)
@@ -57,7 +55,8 @@ impl HairPose {
         Self {
             shape,
             positions: each(positions),
-            velocities: each(velocities),
+            velocities: each(&state.velocities),
+            corrections: each(&state.corrections),
             world_from_head: *world_from_head,
         }
     }
@@ -67,18 +66,19 @@ impl HairPose {
         self.world_from_head
     }
 
-    /// Fills lanes of positions \[m\] and velocities \[m/s\], world space; lanes without a strand take the
-    /// last one.
-    pub fn place(&self, positions: &mut [Vec3Lanes], velocities: &mut [Vec3Lanes]) {
+    /// Puts the hair of a state there, now and one step ago; lanes without a strand take the last one.
+    pub fn place(&self, state: &mut State) {
         let [strands, points] = self.shape;
-        for index in 0..positions.len() {
+        for index in 0..state.positions.len() {
             for lane in 0..LANES {
                 let strand = (index / points * LANES + lane).min(strands - 1);
                 let from = strand * points + index % points;
-                positions[index].set(lane, self.positions[from]);
-                velocities[index].set(lane, self.velocities[from]);
+                state.positions[index].set(lane, self.positions[from]);
+                state.velocities[index].set(lane, self.velocities[from]);
+                state.corrections[index].set(lane, self.corrections[from]);
             }
         }
+        state.previous_positions.clone_from(&state.positions);
     }
 
     /// Writes the file, which is to be kept.
@@ -105,6 +105,7 @@ impl HairPose {
         for (name, shape, numbers) in [
             ("positions", vec![strands, points, 3], numbers(&self.positions)),
             ("velocities", vec![strands, points, 3], numbers(&self.velocities)),
+            ("corrections", vec![strands, points, 3], numbers(&self.corrections)),
             ("world_from_head", vec![7], head),
         ] {
             check(name, &numbers).map_err(std::io::Error::other)?;
@@ -148,6 +149,11 @@ impl HairPose {
             shape,
             positions: vectors("positions")?,
             velocities: vectors("velocities")?,
+            corrections: if tensors.names().contains(&"corrections") {
+                vectors("corrections")?
+            } else {
+                vec![Vec3::ZERO; strands * points]
+            },
             world_from_head,
         })
     }
@@ -178,7 +184,7 @@ fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
 
 /// Reads no more than a pose of this shape needs.
 fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, String> {
-    let most = HEADER + (strands * points * 24) as u64;
+    let most = HEADER + (strands * points * 36) as u64;
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(|error| error.to_string())?;
     file.take(most + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
@@ -191,6 +197,10 @@ fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        groom::{Groom, Guides},
+        sim::{Settings, Solver},
+    };
 
     const SHAPE: [usize; 2] = [11, 5];
 
@@ -201,6 +211,7 @@ mod tests {
             shape: SHAPE,
             positions: (0..count).map(value).collect(),
             velocities: (0..count).map(|index| -value(index)).collect(),
+            corrections: (0..count).map(|index| 0.1 * value(index)).collect(),
             world_from_head: Pose {
                 rotation: Quat::from_rotation_y(1.2),
                 translation: Vec3::new(0.3, 0.1, 0.0),
@@ -213,16 +224,30 @@ mod tests {
         let pose = pose();
         let read = HairPose::parse(&pose.to_bytes().unwrap(), SHAPE).unwrap();
         assert_eq!((&read.positions, &read.velocities), (&pose.positions, &pose.velocities));
+        assert_eq!(read.corrections, pose.corrections);
         let (found, wanted) = (read.world_from_head, pose.world_from_head);
         assert!(found.rotation.angle_between(wanted.rotation) < 1e-3);
         assert_eq!(found.translation, wanted.translation);
-        let mut lanes = [(); 2].map(|()| vec![Vec3Lanes::default(); 2 * SHAPE[1]]);
-        let [positions, velocities] = &mut lanes;
-        pose.place(positions, velocities);
+        let mut groom = Groom::empty(8e-5);
+        (0..SHAPE[0]).for_each(|_| groom.push([Vec3::ZERO, Vec3::NEG_Y]));
+        let guides = Guides::resample(&groom, SHAPE[1]).unwrap();
+        let solver = Solver::new(&guides, &Settings::default(), Vec::new()).unwrap();
+        let mut state = solver.rest_state(Pose::IDENTITY);
+        pose.place(&mut state);
         // The last lanes have no strand of their own.
-        assert_eq!(positions[SHAPE[1]].get(7), positions[SHAPE[1]].get(2));
-        let again = HairPose::new(SHAPE, positions, velocities, &pose.world_from_head);
+        assert_eq!(state.positions[SHAPE[1]].get(7), state.positions[SHAPE[1]].get(2));
+        assert_eq!(state.previous_positions, state.positions);
+        let again = HairPose::new(SHAPE, &state.positions, &state, &pose.world_from_head);
         assert_eq!(again, pose);
+    }
+
+    #[test]
+    fn a_file_without_corrections_has_none() {
+        let (pose, mut bytes) = (pose(), pose().to_bytes().unwrap());
+        let at = bytes.windows(11).position(|name| name == b"corrections").unwrap();
+        bytes[at] = b'x';
+        let read = HairPose::parse(&bytes, SHAPE).unwrap();
+        assert_eq!((&read.velocities, read.corrections), (&pose.velocities, vec![Vec3::ZERO; 55]));
     }
 
     #[test]

@@ -158,8 +158,7 @@ impl Simulation {
         let (mut moment, solver) = (Moment::default(), self.engine.solver());
         self.show(&mut moment);
         let shape = [solver.strand_count(), solver.points_per_strand()];
-        let velocities = &self.engine.state().velocities;
-        HairPose::new(shape, &moment.positions, velocities, &moment.world_from_head)
+        HairPose::new(shape, &moment.positions, self.engine.state(), &moment.world_from_head)
     }
 
     /// Takes the hair within `radius` \[m\] of a place \[m\] into a hand; the number of strands.

@@ -71,6 +71,9 @@ fn goes_on(backend: Backend) {
     // Velocities are those of the last state.
     let (there, here) = (&left.state().velocities, &again.state().velocities);
     assert_eq!(apart(there, here), 0.0);
+    let (added, kept) = (&left.state().corrections, &again.state().corrections);
+    assert_eq!(apart(added, kept), 0.0);
+    assert!(apart(added, &vec![Vec3Lanes::default(); added.len()]) > 1e-3, "nothing was corrected");
     let fast = apart(there, &vec![Vec3Lanes::default(); there.len()]);
     assert!(fast > 0.1, "nothing moved: {fast} m/s");
     assert_eq!(again.state().length_scale(7), 0.8);

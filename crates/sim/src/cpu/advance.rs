@@ -1,5 +1,6 @@
 //! x <- x*, and what the step was worth.
 
+use glam::Vec3;
 use rayon::prelude::*;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Vec3Lanes};
@@ -35,15 +36,18 @@ pub fn advance(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> Out
     state.world_from_head = obstacles.end;
     state.time += f64::from(solver.settings.time_step);
     let lengths = &state.scratch.lengths.stretch;
+    let speeds = state.velocities.par_chunks_mut(points).zip(state.corrections.par_chunks_mut(points));
     let outcomes: Vec<Outcome> = state
         .positions
         .par_chunks_mut(points)
-        .zip(state.velocities.par_chunks_mut(points))
+        .zip(state.previous_positions.par_chunks_mut(points))
+        .zip(speeds)
         .zip(state.scratch.contacts.blocks.par_iter_mut())
         .enumerate()
         .with_min_len(16)
-        .map(|(block, ((positions, velocities), planes))| {
-            let non_finite = recover(solver, &obstacles.end, block, positions, velocities);
+        .map(|(block, (((positions, previous), (velocities, corrections)), planes))| {
+            let hair = Block { positions: &mut *positions, previous, velocities, corrections };
+            let non_finite = recover(solver, &obstacles.end, block, hair);
             let lengths = &lengths[block * points..(block + 1) * points];
             let live = live_lanes(solver, block);
             let mut outcome = Outcome { non_finite, ..Outcome::default() };
@@ -107,20 +111,30 @@ fn deepest(
     deepest.to_array().into_iter().take(live).fold(0.0, f32::max)
 }
 
+/// What changes of a block of strands, shape `[point]` of lanes, world space.
+pub(crate) struct Block<'a> {
+    /// Positions at the end of the step \[m\].
+    pub positions: &'a mut [Vec3Lanes],
+    /// Positions at its start \[m\].
+    pub previous: &'a mut [Vec3Lanes],
+    /// Velocities \[m/s\].
+    pub velocities: &'a mut [Vec3Lanes],
+    /// What the next prediction adds to them \[m/s\].
+    pub corrections: &'a mut [Vec3Lanes],
+}
+
 /// Puts strands that hold a number which is not finite back to rest and counts their bad points,
-/// so that one bad strand never spreads.
-pub(crate) fn recover(
-    solver: &Solver,
-    world_from_head: &Pose,
-    block: usize,
-    positions: &mut [Vec3Lanes],
-    velocities: &mut [Vec3Lanes],
-) -> usize {
+/// so that one bad strand never spreads. They have been there one step ago too, so that no picture
+/// between the two steps shows the way back.
+pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hair: Block) -> usize {
+    let Block { positions, previous, velocities, corrections } = hair;
     let mut nothing = splat(0.0);
-    for (position, velocity) in positions.iter().zip(velocities.iter()) {
-        let (x, v) = (Vec3x8::load(position), Vec3x8::load(velocity));
-        // 0 for finite numbers, else not a number.
-        nothing += (x.x + x.y + x.z + v.x + v.y + v.z) * splat(0.0);
+    for point in 0..positions.len() {
+        for vector in [&positions[point], &velocities[point], &corrections[point]] {
+            let vector = Vec3x8::load(vector);
+            // 0 for finite numbers, else not a number.
+            nothing += (vector.x + vector.y + vector.z) * splat(0.0);
+        }
     }
     let bad = nothing.is_nan().to_bitmask();
     if bad == 0 {
@@ -130,11 +144,15 @@ pub(crate) fn recover(
     let mut count = 0;
     for lane in (0..LANES).filter(|lane| bad & (1 << lane) != 0) {
         for point in 0..positions.len() {
-            let finite = positions[point].get(lane).is_finite() && velocities[point].get(lane).is_finite();
+            let finite = [&positions[point], &velocities[point], &corrections[point]]
+                .iter()
+                .all(|vectors| vectors.get(lane).is_finite());
             count += usize::from(!finite && lane < live);
-            let rest = solver.positions[block * positions.len() + point].get(lane);
-            positions[point].set(lane, world_from_head.point(rest));
-            velocities[point].set(lane, glam::Vec3::ZERO);
+            let home = world_from_head.point(solver.positions[block * positions.len() + point].get(lane));
+            positions[point].set(lane, home);
+            previous[point].set(lane, home);
+            velocities[point].set(lane, Vec3::ZERO);
+            corrections[point].set(lane, Vec3::ZERO);
         }
     }
     count

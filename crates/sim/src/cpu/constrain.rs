@@ -4,12 +4,13 @@ use rayon::prelude::*;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
+use super::Obstacles;
+use super::advance::{Block, recover};
 use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
 use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::length_pass::Follow;
 use super::lengths::Segments;
 use super::vec3x8::{Vec3x8, load, splat};
-use super::{Obstacles, advance};
 use crate::grab::Pinned;
 use crate::{Solver, State};
 
@@ -28,14 +29,14 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> u
     scratch
         .predicted
         .par_chunks_mut(points)
-        .zip(state.velocities.par_chunks_mut(points))
-        .zip(state.positions.par_chunks(points))
+        .zip(state.velocities.par_chunks_mut(points).zip(state.corrections.par_chunks_mut(points)))
+        .zip(state.positions.par_chunks_mut(points))
         .zip(scratch.contacts.blocks.par_iter_mut())
         .enumerate()
         .with_min_len(8)
         .map_init(
             || Workspace::new(points),
-            |work, (block, (((predicted, velocities), start), planes))| {
+            |work, (block, (((predicted, (velocities, corrections)), start), planes))| {
                 let range = block * points..(block + 1) * points;
                 let strands = Strands {
                     solver,
@@ -54,8 +55,9 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> u
                 work.pinned.clear();
                 let Segments { lengths, .. } = strands.segments;
                 work.pinned.extend(grab.pinned(block, predicted, lengths, strands.joints.inverse_mass));
-                strands.solve(block, predicted, start, velocities, planes, work);
-                advance::recover(solver, &obstacles.end, block, predicted, velocities)
+                let mut hair = Block { positions: predicted, previous: start, velocities, corrections };
+                strands.solve(block, &mut hair, planes, work);
+                recover(solver, &obstacles.end, block, hair)
             },
         )
         .sum()
@@ -70,6 +72,7 @@ struct Workspace {
     pinned: Vec<Pinned>,
     touches: Vec<(usize, Touch)>,
     margins: Vec<f32x8>,
+    /// How far the length pass moved each point \[m\], and a zero behind the last.
     corrections: Vec<Vec3x8>,
 }
 
@@ -94,15 +97,8 @@ struct Strands<'a> {
 }
 
 impl Strands<'_> {
-    fn solve(
-        &self,
-        block: usize,
-        predicted: &mut [Vec3Lanes],
-        start: &[Vec3Lanes],
-        velocities: &mut [Vec3Lanes],
-        planes: &mut [Plane],
-        work: &mut Workspace,
-    ) {
+    fn solve(&self, block: usize, hair: &mut Block, planes: &mut [Plane], work: &mut Workspace) {
+        let Block { positions: predicted, previous: start, velocities, corrections } = hair;
         self.find_touches(block, predicted, start, planes, work);
         for round in 0..self.solver.settings.iterations {
             self.segments.project(predicted);
@@ -133,13 +129,14 @@ impl Strands<'_> {
             follow.place(held, predicted, planes, &mut work.corrections);
         }
         let rate = splat(1.0 / self.solver.settings.time_step);
-        let returned = splat(pass.correction);
+        let returned = rate * splat(-pass.correction);
         for point in 0..predicted.len() {
-            let free = load(&self.joints.inverse_mass[point]).simd_gt(splat(0.0));
             let moved = Vec3x8::load(&predicted[point]) - Vec3x8::load(&start[point]);
+            (moved * rate).store(&mut velocities[point]);
             // [Mueller2012 eq. 9]
-            let velocity = (moved - work.corrections[point + 1] * returned) * rate;
-            velocity.or(free, moved * rate).store(&mut velocities[point]);
+            let free = load(&self.joints.inverse_mass[point]).simd_gt(splat(0.0));
+            let correction = work.corrections[point + 1] * returned;
+            correction.or(free, Vec3x8::ZERO).store(&mut corrections[point]);
         }
     }
 
@@ -155,7 +152,7 @@ impl Strands<'_> {
             for step in 1..=last - root {
                 let point = if back { last - step } else { root + step };
                 let across = predicted[point].get(lane) - here;
-                here += across * (length(if back { point } else { point - 1 }) / across.length());
+                here += across * (length(if back { point } else { point - 1 }) / across.length().max(1e-15));
                 if point != root {
                     predicted[point].set(lane, here);
                 }

@@ -1,31 +1,37 @@
 //! `gather`: points take their velocities from the faces.
 
 use rayon::prelude::*;
-use strandline_groom::{LANES, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use super::faces::{Faces, Stencil};
 use super::grid::{Grid, Place};
 use super::volume::Volume;
 
-/// Points of a strand that the head moves; they keep their velocities.
-const ROOTED: usize = 2;
-
 /// Updates the velocities of free points: `a` times (the velocity plus its change on the faces)
-/// plus (1 - `a`) times the velocity on the faces, with `a` the FLIP share [Chen2011 eq. 5].
+/// plus (1 - `a`) times the velocity on the faces, with `a` the FLIP share of a step
+/// of `time_step` \[s\] [Chen2011 eq. 5].
 ///
 /// Every face in the stencil of a point carries weight, at least its own. Points outside the box
-/// keep their velocities. Shapes are `[block][point]` of lanes, world space.
-pub fn gather(volume: &Volume, positions: &[Vec3Lanes], velocities: &mut [Vec3Lanes]) {
+/// and those that the head moves, whose inverse mass is 0, keep their velocities. Shapes are
+/// `[block][point]` of lanes, world space.
+pub fn gather(
+    volume: &Volume,
+    time_step: f32,
+    inverse_mass: &[Lanes],
+    positions: &[Vec3Lanes],
+    velocities: &mut [Vec3Lanes],
+) {
     let points = volume.points_per_strand;
-    let share = volume.settings.flip_share;
+    let share = volume.settings.flip_share_in(time_step);
     velocities
         .par_chunks_mut(points)
-        .zip(positions.par_chunks(points))
+        .zip(positions.par_chunks(points).zip(inverse_mass.par_chunks(points)))
         .with_min_len(16)
         .enumerate()
-        .for_each(|(block, (velocities, positions))| {
-            for (velocity, position) in velocities.iter_mut().zip(positions).skip(ROOTED) {
-                for lane in (0..LANES).filter(|lane| volume.is_live(block, *lane)) {
+        .for_each(|(block, (velocities, (positions, inverse_mass)))| {
+            for ((velocity, position), weight) in velocities.iter_mut().zip(positions).zip(inverse_mass) {
+                let taken = |lane: &usize| volume.is_live(block, *lane) && weight.0[*lane] > 0.0;
+                for lane in (0..LANES).filter(taken) {
                     let Some(place) = volume.grid.place(position.get(lane)) else { continue };
                     let old = velocity.get(lane);
                     let (x, x_change) = at::<0>(&volume.grid, &volume.faces, &place);

@@ -1,4 +1,4 @@
-//! Forces, then a prediction: v* = v + dt a, x* = x + dt v*.
+//! Forces, then a prediction: v* = v + dt a, x* = x + dt (v* + c), with c the length pass's correction.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -25,12 +25,12 @@ pub fn integrate(solver: &Solver, state: &mut State, wind: Vec3) {
         .predicted
         .par_chunks_mut(points)
         .zip(state.velocities.par_chunks_mut(points))
-        .zip(state.positions.par_chunks(points))
+        .zip(state.positions.par_chunks(points).zip(state.corrections.par_chunks(points)))
         .enumerate()
         .with_min_len(16)
         .for_each_init(
             || vec![Vec3x8::ZERO; points],
-            |kicks, (block, ((predicted, velocities), positions))| {
+            |kicks, (block, ((predicted, velocities), (positions, corrections)))| {
                 let range = block * points..(block + 1) * points;
                 let inverse_mass = &solver.inverse_mass[range.clone()];
                 kicks.fill(Vec3x8::ZERO);
@@ -41,7 +41,7 @@ pub fn integrate(solver: &Solver, state: &mut State, wind: Vec3) {
                         strand.pull(stride, &spring, settings.time_step, kicks);
                     }
                 }
-                fall.predict(positions, inverse_mass, kicks, velocities, predicted);
+                fall.predict(positions, corrections, inverse_mass, kicks, velocities, predicted);
             },
         );
 }
@@ -110,6 +110,7 @@ impl Fall {
     fn predict(
         &self,
         positions: &[Vec3Lanes],
+        corrections: &[Vec3Lanes],
         inverse_mass: &[Lanes],
         kicks: &[Vec3x8],
         velocities: &mut [Vec3Lanes],
@@ -127,7 +128,8 @@ impl Fall {
             let dragged = pushed + (relative - along) * self.across + along * self.along;
             let velocity = (dragged * self.kept).or(free, before);
             velocity.store(&mut velocities[point]);
-            let end = Vec3x8::load(&positions[point]) + velocity * self.time_step;
+            let ahead = velocity + Vec3x8::load(&corrections[point]);
+            let end = Vec3x8::load(&positions[point]) + ahead * self.time_step;
             end.or(free, Vec3x8::load(&predicted[point])).store(&mut predicted[point]);
         }
     }

@@ -22,10 +22,11 @@ pub struct Follow<'a> {
 }
 
 impl Follow<'_> {
-    /// Moves each point to its length from the one before and tells how far \[m\] it moved.
+    /// Moves each point to its length from the one before and tells how far \[m\] that moved it.
     ///
-    /// A held shape turns the segments first; that turn is no correction of a length and gives
-    /// no velocity back. Segments between the head and a hand go where the hand pulls them.
+    /// A held shape turns the segments first, and solids push points out last: neither is a correction
+    /// of a length, which gives velocity back. Segments between the head and a hand go where the hand
+    /// pulls them.
     pub fn place(
         &self,
         mut held: Option<Held>,
@@ -45,6 +46,7 @@ impl Follow<'_> {
             }
             let across = found - before;
             let mut placed = before + across * (length / across.length());
+            corrections[point] = (placed - found).or(free, Vec3x8::ZERO);
             if !self.solids.is_empty() && free.any() {
                 for _ in 0..PLACINGS {
                     let margin = self.margins[point];
@@ -59,7 +61,6 @@ impl Follow<'_> {
             }
             let placed = placed.or(free, found);
             placed.store(&mut positions[point]);
-            corrections[point] = placed - found;
             if let Some(held) = &mut held {
                 held.pass(point, placed - before);
             }

@@ -27,6 +27,7 @@ kernel! {
         3 rest: Read f32,
         4 predicted: ReadWrite f32,
         5 velocities: ReadWrite f32,
+        6 positions: ReadWrite f32,
         7 outcomes: ReadWrite [f32; 4],
     }
 }
@@ -53,10 +54,9 @@ impl Stage {
 
     pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
         let Buffers { step, solids, rest_positions, rest, velocities, outcomes, .. } = buffers;
-        let predicted = &buffers.places[1 - side];
-        let advance = self
-            .advance
-            .bind(gpu, &Advance { step, solids, rest_positions, rest, predicted, velocities, outcomes })?;
+        let (positions, predicted) = (&buffers.places[side], &buffers.places[1 - side]);
+        let hair = Advance { step, solids, rest_positions, rest, predicted, velocities, positions, outcomes };
+        let advance = self.advance.bind(gpu, &hair)?;
         let pressure = buffers.volume.as_ref().map_or(&buffers.no_pressure, |volume| &volume.states);
         let reports = &buffers.reports;
         let report = self.report.bind(gpu, &Gathered { step, outcomes, pressure, reports })?;

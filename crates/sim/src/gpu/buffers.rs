@@ -33,7 +33,7 @@ pub(super) struct Buffers {
     pub solids: Buffer<[u32; 4]>,
     /// Positions \[m\] of the last two steps; which is the newer changes with every step.
     pub places: [Buffer<f32>; 2],
-    /// \[m/s\]
+    /// Velocities of all points \[m/s\], and behind them what the next prediction adds to them.
     pub velocities: Buffer<f32>,
     /// Five numbers: see constrain.wesl.
     pub planes: Buffer<f32>,
@@ -71,7 +71,7 @@ impl Buffers {
                 vectors("positions", &state.positions)?,
                 vectors("predicted positions", &state.previous_positions)?,
             ],
-            velocities: vectors("velocities", &state.velocities)?,
+            velocities: Buffer::from_slice(gpu, "velocities", &speeds(state))?,
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
             grips: Buffer::new(gpu, "grips", lane_count)?,
             boxes: Buffer::new(gpu, "boxes", 2 * solver.strand_count.div_ceil(THREADS))?,
@@ -93,11 +93,11 @@ impl Buffers {
     /// that a kernel reads or writes, once.
     pub fn bytes_of_step(&self) -> u64 {
         // Numbers of four bytes per point: pose_roots touches two points of each strand only.
-        const INTEGRATE: u64 = 3 + 3 + 2 + 2 + 3;
-        const CONSTRAIN: u64 = 3 + 3 + 6 + 5 + 3 + 3;
+        const INTEGRATE: u64 = 3 + 3 + 3 + 2 + 2 + 3;
+        const CONSTRAIN: u64 = 3 + 3 + 6 + 5 + 3 + 3 + 3;
         const ADVANCE: u64 = 3 + 3 + 2;
         // Bounds, cells, order, sums of faces, gather.
-        const VOLUME: u64 = 4 + (4 + 2) + (2 + 3 + 3 + 1 + 8) + 8 + (3 + 3 + 3);
+        const VOLUME: u64 = 4 + (4 + 2) + (2 + 3 + 3 + 1 + 8) + 8 + (1 + 3 + 3 + 3);
         // Counts, sums, kinds, rows, faces written and read back.
         const CELL: u64 = 4 + 6 + 2 + 3 + 6 + 6;
         let strands = 4 * self.point_count() as u64 * (INTEGRATE + CONSTRAIN + ADVANCE);
@@ -143,6 +143,11 @@ fn grip(grip: &Grip, lane: usize) -> [f32; 4] {
     let point = grip.points[lane];
     let number = if point == NO_POINT { -1.0 } else { point as f32 };
     grip.offsets.get(lane).extend(number).to_array()
+}
+
+/// Velocities and what the next prediction adds to them, as the device has them.
+pub(super) fn speeds(state: &State) -> Vec<f32> {
+    [floats(&state.velocities), floats(&state.corrections)].concat()
 }
 
 /// Vectors as the numbers that they are.

@@ -14,6 +14,7 @@ kernel! {
         2 predicted: Read f32,
         3 velocities: ReadWrite f32,
         4 faces: Read [f32; 2],
+        5 rest: Read f32,
     }
 }
 
@@ -34,6 +35,7 @@ impl Stage {
                 predicted: &buffers.places[1 - side],
                 velocities: &buffers.velocities,
                 faces: &volume.faces,
+                rest: &buffers.rest,
             },
         )?;
         Ok(vec![(bound, groups(buffers.point_count(), THREADS))])

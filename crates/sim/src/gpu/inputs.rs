@@ -120,7 +120,7 @@ impl Step {
             lane_count: solver.lane_count() as u32,
             points: solver.points_per_strand as u32,
             collider_count: solver.colliders.len() as u32,
-            flip_share: settings.volume.flip_share,
+            flip_share: settings.volume.flip_share_in(settings.time_step),
             tolerance: settings.volume.tolerance,
             max_iterations: settings.volume.max_iterations,
             preconditioner: match settings.volume.preconditioner {

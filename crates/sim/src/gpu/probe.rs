@@ -84,7 +84,21 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn velocities(&self) -> Result<Vec<Vec3Lanes>, SimError> {
-        Ok(vectors(&self.state.buffers.velocities.read()?))
+        Ok(vectors(&self.velocities_and_corrections()?.0))
+    }
+
+    /// What the next prediction adds to the velocities \[m/s\].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn corrections(&self) -> Result<Vec<Vec3Lanes>, SimError> {
+        Ok(vectors(&self.velocities_and_corrections()?.1))
+    }
+
+    fn velocities_and_corrections(&self) -> Result<(Vec<f32>, Vec<f32>), SimError> {
+        let mut velocities = self.state.buffers.velocities.read()?;
+        let corrections = velocities.split_off(velocities.len() / 2);
+        Ok((velocities, corrections))
     }
 
     /// Gives the device the cells and the faces of a volume of the host.

@@ -3,7 +3,7 @@ use strandline_gpu::{Buffer, Readback, Timer};
 use strandline_groom::{Lanes, RestShape, Vec3Lanes};
 
 use super::advance::Report;
-use super::buffers::{Buffers, REPORTS, floats};
+use super::buffers::{Buffers, REPORTS, floats, speeds};
 use super::solver::GpuSolver;
 use super::step::Stages;
 use super::volume::Volume;
@@ -181,7 +181,7 @@ impl GpuState {
     }
 
     /// Waits for the device and copies what a picture needs into a state of the host: positions,
-    /// those of one step ago, the head's pose and the time; and the velocities.
+    /// those of one step ago, the head's pose and the time; and the velocities with their corrections.
     ///
     /// # Errors
     /// The device was lost; the state is then as it was.
@@ -194,7 +194,9 @@ impl GpuState {
         let [positions, previous, velocities] = parts.map(|part| copied.take(part));
         floats_mut(&mut state.positions).copy_from_slice(&positions);
         floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
-        floats_mut(&mut state.velocities).copy_from_slice(&velocities);
+        let (velocities, corrections) = velocities.split_at(velocities.len() / 2);
+        floats_mut(&mut state.velocities).copy_from_slice(velocities);
+        floats_mut(&mut state.corrections).copy_from_slice(corrections);
         state.world_from_head = self.world_from_head;
         state.time = self.time;
         state.grab.hand = self.grab.hand;
@@ -209,7 +211,7 @@ impl GpuState {
         self.buffers.write_rest(&solver.solver, &state.scratch.lengths)?;
         self.buffers.places[self.side].write(floats(&state.positions))?;
         self.buffers.places[1 - self.side].write(floats(&state.previous_positions))?;
-        self.buffers.velocities.write(floats(&state.velocities))?;
+        self.buffers.velocities.write(&speeds(state))?;
         self.length_scale.clone_from(&state.length_scale);
         self.lengths.clone_from(&state.scratch.lengths);
         self.world_from_head = state.world_from_head;
