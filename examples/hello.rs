@@ -1,17 +1,24 @@
-//! Grow a style, let it hang for a second, save a picture.
+//! The README's code: grow a style on the built-in head, shake it for a second, save a picture.
 //! `cargo run --release -p strandline --example hello`
 
-use strandline::{Backend, Camera, Hair, Look, Pose, Settings, Style, groom::StyleSettings};
+use strandline::{Backend, Camera, Error, Hair, Prepared, Scene, Style};
+
+fn hello() -> Result<(), Error> {
+    let mut scene = Scene::demo(); // or Scene::load("scene.toml".as_ref())?
+    scene.set_style(Style::Wavy); // or scene.groom.file = Some("own.hair".into())
+    let prepared = Prepared::new(&scene)?;
+    let head = prepared.head.clone();
+    let mut hair = Hair::from_scene(&scene, prepared, Backend::auto())?;
+    for frame in 1..=60 {
+        let seconds = 1.0 / 60.0;
+        hair.step(seconds, &head.pose(seconds * f64::from(frame)))?;
+    }
+    hair.picture(&Camera::three_quarter(), &scene.look)?.save("wavy.png")?;
+    Ok(())
+}
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let quick = std::env::var_os("STRANDLINE_QUICK").is_some();
-    let strand_count = if quick { 50 } else { 2000 };
-    let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Bob) }.grow()?;
-    let mut hair = Hair::new(Backend::auto(), &groom, &Settings::default())?;
-    for _ in 0..60 {
-        hair.step(1.0 / 60.0, &Pose::IDENTITY)?;
-    }
     std::fs::create_dir_all("out/examples")?;
-    hair.picture(&Camera::three_quarter(), &Look::brown())?.save("out/examples/hello.png")?;
-    Ok(())
+    std::env::set_current_dir("out/examples")?;
+    Ok(hello()?)
 }
