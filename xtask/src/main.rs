@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | bless | names`.
+//! Project chores: `cargo xtask test | ci | bless | docs | names`.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
@@ -17,6 +17,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            with STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1
   ci       test --setup
   bless    record the golden pictures anew; look at each before you commit it
+  docs     write docs/scene.md from the settings table
   names    check that every stage has one name everywhere";
 
 /// What to do.
@@ -24,6 +25,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
 enum Chore {
     Test { setup: bool },
     Bless,
+    Docs,
     Names,
     Help,
 }
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
     let passed = match chore(&words) {
         Some(Chore::Test { setup }) => run::test(setup),
         Some(Chore::Bless) => run::bless(),
+        Some(Chore::Docs) => run::docs(),
         Some(Chore::Names) => names::check(),
         Some(Chore::Help) => {
             println!("{USAGE}");
@@ -56,6 +59,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["test"] => Some(Chore::Test { setup: false }),
         ["test", "--setup"] | ["ci"] => Some(Chore::Test { setup: true }),
         ["bless"] => Some(Chore::Bless),
+        ["docs"] => Some(Chore::Docs),
         ["names"] => Some(Chore::Names),
         _ => None,
     }

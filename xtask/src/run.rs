@@ -90,6 +90,13 @@ pub fn bless() -> bool {
     cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 
+/// Writes docs/scene.md anew from the settings table.
+pub fn docs() -> bool {
+    let mut tally = Tally::default();
+    let page = ["test", "--package", "strandline", "--test", "scene_reference", "the_page"];
+    cargo(&page, &[("STRANDLINE_BLESS", "1")], &mut tally)
+}
+
 /// The examples, by the name of their file or folder, in order.
 fn examples() -> Vec<String> {
     let folder = root().join("examples");

@@ -225,10 +225,10 @@ impl Inputs {
             scene.film.start = 0.0;
         }
         if let Some(backend) = self.sim_device.or(self.backend) {
-            scene.simulation.backend = backend;
+            scene.devices.simulation = backend;
         }
         if let Some(backend) = self.render_device.or(self.backend) {
-            scene.picture.backend = backend;
+            scene.devices.pictures = backend;
         }
         if let Some(frames) = self.frames {
             scene.film.frames = frames;

@@ -43,7 +43,7 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
 }
 
 fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
-    let mut player = Player::new(scene, scene.devices(), true)?;
+    let mut player = Player::new(scene, scene.devices, true)?;
     for note in player.notes() {
         eprintln!("note: {note}");
     }

@@ -92,7 +92,7 @@ fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let inputs = &options.inputs;
     let scene = inputs.scene()?;
-    let mut player = Player::new(&scene, scene.devices(), false)?;
+    let mut player = Player::new(&scene, scene.devices, false)?;
     for note in player.notes() {
         eprintln!("note: {note}");
     }

@@ -4,7 +4,8 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 use strandline::{
-    Backend, Camera, Command, Error, Light, Live, News, Scene, Shown, body::Aabb, render::PictureSettings,
+    Backend, Camera, Command, Error, Light, Live, News, Scene, Shown, base::SettingError, body::Aabb,
+    render::PictureSettings,
 };
 
 use crate::{files, messages, panels, saves, stage, strip};
@@ -134,12 +135,8 @@ impl App {
             Some("hair" | "tfx") => scene.groom.file = Some(absolute),
             Some("obj" | "gltf" | "glb") => scene.body.file = Some(absolute),
             _ => {
-                return Err(Error::Value {
-                    key: "the file",
-                    found: file.display().to_string(),
-                    expected: "a .toml scene, a .hair or .tfx groom, or an .obj, .gltf or .glb body"
-                        .to_owned(),
-                });
+                let expected = "a .toml scene, a .hair or .tfx groom, or an .obj, .gltf or .glb body";
+                return Err(SettingError::new("the file", file.display(), expected).into());
             }
         }
         scene.begin_at_rest();
@@ -196,8 +193,8 @@ impl App {
         let PictureSettings { width, height, .. } = self.scene.picture;
         (scene.picture.width, scene.picture.height) = (width, height);
         for (new, old) in [
-            (&mut scene.simulation.backend, self.scene.simulation.backend),
-            (&mut scene.picture.backend, self.scene.picture.backend),
+            (&mut scene.devices.simulation, self.scene.devices.simulation),
+            (&mut scene.devices.pictures, self.scene.devices.pictures),
         ] {
             if *new == Backend::Auto {
                 *new = old;

@@ -2,17 +2,24 @@
 
 use std::ops::RangeInclusive;
 
-use eframe::egui::{self, Response, Slider, SliderClamping, Ui};
+use eframe::egui::{self, Response, Slider, SliderClamping, Ui, emath::Numeric};
 use glam::Vec3;
+use strandline::base::Row;
 
 /// A section of the panel.
 pub fn section(ui: &mut Ui, name: &str, open: bool, add: impl FnOnce(&mut Ui)) {
     egui::CollapsingHeader::new(name).default_open(open).show(ui, add);
 }
 
-/// A slider for a value with a default; true when it was moved. A value outside the range, as a scene may
-/// have it, stays until it is moved.
-pub fn slide<N: egui::emath::Numeric>(
+/// A slider for a setting with a default, over the range that its row names; true when it was moved. A value
+/// outside that range, as a scene may have it, stays until it is moved.
+pub fn slide<N: Numeric>(ui: &mut Ui, value: (&mut N, N), row: &Row, name: &str) -> bool {
+    let [least, most] = row.slider().map(N::from_f64);
+    slide_in(ui, value, least..=most, name, &about(row))
+}
+
+/// A slider for what is no setting.
+pub fn slide_in<N: Numeric>(
     ui: &mut Ui,
     (value, default): (&mut N, N),
     range: RangeInclusive<N>,
@@ -24,20 +31,32 @@ pub fn slide<N: egui::emath::Numeric>(
     set_back(ui, &response, (value, default)) || response.changed()
 }
 
-/// A box to tick; true when it changed.
-pub fn tick(ui: &mut Ui, (value, default): (&mut bool, bool), name: &str, tip: &str) -> bool {
+/// What a setting is, its unit, and what more of it does.
+pub fn about(row: &Row) -> String {
+    let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
+    let more = if row.more.is_empty() { String::new() } else { format!("\nmore: {}", row.more) };
+    format!("{}{unit}{more}", row.sentence())
+}
+
+/// A box to tick for a setting; true when it changed.
+pub fn tick(ui: &mut Ui, value: (&mut bool, bool), row: &Row, name: &str) -> bool {
+    tick_of(ui, value, name, &about(row))
+}
+
+/// A box to tick for what is no setting.
+pub fn tick_of(ui: &mut Ui, (value, default): (&mut bool, bool), name: &str, tip: &str) -> bool {
     let response = ui.checkbox(value, name);
     let response = response.on_hover_text(tip_of(tip, if default { "on" } else { "off" }));
     set_back(ui, &response, (value, default)) || response.changed()
 }
 
 /// A colour, linear RGB; true when it changed.
-pub fn colour(ui: &mut Ui, (value, default): (&mut Vec3, Vec3), name: &str, tip: &str) -> bool {
+pub fn colour(ui: &mut Ui, (value, default): (&mut Vec3, Vec3), row: &Row, name: &str) -> bool {
     ui.horizontal(|ui| {
         let mut rgb = value.to_array();
         let response = ui.color_edit_button_rgb(&mut rgb);
         let [red, green, blue] = default.to_array().map(|part| number(f64::from(part)));
-        let response = response.on_hover_text(tip_of(tip, &format!("{red}, {green}, {blue}")));
+        let response = response.on_hover_text(tip_of(&about(row), &format!("{red}, {green}, {blue}")));
         ui.label(name);
         let changed = response.changed();
         if changed {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
 use glam::Vec2;
-use strandline::{Camera, Command, Ray, render::PictureSettings};
+use strandline::{Camera, Command, Ray, base::Group, render::PictureSettings, scene::MotionSection};
 
 use crate::{App, Tool, controls::button, files, messages, wind};
 
@@ -227,7 +227,7 @@ fn drag(app: &mut App, ui: &egui::Ui, response: &egui::Response, tool: Tool) {
         let halves = 2.0 / response.rect.height().max(1.0) * Vec2::new(-moved.x, moved.y);
         look(app, pan(&app.camera, halves));
     } else if tool == Tool::Turn {
-        let most = crate::panels::FARTHEST;
+        let most = MotionSection::ROWS.rotation.slider()[1] as f32;
         // An angle of the scene beyond that is not pulled back.
         let turn = |angle: f32, points: f32| {
             (angle + (ORBIT * points).to_degrees()).clamp(angle.min(-most), angle.max(most))

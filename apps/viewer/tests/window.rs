@@ -33,8 +33,8 @@ fn scene() -> Scene {
     scene.style.strand_count = 60;
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
-    scene.simulation.backend = strandline::Backend::Cpu;
-    scene.picture.backend = strandline::Backend::Cpu;
+    scene.devices.simulation = strandline::Backend::Cpu;
+    scene.devices.pictures = strandline::Backend::Cpu;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
     scene
 }
@@ -267,7 +267,7 @@ fn a_scene_saved_in_mid_swing_begins_with_the_picture_that_was_seen() {
     let saved = Scene::load(&path("view_000.toml")).unwrap();
     assert!(saved.film.start > 0.2, "{}", saved.film.start);
     let first = |scene: &Scene| {
-        let mut player = strandline::Player::new(scene, scene.devices(), true).unwrap();
+        let mut player = strandline::Player::new(scene, scene.devices, true).unwrap();
         let first = player.find_map(|event| match event.unwrap() {
             strandline::Event::Drawn { picture, .. } => Some(picture),
             _ => None,

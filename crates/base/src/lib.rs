@@ -1,5 +1,6 @@
 //! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
-//! that one run writes at a time, text that is safe to print. No hair, no GPU, nothing of ours below it.
+//! that one run writes at a time, text that is safe to print, the settings table. No hair, no GPU, nothing of
+//! ours below it.
 
 #![forbid(unsafe_code)]
 
@@ -7,10 +8,14 @@ mod folder_lock;
 mod parts;
 mod plain_file;
 mod printable;
+mod setting;
+mod setting_macro;
+mod setting_values;
 mod whole_file;
 
 pub use folder_lock::FolderLock;
 pub use parts::{Abandoned, abandon_parts};
 pub use plain_file::{open_plain, read_plain};
 pub use printable::printable;
+pub use setting::{Group, Key, Kind, Row, SettingError, Table, Value, Word, number};
 pub use whole_file::WholeFile;

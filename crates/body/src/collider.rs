@@ -1,19 +1,19 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use strandline_base::choices;
 
 use crate::{Aabb, BodyError, DistanceGrid, Mannequin, SignedDistance};
 
-/// What a collider moves with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Carrier {
-    /// The head: the shape is given in head space.
-    #[default]
-    Head,
-    /// Nothing: the shape is given in world space and stays.
-    World,
+choices! {
+    /// What a collider moves with.
+    pub enum Carrier as "carrier" {
+        /// The head: the shape is given in head space.
+        Head = "head",
+        /// Nothing: the shape is given in world space and stays.
+        World = "world",
+    }
+    default Head
 }
 
 /// A solid that hair cannot enter.

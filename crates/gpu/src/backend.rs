@@ -2,6 +2,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+use strandline_base::{Key, Kind, Row, SettingError, Value};
 
 use crate::{Gpu, GpuError};
 
@@ -88,6 +89,19 @@ impl TryFrom<String> for Backend {
 impl From<Backend> for String {
     fn from(backend: Backend) -> Self {
         backend.to_string()
+    }
+}
+
+impl Value for Backend {
+    type Given = Self;
+    const KIND: Kind = Kind::Text("auto, cpu, gpu, or gpu:0 and so on for one of several");
+
+    fn take(&mut self, given: Self) {
+        *self = given;
+    }
+
+    fn check(&self, _: &Row, _: &Key) -> Result<(), SettingError> {
+        Ok(())
     }
 }
 

@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use glam::{Quat, Vec2, Vec3};
+use strandline_base::SettingError;
 use strandline_body::Aabb;
 
 use crate::{
@@ -158,11 +159,7 @@ impl Groom {
     /// A count outside 2..=4096.
     pub fn resampled(&self, count: usize) -> Result<Self, GroomError> {
         if !(2..=format::MAX_POINTS_PER_STRAND as usize).contains(&count) {
-            return Err(GroomError::Setting {
-                name: "points",
-                found: count.to_string(),
-                expected: "2 to 4096",
-            });
+            return Err(SettingError::new("the number of points", count, "2 to 4096").into());
         }
         let strands = 0..self.strand_count();
         let mut groom = Self::empty(0.0);

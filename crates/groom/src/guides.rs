@@ -1,5 +1,6 @@
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::SettingError;
 
 use crate::{Groom, GroomError, LANES, Vec3Lanes, block_count};
 
@@ -31,11 +32,7 @@ impl Guides {
     /// `points_per_strand` outside 4..=64; a groom without strands.
     pub fn resample(groom: &Groom, points_per_strand: usize) -> Result<Self, GroomError> {
         if !(Self::MIN_POINTS..=Self::MAX_POINTS).contains(&points_per_strand) {
-            return Err(GroomError::Setting {
-                name: "points_per_strand",
-                found: points_per_strand.to_string(),
-                expected: "4 to 64",
-            });
+            return Err(SettingError::new("groom.points_per_strand", points_per_strand, "4 to 64").into());
         }
         let strand_count = groom.strand_count();
         if strand_count == 0 {

@@ -1,5 +1,6 @@
 use glam::{Affine3A, Mat4, Quat, Vec3, Vec4};
 use serde::{Deserialize, Serialize};
+use strandline_base::SettingError;
 use strandline_body::Aabb;
 
 use crate::RenderError;
@@ -122,7 +123,7 @@ impl Camera {
     /// A value that is not finite, a field of view outside 1 to 170 degrees, a near plane that is not
     /// positive, a camera that stands on its target.
     pub fn validate(&self) -> Result<(), RenderError> {
-        let refuse = |name, found: String, expected| Err(RenderError::Setting { name, found, expected });
+        let refuse = |key, found: String, expected: &str| Err(SettingError::new(key, found, expected).into());
         if !self.position.is_finite() || !self.target.is_finite() {
             let found = format!("{} looking at {}", self.position, self.target);
             return refuse("camera.position", found, "finite numbers");

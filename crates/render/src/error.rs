@@ -1,19 +1,14 @@
 use std::path::PathBuf;
 
+use strandline_base::SettingError;
+
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// A setting outside its range.
-    #[error("{name} is {found}, expected {expected}")]
-    Setting {
-        /// The setting.
-        name: &'static str,
-        /// What was given.
-        found: String,
-        /// The range.
-        expected: &'static str,
-    },
+    #[error(transparent)]
+    Setting(#[from] SettingError),
     /// More memory than a picture may take.
     #[error(
         "{what} would take {needed} MiB, more than the {allowed} MiB that a picture may take: \

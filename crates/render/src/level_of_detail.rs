@@ -1,30 +1,25 @@
-use serde::{Deserialize, Serialize};
+use strandline_base::{Group, settings};
 
-use crate::{RenderError, look::require};
+use crate::RenderError;
 
-/// How detail falls with viewing distance [Chen2011 table 5].
-///
-/// Up to `full_distance` everything is drawn. Beyond it the share of follow strands falls in inverse
-/// proportion to the distance, and that of segments with its square root (a segment strays from the
-/// curve by the square of its length, so it strays by the same number of pixels), down to their least shares. Both
-/// numbers are continuous, so nothing jumps: the last follow strand fades by its width while the
-/// others widen (their sum stays), and the last segment of a strand shrinks to nothing at the tip.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct LevelOfDetail {
-    /// Segments on each span between two guide points at full detail, 1 to 16. Default 4.
-    pub segments_per_span: u32,
-    /// Distance \[m\] from the camera to the hair's middle up to which all is drawn. Default 1.5.
-    pub full_distance: f32,
-    /// Least share of the follow strands that is drawn from afar, 0 to 1. Default 0.125.
-    pub least_strands: f32,
-    /// Least share of the segments that is drawn from afar, 0 to 1. Default 0.5.
-    pub least_segments: f32,
-}
-
-impl Default for LevelOfDetail {
-    fn default() -> Self {
-        Self { segments_per_span: 4, full_distance: 1.5, least_strands: 0.125, least_segments: 0.5 }
+settings! {
+    /// How detail falls with viewing distance [Chen2011 table 5].
+    ///
+    /// Up to `full_distance` everything is drawn. Beyond it the share of follow strands falls in inverse
+    /// proportion to the distance, and that of segments with its square root (a segment strays from the
+    /// curve by the square of its length, so it strays by the same number of pixels), down to their least shares. Both
+    /// numbers are continuous, so nothing jumps: the last follow strand fades by its width while the
+    /// others widen (their sum stays), and the last segment of a strand shrinks to nothing at the tip.
+    pub struct LevelOfDetail: Copy {
+        /// Segments on each span between two guide points at full detail.
+        segments_per_span: u32 = 4, in [1, 16], more "rounder strands, at a cost that grows with it";
+        /// Distance from the camera to the hair's middle up to which all is drawn.
+        full_distance: f32 = 1.5, in [1e-3, 1e6] "m", slider [0.2, 10.0],
+            more "detail that falls later";
+        /// Least share of the follow strands that is drawn from afar.
+        least_strands: f32 = 0.125, in [0.0, 1.0], more "more, thinner strands from afar";
+        /// Least share of the segments that is drawn from afar.
+        least_segments: f32 = 0.5, in [0.0, 1.0], more "rounder strands from afar";
     }
 }
 
@@ -39,31 +34,7 @@ impl LevelOfDetail {
     /// # Errors
     /// The first setting outside its range.
     pub fn validate(&self) -> Result<(), RenderError> {
-        let share = 0.0..=1.0;
-        require(
-            (1..=16).contains(&self.segments_per_span),
-            "level_of_detail.segments_per_span",
-            &self.segments_per_span,
-            "1 to 16",
-        )?;
-        require(
-            self.full_distance > 0.0 && self.full_distance.is_finite(),
-            "level_of_detail.full_distance",
-            &self.full_distance,
-            "a distance above 0 m",
-        )?;
-        require(
-            share.contains(&self.least_strands),
-            "level_of_detail.least_strands",
-            &self.least_strands,
-            "0 to 1",
-        )?;
-        require(
-            share.contains(&self.least_segments),
-            "level_of_detail.least_segments",
-            &self.least_segments,
-            "0 to 1",
-        )
+        Ok(self.check_as("level_of_detail")?)
     }
 
     /// The level for hair at a `distance` \[m\] from the camera, of a look with `follow_strands`

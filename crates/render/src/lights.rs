@@ -1,58 +1,43 @@
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use strandline_base::{Group, Key, SettingError, choices, settings};
 
 use crate::RenderError;
-use crate::look::{require, require_range};
 
-/// How a light's rays spread.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LightKind {
-    /// Parallel rays from `position` toward `target`, as from the sun.
-    Directional,
-    /// A cone from `position` about the way to `target`.
-    #[default]
-    Spot,
-    /// Every way from `position`.
-    Point,
-}
-
-/// A light. Each may cast shadows of hair and body.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Light {
-    /// How its rays spread: `directional`, `spot` or `point`. Default spot.
-    pub kind: LightKind,
-    /// Where it stands \[m\], world space. Default (0.9, 0.9, 1.2).
-    pub position: Vec3,
-    /// What it points at \[m\], world space. Default the origin.
-    pub target: Vec3,
-    /// Colour, linear RGB. Default white.
-    pub color: Vec3,
-    /// Radiance of a white matte surface at the target that faces the light; spot and point
-    /// lights fall off from there with the square of the distance. Default 1.
-    pub intensity: f32,
-    /// Angle \[degrees\] between the axis and the rim of a spot light's cone, 1 to 85. Default 30.
-    pub cone_angle: f32,
-    /// Share of that angle over which the rim fades, 0 to 1. Default 0.3.
-    pub cone_softness: f32,
-    /// Whether hair and body cast shadows in it. Default true.
-    pub shadow: bool,
-}
-
-impl Default for Light {
-    fn default() -> Self {
-        Self {
-            kind: LightKind::Spot,
-            position: Vec3::new(0.9, 0.9, 1.2),
-            target: Vec3::ZERO,
-            color: Vec3::ONE,
-            intensity: 1.0,
-            cone_angle: 30.0,
-            cone_softness: 0.3,
-            shadow: true,
-        }
+choices! {
+    /// How a light's rays spread.
+    pub enum LightKind as "light.kind" {
+        /// Parallel rays from `position` toward `target`, as from the sun.
+        Directional = "directional",
+        /// A cone from `position` about the way to `target`.
+        Spot = "spot",
+        /// Every way from `position`.
+        Point = "point",
     }
+    default Spot
+}
+
+settings! {
+    /// A light. Each may cast shadows of hair and body.
+    pub struct Light: Copy {
+        /// How its rays spread.
+        kind: LightKind = LightKind::default();
+        /// Where it stands, world space.
+        position: Vec3 = Vec3::new(0.9, 0.9, 1.2), in [-1e6, 1e6] "m";
+        /// What it points at, world space.
+        target: Vec3 = Vec3::ZERO, in [-1e6, 1e6] "m";
+        /// Colour, linear RGB.
+        color: Vec3 = Vec3::ONE, in [0.0, 1000.0];
+        /// Radiance of a white matte surface at the target that faces the light; spot and point
+        /// lights fall off from there with the square of the distance.
+        intensity: f32 = 1.0, in [0.0, 1e6], slider [0.0, 5.0], more "a brighter light";
+        /// Angle between the axis and the rim of a spot light's cone.
+        cone_angle: f32 = 30.0, in [1.0, 85.0] "degrees", more "a wider cone";
+        /// Share of that angle over which the rim fades.
+        cone_softness: f32 = 0.3, in [0.0, 1.0], more "a softer rim";
+        /// Whether hair and body cast shadows in it.
+        shadow: bool = true;
+    }
+    also Light::apart;
 }
 
 /// What a light sends to a point.
@@ -88,16 +73,14 @@ impl Light {
     /// # Errors
     /// The first setting outside its range; a light that stands on its target.
     pub fn validate(&self) -> Result<(), RenderError> {
-        let place = |vector: Vec3| vector.is_finite() && vector.abs().max_element() < 1e6;
-        require(place(self.position), "light.position", &self.position, "three finite lengths")?;
-        require(place(self.target), "light.target", &self.target, "three finite lengths")?;
-        let apart = self.position.distance(self.target) > 1e-6;
-        require(apart, "light.position", &self.position, "a place apart from the target")?;
-        let sound = self.color.is_finite() && self.color.min_element() >= 0.0;
-        require(sound, "light.color", &self.color, "three finite numbers, none negative")?;
-        require_range("light.intensity", self.intensity, 0.0, 1e6, "0 to 1000000")?;
-        require_range("light.cone_angle", self.cone_angle, 1.0, 85.0, "1 to 85 degrees")?;
-        require_range("light.cone_softness", self.cone_softness, 0.0, 1.0, "0 to 1")
+        Ok(self.check_as("light")?)
+    }
+
+    fn apart(&self, key: &Key) -> Result<(), SettingError> {
+        if self.position.distance(self.target) > 1e-6 {
+            return Ok(());
+        }
+        Err(SettingError::new(key.of("position"), self.position, "a place apart from the target"))
     }
 
     /// What the light sends to a point \[m\], world space.
@@ -133,19 +116,13 @@ impl Light {
     }
 }
 
-/// Light from all around: a sky above and a ground below, even between.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Environment {
-    /// Radiance from straight above, linear RGB. Default (0.26, 0.29, 0.33).
-    pub sky: Vec3,
-    /// Radiance from straight below, linear RGB. Default (0.13, 0.11, 0.10).
-    pub ground: Vec3,
-}
-
-impl Default for Environment {
-    fn default() -> Self {
-        Self { sky: Vec3::new(0.26, 0.29, 0.33), ground: Vec3::new(0.13, 0.11, 0.10) }
+settings! {
+    /// Light from all around: a sky above and a ground below, even between.
+    pub struct Environment: Copy {
+        /// Radiance from straight above, linear RGB.
+        sky: Vec3 = Vec3::new(0.26, 0.29, 0.33), in [0.0, 1000.0];
+        /// Radiance from straight below, linear RGB.
+        ground: Vec3 = Vec3::new(0.13, 0.11, 0.10), in [0.0, 1000.0];
     }
 }
 
@@ -153,14 +130,6 @@ impl Environment {
     /// Radiance from a unit direction, linear RGB.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         self.ground.lerp(self.sky, 0.5 + 0.5 * direction.y)
-    }
-
-    pub(crate) fn validate(&self) -> Result<(), RenderError> {
-        for (name, color) in [("environment.sky", self.sky), ("environment.ground", self.ground)] {
-            let sound = color.is_finite() && color.min_element() >= 0.0;
-            require(sound, name, &color, "three finite numbers, none negative")?;
-        }
-        Ok(())
     }
 }
 

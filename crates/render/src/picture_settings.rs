@@ -1,71 +1,48 @@
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
-
-use crate::RenderError;
+use strandline_base::{Group, choices, settings};
 use strandline_gpu::Backend;
 
-/// How large a picture is and how light becomes colour.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct PictureSettings {
-    /// Where pictures of a scene are drawn: auto (default), cpu, gpu, or gpu:0 and so on for one of
-    /// several. A renderer that is there already stays where it is.
-    pub backend: Backend,
-    /// Width \[pixel\], 1 to 16,384. Default 800.
-    pub width: u32,
-    /// Height \[pixel\], 1 to 16,384. Default 600.
-    pub height: u32,
-    /// Samples along each axis of a pixel: 1 or 2. Default 2.
-    pub supersampling: u32,
-    /// Exposure \[stops\], -16 to 16; one more doubles the light. Default 0.
-    pub exposure: f32,
-    /// How light beyond white is shown. Default filmic.
-    pub tone_map: ToneMap,
-    /// What is behind everything.
-    pub background: Background,
-    /// Leave the background out and write opacity instead. Default false.
-    pub transparent: bool,
-}
+use crate::RenderError;
 
-/// How light beyond white is shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ToneMap {
-    /// Cut off at 1.
-    Off,
-    /// Unchanged up to a knee, then rolled off smoothly toward white.
-    #[default]
-    Filmic,
-}
-
-/// A vertical gradient, linear RGB as shown: neither exposure nor tone map changes its hue.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Background {
-    /// At the top of the picture.
-    pub top: Vec3,
-    /// At the bottom of the picture.
-    pub bottom: Vec3,
-}
-
-impl Default for Background {
-    fn default() -> Self {
-        Self { top: Vec3::new(0.30, 0.33, 0.37), bottom: Vec3::new(0.11, 0.12, 0.135) }
+settings! {
+    /// How large a picture is and how light becomes colour.
+    pub struct PictureSettings: Copy {
+        /// Width.
+        width: u32 = 800, in [1, PictureSettings::MAX_SIZE] "pixel";
+        /// Height.
+        height: u32 = 600, in [1, PictureSettings::MAX_SIZE] "pixel";
+        /// Samples along each axis of a pixel.
+        supersampling: u32 = 2, in [1, 2], more "smoother edges at four times the cost";
+        /// Exposure; one more doubles the light.
+        exposure: f32 = 0.0, in [-16.0, 16.0] "stops", slider [-4.0, 4.0], more "a brighter picture";
+        /// How light beyond white is shown.
+        tone_map: ToneMap = ToneMap::default();
+        /// What is behind everything.
+        background: Background = Background::default();
+        /// Whether the background is left out and opacity written instead.
+        transparent: bool = false;
+        moved { backend: Backend => "devices.pictures" }
     }
 }
 
-impl Default for PictureSettings {
-    fn default() -> Self {
-        Self {
-            backend: Backend::Auto,
-            width: 800,
-            height: 600,
-            supersampling: 2,
-            exposure: 0.0,
-            tone_map: ToneMap::default(),
-            background: Background::default(),
-            transparent: false,
-        }
+choices! {
+    /// How light beyond white is shown.
+    pub enum ToneMap as "picture.tone_map" {
+        /// Cut off at 1.
+        Off = "off",
+        /// Unchanged up to a knee, then rolled off smoothly toward white.
+        Filmic = "filmic",
+    }
+    default Filmic
+}
+
+settings! {
+    /// A vertical gradient, linear RGB as shown: neither exposure nor tone map changes its hue.
+    pub struct Background: Copy {
+        /// At the top of the picture.
+        top: Vec3 = Vec3::new(0.30, 0.33, 0.37), in [0.0, 1000.0];
+        /// At the bottom of the picture.
+        bottom: Vec3 = Vec3::new(0.11, 0.12, 0.135), in [0.0, 1000.0];
     }
 }
 
@@ -87,25 +64,7 @@ impl PictureSettings {
     /// # Errors
     /// A field outside its range, or samples beyond [`Self::MAX_MEMORY`].
     pub fn validate(&self) -> Result<(), RenderError> {
-        let refuse = |name, found: String, expected| Err(RenderError::Setting { name, found, expected });
-        for (name, size) in [("width", self.width), ("height", self.height)] {
-            if !(1..=Self::MAX_SIZE).contains(&size) {
-                return refuse(name, size.to_string(), "1 to 16384 pixels");
-            }
-        }
-        if !(1..=2).contains(&self.supersampling) {
-            return refuse("supersampling", self.supersampling.to_string(), "1 or 2");
-        }
-        if !(-16.0..=16.0).contains(&self.exposure) {
-            return refuse("exposure", self.exposure.to_string(), "-16 to 16 stops");
-        }
-        for (name, color) in
-            [("background.top", self.background.top), ("background.bottom", self.background.bottom)]
-        {
-            if !(color.is_finite() && color.cmpge(Vec3::ZERO).all()) {
-                return refuse(name, color.to_string(), "finite numbers of 0 or more");
-            }
-        }
+        self.check_as("picture")?;
         let samples = u64::from(self.width) * u64::from(self.height) * u64::from(self.supersampling.pow(2));
         let needed = (samples * Self::SAMPLE_BYTES).div_ceil(1 << 20);
         if needed > Self::MAX_MEMORY {

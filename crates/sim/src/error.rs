@@ -1,17 +1,12 @@
+use strandline_base::SettingError;
+
 /// Why a solver could not be made or a state changed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {
     /// A setting outside its range.
-    #[error("simulation.{name} is {found}, expected {expected}")]
-    Setting {
-        /// The setting.
-        name: &'static str,
-        /// What was given.
-        found: String,
-        /// The range.
-        expected: &'static str,
-    },
+    #[error(transparent)]
+    Setting(#[from] SettingError),
     /// A rest shape that does not fit its guides.
     #[error("the rest shape has {found}, expected {expected}")]
     Rest {

@@ -1,58 +1,40 @@
-mod limits;
-
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use strandline_base::{Group, choices, settings};
+use strandline_gpu::Backend;
 
-use crate::Backend;
+use crate::SimError;
 
-/// Everything about the motion that a person may set, in SI units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Settings {
-    /// Where a scene is simulated: auto (default), cpu, gpu, or gpu:0 and so on for one of several.
-    /// A [`Solver`](crate::Solver) itself runs where it is made.
-    pub backend: Backend,
-    /// Length of a step \[s\], 1e-5 to 0.1; default 1/60.
-    pub time_step: f32,
-    /// Rounds of the constraints in a step, 1 to 10,000; default 20 [Chen2011 §6].
-    pub iterations: u32,
-    /// Gravity \[m/s^2\], world space; default (0, -9.81, 0).
-    pub gravity: Vec3,
-    /// Mass of hair per length \[kg/m\], 1e-9 to 1; default 6.5e-6, a hair 80 um thick.
-    pub mass_per_length: f32,
-    /// Share of the velocity lost per second \[1/s\], 0 to 1000; default 0.
-    pub damping: f32,
-    /// Distance \[m\] that strands keep from solids, 0 to 0.1; default 0.001. A point that rests
-    /// nearer may come as near as it rests, so that a rest pose is never pushed.
-    pub collision_margin: f32,
-    /// Drag of the air.
-    pub drag: Drag,
-    /// Elastic springs, each can be off.
-    pub springs: Springs,
-    /// Bends at the points of a strand.
-    pub angles: Angles,
-    /// The pass that makes lengths exact.
-    pub length_pass: LengthPass,
-    /// The fluid volume.
-    pub volume: VolumeSettings,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            backend: Backend::Auto,
-            time_step: 1.0 / 60.0,
-            iterations: 20,
-            gravity: Vec3::new(0.0, -9.81, 0.0),
-            mass_per_length: 6.5e-6,
-            damping: 0.0,
-            collision_margin: 0.001,
-            drag: Drag::default(),
-            springs: Springs::default(),
-            angles: Angles::default(),
-            length_pass: LengthPass::default(),
-            volume: VolumeSettings::default(),
-        }
+settings! {
+    /// How hair moves.
+    pub struct Settings {
+        /// Length of a step.
+        time_step: f32 = 1.0 / 60.0, in [1e-5, 0.1] "s", slider [0.002, 0.05],
+            more "faster, softer and less exact";
+        /// Rounds of the constraints in a step [Chen2011 §6].
+        iterations: u32 = 20, in [1, 10_000], slider [1, 100],
+            more "stiffer bends and firmer contacts, at a higher cost";
+        /// Gravity, world space.
+        gravity: Vec3 = Vec3::new(0.0, -9.81, 0.0), in [-1000.0, 1000.0] "m/s^2", slider [-20.0, 5.0];
+        /// Mass of hair per length; the default is that of a hair 80 um thick.
+        mass_per_length: f32 = 6.5e-6, in [1e-9, 1.0] "kg/m", slider [1e-6, 5e-5],
+            more "springs that move hair less";
+        /// Share of the velocity that is lost per second.
+        damping: f32 = 0.0, in [0.0, 1000.0] "1/s", slider [0.0, 20.0], more "calmer, slower hair";
+        /// Distance that strands keep from solids. A point that rests nearer may come as near as it
+        /// rests, so that a rest pose is never pushed.
+        collision_margin: f32 = 0.001, in [0.0, 0.1] "m", slider [0.0, 0.01],
+            more "less skin that shows through, hair that floats over it";
+        /// Drag of the air.
+        drag: Drag = Drag::default();
+        /// Elastic springs, each can be off.
+        springs: Springs = Springs::default();
+        /// Bends at the points of a strand.
+        angles: Angles = Angles::default();
+        /// The pass that makes lengths exact.
+        length_pass: LengthPass = LengthPass::default();
+        /// The fluid volume.
+        volume: VolumeSettings = VolumeSettings::default();
+        moved { backend: Backend => "devices.simulation" }
     }
 }
 
@@ -71,18 +53,28 @@ impl Settings {
             ..Self::default()
         }
     }
+
+    /// Checks that every setting lies in its range.
+    ///
+    /// # Errors
+    /// The first setting that does not.
+    pub fn check(&self) -> Result<(), SimError> {
+        Ok(self.check_as("simulation")?)
+    }
 }
 
-/// Drag of the air: the rate at which hair takes the velocity of the wind.
-///
-/// A hair is pushed along by air across it about twice as strongly as by air along it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Drag {
-    /// Rate \[1/s\] for wind across the strand, 0 to 1000; default 1.5.
-    pub across: f32,
-    /// Rate \[1/s\] for wind along the strand, 0 to 1000; default 0.75.
-    pub along: f32,
+settings! {
+    /// Drag of the air: the rate at which hair takes the velocity of the wind.
+    ///
+    /// A hair is pushed along by air across it about twice as strongly as by air along it.
+    pub struct Drag: Copy {
+        /// Rate at which hair takes the velocity of wind across the strand.
+        across: f32 = 1.5, in [0.0, 1000.0] "1/s", slider [0.0, 20.0],
+            more "hair that follows the wind sooner and swings less in still air";
+        /// Rate at which hair takes the velocity of wind along the strand.
+        along: f32 = 0.75, in [0.0, 1000.0] "1/s", slider [0.0, 20.0],
+            more "hair that follows the wind sooner and falls more slowly";
+    }
 }
 
 impl Drag {
@@ -90,26 +82,20 @@ impl Drag {
     pub const OFF: Self = Self { across: 0.0, along: 0.0 };
 }
 
-impl Default for Drag {
-    fn default() -> Self {
-        Self { across: 1.5, along: 0.75 }
+settings! {
+    /// Elastic springs along a strand [Chen2011 §4].
+    ///
+    /// They are integrated explicitly, so a step cannot carry more stiffness than `m / (12 dt^2)` nor
+    /// more damping than `m / (12 dt)`, where m is the smaller mass of the two ends; what is above is
+    /// cut off there.
+    pub struct Springs: Copy {
+        /// From point i to i + 1.
+        stretch: Spring = Spring { stiffness: 2e-5, ..Spring::default() };
+        /// From point i to i + 2.
+        bend: Spring = Spring { stiffness: 1e-5, ..Spring::default() };
+        /// From point i to i + 3.
+        torsion: Spring = Spring { stiffness: 5e-6, ..Spring::default() };
     }
-}
-
-/// Elastic springs along a strand [Chen2011 §4].
-///
-/// They are integrated explicitly, so a step cannot carry more stiffness than `m / (12 dt^2)` nor
-/// more damping than `m / (12 dt)`, where m is the smaller mass of the two ends; what is above is
-/// cut off there.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Springs {
-    /// From point i to i + 1; default 2e-5 N/m.
-    pub stretch: Spring,
-    /// From point i to i + 2; default 1e-5 N/m.
-    pub bend: Spring,
-    /// From point i to i + 3; default 5e-6 N/m.
-    pub torsion: Spring,
 }
 
 impl Springs {
@@ -117,23 +103,18 @@ impl Springs {
     pub const OFF: Self = Self { stretch: Spring::OFF, bend: Spring::OFF, torsion: Spring::OFF };
 }
 
-impl Default for Springs {
-    fn default() -> Self {
-        let spring = |stiffness| Spring { enabled: true, stiffness, damping: 2e-7 };
-        Self { stretch: spring(2e-5), bend: spring(1e-5), torsion: spring(5e-6) }
+settings! {
+    /// A damped elastic spring.
+    pub struct Spring: Copy {
+        /// Whether the spring pulls; false leaves it out.
+        enabled: bool = true;
+        /// Force over extension.
+        stiffness: f32 = 1e-5, in [0.0, 1e30] "N/m", slider [0.0, 2e-4],
+            more "a strand that springs back faster, up to what a step can carry";
+        /// Force over speed of extension.
+        damping: f32 = 2e-7, in [0.0, 1e30] "N s/m", slider [0.0, 2e-6],
+            more "springs that swing less, up to what a step can carry";
     }
-}
-
-/// A damped elastic spring.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Spring {
-    /// False leaves the spring out; default true.
-    pub enabled: bool,
-    /// Force over extension \[N/m\], 0 or more; default 1e-5.
-    pub stiffness: f32,
-    /// Force over speed of extension \[N s/m\], 0 or more; default 2e-7.
-    pub damping: f32,
 }
 
 impl Spring {
@@ -141,26 +122,22 @@ impl Spring {
     pub const OFF: Self = Self { enabled: false, stiffness: 0.0, damping: 0.0 };
 }
 
-impl Default for Spring {
-    fn default() -> Self {
-        Self { enabled: true, stiffness: 1e-5, damping: 2e-7 }
+settings! {
+    /// Bends at the points of a strand, measured from the rest direction that frames carry from the
+    /// head along the strand.
+    pub struct Angles: Copy {
+        /// Largest bend away from rest at a point; pi is no limit.
+        limit: f32 = 0.6, in [0.0, std::f32::consts::PI] "rad", slider [0.05, std::f32::consts::PI],
+            more "strands that may fold more sharply";
+        /// Angular frequency at which a lone bent segment would swing back to rest; 0 is off.
+        stiffness: f32 = 25.0, in [0.0, 10_000.0] "1/s", slider [0.0, 100.0],
+            more "hair that keeps its shape against gravity";
+        /// Rate at which the length pass turns every segment to the direction that it has at rest from
+        /// the segment before; 0 is off. It goes from root to tip, so that curls of many points hold
+        /// where the other bends, which work both ways, let them hang.
+        hold: f32 = 0.0, in [0.0, 10_000.0] "1/s", slider [0.0, 100.0],
+            more "curls that stay, hair that moves as one piece";
     }
-}
-
-/// Bends at the points of a strand, measured from the rest direction that frames carry from the
-/// head along the strand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Angles {
-    /// Largest bend away from rest at a point \[rad\], 0 to pi; pi is no limit; default 0.6.
-    pub limit: f32,
-    /// Angular frequency \[1/s\] at which a lone bent segment would swing back to rest, 0 to
-    /// 10,000; 0 is off; default 25.
-    pub stiffness: f32,
-    /// Rate \[1/s\] at which the length pass turns every segment to the direction that it has at
-    /// rest from the segment before, 0 to 10,000; 0 is off; default 0. It goes from root to tip, so
-    /// that curls of many points hold where the other bends, which work both ways, let them hang.
-    pub hold: f32,
 }
 
 impl Angles {
@@ -173,50 +150,38 @@ impl Angles {
     }
 }
 
-impl Default for Angles {
-    fn default() -> Self {
-        Self { limit: 0.6, stiffness: 25.0, hold: 0.0 }
+settings! {
+    /// The pass from root to tip that makes lengths exact \[Mueller2012\].
+    pub struct LengthPass: Copy {
+        /// Whether lengths are made exact; false lets strands stretch as in the thesis.
+        enabled: bool = true;
+        /// Share of the correction of a point that the next prediction of the point before it gives back
+        /// [Mueller2012 eq. 9]. It is the same share in a step of any length: what the pass corrects is an
+        /// acceleration times the square of the step, so that what it keeps back adds up to as much
+        /// velocity in a second.
+        correction: f32 = 0.9, in [0.0, 1.0], more "hair that swings on longer, 1 without loss";
     }
 }
 
-/// The pass from root to tip that makes lengths exact \[Mueller2012\].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct LengthPass {
-    /// False leaves it out: strands stretch as in the thesis; default true.
-    pub enabled: bool,
-    /// Share of the correction of a point that the next prediction of the point before it gives back,
-    /// 0 to 1; default 0.9 [Mueller2012 eq. 9]. It is the same share in a step of any length: what
-    /// the pass corrects is an acceleration times the square of the step, so that what it keeps back
-    /// adds up to as much velocity in a second.
-    pub correction: f32,
-}
-
-impl Default for LengthPass {
-    fn default() -> Self {
-        Self { enabled: true, correction: 0.9 }
+settings! {
+    /// The fluid volume that keeps strands apart [Chen2011 §4.2, McAdams2009].
+    pub struct VolumeSettings: Copy {
+        /// Whether there is a volume; without one strands pass through each other.
+        enabled: bool = true;
+        /// Cells along x, y and z.
+        cells: [u32; 3] = [32; 3], in [4, 512], slider [8, 128],
+            more "a finer volume at a cost that grows with the cells that hold hair";
+        /// FLIP share of the velocity update in a step of 1/60 s, 0 is PIC and 1 is FLIP
+        /// [Chen2011 eq. 5]. A step of another length takes as much of PIC in a second, and no more than
+        /// all.
+        flip_share: f32 = 0.95, in [0.0, 1.0], more "livelier hair, with more noise";
+        /// Relative residual at which the pressure solve stops.
+        tolerance: f32 = 1e-5, in [1e-12, 1.0], more "a faster, less exact solve";
+        /// Most iterations of the pressure solve; on a GPU at most 2,000.
+        max_iterations: u32 = 200, in [1, 100_000], slider [1, 500], more "a solve that gives up later";
+        /// Preconditioner of the conjugate gradients.
+        preconditioner: Preconditioner = Preconditioner::default();
     }
-}
-
-/// The fluid volume that keeps strands apart [Chen2011 §4.2, McAdams2009].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct VolumeSettings {
-    /// False leaves the volume out; default true.
-    pub enabled: bool,
-    /// Cells along x, y and z, each 4 to 512; default 32, 32, 32.
-    pub cells: [u32; 3],
-    /// FLIP share of the velocity update in a step of 1/60 s, 0 (PIC) to 1 (FLIP); default 0.95
-    /// [Chen2011 eq. 5]. A step of another length takes as much of PIC in a second, and no more than
-    /// all.
-    pub flip_share: f32,
-    /// Relative residual at which the pressure solve stops, 1e-12 to 1; default 1e-5.
-    pub tolerance: f32,
-    /// Most iterations of the pressure solve, 1 to 100,000; default 200.
-    pub max_iterations: u32,
-    /// Preconditioner of the conjugate gradients: auto (default), mic0 (CPU only), jacobi, chebyshev
-    /// or none. Auto is the one that is faster: mic0 on the CPU, chebyshev on a GPU.
-    pub preconditioner: Preconditioner,
 }
 
 impl VolumeSettings {
@@ -229,32 +194,48 @@ impl VolumeSettings {
     }
 }
 
-impl Default for VolumeSettings {
-    fn default() -> Self {
-        Self {
-            enabled: true,
-            cells: [32; 3],
-            flip_share: 0.95,
-            tolerance: 1e-5,
-            max_iterations: 200,
-            preconditioner: Preconditioner::Auto,
-        }
+choices! {
+    /// Preconditioner of the conjugate gradients.
+    pub enum Preconditioner as "simulation.volume.preconditioner" {
+        /// The fastest of the backend: mic0 on the CPU, chebyshev on a GPU.
+        Auto = "auto",
+        /// Modified incomplete Cholesky, level zero: a chain from cell to cell, for the CPU only.
+        Mic0 = "mic0",
+        /// The diagonal.
+        Jacobi = "jacobi",
+        /// A Chebyshev polynomial of the system scaled by its diagonal \[Saad2003\].
+        Chebyshev = "chebyshev",
+        /// Plain conjugate gradients.
+        None = "none",
     }
+    default Auto
 }
 
-/// Preconditioner of the conjugate gradients.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Preconditioner {
-    /// The fastest of the backend.
-    #[default]
-    Auto,
-    /// Modified incomplete Cholesky, level zero: a chain from cell to cell, for the CPU only.
-    Mic0,
-    /// The diagonal.
-    Jacobi,
-    /// A Chebyshev polynomial of the system scaled by its diagonal \[Saad2003\].
-    Chebyshev,
-    /// None.
-    None,
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_and_the_thesis_are_in_range() {
+        Settings::default().check().unwrap();
+        Settings::thesis().check().unwrap();
+    }
+
+    #[test]
+    fn a_setting_out_of_range_is_named() {
+        let name = |change: fn(&mut Settings)| {
+            let mut settings = Settings::default();
+            change(&mut settings);
+            settings.check().unwrap_err().to_string()
+        };
+        let short = "simulation.time_step is 0, expected 1e-5 to 0.1 s";
+        assert_eq!(name(|settings| settings.time_step = 0.0), short);
+        assert!(name(|settings| settings.time_step = f32::NAN).contains("NaN"));
+        assert!(name(|settings| settings.iterations = 0).contains("iterations"));
+        assert!(name(|settings| settings.gravity.y = f32::INFINITY).contains("gravity"));
+        assert!(name(|settings| settings.gravity.z = 1e30).contains("gravity"));
+        assert!(name(|settings| settings.springs.bend.stiffness = -1.0).contains("springs.bend"));
+        assert!(name(|settings| settings.angles.limit = 4.0).contains("angles.limit"));
+        assert!(name(|settings| settings.volume.cells[1] = 3).contains("volume.cells"));
+    }
 }

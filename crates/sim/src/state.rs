@@ -1,5 +1,6 @@
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::SettingError;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
@@ -122,7 +123,9 @@ impl State {
     /// # Errors
     /// Another number of scales than strands, a scale outside 0.05..=1; then nothing changes.
     pub fn set_length_scale(&mut self, solver: &Solver, scales: &[f32]) -> Result<(), SimError> {
-        let refuse = |found, expected| Err(SimError::Setting { name: "length_scale", found, expected });
+        let refuse = |found: String, expected: &str| {
+            Err(SettingError::new("the length scale", found, expected).into())
+        };
         if scales.len() != solver.strand_count {
             return refuse(format!("given for {} strands", scales.len()), "one for each strand");
         }

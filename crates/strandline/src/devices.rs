@@ -1,14 +1,16 @@
+use strandline_base::settings;
 use strandline_gpu::{Gpu, GpuError};
 
 use crate::Backend;
 
-/// Where the simulation runs and where pictures are drawn. When both are on one GPU, points stay there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Devices {
-    /// Where hair is simulated.
-    pub simulation: Backend,
-    /// Where pictures are drawn.
-    pub pictures: Backend,
+settings! {
+    /// Where the simulation runs and where pictures are drawn. When both are on one GPU, points stay there.
+    pub struct Devices: Copy {
+        /// Where hair is simulated.
+        simulation: Backend = Backend::Auto;
+        /// Where pictures are drawn.
+        pictures: Backend = Backend::Auto;
+    }
 }
 
 impl From<Backend> for Devices {

@@ -1,5 +1,7 @@
 use std::path::{Path, PathBuf};
 
+use strandline_base::SettingError;
+
 use crate::{body::BodyError, groom::GroomError, render::RenderError, sim::SimError};
 
 /// Why a scene could not be loaded, moved or drawn.
@@ -23,15 +25,8 @@ pub enum Error {
         message: String,
     },
     /// A value of the scene is outside its range.
-    #[error("{key} is {found}, expected {expected}")]
-    Value {
-        /// The key, with its section.
-        key: &'static str,
-        /// What was given.
-        found: String,
-        /// What may be given.
-        expected: String,
-    },
+    #[error(transparent)]
+    Value(#[from] SettingError),
     /// The file with where the hair is could not be read, or is for other hair.
     #[error("cannot read the pose of the hair: {message}: {}", path.display())]
     HairPose {

@@ -173,10 +173,7 @@ impl Hair {
     /// A setting of the scene outside its range.
     pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
         // What only pictures need is refused now too, not when the first one is drawn.
-        scene.look.validate()?;
-        scene.body_look.validate()?;
-        scene.level_of_detail.validate()?;
-        scene.lights.iter().try_for_each(Light::validate)?;
+        scene.check()?;
         let Prepared { guides, mesh, colliders, head, pose, .. } = prepared;
         let mut hair = Self::with_body(devices, guides, mesh.as_ref(), colliders, &scene.simulation)?;
         if !scene.lights.is_empty() {

@@ -39,6 +39,7 @@ mod worker_tests;
 
 pub mod scene;
 
+pub use strandline_base as base;
 pub use strandline_body as body;
 pub use strandline_gpu as gpu;
 pub use strandline_groom as groom;

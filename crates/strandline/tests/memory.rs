@@ -37,8 +37,8 @@ fn scene() -> Scene {
     scene.style.strand_count = 60;
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
-    scene.simulation.backend = strandline::Backend::Cpu;
-    scene.picture.backend = strandline::Backend::Cpu;
+    scene.devices.simulation = strandline::Backend::Cpu;
+    scene.devices.pictures = strandline::Backend::Cpu;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene

@@ -14,7 +14,7 @@ fn scene(backend: Backend) -> Scene {
     scene.style.strand_count = STRANDS;
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
-    (scene.simulation.backend, scene.picture.backend) = (backend, Backend::Cpu);
+    (scene.devices.simulation, scene.devices.pictures) = (backend, Backend::Cpu);
     scene.groom.length = 0.8;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
     (scene.picture.width, scene.picture.height) = (64, 48);
@@ -22,7 +22,7 @@ fn scene(backend: Backend) -> Scene {
 }
 
 fn hair(scene: &Scene) -> Result<Hair, Error> {
-    Hair::from_scene(scene, Prepared::new(scene)?, scene.devices())
+    Hair::from_scene(scene, Prepared::new(scene)?, scene.devices)
 }
 
 /// The largest difference between the strands of two sets of lanes.
@@ -35,7 +35,7 @@ fn apart(a: &[Vec3Lanes], b: &[Vec3Lanes]) -> f32 {
 }
 
 fn first_picture(scene: &Scene) -> Picture {
-    let mut player = Player::new(scene, scene.devices(), true).unwrap();
+    let mut player = Player::new(scene, scene.devices, true).unwrap();
     let drawn = |event| match event {
         Ok(Event::Drawn { picture, .. }) => Some(picture),
         _ => None,

@@ -22,7 +22,7 @@ fn scene() -> Scene {
     scene.groom.points_per_strand = 6;
     scene.simulation.volume.cells = [8; 3];
     scene.simulation.iterations = 8;
-    (scene.simulation.backend, scene.picture.backend) = (Backend::Cpu, Backend::Cpu);
+    (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 60.0);
     scene.look.shadow.map_size = 32;
     scene.lights = Light::three_point(Vec3::ZERO).to_vec();
@@ -273,7 +273,7 @@ impl Person {
         self.save("kept.toml");
         self.wait(|person| person.saved == person.saves);
         let saved = Scene::load(&self.folder.join("kept.toml")).unwrap();
-        let mut player = strandline::Player::new(&saved, saved.devices(), true).unwrap();
+        let mut player = strandline::Player::new(&saved, saved.devices, true).unwrap();
         let drawn = player.find_map(|event| match event.unwrap() {
             Event::Drawn { picture, .. } => Some(picture),
             _ => None,

@@ -36,7 +36,7 @@ pub struct Results {
 pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let backend = device.map_or(Backend::Cpu, |device| Backend::Gpu(Some(device.gpu.adapter().index)));
     let mut scene = Scene::demo();
-    (scene.simulation.backend, scene.picture.backend) = (backend, backend);
+    (scene.devices.simulation, scene.devices.pictures) = (backend, backend);
     [scene.picture.width, scene.picture.height] = SIZE;
     let results = Play::begin(scene)?.on(SECONDS[usize::from(quick)])?;
     let text = |memory: Option<f64>| memory.map_or("unknown".to_owned(), |mb| format!("{mb:.0} MB"));

@@ -5,12 +5,13 @@ use eframe::egui::{self, Color32, Sense, Stroke, Ui, Vec2};
 use glam::Vec3;
 use strandline::{
     Camera, Command,
+    base::Group,
     render::{Light, LightKind},
 };
 
 use crate::{
     App,
-    controls::{button, colour, slide, tick},
+    controls::{about, button, colour, slide, slide_in, tick},
 };
 
 /// Radius of a ball \[point\].
@@ -65,28 +66,22 @@ fn one(
                 gone = !is_last && button(ui, "x", "removes this light");
             });
             kinds(light, ui);
-            tick(ui, (&mut light.shadow, base.shadow), "shadow", "of hair and body");
+            tick(ui, (&mut light.shadow, base.shadow), &Light::ROWS.shadow, "shadow");
             if button(ui, "From here", "puts the light where you look from") {
                 light.position = camera.position;
             }
         });
     });
-    colour(ui, (&mut light.color, base.color), "colour", "linear RGB");
-    slide(
-        ui,
-        (&mut light.intensity, base.intensity),
-        0.0..=5.0,
-        "intensity",
-        "of a white surface that faces it",
-    );
+    let rows = &Light::ROWS;
+    colour(ui, (&mut light.color, base.color), &rows.color, "colour");
+    slide(ui, (&mut light.intensity, base.intensity), &rows.intensity, "intensity");
     let offset = light.position - light.target;
     let (mut distance, default) = (offset.length(), (base.position - base.target).length());
-    if slide(ui, (&mut distance, default), 0.2..=5.0, "distance", "from what it points at [m]") {
+    if slide_in(ui, (&mut distance, default), 0.2..=5.0, "distance", "from what it points at [m]") {
         light.position = light.target + offset.normalize_or(Vec3::Y) * distance;
     }
     if light.kind == LightKind::Spot {
-        let tip = "from its axis to the rim [degrees]";
-        slide(ui, (&mut light.cone_angle, base.cone_angle), 1.0..=85.0, "cone", tip);
+        slide(ui, (&mut light.cone_angle, base.cone_angle), &rows.cone_angle, "cone");
     }
     ui.separator();
     gone
@@ -96,8 +91,11 @@ fn kinds(light: &mut Light, ui: &mut Ui) {
     ui.horizontal(|ui| {
         let kinds = [(LightKind::Spot, "spot"), (LightKind::Directional, "sun"), (LightKind::Point, "point")];
         for (kind, name) in kinds {
-            ui.selectable_value(&mut light.kind, kind, name)
-                .on_hover_text("how its rays spread: a cone, parallel, every way\ndefault spot");
+            ui.selectable_value(&mut light.kind, kind, name).on_hover_text(format!(
+                "{}\ndefault {}",
+                about(&Light::ROWS.kind),
+                LightKind::default().name()
+            ));
         }
     });
 }

@@ -16,7 +16,6 @@ use crate::{
     controls::{button, section},
     stage,
 };
-pub use motion::FARTHEST;
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     egui::ScrollArea::vertical().show(ui, |ui| {

@@ -3,26 +3,24 @@
 use eframe::egui::{DragValue, Ui};
 use strandline::{
     Command,
-    scene::{KeyframeSection, MotionName, MotionSection},
+    base::Group,
+    scene::{GroomSection, KeyframeSection, MotionName, MotionSection, WindSection},
 };
 
 use crate::{
     App,
-    controls::{button, slide},
+    controls::{about, button, slide, slide_in},
 };
 
 /// Least time between two poses \[s\].
 const SHORTEST: f64 = 0.01;
-/// Turn of the head by hand \[degrees\], to either side.
-pub const FARTHEST: f32 = 70.0;
-
 pub fn show(app: &mut App, ui: &mut Ui) {
     let before = app.scene.motion.clone();
     names(&mut app.scene.motion, ui);
     let (motion, base) = (&mut app.scene.motion, &app.base.motion);
-    let tip = "of the head by hand, besides its motion [degrees]";
-    slide(ui, (&mut motion.rotation.y, base.rotation.y), -FARTHEST..=FARTHEST, "turn", tip);
-    slide(ui, (&mut motion.rotation.x, base.rotation.x), -FARTHEST..=FARTHEST, "nod", tip);
+    let row = &MotionSection::ROWS.rotation;
+    slide(ui, (&mut motion.rotation.y, base.rotation.y), row, "turn");
+    slide(ui, (&mut motion.rotation.x, base.rotation.x), row, "nod");
     if motion.name == MotionName::Keyframes {
         keyframes(motion, ui);
     }
@@ -30,25 +28,19 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         app.send_motion();
     }
     wind(app, ui);
-    let tip = "of every strand over its own";
-    if slide(ui, (&mut app.scene.groom.length, app.base.groom.length), 0.05..=1.0, "length", tip) {
+    let length = (&mut app.scene.groom.length, app.base.groom.length);
+    if slide(ui, length, &GroomSection::ROWS.length, "length") {
         app.live.tell(Command::Length(app.scene.groom.length));
     }
-    slide(ui, (&mut app.radius, App::RADIUS), 0.002..=0.05, "hand", "its radius, for grabbing [m]");
+    slide_in(ui, (&mut app.radius, App::RADIUS), 0.002..=0.05, "hand", "its radius, for grabbing [m]");
 }
 
 fn names(motion: &mut MotionSection, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
-        let names = [
-            ("still", MotionName::Still),
-            ("shake", MotionName::Shake),
-            ("nod", MotionName::Nod),
-            ("turn", MotionName::Turn),
-            ("keyframes", MotionName::Keyframes),
-        ];
-        for (text, name) in names {
-            let chosen = ui.selectable_label(motion.name == name, text);
-            if chosen.on_hover_text("motion of the head\ndefault shake").clicked() {
+        let tip = format!("{}\ndefault {}", about(&MotionSection::ROWS.name), MotionName::default().name());
+        for name in MotionName::ALL {
+            let chosen = ui.selectable_label(motion.name == name, name.name());
+            if chosen.on_hover_text(&tip).clicked() {
                 motion.name = name;
                 if name == MotionName::Keyframes && motion.keyframes.is_empty() {
                     // A look to the left and back.
@@ -78,7 +70,8 @@ fn keyframes(motion: &mut MotionSection, ui: &mut Ui) {
             for (axis, tip) in ["pitch [degrees]", "yaw [degrees]", "roll [degrees]"].into_iter().enumerate()
             {
                 let angle = DragValue::new(&mut key.rotation[axis]).speed(0.5).max_decimals(0);
-                let angle = angle.range(-180.0..=180.0).clamp_existing_to_range(false);
+                let [least, most] = KeyframeSection::ROWS.rotation.slider();
+                let angle = angle.range(least..=most).clamp_existing_to_range(false);
                 ui.add(angle).on_hover_text(format!("{tip}\ndefault 0"));
             }
             if times.len() > 1 && button(ui, "x", "takes the pose out") {
@@ -99,12 +92,10 @@ fn wind(app: &mut App, ui: &mut Ui) {
     let before = app.scene.wind;
     let (wind, base) = (&mut app.scene.wind, &app.base.wind);
     for (axis, name) in ["wind x", "wind y", "wind z"].into_iter().enumerate() {
-        let tip = "mean velocity [m/s]; or drag the arrow in the picture";
-        slide(ui, (&mut wind.velocity[axis], base.velocity[axis]), -10.0..=10.0, name, tip);
+        slide(ui, (&mut wind.velocity[axis], base.velocity[axis]), &WindSection::ROWS.velocity, name);
     }
-    slide(ui, (&mut wind.gust, base.gust), 0.0..=1.0, "gusts", "share of the wind that comes and goes");
-    let tip = "time from gust to gust [s]";
-    slide(ui, (&mut wind.gust_period, base.gust_period), 0.2..=10.0, "gust period", tip);
+    slide(ui, (&mut wind.gust, base.gust), &WindSection::ROWS.gust, "gusts");
+    slide(ui, (&mut wind.gust_period, base.gust_period), &WindSection::ROWS.gust_period, "gust period");
     if *wind != before {
         app.live.tell(Command::Wind(app.scene.wind));
     }

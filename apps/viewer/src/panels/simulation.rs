@@ -1,11 +1,15 @@
 //! How hair moves.
 
 use eframe::egui::Ui;
-use strandline::{Command, sim::Settings};
+use strandline::{
+    Command,
+    base::Group,
+    sim::{Angles, Drag, LengthPass, Settings, Spring, Springs, VolumeSettings},
+};
 
 use crate::{
     App,
-    controls::{button, slide, tick},
+    controls::{about, button, slide, slide_in, tick},
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -23,50 +27,37 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 }
 
 fn strands(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
-    let tip = "rounds of the constraints in a step";
-    slide(ui, (&mut settings.iterations, base.iterations), 1..=100, "iterations", tip);
-    slide(ui, (&mut settings.gravity.y, base.gravity.y), -20.0..=5.0, "gravity", "along y [m/s^2]");
-    slide(
-        ui,
-        (&mut settings.damping, base.damping),
-        0.0..=20.0,
-        "damping",
-        "share of the velocity lost [1/s]",
-    );
-    let tip = "rate at which air across a hair carries it along [1/s]";
-    slide(ui, (&mut settings.drag.across, base.drag.across), 0.0..=20.0, "drag across", tip);
-    let tip = "rate at which air along a hair carries it along [1/s]";
-    slide(ui, (&mut settings.drag.along, base.drag.along), 0.0..=20.0, "drag along", tip);
-    let tip = "at which a bend swings back to its rest [1/s]";
-    slide(ui, (&mut settings.angles.stiffness, base.angles.stiffness), 0.0..=100.0, "bend stiffness", tip);
-    let tip = "rate at which the grown shape comes back from root to tip [1/s]";
-    slide(ui, (&mut settings.angles.hold, base.angles.hold), 0.0..=100.0, "hold", tip);
-    let tip = "largest bend away from rest at a point [radians]; 3.14 is no limit";
-    slide(
-        ui,
-        (&mut settings.angles.limit, base.angles.limit),
-        0.05..=std::f32::consts::PI,
-        "bend limit",
-        tip,
-    );
-    let tip = "a pass from root to tip that leaves no stretch";
-    tick(ui, (&mut settings.length_pass.enabled, base.length_pass.enabled), "length pass", tip);
+    let (rows, drag, angles) = (&Settings::ROWS, &Drag::ROWS, &Angles::ROWS);
+    slide(ui, (&mut settings.iterations, base.iterations), &rows.iterations, "iterations");
+    slide(ui, (&mut settings.gravity.y, base.gravity.y), &rows.gravity, "gravity");
+    slide(ui, (&mut settings.damping, base.damping), &rows.damping, "damping");
+    slide(ui, (&mut settings.drag.across, base.drag.across), &drag.across, "drag across");
+    slide(ui, (&mut settings.drag.along, base.drag.along), &drag.along, "drag along");
+    let (bends, base_bends) = (&mut settings.angles, &base.angles);
+    slide(ui, (&mut bends.stiffness, base_bends.stiffness), &angles.stiffness, "bend stiffness");
+    slide(ui, (&mut bends.hold, base_bends.hold), &angles.hold, "hold");
+    slide(ui, (&mut bends.limit, base_bends.limit), &angles.limit, "bend limit");
+    let enabled = (&mut settings.length_pass.enabled, base.length_pass.enabled);
+    tick(ui, enabled, &LengthPass::ROWS.enabled, "length pass");
 }
 
 fn springs(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
+    let rows = &Springs::ROWS;
     let springs = [
-        (&mut settings.springs.stretch, base.springs.stretch, "stretch springs", "between neighbours"),
-        (&mut settings.springs.bend, base.springs.bend, "bend springs", "over two segments"),
-        (&mut settings.springs.torsion, base.springs.torsion, "torsion springs", "over three segments"),
+        (&mut settings.springs.stretch, base.springs.stretch, "stretch springs", &rows.stretch),
+        (&mut settings.springs.bend, base.springs.bend, "bend springs", &rows.bend),
+        (&mut settings.springs.torsion, base.springs.torsion, "torsion springs", &rows.torsion),
     ];
-    for (spring, base, name, tip) in springs {
-        tick(ui, (&mut spring.enabled, base.enabled), name, tip);
+    for (spring, base, name, row) in springs {
+        tick(ui, (&mut spring.enabled, base.enabled), row, name);
         if spring.enabled {
             // In thousandths, so that a person can read it.
             let (mut milli, default) = (1e3 * spring.stiffness, 1e3 * base.stiffness);
-            let tip = "force over extension [mN/m]";
+            let row = &Spring::ROWS.stiffness;
+            let [least, most] = row.slider().map(|end| 1e3 * end as f32);
+            let tip = format!("in thousandths: {}", about(row));
             ui.indent(name, |ui| {
-                if slide(ui, (&mut milli, default), 0.0..=0.2, "stiffness", tip) {
+                if slide_in(ui, (&mut milli, default), least..=most, "stiffness", &tip) {
                     spring.stiffness = 1e-3 * milli;
                 }
             });
@@ -75,17 +66,15 @@ fn springs(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
 }
 
 fn volume(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
-    let (volume, base) = (&mut settings.volume, &base.volume);
-    tick(ui, (&mut volume.enabled, base.enabled), "volume", "the fluid volume that keeps strands apart");
+    let (volume, base, rows) = (&mut settings.volume, &base.volume, &VolumeSettings::ROWS);
+    tick(ui, (&mut volume.enabled, base.enabled), &rows.enabled, "volume");
     if !volume.enabled {
         return;
     }
     let mut cells = volume.cells[0];
-    if slide(ui, (&mut cells, base.cells[0]), 8..=128, "cells", "along each side of the grid") {
+    if slide(ui, (&mut cells, base.cells[0]), &rows.cells, "cells") {
         volume.cells = [cells; 3];
     }
-    let tip = "share of FLIP in the velocities; 0 is PIC";
-    slide(ui, (&mut volume.flip_share, base.flip_share), 0.0..=1.0, "FLIP", tip);
-    let tip = "most rounds of the pressure solve";
-    slide(ui, (&mut volume.max_iterations, base.max_iterations), 1..=500, "pressure rounds", tip);
+    slide(ui, (&mut volume.flip_share, base.flip_share), &rows.flip_share, "FLIP");
+    slide(ui, (&mut volume.max_iterations, base.max_iterations), &rows.max_iterations, "pressure rounds");
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
+use strandline_base::{Key, Kind, Row, SettingError, Value, choices};
 
 use super::report::Report;
 use super::{MAX_FILE_BYTES, Parsed, hair, sieve::sieve, tfx};
@@ -38,13 +39,26 @@ impl TryFrom<ScaleText> for Scale {
     fn try_from(text: ScaleText) -> Result<Self, String> {
         match text {
             ScaleText::Name(name) if name == "auto" => Ok(Self::Auto),
-            ScaleText::Factor(factor) if factor > 0.0 && factor.is_finite() => Ok(Self::Factor(factor)),
+            ScaleText::Factor(factor) => Ok(Self::Factor(factor)),
             ScaleText::Name(found) => {
                 Err(format!("scale is `{found}`, expected \"auto\" or a number above 0"))
             }
-            ScaleText::Factor(found) => {
-                Err(format!("scale is {found}, expected \"auto\" or a number above 0"))
-            }
+        }
+    }
+}
+
+impl Value for Scale {
+    type Given = Self;
+    const KIND: Kind = Kind::NumberOr("auto");
+
+    fn take(&mut self, given: Self) {
+        *self = given;
+    }
+
+    fn check(&self, row: &Row, key: &Key) -> Result<(), SettingError> {
+        match self {
+            Self::Auto => Ok(()),
+            Self::Factor(factor) => factor.check(row, key),
         }
     }
 }
@@ -58,15 +72,15 @@ impl From<Scale> for ScaleText {
     }
 }
 
-/// The axis of a file that points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Up {
-    /// y, as here; the face looks along +z.
-    #[default]
-    Y,
-    /// z; the face looks along -y.
-    Z,
+choices! {
+    /// The axis of a file that points up.
+    pub enum Up as "groom.up" {
+        /// y, as here; the face looks along +z.
+        Y = "y",
+        /// z; the face looks along -y.
+        Z = "z",
+    }
+    default Y
 }
 
 /// How a file is read.

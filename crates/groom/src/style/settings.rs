@@ -1,131 +1,58 @@
-use serde::{Deserialize, Serialize};
+use strandline_base::{Group, Value, settings};
 
 use super::Style;
 use crate::GroomError;
 
-/// How to grow a style. Every number has a default that depends on the style.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "Given")]
-pub struct StyleSettings {
-    /// The style.
-    pub style: Style,
-    /// Number of strands, 1 to 8,000,000. Default 2,000: guides for the renderer's follow strands.
-    pub strand_count: usize,
-    /// Seed of every random choice. Default 1.
-    pub seed: u64,
-    /// Greatest length \[m\] of a strand before curls.
-    pub length: f32,
-    /// Share by which lengths differ from strand to strand, 0 to 0.9.
-    pub length_variation: f32,
-    /// Height \[m\], head space, at which falling hair is cut level.
-    pub cut_height: f32,
-    /// Height \[m\] over which the cut is spread, hair from the crown ending highest; 0 cuts level.
-    pub layering: f32,
-    /// How far the ends turn under, toward the neck, 0 to 2.
-    pub turn_under: f32,
-    /// Place of the parting \[m\], positive on the head's left.
-    pub parting: f32,
-    /// Turn \[rad\] of the hair around the whorl.
-    pub swirl: f32,
-    /// Thickness \[m\] of the hair that lies on the skull.
-    pub volume: f32,
-    /// Width \[m\] of a clump at the roots.
-    pub clump_width: f32,
-    /// How far strands are drawn to the middle of their clump at the tip, 0 to 1.
-    pub clump_share: f32,
-    /// Amplitude \[m\] of waves.
-    pub wave_amplitude: f32,
-    /// Length \[m\] of a wave.
-    pub wave_length: f32,
-    /// Radius \[m\] of curls.
-    pub curl_radius: f32,
-    /// Length \[m\] of hair for one turn of a curl.
-    pub curl_length: f32,
-    /// Amplitude \[m\] of each strand's own disorder at the tip.
-    pub noise: f32,
-}
-
-/// What a scene file gives; the rest comes from the style.
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct Given {
-    style: Style,
-    strand_count: Option<usize>,
-    seed: Option<u64>,
-    length: Option<f32>,
-    length_variation: Option<f32>,
-    cut_height: Option<f32>,
-    layering: Option<f32>,
-    turn_under: Option<f32>,
-    parting: Option<f32>,
-    swirl: Option<f32>,
-    volume: Option<f32>,
-    clump_width: Option<f32>,
-    clump_share: Option<f32>,
-    wave_amplitude: Option<f32>,
-    wave_length: Option<f32>,
-    curl_radius: Option<f32>,
-    curl_length: Option<f32>,
-    noise: Option<f32>,
-}
-
-impl From<Given> for StyleSettings {
-    fn from(given: Given) -> Self {
-        let plain = Self::new(given.style);
-        Self {
-            style: given.style,
-            strand_count: given.strand_count.unwrap_or(plain.strand_count),
-            seed: given.seed.unwrap_or(plain.seed),
-            length: given.length.unwrap_or(plain.length),
-            length_variation: given.length_variation.unwrap_or(plain.length_variation),
-            cut_height: given.cut_height.unwrap_or(plain.cut_height),
-            layering: given.layering.unwrap_or(plain.layering),
-            turn_under: given.turn_under.unwrap_or(plain.turn_under),
-            parting: given.parting.unwrap_or(plain.parting),
-            swirl: given.swirl.unwrap_or(plain.swirl),
-            volume: given.volume.unwrap_or(plain.volume),
-            clump_width: given.clump_width.unwrap_or(plain.clump_width),
-            clump_share: given.clump_share.unwrap_or(plain.clump_share),
-            wave_amplitude: given.wave_amplitude.unwrap_or(plain.wave_amplitude),
-            wave_length: given.wave_length.unwrap_or(plain.wave_length),
-            curl_radius: given.curl_radius.unwrap_or(plain.curl_radius),
-            curl_length: given.curl_length.unwrap_or(plain.curl_length),
-            noise: given.noise.unwrap_or(plain.noise),
-        }
+settings! {
+    /// How to grow a style. The default of every number but the first two is that of the style.
+    pub struct StyleSettings {
+        /// The style.
+        style: Style = Style::default();
+        /// Number of strands: guides for the renderer's follow strands.
+        strand_count: usize = 2000, in [1, 8_000_000], slider [100, 20_000],
+            more "denser hair that costs more";
+        /// Seed of every random choice.
+        seed: u64 = 1;
+        /// Greatest length of a strand before curls.
+        length: f32 = 0.52, in [0.01, 2.0] "m", slider [0.02, 1.0], more "longer hair";
+        /// Share by which lengths differ from strand to strand.
+        length_variation: f32 = 0.10, in [0.0, 0.9], more "more uneven ends";
+        /// Height, head space, at which falling hair is cut level.
+        cut_height: f32 = -0.27, in [-10.0, 1.0] "m", slider [-0.5, 0.1], more "shorter hair";
+        /// Height over which the cut is spread, hair from the crown ending highest; 0 cuts level.
+        layering: f32 = 0.02, in [0.0, 0.5] "m", slider [0.0, 0.2], more "more steps in the cut";
+        /// How far the ends turn under, toward the neck.
+        turn_under: f32 = 0.0, in [0.0, 2.0], more "ends that curl further in";
+        /// Place of the parting, positive on the head's left.
+        parting: f32 = 0.0, in [-0.07, 0.07] "m", more "a parting further left";
+        /// Turn of the hair around the whorl.
+        swirl: f32 = 0.0, in [-3.0, 3.0] "rad", more "a tighter whorl";
+        /// Thickness of the hair that lies on the skull.
+        volume: f32 = 0.012, in [0.001, 0.1] "m", slider [0.001, 0.05], more "fuller hair";
+        /// Width of a clump at the roots.
+        clump_width: f32 = 0.020, in [0.002, 0.2] "m", slider [0.002, 0.06], more "fewer, broader locks";
+        /// How far strands are drawn to the middle of their clump at the tip.
+        clump_share: f32 = 0.35, in [0.0, 1.0], more "more pointed locks";
+        /// Amplitude of waves.
+        wave_amplitude: f32 = 0.0, in [0.0, 0.1] "m", slider [0.0, 0.03], more "deeper waves";
+        /// Length of a wave.
+        wave_length: f32 = 0.07, in [0.005, 2.0] "m", slider [0.02, 0.3], more "calmer waves";
+        /// Radius of curls.
+        curl_radius: f32 = 0.0, in [0.0, 0.1] "m", slider [0.0, 0.03], more "wider curls";
+        /// Length of hair for one turn of a curl.
+        curl_length: f32 = 0.05, in [0.005, 2.0] "m", slider [0.02, 0.3], more "looser curls";
+        /// Amplitude of each strand's own disorder at the tip.
+        noise: f32 = 0.003, in [0.0, 0.1] "m", slider [0.0, 0.02], more "more disorder";
     }
-}
-
-impl Default for StyleSettings {
-    fn default() -> Self {
-        Self::new(Style::default())
-    }
+    prepare StyleSettings::prepare;
 }
 
 impl StyleSettings {
     /// The style as it is meant to be.
     pub fn new(style: Style) -> Self {
-        let long = Self {
-            style,
-            strand_count: 2000,
-            seed: 1,
-            length: 0.52,
-            length_variation: 0.10,
-            cut_height: -0.27,
-            layering: 0.02,
-            turn_under: 0.0,
-            parting: 0.0,
-            swirl: 0.0,
-            volume: 0.012,
-            clump_width: 0.020,
-            clump_share: 0.35,
-            wave_amplitude: 0.0,
-            wave_length: 0.07,
-            curl_radius: 0.0,
-            curl_length: 0.05,
-            noise: 0.003,
-        };
+        let plain = Self { style, ..Self::default() };
         match style {
-            Style::Long => long,
+            Style::Long => plain,
             Style::Bob => Self {
                 length: 0.34,
                 length_variation: 0.03,
@@ -136,7 +63,7 @@ impl StyleSettings {
                 volume: 0.016,
                 clump_share: 0.15,
                 noise: 0.0015,
-                ..long
+                ..plain
             },
             Style::Wavy => Self {
                 layering: 0.06,
@@ -146,7 +73,7 @@ impl StyleSettings {
                 clump_share: 0.55,
                 wave_amplitude: 0.011,
                 wave_length: 0.095,
-                ..long
+                ..plain
             },
             Style::Curly => Self {
                 length: 0.34,
@@ -160,7 +87,7 @@ impl StyleSettings {
                 curl_radius: 0.0085,
                 curl_length: 0.06,
                 noise: 0.005,
-                ..long
+                ..plain
             },
             Style::Pixie => Self {
                 length: 0.075,
@@ -172,7 +99,7 @@ impl StyleSettings {
                 clump_width: 0.0155,
                 clump_share: 0.35,
                 noise: 0.004,
-                ..long
+                ..plain
             },
             Style::Ponytail => Self {
                 length: 0.50,
@@ -184,8 +111,15 @@ impl StyleSettings {
                 wave_amplitude: 0.003,
                 wave_length: 0.12,
                 noise: 0.002,
-                ..long
+                ..plain
             },
+        }
+    }
+
+    /// What a file does not give is that of its style.
+    fn prepare(&mut self, given: &<Self as Value>::Given) {
+        if let Some(style) = given.style {
+            *self = Self::new(style);
         }
     }
 
@@ -205,32 +139,6 @@ impl StyleSettings {
     /// # Errors
     /// The first that is outside its range.
     pub fn validate(&self) -> Result<(), GroomError> {
-        if !(1..=8_000_000).contains(&self.strand_count) {
-            let found = self.strand_count.to_string();
-            return Err(GroomError::Setting { name: "style.strand_count", found, expected: "1 to 8000000" });
-        }
-        let ranges: [(&'static str, f32, f32, f32, &'static str); 15] = [
-            ("style.length", self.length, 0.01, 2.0, "0.01 to 2 m"),
-            ("style.length_variation", self.length_variation, 0.0, 0.9, "0 to 0.9"),
-            ("style.cut_height", self.cut_height, -10.0, 1.0, "-10 to 1 m"),
-            ("style.layering", self.layering, 0.0, 0.5, "0 to 0.5 m"),
-            ("style.turn_under", self.turn_under, 0.0, 2.0, "0 to 2"),
-            ("style.parting", self.parting, -0.07, 0.07, "-0.07 to 0.07 m"),
-            ("style.swirl", self.swirl, -3.0, 3.0, "-3 to 3 rad"),
-            ("style.volume", self.volume, 0.001, 0.1, "0.001 to 0.1 m"),
-            ("style.clump_width", self.clump_width, 0.002, 0.2, "0.002 to 0.2 m"),
-            ("style.clump_share", self.clump_share, 0.0, 1.0, "0 to 1"),
-            ("style.wave_amplitude", self.wave_amplitude, 0.0, 0.1, "0 to 0.1 m"),
-            ("style.wave_length", self.wave_length, 0.005, 2.0, "0.005 to 2 m"),
-            ("style.curl_radius", self.curl_radius, 0.0, 0.1, "0 to 0.1 m"),
-            ("style.curl_length", self.curl_length, 0.005, 2.0, "0.005 to 2 m"),
-            ("style.noise", self.noise, 0.0, 0.1, "0 to 0.1 m"),
-        ];
-        for (name, value, least, most, expected) in ranges {
-            if !(least..=most).contains(&value) {
-                return Err(GroomError::Setting { name, found: value.to_string(), expected });
-            }
-        }
-        Ok(())
+        Ok(self.check_as("style")?)
     }
 }

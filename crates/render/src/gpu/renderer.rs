@@ -1,4 +1,5 @@
 use glam::Vec3;
+use strandline_base::SettingError;
 use strandline_body::Mesh;
 use strandline_gpu::{Bound, Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
 use strandline_groom::Guides;
@@ -213,11 +214,9 @@ impl GpuRenderer {
     ) -> Result<FrameReport, RenderError> {
         let texture = target.texture();
         if [texture.width(), texture.height()] != [self.settings.width, self.settings.height] {
-            return Err(RenderError::Setting {
-                name: "the target texture",
-                found: format!("{} x {}", texture.width(), texture.height()),
-                expected: "the width and height of the picture",
-            });
+            let found = format!("{} x {}", texture.width(), texture.height());
+            let expected = "the width and height of the picture";
+            return Err(SettingError::new("the target texture", found, expected).into());
         }
         self.submit(input, points, target, format, None)
     }
@@ -282,11 +281,9 @@ impl GpuRenderer {
             return Ok(());
         }
         let device = if here { "" } else { " on another device" };
-        Err(RenderError::Setting {
-            name: "number of guide points",
-            found: format!("{}{device}", found / 3),
-            expected: "those of the renderer's guides, on its device",
-        })
+        let expected = "those of the renderer's guides, on its device";
+        Err(SettingError::new("the number of guide points", format!("{}{device}", found / 3), expected)
+            .into())
     }
 
     pub(super) fn scene<'a>(

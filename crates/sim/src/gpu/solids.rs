@@ -1,5 +1,6 @@
 //! The colliders as the kernels read them.
 
+use strandline_base::SettingError;
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Shape};
 use strandline_gpu::{Buffer, Gpu};
 
@@ -63,9 +64,8 @@ pub(super) fn upload(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<[u32; 4
 }
 
 fn sampled(mannequin: &Mannequin) -> Result<DistanceGrid, SimError> {
-    DistanceGrid::from_field(mannequin, MANNEQUIN_SPACING, MANNEQUIN_PADDING).map_err(|error| {
-        SimError::Setting { name: "colliders", found: error.to_string(), expected: "a body that fits a grid" }
-    })
+    DistanceGrid::from_field(mannequin, MANNEQUIN_SPACING, MANNEQUIN_PADDING)
+        .map_err(|error| SettingError::new("the mannequin as a grid", error, "one that fits a GPU").into())
 }
 
 impl Header {

@@ -1,3 +1,4 @@
+use strandline_base::SettingError;
 use strandline_body::Pose;
 use strandline_gpu::{Bindings, Declaration, Gpu, GpuError};
 
@@ -38,7 +39,7 @@ impl GpuSolver {
     /// MIC(0), which is for the CPU only; more than 2,000 iterations of the pressure solve; whatever the
     /// device refuses.
     pub fn new(gpu: &Gpu, solver: Solver) -> Result<Self, SimError> {
-        check(&solver.settings)?;
+        solver.settings.check_on_gpu()?;
         let kernels = Kernels {
             pose_roots: pose_roots::Stage::new(gpu)?,
             integrate: integrate::Stage::new(gpu)?,
@@ -69,7 +70,7 @@ impl GpuSolver {
     /// # Errors
     /// A setting outside its range or MIC(0), then nothing changes; or the device was lost.
     pub fn set_settings(&mut self, settings: &Settings, state: &mut GpuState) -> Result<(), SimError> {
-        check(settings)?;
+        settings.check_on_gpu()?;
         self.gpu.check()?;
         self.solver.set_settings(settings)?;
         state.unbind();
@@ -124,22 +125,25 @@ impl GpuSolver {
 /// Most iterations of a solve: one kernel may have to run them all.
 const MOST_ITERATIONS: u32 = 2000;
 
-fn check(settings: &Settings) -> Result<(), SimError> {
-    if settings.volume.preconditioner == Preconditioner::Mic0 {
-        return Err(SimError::Setting {
-            name: "volume.preconditioner",
-            found: "mic0, which is a chain from cell to cell".to_owned(),
-            expected: "auto, chebyshev, jacobi or none on a GPU",
-        });
+impl Settings {
+    /// Checks what only a GPU cannot do.
+    ///
+    /// # Errors
+    /// A preconditioner that is a chain from cell to cell; more iterations than a driver lets a kernel take.
+    pub fn check_on_gpu(&self) -> Result<(), SimError> {
+        let refuse = |key, found: String, expected: &str| Err(SettingError::new(key, found, expected).into());
+        if self.volume.preconditioner == Preconditioner::Mic0 {
+            let found = "mic0, which is a chain from cell to cell".to_owned();
+            let expected = "auto, chebyshev, jacobi or none on a GPU";
+            return refuse("simulation.volume.preconditioner", found, expected);
+        }
+        if self.volume.max_iterations > MOST_ITERATIONS {
+            let found = self.volume.max_iterations.to_string();
+            let expected = "1 to 2000 on a GPU, whose driver ends what takes long";
+            return refuse("simulation.volume.max_iterations", found, expected);
+        }
+        Ok(())
     }
-    if settings.volume.max_iterations > MOST_ITERATIONS {
-        return Err(SimError::Setting {
-            name: "volume.max_iterations",
-            found: settings.volume.max_iterations.to_string(),
-            expected: "1 to 2000 on a GPU, whose driver ends what takes long",
-        });
-    }
-    Ok(())
 }
 
 fn segment_count(solver: &Solver) -> usize {

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
+use strandline_base::Group;
 
 use super::{Command, FRAME};
 use crate::{
@@ -62,7 +63,7 @@ impl Stage {
         let mut notes = std::mem::take(&mut prepared.notes);
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
         let camera = scene.camera.camera(bounds, aspect);
-        let mut hair = Hair::from_scene(scene, prepared, scene.devices())?;
+        let mut hair = Hair::from_scene(scene, prepared, scene.devices)?;
         notes.extend(hair.take_notes());
         let (simulation, studio) = hair.into_parts();
         let mut shown = Moment::default();
@@ -224,7 +225,7 @@ impl Stage {
 
     /// Another motion of the head begins at its beginning; another turn does not disturb it.
     fn set_motion(&mut self, motion: MotionSection) -> Result<(), Error> {
-        motion.check()?;
+        motion.check_as("motion")?;
         self.head = HeadMotion::new(&motion, self.head.pivot())?;
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             (self.begun, self.time) = (0.0, 0.0);
@@ -249,7 +250,7 @@ impl Stage {
             }
             Command::LevelOfDetail(level) => level.validate().map(|()| self.level_of_detail = level)?,
             Command::Picture(settings) => self.set_picture(settings)?,
-            Command::Wind(wind) => wind.check().map(|()| self.wind = wind)?,
+            Command::Wind(wind) => wind.check_as("wind").map(|()| self.wind = wind)?,
             Command::Motion(motion) => self.set_motion(*motion)?,
             Command::Drag(ray) => {
                 let hand = self.hand.and_then(|hand| ray.at_depth_of(&self.camera, hand));

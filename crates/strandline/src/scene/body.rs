@@ -2,112 +2,89 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word, choices, settings};
 
-use super::within;
 use crate::{
     Error,
     body::{Carrier, Collider, Shape},
 };
 
-/// Which body is used when no file is named.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Model {
-    /// The mannequin under a grown style, nothing under a groom from a file.
-    #[default]
-    Auto,
-    /// The built-in bust.
-    Mannequin,
-    /// No body.
-    None,
+choices! {
+    /// Which body is used when no file is named.
+    pub enum Model as "body.model" {
+        /// The mannequin under a grown style, nothing under a groom from a file.
+        Auto = "auto",
+        /// The built-in bust.
+        Mannequin = "mannequin",
+        /// No body.
+        None = "none",
+    }
+    default Auto
 }
 
-/// `[body]`: what hair grows on and hits.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct BodySection {
-    /// The body when no file is named: "auto", "mannequin" or "none".
-    pub model: Model,
-    /// An .obj, .gltf or .glb file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub file: Option<PathBuf>,
-    /// A closed mesh that hair hits in place of the drawn one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub collider_file: Option<PathBuf>,
-    /// Metres per unit of the body's files.
-    pub scale: f32,
-    /// Whether the body is drawn.
-    pub visible: bool,
-    /// Whether hair hits the body.
-    pub solid: bool,
-    /// Distance between the samples of the body's signed distance \[m\].
-    pub spacing: f32,
-    /// Whether hair hits the exact mannequin in place of samples of it; slower.
-    pub exact: bool,
-    /// Coulomb friction coefficient of hair on the body.
-    pub friction: f32,
-}
-
-impl Default for BodySection {
-    fn default() -> Self {
-        Self {
-            model: Model::Auto,
-            file: None,
-            collider_file: None,
-            scale: 1.0,
-            visible: true,
-            solid: true,
-            spacing: 0.004,
-            exact: false,
-            friction: 0.3,
-        }
+settings! {
+    /// What hair grows on and hits.
+    pub struct BodySection {
+        /// The body when no file is named.
+        model: Model = Model::default();
+        /// An .obj, .gltf or .glb file.
+        file: Option<PathBuf> = None;
+        /// A closed mesh that hair hits in place of the drawn one.
+        collider_file: Option<PathBuf> = None;
+        /// Metres per unit of the body's files.
+        scale: f32 = 1.0, in [1e-6, 1e6] "m", slider [0.01, 10.0], more "a larger body";
+        /// Whether the body is drawn.
+        visible: bool = true;
+        /// Whether hair hits the body.
+        solid: bool = true;
+        /// Distance between the samples of the body's signed distance.
+        spacing: f32 = 0.004, in [5e-4, 0.1] "m", slider [0.002, 0.02],
+            more "a coarser surface for hair, at less time and memory";
+        /// Whether hair hits the exact mannequin in place of samples of it; slower.
+        exact: bool = false;
+        /// Coulomb friction coefficient of hair on the body.
+        friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
     }
 }
 
-impl BodySection {
-    pub(super) fn check(&self) -> Result<(), Error> {
-        within("body.scale", f64::from(self.scale), 1e-6..=1e6)?;
-        within("body.spacing", f64::from(self.spacing), 5e-4..=0.1)?;
-        within("body.friction", f64::from(self.friction), 0.0..=10.0)
+settings! {
+    /// A ball.
+    pub struct SphereSection: Copy {
+        /// Centre of a sphere.
+        center: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
+        /// Radius.
+        radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
+        /// What it moves with.
+        carrier: Carrier = Carrier::default();
+        /// Coulomb friction coefficient.
+        friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
+    }
+}
+
+settings! {
+    /// A segment with a radius.
+    pub struct CapsuleSection: Copy {
+        /// One end of a capsule.
+        start: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
+        /// The other end of a capsule.
+        end: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
+        /// Radius.
+        radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
+        /// What it moves with.
+        carrier: Carrier = Carrier::default();
+        /// Coulomb friction coefficient.
+        friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
     }
 }
 
 /// `[[colliders]]`: a solid beside the body.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "shape", rename_all = "lowercase", deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "shape", rename_all = "lowercase")]
 pub enum ColliderSection {
     /// A ball.
-    Sphere {
-        /// Centre \[m\].
-        center: Vec3,
-        /// Radius \[m\].
-        radius: f32,
-        /// What it moves with: "head" or "world".
-        #[serde(default)]
-        carrier: Carrier,
-        /// Coulomb friction coefficient.
-        #[serde(default = "default_friction")]
-        friction: f32,
-    },
+    Sphere(SphereSection),
     /// A segment with a radius.
-    Capsule {
-        /// One end \[m\].
-        start: Vec3,
-        /// The other end \[m\].
-        end: Vec3,
-        /// Radius \[m\].
-        radius: f32,
-        /// What it moves with: "head" or "world".
-        #[serde(default)]
-        carrier: Carrier,
-        /// Coulomb friction coefficient.
-        #[serde(default = "default_friction")]
-        friction: f32,
-    },
-}
-
-fn default_friction() -> f32 {
-    BodySection::default().friction
+    Capsule(CapsuleSection),
 }
 
 impl ColliderSection {
@@ -117,13 +94,55 @@ impl ColliderSection {
     /// A radius that is not positive, a negative friction, a number that is not finite.
     pub fn collider(&self) -> Result<Collider, Error> {
         let (shape, carrier, friction) = match *self {
-            Self::Sphere { center, radius, carrier, friction } => {
+            Self::Sphere(SphereSection { center, radius, carrier, friction }) => {
                 (Shape::Sphere { center, radius }, carrier, friction)
             }
-            Self::Capsule { start, end, radius, carrier, friction } => {
+            Self::Capsule(CapsuleSection { start, end, radius, carrier, friction }) => {
                 (Shape::Capsule { start, end, radius }, carrier, friction)
             }
         };
         Ok(Collider::new(shape, carrier, friction)?)
     }
+}
+
+impl Value for ColliderSection {
+    type Given = Self;
+    const KIND: Kind = Kind::Group(&Self::TABLE);
+
+    fn take(&mut self, given: Self) {
+        *self = given;
+    }
+
+    fn check(&self, row: &Row, key: &Key) -> Result<(), SettingError> {
+        match self {
+            Self::Sphere(sphere) => sphere.check(row, key),
+            Self::Capsule(capsule) => capsule.check(row, key),
+        }
+    }
+}
+
+impl Group for ColliderSection {
+    type Rows = Row;
+    const ROWS: Row = Row {
+        name: "shape",
+        doc: "What it is.",
+        kind: Kind::Words(&[
+            Word::new("sphere", SphereSection::TABLE.doc),
+            Word::new("capsule", CapsuleSection::TABLE.doc),
+        ]),
+        required: true,
+        ..Row::NONE
+    };
+    const TABLE: Table = Table {
+        doc: "Solids beside the body.",
+        rows: &[
+            Self::ROWS,
+            SphereSection::ROWS.center,
+            CapsuleSection::ROWS.start,
+            CapsuleSection::ROWS.end,
+            SphereSection::ROWS.radius,
+            SphereSection::ROWS.carrier,
+            SphereSection::ROWS.friction,
+        ],
+    };
 }

@@ -1,5 +1,7 @@
 use std::str::FromStr;
 
+use strandline_base::SettingError;
+
 use super::{FilmSection, GroomSection, MotionName, Scene};
 use crate::{
     Error,
@@ -9,15 +11,15 @@ use crate::{
 };
 
 impl Scene {
-    /// The demo: the default style shakes its head for 4 s.
+    /// The demo: the default style shakes its head for 4 s; what an empty file says.
     pub fn demo() -> Self {
-        let mut scene = Self::default();
-        scene.set_style(Style::default());
-        scene
+        Self::default()
     }
 
-    /// Replaces the strands by a built-in style, with as many points on a guide as its curls need,
-    /// a drawn segment about every centimetre, and a hold that keeps its shape.
+    /// Replaces the strands by a built-in style, with as many points on a guide as its curls need
+    /// (`groom.points_per_strand`), a drawn segment about every centimetre
+    /// (`level_of_detail.segments_per_span`), and a hold that keeps its shape (`simulation.angles.hold`).
+    /// A file that names a style and none of these three gets the same.
     pub fn set_style(&mut self, style: Style) {
         let (seed, strand_count) = (self.style.seed, self.style.strand_count);
         self.groom.file = None;
@@ -62,11 +64,10 @@ impl FromStr for Scene {
         match name {
             "demo" => Ok(Self::demo()),
             "thesis" => Ok(Self::thesis()),
-            found => Err(Error::Value {
-                key: "scene",
-                found: format!("`{found}`"),
-                expected: "demo, thesis or the path of a .toml file".to_owned(),
-            }),
+            found => {
+                let expected = "demo, thesis or the path of a .toml file";
+                Err(SettingError::new("scene", format!("`{found}`"), expected).into())
+            }
         }
     }
 }

@@ -1,22 +1,21 @@
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use strandline_base::{Key, SettingError, choices, settings};
 
-use super::within;
-use crate::{Error, body::Aabb, render::Camera};
+use crate::{body::Aabb, render::Camera};
 
-/// From where the camera looks when its position is not given.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum View {
-    /// The face.
-    Front,
-    /// Between the face and the left side.
-    #[default]
-    ThreeQuarter,
-    /// The left side.
-    Side,
-    /// The back of the head.
-    Back,
+choices! {
+    /// From where the camera looks when its position is not given.
+    pub enum View as "camera.view" {
+        /// The face.
+        Front = "front",
+        /// Between the face and the left side.
+        ThreeQuarter = "three_quarter",
+        /// The left side.
+        Side = "side",
+        /// The back of the head.
+        Back = "back",
+    }
+    default ThreeQuarter
 }
 
 impl View {
@@ -31,21 +30,19 @@ impl View {
     }
 }
 
-/// `[camera]`: where the picture is taken from.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct CameraSection {
-    /// Used without `position`: "front", "three_quarter", "side" or "back", framing hair and body.
-    pub view: View,
-    /// Where it stands \[m\], world space.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub position: Option<Vec3>,
-    /// What it looks at \[m\], world space; without it the middle of hair and body.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub target: Option<Vec3>,
-    /// Vertical field of view \[degrees\] of a camera with `position`; without it that of the framing.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub field_of_view: Option<f32>,
+settings! {
+    /// Where the picture is taken from.
+    pub struct CameraSection {
+        /// From where it looks when its position is not given; hair and body fill the picture.
+        view: View = View::default();
+        /// Where it stands, world space.
+        position: Option<Vec3> = None, in [-1e4, 1e4] "m";
+        /// What it looks at, world space; without it the middle of hair and body.
+        target: Option<Vec3> = None, in [-1e4, 1e4] "m";
+        /// Vertical field of view; without it that of the framing.
+        field_of_view: Option<f32> = None, in [1.0, 170.0] "degrees", more "a wider view";
+    }
+    also CameraSection::apart;
 }
 
 /// The framing holds the corners of the box around hair and body, and a head has none: the camera
@@ -63,32 +60,28 @@ impl CameraSection {
     }
 }
 
-/// `[film]`: how many pictures, how fast.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct FilmSection {
-    /// Number of pictures.
-    pub frames: u32,
-    /// Pictures per second of the scene's time.
-    pub frames_per_second: f32,
-    /// Time that passes with the head at rest before the first picture \[s\]; none does before hair that
-    /// begins in a pose.
-    pub settle: f32,
-    /// Time of motion and wind at the beginning \[s\].
-    pub start: f64,
-}
-
-impl Default for FilmSection {
-    fn default() -> Self {
-        Self { frames: 120, frames_per_second: 30.0, settle: 1.0, start: 0.0 }
+impl CameraSection {
+    fn apart(&self, key: &Key) -> Result<(), SettingError> {
+        match (self.position, self.target) {
+            (Some(position), Some(target)) if position.distance(target) < 1e-6 => {
+                Err(SettingError::new(key.of("target"), target, "a point away from camera.position"))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
-impl FilmSection {
-    pub(super) fn check(&self) -> Result<(), Error> {
-        within("film.frames", f64::from(self.frames), 1.0..=1e6)?;
-        within("film.frames_per_second", f64::from(self.frames_per_second), 1.0..=1000.0)?;
-        within("film.settle", f64::from(self.settle), 0.0..=3600.0)?;
-        within("film.start", self.start, 0.0..=1e6)
+settings! {
+    /// How many pictures, how fast.
+    pub struct FilmSection: Copy {
+        /// Number of pictures.
+        frames: u32 = 120, in [1, 1_000_000], more "a longer film";
+        /// Pictures per second of the scene's time.
+        frames_per_second: f32 = 30.0, in [1.0, 1000.0] "1/s", more "smoother motion, more pictures";
+        /// Time that passes with the head at rest before the first picture; none does before hair that
+        /// begins in a pose.
+        settle: f32 = 1.0, in [0.0, 3600.0] "s", more "hair that has come further to rest";
+        /// Time of motion and wind at the beginning.
+        start: f64 = 0.0, in [0.0, 1e6] "s";
     }
 }

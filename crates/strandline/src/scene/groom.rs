@@ -1,59 +1,34 @@
 use std::path::PathBuf;
 
 use glam::Vec3;
-use serde::{Deserialize, Serialize};
+use strandline_base::settings;
 
-use super::within;
-use crate::{
-    Error,
-    groom::format::{Scale, Up},
-};
+use crate::groom::format::{Scale, Up};
 
-/// `[groom]`: strands from a file, and how guides are made of strands.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct GroomSection {
-    /// A .hair or .tfx file; without one the `[style]` is grown.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub file: Option<PathBuf>,
-    /// Metres per unit of the file, or "auto".
-    pub scale: Scale,
-    /// The file's axis that points up.
-    pub up: Up,
-    /// Moves the strands of a file \[m\], head space.
-    pub translation: Vec3,
-    /// Every how manieth strand of a file is simulated; the others are left out.
-    pub guide_every: u32,
-    /// Points on each guide, 4 to 64.
-    pub points_per_strand: u32,
-    /// Length of every strand over its own, 0.05 to 1.
-    pub length: f32,
-    /// Where the simulated points are to begin with and how they move, as the window saves it; without it
-    /// hair begins at rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pose: Option<PathBuf>,
-}
-
-impl Default for GroomSection {
-    fn default() -> Self {
-        Self {
-            file: None,
-            scale: Scale::default(),
-            up: Up::default(),
-            translation: Vec3::ZERO,
-            guide_every: 1,
-            points_per_strand: 16,
-            length: 1.0,
-            pose: None,
-        }
-    }
-}
-
-impl GroomSection {
-    pub(super) fn check(&self) -> Result<(), Error> {
-        within("groom.guide_every", f64::from(self.guide_every), 1.0..=1e6)?;
-        within("groom.points_per_strand", f64::from(self.points_per_strand), 4.0..=64.0)?;
-        // As a number of 32 bits, 0.05 is a little more.
-        within("groom.length", f64::from(self.length), f64::from(0.05_f32)..=1.0)
+settings! {
+    /// Strands from a file, and how guides are made of strands.
+    pub struct GroomSection {
+        /// A .hair or .tfx file; without one the `[style]` is grown.
+        file: Option<PathBuf> = None;
+        /// Metres per unit of the file; "auto" takes the first of 1, 0.01, 0.001 and 0.0254 that makes the
+        /// groom as large as a head of hair can be.
+        scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
+        /// The file's axis that points up.
+        up: Up = Up::default();
+        /// Moves the strands of a file, head space.
+        translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// Simulate every n-th strand of a file; the others are left out.
+        guide_every: u32 = 1, in [1, 1_000_000], more "fewer strands";
+        /// Points on each guide. Without a groom file the default is that of the style.
+        points_per_strand: u32 = 16, in [4, 64], more "finer curls at a higher cost";
+        /// Length of every strand over its own.
+        length: f32 = 1.0, in [0.05, 1.0], more "longer hair";
+        /// A file with where the simulated points are to begin with and how they move, as the window and
+        /// `Hair::save_pose` save it: tensors of the safetensors format, `positions` \[m\], `velocities`
+        /// \[m/s\] and `corrections`, what the next step's prediction adds to them \[m/s\] (a file may
+        /// lack it), world space, shape \[strand, point, 3\], and `world_from_head`, a quaternion x, y, z, w
+        /// and a translation \[m\]. The film then begins with hair and head as they are there. Without it
+        /// hair begins at rest.
+        pose: Option<PathBuf> = None;
     }
 }

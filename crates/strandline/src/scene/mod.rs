@@ -8,63 +8,83 @@ mod motion;
 
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use glam::Vec3;
+use strandline_base::{Group, Value, settings};
 
-pub use body::{BodySection, ColliderSection, Model};
+pub use body::{BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
 pub use film::{CameraSection, FilmSection, View};
 pub use groom::GroomSection;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 
 use crate::{
-    Devices, Error,
+    Backend, Devices, Error,
     groom::StyleSettings,
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings},
     sim::Settings,
 };
 
-/// One run: groom, body, motion, colliders, simulation, look, camera, lights, picture and film.
-///
-/// Every key has a default; unknown keys are refused by name. Paths are relative to the file.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Scene {
-    /// Strands from a file, and how guides are made.
-    pub groom: GroomSection,
-    /// The style grown when no groom file is named.
-    pub style: StyleSettings,
-    /// What hair grows on and hits.
-    pub body: BodySection,
-    /// How the head moves.
-    pub motion: MotionSection,
-    /// How the air moves.
-    pub wind: WindSection,
-    /// Solids beside the body.
-    pub colliders: Vec<ColliderSection>,
-    /// How hair moves.
-    pub simulation: Settings,
-    /// Colour and shape of the drawn hair.
-    pub look: Look,
-    /// Colour of the drawn body.
-    pub body_look: BodyLook,
-    /// How detail falls with distance.
-    pub level_of_detail: LevelOfDetail,
-    /// Where the picture is taken from.
-    pub camera: CameraSection,
-    /// The lights; none named means three: key and rim with shadows, and a fill.
-    pub lights: Vec<Light>,
-    /// Size and finish of a picture.
-    pub picture: PictureSettings,
-    /// How many pictures, how fast.
-    pub film: FilmSection,
-    /// The folder that relative paths start from; not part of the file.
-    #[serde(skip)]
-    pub folder: PathBuf,
+settings! {
+    /// One run: groom, body, motion, colliders, simulation, look, camera, lights, picture and film.
+    ///
+    /// Every key has a default; unknown keys are refused by name. Paths are relative to the file. Without a
+    /// groom file, [`Scene::set_style`] says what the style sets besides strands.
+    pub struct Scene {
+        /// Where hair is simulated and drawn.
+        devices: Devices = Devices::default();
+        /// Strands from a file, and how guides are made of strands.
+        groom: GroomSection = GroomSection::default();
+        /// The style that is grown when no groom file is named. The default of every number but
+        /// `strand_count` and `seed` is that of the style; those of "long" are shown.
+        style: StyleSettings = StyleSettings::default();
+        /// What hair grows on and hits.
+        body: BodySection = BodySection::default();
+        /// How the head moves.
+        motion: MotionSection = MotionSection::default();
+        /// How the air moves.
+        wind: WindSection = WindSection::default();
+        /// Solids beside the body.
+        colliders: Vec<ColliderSection> = Vec::new();
+        /// How hair moves. Without a groom file the default of `angles.hold` is that of the style.
+        simulation: Settings = Settings::default();
+        /// Colour and shape of the drawn hair.
+        look: Look = Look::default();
+        /// Colour of the drawn body.
+        body_look: BodyLook = BodyLook::default();
+        /// How detail falls with distance. Without a groom file the default of `segments_per_span` is that
+        /// of the style.
+        level_of_detail: LevelOfDetail = LevelOfDetail::default();
+        /// Where the picture is taken from.
+        camera: CameraSection = CameraSection::default();
+        /// The lights; none named means three: a key and a rim with shadows, and a fill.
+        lights: Vec<Light> = Vec::new();
+        /// Size and finish of a picture.
+        picture: PictureSettings = PictureSettings::default();
+        /// How many pictures, how fast.
+        film: FilmSection = FilmSection::default();
+        plain {
+            /// The folder that relative paths start from; not part of the file.
+            folder: PathBuf,
+        }
+    }
+    prepare Scene::prepare;
 }
 
 impl Scene {
-    /// Where it says that it is simulated and drawn.
-    pub fn devices(&self) -> Devices {
-        Devices { simulation: self.simulation.backend, pictures: self.picture.backend }
+    /// What a file does not give depends on what it gives: strands of a style bring what the style needs.
+    /// Files of before `[devices]` name the devices elsewhere.
+    fn prepare(&mut self, given: &<Self as Value>::Given) {
+        if given.groom.as_ref().is_none_or(|groom| groom.file.is_none()) {
+            let style = given.style.as_ref().and_then(|style| style.style);
+            self.set_style(style.unwrap_or(self.style.style));
+        } else {
+            self.groom.points_per_strand = GroomSection::default().points_per_strand;
+            self.simulation.angles.hold = Settings::default().angles.hold;
+            self.level_of_detail.segments_per_span = LevelOfDetail::default().segments_per_span;
+        }
+        let simulation = given.simulation.as_ref().and_then(|simulation| simulation.backend);
+        let pictures = given.picture.as_ref().and_then(|picture| picture.backend);
+        self.devices.simulation = simulation.unwrap_or(self.devices.simulation);
+        self.devices.pictures = pictures.unwrap_or(self.devices.pictures);
     }
 
     /// Loads a TOML file.
@@ -97,16 +117,19 @@ impl Scene {
         toml::to_string(self).expect("every section is plain data")
     }
 
-    /// Checks the values that no other part checks.
+    /// Checks every value, before anything is loaded or grown.
     ///
     /// # Errors
-    /// [`Error::Value`] names the key, what was found and what was expected.
+    /// The first value that is outside its range, by its key; pictures that would take too much memory;
+    /// keyframes that are none; what the GPU that it names cannot do.
     pub fn check(&self) -> Result<(), Error> {
-        self.groom.check()?;
-        self.body.check()?;
-        self.film.check()?;
-        self.motion.check()?;
-        self.wind.check()
+        self.check_as("")?;
+        self.picture.validate()?;
+        self.motion.motion(Vec3::ZERO)?;
+        if matches!(self.devices.simulation, Backend::Gpu(_)) {
+            self.simulation.check_on_gpu()?;
+        }
+        Ok(())
     }
 
     /// Lets hair and motion begin at their beginning, not where a saved scene has them: for other hair.
@@ -118,22 +141,6 @@ impl Scene {
     pub(crate) fn path(&self, path: &Path) -> PathBuf {
         self.folder.join(path)
     }
-}
-
-/// Refuses a number outside `range`.
-pub(crate) fn within(
-    key: &'static str,
-    value: f64,
-    range: std::ops::RangeInclusive<f64>,
-) -> Result<(), Error> {
-    if range.contains(&value) {
-        return Ok(());
-    }
-    Err(Error::Value {
-        key,
-        found: value.to_string(),
-        expected: format!("{} to {}", range.start(), range.end()),
-    })
 }
 
 /// Whether a path has the ending of a scene file.

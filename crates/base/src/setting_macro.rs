@@ -1,0 +1,235 @@
+//! The blocks in which settings are written down.
+
+/// A section of settings: a struct, its defaults, how files give it, and a [`Row`](crate::Row) of each.
+///
+/// ```
+/// strandline_base::settings! {
+///     /// Drag of the air.
+///     pub struct Drag: Copy {
+///         /// Rate at which hair takes the velocity of wind across it.
+///         across: f32 = 1.5, in [0.0, 1000.0] "1/s", slider [0.0, 20.0], more "hair follows the wind sooner";
+///         /// Whether there is air.
+///         enabled: bool = true;
+///     }
+/// }
+/// use strandline_base::Group;
+/// assert_eq!(Drag::ROWS.across.limits(), "0 to 1000 1/s");
+/// assert!(Drag { across: f32::NAN, ..Drag::default() }.check_as("drag").is_err());
+/// ```
+///
+/// A line is `name: Type = default`, then what there is to say of it in this order: `required true` for
+/// what a file has to give, `in [least, most] "unit"`, `slider [least, most]`, `more "what it does"`.
+/// * A number of a section that a file does not give keeps the default of the section *where it stands*: a
+///   part of `springs.stretch` leaves the rest of the stretch spring as it is.
+/// * `plain { name: Type }` are fields that no file has; `moved { name: Type => "new.key" }` are keys of
+///   old files: read by a section around this one in its `prepare`, refused elsewhere with the new key.
+/// * After the struct, `prepare path;` names a `fn(&mut Self, &<Self as Value>::Given)` that runs before
+///   what is given is taken (for defaults that depend on it), and `also path;` a
+///   `fn(&Self, &Key) -> Result<(), SettingError>` for what no range says.
+#[macro_export]
+macro_rules! settings {
+    (
+        $(#[doc = $about:literal])*
+        pub struct $Name:ident $(: $Copy:ident)? {
+            $(
+                $(#[doc = $doc:literal])+
+                $field:ident: $Type:ty = $default:expr
+                $(, required $required:literal)?
+                $(, in [$least:expr, $most:expr] $($unit:literal)?)?
+                $(, slider [$left:expr, $right:expr])?
+                $(, more $more:literal)?
+                ;
+            )*
+            $(plain { $($(#[$plain_meta:meta])* $plain:ident: $Plain:ty),* $(,)? })?
+            $(moved { $($moved:ident: $Moved:ty => $new_key:literal),* $(,)? })?
+        }
+        $(prepare $prepare:path;)?
+        $(also $also:path;)?
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Clone, Debug, PartialEq, ::serde::Serialize $(, $Copy)?)]
+        pub struct $Name {
+            $(
+                $(#[doc = $doc])+
+                #[doc = ""]
+                #[doc = concat!(
+                    "Default `", stringify!($default), "`",
+                    $("; range `", stringify!($least), "` to `", stringify!($most), "`", $(" ", $unit,)?)?
+                    "."
+                )]
+                #[serde(skip_serializing_if = "::strandline_base::Value::is_absent")]
+                pub $field: $Type,
+            )*
+            $($(
+                $(#[$plain_meta])*
+                #[serde(skip)]
+                pub $plain: $Plain,
+            )*)?
+        }
+
+        const _: () = {
+            /// What a file gives of the section.
+            #[allow(missing_docs)]
+            #[derive(Default, ::serde::Deserialize)]
+            #[serde(deny_unknown_fields, default, expecting = "a section of settings")]
+            pub struct Given {
+                $(pub $field: Option<<$Type as $crate::Value>::Given>,)*
+                $($(pub $moved: Option<$Moved>,)*)?
+            }
+
+            /// What is known of each setting.
+            #[allow(missing_docs)]
+            pub struct Rows {
+                $(pub $field: $crate::Row,)*
+            }
+
+            impl $crate::Group for $Name {
+                type Rows = Rows;
+                const ROWS: Rows = Rows {
+                    $($field: $crate::Row {
+                        name: stringify!($field),
+                        doc: concat!($($doc, "\n"),+),
+                        kind: <$Type as $crate::Value>::KIND,
+                        range: $crate::settings!(@ends $($least, $most)?),
+                        unit: concat!($($($unit)?)?),
+                        slider: $crate::settings!(@ends $($left, $right)?),
+                        more: concat!($($more)?),
+                        required: false $(|| $required)?,
+                    },)*
+                };
+                const TABLE: $crate::Table =
+                    $crate::Table { doc: concat!($($about, "\n"),*), rows: &[$(Self::ROWS.$field),*] };
+            }
+
+            impl $crate::Value for $Name {
+                type Given = Given;
+                const KIND: $crate::Kind = $crate::Kind::Group(&<Self as $crate::Group>::TABLE);
+
+                fn take(&mut self, given: Given) {
+                    $($prepare(self, &given);)?
+                    $(if let Some(part) = given.$field {
+                        $crate::Value::take(&mut self.$field, part);
+                    })*
+                }
+
+                fn check(&self, _: &$crate::Row, key: &$crate::Key) -> Result<(), $crate::SettingError> {
+                    $($crate::Value::check(
+                        &self.$field,
+                        &<Self as $crate::Group>::ROWS.$field,
+                        &key.of(stringify!($field)),
+                    )?;)*
+                    $($also(self, key)?;)?
+                    Ok(())
+                }
+            }
+
+            impl Default for $Name {
+                #[allow(unused_mut)]
+                fn default() -> Self {
+                    let mut fresh = Self { $($field: $default,)* $($($plain: Default::default(),)*)? };
+                    $($prepare(&mut fresh, &Given::default());)?
+                    fresh
+                }
+            }
+
+            impl<'de> ::serde::Deserialize<'de> for $Name {
+                fn deserialize<D: ::serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                    let given = <Given as ::serde::Deserialize>::deserialize(deserializer)?;
+                    $($(if given.$moved.is_some() {
+                        let now = concat!("`", stringify!($moved), "` is now `", $new_key, "` of a scene");
+                        return Err(<D::Error as ::serde::de::Error>::custom(now));
+                    })*)?
+                    $(if (false $(|| $required)?) && given.$field.is_none() {
+                        return Err(<D::Error as ::serde::de::Error>::missing_field(stringify!($field)));
+                    })*
+                    let mut value = Self::default();
+                    $crate::Value::take(&mut value, given);
+                    Ok(value)
+                }
+            }
+        };
+    };
+    (@ends) => { None };
+    (@ends $least:expr, $most:expr) => { Some([$least as f64, $most as f64]) };
+}
+
+/// An enum that a file names by a word: its words stand once.
+///
+/// ```
+/// strandline_base::choices! {
+///     /// How light beyond white is shown.
+///     pub enum ToneMap as "tone_map" {
+///         /// Cut off at 1.
+///         Off = "off",
+///         /// Rolled off smoothly toward white.
+///         Filmic = "filmic",
+///     }
+///     default Filmic
+/// }
+/// assert_eq!("off".parse(), Ok(ToneMap::Off));
+/// assert_eq!(ToneMap::default().name(), "filmic");
+/// ```
+#[macro_export]
+macro_rules! choices {
+    (
+        $(#[doc = $about:literal])*
+        pub enum $Name:ident as $key:literal {
+            $($(#[doc = $doc:literal])+ $Choice:ident = $word:literal),+ $(,)?
+        }
+        default $Default:ident
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, ::serde::Serialize, ::serde::Deserialize)]
+        pub enum $Name {
+            $(
+                $(#[doc = $doc])+
+                #[serde(rename = $word)]
+                $Choice,
+            )+
+        }
+
+        impl $Name {
+            /// Every one.
+            pub const ALL: [Self; [$($word),+].len()] = [$(Self::$Choice),+];
+
+            /// Its name, as in scenes.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$Choice => $word,)+
+                }
+            }
+        }
+
+        impl Default for $Name {
+            fn default() -> Self {
+                Self::$Default
+            }
+        }
+
+        impl ::std::str::FromStr for $Name {
+            type Err = $crate::SettingError;
+
+            fn from_str(name: &str) -> Result<Self, $crate::SettingError> {
+                Self::ALL.into_iter().find(|choice| choice.name() == name).ok_or_else(|| {
+                    let expected = format!("one of {}", [$($word),+].join(", "));
+                    $crate::SettingError::new($key, format!("`{name}`"), expected)
+                })
+            }
+        }
+
+        impl $crate::Value for $Name {
+            type Given = Self;
+            const KIND: $crate::Kind = $crate::Kind::Words(&[
+                $($crate::Word::new($word, concat!($($doc, "\n"),+))),+
+            ]);
+
+            fn take(&mut self, given: Self) {
+                *self = given;
+            }
+
+            fn check(&self, _: &$crate::Row, _: &$crate::Key) -> Result<(), $crate::SettingError> {
+                Ok(())
+            }
+        }
+    };
+}

@@ -1,0 +1,149 @@
+//! A section of settings: how files give it, what is checked, what is known.
+
+use glam::Vec3;
+use strandline_base::{Group, Key, Kind, SettingError, Value, choices, settings};
+
+choices! {
+    /// A word.
+    pub enum Way as "way" {
+        /// This way.
+        This = "this",
+        /// That way.
+        That = "that",
+    }
+    default That
+}
+
+settings! {
+    /// A spring.
+    pub struct Spring: Copy {
+        /// Whether it pulls.
+        enabled: bool = true;
+        /// Force \[over\] extension.
+        stiffness: f32 = 1e-5, in [0.0, 0.1] "N/m", slider [0.0, 1e-4], more "stiffer";
+    }
+}
+
+settings! {
+    /// Two springs and more.
+    pub struct Springs {
+        /// The first.
+        first: Spring = Spring { enabled: true, stiffness: 2e-5 };
+        /// The second.
+        second: Spring = Spring { enabled: false, stiffness: 3e-5 };
+        /// A place.
+        place: Vec3 = Vec3::X, required true, in [-1.0, 1.0] "m";
+        /// A way.
+        way: Way = Way::default();
+        /// How many.
+        count: [u32; 3] = [4; 3], in [4, 512];
+        /// Others.
+        others: Vec<Spring> = Vec::new(), in [0, 2];
+        /// A time, or none.
+        time: Option<f64> = None, in [0.0, 1.0] "s";
+        plain {
+            /// In no file.
+            folder: String,
+        }
+        moved { old: u32 => "elsewhere.old" }
+    }
+    prepare Springs::prepare;
+    also Springs::rising;
+}
+
+impl Springs {
+    /// The second spring of a file that goes this way is stiffer.
+    fn prepare(&mut self, given: &<Self as Value>::Given) {
+        if given.way == Some(Way::This) {
+            self.second.stiffness = 9e-5;
+        }
+    }
+
+    fn rising(&self, key: &Key) -> Result<(), SettingError> {
+        if self.first.stiffness <= self.second.stiffness || self.second.enabled {
+            return Ok(());
+        }
+        Err(SettingError::new(key.of("first"), "stiffer", "the weaker"))
+    }
+}
+
+fn read(text: &str) -> Result<Springs, String> {
+    toml::from_str(text).map_err(|error| error.to_string())
+}
+
+#[test]
+fn what_a_file_leaves_out_stays_as_it_is_where_it_stands() {
+    let springs = read("place = [0, 0, 0]\n[first]\nenabled = false\n").unwrap();
+    assert_eq!(springs.first, Spring { enabled: false, stiffness: 2e-5 });
+    assert_eq!(springs.second, Springs::default().second);
+    let springs = read("place = [0, 0, 0]\nway = \"this\"\n[second]\nenabled = true\n").unwrap();
+    assert_eq!(springs.second, Spring { enabled: true, stiffness: 9e-5 }, "its default depends on the way");
+}
+
+#[test]
+fn what_no_file_may_say_is_refused() {
+    let wrong = [
+        ("", "missing field `place`"),
+        ("place = [0, 0, 0]\nplaice = 1", "unknown field `plaice`"),
+        ("place = [0, 0, 0]\nfolder = \"a\"", "unknown field `folder`"),
+        ("place = [0, 0, 0]\nold = 3", "`old` is now `elsewhere.old`"),
+        ("place = [0, 0, 0]\nway = \"other\"", "unknown variant `other`, expected `this` or `that`"),
+        ("place = [0, 0, 0]\nfirst = 3", "expected a section of settings"),
+    ];
+    for (text, message) in wrong {
+        let error = read(text).unwrap_err();
+        assert!(error.contains(message), "{text}: {error}");
+    }
+}
+
+#[test]
+fn a_section_survives_the_way_through_a_file() {
+    let springs = Springs { place: Vec3::Y, time: Some(0.5), ..Springs::default() };
+    assert_eq!(read(&toml::to_string(&springs).unwrap()).unwrap(), springs);
+    assert!(!toml::to_string(&Springs::default()).unwrap().contains("time"));
+}
+
+#[test]
+fn both_ends_of_a_range_are_taken_and_nothing_beyond() {
+    let refused = |change: fn(&mut Springs)| {
+        let mut springs = Springs::default();
+        change(&mut springs);
+        springs.check_as("springs").err().map(|error| error.to_string())
+    };
+    // As numbers of 64 bits, 0.1 of 32 bits is more than 0.1.
+    assert_eq!(refused(|springs| springs.second.stiffness = 0.1), None);
+    let beyond = "springs.second.stiffness is 0.10000001, expected 0 to 0.1 N/m";
+    assert_eq!(refused(|springs| springs.second.stiffness = 0.1_f32.next_up()).unwrap(), beyond);
+    let place = "springs.place is [1, NaN, 0], expected 3 numbers of -1 to 1 m";
+    assert_eq!(refused(|springs| springs.place.y = f32::NAN).unwrap(), place);
+    let count = "springs.count is [4, 4, 513], expected 3 whole numbers of 4 to 512";
+    assert_eq!(refused(|springs| springs.count[2] = 513).unwrap(), count);
+    let time = "springs.time is -1, expected 0 to 1 s";
+    assert_eq!(refused(|springs| springs.time = Some(-1.0)).unwrap(), time);
+    let item = "springs.others[1].stiffness is -1, expected 0 to 0.1 N/m";
+    let others = |count| vec![Spring { enabled: true, stiffness: 0.0 }; count];
+    assert_eq!(others(2).len(), 2);
+    let bad = Spring { stiffness: -1.0, ..Spring::default() };
+    let springs = Springs { others: vec![Spring::default(), bad], ..Springs::default() };
+    assert_eq!(springs.check_as("springs").unwrap_err().to_string(), item);
+    let springs = Springs { others: others(3), ..Springs::default() };
+    let error = springs.check_as("springs").unwrap_err().to_string();
+    assert_eq!(error, "springs.others is 3 of them, expected 0 to 2");
+    assert!(refused(|springs| springs.first.stiffness = 0.05).unwrap().contains("the weaker"));
+}
+
+#[test]
+fn everything_is_known_of_a_setting() {
+    let row = Springs::TABLE.row("second.stiffness").unwrap();
+    assert_eq!(*row, Spring::ROWS.stiffness);
+    assert_eq!(row.sentence(), "Force [over] extension.");
+    assert_eq!((row.limits().as_str(), row.slider(), row.more), ("0 to 0.1 N/m", [0.0, 1e-4], "stiffer"));
+    let required: Vec<&str> =
+        Springs::TABLE.rows.iter().filter(|row| row.required).map(|row| row.name).collect();
+    assert_eq!(required, ["place"]);
+    assert!(matches!(Springs::ROWS.way.kind, Kind::Words(words) if words[1].name == "that"));
+    assert_eq!(Springs::TABLE.row("second.colour"), None);
+    assert_eq!(Springs::TABLE.about(), "Two springs and more.");
+    let error = "up".parse::<Way>().unwrap_err().to_string();
+    assert_eq!(error, "way is `up`, expected one of this, that");
+}

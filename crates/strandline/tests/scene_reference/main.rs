@@ -1,0 +1,92 @@
+//! docs/scene.md is what the settings table says, its example is a scene, and every limit that it names
+//! holds.
+
+mod limits;
+mod page;
+
+use std::path::Path;
+
+use strandline::{Backend, Scene, Style, groom::StyleSettings};
+
+/// docs/scene.md as it is; recorded anew with STRANDLINE_BLESS=1, as `cargo xtask docs` does.
+fn page() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scene.md");
+    if std::env::var_os("STRANDLINE_BLESS").is_some_and(|bless| bless == "1") {
+        std::fs::write(&path, page::written()).unwrap();
+    }
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn the_page_is_what_the_table_says() {
+    let (found, expected) = (page(), page::written());
+    let first = found.lines().zip(expected.lines()).find(|(found, expected)| found != expected);
+    assert!(found == expected, "docs/scene.md differs: run `cargo xtask docs`; first at {first:?}");
+}
+
+#[test]
+fn the_example_is_a_scene() {
+    let page = page();
+    let example = page.split("```toml").nth(1).unwrap().split("```").next().unwrap();
+    let scene = Scene::parse(example, "example").unwrap();
+    assert_eq!(scene.style, StyleSettings { strand_count: 1500, ..StyleSettings::new(Style::Wavy) });
+}
+
+#[test]
+fn scenes_survive_the_way_through_toml() {
+    for mut scene in [Scene::demo(), Scene::thesis()] {
+        assert_eq!(Scene::parse(&scene.to_toml(), "scene").unwrap(), scene);
+        scene.groom.file = Some("a.hair".into());
+        assert_eq!(Scene::parse(&scene.to_toml(), "scene").unwrap(), scene);
+    }
+}
+
+#[test]
+fn a_style_in_a_file_is_the_style_of_the_command_line() {
+    for style in Style::ALL {
+        let mut set = Scene::demo();
+        set.set_style(style);
+        let text = format!("[style]\nstyle = \"{}\"", style.name());
+        assert_eq!(Scene::parse(&text, "scene").unwrap(), set);
+    }
+    assert_eq!(Scene::parse("", "scene").unwrap(), Scene::demo());
+    let own = "style.style = \"wavy\"\nsimulation.angles.hold = 3\ngroom.points_per_strand = 20";
+    let scene = Scene::parse(own, "scene").unwrap();
+    assert_eq!((scene.simulation.angles.hold, scene.groom.points_per_strand), (3.0, 20));
+    assert_eq!(scene.level_of_detail.segments_per_span, 2, "what is not said is the style's");
+    let file = Scene::parse("groom.file = \"a.hair\"\nstyle.style = \"wavy\"", "scene").unwrap();
+    assert_eq!((file.simulation.angles.hold, file.groom.points_per_strand), (0.0, 16), "a file has no style");
+}
+
+#[test]
+fn a_part_of_a_section_leaves_the_rest_as_it_is() {
+    let plain = Scene::demo();
+    let text = "[simulation.springs.stretch]\ndamping = 1e-7\n[look.second_highlight]\nwidth = 12\n";
+    let scene = Scene::parse(text, "scene").unwrap();
+    let (springs, default) = (scene.simulation.springs, plain.simulation.springs);
+    assert_eq!(springs.stretch.stiffness, default.stretch.stiffness);
+    assert_eq!(springs.stretch.damping, 1e-7);
+    assert_eq!((springs.bend, springs.torsion), (default.bend, default.torsion));
+    assert_eq!(scene.look.second_highlight.strength, plain.look.second_highlight.strength);
+    assert_eq!(scene.look.second_highlight.width, 12.0);
+}
+
+/// Scenes saved before `[devices]` have these keys.
+#[test]
+fn devices_of_older_files_are_taken_and_newer_ones_win() {
+    let old = "simulation.backend = \"gpu:2\"\npicture.backend = \"cpu\"\n";
+    let scene = Scene::parse(old, "scene").unwrap();
+    assert_eq!((scene.devices.simulation, scene.devices.pictures), (Backend::Gpu(Some(2)), Backend::Cpu));
+    let both = format!("{old}devices.simulation = \"cpu\"\n");
+    assert_eq!(Scene::parse(&both, "scene").unwrap().devices.simulation, Backend::Cpu);
+    let alone = toml::from_str::<strandline::Settings>("backend = \"cpu\"").unwrap_err().to_string();
+    assert!(alone.contains("`backend` is now `devices.simulation`"), "{alone}");
+    assert!(!scene.to_toml().contains("backend"));
+    // A whole scene as it was saved then.
+    let mut saved: toml::Table = Scene::thesis().to_toml().parse().unwrap();
+    saved.remove("devices");
+    for section in ["simulation", "picture"] {
+        saved[section].as_table_mut().unwrap().insert("backend".into(), "auto".into());
+    }
+    assert_eq!(Scene::parse(&saved.to_string(), "scene").unwrap(), Scene::thesis());
+}

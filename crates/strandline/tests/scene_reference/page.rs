@@ -1,0 +1,160 @@
+//! docs/scene.md, written from the settings table.
+
+use std::fmt::Write;
+
+use glam::Vec3;
+use strandline::{
+    Scene, Style,
+    base::{Group, Kind, Row, Table},
+    render::Light,
+    scene::{CapsuleSection, ColliderSection, KeyframeSection, SphereSection},
+};
+
+const HEAD: &str = r#"# Scene files
+
+<!-- Written by `cargo xtask docs` from the settings table in the code: change it there. -->
+
+A scene is one TOML file: groom, body, motion, colliders, simulation, look, camera, lights, picture and film. Every key has a default, which holds where the key or its whole section is left out; unknown keys, and values outside their range, are refused by name before anything is loaded. Paths are relative to the file. `strandline scene demo` prints the demo, which is what an empty file says, with every key spelled out.
+
+Units are SI: metres, seconds, kilograms, radians unless a key says otherwise. y is up and the face looks along +z; a vector is `[x, y, z]`, a colour `[r, g, b]` in linear RGB. Both ends of a range are allowed; the range of a vector or a list is that of each of its numbers.
+
+```toml
+[style]
+style = "wavy"
+strand_count = 1500
+
+[motion]
+name = "nod"
+
+[[colliders]]
+shape = "sphere"
+center = [0.0, -0.1, 0.3]
+radius = 0.05
+
+[camera]
+view = "front"
+
+[film]
+frames = 60
+```
+
+"#;
+
+const OLD: &str = "\n## Keys of older files
+
+`simulation.backend` and `picture.backend` are read as `devices.simulation` and `devices.pictures`, which win where both are given.
+";
+
+/// The whole page.
+pub fn written() -> String {
+    let mut page = HEAD.to_owned();
+    page.push_str(&styles());
+    let defaults: toml::Table = Scene::default().to_toml().parse().unwrap();
+    section(&mut page, &Scene::TABLE, "", &defaults, 2);
+    page.push_str(OLD);
+    page
+}
+
+/// What a style sets besides strands.
+fn styles() -> String {
+    let mut text = "Without a groom file the `[style]` is grown, and three keys of other sections take their default from it:\n\n\
+                    | style | `groom.points_per_strand` | `simulation.angles.hold` | `level_of_detail.segments_per_span` |\n|---|---|---|---|\n"
+        .to_owned();
+    let mut line = |name: &str, scene: &Scene| {
+        let (points, hold) = (scene.groom.points_per_strand, scene.simulation.angles.hold);
+        let segments = scene.level_of_detail.segments_per_span;
+        writeln!(text, "| {name} | {points} | {hold} | {segments} |").unwrap();
+    };
+    for style in Style::ALL {
+        let mut scene = Scene::demo();
+        scene.set_style(style);
+        line(&format!("`{}`", style.name()), &scene);
+    }
+    line("with a groom file", &Scene::parse("groom.file = \"a.hair\"", "scene").unwrap());
+    text
+}
+
+/// The settings of a section and those of the sections in it.
+fn section(page: &mut String, table: &Table, path: &str, defaults: &toml::Table, depth: usize) {
+    let inner = |row: &Row| matches!(row.kind, Kind::Group(_) | Kind::List(_));
+    if table.rows.iter().any(|row| !inner(row)) {
+        page.push_str("\n| key | default | range | meaning |\n|---|---|---|---|\n");
+    }
+    for row in table.rows.iter().filter(|row| !inner(row)) {
+        let default = defaults.get(row.name).map_or_else(|| "none".to_owned(), shown);
+        let default = if row.required { "required".to_owned() } else { default };
+        writeln!(page, "| `{}` | {default} | {} | {} |", row.name, range(row), meaning(row)).unwrap();
+    }
+    for row in table.rows.iter().filter(|row| inner(row)) {
+        let path = if path.is_empty() { row.name.to_owned() } else { format!("{path}.{}", row.name) };
+        let (table, heading) = match row.kind {
+            Kind::Group(table) => (table, format!("[{path}]")),
+            Kind::List(table) => (table, format!("[[{path}]]")),
+            _ => unreachable!("only sections are left"),
+        };
+        writeln!(page, "\n{} `{heading}`\n\n{}", "#".repeat(depth), row.sentence()).unwrap();
+        let empty = toml::Table::new();
+        let own = item(row.name).or_else(|| defaults.get(row.name)?.as_table().cloned()).unwrap_or(empty);
+        section(page, table, &path, &own, depth + 1);
+    }
+}
+
+/// The defaults of an item of a list.
+fn item(list: &str) -> Option<toml::Table> {
+    let both = |one: toml::Table, other: toml::Table| one.into_iter().chain(other).collect();
+    match list {
+        "lights" => Some(toml::Table::try_from(Light::default()).unwrap()),
+        "keyframes" => Some(toml::Table::try_from(KeyframeSection::default()).unwrap()),
+        "colliders" => {
+            let sphere = ColliderSection::Sphere(SphereSection { center: Vec3::ZERO, ..Default::default() });
+            let capsule = ColliderSection::Capsule(CapsuleSection::default());
+            Some(both(toml::Table::try_from(sphere).unwrap(), toml::Table::try_from(capsule).unwrap()))
+        }
+        _ => None,
+    }
+}
+
+/// A default as a file has it, with no more digits than tell it from its neighbours.
+fn shown(value: &toml::Value) -> String {
+    match value {
+        toml::Value::Float(value) => match *value as f32 {
+            small if small != 0.0 && small.abs() < 1e-3 => format!("{small:e}"),
+            other => other.to_string(),
+        },
+        toml::Value::Array(items) => format!("[{}]", items.iter().map(shown).collect::<Vec<_>>().join(", ")),
+        other => other.to_string(),
+    }
+}
+
+fn range(row: &Row) -> String {
+    match row.kind {
+        Kind::Flag => "true, false".to_owned(),
+        Kind::Words(words) => {
+            words.iter().map(|word| format!("\"{}\"", word.name)).collect::<Vec<_>>().join(", ")
+        }
+        Kind::Text(form) => form.to_owned(),
+        Kind::NumberOr(word) => format!("\"{word}\" or {}", row.limits()),
+        Kind::Whole(1) if row.range.is_none() => "0 to 2^63 - 1".to_owned(),
+        _ => row.limits(),
+    }
+}
+
+/// The sentence of a setting, what its words mean, and what more of it does.
+fn meaning(row: &Row) -> String {
+    let mut text = row.sentence();
+    if let Kind::Words(words) = row.kind {
+        for word in words {
+            write!(text, " \"{}\": {}", word.name, lower(&word.about())).unwrap();
+        }
+    }
+    if !row.more.is_empty() {
+        write!(text, " *More*: {}.", row.more).unwrap();
+    }
+    text
+}
+
+/// A sentence behind a colon.
+fn lower(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
+}
