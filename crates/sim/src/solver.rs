@@ -29,7 +29,20 @@ pub struct Solver {
     pub(crate) share_upper: Vec<Lanes>,
     /// Distance \[m\] from the colliders that the head carries at rest, shape as above.
     pub(crate) rest_clearance: Vec<Lanes>,
+    /// Masses as they were compiled, from which every change of the mass per length starts, so that one
+    /// there and back leaves every bit as it was.
+    compiled: Compiled,
+}
+
+/// Masses at the mass per length that a solver was compiled with.
+#[derive(Clone)]
+struct Compiled {
+    /// \[kg/m\].
     mass_per_length: f32,
+    /// \[kg\], shape `[block][point]` of lanes.
+    mass: Vec<Lanes>,
+    /// \[1/kg\], shape as above.
+    inverse_mass: Vec<Lanes>,
 }
 
 impl Solver {
@@ -75,6 +88,11 @@ impl Solver {
         let rest_clearance = by_lane(rest.mass.len(), points, |index, _, _, lane| {
             clearance(&colliders, guides.positions()[index].get(lane))
         });
+        let compiled = Compiled {
+            mass_per_length: settings.mass_per_length,
+            mass: rest.mass.clone(),
+            inverse_mass: inverse_mass.clone(),
+        };
         Ok(Self {
             settings: settings.clone(),
             rest,
@@ -87,7 +105,7 @@ impl Solver {
             share_lower,
             share_upper,
             rest_clearance,
-            mass_per_length: settings.mass_per_length,
+            compiled,
         })
     }
 
@@ -102,13 +120,15 @@ impl Solver {
     /// A setting outside its range; then nothing changes.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check()?;
-        let factor = settings.mass_per_length / self.mass_per_length;
-        if factor != 1.0 {
-            let scale =
-                |lanes: &mut Lanes, factor: f32| lanes.0.iter_mut().for_each(|value| *value *= factor);
-            self.rest.mass.iter_mut().for_each(|lanes| scale(lanes, factor));
-            self.inverse_mass.iter_mut().for_each(|lanes| scale(lanes, 1.0 / factor));
-            self.mass_per_length = settings.mass_per_length;
+        if settings.mass_per_length != self.settings.mass_per_length {
+            let factor = settings.mass_per_length / self.compiled.mass_per_length;
+            let scale = |into: &mut [Lanes], from: &[Lanes], factor: f32| {
+                for (into, from) in into.iter_mut().zip(from) {
+                    *into = Lanes(from.0.map(|value| value * factor));
+                }
+            };
+            scale(&mut self.rest.mass, &self.compiled.mass, factor);
+            scale(&mut self.inverse_mass, &self.compiled.inverse_mass, 1.0 / factor);
         }
         self.settings = settings.clone();
         Ok(())
@@ -297,6 +317,20 @@ mod tests {
         assert!((solver.inverse_mass[3].0[0] / light - 0.5).abs() < 1e-6);
         assert!(solver.set_settings(&Settings { iterations: 0, ..settings.clone() }).is_err());
         assert_eq!(solver.settings(), &settings);
+    }
+
+    #[test]
+    fn a_mass_that_is_moved_there_and_back_leaves_every_bit() {
+        let compiled = Solver::new(&guides(), &Settings::default(), Vec::new()).unwrap();
+        let mut solver = compiled.clone();
+        for step in 1..40 {
+            let mass_per_length = 6.5e-6 * (1.0 + 0.037 * step as f32);
+            solver.set_settings(&Settings { mass_per_length, ..Settings::default() }).unwrap();
+            assert_ne!(solver.rest.mass, compiled.rest.mass);
+        }
+        solver.set_settings(&Settings::default()).unwrap();
+        assert_eq!(solver.rest.mass, compiled.rest.mass);
+        assert_eq!(solver.inverse_mass, compiled.inverse_mass);
     }
 
     #[test]
