@@ -1,6 +1,7 @@
 //! Strands that nothing holds: free fall, momentum, springs at rest.
 
 use glam::Vec3;
+use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::RestShape;
 use strandline_sim::{Angles, Drag, Drive, LengthPass, Settings, Solver, Spring, Springs, State};
@@ -129,5 +130,20 @@ law! {
             // A fall over the length of the strand reaches 1.7 m/s.
             assert!(fastest < 4.0, "{fastest} m/s");
         }
+    }
+}
+
+law! {
+    fn what_is_no_number_is_reported(on) {
+        let guides = one_strand(&helix(16));
+        let mut rig = Rig::new(on, Solver::new(&guides, &bare(1.0 / 60.0, 20), Vec::new()).unwrap());
+        let report = rig.step(&Drive::default());
+        assert!(report.stretch_max.is_finite() && report.non_finite == 0, "{report:?}");
+        let nowhere = Pose { translation: Vec3::NAN, ..Pose::IDENTITY };
+        rig.change(|state| state.world_from_head = nowhere);
+        let report = rig.step(&Drive { world_from_head: nowhere, ..Drive::default() });
+        // Every point, by each of the stages that look.
+        assert!(report.non_finite >= 16, "{report:?}");
+        assert!(report.stretch_max.is_nan() && report.stretch_mean.is_nan(), "{report:?}");
     }
 }

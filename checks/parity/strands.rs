@@ -39,7 +39,7 @@ fn both_from(
         match stage {
             "pose_roots" => pose_roots(&solver, &mut state, &drive.world_from_head),
             "integrate" => integrate(&solver, &mut state, drive.wind),
-            _ => assert_eq!(constrain(&solver, &mut state, &obstacles), 0),
+            _ => assert_eq!(constrain(&solver, &mut state, &obstacles).count, 0),
         }
         if let Some(probe) = probe {
             return compare(&solver, &state, &probe);

@@ -6,6 +6,7 @@ mod arguments;
 mod bench;
 mod files;
 mod gpus;
+mod non_finite;
 mod progress;
 mod render;
 mod sim;
@@ -25,7 +26,13 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("strandline: {error}");
-            ExitCode::from(if error.is::<arguments::Usage>() { 2 } else { 1 })
+            ExitCode::from(if error.is::<arguments::Usage>() {
+                2
+            } else if error.is::<non_finite::NotFinite>() {
+                3
+            } else {
+                1
+            })
         }
     }
 }

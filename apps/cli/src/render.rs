@@ -6,6 +6,7 @@ use serde::Serialize;
 use strandline::{Event, Film, Player, Scene};
 
 use crate::arguments::RenderOptions;
+use crate::non_finite::NonFinite;
 use crate::progress::Progress;
 use crate::statistics::{Collector, Times};
 
@@ -18,6 +19,8 @@ struct RenderReport {
     follow_strands: usize,
     segments: usize,
     ms_per_frame: Times,
+    #[serde(flatten)]
+    non_finite: NonFinite,
     files: Vec<PathBuf>,
 }
 
@@ -49,12 +52,15 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
     }
     let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second)?;
     let mut times = Collector::default();
-    let (mut strands, mut segments) = (0, 0);
+    let (mut strands, mut segments, mut non_finite) = (0, 0, NonFinite::default());
     let mut progress = Progress::new(u64::from(player.frames()), "frames", json);
     while let Some(event) = player.next() {
         match event? {
             Event::Note(note) => progress.note(&note),
-            Event::Stepped(_) => {}
+            Event::Stepped(report) => {
+                let note = non_finite.add(&report, player.frames_done());
+                note.into_iter().for_each(|note| progress.note(&note));
+            }
             Event::Drawn { picture, report, .. } => {
                 film.add(&picture)?;
                 times.add(&report.seconds);
@@ -75,6 +81,7 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
         follow_strands: strands,
         segments,
         ms_per_frame: times.times(),
+        non_finite,
         files: written.files,
     };
     if json {
@@ -82,7 +89,7 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
     } else {
         print(&report, folder);
     }
-    Ok(())
+    Ok(report.non_finite.outcome()?)
 }
 
 fn print(report: &RenderReport, folder: &Path) {

@@ -7,6 +7,7 @@ use strandline::{
 };
 
 use crate::arguments::SimOptions;
+use crate::non_finite::{NonFinite, larger};
 use crate::progress::Progress;
 use crate::statistics::{Collector, Times};
 
@@ -20,7 +21,8 @@ pub struct SimReport {
     pub ms_per_step: Times,
     pub stretch: Stretch,
     pub penetration_max_m: f32,
-    pub non_finite: usize,
+    #[serde(flatten)]
+    pub non_finite: NonFinite,
     pub pcg: Pcg,
     pub fluid_cells_mean: f64,
 }
@@ -50,17 +52,18 @@ pub struct Steps {
     pressure: Vec<PressureReport>,
     stretch_max: f32,
     penetration_max: f32,
-    non_finite: usize,
+    non_finite: NonFinite,
 }
 
 impl Steps {
-    pub fn add(&mut self, report: &StepReport) {
+    /// Adds a step of a frame; what a person should know of it at once.
+    pub fn add(&mut self, report: &StepReport, frame: u32) -> Option<String> {
         self.times.add(&report.seconds);
         self.stretch.push(f64::from(report.stretch_mean));
         self.pressure.push(report.pressure);
-        self.stretch_max = self.stretch_max.max(report.stretch_max);
+        self.stretch_max = larger(self.stretch_max, report.stretch_max);
         self.penetration_max = self.penetration_max.max(report.penetration_max);
-        self.non_finite = self.non_finite.max(report.non_finite);
+        self.non_finite.add(report, frame)
     }
 
     pub fn report(&self, backend: String, strands: usize, points_per_strand: usize) -> SimReport {
@@ -73,7 +76,7 @@ impl Steps {
             ms_per_step: self.times.times(),
             stretch: Stretch { mean: mean(self.stretch.iter().copied()), max: self.stretch_max },
             penetration_max_m: self.penetration_max,
-            non_finite: self.non_finite,
+            non_finite: self.non_finite.clone(),
             pcg: Pcg {
                 iterations_mean: pressure(|report| report.iterations as f64),
                 iterations_absolute_mean: pressure(|report| report.iterations_absolute as f64),
@@ -101,7 +104,11 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     while let Some(event) = player.next() {
         match event? {
             Event::Note(note) => progress.note(&note),
-            Event::Stepped(report) => steps.add(&report),
+            // Its frame is taken and counts as done.
+            Event::Stepped(report) => {
+                let note = steps.add(&report, player.frames_done().saturating_sub(1));
+                note.into_iter().for_each(|note| progress.note(&note));
+            }
             Event::Drawn { .. } => {}
         }
         progress.reached(u64::from(player.frames_done()));
@@ -114,7 +121,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     } else {
         print(&report);
     }
-    Ok(())
+    Ok(report.non_finite.outcome()?)
 }
 
 fn print(report: &SimReport) {
@@ -126,7 +133,7 @@ fn print(report: &SimReport) {
     }
     println!("stretch: mean {:.4} %, largest {:.3} %", 100.0 * stretch.mean, 100.0 * stretch.max);
     println!("deepest point inside a solid: {:.2} mm", 1e3 * report.penetration_max_m);
-    println!("points that are not finite: {}", report.non_finite);
+    println!("points that are not finite: {}", report.non_finite.points);
     println!(
         "pressure: {:.1} iterations on {:.0} fluid cells, largest residual {:.1e}",
         pcg.iterations_mean, report.fluid_cells_mean, pcg.residual_max

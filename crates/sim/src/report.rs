@@ -23,10 +23,12 @@ pub struct StepReport {
     pub pressure: PressureReport,
     /// Mean of length / rest length - 1 over all segments.
     pub stretch_mean: f32,
-    /// Largest length / rest length - 1 of any segment.
+    /// Largest length / rest length - 1 of any segment; not a number where one of them is none.
     pub stretch_max: f32,
     /// Deepest free point inside a collider \[m\]; 0 when none is inside.
     pub penetration_max: f32,
     /// Points whose position or velocity is not finite.
     pub non_finite: usize,
+    /// The first strand with such a point, from 0; a GPU does not tell.
+    pub non_finite_strand: Option<usize>,
 }

@@ -274,7 +274,7 @@ mod tests {
         let (_, mut sound) = two_strands();
         state.velocities[3].set(0, Vec3::new(f32::NAN, 0.0, 0.0));
         let report = solver.step(&mut state, &Drive::default());
-        assert!(report.non_finite > 0);
+        assert_eq!((report.non_finite > 0, report.non_finite_strand), (true, Some(0)));
         assert_eq!(solver.step(&mut sound, &Drive::default()).non_finite, 0);
         for (index, lanes) in state.positions.iter().enumerate() {
             assert_eq!(lanes.get(0), solver.positions[index].get(0));

@@ -41,7 +41,8 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
     report.stretch_mean = outcome.stretch_mean();
     report.stretch_max = outcome.stretch_max;
     report.penetration_max = outcome.penetration_max;
-    report.non_finite = non_finite + outcome.non_finite;
+    let non_finite = non_finite.with(outcome.non_finite);
+    (report.non_finite, report.non_finite_strand) = (non_finite.count, non_finite.first_strand);
     report
 }
 

@@ -89,8 +89,9 @@ impl Device {
                 let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
                 Drive { world_from_head: head.pose(time), wind: scene.wind.at(time), hand: None }
             };
-            for report in self.run(&solver, &mut state, queued, drive)? {
-                steps.add(&report);
+            for (step, report) in self.run(&solver, &mut state, queued, drive)?.iter().enumerate() {
+                let note = steps.add(report, (first + step) as u32);
+                note.into_iter().for_each(|note| progress.note(&note));
             }
             wall += begin.elapsed().as_secs_f64();
             progress.reached((first + queued) as u64);

@@ -83,7 +83,10 @@ fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimReport, 
     while let Some(event) = player.next() {
         match event? {
             Event::Note(note) => progress.note(&note),
-            Event::Stepped(report) => steps.add(&report),
+            Event::Stepped(report) => {
+                let note = steps.add(&report, player.frames_done());
+                note.into_iter().for_each(|note| progress.note(&note));
+            }
             Event::Drawn { report, .. } => {
                 pictures.add(&report.seconds);
                 segments = report.segments;

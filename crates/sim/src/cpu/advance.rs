@@ -19,12 +19,31 @@ pub struct Outcome {
     pub stretch_sum: f64,
     /// Number of segments that can stretch.
     pub segment_count: usize,
-    /// Largest length / rest length - 1.
+    /// Largest length / rest length - 1; not a number where one of them is none.
     pub stretch_max: f32,
     /// Deepest free point inside a solid \[m\].
     pub penetration_max: f32,
     /// Points that were not finite.
-    pub non_finite: usize,
+    pub non_finite: NonFinite,
+}
+
+/// Points whose position or velocity was not finite.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NonFinite {
+    /// How many there were.
+    pub count: usize,
+    /// The first strand that has one.
+    pub first_strand: Option<usize>,
+}
+
+impl NonFinite {
+    /// Both together.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            first_strand: self.first_strand.into_iter().chain(other.first_strand).min(),
+        }
+    }
 }
 
 /// Makes the predicted positions the positions, and measures them.
@@ -72,7 +91,7 @@ impl Outcome {
             if mask & (1 << lane) != 0 {
                 self.stretch_sum += f64::from(stretch);
                 self.segment_count += 1;
-                self.stretch_max = self.stretch_max.max(stretch);
+                self.stretch_max = larger(self.stretch_max, stretch);
             }
         }
     }
@@ -81,9 +100,9 @@ impl Outcome {
         Self {
             stretch_sum: self.stretch_sum + other.stretch_sum,
             segment_count: self.segment_count + other.segment_count,
-            stretch_max: self.stretch_max.max(other.stretch_max),
+            stretch_max: larger(self.stretch_max, other.stretch_max),
             penetration_max: self.penetration_max.max(other.penetration_max),
-            non_finite: self.non_finite + other.non_finite,
+            non_finite: self.non_finite.with(other.non_finite),
         }
     }
 
@@ -91,6 +110,11 @@ impl Outcome {
     pub fn stretch_mean(&self) -> f32 {
         (self.stretch_sum / self.segment_count.max(1) as f64) as f32
     }
+}
+
+/// The larger of two numbers; what is no number is kept, where a maximum would pass over it.
+fn larger(one: f32, other: f32) -> f32 {
+    if other > one || other.is_nan() { other } else { one }
 }
 
 fn deepest(
@@ -123,10 +147,10 @@ pub(crate) struct Block<'a> {
     pub corrections: &'a mut [Vec3Lanes],
 }
 
-/// Puts strands that hold a number which is not finite back to rest and counts their bad points,
+/// Puts strands that hold a number which is not finite back to rest and finds their bad points,
 /// so that one bad strand never spreads. They have been there one step ago too, so that no picture
 /// between the two steps shows the way back.
-pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hair: Block) -> usize {
+pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hair: Block) -> NonFinite {
     let Block { positions, previous, velocities, corrections } = hair;
     let mut nothing = splat(0.0);
     for point in 0..positions.len() {
@@ -138,16 +162,18 @@ pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hai
     }
     let bad = nothing.is_nan().to_bitmask();
     if bad == 0 {
-        return 0;
+        return NonFinite::default();
     }
     let live = live_lanes(solver, block);
-    let mut count = 0;
+    let mut found = NonFinite::default();
     for lane in (0..LANES).filter(|lane| bad & (1 << lane) != 0) {
         for point in 0..positions.len() {
             let finite = [&positions[point], &velocities[point], &corrections[point]]
                 .iter()
                 .all(|vectors| vectors.get(lane).is_finite());
-            count += usize::from(!finite && lane < live);
+            if !finite && lane < live {
+                found = found.with(NonFinite { count: 1, first_strand: Some(block * LANES + lane) });
+            }
             let home = world_from_head.point(solver.positions[block * positions.len() + point].get(lane));
             positions[point].set(lane, home);
             previous[point].set(lane, home);
@@ -155,5 +181,5 @@ pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hai
             corrections[point].set(lane, Vec3::ZERO);
         }
     }
-    count
+    found
 }

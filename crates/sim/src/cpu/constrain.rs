@@ -5,7 +5,7 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::Obstacles;
-use super::advance::{Block, recover};
+use super::advance::{Block, NonFinite, recover};
 use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
 use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::length_pass::Follow;
@@ -17,9 +17,9 @@ use crate::{Solver, State};
 /// Projects the predicted positions onto the constraints and derives the velocities from them.
 ///
 /// All rounds of a block of strands run one after the other, so that its points stay in the first
-/// cache. Returns the number of points that were not finite; their strands are back at rest, so
-/// that they do not spoil the volume.
-pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> usize {
+/// cache. Returns the points that were not finite; their strands are back at rest, so that they
+/// do not spoil the volume.
+pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> NonFinite {
     let points = solver.points_per_strand;
     let settings = &solver.settings;
     let solids = Solids::new(obstacles, points);
@@ -60,7 +60,7 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> u
                 recover(solver, &obstacles.end, block, hair)
             },
         )
-        .sum()
+        .reduce(NonFinite::default, NonFinite::with)
 }
 
 /// Passes that draw a held strand tight, from the hand and from the head in turn. Gravity bends a strand

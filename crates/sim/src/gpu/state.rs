@@ -242,5 +242,6 @@ fn step_report(report: &Report, seconds: Vec<(&'static str, f64)>, segment_count
         stretch_max: report.stretch_max,
         penetration_max: report.penetration_max,
         non_finite: report.non_finite as usize,
+        non_finite_strand: None,
     }
 }
