@@ -4,7 +4,7 @@ use strandline_checks::gpu;
 use strandline_sim::cpu::{
     advance::advance, constrain::constrain, integrate::integrate, pose_roots::pose_roots,
 };
-use strandline_sim::gpu::Probe;
+use strandline_sim::gpu::{LengthsForm, LengthsInput, Probe, lengths_alone};
 use strandline_sim::{Solver, State};
 
 use crate::heads::{Head, apart, drive, heads, mean_apart, obstacles};
@@ -176,6 +176,64 @@ fn a_bad_strand_goes_back_to_rest_and_is_counted() {
             // The others feel the bad one through the volume only.
             let limit = if bad { 1e-6 } else { 2e-3 };
             assert!((lanes.get(lane) - expected).length() < limit, "point {index}, lane {lane}");
+        }
+    }
+}
+
+/// Strands that are stretched this way and that, their first point held: points with inverse masses, and lengths.
+fn stretched(strands: usize, count: usize) -> (Vec<[f32; 4]>, Vec<f32>) {
+    let noise = |index: usize, salt: f32| 0.004 * (index as f32 * 12.9898 + salt).sin();
+    let points = (0..strands * count).map(|index| {
+        let [strand, point] = [index / count, index % count].map(|number| number as f32);
+        let inverse_mass = if point == 0.0 { 0.0 } else { 1e6 * (1.0 + point) };
+        [
+            0.01 * strand + noise(index, 1.0),
+            -0.012 * point + noise(index, 2.0),
+            noise(index, 3.0),
+            inverse_mass,
+        ]
+    });
+    (points.collect(), vec![0.01; strands * count])
+}
+
+/// The same rounds in plain Rust [Chen2011 eq. 1-2, fig. 15-16].
+fn projected(points: &[[f32; 4]], lengths: &[f32], count: usize, rounds: u32) -> Vec<[f32; 4]> {
+    let mut points = points.to_vec();
+    for strand in points.chunks_mut(count) {
+        for first in (0..rounds).flat_map(|_| [0, 1]) {
+            for point in (first..count - 1).step_by(2) {
+                let [start, end] = [strand[point], strand[point + 1]];
+                let across = glam::Vec3::from_slice(&end) - glam::Vec3::from_slice(&start);
+                let correction =
+                    across * ((across.length() - lengths[point]) / (across.length() * (start[3] + end[3])));
+                for axis in 0..3 {
+                    strand[point][axis] += correction[axis] * start[3];
+                    strand[point + 1][axis] -= correction[axis] * end[3];
+                }
+            }
+        }
+    }
+    points
+}
+
+#[test]
+fn constrain_projects_lengths_alone_alike_with_a_thread_for_a_strand_and_for_a_point() {
+    let Some(gpu) = gpu() else { return };
+    // More strands than a workgroup holds, and no multiple of it; an odd number of points.
+    for (strands, count) in [(150, 6), (70, 16), (19, 63)] {
+        let (points, lengths) = stretched(strands, count);
+        let input = LengthsInput { points: &points, lengths: &lengths, points_per_strand: count, rounds: 20 };
+        let expected = projected(&points, &lengths, count, 20);
+        let off = |found: &[[f32; 4]]| {
+            let pairs = found.iter().flatten().zip(expected.iter().flatten());
+            pairs.fold(0.0, |most: f32, (one, other)| most.max((one - other).abs() / other.abs().max(1.0)))
+        };
+        for form in [LengthsForm::Strand, LengthsForm::Point] {
+            let (found, seconds) = lengths_alone(&gpu, &input, form, 2).unwrap();
+            assert!(off(&found) < 20.0 * PLACE, "{form:?}, {count} points: {}", off(&found));
+            assert!(seconds.is_none_or(|seconds| seconds > 0.0 && seconds < 1.0), "{form:?}: {seconds:?}");
+            let (fewer, _) = lengths_alone(&gpu, &LengthsInput { rounds: 19, ..input }, form, 1).unwrap();
+            assert!(off(&fewer) > 20.0 * PLACE, "{form:?}: a round less is not seen");
         }
     }
 }

@@ -132,6 +132,37 @@ fn solved<'a>(solver: &'a GpuSolver, state: &State, volume: &Volume, spread: Spr
 }
 
 #[test]
+fn solve_pressure_times_the_same_gradient_in_both_forms() {
+    let Some(gpu) = gpu() else { return };
+    let head = &heads()[0];
+    let (_, state, volume) = marked(head);
+    let solver = head.gpu_solver(&gpu);
+    let subtracted = |forms: &[Gradient]| {
+        let probe = solved(&solver, &state, &volume, Spread::One);
+        for form in forms {
+            let seconds = solver.seconds_of_gradient(&probe.state, *form, 3).unwrap();
+            assert!(seconds.is_none_or(|seconds| seconds > 0.0 && seconds < 1.0), "{form:?}: {seconds:?}");
+            assert_eq!(seconds.is_some(), gpu.has_timestamps());
+        }
+        probe.faces().unwrap()
+    };
+    let (none, one, three) =
+        (subtracted(&[]), subtracted(&[Gradient::Joint]), subtracted(&[Gradient::Split]));
+    let largest = none.iter().flatten().fold(0.0, |most: f32, value| most.max(value.abs()));
+    let apart = |one: &[[f32; 2]], other: &[[f32; 2]]| {
+        let pairs = one.iter().flatten().zip(other.iter().flatten());
+        pairs.fold(0.0, |most: f32, (one, other)| most.max((one - other).abs()))
+    };
+    // The solve may end a bit apart, since its sums run in no fixed order.
+    assert!(apart(&one, &three) < 1e-3 * largest, "the two forms do different work");
+    assert!(apart(&none, &one) > 0.1 * largest, "what is timed does nothing");
+    // Before the first step there is no volume to take it from.
+    assert!(
+        solver.seconds_of_gradient(&solver.upload(&state).unwrap(), Gradient::Joint, 1).unwrap().is_none()
+    );
+}
+
+#[test]
 fn solve_pressure_agrees_in_every_way_to_run_it() {
     let Some(gpu) = gpu() else { return };
     for mut head in heads() {

@@ -1,7 +1,7 @@
 //! Links the WESL modules of the stages into one WGSL text each.
 
 /// Modules with entry points; the others are imported by them.
-const MODULES: [&str; 10] = [
+const MODULES: [&str; 11] = [
     "pose_roots",
     "integrate",
     "constrain",
@@ -12,6 +12,7 @@ const MODULES: [&str; 10] = [
     "advance",
     "rooms",
     "pcg",
+    "lengths_alone",
 ];
 
 fn main() {

@@ -11,4 +11,5 @@ strandline_gpu::linked! {
     SOLVE_PRESSURE = "solve_pressure",
     GATHER = "gather",
     ADVANCE = "advance",
+    LENGTHS_ALONE = "lengths_alone",
 }

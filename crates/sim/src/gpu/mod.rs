@@ -4,11 +4,13 @@
 //! nothing is read back until it is asked for.
 
 mod advance;
+mod alone;
 mod buffers;
 mod constrain;
 mod gather;
 mod inputs;
 mod integrate;
+mod lengths_alone;
 mod linked;
 mod mark;
 mod pcg;
@@ -24,6 +26,7 @@ mod step;
 mod volume;
 
 use buffers::Buffers;
+pub use lengths_alone::{LengthsForm, LengthsInput, lengths_alone};
 pub use linked::modules;
 pub use pcg::Spread;
 pub use probe::Probe;

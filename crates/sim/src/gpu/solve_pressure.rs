@@ -125,15 +125,19 @@ impl Stage {
         let level = LevelRooms { grid, vectors, neighbours, unknowns, rooms };
         dispatches.push((self.level_rooms.bind(gpu, &level)?, [1; 3]));
         dispatches.extend(self.pcg.bind(gpu, &buffers.step, volume, preconditioner)?);
-        let gradient = SubtractGradient { grid, vectors, neighbours, kinds, unknowns, faces };
-        match volume.gradient {
-            Gradient::Joint => dispatches.push((self.gradient.bind(gpu, &gradient)?, by_cell)),
-            Gradient::Split => {
-                for kernel in &self.gradient_along {
-                    dispatches.push((kernel.bind(gpu, &gradient)?, by_cell));
-                }
-            }
-        }
+        dispatches.extend(self.bind_gradient(gpu, volume, volume.gradient)?);
         Ok(dispatches)
+    }
+
+    /// Subtracting the gradient alone, in a form.
+    pub fn bind_gradient(&self, gpu: &Gpu, volume: &Volume, form: Gradient) -> Result<Dispatches, GpuError> {
+        let Volume { grid, vectors, neighbours, kinds, unknowns, faces, .. } = volume;
+        let buffers = SubtractGradient { grid, vectors, neighbours, kinds, unknowns, faces };
+        let kernels = match form {
+            Gradient::Joint => std::slice::from_ref(&self.gradient),
+            Gradient::Split => &self.gradient_along,
+        };
+        let by_cell = groups(volume.cell_count, THREADS);
+        kernels.iter().map(|kernel| Ok((kernel.bind(gpu, &buffers)?, by_cell))).collect()
     }
 }

@@ -3,7 +3,10 @@ use strandline_body::Pose;
 use strandline_gpu::{Bindings, Declaration, Gpu, GpuError};
 
 use super::buffers::Buffers;
-use super::{GpuState, advance, constrain, gather, integrate, mark, pcg, pose_roots, solve_pressure, splat};
+use super::{
+    GpuState, advance, constrain, gather, integrate, lengths_alone, mark, pcg, pose_roots, solve_pressure,
+    splat,
+};
 use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport};
 use strandline_gpu::Scan;
 
@@ -158,7 +161,7 @@ fn segment_count(solver: &Solver) -> usize {
 
 /// Every kernel's declaration, to be held against its shader.
 pub fn declarations() -> Vec<Declaration> {
-    vec![
+    let mut all = vec![
         pose_roots::PoseRoots::declaration(),
         integrate::Integrate::declaration(),
         constrain::Constrain::declaration(),
@@ -179,7 +182,9 @@ pub fn declarations() -> Vec<Declaration> {
         gather::Gather::declaration(),
         advance::Advance::declaration(),
         advance::Gathered::declaration(),
-    ]
+    ];
+    all.extend(lengths_alone::declarations());
+    all
 }
 
 /// What keeps a lost device's error apart from a setting's.
