@@ -35,6 +35,8 @@ pub enum Command {
     Scene(SceneOptions),
     /// Measure speed: the thesis's tables, or how cost grows.
     Bench(BenchOptions),
+    /// Draw the measurements of `bench thesis` or `bench view` as the thesis draws its own.
+    Plot(PlotOptions),
     /// List the GPUs of this machine.
     Gpus,
     /// Write the linked shader modules to a folder, to read.
@@ -170,9 +172,22 @@ pub struct BenchOptions {
     /// A short run that shows that everything works; its figures mean little.
     #[arg(long)]
     pub quick: bool,
+    /// Seconds of play of `window` [default: 600; 6 of a quick run].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    pub seconds: Option<u64>,
     /// Write the measurements to this file.
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+}
+
+#[derive(Args, Debug)]
+pub struct PlotOptions {
+    /// What `bench thesis --json FILE` or `bench view --json FILE` wrote.
+    #[arg(value_name = "FILE.json")]
+    pub file: PathBuf,
+    /// The picture to write [default: beside the measurements, ending in .svg].
+    #[arg(long, value_name = "FILE.svg")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -1,4 +1,4 @@
-//! The `strandline` program: view, render, sim, groom, convert, info, bench, gpus, shaders.
+//! The `strandline` program: view, render, sim, groom, convert, info, scene, bench, plot, gpus, shaders.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
@@ -48,6 +48,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(Command::Info(options)) => files::info(options),
         Some(Command::Scene(options)) => files::scene(options),
         Some(Command::Bench(options)) => bench::bench(options),
+        Some(Command::Plot(options)) => bench::plot(options),
         Some(Command::Gpus) => gpus::list(),
         Some(Command::Shaders(options)) => gpus::shaders(options),
     }

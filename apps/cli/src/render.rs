@@ -18,7 +18,10 @@ struct RenderReport {
     frames: usize,
     follow_strands: usize,
     segments: usize,
-    ms_per_frame: Times,
+    /// Pictures that were drawn while the next frame was simulated, all but the last; none of a film of one.
+    ms_per_frame_beside_simulation: Option<Times>,
+    /// The last picture, beside which nothing is simulated.
+    ms_of_frame_alone: Times,
     #[serde(flatten)]
     non_finite: NonFinite,
     files: Vec<PathBuf>,
@@ -51,7 +54,7 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
         eprintln!("note: {note}");
     }
     let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second)?;
-    let mut times = Collector::default();
+    let (mut beside, mut alone) = (Collector::default(), Collector::default());
     let (mut strands, mut segments, mut non_finite) = (0, 0, NonFinite::default());
     let mut progress = Progress::new(u64::from(player.frames()), "frames", json);
     while let Some(event) = player.next() {
@@ -61,8 +64,9 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
                 let note = non_finite.add(&report, player.frames_done());
                 note.into_iter().for_each(|note| progress.note(&note));
             }
-            Event::Drawn { picture, report, .. } => {
+            Event::Drawn { frame, picture, report } => {
                 film.add(&picture)?;
+                let times = if frame + 1 < player.frames() { &mut beside } else { &mut alone };
                 times.add(&report.seconds);
                 (strands, segments) = (report.strands, report.segments);
             }
@@ -77,10 +81,11 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
     let report = RenderReport {
         backend: player.simulated_on(),
         render_backend: player.drawn_on(),
-        frames: times.len(),
+        frames: beside.len() + alone.len(),
         follow_strands: strands,
         segments,
-        ms_per_frame: times.times(),
+        ms_per_frame_beside_simulation: (beside.len() > 0).then(|| beside.times()),
+        ms_of_frame_alone: alone.times(),
         non_finite,
         files: written.files,
     };
@@ -93,14 +98,23 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
 }
 
 fn print(report: &RenderReport, folder: &Path) {
-    let times = &report.ms_per_frame;
     println!(
         "{} pictures of {} strands, {} segments, drawn on {}, simulated on {}",
         report.frames, report.follow_strands, report.segments, report.render_backend, report.backend
     );
-    println!("a picture takes {:.0} ms (95 of 100 at most {:.0} ms)", times.median, times.p95);
-    for (name, time) in times.stages.iter() {
-        println!("  {name:<15}{time:>8.1} ms");
+    let alone = &report.ms_of_frame_alone;
+    match &report.ms_per_frame_beside_simulation {
+        Some(beside) => println!(
+            "a picture takes {:.0} ms while the next frame is simulated (95 of 100 at most {:.0} ms), {:.0} ms alone (the last one)",
+            beside.median, beside.p95, alone.median
+        ),
+        None => println!("the picture takes {:.0} ms", alone.median),
+    }
+    for (name, time) in alone.stages.iter() {
+        let beside = report.ms_per_frame_beside_simulation.as_ref();
+        let beside =
+            beside.map_or(String::new(), |times| format!("{:>10.1} ms beside", times.stages.sum(&[name])));
+        println!("  {name:<15}{time:>8.1} ms alone{beside}");
     }
     let last = report.files.last().map_or(folder, PathBuf::as_path);
     println!("wrote {} files to {}: look at {}", report.files.len(), folder.display(), last.display());

@@ -48,9 +48,10 @@ fn render_writes_frames_a_sheet_and_a_moving_picture() {
     small(folder.path());
     let output = works(folder.path(), &["render", "--scene", "small.toml", "--json"]);
     let report: serde_json::Value = serde_json::from_str(&output).unwrap();
-    for key in ["backend", "render_backend", "frames", "follow_strands", "segments", "ms_per_frame", "files"]
-    {
-        assert!(keys(&report).contains(&key), "{key} is missing in {output}");
+    let times = ["ms_per_frame_beside_simulation", "ms_of_frame_alone"];
+    let others = ["backend", "render_backend", "frames", "follow_strands", "segments", "files"];
+    for key in times.iter().chain(&others) {
+        assert!(keys(&report).contains(key), "{key} is missing in {output}");
     }
     assert_eq!((report["frames"].as_u64(), report["follow_strands"].as_u64()), (Some(2), Some(80)));
     for name in ["frame_0000.png", "frame_0001.png", "sheet.png"] {
@@ -60,8 +61,34 @@ fn render_writes_frames_a_sheet_and_a_moving_picture() {
     let moving =
         ["video.mp4", "animation.gif"].map(|name| folder.path().join("out/small").join(name).is_file());
     assert_eq!(moving.iter().filter(|there| **there).count(), 1);
-    let stages = keys(&report["ms_per_frame"]["stages"]);
-    assert_eq!(stages.len(), 7, "{stages:?}");
+    for name in times {
+        let stages = keys(&report[name]["stages"]);
+        assert_eq!(stages.len(), 7, "{name}: {stages:?}");
+    }
+    // Nothing is simulated beside the only picture of a film.
+    let output = works(folder.path(), &["render", "--scene", "small.toml", "--frames", "1", "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&output).unwrap();
+    assert!(report[times[0]].is_null() && report[times[1]].is_object(), "{output}");
+}
+
+#[test]
+fn measurements_are_plotted_and_other_files_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let measured = r#"{"bench": "thesis", "machine": {"cpu": "x", "threads": 2}, "quick": true, "results": {"grids": [
+        {"cells": 16, "whole_on_cpu": {"frames_per_second": 4.0}, "gpu": null, "thesis_frames_per_second": [21.8, 96.2]},
+        {"cells": 64, "whole_on_cpu": {"frames_per_second": 3.0}, "gpu": null, "thesis_frames_per_second": [3.19, 37.7]}]}}"#;
+    std::fs::write(at.join("thesis.json"), measured).unwrap();
+    std::fs::write(at.join("other.json"), "{}").unwrap();
+    works(at, &["plot", "thesis.json"]);
+    works(at, &["plot", "thesis.json", "--out", "named.svg"]);
+    for name in ["thesis.svg", "named.svg"] {
+        let text = std::fs::read_to_string(at.join(name)).unwrap();
+        assert!(text.starts_with("<svg") && text.ends_with("</svg>\n") && text.contains("a quick run"));
+    }
+    fails(at, &["plot", "other.json"], 1, &["no measurements to plot", "--json FILE", "other.json"]);
+    fails(at, &["plot", "none.json"], 1, &["cannot read the measurements", "none.json"]);
+    fails(at, &["plot", "thesis.json", "--out", "no/folder.svg"], 1, &["the plot", "folder.svg"]);
 }
 
 #[test]

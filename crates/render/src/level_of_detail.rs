@@ -29,6 +29,12 @@ impl LevelOfDetail {
         Self { least_strands: 1.0, least_segments: 1.0, ..Self::default() }
     }
 
+    /// Detail that falls from 0.2 m on, as the thesis measured it [Chen2011 table 5]: at 3 m a fifteenth of
+    /// the follow strands, with a quarter of their segments.
+    pub fn thesis() -> Self {
+        Self { segments_per_span: 4, full_distance: 0.2, least_strands: 0.05, least_segments: 0.25 }
+    }
+
     /// Checks the settings.
     ///
     /// # Errors
@@ -96,6 +102,20 @@ impl DetailLevel {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn in_the_thesis_detail_falls_at_each_of_its_distances() {
+        let level = |distance| LevelOfDetail::thesis().level(distance, 16);
+        let segments = |distance| {
+            let level: DetailLevel = level(distance);
+            level.follow_strands * level.segments_per_span
+        };
+        assert!(LevelOfDetail::thesis().validate().is_ok());
+        assert_eq!(level(0.2), DetailLevel::full(4, 16));
+        for [near, far] in [[0.2, 0.4], [0.4, 0.6], [0.6, 1.0], [1.0, 1.5], [1.5, 3.0]] {
+            assert!(segments(far) < 0.75 * segments(near), "{near} m and {far} m");
+        }
+    }
 
     #[test]
     fn widths_sum_to_the_full_number() {

@@ -39,6 +39,8 @@ pub struct Adapter {
 pub struct GpuRun {
     /// Times by timestamps.
     pub steps: SimReport,
+    /// None without a volume.
+    pub us_of_gradient: Option<GradientTimes>,
     /// Time on the host's clock for a step among many that are queued.
     pub wall_ms_per_step: f64,
     pub dispatches: usize,
@@ -47,6 +49,35 @@ pub struct GpuRun {
     pub bytes_per_step: u64,
     /// Those over the time of the stages without the solve, over what a copy moves in that time.
     pub share_of_copy_bandwidth: f64,
+}
+
+/// Times of subtracting the pressure gradient once, alone \[us\], by the device's own clock [Chen2011 table 1].
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct GradientTimes {
+    pub one_kernel: f64,
+    pub three_kernels: f64,
+    /// The time is the mean of so many in a row; the best of a few rows.
+    pub in_a_row: usize,
+}
+
+impl GradientTimes {
+    /// After the last step, whose markers and pressure it takes.
+    fn measured(solver: &GpuSolver, state: &GpuState, software: bool) -> anyhow::Result<Option<Self>> {
+        const ROWS: usize = 5;
+        let in_a_row = if software { 8 } else { 64 };
+        // Both in turn, so that whatever else happens falls on both.
+        let mut best = [f64::INFINITY; 2];
+        for _ in 0..ROWS {
+            for (best, gradient) in best.iter_mut().zip([Gradient::Joint, Gradient::Split]) {
+                match solver.seconds_of_gradient(state, gradient, in_a_row)? {
+                    Some(seconds) => *best = best.min(1e6 * seconds),
+                    None => return Ok(None),
+                }
+            }
+        }
+        let [one_kernel, three_kernels] = best;
+        Ok(Some(Self { one_kernel, three_kernels, in_a_row }))
+    }
 }
 
 impl Device {
@@ -70,12 +101,16 @@ impl Device {
         Ok(Some(Self { gpu, adapter }))
     }
 
+    /// What the command line calls it.
+    pub fn backend(&self) -> Backend {
+        Backend::Gpu(Some(self.gpu.adapter().index))
+    }
+
     /// Plays a scene without pictures.
-    pub fn measure(&self, scene: &Scene, gradient: Gradient, what: &'static str) -> anyhow::Result<GpuRun> {
+    pub fn measure(&self, scene: &Scene, what: &'static str) -> anyhow::Result<GpuRun> {
         let Prepared { guides, colliders, head, .. } = Prepared::new(scene)?;
         let solver = GpuSolver::new(&self.gpu, Solver::new(&guides, &scene.simulation, colliders)?)?;
         let mut state = solver.rest_state(head.pose(0.0))?;
-        state.set_gradient(gradient);
         let mut steps = Steps::default();
         let count = scene.film.frames as usize;
         let mut progress = Progress::new(count as u64, what, false);
@@ -104,6 +139,7 @@ impl Device {
         let rest: f64 = steps.ms_per_step.stages.iter().map(|(_, time)| time).sum::<f64>() - solve;
         let copied = self.adapter.copy_bytes_per_second * rest * 1e-3;
         Ok(GpuRun {
+            us_of_gradient: GradientTimes::measured(&solver, &state, self.adapter.software)?,
             steps,
             wall_ms_per_step: 1e3 * wall / count.max(1) as f64,
             dispatches: costs.dispatches,

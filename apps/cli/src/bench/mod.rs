@@ -1,12 +1,18 @@
 //! `strandline bench`: the thesis's tables beside ours, and how cost grows.
 
+mod chart;
+mod forms;
 mod gpu;
 mod machine;
+mod plot;
 mod scaling;
+mod tables;
 mod thesis;
 mod view;
 mod window;
 mod workers;
+
+pub use plot::plot;
 
 use std::path::Path;
 
@@ -18,13 +24,16 @@ use crate::progress::Progress;
 use crate::sim::{SimReport, Steps};
 use crate::statistics::{Collector, Times};
 use gpu::{Adapter, Device};
+use machine::Machine;
 
 /// What is written with `--json`: the measurements and what they were made on.
 #[derive(Debug, Serialize)]
 struct Baseline<T: Serialize> {
     bench: &'static str,
     version: &'static str,
-    machine: machine::Machine,
+    /// Whether the program is a release build.
+    release: bool,
+    machine: Machine,
     /// None when no GPU was measured.
     gpu: Option<Adapter>,
     /// Whether this was a short run, whose figures mean little.
@@ -33,32 +42,34 @@ struct Baseline<T: Serialize> {
 }
 
 pub fn bench(options: &BenchOptions) -> anyhow::Result<()> {
+    let machine = Machine::measured();
+    machine.print();
     let device = Device::open(options.backend, options.quick)?;
     let device = device.as_ref();
     match options.what {
-        Bench::Thesis => write(options, device, "thesis", thesis::run(device, options.quick)?),
-        Bench::View => write(options, device, "view", view::run(device, options.quick)?),
-        Bench::Workers => write(options, device, "workers", workers::run(device, options.quick)?),
-        Bench::Window => write(options, device, "window", window::run(device, options.quick)?),
-        Bench::Scaling => write(options, device, "scaling", scaling::run(device, options.quick)?),
+        Bench::Thesis => write(options, machine, device, "thesis", thesis::run(device, options.quick)?),
+        Bench::View => write(options, machine, device, "view", view::run(device, options.quick)?),
+        Bench::Workers => write(options, machine, device, "workers", workers::run(device, options.quick)?),
+        Bench::Window => write(options, machine, device, "window", window::run(device, options)?),
+        Bench::Scaling => write(options, machine, device, "scaling", scaling::run(device, options.quick)?),
     }
 }
 
 fn write<T: Serialize>(
     options: &BenchOptions,
+    machine: Machine,
     device: Option<&Device>,
     bench: &'static str,
     results: T,
 ) -> anyhow::Result<()> {
-    let machine = machine::Machine::here();
-    println!("\nmachine: {}, {} threads", machine.cpu, machine.threads);
+    let machine = Machine { peak_memory_mb: machine::peak_memory_mb(), ..machine };
     if let Some(memory) = machine.peak_memory_mb {
-        println!("peak memory: {memory:.0} MB");
+        println!("\npeak memory: {memory:.0} MB");
     }
     let Some(path) = options.json.as_deref() else { return Ok(()) };
     let gpu = device.map(|device| device.adapter.clone());
-    let version = env!("CARGO_PKG_VERSION");
-    let baseline = Baseline { bench, version, machine, gpu, quick: options.quick, results };
+    let (version, release) = (env!("CARGO_PKG_VERSION"), !cfg!(debug_assertions));
+    let baseline = Baseline { bench, version, release, machine, gpu, quick: options.quick, results };
     let mut text = serde_json::to_string_pretty(&baseline)?;
     text.push('\n');
     save(path, &text)?;

@@ -1,11 +1,7 @@
 //! How the cost of a step grows with strands and with cells.
 
 use serde::Serialize;
-use strandline::{
-    Error, Scene,
-    gpu::GpuError,
-    sim::{SimError, gpu::Gradient},
-};
+use strandline::{Error, Scene, gpu::GpuError, sim::SimError};
 
 use super::gpu::{Device, GpuRun};
 use super::measure;
@@ -170,7 +166,7 @@ fn gpu_heading() {
 
 fn gpu_row(device: &Device, scene: &Scene) -> anyhow::Result<GpuRow> {
     let cells = scene.simulation.volume.cells[0];
-    let run = device.measure(scene, Gradient::Joint, "frames")?;
+    let run = device.measure(scene, "frames")?;
     let (strands, points) = (run.steps.strands, run.steps.strands * run.steps.points_per_strand);
     println!(
         "{cells:>6}^3{strands:>10}{points:>10}{:>12.3}{:>12.3}{:>12.3}{:>12}{:>10.1}",

@@ -7,7 +7,8 @@ use serde::Serialize;
 use strandline::{Backend, Camera, Command, Live, News, Ray, Scene, Shown};
 
 use super::gpu::Device;
-use super::machine::Machine;
+use super::machine::peak_memory_mb;
+use crate::arguments::BenchOptions;
 use crate::progress::Progress;
 use crate::statistics::{median, quantile};
 
@@ -33,12 +34,13 @@ pub struct Results {
     peak_memory_mb: [Option<f64>; 2],
 }
 
-pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
+pub fn run(device: Option<&Device>, options: &BenchOptions) -> anyhow::Result<Results> {
     let backend = device.map_or(Backend::Cpu, |device| Backend::Gpu(Some(device.gpu.adapter().index)));
+    let seconds = options.seconds.unwrap_or(SECONDS[usize::from(options.quick)]);
     let mut scene = Scene::demo();
     (scene.devices.simulation, scene.devices.pictures) = (backend, backend);
     [scene.picture.width, scene.picture.height] = SIZE;
-    let results = Play::begin(scene)?.on(SECONDS[usize::from(quick)])?;
+    let results = Play::begin(scene)?.on(seconds)?;
     let text = |memory: Option<f64>| memory.map_or("unknown".to_owned(), |mb| format!("{mb:.0} MB"));
     println!("\nThe window's demo, played for {:.0} s: {}", results.seconds, results.drawn_on);
     println!("first picture after     {:>8.2} s", results.seconds_to_first_picture);
@@ -155,7 +157,7 @@ impl Play {
             count += 1;
             std::thread::sleep(REST);
             if begin.elapsed().as_secs() * 10 >= seconds && early.is_none() {
-                early = Some(Machine::here().peak_memory_mb);
+                early = Some(peak_memory_mb());
             }
             progress.reached(begin.elapsed().as_secs());
         }
@@ -170,7 +172,7 @@ impl Play {
             pictures_per_second: (self.shown.frame - first) as f64 / passed,
             picture_moves: self.picture_moves.shows(),
             motion_moves: self.motion_moves.shows(),
-            peak_memory_mb: [early.flatten(), Machine::here().peak_memory_mb],
+            peak_memory_mb: [early.flatten(), peak_memory_mb()],
         })
     }
 

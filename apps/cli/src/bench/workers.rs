@@ -46,6 +46,13 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     if let Some(device) = device {
         let gpu = Backend::Gpu(Some(device.gpu.adapter().index));
         chosen.extend([(Backend::Cpu, gpu), (gpu, Backend::Cpu), (gpu, gpu)]);
+        let others = other_gpus(device);
+        if others.is_empty() {
+            println!(
+                "no second GPU of this kind is here: simulating on one and drawing on another is left out"
+            );
+        }
+        chosen.extend(others.into_iter().flat_map(|other| [(other, gpu), (gpu, other)]));
         frames = if device.adapter.software { FRAMES[1] } else { frames };
     }
     let frames = if quick { FRAMES[2] } else { frames };
@@ -74,9 +81,17 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     Ok(Results { pairs })
 }
 
+/// The other GPUs of a machine, hardware beside hardware and software beside software.
+fn other_gpus(device: &Device) -> Vec<Backend> {
+    let measured = device.gpu.adapter();
+    let others = Gpu::list().into_iter();
+    let others = others.filter(|other| other.index != measured.index && other.software == measured.software);
+    others.map(|other| Backend::Gpu(Some(other.index))).collect()
+}
+
 fn measure(devices: Devices, frames: u32) -> anyhow::Result<Pair> {
-    let alone = play(devices, frames, false)?;
-    let both = play(devices, frames, true)?;
+    let alone = play(&Scene::thesis(), devices, frames, false)?;
+    let both = play(&Scene::thesis(), devices, frames, true)?;
     let (ms_to_simulate, ms_to_draw) = (median(&alone.simulate), median(&alone.draw));
     let ms_a_frame = median(&both.frame);
     Ok(Pair {
@@ -94,12 +109,12 @@ fn measure(devices: Devices, frames: u32) -> anyhow::Result<Pair> {
 
 /// Times of every frame \[ms\], by the host's clock.
 #[derive(Default)]
-struct Run {
-    simulate: Vec<f64>,
-    draw: Vec<f64>,
-    frame: Vec<f64>,
-    simulated_on: String,
-    drawn_on: String,
+pub struct Run {
+    pub simulate: Vec<f64>,
+    pub draw: Vec<f64>,
+    pub frame: Vec<f64>,
+    pub simulated_on: String,
+    pub drawn_on: String,
     /// Bytes of a frame.
     crossed: Crossed,
 }
@@ -114,8 +129,9 @@ fn crossed(gpus: &[Gpu]) -> Crossed {
     sum
 }
 
-fn play(devices: Devices, frames: u32, overlap: bool) -> anyhow::Result<Run> {
-    let mut scene = Scene::thesis();
+/// Plays a scene at 60 frames a second; with `overlap` a frame is simulated while the one before is drawn.
+pub fn play(scene: &Scene, devices: Devices, frames: u32, overlap: bool) -> anyhow::Result<Run> {
+    let mut scene = scene.clone();
     // The first frame compiles and settles; it is left out.
     scene.film.frames = frames + 1;
     scene.film.frames_per_second = 60.0;
