@@ -62,6 +62,10 @@ for what in thesis view; do
     fi
 done
 echo "took $(($(date +%s) - begin)) s; the measurements are in $folder: $(ls "$folder" | grep '^gpu-' | tr '\n' ' ')"
+if [ -z "$quick" ] && [ -z "${STRANDLINE_PROGRAM:-}" ]; then
+    echo "== both backends against each other, not counted in the time"
+    STRANDLINE_REQUIRE_GPU=1 cargo test --release --package strandline-checks --test parity
+fi
 if [ -n "$left_out" ]; then
     echo "failed or left out for want of time:$left_out"
     exit 1
