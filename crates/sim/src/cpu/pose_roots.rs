@@ -1,4 +1,4 @@
-//! Rooted points follow the head. [Chen2011] says nothing of them; a point of inverse mass 0 is what its §4.1 allows.
+//! Rooted points follow the head. \[Chen2011\] says nothing of them; a point of inverse mass 0 is what its §4.1 allows.
 
 use rayon::prelude::*;
 use strandline_body::Pose;
