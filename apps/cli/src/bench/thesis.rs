@@ -77,6 +77,10 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let pictures = WITH_PICTURES[usize::from(quick)];
     let mut scene = Scene::thesis();
     scene.film.frames = pictures[0] + 1;
+    if quick {
+        // A second of steps that are not shown would take longer than all that is.
+        scene.film.settle = 0.0;
+    }
     let (ms_beside_simulation, _) = draw(&scene, true)?;
     let (ms_alone, segments) = draw(&scene, false)?;
     let mut grids = Vec::new();

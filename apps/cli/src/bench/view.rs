@@ -88,7 +88,8 @@ impl View {
         let mut scene = Scene::thesis();
         scene.look.follow_strands = follow_strands;
         scene.level_of_detail = level;
-        scene.film.frames = u32::MAX;
+        // The most that a film may have: it is over when enough is seen.
+        scene.film.frames = 1_000_000;
         scene.film.frames_per_second = 60.0;
         let backend = gpu.map_or(Backend::Cpu, |gpu| Backend::Gpu(Some(gpu.adapter().index)));
         let player = Player::new(&scene, backend, true)?;
