@@ -82,6 +82,15 @@ impl Shape {
         }
     }
 
+    /// Signed distance \[m\] alone.
+    pub fn distance(&self, point: Vec3) -> f32 {
+        match self {
+            Self::Mannequin(mannequin) => mannequin.distance(point),
+            Self::Grid(grid) => grid.distance(point),
+            Self::Sphere { .. } | Self::Capsule { .. } => self.distance_and_gradient(point).0,
+        }
+    }
+
     /// A box that holds the shape.
     pub fn bounds(&self) -> Aabb {
         match self {
@@ -131,7 +140,7 @@ pub struct Collider {
     pub shape: Shape,
     /// What it moves with.
     pub carrier: Carrier,
-    /// Coulomb friction coefficient, 0 is frictionless.
+    /// Coulomb friction coefficient, 0 is frictionless. It acts once a step, whatever the number of rounds.
     pub friction: f32,
 }
 

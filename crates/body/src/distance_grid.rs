@@ -8,8 +8,8 @@ use crate::{Aabb, BodyError, Mesh, SignedDistance, mesh_distance};
 ///
 /// The gradient is interpolated too, from central differences at the nodes: it is continuous, so
 /// that hair slides over the cells without a jerk, and it is made a unit vector afterwards.
-/// Outside the box the distance is that to the box plus the one at the nearest point of the box:
-/// continuous, and never less than the true one.
+/// Outside the box the distance is a lower bound, no less than 0.7 of the true one, and continuous
+/// at the border: who looks up once may go so far without another look.
 #[derive(Clone, Debug)]
 pub struct DistanceGrid {
     lattice: Lattice,
@@ -135,7 +135,7 @@ impl SignedDistance for DistanceGrid {
     fn distance(&self, point: Vec3) -> f32 {
         let Aabb { min, max } = self.grid_box();
         let clamped = point.clamp(min, max);
-        self.inside_box(clamped).w + (point - clamped).length()
+        beyond(self.inside_box(clamped).w, point - clamped)
     }
 
     fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
@@ -150,12 +150,23 @@ impl SignedDistance for DistanceGrid {
         // Away from the point of the surface that is nearest to the box point: at the border this is the
         // gradient inside.
         let away = outside + gradient * sample.w;
-        (sample.w + outside.length(), away.normalize_or(gradient))
+        (beyond(sample.w, outside), away.normalize_or(gradient))
     }
 
     fn bounds(&self) -> Aabb {
         self.grid_box()
     }
+}
+
+/// A lower bound of the distance \[m\] at `outside` \[m\] from the nearest point of the box, where it is `near` \[m\].
+///
+/// The box is convex and holds the surface, so that at its nearest point the way out and the way to any
+/// point of the surface are at a right angle or more: the distance is no less than the hypotenuse.
+fn beyond(near: f32, outside: Vec3) -> f32 {
+    if outside == Vec3::ZERO {
+        return near;
+    }
+    near.max(0.0).hypot(outside.length())
 }
 
 /// Difference of the neighbours on either side, for each axis, by two cells;
