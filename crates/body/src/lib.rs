@@ -23,6 +23,7 @@ mod pose;
 mod random;
 mod scalp;
 mod triangle;
+mod turn_out;
 
 pub use collider::{Carrier, Collider, Shape};
 pub use distance::{Aabb, SignedDistance};
@@ -34,3 +35,4 @@ pub use motion::{Keyframe, Motion};
 pub use pose::Pose;
 pub use random::Random;
 pub use scalp::{Root, Scalp};
+pub use turn_out::turned_out;

@@ -25,7 +25,8 @@ pub struct StepReport {
     pub stretch_mean: f32,
     /// Largest length / rest length - 1 of any segment; not a number where one of them is none.
     pub stretch_max: f32,
-    /// Deepest free point inside a collider \[m\]; 0 when none is inside.
+    /// Depth \[m\] of the deepest free point inside a collider, looked up where points are after the
+    /// step; 0 when none is inside. Of a sampled collider it is as true as the samples.
     pub penetration_max: f32,
     /// Points whose position or velocity is not finite.
     pub non_finite: usize,

@@ -21,7 +21,7 @@ settings! {
         /// Share of the velocity that is lost per second.
         damping: f32 = 0.0, in [0.0, 1000.0] "1/s", slider [0.0, 20.0], more "calmer, slower hair";
         /// Distance that strands keep from solids. A point that rests nearer may come as near as it
-        /// rests, so that a rest pose is never pushed.
+        /// rests, but not inside.
         collision_margin: f32 = 0.001, in [0.0, 0.1] "m", slider [0.0, 0.01],
             more "less skin that shows through, hair that floats over it";
         /// Drag of the air.

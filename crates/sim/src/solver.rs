@@ -27,7 +27,7 @@ pub struct Solver {
     pub(crate) share_lower: Vec<Lanes>,
     /// Share of a length correction that point i + 1 takes from segment i, i + 1, shape as above.
     pub(crate) share_upper: Vec<Lanes>,
-    /// Distance \[m\] from the colliders that the head carries at rest, shape as above.
+    /// Distance \[m\] from the colliders that the head carries at rest, 0 inside them, shape as above.
     pub(crate) rest_clearance: Vec<Lanes>,
     /// Masses as they were compiled, from which every change of the mass per length starts, so that one
     /// there and back leaves every bit as it was.
@@ -277,8 +277,9 @@ fn clearance(colliders: &[Collider], point: Vec3) -> f32 {
     colliders
         .iter()
         .filter(|collider| collider.carrier == Carrier::Head)
-        .map(|collider| collider.shape.distance_and_gradient(point).0)
+        .map(|collider| collider.shape.distance(point))
         .fold(f32::INFINITY, f32::min)
+        .max(0.0)
 }
 
 #[cfg(test)]

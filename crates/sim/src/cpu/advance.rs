@@ -3,12 +3,12 @@
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_body::Pose;
-use strandline_groom::{LANES, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::Obstacles;
 use super::constrain::live_lanes;
-use super::contacts::{Plane, Solids};
+use super::contacts::Solids;
 use super::vec3x8::{Vec3x8, load, splat};
 use crate::{Solver, State};
 
@@ -61,10 +61,9 @@ pub fn advance(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> Out
         .par_chunks_mut(points)
         .zip(state.previous_positions.par_chunks_mut(points))
         .zip(speeds)
-        .zip(state.scratch.contacts.blocks.par_iter_mut())
         .enumerate()
         .with_min_len(16)
-        .map(|(block, (((positions, previous), (velocities, corrections)), planes))| {
+        .map(|(block, ((positions, previous), (velocities, corrections)))| {
             let hair = Block { positions: &mut *positions, previous, velocities, corrections };
             let non_finite = recover(solver, &obstacles.end, block, hair);
             let lengths = &lengths[block * points..(block + 1) * points];
@@ -77,7 +76,7 @@ pub fn advance(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> Out
                 let stretch = (pair[1] - pair[0]).length() / load(&lengths[point - 1]) - splat(1.0);
                 outcome.add_stretch(stretch, free.simd_gt(splat(0.0)), live);
             }
-            outcome.penetration_max = deepest(&solids, positions, planes, inverse_mass, live);
+            outcome.penetration_max = deepest(&solids, positions, inverse_mass, live);
             outcome
         })
         .collect();
@@ -117,22 +116,15 @@ fn larger(one: f32, other: f32) -> f32 {
     if other > one || other.is_nan() { other } else { one }
 }
 
-fn deepest(
-    solids: &Solids,
-    positions: &[Vec3Lanes],
-    planes: &mut [Plane],
-    inverse_mass: &[strandline_groom::Lanes],
-    live: usize,
-) -> f32 {
-    let mut deepest = splat(0.0);
-    if !solids.is_empty() {
-        for (point, position) in positions.iter().enumerate() {
-            let free = load(&inverse_mass[point]).simd_gt(splat(0.0));
-            let depth = solids.depth(planes, point, Vec3x8::load(position));
-            deepest = deepest.fast_max(depth & free);
-        }
+/// Depth \[m\] of the deepest free point of a block inside the solids.
+fn deepest(solids: &Solids, positions: &[Vec3Lanes], inverse_mass: &[Lanes], live: usize) -> f32 {
+    if solids.is_empty() {
+        return 0.0;
     }
-    deepest.to_array().into_iter().take(live).fold(0.0, f32::max)
+    let depth = |(position, inverse_mass): (&Vec3Lanes, &Lanes)| {
+        solids.depth(Vec3x8::load(position), |lane| lane < live && inverse_mass.0[lane] > 0.0)
+    };
+    positions.iter().zip(inverse_mass).map(depth).fold(0.0, f32::max)
 }
 
 /// What changes of a block of strands, shape `[point]` of lanes, world space.

@@ -67,10 +67,18 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> N
 /// of 16 segments that is pulled straight by 5 % of its length; without these passes by 11 %.
 const SWEEPS: usize = 31;
 
+/// Rounds from one look for points that were carried beside their planes to the next.
+const ROUNDS_PER_LOOK: u32 = 5;
+
 /// What a thread works in.
 struct Workspace {
     pinned: Vec<Pinned>,
-    touches: Vec<(usize, Touch)>,
+    /// What each point may touch.
+    touches: Vec<Option<Touch>>,
+    /// Way \[m\] that friction may still take each point back in this step.
+    friction: Vec<f32x8>,
+    /// Where the prediction was \[m\].
+    predicted: Vec<Vec3x8>,
     margins: Vec<f32x8>,
     /// How far the length pass moved each point \[m\], and a zero behind the last.
     corrections: Vec<Vec3x8>,
@@ -80,7 +88,9 @@ impl Workspace {
     fn new(points: usize) -> Self {
         Self {
             pinned: Vec::with_capacity(LANES),
-            touches: Vec::with_capacity(points),
+            touches: vec![None; points],
+            friction: vec![splat(0.0); points],
+            predicted: vec![Vec3x8::ZERO; points],
             margins: vec![splat(0.0); points],
             corrections: vec![Vec3x8::ZERO; points + 1],
         }
@@ -99,8 +109,10 @@ struct Strands<'a> {
 impl Strands<'_> {
     fn solve(&self, block: usize, hair: &mut Block, planes: &mut [Plane], work: &mut Workspace) {
         let Block { positions: predicted, previous: start, velocities, corrections } = hair;
-        self.find_touches(block, predicted, start, planes, work);
         for round in 0..self.solver.settings.iterations {
+            if round % ROUNDS_PER_LOOK == 0 {
+                self.find_touches(block, round == 0, predicted, start, planes, work);
+            }
             self.segments.project(predicted);
             if let Some(bends) = self.bends.filter(|_| round % ROUNDS_PER_PASS == 0) {
                 bends.project(self.joints, predicted);
@@ -108,9 +120,12 @@ impl Strands<'_> {
             for Pinned { lane, point, goal } in &work.pinned {
                 predicted[*point].set(*lane, *goal);
             }
-            for (point, touch) in &work.touches {
-                touch.resolve(Vec3x8::load(&predicted[*point])).store(&mut predicted[*point]);
-            }
+            work.resolve_touches(predicted);
+        }
+        if !self.solver.settings.length_pass.enabled {
+            // Nothing follows: what the rounds moved far has its last look here.
+            self.find_touches(block, false, predicted, start, planes, work);
+            work.resolve_touches(predicted);
         }
         let pass = &self.solver.settings.length_pass;
         work.corrections.fill(Vec3x8::ZERO);
@@ -160,16 +175,18 @@ impl Strands<'_> {
         }
     }
 
-    /// Finds the planes that the free points of the block may touch in this step.
+    /// Finds the planes that the free points of the block may touch in this step: those of the
+    /// predictions first, later those of points that the rounds have carried beside theirs. Points that a
+    /// solid stopped on their way are put where it did.
     fn find_touches(
         &self,
         block: usize,
-        predicted: &[Vec3Lanes],
+        is_first: bool,
+        predicted: &mut [Vec3Lanes],
         start: &[Vec3Lanes],
         planes: &mut [Plane],
         work: &mut Workspace,
     ) {
-        work.touches.clear();
         if self.solids.is_empty() {
             return;
         }
@@ -178,16 +195,35 @@ impl Strands<'_> {
         let most = splat(settings.collision_margin);
         let clearance = &self.solver.rest_clearance[block * predicted.len()..];
         for point in 0..predicted.len() {
-            let margin = most.fast_min(load(&clearance[point]));
-            work.margins[point] = margin;
             let free = load(&self.joints.inverse_mass[point]).simd_gt(splat(0.0));
-            if !free.any() {
+            let (position, start) = (Vec3x8::load(&predicted[point]), Vec3x8::load(&start[point]));
+            if is_first {
+                work.margins[point] = most.fast_min(load(&clearance[point]));
+                work.predicted[point] = position;
+                (work.touches[point], work.friction[point]) = (None, splat(0.0));
+            }
+            let moved = (position - work.predicted[point]).length();
+            let looked = is_first || (free & moved.simd_gt(splat(care.near))).any();
+            if !looked || !free.any() {
                 continue;
             }
-            let (position, start) = (Vec3x8::load(&predicted[point]), Vec3x8::load(&start[point]));
-            let query = Query { position, start, margin, free, care };
-            if let Some(touch) = self.solids.touch(planes, point, query) {
-                work.touches.push((point, touch));
+            let query = Query { position, start: Some(start), margin: work.margins[point], free, care };
+            work.touches[point] = self.solids.touch(planes, point, query);
+            if let Some(touch) = &work.touches[point] {
+                touch.place.or(free, position).store(&mut predicted[point]);
+                if is_first {
+                    work.friction[point] = touch.friction_of(position);
+                }
+            }
+        }
+    }
+}
+
+impl Workspace {
+    fn resolve_touches(&mut self, predicted: &mut [Vec3Lanes]) {
+        for ((position, touch), left) in predicted.iter_mut().zip(&self.touches).zip(&mut self.friction) {
+            if let Some(touch) = touch {
+                touch.resolve(Vec3x8::load(position), left).store(position);
             }
         }
     }

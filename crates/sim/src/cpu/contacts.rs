@@ -1,9 +1,12 @@
 //! Contact planes: what the constraints see of the solids.
 //!
-//! A signed distance is dear to look up, so each point remembers the last one, in the space that
-//! carries the solid: where it was taken (the anchor), the distance and the normal. Distance
-//! changes no faster than the point moves, so a point far from all solids needs no new one for many
-//! steps, and hair that rests on a moving head none at all.
+//! Signed-distance lookups are expensive, so each point remembers the last one, in the space that
+//! carries the solid: where it was taken (the anchor), the distance and the normal. A distance is
+//! never more than the true one, which changes no faster than the point moves, so a point far from all
+//! solids needs no new one for many steps, and hair that rests on a moving head none at all.
+//!
+//! A point that goes far in a step is followed along its way, so that it meets the near side of what
+//! lies in between.
 
 use glam::Vec3;
 use strandline_body::{Carrier, Collider, Pose};
@@ -12,6 +15,7 @@ use wide::f32x8;
 
 use super::Obstacles;
 use super::vec3x8::{Rigid, Vec3x8, load, splat};
+use super::way::{Seen, met};
 
 /// How careful a look at the solids is.
 #[derive(Clone, Copy)]
@@ -28,8 +32,10 @@ impl Care {
     pub const ROUGH: Self = Self { stale: 8e-3, near: 5e-3 };
     /// For the rounds when nothing follows.
     pub const ROUNDS: Self = Self { stale: 1e-3, near: 1e-2 };
-    /// For the places where points stay: wrong by 5 um on a skull, by 0.1 mm on the tip of a nose.
-    pub const EXACT: Self = Self { stale: 1e-3, near: 0.0 };
+    /// For the places where points stay: wrong by 1 um on a skull, by 0.03 mm on the tip of a nose.
+    pub const EXACT: Self = Self { stale: 5e-4, near: 0.0 };
+    /// For places that the plane before has put to.
+    pub const ANEW: Self = Self { stale: 0.0, near: 0.0 };
 }
 
 /// The planes of all points, shape `[block]`.
@@ -43,8 +49,8 @@ pub struct Contacts {
 pub struct Query {
     /// Where they are \[m\].
     pub position: Vec3x8,
-    /// Where they were when the step began \[m\].
-    pub start: Vec3x8,
+    /// Where they were when the step began \[m\], for a look along the way; none to look at the place alone.
+    pub start: Option<Vec3x8>,
     /// Distance \[m\] that they keep.
     pub margin: f32x8,
     /// Mask of the lanes that may move.
@@ -84,6 +90,7 @@ impl Contacts {
 /// The solids of a step, by what carries them.
 pub struct Solids<'a> {
     groups: Vec<Group<'a>>,
+    obstacles: Obstacles<'a>,
     points: usize,
 }
 
@@ -114,7 +121,7 @@ impl<'a> Solids<'a> {
                 })
                 .filter(|group| !group.colliders.is_empty())
                 .collect();
-        Self { groups, points }
+        Self { groups, obstacles: *obstacles, points }
     }
 
     /// Whether there is nothing to hit.
@@ -128,8 +135,9 @@ impl<'a> Solids<'a> {
         let mut touch: Option<Touch> = None;
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
             let plane = &mut planes[point];
-            let local = group.carrier_from_world.points(position);
-            let near = group.refresh(plane, local, margin + splat(care.near), care.stale) & free;
+            let stuck = start.map(|start| group.end_from_start.points(start));
+            let look = group.refresh(plane, position, stuck, margin + splat(care.near), care.stale);
+            let near = look.near & free;
             if !near.any() {
                 continue;
             }
@@ -141,57 +149,90 @@ impl<'a> Solids<'a> {
                 normal,
                 offset: near.bitselect(offset, splat(f32::NEG_INFINITY)),
                 friction: load(&plane.friction),
-                start: group.end_from_start.points(start),
+                stuck: stuck.unwrap_or(position),
+                place: anchor.or(look.blocked & near, position),
             };
             touch = Some(touch.map_or(found, |other| other.nearer(&found, position)));
         }
         touch
     }
 
-    /// Depth \[m\] of the points of one index inside the solids, 0 outside.
-    pub fn depth(&self, planes: &mut [Plane], point: usize, position: Vec3x8) -> f32x8 {
-        let mut depth = splat(0.0);
-        for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
-            let plane = &mut planes[point];
-            let local = group.carrier_from_world.points(position);
-            let near = group.refresh(plane, local, splat(0.0), Care::EXACT.stale);
-            let above = Vec3x8::load(&plane.normal).dot(local - Vec3x8::load(&plane.anchor));
-            let distance = load(&plane.distance) + above;
-            depth = near.bitselect(depth.fast_max(-distance), depth);
+    /// Depth \[m\] of points of one index inside the solids, 0 outside: the lanes in `counted`, looked up
+    /// anew, so that it also sees what the remembered planes may have missed.
+    pub fn depth(&self, position: Vec3x8, counted: impl Fn(usize) -> bool) -> f32 {
+        let mut deepest = 0.0_f32;
+        for group in &self.groups {
+            let mut local = Vec3Lanes::default();
+            group.carrier_from_world.points(position).store(&mut local);
+            for point in (0..LANES).filter(|lane| counted(*lane)).map(|lane| local.get(lane)) {
+                let distances = group.colliders.iter().map(|collider| collider.shape.distance(point));
+                deepest = distances.fold(deepest, |deepest, distance| deepest.max(-distance));
+            }
         }
-        depth
+        deepest
+    }
+
+    /// Signed distance \[m\] to the nearest solid and its unit gradient, world space, looked up anew.
+    pub fn nearest(&self, point: Vec3) -> (f32, Vec3) {
+        self.obstacles
+            .nearest(point)
+            .map_or((f32::INFINITY, Vec3::Y), |(distance, gradient, _)| (distance, gradient))
     }
 }
 
+/// Masks of lanes after a look.
+struct Look {
+    /// May be nearer than what was asked for.
+    near: f32x8,
+    /// A solid keeps the point from where it would go.
+    blocked: f32x8,
+}
+
 impl Group<'_> {
-    /// Looks up distances where the remembered plane no longer serves; the mask of the lanes that
-    /// may be nearer than `reach` \[m\].
-    fn refresh(&self, plane: &mut Plane, local: Vec3x8, reach: f32x8, stale: f32) -> f32x8 {
+    /// Looks up distances where the remembered plane no longer serves, for points that matter when they
+    /// are nearer than `reach` \[m\].
+    ///
+    /// `stuck` is where the points would be had they stuck to the solid: where their way begins.
+    fn refresh(
+        &self,
+        plane: &mut Plane,
+        position: Vec3x8,
+        stuck: Option<Vec3x8>,
+        reach: f32x8,
+        stale: f32,
+    ) -> Look {
+        let local = self.carrier_from_world.points(position);
         let moved = (local - Vec3x8::load(&plane.anchor)).length();
         let near = (load(&plane.distance) - moved).simd_le(reach);
         let stale = (near & moved.simd_gt(splat(stale))).to_bitmask();
         if stale == 0 {
-            return near;
+            return Look { near, blocked: splat(0.0) };
         }
-        let mut here = Vec3Lanes::default();
+        let mut blocked = [0.0; LANES];
+        let (mut here, mut from) = (Vec3Lanes::default(), Vec3Lanes::default());
         local.store(&mut here);
+        stuck.map_or(local, |stuck| self.carrier_from_world.points(stuck)).store(&mut from);
         for lane in (0..LANES).filter(|lane| stale & (1 << lane) != 0) {
-            let point = here.get(lane);
-            let (distance, normal, friction) = self.nearest(point);
-            plane.anchor.set(lane, point);
+            let seen = met(from.get(lane), here.get(lane), |point| self.nearest(point));
+            if seen.is_before(here.get(lane)) {
+                blocked[lane] = f32::from_bits(u32::MAX);
+            }
+            let Seen { place, distance, normal, friction } = seen;
+            plane.anchor.set(lane, place);
             plane.normal.set(lane, normal);
             plane.distance.0[lane] = distance;
             plane.friction.0[lane] = friction;
         }
-        load(&plane.distance).simd_le(reach) & near
+        let moved = (local - Vec3x8::load(&plane.anchor)).length();
+        Look { near: (load(&plane.distance) - moved).simd_le(reach), blocked: f32x8::from(blocked) }
     }
 
-    fn nearest(&self, point: Vec3) -> (f32, Vec3, f32) {
-        let mut nearest = (f32::INFINITY, Vec3::Y, 0.0);
+    fn nearest(&self, point: Vec3) -> Seen {
+        let mut nearest = Seen { place: point, distance: f32::INFINITY, normal: Vec3::Y, friction: 0.0 };
         for collider in &self.colliders {
             let (distance, normal) = collider.shape.distance_and_gradient(point);
-            if distance < nearest.0 {
-                nearest = (distance, normal, collider.friction);
+            if distance < nearest.distance {
+                nearest = Seen { distance, normal, friction: collider.friction, ..nearest };
             }
         }
         nearest
@@ -208,7 +249,9 @@ pub struct Touch {
     /// Coulomb friction coefficient.
     pub friction: f32x8,
     /// Where points would be if they had stuck to the solid \[m\].
-    pub start: Vec3x8,
+    pub stuck: Vec3x8,
+    /// Where points come to: where they are, or where a solid stopped them on their way \[m\].
+    pub place: Vec3x8,
 }
 
 impl Touch {
@@ -218,20 +261,28 @@ impl Touch {
         self.normal.dot(position) - self.offset
     }
 
-    /// Pushes points out of the solid and takes back their slip, as far as friction holds
-    /// [Macklin2014 eq. 24].
+    /// Way \[m\] that friction may take points back in this step [Macklin2014 eq. 24]: it follows from how
+    /// deep the prediction lies, and from nothing that the rounds do, so that their number does not count.
     #[inline(always)]
-    pub fn resolve(&self, position: Vec3x8) -> Vec3x8 {
+    pub fn friction_of(&self, predicted: Vec3x8) -> f32x8 {
+        self.friction * (-self.height(predicted)).fast_max(splat(0.0))
+    }
+
+    /// Pushes points out of the solid and takes back their slip, as far as what is `left` \[m\] of
+    /// friction holds: until the step ends, whether a round has lifted the point a little or not.
+    #[inline(always)]
+    pub fn resolve(&self, position: Vec3x8, left: &mut f32x8) -> Vec3x8 {
         let height = self.height(position);
-        if !height.simd_lt(splat(0.0)).any() {
+        if !(height.simd_lt(splat(0.0)) | left.simd_gt(splat(0.0))).any() {
             return position;
         }
-        let push = (-height).fast_max(splat(0.0));
-        let out = position + self.normal * push;
-        let slip = out - self.start;
+        let out = position - self.normal * height.fast_min(splat(0.0));
+        let slip = out - self.stuck;
         let slip = slip - self.normal * self.normal.dot(slip);
-        let held = (self.friction * push / slip.length()).fast_min(splat(1.0));
-        out - slip * held
+        let size = slip.length();
+        let taken = left.fast_min(size);
+        *left -= taken;
+        out - slip * (taken / size)
     }
 
     #[inline(always)]
@@ -241,7 +292,8 @@ impl Touch {
             normal: self.normal.or(mine, other.normal),
             offset: mine.bitselect(self.offset, other.offset),
             friction: mine.bitselect(self.friction, other.friction),
-            start: self.start.or(mine, other.start),
+            stuck: self.stuck.or(mine, other.stuck),
+            place: self.place.or(mine, other.place),
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Exact lengths from root to tip, outside the solids \[Mueller2012\].
 
-use strandline_groom::{Lanes, Vec3Lanes};
+use glam::Vec3;
+use strandline_body::turned_out;
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::angles::Held;
@@ -9,6 +11,8 @@ use super::vec3x8::{Vec3x8, load, splat};
 
 /// Times that a point is placed anew at most when the solid under it curves: enough for an ear.
 const PLACINGS: usize = 8;
+/// How much nearer \[m\] than its margin a point may be left by that.
+const TOLERATED: f32 = 2e-4;
 
 /// One block of strands as the pass sees it.
 pub struct Follow<'a> {
@@ -48,16 +52,7 @@ impl Follow<'_> {
             let mut placed = before + across * (length / across.length());
             corrections[point] = (placed - found).or(free, Vec3x8::ZERO);
             if !self.solids.is_empty() && free.any() {
-                for _ in 0..PLACINGS {
-                    let margin = self.margins[point];
-                    let query = Query { position: placed, start: placed, margin, free, care: Care::EXACT };
-                    let touch = self.solids.touch(planes, point, query);
-                    let Some(touch) = touch.filter(|touch| touch.height(placed).simd_lt(splat(-1e-6)).any())
-                    else {
-                        break;
-                    };
-                    placed = outside(&touch, before, placed, length);
-                }
+                placed = self.out_of_solids(point, before, placed, planes);
             }
             let placed = placed.or(free, found);
             placed.store(&mut positions[point]);
@@ -69,6 +64,36 @@ impl Follow<'_> {
     }
 }
 
+impl Follow<'_> {
+    /// Where a point goes that must lie at its length from `before` and outside the solids.
+    fn out_of_solids(&self, point: usize, before: Vec3x8, first: Vec3x8, planes: &mut [Plane]) -> Vec3x8 {
+        let (margin, length) = (self.margins[point], load(&self.lengths[point - 1]));
+        let free = load(&self.inverse_mass[point]).simd_gt(splat(0.0));
+        let mut placed = first;
+        for placing in 0..PLACINGS {
+            let care = if placing == 0 { Care::EXACT } else { Care::ANEW };
+            let query = Query { position: placed, start: None, margin, free, care };
+            let touch = self.solids.touch(planes, point, query);
+            let Some(touch) = touch.filter(|touch| touch.height(placed).simd_lt(splat(-1e-6)).any()) else {
+                return placed;
+            };
+            placed = outside(&touch, before, placed, length);
+        }
+        let (mut from, mut here) = (Vec3Lanes::default(), Vec3Lanes::default());
+        before.store(&mut from);
+        placed.store(&mut here);
+        for lane in (0..LANES).filter(|lane| self.inverse_mass[point].0[*lane] > 0.0) {
+            let (before, end) = (from.get(lane), here.get(lane));
+            let kept = margin.to_array()[lane] - TOLERATED;
+            let is_out = |place: Vec3| self.solids.nearest(place).0 > kept;
+            if !is_out(end) {
+                here.set(lane, turned_out(before, end, self.solids.nearest(before).1, is_out));
+            }
+        }
+        Vec3x8::load(&here)
+    }
+}
+
 /// The nearest place on a plane that lies at a distance from `before`, where `placed` is below the
 /// plane; the farthest place out when the plane is out of reach.
 #[inline(always)]
@@ -76,7 +101,14 @@ fn outside(touch: &Touch, before: Vec3x8, placed: Vec3x8, length: f32x8) -> Vec3
     let below = touch.height(placed).simd_lt(splat(0.0));
     let rise = (-touch.height(before)).fast_min(length);
     let across = placed - before;
-    let aside = across - touch.normal * touch.normal.dot(across);
+    let mut aside = across - touch.normal * touch.normal.dot(across);
+    let straight = below & aside.length().simd_lt(length * splat(1e-3));
+    if straight.any() {
+        // Straight at the plane: any way along it.
+        let steep = touch.normal.x.abs().simd_gt(splat(0.7));
+        let axis = Vec3x8::splat(Vec3::Y).or(steep, Vec3x8::splat(Vec3::X));
+        aside = touch.normal.cross(axis).or(straight, aside);
+    }
     let reach = (length * length - rise * rise).fast_max(splat(0.0)).sqrt();
     let moved = before + touch.normal * rise + aside * (reach / aside.length());
     moved.or(below, placed)

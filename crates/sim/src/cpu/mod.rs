@@ -22,6 +22,7 @@ pub(crate) mod contacts;
 pub(crate) mod length_pass;
 pub(crate) mod lengths;
 pub(crate) mod vec3x8;
+pub(crate) mod way;
 
 pub use obstacles::Obstacles;
 pub use volume::{Kind, Volume};

@@ -42,7 +42,8 @@ settings! {
             more "a coarser surface for hair, at less time and memory";
         /// Whether hair hits the exact mannequin in place of samples of it; slower.
         exact: bool = false;
-        /// Coulomb friction coefficient of hair on the body.
+        /// Coulomb friction coefficient of hair on the body. It acts once a step, by how deep gravity and
+        /// motion alone would take a point: neither the number of rounds nor the pull of the strand changes it.
         friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
     }
 }

@@ -1,0 +1,94 @@
+//! What a point meets on its way through a step: continuous collision with signed distances.
+
+use glam::Vec3;
+
+/// A look at the solids, all in the space of what carries them.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Where was looked \[m\].
+    pub place: Vec3,
+    /// Signed distance \[m\] there, never more than the true one outside.
+    pub distance: f32,
+    /// Its unit gradient.
+    pub normal: Vec3,
+    /// Coulomb friction coefficient.
+    pub friction: f32,
+}
+
+/// Ways up to this \[m\] are not followed: half of it is less than what a lobe of an ear is thick.
+const SHORT: f32 = 4e-3;
+/// Most looks along a way.
+const LOOKS: usize = 32;
+/// A stride is this share of a way at least, so that looks suffice for a way that slides along a solid.
+const LEAST_STRIDE: f32 = 1.0 / 24.0;
+/// A point that has so far \[m\] to go has arrived.
+const ARRIVED: f32 = 1e-4;
+
+/// Follows a point from `start` to `end` \[m\] and looks at the solids where it comes to: at the end itself
+/// unless something lies before it.
+///
+/// A stride is as long as the way is free, which the distance tells [Hart1996]. At a surface the point goes
+/// on along it: what would take it deeper is lost, as in an impact without a rebound.
+pub fn met(start: Vec3, end: Vec3, nearest: impl Fn(Vec3) -> Seen) -> Seen {
+    let at_end = nearest(end);
+    let way = start.distance(end);
+    if way <= SHORT || at_end.distance >= way {
+        return at_end;
+    }
+    let least = SHORT.max(LEAST_STRIDE * way);
+    let (mut seen, mut left) = (nearest(start), end - start);
+    for _ in 2..LOOKS {
+        if seen.distance < least {
+            left += seen.normal * (-seen.normal.dot(left) - seen.distance).max(0.0);
+        }
+        let size = left.length();
+        if size < ARRIVED {
+            break;
+        }
+        let stride = left * (seen.distance.max(least) / size).min(1.0);
+        left -= stride;
+        seen = nearest(seen.place + stride);
+    }
+    seen
+}
+
+impl Seen {
+    /// Whether the point is kept from `end` \[m\].
+    pub fn is_before(&self, end: Vec3) -> bool {
+        self.place.distance(end) > 2.0 * ARRIVED
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ball(place: Vec3) -> Seen {
+        Seen { place, distance: place.length() - 0.05, normal: place.normalize_or(Vec3::Y), friction: 0.3 }
+    }
+
+    #[test]
+    fn a_way_that_is_free_ends_at_its_end() {
+        for end in [Vec3::new(0.3, 0.06, 0.0), Vec3::new(-0.3, 0.3, 0.1), Vec3::new(-0.299, 0.06, 0.0)] {
+            let seen = met(Vec3::new(-0.3, 0.06, 0.0), end, ball);
+            assert!(!seen.is_before(end), "{end}: {seen:?}");
+        }
+    }
+
+    #[test]
+    fn a_way_through_a_ball_ends_on_its_near_side() {
+        for (start, end) in [(Vec3::Y * 0.2, Vec3::NEG_Y * 0.2), (Vec3::Y * 0.051, Vec3::NEG_Y * 0.04)] {
+            let seen = met(start, end + Vec3::X * 1e-3, ball);
+            // It slides aside by little, as the way lies nearly along the normal.
+            assert!(seen.distance.abs() < 1e-3 && seen.is_before(end), "{seen:?}");
+            assert!(seen.normal.y > 0.9, "{seen:?}");
+        }
+    }
+
+    #[test]
+    fn a_way_that_ends_just_inside_stops_above_its_end() {
+        let seen = met(Vec3::new(0.0, 0.06, 0.0), Vec3::new(0.01, 0.045, 0.0), ball);
+        let above = Vec3::new(0.01, 0.045, 0.0).normalize();
+        assert!(seen.normal.dot(above) > 0.999, "{seen:?}");
+    }
+}
