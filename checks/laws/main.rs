@@ -3,12 +3,15 @@
 mod contact;
 mod curl;
 mod free_strand;
+mod friction;
 mod grab;
+mod grid_contact;
 mod lengths;
 mod pendulum;
 mod poisson;
 mod recovery;
 mod shake;
+mod sintel;
 mod strands;
 mod stretch;
 mod transfer;

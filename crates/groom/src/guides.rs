@@ -73,6 +73,10 @@ impl Guides {
         &self.positions
     }
 
+    pub(crate) fn positions_mut(&mut self) -> &mut [Vec3Lanes] {
+        &mut self.positions
+    }
+
     /// Rest position \[m\] of one point, head space.
     pub fn position(&self, strand: usize, point: usize) -> Vec3 {
         self.positions[strand / LANES * self.points_per_strand + point].get(strand % LANES)

@@ -5,6 +5,7 @@ mod error;
 mod groom;
 mod guides;
 mod lanes;
+mod outside;
 mod rest;
 mod style;
 
@@ -14,5 +15,6 @@ pub use error::GroomError;
 pub use groom::{Groom, Widths};
 pub use guides::Guides;
 pub use lanes::{LANES, Lanes, Vec3Lanes, block_count};
+pub use outside::Outside;
 pub use rest::RestShape;
 pub use style::{Style, StyleSettings};

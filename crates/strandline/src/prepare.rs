@@ -8,7 +8,7 @@ use crate::{
     Error, HeadMotion, Scene,
     body::{Aabb, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape},
     groom::{
-        Groom, Guides,
+        Groom, Guides, Outside,
         format::{self, LoadOptions},
     },
     hair_pose::HairPose,
@@ -17,6 +17,9 @@ use crate::{
 
 /// Air around a loaded body that its signed distance covers \[m\].
 const DISTANCE_PADDING: f32 = 0.02;
+
+/// Depth \[m\] up to which nobody is told: less than what samples of a body err by.
+const WORTH_A_NOTE: f32 = 1e-4;
 
 /// What a scene names, loaded or grown.
 pub struct Prepared {
@@ -74,6 +77,7 @@ impl Prepared {
         for section in &scene.colliders {
             colliders.push(section.collider()?);
         }
+        notes.extend(move_outside(&mut guides, &colliders));
         let mesh = body.mesh.filter(|_| scene.body.visible);
         let bounds = bounds(&guides, mesh.as_ref());
         let pivot = scene.motion.pivot.or(body.pivot).unwrap_or_else(|| low_center(bounds));
@@ -92,6 +96,27 @@ fn groom(scene: &Scene, notes: &mut Vec<String>) -> Result<Groom, Error> {
     groom.transform(1.0, Quat::IDENTITY, scene.groom.translation);
     let every = scene.groom.guide_every as usize;
     Ok(if every > 1 { groom.kept(|strand| strand % every == 0) } else { groom })
+}
+
+/// Puts what rests inside the solids that the head carries onto their surface; a note when there was such.
+fn move_outside(guides: &mut Guides, colliders: &[Collider]) -> Option<String> {
+    let solids: Vec<&Shape> =
+        colliders.iter().filter(|solid| solid.carrier == Carrier::Head).map(|solid| &solid.shape).collect();
+    let nearest = |point: Vec3| {
+        let looks = solids.iter().map(|shape| shape.distance_and_gradient(point));
+        looks.fold((f32::INFINITY, Vec3::Y), |best, look| if look.0 < best.0 { look } else { best })
+    };
+    let Outside { point_count, strand_count, depth, depth_left } = guides.move_outside(nearest);
+    let mut note = format!(
+        "{point_count} points of {strand_count} strands rested inside solids, by up to {:.2} mm: moved to the \
+         surface, lengths kept",
+        1e3 * depth
+    );
+    if depth_left > 1e-4 {
+        note +=
+            &format!("; up to {:.2} mm of that is left where segments do not reach out", 1e3 * depth_left);
+    }
+    (depth > WORTH_A_NOTE).then_some(note)
 }
 
 fn body(scene: &Scene) -> Result<Body, Error> {
