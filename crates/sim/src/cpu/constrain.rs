@@ -191,7 +191,11 @@ impl Strands<'_> {
             return;
         }
         let settings = &self.solver.settings;
-        let care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
+        let mut care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
+        if !is_first {
+            // The planes that points have left are what this look is for.
+            care.stale = care.stale.min(care.near);
+        }
         let most = splat(settings.collision_margin);
         let clearance = &self.solver.rest_clearance[block * predicted.len()..];
         for point in 0..predicted.len() {
@@ -207,7 +211,8 @@ impl Strands<'_> {
             if !looked || !free.any() {
                 continue;
             }
-            let query = Query { position, start: Some(start), margin: work.margins[point], free, care };
+            let margin = work.margins[point];
+            let query = Query { position, start: Some(start), margin, free, care };
             work.touches[point] = self.solids.touch(planes, point, query);
             if let Some(touch) = &work.touches[point] {
                 touch.place.or(free, position).store(&mut predicted[point]);

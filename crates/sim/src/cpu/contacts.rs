@@ -22,7 +22,7 @@ use super::way::{Seen, met};
 pub struct Care {
     /// A plane serves until its point has moved so far \[m\]; on a ball of radius r it is then wrong
     /// by its square over 2 r.
-    stale: f32,
+    pub stale: f32,
     /// A point nearer than its margin and this \[m\] gets a plane.
     pub near: f32,
 }
