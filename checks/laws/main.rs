@@ -1,9 +1,11 @@
 //! Laws that any implementation has to keep.
 
+mod attributes;
 mod contact;
 mod curl;
 mod free_strand;
 mod grab;
+mod length_scale;
 mod lengths;
 mod pendulum;
 mod poisson;

@@ -342,11 +342,11 @@ impl Hair {
         Ok(self.studio.painter.set_picture(settings)?)
     }
 
-    /// Scales the length of every strand at run time, near its tip only, shape `[strand]`
-    /// [Chen2011 fig. 45].
+    /// Scales the length of every strand at run time, near its tip only, shape `[strand]`: shorter or longer
+    /// than it was made [Chen2011 fig. 45]. Its mass follows.
     ///
     /// # Errors
-    /// Another number of scales than strands, or a scale outside 0.05 to 1.
+    /// Another number of scales than strands, or a scale outside 0.05 to 2.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), Error> {
         Ok(self.simulation.engine.set_length_scale(scales)?)
     }

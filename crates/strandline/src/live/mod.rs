@@ -51,7 +51,7 @@ pub enum Command {
     Picture(PictureSettings),
     /// Other settings of the simulation.
     Settings(Box<Settings>),
-    /// Another length of all strands, 0.05 to 1 of their own.
+    /// Another length of all strands, 0.05 to 2 of their own.
     Length(f32),
     /// Another wind.
     Wind(WindSection),
