@@ -233,7 +233,10 @@ impl Simulation {
     ) -> Result<Vec<StepReport>, SimError> {
         let (before, begin) = (self.clock, self.clock.time());
         let ticks = self.clock.advance(seconds);
-        let share = |time: f64| ((time - begin) / seconds).clamp(0.0, 1.0) as f32;
+        // Where no time passes the head is at its end.
+        let share = |time: f64| {
+            if seconds > 0.0 { ((time - begin) / seconds).clamp(0.0, 1.0) as f32 } else { 1.0 }
+        };
         self.run(before, ticks, begin..self.clock.time(), &|time| drive(share(time)))
     }
 

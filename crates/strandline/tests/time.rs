@@ -115,6 +115,22 @@ fn a_head_with_few_steps_is_where_its_motion_has_it() {
 }
 
 #[test]
+fn a_frame_without_time_moves_nothing_but_the_head() {
+    let scene = scene(1.0 / 60.0, 60.0, 1.0);
+    let prepared = strandline::Prepared::new(&scene).unwrap();
+    let mut hair = strandline::Hair::from_scene(&scene, prepared, Backend::Cpu).unwrap();
+    let turned = Pose { rotation: glam::Quat::from_rotation_y(0.01), ..Pose::IDENTITY };
+    for seconds in [0.0, -1.0, f64::NAN] {
+        assert!(hair.step(seconds, &turned).unwrap().is_empty());
+    }
+    let reports = hair.step(1.0 / 60.0, &turned).unwrap();
+    assert_eq!((reports.len(), reports[0].non_finite), (1, 0));
+    assert_eq!(hair.state().world_from_head, turned);
+    let refused = hair.step(1e9, &turned).unwrap_err().to_string();
+    assert!(refused.contains("steps at once, expected no more than 1000000 steps"), "{refused}");
+}
+
+#[test]
 fn hair_that_begins_in_a_pose_moves_alike_at_every_frame_rate() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("turned.safetensors");
