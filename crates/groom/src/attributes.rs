@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::Vec3;
+use strandline_base::SettingError;
 
 use crate::{Groom, GroomError, Guides};
 
@@ -40,7 +41,7 @@ fn check_count(name: &'static str, found: usize, points: usize) -> Result<(), Gr
 }
 
 fn refuse(name: &'static str, found: String, expected: &'static str) -> Result<(), GroomError> {
-    Err(GroomError::Setting { name, found, expected })
+    Err(SettingError::new(name, found, expected).into())
 }
 
 fn range(groom: &Groom, strand: usize) -> Range<usize> {

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::Vec3;
+use strandline_base::SettingError;
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use crate::{
@@ -282,11 +283,9 @@ impl Simulation {
         drive: &dyn Fn(f64) -> (Pose, Vec3),
     ) -> Result<Vec<Drive>, SimError> {
         if ticks.count > MOST_STEPS {
-            return Err(SimError::Setting {
-                name: "time_step",
-                found: format!("{} s, {} steps at once", self.time_step(), ticks.count),
-                expected: "no more than 1000000 steps: let less time pass at once",
-            });
+            let found = format!("{} s, {} steps at once", self.time_step(), ticks.count);
+            let expected = "no more than 1000000 steps: let less time pass at once";
+            return Err(SettingError::new("simulation.time_step", found, expected).into());
         }
         let seconds = span.end - span.start;
         let drives = (1..=u64::from(ticks.count)).map(|step| {

@@ -164,7 +164,7 @@ fn a_window_with_very_short_steps_slows_time_down_and_the_head_with_it() {
     let path = folder.path().join("slow.toml");
     let mut slow = scene(1e-4, 60.0, 1.0);
     (slow.picture.width, slow.picture.height) = (16, 16);
-    (slow.simulation.backend, slow.picture.backend) = (Backend::Cpu, Backend::Cpu);
+    slow.devices = Backend::Cpu.into();
     (slow.look.follow_strands, slow.look.hair_count) = (1, 0);
     let live = Live::new(slow.clone(), || ()).unwrap();
     live.tell(Command::Play(false));
