@@ -1,4 +1,4 @@
-//! Cut hair while it moves: the second half of the strands is shortened to 60 %.
+//! Cut hair and let it grow while it moves: one side is shortened to 60 %, the other is half as long again.
 //! `cargo run --release -p strandline --example length`
 
 use strandline::{Backend, Camera, Hair, Look, Pose, Settings, Style, groom::StyleSettings};
@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Long) }.grow()?;
     let mut hair = Hair::new(Backend::auto(), &groom, &Settings::default())?;
     let roots = groom.starts.iter().take(strand_count).map(|start| groom.points[*start as usize]);
-    let scales: Vec<f32> = roots.map(|root| if root.x > 0.0 { 0.6 } else { 1.0 }).collect();
+    let scales: Vec<f32> = roots.map(|root| if root.x > 0.0 { 0.6 } else { 1.5 }).collect();
     hair.set_length_scale(&scales)?;
     hair.step(0.25, &Pose::IDENTITY)?;
     std::fs::create_dir_all("out/examples")?;

@@ -1,11 +1,13 @@
 //! Laws that any implementation has to keep.
 
+mod attributes;
 mod contact;
 mod curl;
 mod free_strand;
 mod friction;
 mod grab;
 mod grid_contact;
+mod length_scale;
 mod lengths;
 mod pendulum;
 mod poisson;

@@ -109,6 +109,7 @@ impl Both {
         opacity_depth(&strands, body, &self.lights, self.middle(), &self.look.shadow, &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
+        occlusion.set_middle(self.middle());
         shade(&mut strands, &shadows, &self.lights, &self.look, self.camera.position, &mut occlusion);
         (curves, strands, shadows)
     }

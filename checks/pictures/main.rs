@@ -6,4 +6,5 @@ mod grooms;
 mod opacity;
 mod screen;
 mod shading;
+mod stillness;
 mod tessellation;

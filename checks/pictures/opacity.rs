@@ -23,7 +23,7 @@ fn sun(travels: Vec3) -> Light {
 }
 
 /// Strands of one number of points as the stages take them.
-fn strands(lines: &[Vec<Vec3>], diameter: f32) -> Strands {
+pub fn strands(lines: &[Vec<Vec3>], diameter: f32) -> Strands {
     let points_per_strand = lines[0].len();
     let mut strands = Strands::default();
     strands.resize(lines.len(), 1, points_per_strand);
@@ -41,15 +41,27 @@ fn shadows(strands: &Strands, light: &Light, settings: &Shadow) -> Shadows {
 
 /// As [`shadows`] with the usual settings, on a GPU.
 fn shadows_on(gpu: &Gpu, strands: &Strands, light: &Light) -> Shadows {
-    // Any guides will do: the strands take their place.
+    shadows_in(&mut renderer(gpu), strands, light, &Look { follow_strands: 1, ..Look::default() })
+}
+
+/// A renderer of any guides: strands take their place.
+pub fn renderer(gpu: &Gpu) -> GpuRenderer {
+    GpuRenderer::new(gpu, &guides(), None, &PictureSettings::sized(16, 16)).unwrap()
+}
+
+fn guides() -> Guides {
     let groom = StyleSettings { strand_count: 8, ..StyleSettings::new(Style::Pixie) }.grow().unwrap();
-    let guides = Guides::resample(&groom, 4).unwrap();
-    let mut renderer = GpuRenderer::new(gpu, &guides, None, &PictureSettings::sized(16, 16)).unwrap();
+    Guides::resample(&groom, 4).unwrap()
+}
+
+/// Shadows of strands in a renderer.
+pub fn shadows_in(renderer: &mut GpuRenderer, strands: &Strands, light: &Light, look: &Look) -> Shadows {
+    let guides = guides();
     let input = FrameInput {
         positions: guides.positions(),
         world_from_head: Pose::IDENTITY,
         camera: &Camera::front(),
-        look: &Look { follow_strands: 1, ..Look::default() },
+        look,
         body_look: &BodyLook::default(),
         lights: std::slice::from_ref(light),
         level_of_detail: &LevelOfDetail { segments_per_span: 1, ..LevelOfDetail::full() },
@@ -164,7 +176,7 @@ fn maps_tell_the_crossings_of_the_reference_groom() {
 }
 
 /// Strands that hang about a ball of 9 cm, each 0.4 mm thick.
-fn mop(strand_count: usize) -> Vec<Vec<Vec3>> {
+pub fn mop(strand_count: usize) -> Vec<Vec<Vec3>> {
     let mut random = Random(3);
     let strand = |_| {
         let height = random.between(0.1, 1.0);

@@ -297,7 +297,9 @@ impl App {
             let path = self.scene.folder.join(path);
             std::path::absolute(&path).unwrap_or(path)
         };
-        for file in [&mut scene.groom.file, &mut scene.body.file, &mut scene.body.collider_file] {
+        let groom = &mut scene.groom;
+        let (body, files) = (&mut scene.body, [&mut groom.file, &mut groom.attributes]);
+        for file in files.into_iter().chain([&mut body.file, &mut body.collider_file]) {
             *file = file.as_ref().map(absolute);
         }
         scene

@@ -5,7 +5,7 @@ use strandline_base::SettingError;
 use strandline_body::Aabb;
 
 use crate::{
-    GroomError, Guides,
+    GroomError, Guides, attributes,
     format::{self, LoadOptions, Saved},
 };
 
@@ -50,6 +50,10 @@ pub struct Groom {
     pub colors: Option<Vec<[f32; 3]>>,
     /// Transparency, 0 opaque .. 1, shape `[point]`.
     pub transparencies: Option<Vec<f32>>,
+    /// Masses \[kg\], above 0, shape `[point]`; without them the settings' mass per length counts.
+    pub masses: Option<Vec<f32>>,
+    /// Velocities at the beginning \[m/s\], head space, shape `[point]`; without them hair begins at rest.
+    pub velocities: Option<Vec<Vec3>>,
 }
 
 impl Groom {
@@ -64,6 +68,8 @@ impl Groom {
             groups: None,
             colors: None,
             transparencies: None,
+            masses: None,
+            velocities: None,
         }
     }
 
@@ -121,6 +127,9 @@ impl Groom {
         for normal in self.root_normals.iter_mut().flatten() {
             *normal = rotation * *normal;
         }
+        for velocity in self.velocities.iter_mut().flatten() {
+            *velocity = rotation * (scale * *velocity);
+        }
         match &mut self.widths {
             Widths::Constant(width) => *width *= scale,
             Widths::PerStrand(widths) | Widths::PerPoint(widths) => {
@@ -150,17 +159,24 @@ impl Groom {
         groom.colors =
             self.colors.as_ref().map(|all| strands.iter().flat_map(|s| &all[range(s)]).copied().collect());
         groom.transparencies = self.transparencies.as_ref().map(|all| per_point(all));
+        groom.masses = self.masses.as_ref().map(|all| per_point(all));
+        groom.velocities = self
+            .velocities
+            .as_ref()
+            .map(|all| strands.iter().flat_map(|strand| &all[range(strand)]).copied().collect());
         groom
     }
 
-    /// Every strand resampled to `count` points at equal arc length; its width is that of its root.
+    /// Every strand resampled to `count` points at equal arc length; its width is that of its root, and its
+    /// mass stays.
     ///
     /// # Errors
-    /// A count outside 2..=4096.
+    /// A count outside 2..=4096; masses or velocities that do not fit the points.
     pub fn resampled(&self, count: usize) -> Result<Self, GroomError> {
         if !(2..=format::MAX_POINTS_PER_STRAND as usize).contains(&count) {
             return Err(SettingError::new("the number of points", count, "2 to 4096").into());
         }
+        attributes::check(self)?;
         let strands = 0..self.strand_count();
         let mut groom = Self::empty(0.0);
         for strand in strands.clone() {
@@ -177,8 +193,14 @@ impl Groom {
         groom.groups.clone_from(&self.groups);
         groom.colors =
             self.colors.as_ref().map(|all| strands.clone().flat_map(spread).map(|s| all[root(s)]).collect());
-        groom.transparencies =
-            self.transparencies.as_ref().map(|all| strands.flat_map(spread).map(|s| all[root(s)]).collect());
+        groom.transparencies = self
+            .transparencies
+            .as_ref()
+            .map(|all| strands.clone().flat_map(spread).map(|s| all[root(s)]).collect());
+        let masses = strands.clone().filter_map(|strand| attributes::masses(self, strand, count));
+        groom.masses = self.masses.is_some().then(|| masses.flatten().collect());
+        let velocities = strands.filter_map(|strand| attributes::velocities(self, strand, count));
+        groom.velocities = self.velocities.is_some().then(|| velocities.flatten().collect());
         Ok(groom)
     }
 }

@@ -2,7 +2,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::SettingError;
 
-use crate::{Groom, GroomError, LANES, Vec3Lanes, block_count};
+use crate::{Groom, GroomError, LANES, Vec3Lanes, attributes, block_count};
 
 /// The simulated strands at rest: each resampled to the same number of points at equal arc
 /// length, stored in blocks of [`LANES`] strands.
@@ -16,6 +16,8 @@ pub struct Guides {
     positions: Vec<Vec3Lanes>,
     root_normals: Vec<Vec3>,
     widths: Vec<f32>,
+    masses: Option<Vec<f32>>,
+    velocities: Option<Vec<Vec3>>,
 }
 
 impl Guides {
@@ -29,7 +31,8 @@ impl Guides {
     /// Roots without a normal take the direction of their first segment.
     ///
     /// # Errors
-    /// `points_per_strand` outside 4..=64; a groom without strands.
+    /// `points_per_strand` outside 4..=64; a groom without strands; masses or velocities that do not fit its
+    /// points.
     pub fn resample(groom: &Groom, points_per_strand: usize) -> Result<Self, GroomError> {
         if !(Self::MIN_POINTS..=Self::MAX_POINTS).contains(&points_per_strand) {
             return Err(SettingError::new("groom.points_per_strand", points_per_strand, "4 to 64").into());
@@ -38,6 +41,7 @@ impl Guides {
         if strand_count == 0 {
             return Err(GroomError::Empty);
         }
+        attributes::check(groom)?;
         let mut positions = vec![Vec3Lanes::default(); block_count(strand_count) * points_per_strand];
         positions.par_chunks_mut(points_per_strand).enumerate().for_each(|(block, chunk)| {
             for lane in 0..LANES {
@@ -50,7 +54,13 @@ impl Guides {
         let root_normals = (0..strand_count).map(|strand| root_normal(groom, strand)).collect();
         let widths =
             (0..strand_count).map(|strand| groom.widths.at(strand, groom.starts[strand] as usize)).collect();
-        Ok(Self { strand_count, points_per_strand, positions, root_normals, widths })
+        let masses =
+            (0..strand_count).filter_map(|strand| attributes::masses(groom, strand, points_per_strand));
+        let masses = groom.masses.is_some().then(|| masses.flatten().collect());
+        let velocities =
+            (0..strand_count).filter_map(|strand| attributes::velocities(groom, strand, points_per_strand));
+        let velocities = groom.velocities.is_some().then(|| velocities.flatten().collect());
+        Ok(Self { strand_count, points_per_strand, positions, root_normals, widths, masses, velocities })
     }
 
     /// Number of strands.
@@ -98,22 +108,62 @@ impl Guides {
         &self.widths
     }
 
+    /// Masses \[kg\], shape `[strand][point]`, where the groom has some.
+    pub fn masses(&self) -> Option<&[f32]> {
+        self.masses.as_deref()
+    }
+
+    /// Velocities at the beginning \[m/s\], head space, shape `[strand][point]`, where the groom has some.
+    pub fn velocities(&self) -> Option<&[Vec3]> {
+        self.velocities.as_deref()
+    }
+
+    /// Sets the mass \[kg\] of every point, shape `[strand][point]`; with none the settings' mass per length
+    /// counts.
+    ///
+    /// # Errors
+    /// Another number of masses than points; one that is not above 0.
+    pub fn set_masses(&mut self, masses: Option<Vec<f32>>) -> Result<(), GroomError> {
+        attributes::check_masses(masses.as_deref(), self.strand_count * self.points_per_strand)?;
+        self.masses = masses;
+        Ok(())
+    }
+
+    /// Sets the velocity \[m/s\], head space, with which every point begins, shape `[strand][point]`; with
+    /// none hair begins at rest.
+    ///
+    /// # Errors
+    /// Another number of velocities than points; one that is not finite.
+    pub fn set_velocities(&mut self, velocities: Option<Vec<Vec3>>) -> Result<(), GroomError> {
+        attributes::check_velocities(velocities.as_deref(), self.strand_count * self.points_per_strand)?;
+        self.velocities = velocities;
+        Ok(())
+    }
+
     /// Points at equal distances along a polyline, both ends included.
     pub(crate) fn equal_arcs(points: &[Vec3], count: usize) -> impl Iterator<Item = Vec3> + '_ {
+        Self::equal_places(points, count).map(|(segment, share)| match share {
+            1.0 => points[segment + 1],
+            _ => points[segment].lerp(points[segment + 1], share),
+        })
+    }
+
+    /// Places at equal distances along a polyline, both ends included: a segment, and the share of it before
+    /// the place.
+    pub(crate) fn equal_places(points: &[Vec3], count: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
         let total: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
         let mut segment = 0;
         let mut passed = 0.0;
         (0..count).map(move |index| {
             if index + 1 == count {
-                return points[points.len() - 1];
+                return (points.len() - 2, 1.0);
             }
             let wanted = total * index as f32 / (count - 1) as f32;
             loop {
-                let (start, end) = (points[segment], points[segment + 1]);
-                let length = start.distance(end);
+                let length = points[segment].distance(points[segment + 1]);
                 if passed + length >= wanted || segment + 2 == points.len() {
                     let share = if length > 0.0 { ((wanted - passed) / length).clamp(0.0, 1.0) } else { 0.0 };
-                    return start.lerp(end, share);
+                    return (segment, share);
                 }
                 passed += length;
                 segment += 1;

@@ -1,6 +1,7 @@
 //! Strands as data: a [`Groom`] as loaded or grown, [`Guides`] resampled for the solver and the
 //! renderer, and the [`RestShape`] that the solver keeps. No GPU, no time.
 
+mod attributes;
 mod error;
 mod groom;
 mod guides;

@@ -16,7 +16,7 @@ pub struct RestShape {
 }
 
 impl RestShape {
-    /// The rest shape of guides of hair with a mass per length \[kg/m\].
+    /// The rest shape of guides of hair with a mass per length \[kg/m\], or with the masses that they have.
     ///
     /// The mass of a segment is shared equally by its two ends, so that the tip weighs half of an
     /// inner point.
@@ -30,7 +30,9 @@ impl RestShape {
                 for (point, mass) in mass.iter_mut().enumerate() {
                     for lane in 0..live {
                         let before = if point > 0 { lengths[point - 1].0[lane] } else { 0.0 };
-                        mass.0[lane] = 0.5 * mass_per_length * (before + lengths[point].0[lane]);
+                        let own = guides.masses().map(|all| all[(block * LANES + lane) * points + point]);
+                        mass.0[lane] =
+                            own.unwrap_or(0.5 * mass_per_length * (before + lengths[point].0[lane]));
                     }
                 }
             },

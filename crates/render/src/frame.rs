@@ -164,6 +164,7 @@ impl Renderer {
         clock.lap("opacity_depth");
         opacity_layers(strands, shadows);
         clock.lap("opacity_layers");
+        occlusion.set_middle(middle);
         shade(strands, shadows, input.lights, input.look, input.camera.position, occlusion);
         if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
             layer_colors(strands, map);

@@ -1,10 +1,16 @@
 /// Turns the time of frames into whole steps, so that results do not depend on the frame rate.
 ///
-/// Sample the motion of the head at [`Clock::step_time`] of every step that is due.
+/// A time step of single precision stands for the simplest fraction that rounds to it: 1/60 is a
+/// sixtieth of a second, not 2e-9 s more, so that three seconds have 180 steps.
+/// Sample the motion of the head and the wind at [`Clock::step_time`] of every step that is due.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     time_step: f64,
-    left_over: f64,
+    /// Time \[s\] at the start of step 0.
+    start: f64,
+    /// Time that has passed \[s\], and what its sums have lost to rounding.
+    time: f64,
+    lost: f64,
     steps: u64,
 }
 
@@ -19,34 +25,86 @@ pub struct Ticks {
     pub share: f32,
 }
 
-impl Clock {
-    /// Steps that a frame makes at most; a frame that is later than that slows time down.
-    pub const MAX_STEPS: u32 = 16;
+/// A frame that ends this part of a step before a step does, a rounding error, has that step too.
+const SLACK: f64 = 1e-6;
 
+impl Clock {
     /// A clock at time 0 for steps of `time_step` \[s\].
     pub fn new(time_step: f32) -> Self {
-        Self { time_step: f64::from(time_step), left_over: 0.0, steps: 0 }
+        Self { time_step: simplest(time_step), start: 0.0, time: 0.0, lost: 0.0, steps: 0 }
+    }
+
+    /// Makes steps of another length \[s\], which are counted from 0, from the end of the last one on.
+    pub fn set_time_step(&mut self, time_step: f32) {
+        (self.start, self.steps) = (self.step_time(self.steps), 0);
+        self.time_step = simplest(time_step);
     }
 
     /// Time \[s\] at the start of a step.
     pub fn step_time(&self, step: u64) -> f64 {
-        step as f64 * self.time_step
+        self.start + step as f64 * self.time_step
+    }
+
+    /// Time \[s\] that has passed.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Length of a step \[s\].
+    pub fn time_step(&self) -> f64 {
+        self.time_step
     }
 
     /// Lets the time of a frame \[s\] pass; time that is negative or not finite does not.
     pub fn advance(&mut self, frame_seconds: f64) -> Ticks {
         if frame_seconds.is_finite() && frame_seconds > 0.0 {
-            self.left_over += frame_seconds;
+            // What a sum rounds away is added to the next one [Kahan1965].
+            let add = frame_seconds + self.lost;
+            let sum = self.time + add;
+            self.lost = add - (sum - self.time);
+            self.time = sum;
         }
-        // A frame that ends a rounding error before a step belongs to that step.
-        let due = (self.left_over / self.time_step + 1e-6).floor();
-        let count = due.min(f64::from(Self::MAX_STEPS)) as u32;
-        let kept = if due > f64::from(count) { 0.0 } else { self.left_over - due * self.time_step };
-        self.left_over = kept;
-        let first = self.steps;
-        self.steps += u64::from(count);
-        Ticks { first, count, share: (kept / self.time_step).clamp(0.0, 1.0) as f32 }
+        self.ticks()
     }
+
+    /// Lets time pass until `time` \[s\]; to one that is past or not finite none does.
+    pub fn advance_to(&mut self, time: f64) -> Ticks {
+        if time.is_finite() && time > self.time {
+            (self.time, self.lost) = (time, 0.0);
+        }
+        self.ticks()
+    }
+
+    /// The steps that are due now.
+    fn ticks(&mut self) -> Ticks {
+        let due = ((self.time - self.start) / self.time_step + SLACK).floor() as u64;
+        let first = self.steps;
+        let count = u32::try_from(due.saturating_sub(first)).unwrap_or(u32::MAX);
+        self.steps += u64::from(count);
+        let over = self.time - self.step_time(self.steps);
+        Ticks { first, count, share: (over / self.time_step).clamp(0.0, 1.0) as f32 }
+    }
+}
+
+/// The first continued fraction of a number, 0 to 1, that rounds to it in single precision.
+fn simplest(number: f32) -> f64 {
+    let exact = f64::from(number);
+    let ([mut above, mut below], [mut last_above, mut last_below]) = ([0.0_f64, 1.0], [1.0_f64, 0.0]);
+    let mut rest = exact;
+    // Denominators grow by the golden ratio at least: 24 turns pass all that single precision tells apart.
+    for _ in 0..24 {
+        if above > 0.0 && (above / below) as f32 == number {
+            return above / below;
+        }
+        if rest.fract() == 0.0 {
+            break;
+        }
+        rest = 1.0 / rest.fract();
+        let whole = rest.floor();
+        (above, last_above) = (whole * above + last_above, above);
+        (below, last_below) = (whole * below + last_below, below);
+    }
+    exact
 }
 
 #[cfg(test)]
@@ -69,11 +127,55 @@ mod tests {
     }
 
     #[test]
-    fn a_late_frame_does_not_pile_up_steps() {
+    fn a_time_has_exactly_its_steps() {
+        // Steps of a second, and how the step is written.
+        let steps =
+            [(60, 1.0 / 60.0), (1000, 1e-3), (960, 1.0 / 960.0), (7, 1.0 / 7.0), (10, 0.1), (400, 0.0025)];
+        for (each_second, time_step) in steps {
+            for rate in [1.0, 5.0, 24.0, 29.0, 30.0, 60.0, 144.0] {
+                let (mut added, mut reached) = (Clock::new(time_step), Clock::new(time_step));
+                let mut counts = [0; 2];
+                for frame in 1..=3600 * rate as u32 {
+                    counts[0] += added.advance(1.0 / rate).count;
+                    counts[1] += reached.advance_to(f64::from(frame) / rate).count;
+                    if f64::from(frame) == 3.0 * rate {
+                        assert_eq!(counts, [3 * each_second; 2], "{time_step} s at {rate} frames/s");
+                    }
+                }
+                assert_eq!(counts, [3600 * each_second; 2], "an hour of {time_step} s at {rate} frames/s");
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_stands_for_the_simplest_fraction() {
+        assert_eq!(simplest(1.0 / 60.0), 1.0 / 60.0);
+        assert_eq!(simplest(0.013), 0.013);
+        assert_eq!(simplest(1e-5), 1e-5);
+        assert_eq!(simplest(0.0625), 0.0625);
+        for number in [0.016_123_4_f32, 0.099_999_994, 1.234_567_8e-5, 0.0] {
+            assert_eq!(simplest(number) as f32, number);
+        }
+    }
+
+    #[test]
+    fn a_late_frame_makes_all_its_steps() {
         let mut clock = Clock::new(1.0 / 60.0);
-        assert_eq!(clock.advance(100.0).count, Clock::MAX_STEPS);
+        assert_eq!(clock.advance(100.0), Ticks { first: 0, count: 6000, share: 0.0 });
         assert_eq!(clock.advance(0.0).count, 0);
         assert_eq!(clock.advance(f64::NAN).count, 0);
         assert_eq!(clock.advance(-1.0).count, 0);
+        assert_eq!(clock.advance_to(99.0).count, 0);
+        assert_eq!(clock.advance_to(101.0).count, 60);
+    }
+
+    #[test]
+    fn no_time_is_lost_where_steps_change_their_length() {
+        let mut clock = Clock::new(0.1);
+        assert_eq!(clock.advance(0.25).count, 2);
+        clock.set_time_step(0.02);
+        // 0.05 s are left over.
+        assert_eq!(clock.advance(0.01), Ticks { first: 0, count: 3, share: 0.0 });
+        assert!((clock.step_time(3) - 0.26).abs() < 1e-15);
     }
 }

@@ -9,6 +9,8 @@ pub mod gpu;
 mod clock;
 mod error;
 mod grab;
+mod length_scale;
+mod masses;
 mod report;
 mod settings;
 mod solver;

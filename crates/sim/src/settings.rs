@@ -15,7 +15,8 @@ settings! {
             more "stiffer bends and firmer contacts, at a higher cost";
         /// Gravity, world space.
         gravity: Vec3 = Vec3::new(0.0, -9.81, 0.0), in [-1000.0, 1000.0] "m/s^2", slider [-20.0, 5.0];
-        /// Mass of hair per length; the default is that of a hair 80 um thick.
+        /// Mass of hair per length; the default is that of a hair 80 um thick. Points with masses of their
+        /// own keep them.
         mass_per_length: f32 = 6.5e-6, in [1e-9, 1.0] "kg/m", slider [1e-6, 5e-5],
             more "springs that move hair less";
         /// Share of the velocity that is lost per second.

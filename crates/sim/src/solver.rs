@@ -5,6 +5,7 @@ use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 
 use crate::cpu::contacts::Contacts;
 use crate::grab::Grab;
+use crate::masses::Masses;
 use crate::state::Scratch;
 use crate::{Drive, Settings, SimError, State, StepReport};
 
@@ -23,15 +24,15 @@ pub struct Solver {
     /// 1 over the mass \[1/kg\], 0 for a rooted point, shape `[block][point]` of lanes. Lanes
     /// beyond the last strand hold what the last strand has.
     pub(crate) inverse_mass: Vec<Lanes>,
-    /// Share of a length correction that point i takes from segment i, i + 1, shape as above.
-    pub(crate) share_lower: Vec<Lanes>,
-    /// Share of a length correction that point i + 1 takes from segment i, i + 1, shape as above.
-    pub(crate) share_upper: Vec<Lanes>,
     /// Distance \[m\] from the colliders that the head carries at rest, 0 inside them, shape as above.
     pub(crate) rest_clearance: Vec<Lanes>,
     /// Masses as they were compiled, from which every change of the mass per length starts, so that one
     /// there and back leaves every bit as it was.
     compiled: Compiled,
+    /// Whether the guides have masses of their own, which no setting changes.
+    weighed: bool,
+    /// Velocities at the beginning \[m/s\], head space, shape `[block][point]` of lanes; empty at rest.
+    velocities: Vec<Vec3Lanes>,
 }
 
 /// Masses at the mass per length that a solver was compiled with.
@@ -84,7 +85,6 @@ impl Solver {
             if held { 0.0 } else { 1.0 / rest.mass[index].0[source] }
         });
         let directions = directions(guides, &rest);
-        let (share_lower, share_upper) = shares(&inverse_mass, points);
         let rest_clearance = by_lane(rest.mass.len(), points, |index, _, _, lane| {
             clearance(&colliders, guides.positions()[index].get(lane))
         });
@@ -102,10 +102,10 @@ impl Solver {
             positions: guides.positions().to_vec(),
             directions,
             inverse_mass,
-            share_lower,
-            share_upper,
             rest_clearance,
             compiled,
+            weighed: guides.masses().is_some(),
+            velocities: velocities(guides, &rooted),
         })
     }
 
@@ -114,13 +114,14 @@ impl Solver {
         &self.settings
     }
 
-    /// Changes the settings between two steps; states go on as they are.
+    /// Changes the settings between two steps; states go on as they are. Guides with masses of their own keep
+    /// them.
     ///
     /// # Errors
     /// A setting outside its range; then nothing changes.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check()?;
-        if settings.mass_per_length != self.settings.mass_per_length {
+        if settings.mass_per_length != self.settings.mass_per_length && !self.weighed {
             let factor = settings.mass_per_length / self.compiled.mass_per_length;
             let scale = |into: &mut [Lanes], from: &[Lanes], factor: f32| {
                 for (into, from) in into.iter_mut().zip(from) {
@@ -165,14 +166,19 @@ impl Solver {
         self.points_per_strand
     }
 
-    /// The guides at rest, carried by a pose of the head.
+    /// The guides at rest, carried by a pose of the head; those with velocities of their own begin with them.
     pub fn rest_state(&self, world_from_head: Pose) -> State {
         let positions: Vec<Vec3Lanes> =
             self.positions.par_iter().map(|lanes| carried(lanes, &world_from_head)).collect();
         let blocks = positions.len() / self.points_per_strand;
+        let turn = Pose { translation: Vec3::ZERO, ..world_from_head };
         State {
-            velocities: vec![Vec3Lanes::default(); positions.len()],
             corrections: vec![Vec3Lanes::default(); positions.len()],
+            velocities: if self.velocities.is_empty() {
+                vec![Vec3Lanes::default(); positions.len()]
+            } else {
+                self.velocities.par_iter().map(|lanes| carried(lanes, &turn)).collect()
+            },
             previous_positions: positions.clone(),
             world_from_head,
             time: 0.0,
@@ -181,6 +187,7 @@ impl Solver {
             scratch: Scratch {
                 predicted: positions.clone(),
                 contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),
+                masses: Masses::new(self, &self.rest),
                 lengths: self.rest.clone(),
                 volume: None,
             },
@@ -258,19 +265,20 @@ fn directions(guides: &Guides, rest: &RestShape) -> Vec<Vec3Lanes> {
         .collect()
 }
 
-/// How the two ends of each segment share its correction, by inverse mass [Mueller2007 eq. 10-11].
-fn shares(inverse_mass: &[Lanes], points: usize) -> (Vec<Lanes>, Vec<Lanes>) {
-    let share = |upper: bool| {
-        by_lane(inverse_mass.len(), points, |index, _, point, lane| {
-            if point + 1 == points {
-                return 0.0;
+/// Velocities with which points begin that nothing holds; empty where all rest.
+fn velocities(guides: &Guides, rooted: impl Fn(usize, usize) -> bool) -> Vec<Vec3Lanes> {
+    let Some(velocities) = guides.velocities() else { return Vec::new() };
+    let (points, last) = (guides.points_per_strand(), guides.strand_count() - 1);
+    let mut lanes = vec![Vec3Lanes::default(); guides.positions().len()];
+    for (index, lanes) in lanes.iter_mut().enumerate() {
+        for lane in 0..LANES {
+            let (strand, point) = ((index / points * LANES + lane).min(last), index % points);
+            if !rooted(strand, point) {
+                lanes.set(lane, velocities[strand * points + point]);
             }
-            let (here, next) = (inverse_mass[index].0[lane], inverse_mass[index + 1].0[lane]);
-            let sum = here + next;
-            if sum > 0.0 { if upper { next / sum } else { here / sum } } else { 0.0 }
-        })
-    };
-    (share(false), share(true))
+        }
+    }
+    lanes
 }
 
 fn clearance(colliders: &[Collider], point: Vec3) -> f32 {

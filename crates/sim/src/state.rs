@@ -8,6 +8,8 @@ use crate::cpu::Volume;
 use crate::cpu::contacts::Contacts;
 use crate::cpu::vec3x8::{Vec3x8, splat};
 use crate::grab::Grab;
+use crate::length_scale;
+use crate::masses::Masses;
 use crate::{SimError, Solver};
 
 /// What the world does to the hair during one step.
@@ -65,8 +67,10 @@ pub(crate) struct Scratch {
     pub predicted: Vec<Vec3Lanes>,
     /// Contact planes remembered from step to step.
     pub contacts: Contacts,
-    /// The rest shape with the length scales applied.
+    /// The rest shape with the length scales applied; its masses are in `masses`.
     pub lengths: RestShape,
+    /// Masses of points, which follow those lengths.
+    pub masses: Masses,
     /// The fluid volume; none while it is off.
     pub volume: Option<Volume>,
 }
@@ -116,12 +120,16 @@ impl State {
         self.length_scale[strand / LANES].0[strand % LANES]
     }
 
-    /// Sets the length of every strand, shape `[strand]`: 0.05 to 1 of its rest length
-    /// [Chen2011 fig. 45]. Segments near the tip shrink, to no less than a twentieth; the others
-    /// keep their length. Points slide along their strand at once and keep their velocity.
+    /// Least and greatest length of a strand over its rest length.
+    pub const LENGTH_SCALES: std::ops::RangeInclusive<f32> = 0.05..=2.0;
+
+    /// Sets the length of every strand, shape `[strand]`: 0.05 to 2 of its rest length
+    /// [Chen2011 fig. 45]. Segments near the tip shrink, to no less than a twentieth, or grow, to no more
+    /// than three times their own; the others keep their length. The mass of points follows the length of
+    /// their segments. Points slide along their strand at once and keep their velocity.
     ///
     /// # Errors
-    /// Another number of scales than strands, a scale outside 0.05..=1; then nothing changes.
+    /// Another number of scales than strands, a scale outside [`State::LENGTH_SCALES`]; then nothing changes.
     pub fn set_length_scale(&mut self, solver: &Solver, scales: &[f32]) -> Result<(), SimError> {
         let refuse = |found: String, expected: &str| {
             Err(SettingError::new("the length scale", found, expected).into())
@@ -129,8 +137,8 @@ impl State {
         if scales.len() != solver.strand_count {
             return refuse(format!("given for {} strands", scales.len()), "one for each strand");
         }
-        if let Some(scale) = scales.iter().find(|scale| !(0.05..=1.0).contains(*scale)) {
-            return refuse(scale.to_string(), "0.05 to 1");
+        if let Some(scale) = scales.iter().find(|scale| !Self::LENGTH_SCALES.contains(scale)) {
+            return refuse(scale.to_string(), "0.05 to 2");
         }
         for (block, lanes) in self.length_scale.iter_mut().enumerate() {
             for (lane, slot) in lanes.0.iter_mut().enumerate() {
@@ -140,60 +148,13 @@ impl State {
         let points = solver.points_per_strand;
         for (block, scale) in self.length_scale.iter().enumerate() {
             let range = block * points..(block + 1) * points;
-            shorten(solver, &mut self.scratch.lengths, range.clone(), scale);
+            length_scale::scale(&solver.rest, &mut self.scratch.lengths, range.clone(), scale);
             let lengths = &self.scratch.lengths.stretch[range.clone()];
-            slide(&mut self.positions[range.clone()], lengths);
-            slide(&mut self.previous_positions[range], lengths);
+            length_scale::slide(&mut self.positions[range.clone()], lengths);
+            length_scale::slide(&mut self.previous_positions[range], lengths);
         }
+        self.scratch.masses = Masses::new(solver, &self.scratch.lengths);
         Ok(())
-    }
-}
-
-/// Smallest length of a segment over its rest length: a segment of no length has no direction.
-const SHORTEST: f32 = 0.05;
-
-/// Takes what is cut off a strand from its segments, the last first.
-fn shorten(solver: &Solver, lengths: &mut RestShape, range: std::ops::Range<usize>, scale: &Lanes) {
-    let rest = &solver.rest;
-    let points = range.len();
-    let first = range.start;
-    for lane in 0..LANES {
-        let total: f32 = range.clone().map(|index| rest.stretch[index].0[lane]).sum();
-        let mut cut = (1.0 - scale.0[lane]) * total;
-        for index in range.clone().skip(1).rev() {
-            let most = (1.0 - SHORTEST) * rest.stretch[index].0[lane];
-            let taken = cut.clamp(0.0, most);
-            lengths.stretch[index].0[lane] = rest.stretch[index].0[lane] - taken;
-            cut -= taken;
-        }
-        let share = |lengths: &[Lanes], span: usize, point: usize| {
-            let sum = |lanes: &[Lanes]| (0..span).map(|k| lanes[first + point + k].0[lane]).sum::<f32>();
-            sum(lengths) / sum(&rest.stretch)
-        };
-        for point in 0..points - 2 {
-            lengths.bend[first + point].0[lane] =
-                rest.bend[first + point].0[lane] * share(&lengths.stretch, 2, point);
-        }
-        for point in 0..points - 3 {
-            lengths.torsion[first + point].0[lane] =
-                rest.torsion[first + point].0[lane] * share(&lengths.stretch, 3, point);
-        }
-    }
-}
-
-/// Moves the points of a block to the given lengths along the directions that its segments have.
-fn slide(positions: &mut [Vec3Lanes], lengths: &[Lanes]) {
-    for lane in 0..LANES {
-        let mut before = positions[0].get(lane);
-        let mut moved = before;
-        for point in 1..positions.len() {
-            let here = positions[point].get(lane);
-            let along = here - before;
-            let length = if point == 1 { along.length() } else { lengths[point - 1].0[lane] };
-            moved += along.normalize_or(Vec3::NEG_Y) * length;
-            before = here;
-            positions[point].set(lane, moved);
-        }
     }
 }
 
@@ -237,6 +198,46 @@ mod tests {
     }
 
     #[test]
+    fn a_strand_grows_at_its_tip_and_weighs_more() {
+        let (solver, mut state) = two_strands();
+        state.set_length_scale(&solver, &[1.5, 1.0]).unwrap();
+        for _ in 0..2 {
+            let length = |point: usize, lane| {
+                state.positions[point].get(lane).distance(state.positions[point + 1].get(lane))
+            };
+            // 0.15 m more than segments of 0.05 m: the last two are three times as long, the next one has the rest.
+            let expected = [0.05, 0.05, 0.05, 0.05, 0.1, 0.15];
+            for (point, expected) in expected.into_iter().enumerate() {
+                assert!((length(point, 0) - expected).abs() < 1e-6, "segment {point}: {}", length(point, 0));
+                assert!((length(point, 1) - 0.05).abs() < 1e-6, "the other strand, segment {point}");
+            }
+            let report = solver.step(&mut state, &Drive::default());
+            assert!(report.stretch_max < 1e-4, "{}", report.stretch_max);
+        }
+        let masses = &state.scratch.masses;
+        let weight = |lane: usize| masses.mass.iter().map(|lanes| lanes.0[lane]).sum::<f32>();
+        assert!((weight(0) / weight(1) - 1.5).abs() < 1e-5, "{}", weight(0) / weight(1));
+        // The tip has half of a segment three times as long.
+        assert!((masses.mass[6].0[0] / masses.mass[6].0[1] - 3.0).abs() < 1e-5);
+        for (mass, inverse) in masses.mass.iter().zip(&masses.inverse_mass).skip(2) {
+            assert!((mass.0[0] * inverse.0[0] - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_change_of_mass_reaches_strands_of_another_length() {
+        let (mut solver, mut state) = two_strands();
+        state.set_length_scale(&solver, &[0.5, 1.0]).unwrap();
+        let before = state.scratch.masses.clone();
+        let mass_per_length = 2.0 * solver.settings().mass_per_length;
+        solver.set_settings(&Settings { mass_per_length, ..solver.settings().clone() }).unwrap();
+        solver.step(&mut state, &Drive::default());
+        for (now, before) in state.scratch.masses.mass.iter().zip(&before.mass) {
+            assert!((now.0[0] / before.0[0] - 2.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
     fn a_strand_that_is_cut_and_grown_again_has_its_length_back() {
         let (solver, mut state) = two_strands();
         state.set_length_scale(&solver, &[0.05, 0.3]).unwrap();
@@ -251,7 +252,7 @@ mod tests {
     fn a_length_scale_out_of_range_is_refused() {
         let (solver, mut state) = two_strands();
         assert!(state.set_length_scale(&solver, &[1.0]).is_err());
-        assert!(state.set_length_scale(&solver, &[1.0, 1.5]).is_err());
+        assert!(state.set_length_scale(&solver, &[1.0, 2.1]).is_err());
         assert!(state.set_length_scale(&solver, &[f32::NAN, 1.0]).is_err());
         assert_eq!(state.length_scale(1), 1.0);
     }

@@ -11,6 +11,7 @@ use crate::cpu::pose_roots::pose_roots;
 use crate::cpu::solve_pressure::solve_pressure;
 use crate::cpu::splat::splat;
 use crate::cpu::{Obstacles, Volume};
+use crate::masses::Masses;
 use crate::{Drive, Solver, State, StepReport};
 
 /// Advances a state by one step [Chen2011 §4, fig. 11-12].
@@ -23,6 +24,9 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
         time_step: solver.settings.time_step,
     };
     state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
+    if state.scratch.masses.mass_per_length != solver.settings.mass_per_length {
+        state.scratch.masses = Masses::new(solver, &state.scratch.lengths);
+    }
     let mut report = StepReport::default();
     let seconds = &mut report.seconds;
     timed(seconds, "pose_roots", || pose_roots(solver, state, &drive.world_from_head));
@@ -30,7 +34,8 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
     let non_finite = timed(seconds, "constrain", || constrain(solver, state, &obstacles));
     if let Some(mut volume) = volume(solver, state) {
         let (positions, velocities) = (&state.scratch.predicted, &mut state.velocities);
-        timed(seconds, "splat", || splat(&mut volume, positions, velocities, &solver.rest.mass));
+        let masses = &state.scratch.masses.mass;
+        timed(seconds, "splat", || splat(&mut volume, positions, velocities, masses));
         timed(seconds, "mark", || mark(&mut volume, &obstacles));
         report.pressure = timed(seconds, "solve_pressure", || solve_pressure(&mut volume));
         let (time_step, weights) = (solver.settings.time_step, &solver.inverse_mass);

@@ -35,6 +35,14 @@ pub enum Error {
         /// What was found.
         message: String,
     },
+    /// The file with masses and velocities could not be read, or is for other hair.
+    #[error("cannot read the attributes of the hair: {message}: {}", path.display())]
+    Attributes {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        message: String,
+    },
     /// A scene, or where its hair is, could not be saved.
     #[error("cannot save {what}: {source}: {}", path.display())]
     Save {

@@ -196,11 +196,12 @@ impl Hair {
     }
 
     /// Lets `seconds` pass while the head moves evenly to `world_from_head`. Steps have a fixed
-    /// length, so zero or more of them happen; a frame longer than 16 steps slows time down.
+    /// length, so zero or more of them happen; what is left over counts the next time.
     /// Returns one report a step.
     ///
     /// # Errors
-    /// The GPU failed and [`Hair::set_fall_back`] was not asked for; the hair keeps its last state.
+    /// More than a million steps at once; or the GPU failed and [`Hair::set_fall_back`] was not asked for. The
+    /// hair keeps its last state.
     pub fn step(&mut self, seconds: f64, world_from_head: &Pose) -> Result<Vec<StepReport>, Error> {
         let (start, end) = (self.simulation.end(), *world_from_head);
         self.step_along(seconds, |share| start.toward(&end, share))
@@ -211,7 +212,8 @@ impl Hair {
     /// # Errors
     /// As [`Hair::step`].
     pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Result<Vec<StepReport>, Error> {
-        Ok(self.simulation.step_along(seconds, self.wind, &pose)?)
+        let wind = self.wind;
+        Ok(self.simulation.step_along(seconds, &|share| (pose(share), wind))?)
     }
 
     /// Takes hair into a hand, and lets go of what it held: the strands that come within `radius` \[m\]
@@ -340,11 +342,11 @@ impl Hair {
         Ok(self.studio.painter.set_picture(settings)?)
     }
 
-    /// Scales the length of every strand at run time, near its tip only, shape `[strand]`
-    /// [Chen2011 fig. 45].
+    /// Scales the length of every strand at run time, near its tip only, shape `[strand]`: shorter or longer
+    /// than it was made [Chen2011 fig. 45]. Its mass follows.
     ///
     /// # Errors
-    /// Another number of scales than strands, or a scale outside 0.05 to 1.
+    /// Another number of scales than strands, or a scale outside 0.05 to 2.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), Error> {
         Ok(self.simulation.engine.set_length_scale(scales)?)
     }

@@ -19,6 +19,7 @@
 //!
 //! A [`Scene`] holds everything that one run needs and is one TOML file; a [`Player`] plays it.
 
+mod attributes;
 mod devices;
 mod engine;
 mod error;

@@ -65,39 +65,51 @@ pub struct Player {
 struct Course {
     pose: std::sync::Arc<dyn Fn(f64) -> Pose + Send + Sync>,
     wind: std::sync::Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
-    frame_seconds: f64,
+    frames_per_second: f64,
     settle_seconds: f64,
     /// Time of motion and wind at the beginning \[s\].
     start: f64,
     /// Whether the first picture shows hair as it begins.
     posed: bool,
+    /// What carries the head from where the motion begins to where it is with such hair.
+    aside: Pose,
 }
 
+/// Time \[s\] in which a head that a pose of hair has elsewhere than the motion comes to where that has it.
+const JOINING: f64 = 1.0 / 30.0;
+
 impl Course {
-    /// Moves to a frame; the first one lets the hair hang on the resting head before, in steps that are
-    /// not told. Hair that begins in a pose is shown in it first.
+    /// Moves to the end of a frame; the first one lets the hair hang on the resting head before, in whole
+    /// steps that are not reported. Hair that begins in a pose is shown in it first.
+    ///
+    /// Everything is asked for at times of steps, never of frames.
     fn run(&self, simulation: &mut Simulation, frame: u32) -> Result<Vec<StepReport>, SimError> {
         if frame == 0 && self.posed {
             return Ok(Vec::new());
         }
         if frame == 0 {
-            let count = (self.settle_seconds / self.frame_seconds).ceil();
-            let (rest, still) = ((self.pose)(self.start), (self.wind)(self.start));
-            for _ in 0..count as u64 {
-                let start = simulation.end();
-                let toward = |share: f32| start.toward(&rest, share);
-                simulation.step_along(self.settle_seconds / count, still, &toward)?;
-            }
+            simulation.settle(self.settle_seconds, (self.wind)(self.start))?;
         }
-        let begin = self.start + f64::from(frame - u32::from(self.posed)) * self.frame_seconds;
-        let start = simulation.end();
-        let pose = |share: f32| match frame {
-            // The scene may say otherwise than where the head is.
-            1 if self.posed => start.toward(&(self.pose)(begin + self.frame_seconds), share),
-            _ => (self.pose)(begin + self.frame_seconds * f64::from(share)),
-        };
-        simulation.step_along(self.frame_seconds, (self.wind)(begin), &pose)
+        let ended = frame + u32::from(!self.posed);
+        simulation.run_to(f64::from(ended) / self.frames_per_second, &|time| {
+            (self.head(time), (self.wind)(self.start + time))
+        })
     }
+
+    /// Pose of the head at a time of the film \[s\].
+    fn head(&self, time: f64) -> Pose {
+        let pose = (self.pose)(self.start + time);
+        if self.aside == Pose::IDENTITY || time >= JOINING {
+            return pose;
+        }
+        let aside = self.aside.toward(&Pose::IDENTITY, (time / JOINING) as f32);
+        Pose { rotation: aside.rotation * pose.rotation, translation: aside.point(pose.translation) }
+    }
+}
+/// What carries a head that is in one pose into another.
+fn carrying(from: &Pose, to: &Pose) -> Pose {
+    let back = from.inverse();
+    Pose { rotation: to.rotation * back.rotation, translation: to.point(back.translation) }
 }
 
 impl Player {
@@ -115,6 +127,8 @@ impl Player {
         notes.extend(hair.take_notes());
         let (simulation, studio) = hair.into_parts();
         let wind = scene.wind;
+        let (here, there) = (simulation.end(), head.pose(scene.film.start));
+        let aside = if here == there { Pose::IDENTITY } else { carrying(&there, &here) };
         Ok(Self {
             worker: Worker::new(simulation).map_err(Error::Thread)?,
             studio,
@@ -122,10 +136,11 @@ impl Player {
             course: Course {
                 pose: std::sync::Arc::new(move |time| head.pose(time)),
                 wind: std::sync::Arc::new(move |time| wind.at(time)),
-                frame_seconds: 1.0 / f64::from(scene.film.frames_per_second),
+                frames_per_second: f64::from(scene.film.frames_per_second),
                 settle_seconds: f64::from(scene.film.settle),
                 start: scene.film.start,
                 posed: scene.groom.pose.is_some(),
+                aside,
             },
             camera,
             look: scene.look.clone(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Quat, Vec3};
 
 use crate::{
-    Error, HeadMotion, Scene,
+    Error, HeadMotion, Scene, attributes,
     body::{Aabb, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape},
     groom::{
         Groom, Guides, Outside,
@@ -64,6 +64,9 @@ impl Prepared {
                 .map(|strand| shape.distance_and_gradient(guides.position(strand, 0)).1)
                 .collect();
             guides.set_root_normals(normals);
+        }
+        if let Some(file) = &scene.groom.attributes {
+            attributes::load(&scene.path(file), &mut guides)?;
         }
         let shape = [guides.strand_count(), guides.points_per_strand()];
         let pose = scene.groom.pose.as_ref().map(|file| HairPose::load(&scene.path(file), shape));

@@ -1,6 +1,9 @@
 //! Hair that moves, apart from how it is drawn.
 
+use std::ops::Range;
+
 use glam::Vec3;
+use strandline_base::SettingError;
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use crate::{
@@ -9,9 +12,14 @@ use crate::{
     groom::Vec3Lanes,
     hair_pose::HairPose,
     render::gpu::DevicePoints,
-    sim::{Clock, Drive, Settings, SimError, StepReport},
+    sim::{Clock, Drive, Settings, SimError, StepReport, Ticks},
     worker::Work,
 };
+
+/// Steps that settling hair makes in one run.
+const AT_ONCE: usize = 1024;
+/// Steps that may be due at once, ten seconds of the shortest ones.
+const MOST_STEPS: u32 = 1_000_000;
 
 /// A simulation in time: steps of fixed length, and the moment between two of them that is shown.
 pub(crate) struct Simulation {
@@ -22,6 +30,8 @@ pub(crate) struct Simulation {
     /// Poses of the head at the last two states, and where the last run ended.
     poses: [Pose; 2],
     end: Pose,
+    /// Time \[s\] of all runs that went well.
+    passed: f64,
     /// Where the hand that holds hair is, and where it goes in the next run \[m\]; none holds nothing.
     hand: Option<[Vec3; 2]>,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
@@ -72,6 +82,8 @@ pub(crate) struct Done {
     pub moment: Moment,
     pub reports: Result<Vec<StepReport>, SimError>,
     pub notes: Vec<String>,
+    /// Time that passed \[s\].
+    pub seconds: f64,
     /// Strands in the hand.
     pub grabbed: usize,
     /// As in the job.
@@ -88,6 +100,7 @@ impl Work for Simulation {
     fn run(&mut self, job: Job) -> Done {
         let Job { act, gpu, mut moment, is_frame, heard } = job;
         let threads = self.threads.take();
+        let before = self.passed;
         let run = || {
             let reports = act(self);
             self.show_on(gpu.as_ref(), &mut moment);
@@ -100,7 +113,9 @@ impl Work for Simulation {
         self.threads = threads;
         let place = crate::hair::place(self.engine.gpu());
         let grabbed = self.engine.state().grabbed();
-        Done { moment, reports, notes: self.engine.take_notes(), grabbed, is_frame, heard, place }
+        let seconds = self.passed - before;
+        let notes = self.engine.take_notes();
+        Done { moment, reports, notes, seconds, grabbed, is_frame, heard, place }
     }
 }
 
@@ -112,6 +127,7 @@ impl Simulation {
             share: 1.0,
             poses: [Pose::IDENTITY; 2],
             end: Pose::IDENTITY,
+            passed: 0.0,
             hand: None,
             threads: None,
         }
@@ -128,7 +144,7 @@ impl Simulation {
         let before = self.engine.solver().settings().time_step;
         self.engine.set_settings(settings)?;
         if settings.time_step != before {
-            self.clock = Clock::new(settings.time_step);
+            self.clock.set_time_step(settings.time_step);
         }
         Ok(())
     }
@@ -191,38 +207,95 @@ impl Simulation {
         self.share
     }
 
-    /// Lets `seconds` pass with the head's pose for each share (0 to 1) of them and a wind \[m/s\].
+    /// Length of a step \[s\].
+    pub fn time_step(&self) -> f64 {
+        self.clock.time_step()
+    }
+
+    /// Makes whole steps under a head that rests where it is; no time of the clock passes.
+    pub fn settle(&mut self, seconds: f64, wind: Vec3) -> Result<(), SimError> {
+        let drive = Drive { world_from_head: self.end, wind, hand: None };
+        let mut left = (seconds / self.time_step() - 1e-6).ceil().max(0.0) as usize;
+        while left > 0 {
+            let count = left.min(AT_ONCE);
+            self.engine.run(&vec![drive; count])?;
+            left -= count;
+        }
+        self.poses = [self.end; 2];
+        Ok(())
+    }
+
+    /// Lets `seconds` pass with what drives the hair at each share (0 to 1) of them, asked for at the end
+    /// of every step.
     pub fn step_along(
         &mut self,
         seconds: f64,
-        wind: Vec3,
-        pose: &dyn Fn(f32) -> Pose,
+        drive: &dyn Fn(f32) -> (Pose, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
-        let before = self.clock;
+        let (before, begin) = (self.clock, self.clock.time());
         let ticks = self.clock.advance(seconds);
-        let waited = f64::from(ticks.share) * self.clock.step_time(1);
-        let drive = |step| {
-            // The last step ends `waited` before the end of the frame.
-            let left = self.clock.step_time(u64::from(ticks.count - 1 - step)) + waited;
-            let share = (1.0 - left / seconds).clamp(0.0, 1.0);
-            let hand = self.hand.map(|[from, to]| from.lerp(to, share as f32));
-            Drive { world_from_head: pose(share as f32), wind, hand }
+        // Where no time passes the head is at its end.
+        let share = |time: f64| {
+            if seconds > 0.0 { ((time - begin) / seconds).clamp(0.0, 1.0) as f32 } else { 1.0 }
         };
-        let drives: Vec<Drive> = (0..ticks.count).map(drive).collect();
-        let reports = match self.engine.run(&drives) {
-            Ok(reports) => reports,
-            Err(error) => {
-                self.clock = before;
-                return Err(error);
-            }
-        };
+        self.run(before, ticks, begin..self.clock.time(), &|time| drive(share(time)))
+    }
+
+    /// Lets time pass until the clock's `time` \[s\] with what drives the hair at each time of the clock,
+    /// asked for at the end of every step: however it is cut into runs, it is the same motion to the bit.
+    pub fn run_to(
+        &mut self,
+        time: f64,
+        drive: &dyn Fn(f64) -> (Pose, Vec3),
+    ) -> Result<Vec<StepReport>, SimError> {
+        let (before, begin) = (self.clock, self.clock.time());
+        let ticks = self.clock.advance_to(time);
+        self.run(before, ticks, begin..time, drive)
+    }
+
+    fn run(
+        &mut self,
+        before: Clock,
+        ticks: Ticks,
+        span: Range<f64>,
+        drive: &dyn Fn(f64) -> (Pose, Vec3),
+    ) -> Result<Vec<StepReport>, SimError> {
+        let outcome = self.drives(ticks, &span, drive).and_then(|drives| {
+            let reports = self.engine.run(&drives)?;
+            Ok((drives, reports))
+        });
+        let (drives, reports) = outcome.inspect_err(|_| self.clock = before)?;
         for drive in &drives {
             self.poses = [self.poses[1], drive.world_from_head];
         }
         self.hand = self.hand.map(|[_, to]| [to; 2]);
         self.share = ticks.share;
-        self.end = pose(1.0);
+        self.end = drive(span.end).0;
+        self.passed += span.end - span.start;
         Ok(reports)
+    }
+
+    /// What drives the hair in each step that is due, sampled at the end of the step.
+    fn drives(
+        &self,
+        ticks: Ticks,
+        span: &Range<f64>,
+        drive: &dyn Fn(f64) -> (Pose, Vec3),
+    ) -> Result<Vec<Drive>, SimError> {
+        if ticks.count > MOST_STEPS {
+            let found = format!("{} s, {} steps at once", self.time_step(), ticks.count);
+            let expected = "no more than 1000000 steps: let less time pass at once";
+            return Err(SettingError::new("simulation.time_step", found, expected).into());
+        }
+        let seconds = span.end - span.start;
+        let drives = (1..=u64::from(ticks.count)).map(|step| {
+            let time = self.clock.step_time(ticks.first + step);
+            let (world_from_head, wind) = drive(time);
+            let share = ((time - span.start) / seconds).clamp(0.0, 1.0);
+            let hand = self.hand.map(|[from, to]| from.lerp(to, share as f32));
+            Drive { world_from_head, wind, hand }
+        });
+        Ok(drives.collect())
     }
 
     /// Fills a moment with what is to be shown now.

@@ -7,7 +7,7 @@ use strandline::{
 
 const STRANDS: usize = 60;
 /// Length of a step \[s\].
-const STEP: f64 = (1.0_f32 / 60.0) as f64;
+const STEP: f64 = 1.0 / 60.0;
 
 fn scene(backend: Backend) -> Scene {
     let mut scene = Scene::demo();

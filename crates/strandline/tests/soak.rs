@@ -166,7 +166,7 @@ impl Person {
                 settings.time_step = [1.0 / 120.0, 1.0 / 60.0, 1.0 / 30.0][(3.0 * share) as usize];
                 Command::Settings(Box::new(settings))
             }
-            2 => Command::Length(0.05 + 0.95 * share),
+            2 => Command::Length(0.05 + 1.95 * share),
             3 => Command::Wind(WindSection { velocity: Vec3::X * 8.0 * share, ..WindSection::default() }),
             4 => {
                 let names = [MotionName::Still, MotionName::Shake, MotionName::Nod, MotionName::Turn];
@@ -231,7 +231,7 @@ impl Person {
         let mut settings = base.simulation.clone();
         settings.iterations = 0;
         self.refuse(match (5.0 * share) as u32 {
-            0 => Command::Length(1.5),
+            0 => Command::Length(2.5),
             1 => Command::Camera(Camera { field_of_view: f32::NAN, ..Camera::front() }),
             2 => Command::Wind(WindSection { gust: 7.0, ..WindSection::default() }),
             3 => Command::Picture(PictureSettings { width: 0, ..base.picture }),

@@ -181,6 +181,8 @@ pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
     let mut note = |absent: bool, what| left_out.extend(absent.then_some(what));
     note(groom.root_normals.is_some(), "root normals");
     note(groom.groups.is_some(), "groups");
+    note(groom.masses.is_some(), "masses");
+    note(groom.velocities.is_some(), "velocities");
     let bytes = match ending(path).as_str() {
         "hair" => {
             note(groom.root_uvs.is_some(), "root coordinates");

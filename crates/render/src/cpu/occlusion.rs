@@ -9,17 +9,22 @@ use rayon::prelude::*;
 
 use super::Strands;
 use super::fast_math::exp;
+use super::shadow::stepped_down;
 use crate::{Environment, Shadow};
 
-/// Cells along the longest side of the box around the hair.
-const LONGEST: u32 = 40;
+/// Cells along the longest side of the box around the hair, at most.
+const LONGEST: u32 = 39;
+/// Cells around them on each side: hair is spread over the nearest one, and light enters the other unhindered.
+const AROUND: u32 = 2;
+/// Bits of the cells' number on a metre behind the first: steps of 7 to 12 %.
+const CELL_BITS: u32 = 3;
 /// Cells at most: the box and the empty cells around it. Room for all is taken once, so that hair which
 /// spreads while it moves asks for no more.
-const MOST_CELLS: usize = (LONGEST as usize + 4).pow(3);
+const MOST_CELLS: usize = (LONGEST as usize + 1 + 2 * AROUND as usize).pow(3);
 /// Parts that the strands are shared out to.
 const PARTS: usize = 4;
-/// Whole numbers make sums that do not depend on their order: parts of a square metre.
-const UNITS: f32 = 4_294_967_296.0;
+/// Whole numbers make sums that do not depend on their order: parts of a square metre, 2^44.
+const UNITS: f32 = 17_592_186_044_416.0;
 /// Mean of the sine between random hairs and a fixed direction: projected over full width times length.
 const MEAN_SINE: f32 = std::f32::consts::FRAC_PI_4;
 /// Share of the light that each of four neighbours gives at every cell: about 25 degrees of spread.
@@ -31,6 +36,8 @@ type Cube = [f32; 8];
 /// Visibility of the surroundings around and in the hair.
 #[derive(Clone, Debug, Default)]
 pub struct Occlusion {
+    /// Cells lie whole numbers of them beside this place \[m\].
+    middle: Vec3,
     min: Vec3,
     cell: f32,
     counts: [usize; 3],
@@ -42,6 +49,11 @@ pub struct Occlusion {
 }
 
 impl Occlusion {
+    /// Cells keep their places beside a place of the head \[m\], world space; beside the origin else.
+    pub fn set_middle(&mut self, middle: Vec3) {
+        self.middle = if middle.is_finite() { middle } else { Vec3::ZERO };
+    }
+
     /// Sums the hair and carries light through it.
     pub fn fill(&mut self, strands: &Strands, settings: &Shadow) {
         self.fit(&strands.positions);
@@ -105,29 +117,28 @@ impl Occlusion {
         let sound = min.is_finite() && max.is_finite();
         let (min, max) = if sound { (min, max) } else { (Vec3::ZERO, Vec3::ONE) };
         let extent = (max - min).max(Vec3::splat(1e-3));
-        self.cell = extent.max_element() / LONGEST as f32;
-        // One empty cell around the hair, where light enters unhindered.
-        self.min = min - Vec3::splat(1.5 * self.cell);
-        let counts: UVec3 = (extent / self.cell).ceil().as_uvec3() + UVec3::splat(3);
+        // Sizes of a few steps: cells stay where they are while the outline of the hair changes.
+        self.cell = 1.0 / stepped_down(LONGEST as f32 / extent.max_element(), CELL_BITS);
+        let around = Vec3::splat(AROUND as f32);
+        let first = ((min - self.middle) / self.cell).floor() - around;
+        let last = ((min + extent - self.middle) / self.cell).floor() + around;
+        self.min = self.middle + first * self.cell;
+        let (least, most) = (UVec3::splat(1 + 2 * AROUND), UVec3::splat(LONGEST + 1 + 2 * AROUND));
+        let counts = ((last - first).as_uvec3() + UVec3::ONE).clamp(least, most);
         self.counts = counts.to_array().map(|count| count as usize);
     }
 
     fn sum(&mut self, strands: &Strands, log_transmission: f32) {
-        let [columns, rows, layers] = self.counts;
-        let cells = columns * rows * layers;
-        let (min, inverse) = (self.min, 1.0 / self.cell);
+        let cells = self.counts.iter().product();
+        let grid = Grid { min: self.min, inverse: 1.0 / self.cell, counts: self.counts };
         let count = strands.points_per_strand;
         self.parts.resize_with(PARTS, Vec::new);
         self.parts.par_iter_mut().enumerate().for_each(|(part, areas)| {
             refill(areas, cells, 0);
             let range = strands.strand_count * part / PARTS..strands.strand_count * (part + 1) / PARTS;
             for segment in range.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
-                let (start, end) = (strands.positions[segment], strands.positions[segment + 1]);
-                let at = (0.5 * (start + end) - min) * inverse;
-                let cell = (at.z as usize * rows + at.y as usize) * columns + at.x as usize;
-                if let Some(area) = areas.get_mut(cell) {
-                    *area += (start.distance(end) * strands.widths[segment] * UNITS) as u64;
-                }
+                let end = |point: usize| (strands.positions[point], strands.widths[point]);
+                grid.spread(end(segment), end(segment + 1), areas);
             }
         });
         let face = self.cell * self.cell;
@@ -168,6 +179,54 @@ impl Occlusion {
                 }
             }
             std::mem::swap(light, next);
+        }
+    }
+}
+
+/// The cells that hair is summed into.
+struct Grid {
+    min: Vec3,
+    /// Cells on a metre.
+    inverse: f32,
+    counts: [usize; 3],
+}
+
+impl Grid {
+    /// Spreads the area of a segment, given by the place and the width \[m\] of its ends, in pieces no longer
+    /// than a cell: what a piece gives to the eight cells around it changes as smoothly as it moves.
+    #[inline]
+    fn spread(&self, start: (Vec3, f32), end: (Vec3, f32), areas: &mut [u64]) {
+        let way = end.0 - start.0;
+        let longest = way.abs().max_element() * self.inverse;
+        // No segment is longer than the grid, but where something is not finite.
+        if longest.is_nan() || longest > MOST_CELLS as f32 {
+            return;
+        }
+        let pieces = longest.ceil().max(1.0);
+        let share = 1.0 / pieces;
+        let length = way.length() * (share * UNITS);
+        for piece in 0..pieces as usize {
+            let along = (piece as f32 + 0.5) * share;
+            let width = start.1 + (end.1 - start.1) * along;
+            self.add(start.0 + way * along, length * width, areas);
+        }
+    }
+
+    #[inline]
+    fn add(&self, place: Vec3, area: f32, areas: &mut [u64]) {
+        let [columns, rows, layers] = self.counts;
+        let last = Vec3::new(columns as f32, rows as f32, layers as f32) - Vec3::splat(1.001);
+        let at = ((place - self.min) * self.inverse - Vec3::splat(0.5)).clamp(Vec3::ZERO, last);
+        let (x, y, z) = (at.x as usize, at.y as usize, at.z as usize);
+        let part = at - at.floor();
+        let first = (z * rows + y) * columns + x;
+        for upper in 0..4 {
+            let (dy, dz) = (upper & 1, upper >> 1);
+            let area = area * side(part.y, dy) * side(part.z, dz);
+            let right = (area * part.x) as u64;
+            let cell = first + (dz * rows + dy) * columns;
+            areas[cell] += area as u64 - right;
+            areas[cell + 1] += right;
         }
     }
 }

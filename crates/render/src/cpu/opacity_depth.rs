@@ -19,7 +19,7 @@ pub struct ShadowBody<'a> {
 }
 
 /// Fits each shadow light's maps to hair and body, and finds the first depths in them. Point lights look
-/// at `middle` \[m\], world space.
+/// at `middle` \[m\], world space, and all texels keep their places beside it.
 ///
 /// The hair has a map of its own, no larger than the hair, so that its texels are small.
 pub fn opacity_depth(
@@ -39,18 +39,18 @@ pub fn opacity_depth(
     }
     out.active().for_each(|map| {
         let hair = plane_bounds(&strands.positions, &map.view);
-        map.hair_window = Window::around(hair, &map.view, map.size);
+        map.hair_window = Window::around(hair, &map.view, middle, map.size);
         match body {
-            Some(body) => body_depths(map, body),
+            Some(body) => body_depths(map, body, middle),
             None => map.body_depths.clear(),
         }
         hair_depths(map, strands);
     });
 }
 
-fn body_depths(map: &mut ShadowMap, body: ShadowBody) {
+fn body_depths(map: &mut ShadowMap, body: ShadowBody, middle: Vec3) {
     let bounds: (Vec2, Vec2) = plane_bounds(body.positions, &map.view);
-    map.body_window = Window::around(bounds, &map.view, map.size);
+    map.body_window = Window::around(bounds, &map.view, middle, map.size);
     map.body_depths.clear();
     map.body_depths.resize(map.size * map.size, NOTHING);
     draw_depth(body.positions, body.triangles, &map.view, &map.body_window, map.size, &mut map.body_depths);

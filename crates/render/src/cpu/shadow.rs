@@ -27,7 +27,7 @@ impl LightView {
     pub(crate) fn new(light: &Light, middle: Vec3) -> Self {
         let target = if light.kind == LightKind::Point { middle } else { light.target };
         let forward = (target - light.position).normalize_or(Vec3::NEG_Y);
-        let (right, up) = forward.any_orthonormal_pair();
+        let (right, up) = across(forward);
         let reach = match light.kind {
             LightKind::Directional => f32::INFINITY,
             LightKind::Spot => light.cone_angle.to_radians().tan(),
@@ -53,9 +53,10 @@ impl LightView {
         }
     }
 
-    /// Whether the second plane coordinate grows with height.
-    pub(crate) fn rows_rise(&self) -> bool {
-        self.up.y > 0.0
+    /// The unit direction on the plane that points down in the world; along the rows where none does.
+    pub(crate) fn down(&self) -> Vec2 {
+        let down = -Vec2::new(self.right.y, self.up.y);
+        if down.length() > 1e-3 { down.normalize() } else { Vec2::Y }
     }
 
     /// Plane units a metre measures at a depth.
@@ -64,6 +65,27 @@ impl LightView {
         if self.parallel { 1.0 } else { 1.0 / depth }
     }
 }
+
+/// The two directions of a light's plane, carried from those of a light from above by the smallest rotation.
+///
+/// They change as smoothly as the light moves, but about one that shines straight up: some direction must be
+/// left out, and few lights stand below the hair.
+fn across(forward: Vec3) -> (Vec3, Vec3) {
+    let whole = 1.0 - forward.y;
+    if whole < 1e-6 {
+        return (Vec3::X, Vec3::NEG_Z);
+    }
+    let turned = (forward - Vec3::Y) / whole;
+    (Vec3::X - forward.x * turned, Vec3::Z - forward.z * turned)
+}
+
+/// A number rounded down to so many bits behind the first: steps that small changes seldom cross.
+pub(crate) fn stepped_down(number: f32, bits: u32) -> f32 {
+    f32::from_bits(number.to_bits() & (u32::MAX << (23 - bits)))
+}
+
+/// Bits of a map's density behind the first: steps of 14 to 25 %.
+const DENSITY_BITS: u32 = 2;
 
 /// The square part of a light's plane that a map covers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -74,17 +96,23 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// The smallest square around `bounds` (least and greatest plane coordinates) that the light
-    /// reaches, with a border of one texel.
-    pub(crate) fn around(bounds: (Vec2, Vec2), view: &LightView, size: usize) -> Self {
+    /// A square around `bounds` (least and greatest plane coordinates) that the light reaches, with a border
+    /// of one texel.
+    ///
+    /// Texels have sizes of a few steps and lie whole numbers of them beside `middle` \[m\], so that they stay
+    /// where they are on the hair while its outline changes.
+    pub(crate) fn around(bounds: (Vec2, Vec2), view: &LightView, middle: Vec3, size: usize) -> Self {
         let reach = Vec2::splat(view.reach);
         let (min, max) = (bounds.0.max(-reach), bounds.1.min(reach));
         if !(min.cmple(max).all() && min.is_finite() && max.is_finite()) {
             return Self { min: Vec2::ZERO, density: 0.0 };
         }
         let extent = (max - min).max_element().max(1e-4);
-        let density = (size as f32 - 2.0) / extent;
-        Self { min: 0.5 * (min + max) - Vec2::splat(0.5 * size as f32 / density), density }
+        // A texel of border on each side, and half a one on each for whole numbers.
+        let density = stepped_down((size as f32 - 3.0) / extent, DENSITY_BITS);
+        let anchor = view.project(middle).map_or(Vec2::ZERO, Vec3::truncate);
+        let first = (0.5 * (min + max) - anchor) * density - Vec2::splat(0.5 * size as f32 - 0.5);
+        Self { min: anchor + first.floor() / density, density }
     }
 
     /// Texel coordinates; texel 0 lies between 0 and 1.

@@ -1,6 +1,6 @@
 //! Shadow maps as pictures, to look at.
 
-use glam::Vec4;
+use glam::{Vec2, Vec4};
 
 use super::fast_math::exp;
 use super::shadow::{NOTHING, ShadowMap};
@@ -28,15 +28,21 @@ impl ShadowMap {
         self.picture(|texel| [if texel.w < NOTHING { 1.0 - (texel.w - near) * inverse } else { 0.0 }; 3])
     }
 
-    /// Every texel coloured, 0 to 1, as the light sees it, turned by half a turn where that brings
-    /// the world's up nearer to the picture's.
+    /// The texels coloured, 0 to 1, as the light sees them, turned so that down is down in the world, and all
+    /// of them inside the picture.
     fn picture(&self, color: impl Fn(Vec4) -> [f32; 3]) -> Picture {
-        let bytes = |texel: &Vec4| color(*texel).map(|share| (255.0 * share + 0.5) as u8);
-        let pixels = if self.view.rows_rise() {
-            self.texels.iter().rev().flat_map(bytes).collect()
-        } else {
-            self.texels.iter().flat_map(bytes).collect()
+        let down = self.view.down();
+        let right = Vec2::new(down.y, -down.x);
+        let (half, scale) = (0.5 * self.size as f32, down.x.abs() + down.y.abs());
+        let texel = |column: usize, row: usize| {
+            let (x, y) = (column as f32 + 0.5 - half, row as f32 + 0.5 - half);
+            let at = Vec2::splat(half) + (right * x + down * y) * scale;
+            let inside = at.min_element() >= 0.0 && at.max_element() < self.size as f32;
+            inside.then(|| self.texels[at.y as usize * self.size + at.x as usize])
         };
+        let bytes = |texel: Vec4| color(texel).map(|share| (255.0 * share + 0.5) as u8);
+        let places = (0..self.size).flat_map(|row| (0..self.size).map(move |column| (column, row)));
+        let pixels = places.flat_map(|(column, row)| texel(column, row).map_or([0; 3], bytes)).collect();
         Picture { width: self.size as u32, height: self.size as u32, pixels, alpha: None }
     }
 }
@@ -60,17 +66,22 @@ mod tests {
         }
     }
 
-    /// Two upright strands one behind the other in the light of +z, each as wide as a texel; the one
-    /// behind is half as high.
+    /// A place in the middle of a column of texels of 1/80 m, at a height \[texel\] and a depth \[m\].
+    fn place(height: f32, depth: f32) -> Vec3 {
+        Vec3::new(0.5 / 80.0, height / 80.0, -depth)
+    }
+
+    /// Two upright strands one behind the other in the light of +z, each as wide as a texel; the one behind is
+    /// half as high. They are a little shorter than whole texels, so that each texel has one piece.
     fn map(light: Light) -> ShadowMap {
-        map_of(&[Vec3::ZERO, Vec3::Y * 0.14, Vec3::new(0.0, 0.0, -0.03), Vec3::new(0.0, 0.07, -0.03)], light)
+        map_of(&[place(0.0, 0.0), place(10.95, 0.0), place(0.0, 0.03), place(4.95, 0.03)], light)
     }
 
     fn map_of(points: &[Vec3], light: Light) -> ShadowMap {
         let mut strands = Strands::default();
         strands.resize(points.len() / 2, 1, 2);
         strands.positions = points.to_vec();
-        strands.widths.fill(0.01);
+        strands.widths.fill(1.0 / 80.0);
         let mut shadows = Shadows::default();
         let settings = Shadow { map_size: SIZE, ..Shadow::default() };
         opacity_depth(&strands, None, &[light], Vec3::ZERO, &settings, &mut shadows);
@@ -96,8 +107,7 @@ mod tests {
         assert_eq!((pixels[0], pixels[15]), ([0; 3], [0; 3]));
         assert!(is(pixels[4], [77, 77, 77]), "{:?}", pixels[4]);
         assert!(is(pixels[12], [77, 130, 130]), "{:?}", pixels[12]);
-        let three = [0.0, 0.03, 0.1].map(|depth| Vec3::new(0.0, 0.0, -depth));
-        let points: Vec<Vec3> = three.iter().flat_map(|foot| [*foot, *foot + Vec3::Y * 0.14]).collect();
+        let points = [0.0, 0.03, 0.1].map(|depth| [place(0.0, depth), place(10.95, depth)]).concat();
         let pixels = column(&map_of(&points, light(1.0)).opacity_picture());
         assert!(is(pixels[4], [77, 130, 168]), "{:?}", pixels[4]);
     }

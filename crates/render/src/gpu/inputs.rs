@@ -89,6 +89,9 @@ mirror! {
         pub filmic: u32,
         /// 0 none, 1 open, 2 closed: every edge joins two triangles.
         pub body_kind: u32,
+        /// Middle of the hair at rest \[m\]: texels and cells keep their places beside it.
+        pub middle: [f32; 3],
+        pub unused: u32,
     }
 }
 
@@ -208,6 +211,8 @@ impl Frame {
             supersampling: settings.supersampling,
             filmic: u32::from(settings.tone_map == ToneMap::Filmic),
             body_kind: scene.body_kind,
+            middle: scene.middle.to_array(),
+            unused: 0,
         }
     }
 }

@@ -25,7 +25,7 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> N
     let solids = Solids::new(obstacles, points);
     let bends = Bends::new(&settings.angles, settings.time_step, settings.iterations, obstacles.end.rotation);
     let (scratch, grab) = (&mut state.scratch, &state.grab);
-    let lengths = &scratch.lengths.stretch;
+    let (lengths, masses) = (&scratch.lengths.stretch, &scratch.masses);
     scratch
         .predicted
         .par_chunks_mut(points)
@@ -43,12 +43,12 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> N
                     bends,
                     segments: Segments {
                         lengths: &lengths[range.clone()],
-                        share_lower: &solver.share_lower[range.clone()],
-                        share_upper: &solver.share_upper[range.clone()],
+                        share_lower: &masses.share_lower[range.clone()],
+                        share_upper: &masses.share_upper[range.clone()],
                     },
                     joints: Joints {
                         directions: &solver.directions[range.clone()],
-                        inverse_mass: &solver.inverse_mass[range],
+                        inverse_mass: &masses.inverse_mass[range],
                     },
                     solids: &solids,
                 };

@@ -12,7 +12,7 @@ use crate::{Solver, Spring, State};
 /// positions. `wind` is the velocity of the air \[m/s\], world space.
 pub fn integrate(solver: &Solver, state: &mut State, wind: Vec3) {
     let points = solver.points_per_strand;
-    let lengths = &state.scratch.lengths;
+    let (lengths, masses) = (&state.scratch.lengths, &state.scratch.masses);
     let settings = &solver.settings;
     let springs = [
         (1, settings.springs.stretch, &lengths.stretch),
@@ -32,7 +32,7 @@ pub fn integrate(solver: &Solver, state: &mut State, wind: Vec3) {
             || vec![Vec3x8::ZERO; points],
             |kicks, (block, ((predicted, velocities), (positions, corrections)))| {
                 let range = block * points..(block + 1) * points;
-                let inverse_mass = &solver.inverse_mass[range.clone()];
+                let inverse_mass = &masses.inverse_mass[range.clone()];
                 kicks.fill(Vec3x8::ZERO);
                 for (stride, spring, rest) in springs {
                     if spring.enabled {

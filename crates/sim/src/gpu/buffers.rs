@@ -9,6 +9,7 @@ use super::solve_pressure::PressureState;
 use super::volume::Volume;
 use super::{THREADS, solids};
 use crate::grab::{Grab, Grip, NO_POINT};
+use crate::masses::Masses;
 use crate::{SimError, Solver, State};
 
 /// Steps whose reports the device keeps until they are read.
@@ -110,11 +111,12 @@ impl Buffers {
 
     /// Writes what follows from the settings and the lengths of the strands.
     pub fn write_rest(&self, solver: &Solver, lengths: &RestShape) -> Result<(), SimError> {
+        let masses = Masses::new(solver, lengths);
         let mut rest = Vec::with_capacity(6 * LANES * solver.positions.len());
         let mut springs = Vec::with_capacity(2 * LANES * solver.positions.len());
         for index in 0..solver.positions.len() {
             rest.extend_from_slice(floats(&solver.directions[index..=index]));
-            for lanes in [&lengths.stretch, &solver.inverse_mass, &solver.rest_clearance] {
+            for lanes in [&lengths.stretch, &masses.inverse_mass, &solver.rest_clearance] {
                 // Infinity has no place in a shader.
                 rest.extend(lanes[index].0.map(|number| number.min(f32::MAX)));
             }
@@ -123,7 +125,7 @@ impl Buffers {
         }
         self.rest.write(&rest)?;
         self.springs.write(&springs)?;
-        self.mass.write(bytemuck::cast_slice(&solver.rest.mass))?;
+        self.mass.write(bytemuck::cast_slice(&masses.mass))?;
         Ok(())
     }
 

@@ -9,6 +9,7 @@ use super::step::Stages;
 use super::volume::Volume;
 use super::{Gradient, Spread};
 use crate::grab::Grab;
+use crate::masses::Masses;
 use crate::{SimError, Solver, State, StepReport};
 
 /// All that changes with time, on the device.
@@ -176,6 +177,7 @@ impl GpuState {
         state.length_scale.clone_from(&self.length_scale);
         state.grab.clone_from(&self.grab);
         state.scratch.lengths.clone_from(&self.lengths);
+        state.scratch.masses = Masses::new(solver, &self.lengths);
         self.read_into(&mut state)?;
         Ok(state)
     }

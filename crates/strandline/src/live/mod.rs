@@ -23,6 +23,8 @@ use crate::{
 
 /// Time that passes in a frame \[s\].
 const FRAME: f64 = 1.0 / 60.0;
+/// Steps of a frame at most, so that a window stays awake: with steps shorter than that time slows down.
+const MOST_STEPS: f64 = 16.0;
 
 /// What a [`Live`] may be told. What changes the picture shows in the next one that is begun, what changes
 /// the motion in the one after it.
@@ -49,7 +51,7 @@ pub enum Command {
     Picture(PictureSettings),
     /// Other settings of the simulation.
     Settings(Box<Settings>),
-    /// Another length of all strands, 0.05 to 1 of their own.
+    /// Another length of all strands, 0.05 to 2 of their own.
     Length(f32),
     /// Another wind.
     Wind(WindSection),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use strandline_base::Group;
 
-use super::{Command, FRAME};
+use super::{Command, FRAME, MOST_STEPS};
 use crate::{
     Error, Hair, HeadMotion, Ray, Scene,
     body::Aabb,
@@ -35,9 +35,11 @@ pub(super) struct Stage {
     wind: WindSection,
     motion: MotionSection,
     head: HeadMotion,
-    /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was started.
+    /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was taken.
     begun: f64,
     time: f64,
+    /// Whether the frame on its way moves that time on: not after it went back to its beginning.
+    counts: bool,
     /// Where the hand is that holds hair \[m\], world space.
     hand: Option<Vec3>,
     pub grabbed: usize,
@@ -82,6 +84,7 @@ impl Stage {
             head,
             begun: scene.film.start,
             time: scene.film.start,
+            counts: true,
             hand: None,
             grabbed: 0,
             felt: 0,
@@ -98,13 +101,17 @@ impl Stage {
     /// # Errors
     /// The simulation's thread is no more.
     pub fn start(&mut self, heard: u64) -> Result<(), Gone> {
-        let (begin, hand) = (self.time, self.hand);
-        let (wind, end) = (self.wind.at(begin), self.head.pose(begin + FRAME));
-        self.time += FRAME;
+        let (begin, hand, wind, head) = (self.time, self.hand, self.wind, self.head.clone());
+        self.counts = true;
         let act: Act = Box::new(move |simulation| {
             let start = simulation.end();
             hand.into_iter().for_each(|hand| simulation.move_hand(hand));
-            simulation.step_along(FRAME, wind, &|share| start.toward(&end, share))
+            let seconds = FRAME.min(MOST_STEPS * simulation.time_step());
+            // The head may have been turned since.
+            let end = head.pose(begin + seconds);
+            simulation.step_along(seconds, &|share| {
+                (start.toward(&end, share), wind.at(begin + seconds * f64::from(share)))
+            })
         });
         self.hand_over(act, true, heard)
     }
@@ -123,10 +130,10 @@ impl Stage {
     /// # Errors
     /// The simulation's thread is no more.
     pub fn take(&mut self) -> Result<Taken, Gone> {
-        let Done { moment, reports, notes, grabbed, is_frame, heard, place } = self.worker.finish()?;
-        if is_frame && reports.is_err() {
-            // Its time did not pass.
-            self.time = (self.time - FRAME).max(self.begun);
+        let Done { moment, reports, notes, seconds, grabbed, is_frame, heard, place } =
+            self.worker.finish()?;
+        if is_frame && self.counts {
+            self.time += seconds;
         }
         (self.simulated_on, self.grabbed, self.felt) = (place, grabbed, self.felt.max(heard));
         self.spare.extend(self.shown.replace(moment));
@@ -228,7 +235,7 @@ impl Stage {
         motion.check_as("motion")?;
         self.head = HeadMotion::new(&motion, self.head.pivot())?;
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
-            (self.begun, self.time) = (0.0, 0.0);
+            (self.begun, self.time, self.counts) = (0.0, 0.0, false);
         }
         self.motion = motion;
         Ok(())
@@ -276,7 +283,7 @@ impl Stage {
                 }))
             }
             Command::Reset => {
-                (self.hand, self.begun, self.time) = (None, 0.0, 0.0);
+                (self.hand, self.begun, self.time, self.counts) = (None, 0.0, 0.0, false);
                 let pose = self.head.pose(0.0);
                 self.act(Box::new(move |simulation| simulation.reset(pose).map(|()| Vec::new())))
             }

@@ -22,7 +22,13 @@ settings! {
         /// Points on each guide. Without a groom file the default is that of the style.
         points_per_strand: u32 = 16, in [4, 64], more "finer curls at a higher cost";
         /// Length of every strand over its own.
-        length: f32 = 1.0, in [0.05, 1.0], more "longer hair";
+        length: f32 = 1.0, in [0.05, 2.0], more "longer hair";
+        /// A file with masses and first velocities of the simulated points: tensors of the safetensors format,
+        /// 32-bit floats, `masses` \[kg\], shape \[strand, point\], and `velocities` \[m/s\], head space,
+        /// shape \[strand, point, 3\]; either may be missing. Without masses `mass_per_length` counts.
+        /// Velocities are those of the first step: with `settle` above 0 they have died down before the first
+        /// picture.
+        attributes: Option<PathBuf> = None;
         /// A file with where the simulated points are to begin with and how they move, as the window and
         /// `Hair::save_pose` save it: tensors of the safetensors format, `positions` \[m\], `velocities`
         /// \[m/s\] and `corrections`, what the next step's prediction adds to them \[m/s\] (a file may

@@ -1,0 +1,76 @@
+//! Strands that are cut or grow while they move [Chen2011 fig. 45].
+
+use glam::Vec3;
+use strandline_checks::{On, Rig, law};
+use strandline_groom::RestShape;
+use strandline_sim::{Angles, Drive, Settings, Solver, Springs};
+
+use crate::strands::{bare, first, line, one_strand};
+
+const POINTS: usize = 12;
+
+/// A loose strand in steps, scaled.
+fn loose(on: &On, scale: f32) -> Rig {
+    let zigzag =
+        |index: usize| Vec3::new(0.01 * (index % 2) as f32, -0.02 * index as f32, 0.002 * index as f32);
+    let guides = one_strand(&(0..POINTS).map(zigzag).collect::<Vec<_>>());
+    let rest = RestShape::new(&guides, 6.5e-6);
+    let within = Settings { springs: Springs::default(), angles: Angles::default(), ..bare(1.0 / 60.0, 20) };
+    let settings = Settings { gravity: Vec3::ZERO, ..within };
+    let solver = Solver::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
+    let mut rig = Rig::new(on, solver.clone());
+    rig.change(|state| state.set_length_scale(&solver, &[scale]).unwrap());
+    rig
+}
+
+/// Momentum over mass \[m/s\], with masses \[m\].
+fn mean_velocity(rig: &mut Rig, masses: &[f32]) -> Vec3 {
+    let momentum = |(velocity, mass): (&strandline_groom::Vec3Lanes, &f32)| velocity.get(0) * *mass;
+    rig.state().velocities.iter().zip(masses).map(momentum).sum::<Vec3>() / masses.iter().sum::<f32>()
+}
+
+/// How much the velocity of a kicked strand's middle changes, with masses that follow the length and with
+/// those at rest.
+fn drift(on: &On, scale: f32) -> [f32; 2] {
+    let mut rig = loose(on, scale);
+    let points = first(rig.state());
+    let length = |lower: usize| points.get(lower + 1).map_or(0.0, |next| next.distance(points[lower]));
+    let before = |point: usize| if point > 0 { length(point - 1) } else { 0.0 };
+    let scaled: Vec<f32> = (0..POINTS).map(|point| before(point) + length(point)).collect();
+    let even: Vec<f32> = (0..POINTS).map(|point| if point % (POINTS - 1) == 0 { 0.5 } else { 1.0 }).collect();
+    rig.change(|state| {
+        for (index, velocity) in state.velocities.iter_mut().enumerate() {
+            velocity.set(0, Vec3::new(0.3 * (index as f32).sin(), 0.2, 0.4 * (index as f32 * 2.0).cos()));
+        }
+    });
+    let start = [&scaled, &even].map(|masses| mean_velocity(&mut rig, masses));
+    rig.steps(&[Drive::default(); 30]);
+    let end = [&scaled, &even].map(|masses| mean_velocity(&mut rig, masses));
+    [0, 1].map(|which| (end[which] - start[which]).length() / start[which].length())
+}
+
+law! {
+    fn the_mass_of_a_strand_follows_its_length(on) {
+        for scale in [0.5, 1.8] {
+            let [scaled, even] = drift(on, scale);
+            // Velocities are differences of rounded positions, as for a strand of its own length.
+            assert!(scaled < 3e-4, "{scale}: {scaled}");
+            assert!(even > 1e-2, "{scale}: masses at rest are not told apart, {even}");
+        }
+    }
+}
+
+law! {
+    fn a_strand_hangs_as_far_down_as_it_is_long(on) {
+        for scale in [0.3, 1.0, 2.0] {
+            let guides = one_strand(&line(Vec3::ZERO, Vec3::NEG_Y * 0.2, POINTS - 1));
+            let solver = Solver::new(&guides, &Settings::default(), Vec::new()).unwrap();
+            let mut rig = Rig::new(on, solver.clone());
+            rig.change(|state| state.set_length_scale(&solver, &[scale]).unwrap());
+            rig.steps(&[Drive::default(); 60]);
+            let tip = first(rig.state())[POINTS - 1];
+            // The length pass is exact but for rounding.
+            assert!((tip.y + 0.2 * scale).abs() < 1e-5, "{scale}: {tip}");
+        }
+    }
+}
