@@ -15,6 +15,10 @@ use strandline::{Backend, Scene, Style, scene::MotionName};
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// Show messages of the libraries, wgpu's above all: error, warn, info, debug or trace. RUST_LOG can do so
+    /// for some of them (`wgpu_hal=warn`).
+    #[arg(long, global = true, value_name = "LEVEL", value_parser = parse_level)]
+    pub log: Option<log::LevelFilter>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -41,6 +45,21 @@ pub enum Command {
     Gpus,
     /// Write the linked shader modules to a folder, to read.
     Shaders(ShaderOptions),
+}
+
+impl Command {
+    /// Whether it may open a GPU.
+    pub fn opens_gpu(&self) -> bool {
+        match self {
+            Self::View(_) | Self::Render(_) | Self::Sim(_) | Self::Bench(_) | Self::Gpus => true,
+            Self::Groom(_)
+            | Self::Convert(_)
+            | Self::Info(_)
+            | Self::Scene(_)
+            | Self::Shaders(_)
+            | Self::Plot(_) => false,
+        }
+    }
 }
 
 /// What to simulate: a scene, and what replaces parts of it.
@@ -260,6 +279,10 @@ impl Inputs {
             (None, None) => stem(Path::new(&self.scene)).unwrap_or_else(|| "scene".to_owned()),
         }
     }
+}
+
+fn parse_level(text: &str) -> Result<log::LevelFilter, String> {
+    text.parse().map_err(|_| format!("`{text}` is no level, expected off, error, warn, info, debug or trace"))
 }
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {

@@ -6,6 +6,8 @@ use strandline::groom::{
 };
 
 use crate::arguments::{self, ConvertOptions, GroomOptions, InfoOptions, SceneOptions};
+use crate::output::{self, print_line};
+use crate::progress::Waiting;
 
 /// Grows a style and writes it.
 pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
@@ -14,14 +16,17 @@ pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
         seed: options.seed,
         ..StyleSettings::new(options.style)
     };
-    write(&settings.grow()?, &options.out)
+    let waiting = Waiting::begin("growing strands");
+    let groom = settings.grow()?;
+    drop(waiting);
+    write(&groom, &options.out)
 }
 
 /// Reads one format and writes another.
 pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     let loaded = format::load(&options.input, &LoadOptions { strict: false, ..LoadOptions::default() })?;
     for problem in &loaded.report.problems {
-        eprintln!("note: {problem}");
+        output::note(problem);
     }
     let groom = match options.points {
         Some(points) => loaded.groom.resampled(points as usize)?,
@@ -32,9 +37,14 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
 
 fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()> {
     for part in groom.save(path)?.left_out {
-        eprintln!("note: the format cannot hold {part}: left out");
+        output::note(&format!("the format cannot hold {part}: left out"));
     }
-    println!("wrote {} strands, {} points to {}", groom.strand_count(), groom.points.len(), path.display());
+    print_line!(
+        "wrote {} strands, {} points to {}",
+        groom.strand_count(),
+        groom.points.len(),
+        path.display()
+    );
     Ok(())
 }
 
@@ -43,26 +53,28 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     let report =
         format::load(&options.file, &LoadOptions { strict: false, ..LoadOptions::default() })?.report;
     if options.json {
-        println!("{}", serde_json::to_string(&report)?);
+        output::program(&format!("{}\n", serde_json::to_string(&report)?));
         return Ok(());
     }
-    println!("{}: {}", options.file.display(), report.format);
-    println!("strands   {}", report.strands);
-    println!(
+    print_line!("{}: {}", options.file.display(), report.format);
+    print_line!("strands   {}", report.strands);
+    print_line!(
         "points    {} ({} to {} a strand)",
-        report.points, report.points_per_strand.min, report.points_per_strand.max
+        report.points,
+        report.points_per_strand.min,
+        report.points_per_strand.max
     );
     let length = &report.length_m;
-    println!("lengths   {:.4} to {:.4} m, mean {:.4} m", length.min, length.max, length.mean);
-    println!("bounds    {:?} m", report.bounds_m);
+    print_line!("lengths   {:.4} to {:.4} m, mean {:.4} m", length.min, length.max, length.mean);
+    print_line!("bounds    {:?} m", report.bounds_m);
     for problem in &report.problems {
-        println!("problem   {problem}");
+        print_line!("problem   {problem}");
     }
     Ok(())
 }
 
 /// Prints a scene with every key.
 pub fn scene(options: &SceneOptions) -> anyhow::Result<()> {
-    print!("{}", arguments::scene(&options.scene)?.to_toml());
+    output::program(&arguments::scene(&options.scene)?.to_toml());
     Ok(())
 }

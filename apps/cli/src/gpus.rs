@@ -1,19 +1,20 @@
 //! `strandline gpus` and `strandline shaders`: what there is to simulate on, and what runs there.
 
-use strandline::{Error, gpu::Gpu, render, sim};
+use strandline::{Error, base::WholeFile, gpu::Gpu, render, sim};
 
 use crate::arguments::ShaderOptions;
+use crate::output::print_line;
 
 /// Lists the adapters.
 pub fn list() -> anyhow::Result<()> {
     let adapters = Gpu::list();
     for adapter in &adapters {
-        println!("{adapter}");
+        print_line!("{adapter}");
     }
     if adapters.is_empty() {
-        println!("no GPU: a Vulkan, Metal or Direct3D 12 driver is needed; everything runs on the CPU");
+        print_line!("no GPU: a Vulkan, Metal or Direct3D 12 driver is needed; everything runs on the CPU");
     } else if adapters.iter().all(|adapter| adapter.software) {
-        println!("software only: `--backend auto` takes the CPU, which is many times faster");
+        print_line!("software only: `--backend auto` takes the CPU, which is many times faster");
     }
     Ok(())
 }
@@ -29,8 +30,8 @@ pub fn shaders(options: &ShaderOptions) -> anyhow::Result<()> {
     let modules: Vec<_> = sim::gpu::modules().into_iter().chain(render::gpu::modules()).collect();
     for (name, text) in &modules {
         let path = folder.join(name).with_extension("wgsl");
-        std::fs::write(&path, text).map_err(failed(&path))?;
+        WholeFile::save(&path, text.as_bytes()).map_err(failed(&path))?;
     }
-    println!("wrote {} shader modules to {}", modules.len(), folder.display());
+    print_line!("wrote {} shader modules to {}", modules.len(), folder.display());
     Ok(())
 }

@@ -1,13 +1,16 @@
 //! The `strandline` program: view, render, sim, groom, convert, info, scene, bench, plot, gpus, shaders.
 
-#![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
-
 mod arguments;
 mod bench;
+mod exit;
 mod files;
 mod gpus;
+mod interrupt;
+mod logging;
 mod non_finite;
+mod output;
 mod progress;
+mod quiet;
 mod render;
 mod sim;
 mod statistics;
@@ -20,20 +23,52 @@ use clap::Parser;
 use arguments::{Arguments, Command};
 
 fn main() -> ExitCode {
-    // clap ends the program itself: 0 for help, 2 for wrong usage.
-    let arguments = Arguments::parse();
-    match run(&arguments) {
-        Ok(()) => ExitCode::SUCCESS,
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return help(&error),
+    };
+    if arguments.command.as_ref().is_none_or(Command::opens_gpu) {
+        quiet::quiet_mesa();
+    }
+    logging::begin(arguments.log);
+    interrupt::listen();
+    let outcome = run(&arguments);
+    output::finish();
+    let code = match outcome {
+        Ok(()) => exit::SUCCESS,
         Err(error) => {
-            eprintln!("strandline: {error}");
-            ExitCode::from(if error.is::<arguments::Usage>() {
-                2
-            } else if error.is::<non_finite::NotFinite>() {
-                3
-            } else {
-                1
-            })
+            output::complain(&error.to_string());
+            code(&error)
         }
+    };
+    ExitCode::from(u8::try_from(code).unwrap_or(u8::MAX))
+}
+
+/// Prints clap's help, which is an error to it, or what is wrong with the command line.
+fn help(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() {
+        // It quotes what was given, and who closed standard error does not want to know.
+        let _ = error.print();
+        return ExitCode::from(exit::USAGE as u8);
+    }
+    output::written(error.print());
+    output::finish();
+    ExitCode::SUCCESS
+}
+
+/// The code that an error ends the program with.
+fn code(error: &anyhow::Error) -> i32 {
+    if let Some(stopped) = error.downcast_ref::<interrupt::Stopped>() {
+        return exit::SIGNAL + stopped.signal as i32;
+    }
+    if error.is::<arguments::Usage>() {
+        exit::USAGE
+    } else if error.is::<non_finite::NotFinite>() {
+        exit::NOT_FINITE
+    } else if error.is::<render::NoVideo>() {
+        exit::NO_VIDEO
+    } else {
+        exit::FAILURE
     }
 }
 

@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::output;
+
 /// How long something may take before a bar is shown.
 const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -27,8 +29,8 @@ impl Progress {
     /// Says something without tearing the bar.
     pub fn note(&self, note: &str) {
         match &self.bar {
-            Some(bar) => bar.suspend(|| eprintln!("note: {note}")),
-            None => eprintln!("note: {note}"),
+            Some(bar) => bar.suspend(|| output::note(note)),
+            None => output::note(note),
         }
     }
 
@@ -54,6 +56,33 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Says that something goes on of which nobody knows how far it has come.
+pub struct Waiting(Option<ProgressBar>);
+
+impl Waiting {
+    /// Begins; nothing is shown where nobody watches.
+    pub fn begin(what: &'static str) -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Self(None);
+        }
+        let bar = ProgressBar::new_spinner();
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg}, {elapsed}") {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        bar.enable_steady_tick(PATIENCE);
+        Self(Some(bar))
+    }
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
             bar.finish_and_clear();
         }
     }

@@ -6,7 +6,9 @@ use serde::Serialize;
 use strandline::{Event, Film, Player, Scene};
 
 use crate::arguments::RenderOptions;
+use crate::interrupt::{Stoppable, Stopped};
 use crate::non_finite::NonFinite;
+use crate::output::{self, print_line};
 use crate::progress::Progress;
 use crate::statistics::{Collector, Times};
 
@@ -30,7 +32,7 @@ struct RenderReport {
 /// The demo, into out/demo.
 pub fn demo() -> anyhow::Result<()> {
     let scene = Scene::demo();
-    println!(
+    print_line!(
         "strandline demo: a head of {} hair shakes for {:.0} s; `strandline --help` shows what else there is",
         scene.style.style.name(),
         f64::from(scene.film.frames) / f64::from(scene.film.frames_per_second)
@@ -51,33 +53,18 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
 fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
     let mut player = Player::new(scene, scene.devices, true)?;
     for note in player.notes() {
-        eprintln!("note: {note}");
+        output::note(note);
     }
     let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second)?;
-    let (mut beside, mut alone) = (Collector::default(), Collector::default());
-    let (mut strands, mut segments, mut non_finite) = (0, 0, NonFinite::default());
-    let mut progress = Progress::new(u64::from(player.frames()), "frames", json);
-    while let Some(event) = player.next() {
-        match event? {
-            Event::Note(note) => progress.note(&note),
-            Event::Stepped(report) => {
-                let note = non_finite.add(&report, player.frames_done());
-                note.into_iter().for_each(|note| progress.note(&note));
-            }
-            Event::Drawn { frame, picture, report } => {
-                film.add(&picture)?;
-                let times = if frame + 1 < player.frames() { &mut beside } else { &mut alone };
-                times.add(&report.seconds);
-                (strands, segments) = (report.strands, report.segments);
-            }
-        }
-        progress.reached(u64::from(player.frames_done()));
+    let mut drawn = Drawn::default();
+    if let Err(error) = play(&mut player, &mut film, &mut drawn, json) {
+        return Err(broken_off(film, folder, error));
     }
-    drop(progress);
     let written = film.finish()?;
     for note in &written.notes {
-        eprintln!("note: {note}");
+        output::note(note);
     }
+    let Drawn { beside, alone, strands, segments, non_finite } = drawn;
     let report = RenderReport {
         backend: player.simulated_on(),
         render_backend: player.drawn_on(),
@@ -90,32 +77,96 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
         files: written.files,
     };
     if json {
-        println!("{}", serde_json::to_string(&report)?);
+        output::program(&format!("{}\n", serde_json::to_string(&report)?));
     } else {
         print(&report, folder);
     }
-    Ok(report.non_finite.outcome()?)
+    report.non_finite.outcome()?;
+    if written.video_failed { Err(NoVideo.into()) } else { Ok(()) }
 }
 
+/// What was drawn.
+#[derive(Default)]
+struct Drawn {
+    /// Pictures that were drawn while the next frame was simulated, and the last one.
+    beside: Collector,
+    alone: Collector,
+    strands: usize,
+    segments: usize,
+    non_finite: NonFinite,
+}
+
+fn play(player: &mut Player, film: &mut Film, drawn: &mut Drawn, quiet: bool) -> anyhow::Result<()> {
+    let mut progress = Progress::new(u64::from(player.frames()), "frames", quiet);
+    let stoppable = Stoppable::begin();
+    while let Some(event) = player.next() {
+        match event? {
+            Event::Note(note) => progress.note(&note),
+            Event::Stepped(report) => {
+                let note = drawn.non_finite.add(&report, player.frames_done());
+                note.into_iter().for_each(|note| progress.note(&note));
+            }
+            Event::Drawn { frame, picture, report } => {
+                film.add(&picture)?;
+                let times = if frame + 1 < player.frames() { &mut drawn.beside } else { &mut drawn.alone };
+                times.add(&report.seconds);
+                (drawn.strands, drawn.segments) = (report.strands, report.segments);
+            }
+        }
+        let (done, frames) = (u64::from(player.frames_done()), u64::from(player.frames()));
+        progress.reached(done);
+        if done < frames {
+            stoppable.check(done, frames, "frames")?;
+        }
+    }
+    Ok(())
+}
+
+/// Closes a film that cannot go on, and says what there is of it.
+fn broken_off(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Error {
+    let frames = film.len();
+    let notes = if error.is::<Stopped>() {
+        film.break_off().map_or_else(|error| vec![error.to_string()], |left| left.notes)
+    } else {
+        Vec::new()
+    };
+    notes.iter().for_each(|note| output::note(note));
+    if frames > 0 {
+        output::note(&format!("the {frames} frames already written are whole: {}", folder.display()));
+    }
+    error
+}
+
+/// Pictures are there, but no video.
+#[derive(Debug, thiserror::Error)]
+#[error("ffmpeg made no video; frames and contact sheet are whole")]
+pub struct NoVideo;
+
 fn print(report: &RenderReport, folder: &Path) {
-    println!(
+    print_line!(
         "{} pictures of {} strands, {} segments, drawn on {}, simulated on {}",
-        report.frames, report.follow_strands, report.segments, report.render_backend, report.backend
+        report.frames,
+        report.follow_strands,
+        report.segments,
+        report.render_backend,
+        report.backend
     );
     let alone = &report.ms_of_frame_alone;
     match &report.ms_per_frame_beside_simulation {
-        Some(beside) => println!(
+        Some(beside) => print_line!(
             "a picture takes {:.0} ms while the next frame is simulated (95 of 100 at most {:.0} ms), {:.0} ms alone (the last one)",
-            beside.median, beside.p95, alone.median
+            beside.median,
+            beside.p95,
+            alone.median
         ),
-        None => println!("the picture takes {:.0} ms", alone.median),
+        None => print_line!("the picture takes {:.0} ms", alone.median),
     }
     for (name, time) in alone.stages.iter() {
         let beside = report.ms_per_frame_beside_simulation.as_ref();
         let beside =
             beside.map_or(String::new(), |times| format!("{:>10.1} ms beside", times.stages.sum(&[name])));
-        println!("  {name:<15}{time:>8.1} ms alone{beside}");
+        print_line!("  {name:<15}{time:>8.1} ms alone{beside}");
     }
     let last = report.files.last().map_or(folder, PathBuf::as_path);
-    println!("wrote {} files to {}: look at {}", report.files.len(), folder.display(), last.display());
+    print_line!("wrote {} files to {}: look at {}", report.files.len(), folder.display(), last.display());
 }

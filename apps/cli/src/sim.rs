@@ -1,13 +1,12 @@
 //! `strandline sim`: steps without pictures.
 
 use serde::Serialize;
-use strandline::{
-    Event, Player,
-    sim::{PressureReport, StepReport},
-};
+use strandline::{Event, Player, sim::StepReport};
 
 use crate::arguments::SimOptions;
+use crate::interrupt::Stoppable;
 use crate::non_finite::{NonFinite, larger};
+use crate::output::{self, print_line};
 use crate::progress::Progress;
 use crate::statistics::{Collector, Times};
 
@@ -44,12 +43,15 @@ pub struct Pcg {
     pub residual_max: f32,
 }
 
-/// Gathers step reports.
+/// Gathers step reports: sums and largest values.
 #[derive(Debug, Default)]
 pub struct Steps {
     times: Collector,
-    stretch: Vec<f64>,
-    pressure: Vec<PressureReport>,
+    stretch: f64,
+    iterations: f64,
+    iterations_absolute: f64,
+    fluid_cells: f64,
+    residual_max: f32,
     stretch_max: f32,
     penetration_max: f32,
     non_finite: NonFinite,
@@ -59,37 +61,35 @@ impl Steps {
     /// Adds a step of a frame; what a person should know of it at once.
     pub fn add(&mut self, report: &StepReport, frame: u32) -> Option<String> {
         self.times.add(&report.seconds);
-        self.stretch.push(f64::from(report.stretch_mean));
-        self.pressure.push(report.pressure);
+        self.stretch += f64::from(report.stretch_mean);
+        self.iterations += report.pressure.iterations as f64;
+        self.iterations_absolute += report.pressure.iterations_absolute as f64;
+        self.fluid_cells += report.pressure.fluid_cells as f64;
+        self.residual_max = self.residual_max.max(report.pressure.relative_residual);
         self.stretch_max = larger(self.stretch_max, report.stretch_max);
         self.penetration_max = self.penetration_max.max(report.penetration_max);
         self.non_finite.add(report, frame)
     }
 
     pub fn report(&self, backend: String, strands: usize, points_per_strand: usize) -> SimReport {
-        let pressure = |value: fn(&PressureReport) -> f64| mean(self.pressure.iter().map(value));
+        let mean = |sum: f64| sum / self.times.len().max(1) as f64;
         SimReport {
             backend,
             strands,
             points_per_strand,
             steps: self.times.len(),
             ms_per_step: self.times.times(),
-            stretch: Stretch { mean: mean(self.stretch.iter().copied()), max: self.stretch_max },
+            stretch: Stretch { mean: mean(self.stretch), max: self.stretch_max },
             penetration_max_m: self.penetration_max,
             non_finite: self.non_finite.clone(),
             pcg: Pcg {
-                iterations_mean: pressure(|report| report.iterations as f64),
-                iterations_absolute_mean: pressure(|report| report.iterations_absolute as f64),
-                residual_max: self.pressure.iter().map(|report| report.relative_residual).fold(0.0, f32::max),
+                iterations_mean: mean(self.iterations),
+                iterations_absolute_mean: mean(self.iterations_absolute),
+                residual_max: self.residual_max,
             },
-            fluid_cells_mean: pressure(|report| report.fluid_cells as f64),
+            fluid_cells_mean: mean(self.fluid_cells),
         }
     }
-}
-
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len().max(1) as f64;
-    values.sum::<f64>() / count
 }
 
 pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
@@ -97,10 +97,11 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let scene = inputs.scene()?;
     let mut player = Player::new(&scene, scene.devices, false)?;
     for note in player.notes() {
-        eprintln!("note: {note}");
+        output::note(note);
     }
     let mut progress = Progress::new(u64::from(player.frames()), "frames", inputs.json);
     let mut steps = Steps::default();
+    let stoppable = Stoppable::begin();
     while let Some(event) = player.next() {
         match event? {
             Event::Note(note) => progress.note(&note),
@@ -111,13 +112,17 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
             }
             Event::Drawn { .. } => {}
         }
-        progress.reached(u64::from(player.frames_done()));
+        let (done, frames) = (u64::from(player.frames_done()), u64::from(player.frames()));
+        progress.reached(done);
+        if done < frames {
+            stoppable.check(done, frames, "frames")?;
+        }
     }
     drop(progress);
     let guides = player.guides();
     let report = steps.report(player.simulated_on(), guides.strand_count(), guides.points_per_strand());
     if inputs.json {
-        println!("{}", serde_json::to_string(&report)?);
+        output::program(&format!("{}\n", serde_json::to_string(&report)?));
     } else {
         print(&report);
     }
@@ -126,16 +131,18 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
 
 fn print(report: &SimReport) {
     let SimReport { strands, points_per_strand, steps, ms_per_step, stretch, pcg, .. } = report;
-    println!("{strands} strands x {points_per_strand} points, {steps} steps on {}", report.backend);
-    println!("a step takes {:.2} ms (95 of 100 at most {:.2} ms)", ms_per_step.median, ms_per_step.p95);
+    print_line!("{strands} strands x {points_per_strand} points, {steps} steps on {}", report.backend);
+    print_line!("a step takes {:.2} ms (95 of 100 at most {:.2} ms)", ms_per_step.median, ms_per_step.p95);
     for (name, time) in ms_per_step.stages.iter() {
-        println!("  {name:<15}{time:>8.3} ms");
+        print_line!("  {name:<15}{time:>8.3} ms");
     }
-    println!("stretch: mean {:.4} %, largest {:.3} %", 100.0 * stretch.mean, 100.0 * stretch.max);
-    println!("deepest point inside a solid: {:.2} mm", 1e3 * report.penetration_max_m);
-    println!("points that are not finite: {}", report.non_finite.points);
-    println!(
+    print_line!("stretch: mean {:.4} %, largest {:.3} %", 100.0 * stretch.mean, 100.0 * stretch.max);
+    print_line!("deepest point inside a solid: {:.2} mm", 1e3 * report.penetration_max_m);
+    print_line!("points that are not finite: {}", report.non_finite.points);
+    print_line!(
         "pressure: {:.1} iterations on {:.0} fluid cells, largest residual {:.1e}",
-        pcg.iterations_mean, report.fluid_cells_mean, pcg.residual_max
+        pcg.iterations_mean,
+        report.fluid_cells_mean,
+        pcg.residual_max
     );
 }

@@ -2,7 +2,7 @@
 
 use strandline::Scene;
 
-use crate::{arguments::ViewOptions, render};
+use crate::{arguments::ViewOptions, output, render};
 
 /// Opens the window on what the command line names.
 pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
@@ -22,6 +22,6 @@ pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
 /// The window on the demo, or its pictures where there is no display.
 pub fn view_or_demo() -> anyhow::Result<()> {
     let Err(error) = strandline_viewer::open(Scene::demo()) else { return Ok(()) };
-    eprintln!("note: no window: {error}");
+    output::note(&format!("no window: {error}"));
     render::demo()
 }

@@ -7,7 +7,7 @@ use ::gltf::mesh::{Mode, Primitive};
 use glam::{Mat3, Mat4, Vec3};
 
 use crate::gltf_buffers::{Buffers, load_buffers};
-use crate::mesh::read_file;
+use crate::mesh::{read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
 /// The most vertices and the most triangles of one body: nodes can repeat a mesh many times.
@@ -130,10 +130,8 @@ fn append(
     let linear = Mat3::from_mat4(world_from_node);
     let world_from_normal = linear.inverse().transpose();
     mesh.positions.extend(positions.iter().map(|position| world_from_node.transform_point3(*position)));
-    mesh.normals.extend(normals.iter().take(positions.len()).map(|normal| {
-        let normal = world_from_normal * *normal;
-        if normal.is_finite() { normal.normalize_or_zero() } else { Vec3::ZERO }
-    }));
+    let placed = |normal: &Vec3| unit_normal(world_from_normal * unit_normal(*normal));
+    mesh.normals.extend(normals.iter().take(positions.len()).map(placed));
     mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
     let is_mirrored = linear.determinant() < 0.0;
     mesh.triangles.extend(triangles(part.mode(), &corners).map(|[a, b, c]| {

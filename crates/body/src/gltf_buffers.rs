@@ -1,6 +1,6 @@
 //! The buffers of a glTF file, read with every size checked first.
 
-use std::path::Path;
+use std::path::{Component, Path};
 
 use ::gltf::Document;
 use ::gltf::accessor::{Accessor, DataType, Dimensions};
@@ -29,7 +29,10 @@ pub(crate) fn load_buffers(
             }
             Source::Uri(uri) => {
                 let (folder, name) = folder.zip(file_name(uri)).ok_or_else(|| {
-                    (format!("buffer {index} at `{uri}`"), "the name of a file beside this one")
+                    (
+                        format!("buffer {index} at `{uri}`"),
+                        "the name of a file beside this one, or in a folder there",
+                    )
                 })?;
                 let expected = "the file of that name beside this one";
                 Some(
@@ -48,18 +51,21 @@ pub(crate) fn load_buffers(
     Ok(Buffers(buffers))
 }
 
-/// A relative address as a path: `%20` and the like become bytes again. None for other addresses.
+/// A relative address as a path below the file's folder: `%20` and the like become bytes again. None for other
+/// addresses, and for what is one only after that: a path from the root, a way up, a drive, a share.
 fn file_name(uri: &str) -> Option<String> {
-    if uri.contains(':') || uri.starts_with(['/', '\\']) {
-        return None;
-    }
     let mut parts = uri.split('%');
     let mut name = parts.next()?.as_bytes().to_vec();
     for part in parts {
         name.push(u8::from_str_radix(part.get(..2)?, 16).ok()?);
         name.extend_from_slice(&part.as_bytes()[2..]);
     }
-    String::from_utf8(name).ok().filter(|name| !name.is_empty() && !name.contains('\0'))
+    String::from_utf8(name).ok().filter(|name| {
+        // What separates folders and drives on one system does so on all: a file means the same everywhere.
+        let is_below =
+            |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+        !name.is_empty() && !name.contains(['\0', ':', '\\']) && is_below(name)
+    })
 }
 
 impl Buffers {

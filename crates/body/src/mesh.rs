@@ -1,8 +1,7 @@
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use glam::Vec3;
+use strandline_base::read_plain;
 
 use crate::{Aabb, BodyError, closing, gltf, obj};
 
@@ -142,25 +141,16 @@ impl Mesh {
     }
 }
 
-/// The bytes of a file, unless it is too large.
+/// The bytes of a plain file, unless it is too large.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, BodyError> {
-    let unreadable = |source| BodyError::Read { path: path.into(), source };
-    let file = File::open(path).map_err(unreadable)?;
-    let about = file.metadata().map_err(unreadable)?;
-    if !about.is_file() || about.len() > FILE_LIMIT {
-        let found =
-            if about.is_file() { format!("{} bytes", about.len()) } else { "no plain file".to_owned() };
-        return Err(BodyError::Mesh {
-            path: path.into(),
-            found,
-            expected: "a file of 256 MiB at most",
-            mend: "give a body with fewer triangles",
-        });
-    }
-    let mut bytes = Vec::new();
-    // A file that grows meanwhile is cut here and refused by its reader.
-    file.take(FILE_LIMIT).read_to_end(&mut bytes).map_err(unreadable)?;
-    Ok(bytes)
+    read_plain(path, FILE_LIMIT).map_err(|source| BodyError::Read { path: path.into(), source })
+}
+
+/// A normal of a file as a unit vector, however short; zero for what is none.
+pub(crate) fn unit_normal(normal: Vec3) -> Vec3 {
+    // The square of a very short or very long one is no number that could be divided by.
+    let largest = normal.abs().max_element();
+    if normal.is_finite() && largest > 0.0 { (normal / largest).normalize_or_zero() } else { Vec3::ZERO }
 }
 
 /// Means of the face normals around each place, weighted by the angle of the face there \[Thurmer1998\].

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use crate::mesh::read_file;
+use crate::mesh::{read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
 /// Reads a mesh in the units of the file; vertices without a normal get a zero one.
@@ -42,7 +42,7 @@ fn append(mesh: &mut Mesh, part: &tobj::Mesh) {
     // A vertex with several normals gets their mean: heads have no sharp edges.
     for (vertex, normal) in part.indices.iter().zip(&part.normal_indices) {
         if let Some(normal) = part.normals.chunks_exact(3).nth(*normal as usize) {
-            mesh.normals[(first + vertex) as usize] += Vec3::from_slice(normal).normalize_or_zero();
+            mesh.normals[(first + vertex) as usize] += unit_normal(Vec3::from_slice(normal));
         }
     }
 }

@@ -110,6 +110,10 @@ fn bad_tfx_files_are_refused_with_what_was_found_and_expected() {
     refused(changed(8, 1), &["1 points of a strand at byte 8"]);
     refused(changed(12, 0), &["positions at byte 0"]);
     refused(changed(12, u32::MAX - 3), &["bytes of positions"]);
+    // Inside the header, whose numbers would be taken for points.
+    refused(changed(12, 156), &["positions at byte 156", "behind the header of 160 bytes"]);
+    refused(changed(16, 4), &["strand uv at byte 4", "0 for none"]);
+    refused(changed(24, 156), &["thickness at byte 156", "0 for none"]);
 }
 
 #[test]
@@ -178,6 +182,36 @@ fn files_are_written_whole_and_errors_end_with_the_path() {
     std::fs::write(&path, b"PK\x03\x04").unwrap();
     let text = Groom::load(&path).unwrap_err().to_string();
     assert!(text.contains("starts with `PK") && text.ends_with("two.hair"), "{text}");
+}
+
+/// A name shared by grooms of two formats mixed up their content, and a file of the user was lost.
+#[test]
+fn a_groom_is_written_under_a_name_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("q.part"), b"notes").unwrap();
+    std::thread::scope(|scope| {
+        for name in ["q.hair", "q.tfx"] {
+            let path = at(name);
+            scope.spawn(move || (0..40).for_each(|_| drop(two_strands().save(&path).unwrap())));
+        }
+    });
+    assert!(std::fs::read(at("q.hair")).unwrap().starts_with(b"HAIR"));
+    assert_eq!(Groom::load(at("q.tfx")).unwrap().points, two_strands().points);
+    assert_eq!(std::fs::read(at("q.part")).unwrap(), b"notes");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_no_file_is_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let (zero, pipe) = (folder.path().join("zero.hair"), folder.path().join("pipe.tfx"));
+    std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for path in [zero, pipe] {
+        refused(Groom::load(path), &["cannot read the groom", "a device or a pipe, expected a plain file"]);
+    }
 }
 
 #[test]

@@ -13,7 +13,6 @@ mod lights;
 mod look;
 mod picture;
 mod picture_settings;
-mod whole_file;
 
 pub use body_look::BodyLook;
 pub use camera::Camera;
@@ -24,4 +23,3 @@ pub use lights::{Environment, Illumination, Light, LightKind};
 pub use look::{Clump, Highlight, Look, Shadow};
 pub use picture::Picture;
 pub use picture_settings::{Background, PictureSettings, ToneMap};
-pub use whole_file::WholeFile;

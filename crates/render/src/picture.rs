@@ -4,7 +4,9 @@ use std::path::Path;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 
-use crate::{RenderError, WholeFile};
+use strandline_base::WholeFile;
+
+use crate::RenderError;
 
 /// A finished picture: 8-bit sRGB, rows from the top, shape `[row][column][channel]`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -15,6 +15,17 @@ pub enum SimError {
         /// What fits.
         expected: &'static str,
     },
+    /// A fluid volume that does not fit the GPU.
+    #[error(
+        "simulation.volume.cells is {} x {} x {}, too many for the GPU ({source}): \
+         take fewer, or simulate on the CPU", cells[0], cells[1], cells[2]
+    )]
+    Cells {
+        /// Cells asked for in x, y, z.
+        cells: [u32; 3],
+        /// What was refused.
+        source: strandline_gpu::GpuError,
+    },
     /// What the GPU could not do.
     #[error(transparent)]
     Gpu(#[from] strandline_gpu::GpuError),

@@ -54,7 +54,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// An output file or folder could not be written.
-    #[error("cannot write {what}: {source}; frames already written are complete: {}", path.display())]
+    #[error("cannot write {what}: {source}: {}", path.display())]
     Write {
         /// What was being written.
         what: &'static str,
@@ -63,11 +63,17 @@ pub enum Error {
         /// What the system said.
         source: std::io::Error,
     },
+    /// Another run writes into the output folder.
+    #[error("another run is writing a film there, wait for it or choose another folder: {}", path.display())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The system gave no thread for the simulation.
     #[error("cannot start the simulation's thread: {0}")]
     Thread(std::io::Error),
     /// The simulation's thread ended in the middle: a fault of ours.
-    #[error("the simulation stopped with an error of the program's own; frames already drawn are complete")]
+    #[error("the simulation stopped with an error of the program's own")]
     WorkerGone,
     /// From the body.
     #[error(transparent)]
@@ -85,13 +91,13 @@ pub enum Error {
 
 impl Error {
     /// For `map_err` on what saves to `path`.
-    pub(crate) fn save(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+    pub(crate) fn save(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Save { what, path, source }
     }
 
     /// For `map_err` on what writes to `path`.
-    pub(crate) fn write(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+    pub(crate) fn write(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Write { what, path, source }
     }

@@ -1,8 +1,7 @@
 //! Hair in the middle of a swing, as a file.
 
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 use glam::{Quat, Vec3};
@@ -10,12 +9,12 @@ use safetensors::{
     SafeTensors, serialize,
     tensor::{Dtype, TensorView},
 };
+use strandline_base::{WholeFile, read_plain};
 
 use crate::{
     Error,
     body::Pose,
     groom::{LANES, Vec3Lanes},
-    render::WholeFile,
     sim::State,
 };
 
@@ -185,13 +184,12 @@ fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
 /// Reads no more than a pose of this shape needs.
 fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, String> {
     let most = HEADER + (strands * points * 36) as u64;
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    file.take(most + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > most {
-        return Err(format!("larger than {strands} strands of {points} points can be ({most} bytes)"));
-    }
-    Ok(bytes)
+    read_plain(path, most).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => {
+            format!("larger than {strands} strands of {points} points can be ({most} bytes)")
+        }
+        _ => error.to_string(),
+    })
 }
 
 #[cfg(test)]

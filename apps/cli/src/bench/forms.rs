@@ -4,6 +4,7 @@ use serde::Serialize;
 use strandline::sim::gpu::{LengthsForm, LengthsInput, lengths_alone};
 
 use super::gpu::Device;
+use crate::output::print_line;
 
 /// Strands and points of each; the first is the thesis's groom.
 const GROOMS: [(usize, usize); 4] = [(1750, 6), (10_000, 16), (10_000, 32), (100_000, 32)];
@@ -25,8 +26,8 @@ pub struct Forms {
 
 /// Measures both forms, and prints them.
 pub fn measure(device: &Device, quick: bool) -> anyhow::Result<Vec<Forms>> {
-    println!("\n{ROUNDS} rounds of lengths alone, GPU time [us]");
-    println!("{:>10}{:>10}{:>22}{:>22}", "strands", "points", "a strand a thread", "a point a thread");
+    print_line!("\n{ROUNDS} rounds of lengths alone, GPU time [us]");
+    print_line!("{:>10}{:>10}{:>22}{:>22}", "strands", "points", "a strand a thread", "a point a thread");
     let count = if quick || device.adapter.software { FEW } else { GROOMS.len() };
     let mut all = Vec::new();
     for (strands, points_per_strand) in GROOMS.into_iter().take(count) {
@@ -41,7 +42,9 @@ pub fn measure(device: &Device, quick: bool) -> anyhow::Result<Vec<Forms>> {
             }
         }
         let [us_strand_a_thread, us_point_a_thread] = best;
-        println!("{strands:>10}{points_per_strand:>10}{us_strand_a_thread:>22.2}{us_point_a_thread:>22.2}");
+        print_line!(
+            "{strands:>10}{points_per_strand:>10}{us_strand_a_thread:>22.2}{us_point_a_thread:>22.2}"
+        );
         all.push(Forms { strands, points_per_strand, us_strand_a_thread, us_point_a_thread });
     }
     Ok(all)

@@ -12,6 +12,7 @@ use strandline::{
     },
 };
 
+use crate::output::print_line;
 use crate::progress::Progress;
 use crate::sim::{SimReport, Steps};
 
@@ -84,7 +85,7 @@ impl Device {
     /// Opens what the command line names; none when that is the CPU.
     pub fn open(backend: Backend, quick: bool) -> anyhow::Result<Option<Self>> {
         let Some(gpu) = backend.open()? else {
-            println!("no hardware GPU is measured: its columns are left out");
+            print_line!("no hardware GPU is measured: its columns are left out");
             return Ok(None);
         };
         if !gpu.has_timestamps() {
@@ -97,7 +98,7 @@ impl Device {
             timestamps: gpu.has_timestamps(),
             copy_bytes_per_second: gpu.copy_bandwidth(copies)?,
         };
-        println!("{}: a copy moves {:.1} GB/s", adapter.name, adapter.copy_bytes_per_second * 1e-9);
+        print_line!("{}: a copy moves {:.1} GB/s", adapter.name, adapter.copy_bytes_per_second * 1e-9);
         Ok(Some(Self { gpu, adapter }))
     }
 

@@ -5,6 +5,8 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use crate::output::print_line;
+
 /// What the measurements were made on.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
@@ -51,9 +53,9 @@ impl Machine {
     /// Prints what it is and can do.
     pub fn print(&self) {
         let cores = self.cores.map_or(String::new(), |cores| format!("{cores} cores, "));
-        println!("machine: {}, {cores}{} threads, {}", self.cpu, self.threads, self.system);
+        print_line!("machine: {}, {cores}{} threads, {}", self.cpu, self.threads, self.system);
         let [adds, copies] = [self.multiply_adds_per_second, self.copy_bytes_per_second];
-        println!(
+        print_line!(
             "  on one thread it multiplies and adds {:.1} G times a second and copies {:.1} GB/s, on all {:.1} G and {:.1} GB/s",
             1e-9 * adds.one_thread,
             1e-9 * copies.one_thread,

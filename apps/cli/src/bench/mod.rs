@@ -17,9 +17,10 @@ pub use plot::plot;
 use std::path::Path;
 
 use serde::Serialize;
-use strandline::{Backend, Error, Event, Player, Scene};
+use strandline::{Backend, Error, Event, Player, Scene, base::WholeFile};
 
 use crate::arguments::{Bench, BenchOptions};
+use crate::output::print_line;
 use crate::progress::Progress;
 use crate::sim::{SimReport, Steps};
 use crate::statistics::{Collector, Times};
@@ -64,7 +65,7 @@ fn write<T: Serialize>(
 ) -> anyhow::Result<()> {
     let machine = Machine { peak_memory_mb: machine::peak_memory_mb(), ..machine };
     if let Some(memory) = machine.peak_memory_mb {
-        println!("\npeak memory: {memory:.0} MB");
+        print_line!("\npeak memory: {memory:.0} MB");
     }
     let Some(path) = options.json.as_deref() else { return Ok(()) };
     let gpu = device.map(|device| device.adapter.clone());
@@ -73,12 +74,12 @@ fn write<T: Serialize>(
     let mut text = serde_json::to_string_pretty(&baseline)?;
     text.push('\n');
     save(path, &text)?;
-    println!("wrote {}", path.display());
+    print_line!("wrote {}", path.display());
     Ok(())
 }
 
 fn save(path: &Path, text: &str) -> Result<(), Error> {
-    std::fs::write(path, text).map_err(|source| Error::Write {
+    WholeFile::save(path, text.as_bytes()).map_err(|source| Error::Write {
         what: "the measurements",
         path: path.to_owned(),
         source,

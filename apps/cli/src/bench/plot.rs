@@ -4,10 +4,14 @@ use std::path::Path;
 
 use anyhow::anyhow;
 use serde::Deserialize;
-use strandline::Error;
+use strandline::{
+    Error,
+    base::{WholeFile, read_plain},
+};
 
 use super::chart::{Chart, Line, svg};
 use crate::arguments::PlotOptions;
+use crate::output::print_line;
 
 /// Colours of the lines.
 const COLORS: [&str; 4] = ["#1f6fb4", "#d1601d", "#2f8f3c", "#8a4fb0"];
@@ -26,6 +30,9 @@ struct Machine {
     cpu: String,
     threads: usize,
 }
+
+/// Largest file of measurements [byte]: they have some thousand.
+const MOST: u64 = 16 << 20;
 
 /// What is plotted of `bench thesis`.
 #[derive(Deserialize)]
@@ -76,16 +83,17 @@ struct Row {
 /// Draws a file of measurements.
 pub fn plot(options: &PlotOptions) -> anyhow::Result<()> {
     let path = options.file.as_path();
-    let text = std::fs::read_to_string(path)
+    let text = read_plain(path, MOST)
+        .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
         .map_err(|error| anyhow!("cannot read the measurements: {error}: {}", path.display()))?;
     let text = charts(&text).map_err(|error| wrong(path, &error))?;
     let out = options.out.clone().unwrap_or_else(|| path.with_extension("svg"));
-    std::fs::write(&out, text).map_err(|source| Error::Write {
+    WholeFile::save(&out, text.as_bytes()).map_err(|source| Error::Write {
         what: "the plot",
         path: out.clone(),
         source,
     })?;
-    println!("wrote {}", out.display());
+    print_line!("wrote {}", out.display());
     Ok(())
 }
 

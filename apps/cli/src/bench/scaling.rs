@@ -5,6 +5,7 @@ use strandline::{Error, Scene, gpu::GpuError, sim::SimError};
 
 use super::gpu::{Device, GpuRun};
 use super::measure;
+use crate::output::print_line;
 
 /// Strands of 16 points: from 10,000 to 320,000 points.
 const STRANDS: [usize; 6] = [625, 1250, 2500, 5000, 10_000, 20_000];
@@ -61,13 +62,13 @@ struct GpuRow {
 
 pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let frames = FRAMES[usize::from(quick)];
-    println!("strands of 16 points, 32^3 cells");
+    print_line!("strands of 16 points, 32^3 cells");
     heading();
     let counts = if quick { &STRANDS[..2] } else { &STRANDS[..] };
     let strands = counts.iter().map(|count| row(*count, 32, frames)).collect::<Result<Vec<_>, _>>()?;
     let growth = strands[strands.len() - 1].ns_per_point / strands[0].ns_per_point;
-    println!("time per point grows {growth:.2} times (at most 1.3 is promised)\n");
-    println!("2,500 strands of 16 points");
+    print_line!("time per point grows {growth:.2} times (at most 1.3 is promised)\n");
+    print_line!("2,500 strands of 16 points");
     heading();
     let grids = if quick { &GRIDS[..2] } else { &GRIDS[..] };
     let grids = grids.iter().map(|cells| row(2500, *cells, frames)).collect::<Result<Vec<_>, _>>()?;
@@ -76,9 +77,14 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
 }
 
 fn heading() {
-    println!(
+    print_line!(
         "{:>8}{:>10}{:>10}{:>14}{:>14}{:>12}",
-        "cells", "strands", "points", "fluid cells", "ms a step", "ns a point"
+        "cells",
+        "strands",
+        "points",
+        "fluid cells",
+        "ms a step",
+        "ns a point"
     );
 }
 
@@ -103,24 +109,29 @@ fn row(strand_count: usize, cells: u32, frames: u32) -> anyhow::Result<Row> {
         ms_per_step,
         ns_per_point: 1e6 * ms_per_step / points as f64,
     };
-    println!(
+    print_line!(
         "{:>6}^3{:>10}{:>10}{:>14.0}{:>14.2}{:>12.1}",
-        row.cells, row.strands, row.points, row.fluid_cells, row.ms_per_step, row.ns_per_point
+        row.cells,
+        row.strands,
+        row.points,
+        row.fluid_cells,
+        row.ms_per_step,
+        row.ns_per_point
     );
     Ok(row)
 }
 
 fn on_gpu(device: &Device, frames: u32, quick: bool) -> anyhow::Result<OnGpu> {
-    println!("\non {}: what is promised of a data-centre GPU", device.adapter.name);
+    print_line!("\non {}: what is promised of a data-centre GPU", device.adapter.name);
     gpu_heading();
     let mut promised = Vec::new();
     let promises = if quick { &PROMISED[..1] } else { &PROMISED[..] };
     for (strands, points, cells, most_ms_per_step) in promises.iter().copied() {
         let run = gpu_row(device, &promised_scene(strands, points, cells, frames))?;
-        println!("{:>44}at most {most_ms_per_step} ms", "");
+        print_line!("{:>44}at most {most_ms_per_step} ms", "");
         promised.push(Promised { most_ms_per_step, run });
     }
-    println!("\nstrands of 32 points until the device refuses");
+    print_line!("\nstrands of 32 points until the device refuses");
     gpu_heading();
     let (mut sweep, mut refusals) = (Vec::new(), Vec::new());
     let grids = if quick { &GRIDS[..1] } else { &GRIDS[..] };
@@ -129,7 +140,7 @@ fn on_gpu(device: &Device, frames: u32, quick: bool) -> anyhow::Result<OnGpu> {
             match gpu_row(device, &scene(FIRST_ON_GPU << doubling, 32, *cells, frames)) {
                 Ok(row) => sweep.push(row),
                 Err(error) if is_refusal(&error) => {
-                    println!("{error}");
+                    print_line!("{error}");
                     refusals.push(error.to_string());
                     break;
                 }
@@ -158,9 +169,16 @@ fn is_refusal(error: &anyhow::Error) -> bool {
 }
 
 fn gpu_heading() {
-    println!(
+    print_line!(
         "{:>8}{:>10}{:>10}{:>12}{:>12}{:>12}{:>12}{:>10}",
-        "cells", "strands", "points", "ms a step", "wall ms", "solve ms", "dispatches", "copy %"
+        "cells",
+        "strands",
+        "points",
+        "ms a step",
+        "wall ms",
+        "solve ms",
+        "dispatches",
+        "copy %"
     );
 }
 
@@ -168,7 +186,7 @@ fn gpu_row(device: &Device, scene: &Scene) -> anyhow::Result<GpuRow> {
     let cells = scene.simulation.volume.cells[0];
     let run = device.measure(scene, "frames")?;
     let (strands, points) = (run.steps.strands, run.steps.strands * run.steps.points_per_strand);
-    println!(
+    print_line!(
         "{cells:>6}^3{strands:>10}{points:>10}{:>12.3}{:>12.3}{:>12.3}{:>12}{:>10.1}",
         run.steps.ms_per_step.median,
         run.wall_ms_per_step,

@@ -2,6 +2,7 @@
 
 use super::gpu::{GpuRun, GradientTimes};
 use super::thesis::{GpuGrid, Grid, Pictures, Results};
+use crate::output::{print_line, print_part};
 use crate::sim::SimReport;
 
 /// GPU time of subtracting the pressure gradient \[us\], as one kernel and as three (table 1); over how many
@@ -27,7 +28,7 @@ pub fn shares(report: &SimReport) -> Vec<(&'static str, f64)> {
 pub fn print(results: &Results) {
     let tables = Tables { grids: &results.grids };
     tables.gradient();
-    println!(
+    print_line!(
         "\nTable 2: frames per second, 1,750 guides x 6 points, {} segments drawn at 800x600, 2x2 samples, each frame simulated while the one before is drawn",
         results.segments
     );
@@ -49,9 +50,9 @@ impl Tables<'_> {
             self.gpu(|grid| grid.chebyshev.us_of_gradient.as_ref().map_or(f64::NAN, value))
         };
         let [one, three] = [times(|times| times.one_kernel), times(|times| times.three_kernels)];
-        println!("\nTable 1: subtracting the pressure gradient, GPU time [us]");
+        print_line!("\nTable 1: subtracting the pressure gradient, GPU time [us]");
         if one.is_empty() {
-            println!("no GPU is measured: left out");
+            print_line!("no GPU is measured: left out");
             return;
         }
         heading();
@@ -60,7 +61,10 @@ impl Tables<'_> {
         row("ours, three kernels", three, 2);
         row("ours, one over three", gain, 2);
         let [one, three] = THESIS_GRADIENT;
-        println!("thesis: one kernel {one:.0}, three kernels {three:.0}, one over three {:.2}", one / three);
+        print_line!(
+            "thesis: one kernel {one:.0}, three kernels {three:.0}, one over three {:.2}",
+            one / three
+        );
     }
 
     fn whole(&self) {
@@ -77,12 +81,12 @@ impl Tables<'_> {
         let speed_up = |grid: &Grid| grid.thesis_frames_per_second[1] / grid.thesis_frames_per_second[0];
         row("thesis, speed-up by the GPU", self.all(speed_up), 1);
         if gpu.is_empty() {
-            println!("no GPU is measured: its rows and the speed-up are left out");
+            print_line!("no GPU is measured: its rows and the speed-up are left out");
         }
     }
 
     fn steps(&self) {
-        println!("\nOne step alone");
+        print_line!("\nOne step alone");
         heading();
         let run = |value: fn(&GpuRun) -> f64| self.gpu_of(|grid| &grid.chebyshev, value);
         row("CPU [ms]", self.all(|grid| grid.mic0.ms_per_step.median), 2);
@@ -95,7 +99,7 @@ impl Tables<'_> {
     }
 
     fn iterations(&self) {
-        println!(
+        print_line!(
             "\nTable 3: iterations of the pressure solve until the largest residual is 1e-5 of the first (ours), and until it is 1e-5 m/s (as printed: the thesis names no unit)"
         );
         heading();
@@ -132,27 +136,27 @@ impl Tables<'_> {
 }
 
 fn print_shares(results: &Results) {
-    println!("\nTable 4: shares of a step at 32^3 [%]");
-    println!("{:<38}{:>10}{:>12}{:>12}{:>12}", "", "ours, CPU", "thesis CPU", "ours, GPU", "thesis GPU");
+    print_line!("\nTable 4: shares of a step at 32^3 [%]");
+    print_line!("{:<38}{:>10}{:>12}{:>12}{:>12}", "", "ours, CPU", "thesis CPU", "ours, GPU", "thesis GPU");
     for (index, (name, cpu, gpu, _)) in THESIS_SHARES.into_iter().enumerate() {
         let ours = results.shares_percent[index].1;
         let on_gpu = results.gpu_shares_percent.get(index);
         let on_gpu = on_gpu.map_or("-".to_owned(), |(_, share)| format!("{share:.1}"));
-        println!("{name:<38}{ours:>10.1}{cpu:>12.1}{on_gpu:>12}{gpu:>12.1}");
+        print_line!("{name:<38}{ours:>10.1}{cpu:>12.1}{on_gpu:>12}{gpu:>12.1}");
     }
 }
 
 fn print_pictures(pictures: &Pictures) {
     let Pictures { ms_beside_simulation, ms_alone } = pictures;
-    println!("\nOne picture on the CPU [ms]\n{:<38}{:>10}{:>24}", "", "alone", "beside the simulation");
-    println!("{:<38}{:>10.1}{:>24.1}", "all", ms_alone.median, ms_beside_simulation.median);
+    print_line!("\nOne picture on the CPU [ms]\n{:<38}{:>10}{:>24}", "", "alone", "beside the simulation");
+    print_line!("{:<38}{:>10.1}{:>24.1}", "all", ms_alone.median, ms_beside_simulation.median);
     for (name, time) in ms_alone.stages.iter() {
-        println!("{name:<38}{time:>10.1}{:>24.1}", ms_beside_simulation.stages.sum(&[name]));
+        print_line!("{name:<38}{time:>10.1}{:>24.1}", ms_beside_simulation.stages.sum(&[name]));
     }
 }
 
 fn heading() {
-    println!("{:<38}{:>10}{:>10}{:>10}", "", "16^3", "32^3", "64^3");
+    print_line!("{:<38}{:>10}{:>10}{:>10}", "", "16^3", "32^3", "64^3");
 }
 
 /// A row, unless there is nothing in it.
@@ -160,9 +164,9 @@ fn row(name: &str, values: Vec<f64>, digits: usize) {
     if values.is_empty() {
         return;
     }
-    print!("{name:<38}");
+    print_part!("{name:<38}");
     for value in values {
-        print!("{value:>10.digits$}");
+        print_part!("{value:>10.digits$}");
     }
-    println!();
+    print_line!();
 }

@@ -12,6 +12,7 @@ use strandline::{
 };
 
 use super::gpu::Device;
+use crate::output::{print_line, print_part};
 use crate::progress::Progress;
 use crate::statistics::{Collector, Times, median};
 
@@ -163,24 +164,24 @@ fn on_backend(gpu: Option<&Gpu>, quick: bool) -> anyhow::Result<OnBackend> {
 }
 
 fn print(measured: &OnBackend) {
-    println!("\nTable 5: frames per second by distance [m], on {}", measured.backend);
-    print!("{:<24}", "");
-    DISTANCES.iter().for_each(|distance| print!("{distance:>9.1}"));
-    println!();
+    print_line!("\nTable 5: frames per second by distance [m], on {}", measured.backend);
+    print_part!("{:<24}", "");
+    DISTANCES.iter().for_each(|distance| print_part!("{distance:>9.1}"));
+    print_line!();
     for ((width, height, thesis), rows) in SIZES.into_iter().zip(measured.rows.chunks(DISTANCES.len())) {
         row(&format!("{width}x{height}, ours"), rows.iter().map(|row| row.frames_per_second));
         row(&format!("{width}x{height}, thesis"), thesis.into_iter());
     }
     let first = measured.rows.iter().take(DISTANCES.len());
-    print!("{:<24}", "segments drawn");
-    first.for_each(|row| print!("{:>9}", row.segments));
-    println!();
+    print_part!("{:<24}", "segments drawn");
+    first.for_each(|row| print_part!("{:>9}", row.segments));
+    print_line!();
 }
 
 fn row(name: &str, values: impl Iterator<Item = f64>) {
-    print!("{name:<24}");
-    values.for_each(|value| print!("{value:>9.1}"));
-    println!();
+    print_part!("{name:<24}");
+    values.for_each(|value| print_part!("{value:>9.1}"));
+    print_line!();
 }
 
 /// A picture of 1280x968 with two shadow lights, by the device's own clock.
@@ -197,11 +198,14 @@ fn promise(gpu: &Gpu, follow_strands: u32, most_ms: f64, most_mb: f64) -> anyhow
     }
     let device_mb = view.player.gpu().map_or(0.0, |gpu| gpu.memory_used() as f64 * 1e-6);
     let ms_per_picture = pictures.times();
-    println!("\n{segments} segments, two shadow lights, 1280x968, 2x2 samples, on {}", gpu.adapter());
-    println!("a picture {:>10.3} ms, at most {most_ms} ms promised of a current GPU", ms_per_picture.median);
+    print_line!("\n{segments} segments, two shadow lights, 1280x968, 2x2 samples, on {}", gpu.adapter());
+    print_line!(
+        "a picture {:>10.3} ms, at most {most_ms} ms promised of a current GPU",
+        ms_per_picture.median
+    );
     for (name, time) in ms_per_picture.stages.iter() {
-        println!("  {name:<15}{time:>10.3} ms");
+        print_line!("  {name:<15}{time:>10.3} ms");
     }
-    println!("on the device {device_mb:>6.0} MB, at most {most_mb} MB");
+    print_line!("on the device {device_mb:>6.0} MB, at most {most_mb} MB");
     Ok(Promised { segments, most_ms, most_mb, ms_per_picture, device_mb })
 }

@@ -9,6 +9,7 @@ use strandline::{Backend, Camera, Command, Live, News, Ray, Scene, Shown};
 use super::gpu::Device;
 use super::machine::peak_memory_mb;
 use crate::arguments::BenchOptions;
+use crate::output::print_line;
 use crate::progress::Progress;
 use crate::statistics::{median, quantile};
 
@@ -42,17 +43,17 @@ pub fn run(device: Option<&Device>, options: &BenchOptions) -> anyhow::Result<Re
     [scene.picture.width, scene.picture.height] = SIZE;
     let results = Play::begin(scene)?.on(seconds)?;
     let text = |memory: Option<f64>| memory.map_or("unknown".to_owned(), |mb| format!("{mb:.0} MB"));
-    println!("\nThe window's demo, played for {:.0} s: {}", results.seconds, results.drawn_on);
-    println!("first picture after     {:>8.2} s", results.seconds_to_first_picture);
-    println!("pictures a second       {:>8.1}", results.pictures_per_second);
+    print_line!("\nThe window's demo, played for {:.0} s: {}", results.seconds, results.drawn_on);
+    print_line!("first picture after     {:>8.2} s", results.seconds_to_first_picture);
+    print_line!("pictures a second       {:>8.1}", results.pictures_per_second);
     for (what, shows) in [("view or look", &results.picture_moves), ("hair", &results.motion_moves)] {
         let ([pictures, most], [middle, late]) = (shows.pictures, shows.ms);
-        println!(
+        print_line!(
             "a move of {what} shows in picture {pictures:.0}, at most {most:.0}; {middle:.0} ms, 95 of 100 within {late:.0} ms"
         );
     }
     let [early, end] = results.peak_memory_mb;
-    println!("peak memory after a tenth of it {}, at the end {}", text(early), text(end));
+    print_line!("peak memory after a tenth of it {}, at the end {}", text(early), text(end));
     Ok(results)
 }
 

@@ -10,6 +10,7 @@ use strandline::{
 };
 
 use super::gpu::Device;
+use crate::output::print_line;
 use crate::progress::Progress;
 use crate::statistics::median;
 
@@ -48,7 +49,7 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
         chosen.extend([(Backend::Cpu, gpu), (gpu, Backend::Cpu), (gpu, gpu)]);
         let others = other_gpus(device);
         if others.is_empty() {
-            println!(
+            print_line!(
                 "no second GPU of this kind is here: simulating on one and drawing on another is left out"
             );
         }
@@ -56,15 +57,23 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
         frames = if device.adapter.software { FRAMES[1] } else { frames };
     }
     let frames = if quick { FRAMES[2] } else { frames };
-    println!("\nTwo workers: the thesis's scene, medians of {frames} frames [ms]");
-    println!(
+    print_line!("\nTwo workers: the thesis's scene, medians of {frames} frames [ms]");
+    print_line!(
         "{:<12}{:<12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>14}{:>14}",
-        "simulated", "drawn", "simulate", "draw", "frame", "of sum", "of greater", "bytes to GPU", "from GPU"
+        "simulated",
+        "drawn",
+        "simulate",
+        "draw",
+        "frame",
+        "of sum",
+        "of greater",
+        "bytes to GPU",
+        "from GPU"
     );
     let mut pairs = Vec::new();
     for (simulation, pictures) in chosen {
         let pair = measure(Devices { simulation, pictures }, frames)?;
-        println!(
+        print_line!(
             "{:<12}{:<12}{:>10.2}{:>10.2}{:>10.2}{:>10.2}{:>12.2}{:>14}{:>14}",
             simulation.to_string(),
             pictures.to_string(),

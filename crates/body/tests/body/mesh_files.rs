@@ -110,6 +110,83 @@ fn gltf_is_read_from_all_its_containers() {
     check_cube(&Mesh::load(&path, 1.0).unwrap(), Vec3::ZERO, 1.0);
 }
 
+/// The address is looked at after `%2F` and the like became bytes again, and leads nowhere but below the file.
+#[test]
+fn gltf_buffers_stay_below_their_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("inner");
+    std::fs::create_dir_all(inner.join("deeper")).unwrap();
+    for path in [folder.path().join("cube.bin"), inner.join("deeper/cube.bin")] {
+        std::fs::write(path, files::cube_bin()).unwrap();
+    }
+    let path = inner.join("cube.gltf");
+    let load = |uri: &str| {
+        std::fs::write(&path, cube_json("{}", Some(uri))).unwrap();
+        Mesh::load(&path, 1.0)
+    };
+    check_cube(&load("deeper/cube.bin").unwrap(), Vec3::ZERO, 1.0);
+    check_cube(&load("deeper%2Fcube.bin").unwrap(), Vec3::ZERO, 1.0);
+    let absolute = folder.path().join("cube.bin").display().to_string();
+    for uri in [
+        "../cube.bin",
+        "%2e%2e/cube.bin",
+        "..%2Fcube.bin",
+        "deeper/../../cube.bin",
+        "deeper/%2E./../cube.bin",
+        &absolute,
+        &absolute.replace('/', "%2F"),
+        "%5C%5Chost%5Cshare%5Ccube.bin",
+        "..%5Ccube.bin",
+        "C%3A%5Ccube.bin",
+        "C%3Acube.bin",
+        "cube%00.bin",
+    ] {
+        let error = load(uri).unwrap_err().to_string();
+        assert!(error.contains("expected the name of a file beside this one"), "{uri}: {error}");
+    }
+}
+
+#[test]
+fn normals_are_of_unit_length_however_short_the_file_has_them() {
+    for length in ["1e-22", "1e-44", "1e22", "3e38"] {
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 {length} {length}\nf 1//1 2//1 3//1\n");
+        let mesh = load_bytes("triangle.obj", text.as_bytes()).unwrap();
+        assert!((mesh.normals[0] - Vec3::new(0.0, 0.5, 0.5).normalize()).length() < 1e-6, "{length}");
+    }
+    // In a glTF too, below a node that is scaled.
+    let json = cube_json(r#"{"scale": [1e3, 1e3, 1e3]}"#, None)
+        .replace(r#""POSITION": 0"#, r#""POSITION": 0, "NORMAL": 2"#)
+        .replace(
+            r#""type": "SCALAR"}"#,
+            r#""type": "SCALAR"}, {"bufferView": 2, "componentType": 5126, "count": 8, "type": "VEC3"}"#,
+        )
+        .replace(
+            r#""byteLength": 36}"#,
+            r#""byteLength": 36}, {"buffer": 0, "byteOffset": 132, "byteLength": 96}"#,
+        )
+        .replace(r#""byteLength": 132"#, r#""byteLength": 228"#);
+    let mut bin = files::cube_bin();
+    (0..8).for_each(|_| [0.0_f32, 0.0, 1e-22].iter().for_each(|number| bin.extend(number.to_le_bytes())));
+    let mesh = load_bytes("cube.glb", &files::glb(&json, &bin)).unwrap();
+    assert!(mesh.normals.iter().all(|normal| normal.distance(Vec3::Z) < 1e-6), "{:?}", mesh.normals[0]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_no_file_is_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for name in ["pipe.obj", "pipe.gltf", "pipe.bin"] {
+        assert!(std::process::Command::new("mkfifo").arg(at(name)).status().unwrap().success());
+    }
+    std::os::unix::fs::symlink("/dev/zero", at("zero.glb")).unwrap();
+    std::fs::write(at("cube.gltf"), cube_json("{}", Some("pipe.bin"))).unwrap();
+    for name in ["pipe.obj", "pipe.gltf", "zero.glb", "cube.gltf"] {
+        let error = Mesh::load(&at(name), 1.0).unwrap_err().to_string();
+        assert!(error.contains("a device or a pipe, expected a plain file"), "{error}");
+    }
+}
+
 #[test]
 fn gltf_nodes_place_their_meshes() {
     let moved = cube_glb(r#"{"translation": [1, 2, 3], "scale": [2, 2, 2]}"#);

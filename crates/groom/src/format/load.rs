@@ -1,10 +1,8 @@
-use std::fs;
-use std::io::Write;
 use std::path::Path;
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use strandline_base::{Key, Kind, Row, SettingError, Value, choices};
+use strandline_base::{Key, Kind, Row, SettingError, Value, WholeFile, choices, read_plain};
 
 use super::report::Report;
 use super::{MAX_FILE_BYTES, Parsed, hair, sieve::sieve, tfx};
@@ -127,11 +125,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, GroomError> {
         found => return Err(GroomError::Ending { found: found.to_owned(), path: path.to_owned() }),
     };
     let file = |source| GroomError::File { action: "read", path: path.to_owned(), source };
-    let length = fs::metadata(path).map_err(file)?.len();
-    if length > MAX_FILE_BYTES {
-        return Err(file(std::io::Error::other(format!("{length} bytes, expected 4 GiB at most"))));
-    }
-    let bytes = fs::read(path).map_err(file)?;
+    let bytes = read_plain(path, MAX_FILE_BYTES).map_err(file)?;
     read(&bytes).and_then(|parsed| prepare(parsed, options)).map_err(|error| error.of(path))
 }
 
@@ -195,12 +189,10 @@ pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
         found => return Err(GroomError::Ending { found: found.to_owned(), path: path.to_owned() }),
     };
     let bytes = bytes.map_err(|error| error.of(path))?;
-    let part = path.with_extension("part");
-    let written =
-        fs::File::create(&part).and_then(|mut file| file.write_all(&bytes).and_then(|()| file.sync_all()));
-    written.and_then(|()| fs::rename(&part, path)).map_err(|source| {
-        let _ = fs::remove_file(&part);
-        GroomError::File { action: "write", path: path.to_owned(), source }
+    WholeFile::save(path, &bytes).map_err(|source| GroomError::File {
+        action: "write",
+        path: path.to_owned(),
+        source,
     })?;
     Ok(Saved { left_out })
 }

@@ -11,6 +11,7 @@ const DEFAULT_WIDTH: f32 = 0.0;
 
 /// Counts of a header and where its arrays begin; 0 is "not there".
 struct Layout {
+    header: u64,
     strands: u64,
     each: u64,
     positions: u64,
@@ -64,6 +65,7 @@ fn layout_3(source: &Source) -> Result<Layout, GroomError> {
     source.slice("header", 0, HEADER_3, 1)?;
     let offset = |index: u64| source.u32("offset", 144 + 4 * index).map(u64::from);
     Ok(Layout {
+        header: HEADER_3,
         strands: u64::from(source.u32("strand count", 4)?),
         each: u64::from(source.u32("points of a strand", 8)?),
         positions: offset(0)?,
@@ -78,6 +80,7 @@ fn layout_4(source: &Source) -> Result<Layout, GroomError> {
     source.slice("header", 0, HEADER_4, 1)?;
     let offset = |index: u64| source.u32("offset", 12 + 4 * index).map(u64::from);
     Ok(Layout {
+        header: HEADER_4,
         strands: u64::from(source.u32("strand count", 4)?),
         each: u64::from(source.u32("points of a strand", 8)?),
         positions: offset(0)?,
@@ -98,9 +101,17 @@ fn check(source: &Source, layout: &Layout) -> Result<(), GroomError> {
     range("strands", layout.strands, 4, 1, MAX_STRANDS)?;
     range("points of a strand", layout.each, 8, 2, MAX_POINTS_PER_STRAND)?;
     range("points", layout.strands * layout.each, 4, 2, MAX_POINTS)?;
-    if layout.positions == 0 || !layout.positions.is_multiple_of(4) {
-        return Err(source
-            .error(format!("positions at byte {}", layout.positions), "a multiple of 4 behind the header"));
+    if !layout.positions.is_multiple_of(4) || layout.positions < layout.header {
+        let expected = format!("a multiple of 4 behind the header of {} bytes", layout.header);
+        return Err(source.error(format!("positions at byte {}", layout.positions), expected));
+    }
+    for (what, at) in
+        [("strand uv", layout.strand_uvs), ("thickness", layout.thickness), ("colors", layout.colors)]
+    {
+        if (1..layout.header).contains(&at) {
+            let expected = format!("0 for none, or a place behind the header of {} bytes", layout.header);
+            return Err(source.error(format!("{what} at byte {at}"), expected));
+        }
     }
     Ok(())
 }

@@ -189,10 +189,18 @@ pub fn declarations() -> Vec<Declaration> {
 
 /// What keeps a lost device's error apart from a setting's.
 impl SimError {
+    /// What keeps a volume of so many cells off the device: the setting, where there is too little room.
+    pub(super) fn of_volume(cells: [u32; 3], source: GpuError) -> Self {
+        match source {
+            GpuError::Limit { .. } | GpuError::OutOfMemory { .. } => Self::Cells { cells, source },
+            other => Self::Gpu(other),
+        }
+    }
+
     /// The GPU's refusal, if it is one.
     pub fn gpu(&self) -> Option<&GpuError> {
         match self {
-            Self::Gpu(error) => Some(error),
+            Self::Gpu(source) | Self::Cells { source, .. } => Some(source),
             _ => None,
         }
     }

@@ -116,7 +116,8 @@ impl GpuState {
             Some(volume) => Some(volume),
             None if settings.enabled => {
                 let Buffers { lane_count, points, .. } = self.buffers;
-                Some(Volume::new(&solver.gpu, settings.cells, lane_count, points)?)
+                let made = Volume::new(&solver.gpu, settings.cells, lane_count, points);
+                Some(made.map_err(|error| SimError::of_volume(settings.cells, error))?)
             }
             None => None,
         };

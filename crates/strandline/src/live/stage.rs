@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use strandline_base::Group;
+use strandline_base::{Group, WholeFile};
 
 use super::{Command, FRAME, MOST_STEPS};
 use crate::{
@@ -12,7 +12,7 @@ use crate::{
     body::Aabb,
     hair::{Studio, place},
     prepare::Prepared,
-    render::{Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings, WholeFile},
+    render::{Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
     scene::{MotionSection, WindSection},
     sim::{SimError, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},

@@ -9,7 +9,7 @@ mod motion;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use strandline_base::{Group, Value, settings};
+use strandline_base::{Group, Value, printable, read_plain, settings};
 
 pub use body::{BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
 pub use film::{CameraSection, FilmSection, View};
@@ -22,6 +22,10 @@ use crate::{
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings},
     sim::Settings,
 };
+
+/// Largest file that is read \[bytes\]: unknown keys take some 30 times as much memory, and a scene of ten
+/// thousand keyframes takes a tenth.
+pub const MAX_FILE_BYTES: u64 = 8 << 20;
 
 settings! {
     /// One run: groom, body, motion, colliders, simulation, look, camera, lights, picture and film.
@@ -92,7 +96,8 @@ impl Scene {
     /// # Errors
     /// A file that cannot be read, is not TOML, or has an unknown key or a value of the wrong kind.
     pub fn load(path: &Path) -> Result<Self, Error> {
-        let text = std::fs::read_to_string(path)
+        let text = read_plain(path, MAX_FILE_BYTES)
+            .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other))
             .map_err(|source| Error::ReadScene { path: path.to_owned(), source })?;
         let mut scene = Self::parse(&text, &path.display().to_string())?;
         scene.folder = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -106,7 +111,8 @@ impl Scene {
     pub fn parse(text: &str, origin: &str) -> Result<Self, Error> {
         let scene: Self = toml::from_str(text).map_err(|error| Error::ParseScene {
             origin: origin.to_owned(),
-            message: error.to_string().trim_end().to_owned(),
+            // It quotes the file.
+            message: printable(error.to_string().trim_end()).into_owned(),
         })?;
         scene.check()?;
         Ok(scene)

@@ -1,6 +1,7 @@
 //! docs/scene.md is what the settings table says, its example is a scene, and every limit that it names
 //! holds.
 
+mod inputs;
 mod limits;
 mod page;
 

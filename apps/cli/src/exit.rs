@@ -1,0 +1,30 @@
+//! The codes that the program ends with; docs/limits.md lists them.
+
+/// Everything was done.
+pub const SUCCESS: i32 = 0;
+/// An input, the machine or the disk stands in the way.
+pub const FAILURE: i32 = 1;
+/// The command line is wrong.
+pub const USAGE: i32 = 2;
+/// The run is complete, but some of its points were not finite.
+pub const NOT_FINITE: i32 = 3;
+/// Pictures are there, but ffmpeg could not make the video.
+pub const NO_VIDEO: i32 = 4;
+/// A signal of this number ended it: added to it, as shells do.
+pub const SIGNAL: i32 = 128;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_document_lists_every_code() {
+        let text = include_str!("../../../docs/limits.md");
+        for code in [SUCCESS, FAILURE, USAGE, NOT_FINITE, NO_VIDEO] {
+            assert!(text.contains(&format!("\n| {code} | ")), "{code}");
+        }
+        let [int, term] =
+            [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM].map(|signal| SIGNAL + signal);
+        assert!(text.contains(&format!("\n| {int}, {term} | ")));
+    }
+}

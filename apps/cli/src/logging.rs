@@ -1,0 +1,47 @@
+//! Messages of the libraries, wgpu's above all, for whoever looks for a fault.
+
+use std::io::{Write, stderr};
+
+use env_filter::{Builder, Filter};
+use log::{LevelFilter, Log, Metadata, Record};
+use strandline::base::printable;
+
+use crate::output;
+
+struct ToStderr(Filter);
+
+impl Log for ToStderr {
+    fn enabled(&self, metadata: &Metadata) -> bool {
+        self.0.enabled(metadata)
+    }
+
+    fn log(&self, record: &Record) {
+        if self.0.matches(record) {
+            let text = record.args().to_string();
+            // Who closed it does not want to know.
+            let _ = writeln!(stderr(), "{} {}: {}", record.level(), record.target(), printable(&text));
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+/// Shows messages of this level and above; without one those that `RUST_LOG` names, else none.
+pub fn begin(level: Option<LevelFilter>) {
+    let mut filter = Builder::new();
+    match (level, std::env::var("RUST_LOG")) {
+        (Some(level), _) => {
+            filter.filter_level(level);
+        }
+        (None, Ok(text)) => {
+            if let Err(error) = filter.try_parse(&text) {
+                output::note(&format!("RUST_LOG: {error}"));
+            }
+        }
+        (None, Err(_)) => return,
+    }
+    let filter = filter.build();
+    log::set_max_level(filter.filter());
+    // There is none before.
+    let _ = log::set_boxed_logger(Box::new(ToStderr(filter)));
+}

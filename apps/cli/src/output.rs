@@ -1,0 +1,64 @@
+//! What the program prints, and what it does when nobody can read it.
+
+use std::fmt::Arguments;
+use std::io::{ErrorKind, Result, Write, stderr, stdout};
+
+use strandline::base::printable;
+
+use crate::{exit, interrupt};
+
+/// Prints a line for a person to standard output.
+macro_rules! print_line {
+    () => { $crate::output::person(format_args!("\n")) };
+    ($($words:tt)*) => { $crate::output::person(format_args!("{}\n", format_args!($($words)*))) };
+}
+
+/// Prints a part of such a line.
+macro_rules! print_part {
+    ($($words:tt)*) => { $crate::output::person(format_args!($($words)*)) };
+}
+
+pub(crate) use {print_line, print_part};
+
+/// Text for a person, which may hold parts of a file: nothing in it moves the terminal's cursor.
+pub fn person(text: Arguments) {
+    written(stdout().write_all(printable(&text.to_string()).as_bytes()));
+}
+
+/// Text for a program, to the letter.
+pub fn program(text: &str) {
+    written(stdout().write_all(text.as_bytes()));
+}
+
+/// Everything that was printed is out.
+pub fn finish() {
+    written(stdout().flush());
+}
+
+/// Ends the program when nobody reads on, as the system would: quietly, since whoever read has seen enough
+/// (`| head`). On a full disk with an error. No file is half written while something is printed.
+pub fn written(outcome: Result<()>) {
+    match outcome {
+        Ok(()) => {}
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => interrupt::end_now(exit::SUCCESS),
+        Err(error) => {
+            complain(&format!("cannot write to the standard output: {error}"));
+            interrupt::end_now(exit::FAILURE)
+        }
+    }
+}
+
+/// Says something to know on standard error.
+pub fn note(note: &str) {
+    to_stderr("note", note);
+}
+
+/// Says what went wrong on standard error.
+pub fn complain(error: &str) {
+    to_stderr("strandline", error);
+}
+
+fn to_stderr(who: &str, what: &str) {
+    // Who closed it does not want to know.
+    let _ = writeln!(stderr(), "{who}: {}", printable(what));
+}

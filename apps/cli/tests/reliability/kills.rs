@@ -1,0 +1,111 @@
+//! Runs that are ended at random times.
+
+use super::*;
+
+/// Times that each command is ended.
+const KILLS: usize = 51;
+/// How many runs are ended before one may finish and clear up.
+const BETWEEN: usize = 8;
+/// Names and numbers of the signals, in turn.
+const SIGNALS: [(&str, i32); 3] = [("INT", 2), ("TERM", 15), ("KILL", 9)];
+
+/// Ends a command at random times of its run. Files are whole after each; after a run that finishes the folder
+/// holds what it should and nothing else.
+fn end_often(arguments: &[&str], prepare: &[&[&str]], wanted: &[&str], in_folder: &str) {
+    let folder = folder();
+    prepare.iter().for_each(|arguments| works(folder.path(), arguments));
+    let target = folder.path().join(in_folder);
+    let begin = Instant::now();
+    works(folder.path(), arguments);
+    let whole = begin.elapsed();
+    // The moving picture is a video or an animated image, as the machine has it.
+    let mut wanted: Vec<String> = wanted.iter().map(|name| (*name).to_owned()).collect();
+    wanted.extend(moving(&target).and_then(|path| Some(path.file_name()?.to_str()?.to_owned())));
+    wanted.sort();
+    assert_eq!(names(&target), wanted);
+    let mut random = strandline::body::Random::new(7, 0);
+    let mut ended = 0;
+    for kill in 0..KILLS {
+        let (name, number) = SIGNALS[kill % SIGNALS.len()];
+        let mut command = strandline(folder.path(), arguments);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(whole.mul_f32(random.unit()));
+        send(name, child.id());
+        wait_until("ended", || child.try_wait().unwrap().is_some());
+        let output = child.wait_with_output().unwrap();
+        assert!(ended_by(output.status, number), "{name}: {:?}: {}", output.status, error(&output));
+        assert!(!error(&output).contains("panicked"), "{}", error(&output));
+        ended += usize::from(!output.status.success());
+        check_whole(&target);
+        if kill % BETWEEN == BETWEEN - 1 || kill == KILLS - 1 {
+            works(folder.path(), arguments);
+            assert_eq!(names(&target), wanted, "after {name}");
+            check_whole(&target);
+        }
+    }
+    // A test that ends nothing finds nothing; how many are late depends on how busy the machine is.
+    assert!(ended > KILLS / 5, "only {ended} of {KILLS} runs of {arguments:?} were ended");
+}
+
+#[test]
+fn render_leaves_whole_files() {
+    let frames = ["frame_0000.png", "frame_0001.png", "frame_0002.png", "frame_0003.png", "sheet.png"];
+    end_often(&["render", "--scene", "small.toml", "--out", "out"], &[], &frames, "out");
+}
+
+#[test]
+fn convert_leaves_whole_files() {
+    let grow = ["groom", "--style", "bob", "--strands", "4000", "--out", "a.hair"];
+    end_often(
+        &["convert", "a.hair", "b.tfx", "--points", "40"],
+        &[&grow],
+        &["a.hair", "b.tfx", "small.toml"],
+        "",
+    );
+}
+
+#[test]
+fn groom_leaves_whole_files() {
+    let grow = ["groom", "--style", "bob", "--strands", "4000", "--out", "a.hair"];
+    end_often(&grow, &[], &["a.hair", "small.toml"], "");
+}
+
+#[test]
+fn sim_leaves_nothing() {
+    end_often(&["sim", "--scene", "small.toml"], &[], &["small.toml"], "");
+}
+
+/// Stops a film after some frames; returns what it says.
+fn stop(folder: &Path, signal: &str, code: i32) -> String {
+    let render = ["render", "--scene", "small.toml", "--out", "out", "--frames", "400"];
+    let child = strandline(folder, &render).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    wait_until("three frames", || {
+        let frames = names(&folder.join("out"));
+        frames.contains(&"frame_0002.png".to_owned()) && frames.contains(&".strandline-lock".to_owned())
+    });
+    send(signal, child.id());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(code), "{}", error(&output));
+    error(&output)
+}
+
+#[test]
+fn a_film_that_is_stopped_is_closed_and_says_how_far_it_came() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let error = stop(folder.path(), signal, code);
+        for words in ["stopping after this frame", "of 400 frames", "frames already written are whole"] {
+            assert!(error.contains(words), "`{words}` is missing: {error}");
+        }
+        check_whole(&out);
+        let left: Vec<_> = names(&out).into_iter().filter(|name| !name.starts_with("frame_")).collect();
+        assert_eq!(left, [moving(&out).unwrap().file_name().unwrap().to_str().unwrap()]);
+        std::fs::remove_dir_all(&out).unwrap();
+    }
+    // A whole film of an earlier run is not replaced by a short one.
+    works(folder.path(), &["render", "--scene", "small.toml", "--out", "out", "--frames", "2"]);
+    let former = std::fs::read(moving(&out).unwrap()).unwrap();
+    stop(folder.path(), "INT", 130);
+    assert_eq!(std::fs::read(moving(&out).unwrap()).unwrap(), former);
+}

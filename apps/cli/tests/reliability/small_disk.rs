@@ -1,0 +1,57 @@
+//! A disk of 256 kB.
+
+use super::*;
+
+/// Runs a line of the shell in a folder on such a disk, where that may be made.
+fn on_small_disk(line: &str) -> Option<Output> {
+    let folder = folder();
+    let script = format!(
+        "mkdir disk && mount -t tmpfs -o size=256k none disk && cd disk || exit 77\n\
+         strandline() {{ '{}' \"$@\"; }}\n{line}",
+        env!("CARGO_BIN_EXE_strandline")
+    );
+    for rights in [&["--mount"][..], &["--map-root-user", "--mount"]] {
+        let mut command = Command::new("unshare");
+        let output =
+            command.args(rights).args(["sh", "-c", &script]).current_dir(folder.path()).output().ok()?;
+        if output.status.code() == Some(0) {
+            return Some(output);
+        }
+        let _ = std::fs::remove_dir(folder.path().join("disk"));
+    }
+    None
+}
+
+/// What it prints last: a code, then the names and sizes that are left.
+fn outcome(output: &Output) -> (String, String) {
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    let (code, left) = text.trim().split_once('\n').unwrap_or((text.trim(), ""));
+    (code.to_owned(), left.to_owned())
+}
+
+#[test]
+fn a_disk_that_fills_up_is_an_error_and_leaves_nothing_half() {
+    let line = "strandline groom --style bob --strands 2000 --out a.hair >/dev/null; echo $?; ls -A";
+    let Some(output) = on_small_disk(line) else {
+        println!("skipped: no right to make a small disk");
+        return;
+    };
+    assert_eq!(outcome(&output), ("1".to_owned(), String::new()), "{}", error(&output));
+    assert!(error(&output).contains("No space left"), "{}", error(&output));
+
+    let line = "strandline groom --style bob --strands 100 --out a.hair >/dev/null; \
+                strandline convert a.hair b.hair --points 400 >/dev/null; echo $?; ls -A";
+    let output = on_small_disk(line).unwrap();
+    assert_eq!(outcome(&output), ("1".to_owned(), "a.hair".to_owned()), "{}", error(&output));
+
+    let line = "strandline render --scene ../small.toml --frames 400 --out film >/dev/null; echo $?; \
+                ls -A film";
+    let output = on_small_disk(line).unwrap();
+    let ((code, left), error) = (outcome(&output), error(&output));
+    assert_eq!(code, "1", "{error}");
+    assert!(
+        error.contains("the disk is full") && error.contains("frames already written are whole"),
+        "{error}"
+    );
+    assert!(left.lines().all(|name| name.starts_with("frame_") && name.ends_with(".png")), "{left}");
+}
