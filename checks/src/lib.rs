@@ -1,5 +1,7 @@
 //! Shared helpers of the checks.
 
+#![forbid(unsafe_code)]
+
 pub mod flip;
 mod rig;
 

@@ -1,5 +1,6 @@
 //! Project chores: `cargo xtask test | ci | bless | docs | names`.
 
+#![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
 mod adapter;

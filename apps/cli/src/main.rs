@@ -1,5 +1,7 @@
 //! The `strandline` program: view, render, sim, groom, convert, info, scene, bench, plot, gpus, shaders.
 
+#![forbid(unsafe_code)]
+
 mod arguments;
 mod bench;
 mod exit;

@@ -8,7 +8,7 @@ use strandline::{
     render::PictureSettings,
 };
 
-use crate::{files, messages, panels, saves, stage, strip};
+use crate::{files, messages, panels, rescue, saves, stage, strip};
 
 /// The window's state: what plays, and what a person made of it.
 pub struct App {
@@ -49,6 +49,9 @@ pub struct App {
     /// Number of the load that the scene comes from.
     pub(crate) loaded: u64,
     pub(crate) saves: saves::Saves,
+    /// What is seen, for the case that the window stops in an error, and when it was kept last.
+    pub(crate) kept: rescue::Kept,
+    kept_at: Option<Instant>,
     /// Number of the last step that was asked for by dragging while nothing plays, and whether another one
     /// is wanted once its picture is there.
     stepped: u64,
@@ -60,6 +63,9 @@ pub struct App {
 
 /// How long a new picture waits to be shown.
 const SOON: Duration = Duration::from_millis(1);
+
+/// How often what is seen is kept.
+const KEPT_EVERY: Duration = Duration::from_secs(2);
 
 /// What the mouse does in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,6 +121,8 @@ impl App {
             finishing: 0,
             loaded: 0,
             saves: saves::Saves::default(),
+            kept: rescue::Kept::default(),
+            kept_at: None,
             stepped: 0,
             wants_step: false,
             dialog: None,
@@ -305,6 +313,14 @@ impl App {
         scene
     }
 
+    /// Keeps what is seen, now and then: it may be the last that there is of it.
+    fn keep_scene(&mut self) {
+        if self.kept_at.is_none_or(|last| last.elapsed() > KEPT_EVERY) {
+            self.kept.keep(self.seen());
+            self.kept_at = Some(Instant::now());
+        }
+    }
+
     /// Draws the window.
     pub fn show(&mut self, ui: &mut egui::Ui) {
         self.context.get_or_init(|| ui.ctx().clone());
@@ -313,6 +329,7 @@ impl App {
         self.take_picture(ui.ctx());
         files::take_answer(self);
         self.take_saved();
+        self.keep_scene();
         stage::keys(self, ui);
         egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
         egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));

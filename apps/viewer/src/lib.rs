@@ -1,17 +1,26 @@
 //! The window in which a person plays with hair: panels only, all else is the library's.
 
+#![forbid(unsafe_code)]
+
 mod app;
 mod controls;
 mod files;
+mod libraries;
 mod messages;
 mod panels;
+mod rescue;
 mod saves;
 mod stage;
 mod strip;
 mod wind;
 
 pub use app::{App, Tool};
-use eframe::egui;
+use std::sync::Arc;
+
+use eframe::{
+    egui,
+    egui_wgpu::{WgpuSetup, wgpu},
+};
 use strandline::Scene;
 
 /// Why there is no window.
@@ -23,6 +32,12 @@ pub enum ViewError {
     /// The system gives no thread.
     #[error(transparent)]
     NotStarted(strandline::Error),
+    /// Something of the system is not there.
+    #[error("{0}")]
+    Missing(String),
+    /// Something in the system's libraries gave up.
+    #[error("the window's library gave up: {0}")]
+    GaveUp(String),
     /// The display takes none, or nothing draws it.
     #[error("{0}")]
     Refused(eframe::Error),
@@ -38,12 +53,32 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
         .with_inner_size([1280.0, 800.0])
         .with_min_inner_size([640.0, 400.0])
         .with_drag_and_drop(true);
-    let options = eframe::NativeOptions { viewport, ..Default::default() };
+    let mut options = eframe::NativeOptions { viewport, ..Default::default() };
+    if let WgpuSetup::CreateNew(setup) = &mut options.wgpu_options.wgpu_setup {
+        setup.device_descriptor = Arc::new(device);
+    }
     // Hair grows while the system makes the window.
     let app = App::new(scene).map_err(ViewError::NotStarted)?;
+    let kept = app.kept.clone();
     let make = |_: &eframe::CreationContext| Ok(Box::new(app) as Box<dyn eframe::App>);
-    eframe::run_native("strandline", options, Box::new(make)).map_err(|error| match error {
-        eframe::Error::WinitEventLoop(_) => ViewError::NoDisplay,
-        other => ViewError::Refused(other),
-    })
+    let outcome = rescue::run(&kept, || eframe::run_native("strandline", options, Box::new(make)));
+    let error = match outcome {
+        Ok(Ok(())) => return Ok(()),
+        Ok(Err(eframe::Error::WinitEventLoop(_))) => ViewError::NoDisplay,
+        Ok(Err(other)) => ViewError::Refused(other),
+        Err(words) => ViewError::GaveUp(words),
+    };
+    let has_display = std::env::var_os("DISPLAY").is_some_and(|display| !display.is_empty());
+    // A library that cannot be loaded is told in many ways, none of them clear.
+    Err(libraries::missing().filter(|_| has_display).map_or(error, ViewError::Missing))
+}
+
+/// What the window asks of its device: textures as large as the adapter has, since a window is drawn into one
+/// and may be as wide as several screens.
+fn device(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let required_limits = wgpu::Limits {
+        max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
+        ..wgpu::Limits::default()
+    };
+    wgpu::DeviceDescriptor { label: Some("window"), required_limits, ..Default::default() }
 }

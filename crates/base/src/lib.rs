@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod folder_lock;
+pub mod memory;
 mod parts;
 mod plain_file;
 mod printable;

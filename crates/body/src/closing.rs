@@ -69,6 +69,8 @@ pub(crate) fn welded_vertices(positions: &[Vec3]) -> Vec<u32> {
 /// Joins edges, sorted by their start, to closed rims.
 fn rims(edges: &[Edge]) -> Vec<Vec<Edge>> {
     let mut is_used = vec![false; edges.len()];
+    // For the first edge of each start, how many of those that leave there are used for certain.
+    let mut used_from = vec![0; edges.len()];
     let mut rims = Vec::new();
     for first in 0..edges.len() {
         let mut rim = Vec::new();
@@ -78,8 +80,13 @@ fn rims(edges: &[Edge]) -> Vec<Vec<Edge>> {
             rim.push(edges[index]);
             let [_, end] = edges[index];
             let from = edges.partition_point(|edge| edge[0] < end);
-            let leaving = edges[from..].iter().take_while(|edge| edge[0] == end).count();
-            next = (from..from + leaving).find(|index| !is_used[*index]);
+            if let Some(used) = used_from.get_mut(from) {
+                let leaves = |index: usize| edges.get(index).is_some_and(|edge| edge[0] == end);
+                while leaves(from + *used) && is_used[from + *used] {
+                    *used += 1;
+                }
+                next = leaves(from + *used).then_some(from + *used);
+            }
         }
         if !rim.is_empty() {
             rims.push(rim);

@@ -1,8 +1,15 @@
+use std::fmt;
+
 use glam::{UVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 use crate::lattice::Lattice;
 use crate::{Aabb, BodyError, Mesh, SignedDistance, mesh_distance};
+
+/// Most work that a mesh may be, and how much coarser a grid becomes while it is more: only triangles that
+/// cover the box around them many times are.
+const MOST_WORK: f64 = 4e8;
+const COARSER: f32 = 1.4;
 
 /// Signed distance sampled on a regular grid and interpolated trilinearly.
 ///
@@ -10,7 +17,7 @@ use crate::{Aabb, BodyError, Mesh, SignedDistance, mesh_distance};
 /// that hair slides over the cells without a jerk, and it is made a unit vector afterwards.
 /// Outside the box the distance is a lower bound, no less than 0.7 of the true one, and continuous
 /// at the border: who looks up once may go so far without another look.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct DistanceGrid {
     lattice: Lattice,
     inverse_spacing: f32,
@@ -22,7 +29,8 @@ impl DistanceGrid {
     /// Samples a field over its bounds, padded by `padding` \[m\] (two cells at least), at `spacing` \[m\].
     ///
     /// # Errors
-    /// The spacing must be above zero, the padding not negative, the grid 256 x 256 x 256 cells at most.
+    /// The spacing must be above zero, the padding not negative. A grid of more than 1,024 cells a side or
+    /// 8 Mi nodes is made coarser (see [`Self::spacing`]); one that would need cells of more than 0.1 m is refused.
     pub fn from_field(field: &dyn SignedDistance, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         let lattice = Lattice::around(field.bounds(), spacing, padding)?;
         let mut distances = vec![0.0; lattice.len()];
@@ -49,8 +57,9 @@ impl DistanceGrid {
     /// An empty or an open mesh has no inside; for the rest see [`Self::from_field`].
     pub fn from_mesh(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         mesh.check_usable()?;
+        let mesh = mesh.without_repeats();
         match mesh.open_edge_count() {
-            0 => Self::from_closed(mesh, spacing, padding),
+            0 => Self::from_closed(&mesh, spacing, padding),
             open_edge_count => Err(BodyError::OpenMesh { open_edge_count }),
         }
     }
@@ -64,12 +73,18 @@ impl DistanceGrid {
     /// An empty mesh has no inside; for the rest see [`Self::from_field`].
     pub fn from_open_mesh(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         mesh.check_usable()?;
-        Self::from_closed(&mesh.closed(), spacing, padding)
+        Self::from_closed(&mesh.without_repeats().closed(), spacing, padding)
     }
 
     fn from_closed(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         let bounds = mesh.bounds().unwrap_or(Aabb { min: Vec3::ZERO, max: Vec3::ZERO });
-        let lattice = Lattice::around(bounds, spacing, padding)?;
+        let mut lattice = Lattice::around(bounds, spacing, padding)?;
+        while mesh_distance::work(mesh, lattice.spacing) > MOST_WORK
+            && let Ok(coarser) = Lattice::around(bounds, COARSER * lattice.spacing, padding)
+            && coarser.spacing <= Lattice::COARSEST
+        {
+            lattice = coarser;
+        }
         Ok(Self::from_distances(lattice, &mesh_distance::at_nodes(mesh, &lattice)))
     }
 
@@ -83,7 +98,7 @@ impl DistanceGrid {
         Self { lattice, inverse_spacing, nodes }
     }
 
-    /// Distance of neighbouring nodes \[m\].
+    /// Distance of neighbouring nodes \[m\]: the one asked for, or more.
     pub fn spacing(&self) -> f32 {
         self.lattice.spacing
     }
@@ -128,6 +143,13 @@ impl DistanceGrid {
         };
         let (near, far) = (layer(corner), layer(corner + nx * ny));
         near + (far - near) * share.z
+    }
+}
+
+impl fmt::Debug for DistanceGrid {
+    /// Without its millions of nodes.
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.debug_struct("DistanceGrid").field("lattice", &self.lattice).finish_non_exhaustive()
     }
 }
 

@@ -10,8 +10,9 @@ use crate::gltf_buffers::{Buffers, load_buffers};
 use crate::mesh::{read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
-/// The most vertices and the most triangles of one body: nodes can repeat a mesh many times.
+/// The most vertices and the most triangles of one body, and those of a small file.
 const COUNT_LIMIT: usize = 16 << 20;
+const LEAST_COUNT_LIMIT: usize = 1 << 20;
 /// The deepest nesting of nodes.
 const DEPTH_LIMIT: usize = 64;
 
@@ -29,17 +30,20 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
     })
 }
 
-fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Mesh, Refusal> {
+/// The same from the bytes of a file; without a folder none beside it is read.
+pub(crate) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Mesh, Refusal> {
     check_container(bytes)?;
     let refused = |error: ::gltf::Error| (format!("bad glTF ({error})"), "valid glTF 2.0");
     check_positions(&::gltf::Gltf::from_slice_without_validation(bytes).map_err(refused)?.document)?;
     let ::gltf::Gltf { document, blob } = ::gltf::Gltf::from_slice(bytes).map_err(refused)?;
     let buffers = load_buffers(&document, blob, folder)?;
+    // Nodes that repeat a mesh make much of a small file: beyond what it could hold itself it is refused.
+    let limit = (bytes.len() + buffers.len()).clamp(LEAST_COUNT_LIMIT, COUNT_LIMIT);
     let mut mesh = Mesh::default();
     for (node, world_from_node) in placed_nodes(&document)? {
         let Some(part) = node.mesh() else { continue };
         for primitive in part.primitives() {
-            append(&mut mesh, &primitive, world_from_node, &buffers)?;
+            append(&mut mesh, &primitive, world_from_node, &buffers, limit)?;
         }
     }
     Ok(mesh)
@@ -105,6 +109,7 @@ fn append(
     part: &Primitive,
     world_from_node: Mat4,
     buffers: &Buffers,
+    limit: usize,
 ) -> Result<(), Refusal> {
     if !matches!(part.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
         return Ok(());
@@ -116,8 +121,8 @@ fn append(
         None => (0..positions.len() as u32).collect(),
     };
     let first = mesh.positions.len();
-    if first + positions.len() > COUNT_LIMIT || mesh.triangles.len() + corners.len() > COUNT_LIMIT {
-        return Err(("more than 16 Mi vertices or triangles".into(), "a mesh for a body"));
+    if first + positions.len() > limit || mesh.triangles.len() + corners.len() > limit {
+        return Err((format!("more than {limit} vertices or triangles"), "a mesh for a body"));
     }
     if let Some(corner) = corners.iter().find(|corner| **corner as usize >= positions.len()) {
         return Err((format!("the index {corner} of {} vertices", positions.len()), "indices in range"));

@@ -69,6 +69,11 @@ fn file_name(uri: &str) -> Option<String> {
 }
 
 impl Buffers {
+    /// Bytes of all buffers.
+    pub fn len(&self) -> usize {
+        self.0.iter().map(Vec::len).sum()
+    }
+
     /// An accessor of three floats each.
     pub fn vectors(&self, accessor: &Accessor<'_>) -> Result<Vec<Vec3>, Refusal> {
         if (accessor.data_type(), accessor.dimensions()) != (DataType::F32, Dimensions::Vec3) {

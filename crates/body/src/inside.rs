@@ -1,63 +1,56 @@
 //! Which nodes of a lattice are inside a closed surface.
 
-use glam::{DVec3, UVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::lattice::Lattice;
+use crate::lattice::{Lattice, SLAB};
+use crate::layers::{Corners, Layers};
 
-/// Where a line of nodes passes the surface.
-struct Crossing {
-    /// Place along the line \[cells\].
-    x: f64,
-    /// How much more often the surface winds around the nodes beyond.
-    turns: i32,
-}
-
-/// Whether the surface winds around each node, in the order of storage.
+/// Whether the surface winds around each node, in the order of storage; `turned` takes every triangle as
+/// if it were wound the other way.
 ///
 /// Triangles are given in cells. Each line of nodes along x counts the triangles that it
 /// passes, with their direction: the winding number \[Jacobson2013\] of a closed surface, as an integer.
 /// A line through an edge or a corner counts one of the triangles that meet there, never two and
 /// never none, because each edge decides alone, from its two ends, on which side the line passes it.
-pub(crate) fn inside_nodes(triangles: &[[DVec3; 3]], lattice: &Lattice) -> Vec<bool> {
-    let layers = triangles_by_layer(triangles, lattice);
+pub(crate) fn inside_nodes(layers: &Layers, turned: bool, lattice: &Lattice) -> Vec<bool> {
     let mut inside = vec![false; lattice.len()];
-    inside.par_chunks_mut(lattice.layer_len()).zip(layers).enumerate().for_each(|(z, (layer, indices))| {
-        let mut lines: Vec<Vec<Crossing>> = (0..lattice.node_count.y).map(|_| Vec::new()).collect();
-        for index in indices {
-            add_crossings(&triangles[index as usize], z as f64, &mut lines);
-        }
-        for (row, crossings) in layer.chunks_mut(lattice.node_count.x as usize).zip(&mut lines) {
-            mark_row(row, crossings);
+    let (layer_len, columns) = (lattice.layer_len(), lattice.node_count.x as usize);
+    inside.par_chunks_mut(layer_len * SLAB).enumerate().for_each(|(slab, inside)| {
+        let first = slab * SLAB;
+        let last = first + inside.len() / layer_len - 1;
+        let reached = layers.between(first as f64, last as f64);
+        // How much the winding number changes at each node of a layer from the one before it in its row.
+        let mut changes = vec![0_i32; layer_len];
+        for (layer, inside) in inside.chunks_mut(layer_len).enumerate() {
+            changes.fill(0);
+            let z = (first + layer) as f64;
+            for index in &reached {
+                add_changes(&layers.triangles()[*index as usize], z, columns, &mut changes);
+            }
+            let rows = inside.chunks_mut(columns).zip(changes.chunks(columns));
+            rows.for_each(|(inside, changes)| mark_row(inside, changes, turned));
         }
     });
     inside
 }
 
-/// For each layer of equal z, the triangles that reach over it.
-fn triangles_by_layer(triangles: &[[DVec3; 3]], lattice: &Lattice) -> Vec<Vec<u32>> {
-    let UVec3 { z: layer_count, .. } = lattice.node_count;
-    let mut layers = vec![Vec::new(); layer_count as usize];
-    for (index, [a, b, c]) in triangles.iter().enumerate() {
-        let first = a.z.min(b.z).min(c.z).ceil().max(0.0) as usize;
-        let last = a.z.max(b.z).max(c.z).floor();
-        for layer in layers.iter_mut().take((last + 1.0).max(0.0) as usize).skip(first) {
-            layer.push(index as u32);
-        }
-    }
-    layers
-}
-
-fn add_crossings(corners: &[DVec3; 3], z: f64, lines: &mut [Vec<Crossing>]) {
+fn add_changes(corners: &Corners, z: f64, columns: usize, changes: &mut [i32]) {
     let [a, b, c] = *corners;
+    if a.z.min(b.z).min(c.z) > z || a.z.max(b.z).max(c.z) < z {
+        return;
+    }
     let first = a.y.min(b.y).min(c.y).ceil().max(0.0) as usize;
     let count = (a.y.max(b.y).max(c.y).floor() + 1.0).max(0.0) as usize;
-    for (y, line) in lines.iter_mut().enumerate().take(count).skip(first) {
+    for (y, row) in changes.chunks_mut(columns).enumerate().take(count).skip(first) {
         let y = y as f64;
         // Around a line along x: once forward, once back, or not at all.
         let turns = edge_turn(a, b, y, z) + edge_turn(b, c, y, z) + edge_turn(c, a, y, z);
-        if turns != 0 {
-            line.push(Crossing { x: place(corners, y, z), turns });
+        if turns != 0
+            && let Some(change) = row.get_mut(place(corners, y, z).ceil().max(0.0) as usize)
+        {
+            // A triangle that turns forward around +x faces +x: the line leaves there.
+            *change -= turns;
         }
     }
 }
@@ -81,7 +74,7 @@ fn edge_turn(start: DVec3, end: DVec3, y: f64, z: f64) -> i32 {
 }
 
 /// Where the plane of a triangle passes the line y, z; within the triangle also when it holds the line.
-fn place(corners: &[DVec3; 3], y: f64, z: f64) -> f64 {
+fn place(corners: &Corners, y: f64, z: f64) -> f64 {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);
     let x = a.x - ((y - a.y) * normal.y + (z - a.z) * normal.z) / normal.x;
@@ -89,15 +82,10 @@ fn place(corners: &[DVec3; 3], y: f64, z: f64) -> f64 {
     if x.is_nan() { 0.5 * (low + high) } else { x.clamp(low, high) }
 }
 
-fn mark_row(row: &mut [bool], crossings: &mut [Crossing]) {
-    crossings.sort_by(|one, other| one.x.total_cmp(&other.x).then(one.turns.cmp(&other.turns)));
-    let (mut winding, mut next) = (0, 0);
-    for (x, inside) in row.iter_mut().enumerate() {
-        while next < crossings.len() && crossings[next].x <= x as f64 {
-            // A triangle that turns forward around +x faces +x: the line leaves there.
-            winding -= crossings[next].turns;
-            next += 1;
-        }
-        *inside = winding > 0;
+fn mark_row(inside: &mut [bool], changes: &[i32], turned: bool) {
+    let mut winding = 0;
+    for (inside, change) in inside.iter_mut().zip(changes) {
+        winding += change;
+        *inside = if turned { winding < 0 } else { winding > 0 };
     }
 }

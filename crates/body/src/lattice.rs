@@ -1,11 +1,15 @@
 //! Where the nodes of a distance grid lie.
 
-use glam::{UVec3, Vec3};
+use glam::{DVec3, U64Vec3, UVec3, Vec3};
 
 use crate::{Aabb, BodyError};
 
-/// The most cells of one grid: 16 bytes each make 256 MiB.
-const CELL_LIMIT: u64 = 256 * 256 * 256;
+/// The most nodes of one grid: 16 bytes each make 128 MiB, which is what a GPU takes as one buffer.
+const NODE_LIMIT: u64 = 8 << 20;
+/// The most cells along one side.
+const SIDE_LIMIT: u64 = 1024;
+/// Layers that are worked on together.
+pub(crate) const SLAB: usize = 8;
 
 /// Nodes at equal spacing in a box; x varies fastest.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +23,12 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// A lattice over a box with at least `padding` \[m\] (and at least two cells) on every side.
+    /// The coarsest spacing \[m\] that is taken in place of one that is too fine; a body that needs more is
+    /// in other units.
+    pub const COARSEST: f32 = 0.1;
+
+    /// A lattice over a box with at least `padding` \[m\] (and at least two cells) on every side; where
+    /// that would be too many nodes, their spacing is the finest one that makes few enough.
     pub fn around(bounds: Aabb, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         if !spacing.is_finite() || spacing <= 0.0 {
             return Err(out_of_range(
@@ -40,12 +49,15 @@ impl Lattice {
                 expected: "finite corners in order [m]",
             });
         }
-        let padding = padding.max(2.0 * spacing);
-        // A float turned into an integer stops at the largest one, so this cannot overflow.
-        let cells = ((size + 2.0 * f64::from(padding)) / f64::from(spacing)).ceil().as_u64vec3();
-        let total = cells.x.saturating_mul(cells.y).saturating_mul(cells.z);
-        if total > CELL_LIMIT {
-            return Err(BodyError::GridTooLarge { cells: cells.to_array(), limit: CELL_LIMIT });
+        let asked = cells_at(size, spacing, padding);
+        let mut spacing = spacing;
+        let mut cells = asked;
+        while let Some(excess) = excess(cells) {
+            spacing *= excess.max(1.001) as f32;
+            cells = cells_at(size, spacing, padding);
+            if spacing > Self::COARSEST {
+                return Err(BodyError::GridTooLarge { cells: asked.to_array(), limit: NODE_LIMIT });
+            }
         }
         let middle = 0.5 * (bounds.min + bounds.max);
         let origin = middle - cells.as_vec3() * (0.5 * spacing);
@@ -84,6 +96,21 @@ impl Lattice {
     pub fn position(&self, node: UVec3) -> Vec3 {
         self.origin + node.as_vec3() * self.spacing
     }
+}
+
+/// Cells in x, y, z. A float turned into an integer stops at the largest one, so this cannot overflow.
+fn cells_at(size: DVec3, spacing: f32, padding: f32) -> U64Vec3 {
+    let padding = f64::from(padding.max(2.0 * spacing));
+    ((size + 2.0 * padding) / f64::from(spacing)).ceil().as_u64vec3()
+}
+
+/// How many times as coarse cells have to be at least, if there are too many.
+fn excess(cells: U64Vec3) -> Option<f64> {
+    let nodes = cells.saturating_add(U64Vec3::ONE);
+    let total = nodes.x.saturating_mul(nodes.y).saturating_mul(nodes.z);
+    let side = cells.max_element();
+    let excess = (side as f64 / SIDE_LIMIT as f64).max((total as f64 / NODE_LIMIT as f64).cbrt());
+    (side > SIDE_LIMIT || total > NODE_LIMIT).then_some(excess)
 }
 
 fn out_of_range(what: &'static str, found: f32, expected: &'static str) -> BodyError {

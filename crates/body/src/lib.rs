@@ -4,6 +4,9 @@
 //! Units are SI; y is up and the face looks along +z. *Head space* is the space in which a body
 //! and a groom are at rest; [`Pose`] carries it into the world.
 
+#![forbid(unsafe_code)]
+
+mod buried;
 mod closing;
 mod collider;
 mod distance;
@@ -14,15 +17,18 @@ mod gltf_buffers;
 mod inside;
 mod keyframes;
 mod lattice;
+mod layers;
 mod mannequin;
 mod mesh;
 mod mesh_distance;
 mod motion;
+mod near_surface;
 mod obj;
 mod pose;
 mod random;
 mod scalp;
 mod triangle;
+mod triangle_tree;
 mod turn_out;
 
 pub use collider::{Carrier, Collider, Shape};

@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+use std::collections::HashSet;
 use std::path::Path;
 
 use glam::Vec3;
@@ -66,6 +68,27 @@ impl Mesh {
         mesh.complete(path)
     }
 
+    /// Reads an OBJ file from its bytes, in the units of the file.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn from_obj(bytes: &[u8]) -> Result<Self, BodyError> {
+        Self::from_parsed(obj::parse(bytes))
+    }
+
+    /// Reads a glTF 2.0 file, as text or binary, from its bytes, in the units of the file; it must hold its
+    /// buffers itself.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn from_gltf(bytes: &[u8]) -> Result<Self, BodyError> {
+        Self::from_parsed(gltf::parse(bytes, None))
+    }
+
+    fn from_parsed(parsed: Result<Self, gltf::Refusal>) -> Result<Self, BodyError> {
+        parsed.map_err(|(found, expected)| BodyError::BadMesh { found, expected })?.complete(Path::new(""))
+    }
+
     /// Checks what was read and gives a normal to every vertex that has none.
     fn complete(mut self, path: &Path) -> Result<Self, BodyError> {
         self.check_usable().map_err(|error| match error {
@@ -80,7 +103,8 @@ impl Mesh {
         let computed = vertex_normals(&self.positions, &self.triangles);
         self.normals.resize(self.positions.len(), Vec3::ZERO);
         for (normal, computed) in self.normals.iter_mut().zip(computed) {
-            *normal = normal.try_normalize().unwrap_or(computed);
+            // In double precision: the square of a short one underflows.
+            *normal = normal.as_dvec3().try_normalize().map_or(computed, |unit| unit.as_vec3());
         }
         Ok(self)
     }
@@ -133,6 +157,22 @@ impl Mesh {
     /// As [`Self::is_closed`] and [`Self::closed`], when an index is out of range; loaded meshes have none such.
     pub fn open_edge_count(&self) -> usize {
         closing::open_edges(self).len()
+    }
+
+    /// The mesh without triangles that are there before, between the same places and wound the same way: they
+    /// add nothing but work.
+    pub(crate) fn without_repeats(&self) -> Cow<'_, Self> {
+        let welded = closing::welded_vertices(&self.positions);
+        let mut known = HashSet::with_capacity(self.triangles.len());
+        let is_new = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|corner| welded[corner as usize]);
+            known.insert([[a, b, c], [b, c, a], [c, a, b]].into_iter().min())
+        };
+        let triangles: Vec<_> = self.triangles.iter().copied().filter(is_new).collect();
+        if triangles.len() == self.triangles.len() {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { positions: self.positions.clone(), normals: self.normals.clone(), triangles })
     }
 
     /// The mesh with every hole closed by a fan of triangles from the middle of its rim.

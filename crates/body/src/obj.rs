@@ -5,19 +5,25 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use crate::gltf::Refusal;
 use crate::mesh::{read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
 /// Reads a mesh in the units of the file; vertices without a normal get a zero one.
 pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
     let bytes = read_file(path)?;
-    let refused = |found: String| BodyError::Mesh {
+    parse(&bytes).map_err(|(found, expected)| BodyError::Mesh {
         path: path.into(),
         found,
-        expected: "a Wavefront OBJ file with vertices (v) and faces (f)",
+        expected,
         mend: "export the body again",
-    };
-    check_faces(&bytes).map_err(refused)?;
+    })
+}
+
+/// The same from the bytes of a file.
+pub(crate) fn parse(mut bytes: &[u8]) -> Result<Mesh, Refusal> {
+    let refused = |found: String| (found, "a Wavefront OBJ file with vertices (v) and faces (f)");
+    check_faces(bytes).map_err(refused)?;
     let options = tobj::LoadOptions {
         triangulate: true,
         ignore_points: true,
@@ -25,7 +31,7 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
         ..tobj::LoadOptions::default()
     };
     let no_materials = |_: &Path| Err(tobj::LoadError::GenericFailure);
-    let (models, _) = tobj::load_obj_buf(&mut bytes.as_slice(), &options, no_materials)
+    let (models, _) = tobj::load_obj_buf(&mut bytes, &options, no_materials)
         .map_err(|error| refused(format!("a line that is none ({error})")))?;
     let mut mesh = Mesh::default();
     for model in &models {

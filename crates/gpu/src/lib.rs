@@ -3,6 +3,8 @@
 //!
 //! Everything keeps to WebGPU's default limits, whatever the adapter offers.
 
+#![forbid(unsafe_code)]
+
 mod backend;
 mod bandwidth;
 mod buffer;

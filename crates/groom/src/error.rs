@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use strandline_base::SettingError;
+use strandline_base::{SettingError, memory::MemoryError};
 
 /// Why a groom could not be read, written or used.
 #[derive(Debug, thiserror::Error)]
@@ -9,6 +9,9 @@ pub enum GroomError {
     /// A setting outside its range.
     #[error(transparent)]
     Setting(#[from] SettingError),
+    /// More memory than may be taken.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// A groom without a strand.
     #[error("the groom has no strand that could be used")]
     Empty,

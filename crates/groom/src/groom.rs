@@ -1,7 +1,10 @@
 use std::path::Path;
 
 use glam::{Quat, Vec2, Vec3};
-use strandline_base::SettingError;
+use strandline_base::{
+    SettingError,
+    memory::{self, Need},
+};
 use strandline_body::Aabb;
 
 use crate::{
@@ -171,14 +174,17 @@ impl Groom {
     /// mass stays.
     ///
     /// # Errors
-    /// A count outside 2..=4096; masses or velocities that do not fit the points.
+    /// A count outside 2..=4096; masses or velocities that do not fit the points; more points than a file may
+    /// hold, or more memory than may be taken.
     pub fn resampled(&self, count: usize) -> Result<Self, GroomError> {
         if !(2..=format::MAX_POINTS_PER_STRAND as usize).contains(&count) {
             return Err(SettingError::new("the number of points", count, "2 to 4096").into());
         }
         attributes::check(self)?;
+        self.check_resampled(count as u64)?;
         let strands = 0..self.strand_count();
         let mut groom = Self::empty(0.0);
+        groom.points.reserve_exact(self.strand_count() * count);
         for strand in strands.clone() {
             groom.push(Guides::equal_arcs(self.strand(strand), count));
         }
@@ -202,5 +208,21 @@ impl Groom {
         let velocities = strands.filter_map(|strand| attributes::velocities(self, strand, count));
         groom.velocities = self.velocities.is_some().then(|| velocities.flatten().collect());
         Ok(groom)
+    }
+
+    /// Refuses what `count` points on every strand would be before they are made.
+    fn check_resampled(&self, count: u64) -> Result<(), GroomError> {
+        let strand_count = self.strand_count() as u64;
+        let points = strand_count * count;
+        let what = || format!("points = {count} on each of {strand_count} strands");
+        if points > format::MAX_POINTS {
+            let found = format!("{count}, which makes {points} on {strand_count} strands");
+            return Err(SettingError::new("the number of points", found, "268435456 in all at most").into());
+        }
+        // A position, and a colour and a transparency where the groom has them; then the bytes of a file.
+        let colors = if self.colors.is_some() { 12 } else { 0 };
+        let transparencies = if self.transparencies.is_some() { 4 } else { 0 };
+        memory::check(&[Need::new(what(), points, 2 * (12 + colors + transparencies))])?;
+        Ok(())
     }
 }

@@ -1,6 +1,8 @@
 //! Strands as data: a [`Groom`] as loaded or grown, [`Guides`] resampled for the solver and the
 //! renderer, and the [`RestShape`] that the solver keeps. No GPU, no time.
 
+#![forbid(unsafe_code)]
+
 mod attributes;
 mod error;
 mod groom;

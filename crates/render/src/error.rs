@@ -22,6 +22,9 @@ pub enum RenderError {
         /// What is allowed \[MiB\].
         allowed: u64,
     },
+    /// More memory than a run may take.
+    #[error(transparent)]
+    TooMuch(#[from] strandline_base::memory::MemoryError),
     /// More than a GPU draws; the CPU knows no such limit.
     #[error("{found} {what}, at most {most} are drawn on a GPU: take fewer, or draw on the CPU")]
     TooMany {

@@ -9,6 +9,7 @@ use crate::cpu::{
     Curves, Draw, DrawInput, Occlusion, Resolve, Samples, Shadows, Strands, interpolate, layer_colors,
     opacity_depth, opacity_layers, shade, tessellate,
 };
+use crate::memory::check_lights;
 use crate::{BodyLook, Camera, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
 
 /// What one picture is made from.
@@ -40,7 +41,7 @@ impl FrameInput<'_> {
         self.look.validate()?;
         self.body_look.validate()?;
         self.level_of_detail.validate()?;
-        self.lights.iter().try_for_each(Light::validate)
+        check_lights(self.lights)
     }
 }
 
@@ -119,7 +120,7 @@ impl Renderer {
     /// Draws a picture.
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// A setting outside its range; more memory than may be taken.
     pub fn draw(&mut self, input: &FrameInput) -> Result<(Picture, FrameReport), RenderError> {
         let mut picture = Picture::default();
         let report = self.draw_into(input, &mut picture)?;
@@ -129,7 +130,7 @@ impl Renderer {
     /// Draws a picture into one that is there, whose memory is used again.
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// A setting outside its range; more memory than may be taken.
     pub fn draw_into(
         &mut self,
         input: &FrameInput,
@@ -145,13 +146,14 @@ impl Renderer {
     /// Draws without the last stage: the samples can be looked at with [`Renderer::samples`].
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
         input.validate()?;
         let middle = input.world_from_head.point(self.middle);
         let distance = input.camera.position.distance(middle);
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
         let (guides, pose) = (&self.guides, &input.world_from_head);
+        input.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
         let Self { curves, strands, shadows, occlusion, layers_of, draw, samples, settings, .. } = self;
         let mut clock = Clock::start();
 

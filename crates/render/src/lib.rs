@@ -1,6 +1,8 @@
 //! How hair looks: every stage from guide points to a picture [Chen2011 §3]. It takes points and
 //! knows nothing of the simulation.
 
+#![forbid(unsafe_code)]
+
 pub mod cpu;
 pub mod gpu;
 
@@ -11,6 +13,7 @@ mod frame;
 mod level_of_detail;
 mod lights;
 mod look;
+pub mod memory;
 mod picture;
 mod picture_settings;
 

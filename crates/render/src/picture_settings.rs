@@ -65,14 +65,19 @@ impl PictureSettings {
     /// A field outside its range, or samples beyond [`Self::MAX_MEMORY`].
     pub fn validate(&self) -> Result<(), RenderError> {
         self.check_as("picture")?;
-        let samples = u64::from(self.width) * u64::from(self.height) * u64::from(self.supersampling.pow(2));
-        let needed = (samples * Self::SAMPLE_BYTES).div_ceil(1 << 20);
+        let needed = self.memory().div_ceil(1 << 20);
         if needed > Self::MAX_MEMORY {
             let what =
                 format!("{} x {} pixels at supersampling {}", self.width, self.height, self.supersampling);
             return Err(RenderError::Memory { what, needed, allowed: Self::MAX_MEMORY });
         }
         Ok(())
+    }
+
+    /// What the samples take \[byte\].
+    pub(crate) fn memory(&self) -> u64 {
+        let samples = u64::from(self.width) * u64::from(self.height);
+        samples * u64::from(self.supersampling).pow(2) * Self::SAMPLE_BYTES
     }
 
     /// Width over height.

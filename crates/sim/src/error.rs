@@ -26,6 +26,9 @@ pub enum SimError {
         /// What was refused.
         source: strandline_gpu::GpuError,
     },
+    /// More memory than may be taken.
+    #[error(transparent)]
+    Memory(#[from] strandline_base::memory::MemoryError),
     /// What the GPU could not do.
     #[error(transparent)]
     Gpu(#[from] strandline_gpu::GpuError),

@@ -3,6 +3,8 @@
 //! [`Settings`] are plain data in SI units, a [`Solver`] is compiled once and never changes, a
 //! [`State`] is all that changes with time.
 
+#![forbid(unsafe_code)]
+
 pub mod cpu;
 pub mod gpu;
 
@@ -11,6 +13,7 @@ mod error;
 mod grab;
 mod length_scale;
 mod masses;
+mod memory;
 mod report;
 mod settings;
 mod solver;

@@ -1,5 +1,6 @@
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::memory;
 use strandline_body::{Carrier, Collider, Pose};
 use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 
@@ -53,7 +54,7 @@ impl Solver {
     /// Compiles a solver for hair: the first two points of every strand are rooted in the head.
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// A setting outside its range; more memory than may be taken.
     pub fn new(guides: &Guides, settings: &Settings, colliders: Vec<Collider>) -> Result<Self, SimError> {
         let rest = RestShape::new(guides, settings.mass_per_length);
         Self::with_rest(guides, rest, |_, point| point < Self::ROOTED_POINTS, settings, colliders)
@@ -65,7 +66,7 @@ impl Solver {
     /// nowhere but at the ends, where [`RestShape`] has them.
     ///
     /// # Errors
-    /// A setting outside its range; a rest shape of another shape than the guides, or with a
+    /// A setting outside its range; more memory than may be taken; a rest shape of another shape than the guides, or with a
     /// length or a mass of a strand that is not above 0.
     pub fn with_rest(
         guides: &Guides,
@@ -75,6 +76,7 @@ impl Solver {
         colliders: Vec<Collider>,
     ) -> Result<Self, SimError> {
         settings.check()?;
+        memory::check(&settings.memory(guides.strand_count(), guides.points_per_strand()))?;
         check_rest(guides, &rest)?;
         let points = guides.points_per_strand();
         let last = guides.strand_count() - 1;
@@ -118,9 +120,10 @@ impl Solver {
     /// them.
     ///
     /// # Errors
-    /// A setting outside its range; then nothing changes.
+    /// A setting outside its range or more memory than may be taken; then nothing changes.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check()?;
+        memory::check(&settings.memory(self.strand_count, self.points_per_strand))?;
         if settings.mass_per_length != self.settings.mass_per_length && !self.weighed {
             let factor = settings.mass_per_length / self.compiled.mass_per_length;
             let scale = |into: &mut [Lanes], from: &[Lanes], factor: f32| {

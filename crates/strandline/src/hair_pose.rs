@@ -158,6 +158,14 @@ impl HairPose {
     }
 }
 
+/// Whether the bytes of a file hold a pose for hair of so many strands and points of each.
+///
+/// # Errors
+/// What they are instead.
+pub fn check_pose(bytes: &[u8], shape: [usize; 2]) -> Result<(), String> {
+    HairPose::parse(bytes, shape).map(|_| ())
+}
+
 /// The numbers of a tensor that has to have a shape.
 fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Vec<f32>, String> {
     const REMEDY: &str = "take `pose` out of [groom] to begin at rest";

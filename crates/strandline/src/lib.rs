@@ -19,6 +19,8 @@
 //!
 //! A [`Scene`] holds everything that one run needs and is one TOML file; a [`Player`] plays it.
 
+#![forbid(unsafe_code)]
+
 mod attributes;
 mod devices;
 mod engine;
@@ -28,6 +30,7 @@ mod hair;
 mod hair_pose;
 mod head;
 mod live;
+mod memory;
 mod painter;
 mod pick;
 mod player;
@@ -53,6 +56,7 @@ pub use error::Error;
 pub use film::{Film, FilmFiles};
 pub use groom::{Groom, Style};
 pub use hair::Hair;
+pub use hair_pose::check_pose;
 pub use head::HeadMotion;
 pub use live::{Command, Live, News, Shown};
 pub use pick::Ray;

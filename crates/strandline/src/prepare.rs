@@ -12,6 +12,7 @@ use crate::{
         format::{self, LoadOptions},
     },
     hair_pose::HairPose,
+    memory,
     scene::Model,
 };
 
@@ -50,12 +51,16 @@ impl Prepared {
     /// Loads and grows all that a scene names.
     ///
     /// # Errors
-    /// Whatever a reader or a validation found.
+    /// Whatever a reader or a validation found; more memory than may be taken.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         scene.check()?;
         let mut notes = Vec::new();
+        if scene.groom.file.is_none() {
+            memory::check(scene, scene.style.strand_count)?;
+        }
         let groom = groom(scene, &mut notes)?;
-        let body = body(scene)?;
+        memory::check(scene, groom.strand_count())?;
+        let body = body(scene, &mut notes)?;
         let mut guides = Guides::resample(&groom, scene.groom.points_per_strand as usize)?;
         if groom.root_normals.is_none()
             && let Some(shape) = &body.shape
@@ -122,42 +127,55 @@ fn move_outside(guides: &mut Guides, colliders: &[Collider]) -> Option<String> {
     (depth > WORTH_A_NOTE).then_some(note)
 }
 
-fn body(scene: &Scene) -> Result<Body, Error> {
+fn body(scene: &Scene, notes: &mut Vec<String>) -> Result<Body, Error> {
     let section = &scene.body;
     if let Some(file) = &section.file {
         let mesh = Mesh::load(&scene.path(file), section.scale)?;
-        let shape = if section.solid { Some(solid(scene, &mesh)?) } else { None };
+        let shape = if section.solid { Some(solid(scene, &mesh, notes)?) } else { None };
         return Ok(Body { mesh: Some(mesh), shape, pivot: None });
     }
     let grown = scene.groom.file.is_none();
     Ok(match section.model {
-        Model::Mannequin => mannequin(scene)?,
-        Model::Auto if grown => mannequin(scene)?,
+        Model::Mannequin => mannequin(scene, notes)?,
+        Model::Auto if grown => mannequin(scene, notes)?,
         Model::Auto | Model::None => Body { mesh: None, shape: None, pivot: None },
     })
 }
 
 /// The mannequin; hair hits its signed distance sampled at `spacing`, or the exact one, which is
 /// looked up four times as slowly.
-fn mannequin(scene: &Scene) -> Result<Body, Error> {
+fn mannequin(scene: &Scene, notes: &mut Vec<String>) -> Result<Body, Error> {
     let mannequin = Mannequin::new();
     let shape = if scene.body.exact {
         Shape::Mannequin(mannequin.clone())
     } else {
         let grid = DistanceGrid::from_field(&*mannequin, scene.body.spacing, DISTANCE_PADDING)?;
-        Shape::Grid(Arc::new(grid))
+        grid_shape(scene, grid, notes)
     };
     Ok(Body { mesh: Some(mannequin.mesh()), pivot: Some(mannequin.neck_pivot()), shape: Some(shape) })
 }
 
 /// The signed distance of a loaded body; a closed mesh as it is, an open one with its holes closed.
-fn solid(scene: &Scene, drawn: &Mesh) -> Result<Shape, Error> {
+fn solid(scene: &Scene, drawn: &Mesh, notes: &mut Vec<String>) -> Result<Shape, Error> {
     let spacing = scene.body.spacing;
     let grid = match &scene.body.collider_file {
         Some(file) => closed_or_open(&Mesh::load(&scene.path(file), scene.body.scale)?, spacing)?,
         None => closed_or_open(drawn, spacing)?,
     };
-    Ok(Shape::Grid(Arc::new(grid)))
+    Ok(grid_shape(scene, grid, notes))
+}
+
+/// A grid as a solid; says when it is coarser than the scene asks.
+fn grid_shape(scene: &Scene, grid: DistanceGrid, notes: &mut Vec<String>) -> Shape {
+    let (asked, spacing) = (scene.body.spacing, grid.spacing());
+    if spacing > asked {
+        let [x, y, z] = grid.cells().to_array();
+        notes.push(format!(
+            "body.spacing is {asked} m, which is too fine for a body of this size: {spacing:.4} m is taken, \
+             {x} x {y} x {z} cells"
+        ));
+    }
+    Shape::Grid(Arc::new(grid))
 }
 
 fn closed_or_open(mesh: &Mesh, spacing: f32) -> Result<DistanceGrid, Error> {

@@ -57,17 +57,22 @@ impl Display {
         Some(Self { _turn: turn, server, name: format!(":{}", number.trim()) })
     }
 
-    /// Opens the program's window and waits for it.
-    pub fn open(&self, folder: &Path, arguments: &[&str]) -> Person {
-        let program = Command::new(env!("CARGO_BIN_EXE_strandline"))
+    /// The program on this display.
+    pub fn program(&self, folder: &Path, arguments: &[&str]) -> Command {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_strandline"));
+        program
             .args(arguments)
             .current_dir(folder)
             .env("DISPLAY", &self.name)
             .env_remove("WAYLAND_DISPLAY")
             // What the window remembers is this test's alone.
-            .env("XDG_DATA_HOME", folder.join("data"))
-            .spawn()
-            .unwrap();
+            .env("XDG_DATA_HOME", folder.join("data"));
+        program
+    }
+
+    /// Opens the program's window and waits for it.
+    pub fn open(&self, folder: &Path, arguments: &[&str]) -> Person {
+        let program = self.program(folder, arguments).spawn().unwrap();
         let (connection, screen) = x11rb::connect(Some(&self.name)).unwrap();
         let root = connection.setup().roots[screen].root;
         let mut person = Person { connection, root, window: 0, program, begin: Instant::now() };
@@ -175,7 +180,8 @@ impl Person {
         Screen(image.data.chunks_exact(4).map(|pixel| [pixel[2], pixel[1], pixel[0]]).collect())
     }
 
-    fn fake(&mut self, kind: u8, detail: u8, [x, y]: [i16; 2]) {
+    /// What the X server takes for a press of a key (2), a button (4), its release (3, 5), or a move (6).
+    pub fn fake(&mut self, kind: u8, detail: u8, [x, y]: [i16; 2]) {
         self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap();
         self.connection.flush().unwrap();
         // A person is not faster than this.
@@ -276,6 +282,20 @@ impl Person {
             assert!(begin.elapsed() < PATIENCE, "the window does not close");
             std::thread::sleep(Duration::from_millis(20));
         }
+    }
+}
+
+impl Person {
+    /// Whether the program still runs.
+    pub fn is_open(&mut self) -> bool {
+        self.program.try_wait().unwrap().is_none()
+    }
+
+    /// Memory of the program that is resident now \[MiB\].
+    pub fn memory(&self) -> u64 {
+        let text = std::fs::read_to_string(format!("/proc/{}/status", self.program.id())).unwrap();
+        let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+        line.split_whitespace().next().unwrap().parse::<u64>().unwrap() >> 10
     }
 }
 

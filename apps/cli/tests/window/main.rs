@@ -4,12 +4,16 @@
 
 mod display;
 mod drop;
+mod random_use;
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use display::{CONTROL, Display, Person, Screen};
 use strandline::{Picture, groom::StyleSettings};
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{ConfigureWindowAux, ConnectionExt};
 
 /// A scene that is drawn in no time. Its film has one frame, before anything has moved.
 const SCENE: &str = r#"
@@ -201,4 +205,48 @@ fn it_remembers_its_window() {
     let found = person.connection.get_geometry(person.window).unwrap().reply().unwrap();
     assert_eq!([found.width, found.height], [900, 600]);
     assert!(person.close().success());
+}
+
+#[test]
+fn it_may_be_wider_than_three_screens() {
+    let Some(display) = Display::start() else { return };
+    let (_keep, folder) = folder();
+    let mut person = open(&display, &folder);
+    for width in [8193, 11_520, 1280] {
+        let size = ConfigureWindowAux::new().width(width).height(300);
+        person.connection.configure_window(person.window, &size).unwrap();
+        person.connection.flush().unwrap();
+        // It is drawn at its new size some times.
+        std::thread::sleep(std::time::Duration::from_secs(2));
+        assert!(person.is_open(), "it ended at {width} pixels");
+    }
+}
+
+#[test]
+fn a_library_that_is_missing_is_named_with_its_package() {
+    let Some(display) = Display::start() else { return };
+    let (_keep, folder) = folder();
+    // Nothing that could be loaded, in a folder that the loader looks into first.
+    for name in ["libxkbcommon-x11.so.0", "libxkbcommon-x11.so"] {
+        std::fs::write(folder.join(name), b"").unwrap();
+    }
+    let run = |arguments: &[&str]| {
+        let mut program = display.program(&folder, arguments);
+        program.env("LD_LIBRARY_PATH", &folder);
+        program
+    };
+    let output = run(&["view", "small.toml"]).output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{error}");
+    for word in ["the library libxkbcommon-x11.so.0", "libxkbcommon-x11-0", "strandline render"] {
+        assert!(error.contains(word), "`{word}` is missing: {error}");
+    }
+    assert!(!error.contains("panicked"), "{error}");
+    // Without a command the demo takes over.
+    let mut demo = run(&[]).stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(demo.stderr.take().unwrap()).lines();
+    let told = lines.find(|line| line.as_ref().is_ok_and(|line| line.contains("strandline demo:")));
+    demo.kill().unwrap();
+    demo.wait().unwrap();
+    assert!(told.is_some(), "the demo does not take over");
 }

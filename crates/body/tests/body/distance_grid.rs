@@ -317,6 +317,65 @@ fn grids_have_limits() {
     for padding in [-1.0, f32::INFINITY] {
         assert!(refused(0.01, padding).to_string().contains("the padding"));
     }
-    assert!(matches!(refused(1e-4, 0.0), BodyError::GridTooLarge { cells: [2004, ..], .. }));
-    assert!(matches!(refused(1e-30, 0.0), BodyError::GridTooLarge { .. }));
+    // In millimetres, as it were.
+    let huge = ball(CENTER, 1e3 * RADIUS, 1);
+    let refused = DistanceGrid::from_mesh(&huge, SPACING, 0.0).unwrap_err();
+    assert!(matches!(refused, BodyError::GridTooLarge { cells: [50_000.., ..], .. }), "{refused}");
+}
+
+#[test]
+fn too_fine_a_grid_is_made_coarser() {
+    // A rod of 60 m and one cell across, and a cube of as many cells as one can count.
+    let rod = [Vec3::ZERO, Vec3::new(0.01, 0.0, 60.0), Vec3::new(0.0, 0.01, 60.0), Vec3::splat(0.01)];
+    let rod = Mesh::new(rod.to_vec(), vec![[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]).unwrap();
+    let grid = DistanceGrid::from_mesh(&rod, SPACING, 0.0).unwrap();
+    assert!((1020..=1024).contains(&grid.cells().z), "{}", grid.cells());
+    assert!(grid.spacing() > 14.0 * SPACING && grid.spacing() < 16.0 * SPACING, "{}", grid.spacing());
+    let grid = DistanceGrid::from_mesh(&ball(CENTER, RADIUS, 1), 1e-30, 0.0).unwrap();
+    let nodes = grid.nodes().len();
+    assert!(nodes <= 8 << 20 && nodes > 7 << 20, "{nodes}");
+}
+
+#[test]
+fn triangles_that_are_there_before_add_nothing() {
+    let once = ball(CENTER, RADIUS, 2);
+    let turned = once.triangles.iter().map(|&[a, b, c]| [c, a, b]);
+    let twice = once.triangles.iter().copied().chain(turned).chain(once.triangles.iter().copied()).collect();
+    let twice = Mesh::new(once.positions.clone(), twice).unwrap();
+    let [once, twice] = [&once, &twice].map(|mesh| DistanceGrid::from_mesh(mesh, 0.01, 0.0).unwrap());
+    assert!(once.nodes() == twice.nodes());
+}
+
+/// A cone of `count` thin triangles with its tip up, and as many at its base.
+fn cone(count: u32) -> Mesh {
+    let rim = |index: u32| {
+        let angle = std::f32::consts::TAU * index as f32 / count as f32;
+        CENTER + RADIUS * Vec3::new(angle.sin(), 0.0, angle.cos())
+    };
+    let mut positions: Vec<Vec3> = (0..count).map(rim).collect();
+    positions.extend([CENTER + RADIUS * Vec3::Y, CENTER]);
+    let sides = (0..count).flat_map(|index| {
+        let next = (index + 1) % count;
+        [[index, next, count], [next, index, count + 1]]
+    });
+    Mesh::new(positions, sides.collect()).unwrap()
+}
+
+#[test]
+fn thousands_of_thin_triangles_around_a_vertex_are_exact_near_the_surface() {
+    for count in [500, 20_000] {
+        let mesh = cone(count);
+        let grid = DistanceGrid::from_mesh(&mesh, SPACING, 0.02).unwrap();
+        let mut worst = [0.0_f64; 2];
+        for point in nodes(&grid).step_by(811) {
+            let (found, exact) = (f64::from(grid.distance(point)).abs(), distance_by_search(&mesh, point));
+            let is_far = exact > f64::from(SPACING);
+            worst[usize::from(is_far)] = worst[usize::from(is_far)].max((found - exact).abs());
+        }
+        // Single precision over the box.
+        assert!(worst[0] < 1e-6, "{count}: {worst:?}");
+        // Where thousands overlap, the search ends before it has made sure: far from the surface, by little.
+        let far = if count > 1000 { 0.05 * f64::from(SPACING) } else { 1e-6 };
+        assert!(worst[1] < far, "{count}: {worst:?}");
+    }
 }

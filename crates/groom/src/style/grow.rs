@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use strandline_base::memory::{self, Need};
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
 use super::comb::{Combed, Place, TIE_RADIUS, smooth};
@@ -41,9 +42,10 @@ impl StyleSettings {
     /// Grows the style on the built-in mannequin.
     ///
     /// # Errors
-    /// A setting outside its range.
+    /// A setting outside its range; more memory than may be taken.
     pub fn grow(&self) -> Result<Groom, GroomError> {
         self.validate()?;
+        memory::check(&[self.memory()])?;
         let mannequin = Mannequin::new();
         let roots = mannequin.scalp().roots(self.strand_count, self.seed);
         let strands: Vec<Strand> = roots
@@ -61,6 +63,15 @@ impl StyleSettings {
         groom.root_normals = Some(strands.iter().map(|strand| strand.root.normal).collect());
         groom.groups = Some(clumps);
         Ok(groom)
+    }
+}
+
+impl StyleSettings {
+    /// What growing takes at most: each strand as it is marched, shaped and at last a part of the groom.
+    pub fn memory(&self) -> Need {
+        let marched = 2 * (self.length / STEP).ceil() as u64;
+        let each = 12 * (marched + 2 * self.points() as u64) + 3 * size_of::<Strand>() as u64;
+        Need::new(format!("style.strand_count = {}", self.strand_count), self.strand_count as u64, each)
     }
 }
 

@@ -12,7 +12,9 @@ use crate::{
     body::Aabb,
     hair::{Studio, place},
     prepare::Prepared,
-    render::{Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
+    render::{
+        Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings, memory::check_lights,
+    },
     scene::{MotionSection, WindSection},
     sim::{SimError, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
@@ -252,7 +254,7 @@ impl Stage {
             Command::Look(look) => look.validate().map(|()| self.look = *look)?,
             Command::BodyLook(look) => look.validate().map(|()| self.studio.body_look = look)?,
             Command::Lights(lights) => {
-                lights.iter().try_for_each(Light::validate)?;
+                check_lights(&lights)?;
                 self.studio.lights = lights;
             }
             Command::LevelOfDetail(level) => level.validate().map(|()| self.level_of_detail = level)?,

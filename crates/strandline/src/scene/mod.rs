@@ -9,7 +9,7 @@ mod motion;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use strandline_base::{Group, Value, printable, read_plain, settings};
+use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
 pub use body::{BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
 pub use film::{CameraSection, FilmSection, View};
@@ -19,7 +19,7 @@ pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 use crate::{
     Backend, Devices, Error,
     groom::StyleSettings,
-    render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings},
+    render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, memory::MAX_LIGHTS},
     sim::Settings,
 };
 
@@ -46,7 +46,7 @@ settings! {
         motion: MotionSection = MotionSection::default();
         /// How the air moves.
         wind: WindSection = WindSection::default();
-        /// Solids beside the body.
+        /// Solids beside the body, at most 1,024.
         colliders: Vec<ColliderSection> = Vec::new();
         /// How hair moves. Without a groom file the default of `angles.hold` is that of the style.
         simulation: Settings = Settings::default();
@@ -59,7 +59,7 @@ settings! {
         level_of_detail: LevelOfDetail = LevelOfDetail::default();
         /// Where the picture is taken from.
         camera: CameraSection = CameraSection::default();
-        /// The lights; none named means three: a key and a rim with shadows, and a fill.
+        /// The lights, at most 64; none named means three: a key and a rim with shadows, and a fill.
         lights: Vec<Light> = Vec::new();
         /// Size and finish of a picture.
         picture: PictureSettings = PictureSettings::default();
@@ -74,6 +74,9 @@ settings! {
 }
 
 impl Scene {
+    /// Most solids beside the body: each point of the hair asks every one of them.
+    pub const MAX_COLLIDERS: usize = 1024;
+
     /// What a file does not give depends on what it gives: strands of a style bring what the style needs.
     /// Files of before `[devices]` name the devices elsewhere.
     fn prepare(&mut self, given: &<Self as Value>::Given) {
@@ -129,6 +132,14 @@ impl Scene {
     /// The first value that is outside its range, by its key; pictures that would take too much memory;
     /// keyframes that are none; what the GPU that it names cannot do.
     pub fn check(&self) -> Result<(), Error> {
+        for (key, count, most) in [
+            ("colliders", self.colliders.len(), Self::MAX_COLLIDERS),
+            ("lights", self.lights.len(), MAX_LIGHTS),
+        ] {
+            if count > most {
+                return Err(SettingError::new(key, count, format!("{most} at most")).into());
+            }
+        }
         self.check_as("")?;
         self.picture.validate()?;
         self.motion.motion(Vec3::ZERO)?;

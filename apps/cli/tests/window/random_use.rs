@@ -1,0 +1,81 @@
+//! A person without a plan: whatever mouse, keys, edges of the window and files do, the window stays, and its
+//! memory with it.
+
+use strandline::body::Random;
+use strandline::groom::StyleSettings;
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{ConfigureWindowAux, ConnectionExt};
+
+use crate::display::{Display, Person, SIZE};
+use crate::{folder, open};
+
+/// Seconds of use when the environment's STRANDLINE_RANDOM_USE says nothing else: a minute; most of it waits.
+const SECONDS: u64 = 60;
+/// How much memory \[MiB\] may be added after the first third, in which all that is dropped has been loaded
+/// once: buffers of larger windows, and what the allocator of each thread keeps.
+const ADDED: u64 = 250;
+/// X symbols: space, full stop, arrows, f, g, r, t, tab, escape, page up and down.
+const KEYS: [u32; 12] = [0x20, 0x2e, 0xff51, 0xff53, 0x66, 0x67, 0x72, 0x74, 0xff09, 0xff1b, 0xff55, 0xff56];
+const SIZES: [[u32; 2]; 6] = [[1280, 800], [640, 400], [1, 1], [3000, 700], [300, 2000], [9000, 200]];
+
+#[test]
+fn a_minute_of_random_use_ends_nothing_and_keeps_memory_flat() {
+    let Some(display) = Display::start() else { return };
+    let (_keep, folder) = folder();
+    let groom = StyleSettings { strand_count: 300, ..StyleSettings::default() }.grow().unwrap();
+    groom.save(folder.join("grown.hair")).unwrap();
+    std::fs::write(folder.join("bad.hair"), b"PK nothing").unwrap();
+    std::fs::write(folder.join("half.obj"), "v 0 0 0\nv 1 0 0\nv 0 1\nf 1 2 3\n").unwrap();
+    let files = ["small.toml", "grown.hair", "bad.hair", "half.obj", "nothing.toml"];
+    let seconds = std::env::var("STRANDLINE_RANDOM_USE").map_or(SECONDS, |text| text.parse().unwrap());
+    let mut person = open(&display, &folder);
+    let (mut random, mut actions, mut early) = (Random::new(3, 0), 0, None);
+    while person.begin.elapsed().as_secs() < seconds {
+        act(&mut person, &mut random, &|index| folder.join(files[index % files.len()]));
+        actions += 1;
+        assert!(person.is_open(), "it ended after {actions} actions");
+        if early.is_none() && person.begin.elapsed().as_secs() > seconds / 3 {
+            early = Some(person.memory());
+        }
+    }
+    let (early, late) = (early.unwrap(), person.memory());
+    println!("{actions} actions in {seconds} s: {early} MiB after a third, {late} MiB at the end");
+    assert!(late < early + ADDED, "{early} MiB became {late} MiB");
+    assert!(person.close().success());
+}
+
+fn act(person: &mut Person, random: &mut Random, file: &dyn Fn(usize) -> std::path::PathBuf) {
+    let mut below = |end: usize| (random.bits() as usize) % end;
+    let [here, there] = [(); 2].map(|()| [below(SIZE[0]) as i16, below(SIZE[1]) as i16]);
+    match below(16) {
+        0..=3 => {
+            person.point(here);
+            person.fake(4, 1, [0; 2]);
+            person.fake(5, 1, [0; 2]);
+        }
+        4..=6 => {
+            let button = [1, 1, 2, 3][below(4)];
+            person.point(here);
+            person.fake(4, button, [0; 2]);
+            person.point([(here[0] + there[0]) / 2, (here[1] + there[1]) / 2]);
+            person.point(there);
+            person.fake(5, button, [0; 2]);
+        }
+        7..=8 => {
+            let button = [4, 5][below(2)];
+            person.point(here);
+            for _ in 0..3 {
+                person.fake(4, button, [0; 2]);
+                person.fake(5, button, [0; 2]);
+            }
+        }
+        9..=12 => person.key(KEYS[below(KEYS.len())]),
+        13 => {
+            let [width, height] = SIZES[below(SIZES.len())];
+            let size = ConfigureWindowAux::new().width(width).height(height);
+            person.connection.configure_window(person.window, &size).unwrap();
+            person.connection.flush().unwrap();
+        }
+        _ => person.drop_file(&file(below(64))),
+    }
+}

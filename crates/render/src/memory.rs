@@ -1,0 +1,137 @@
+//! What a picture takes, and what more than one can draw.
+
+use strandline_base::{
+    SettingError,
+    memory::{self, Need},
+};
+
+use crate::cpu::ribbons::Segment;
+use crate::{DetailLevel, FrameInput, LevelOfDetail, Light, Look, PictureSettings, RenderError};
+
+/// Most lights of a picture: each point that is drawn asks every one of them.
+pub const MAX_LIGHTS: usize = 64;
+
+/// Points left to segments that are cut by the near plane.
+const CUT_POINTS: u64 = 1 << 22;
+/// Bytes of a drawn point: position, tangent, width and radiance; its place on the screen; its segment,
+/// sorted and listed in tiles.
+const POINT_BYTES: u64 = 40 + 16 + 80;
+/// Bytes of a guide's point: the smooth curve with its frame.
+const CURVE_BYTES: u64 = 36;
+/// Bytes of a shadow map's texel: layers and depths, and those that each of the threads fills.
+const TEXEL_BYTES: u64 = 24;
+const PART_BYTES: u64 = 16;
+
+/// What is drawn of a groom, as far as memory goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn<'a> {
+    /// Number of guides.
+    pub guide_count: usize,
+    /// Points on each.
+    pub points_per_strand: usize,
+    /// The hair's look.
+    pub look: &'a Look,
+    /// The lights.
+    pub lights: &'a [Light],
+    /// Size of the picture.
+    pub picture: &'a PictureSettings,
+}
+
+impl Drawn<'_> {
+    /// What drawing takes at full detail, an upper estimate.
+    pub fn memory(&self, level_of_detail: &LevelOfDetail) -> Vec<Need> {
+        self.needs(&level_of_detail.level(0.0, self.look.follow_strands))
+    }
+
+    fn points(&self, level: &DetailLevel) -> u64 {
+        let strands = (self.guide_count as u64).saturating_mul(level.strand_count() as u64);
+        strands.saturating_mul(level.segment_count(self.points_per_strand) as u64 + 1)
+    }
+
+    fn needs(&self, level: &DetailLevel) -> Vec<Need> {
+        let curve_points = level.segment_count(self.points_per_strand) as u64 + 1;
+        let follow_strands = self.look.follow_strands;
+        let drawn = format!("look.follow_strands = {follow_strands} on each of {} guides", self.guide_count);
+        let shadows = self.lights.iter().filter(|light| light.shadow).count() as u64;
+        let size = u64::from(self.look.shadow.map_size);
+        let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");
+        let texel = TEXEL_BYTES + PART_BYTES * crate::cpu::shadow_hair::part_count() as u64;
+        let PictureSettings { width, height, supersampling, .. } = self.picture;
+        let picture = format!("a picture of {width} x {height} pixels at supersampling {supersampling}");
+        vec![
+            Need::new(drawn, self.points(level), POINT_BYTES),
+            Need::new("curves", (self.guide_count as u64).saturating_mul(curve_points), CURVE_BYTES),
+            Need::new(maps, shadows * size * size, texel),
+            Need::new(picture, self.picture.memory(), 1),
+        ]
+    }
+
+    /// Refuses more than can be drawn on the CPU.
+    pub(crate) fn check(&self, level: &DetailLevel) -> Result<(), RenderError> {
+        let most = Segment::MAX_POINTS as u64 - CUT_POINTS;
+        let points = self.points(level);
+        if points > most {
+            let found = format!("{}, which makes {points} points", self.look.follow_strands);
+            let expected = "62914560 points in all at most";
+            return Err(SettingError::new("look.follow_strands", found, expected).into());
+        }
+        memory::check(&self.needs(level))?;
+        Ok(())
+    }
+}
+
+/// Refuses more lights than a picture may have.
+///
+/// # Errors
+/// More than [`MAX_LIGHTS`]; a light with a setting outside its range.
+pub fn check_lights(lights: &[Light]) -> Result<(), RenderError> {
+    if lights.len() > MAX_LIGHTS {
+        return Err(SettingError::new("lights", lights.len(), "64 at most").into());
+    }
+    lights.iter().try_for_each(Light::validate)
+}
+
+impl FrameInput<'_> {
+    /// Refuses more than can be drawn, before anything is allocated for it.
+    pub(crate) fn check_memory(
+        &self,
+        guide_count: usize,
+        points_per_strand: usize,
+        level: &DetailLevel,
+        picture: &PictureSettings,
+    ) -> Result<(), RenderError> {
+        let Self { look, lights, .. } = *self;
+        Drawn { guide_count, points_per_strand, look, lights, picture }.check(level)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_than_64_lights_are_refused() {
+        check_lights(&[Light::default(); MAX_LIGHTS]).unwrap();
+        let error = check_lights(&[Light::default(); MAX_LIGHTS + 1]).unwrap_err().to_string();
+        assert_eq!(error, "lights is 65, expected 64 at most");
+    }
+
+    #[test]
+    fn what_is_too_much_is_named_by_its_key() {
+        let look = Look { follow_strands: 1024, ..Look::brown() };
+        let maps = crate::Shadow { map_size: 4096, ..look.shadow };
+        let lights = [Light::default(); 32];
+        let (picture, full) = (PictureSettings::sized(64, 64), LevelOfDetail::full());
+        let drawn = |look: &Look, guide_count| {
+            let drawn =
+                Drawn { guide_count, points_per_strand: 16, look, lights: &lights, picture: &picture };
+            drawn.check(&full.level(0.0, look.follow_strands)).map_err(|error| error.to_string())
+        };
+        assert_eq!(drawn(&Look::brown(), 2000), Ok(()));
+        assert!(drawn(&look, 10_000).unwrap_err().starts_with("look.follow_strands is 1024"));
+        // 61 points on each of 900 x 1,024 strands are few enough to draw and too many for 8 GiB.
+        assert!(drawn(&look, 900).unwrap_err().starts_with("look.follow_strands = 1024 on each of 900"));
+        let look = Look { shadow: maps, ..Look::brown() };
+        assert!(drawn(&look, 10).unwrap_err().starts_with("look.shadow.map_size = 4096 for each of 32"));
+    }
+}

@@ -1,0 +1,26 @@
+//! What a whole scene takes, asked before anything of it is grown.
+
+use strandline_base::memory::{self, MemoryError};
+
+use crate::{
+    Error, Scene,
+    render::{Light, RenderError, memory::Drawn},
+};
+
+/// Refuses a scene of so many simulated strands that would take more memory than a run may.
+pub(crate) fn check(scene: &Scene, strand_count: usize) -> Result<(), Error> {
+    let points_per_strand = scene.groom.points_per_strand as usize;
+    let mut needs = scene.simulation.memory(strand_count, points_per_strand);
+    let default = [Light::default(); 3];
+    let lights = if scene.lights.is_empty() { &default } else { scene.lights.as_slice() };
+    let (look, picture) = (&scene.look, &scene.picture);
+    let drawn = Drawn { guide_count: strand_count, points_per_strand, look, lights, picture };
+    needs.extend(drawn.memory(&scene.level_of_detail));
+    Ok(memory::check(&needs)?)
+}
+
+impl From<MemoryError> for Error {
+    fn from(error: MemoryError) -> Self {
+        Self::Render(RenderError::TooMuch(error))
+    }
+}

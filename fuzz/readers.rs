@@ -1,0 +1,117 @@
+//! What must hold of any bytes, for every reader: fuzz targets and the test of the kept corpora share it.
+
+use strandline::Scene;
+use strandline::body::{DistanceGrid, Mesh, SignedDistance};
+use strandline::groom::format::{LoadOptions, Parsed, hair, prepare, tfx};
+use strandline::groom::{Groom, GroomError, Guides};
+
+/// A reader's target; whether it read the bytes.
+pub type Target = fn(&[u8]) -> bool;
+
+/// Every target by its name, which is also that of its folder of seeds.
+pub const TARGETS: [(&str, Target); 7] = [
+    ("hair", hair_file),
+    ("tfx", tfx_file),
+    ("obj", obj),
+    ("gltf", gltf),
+    ("scene", scene),
+    ("pose", pose),
+    ("grid", grid),
+];
+
+/// Strands and points that a pose is read for.
+const POSE: [usize; 2] = [2, 4];
+/// Length of a vector that is taken for a unit vector: single precision.
+const UNIT: f32 = 1e-3;
+
+/// A .hair file is read or refused; what was read can be written and read again.
+pub fn hair_file(bytes: &[u8]) -> bool {
+    groom(hair::read(bytes), |groom| hair::write(groom).map(|bytes| hair::read(&bytes).is_ok()))
+}
+
+/// A .tfx file, as a .hair file.
+pub fn tfx_file(bytes: &[u8]) -> bool {
+    groom(tfx::read(bytes), |groom| tfx::write(groom).map(|bytes| tfx::read(&bytes).is_ok()))
+}
+
+fn groom(parsed: Result<Parsed, GroomError>, again: impl Fn(&Groom) -> Result<bool, GroomError>) -> bool {
+    let lenient = LoadOptions { strict: false, ..LoadOptions::default() };
+    let Ok(loaded) = parsed.and_then(|parsed| prepare(parsed, &lenient)) else { return false };
+    assert!(loaded.groom.points.iter().all(|point| point.is_finite()));
+    let guides = Guides::resample(&loaded.groom, 4).expect("a groom with a strand");
+    assert!(guides.root_normals().iter().all(|normal| normal.is_finite()));
+    assert!(again(&loaded.groom).unwrap_or(true), "what was written is not read");
+    true
+}
+
+/// An OBJ file is read or refused; what was read is a mesh, and a solid where it is no larger than a body.
+pub fn obj(bytes: &[u8]) -> bool {
+    Mesh::from_obj(bytes).is_ok_and(|mesh| solid(&mesh))
+}
+
+/// A glTF file, as an OBJ file.
+pub fn gltf(bytes: &[u8]) -> bool {
+    Mesh::from_gltf(bytes).is_ok_and(|mesh| solid(&mesh))
+}
+
+fn solid(mesh: &Mesh) -> bool {
+    assert_eq!(mesh.normals.len(), mesh.positions.len());
+    assert!(mesh.positions.iter().all(|position| position.is_finite()));
+    assert!(mesh.normals.iter().all(|normal| (normal.length() - 1.0).abs() < UNIT));
+    let bounds = mesh.bounds().expect("a mesh has vertices");
+    let size = (bounds.max - bounds.min).max_element();
+    // Few cells: the readers are what is looked at.
+    if size > 1e-6 && size.is_finite() {
+        check_grid(mesh, size / 4.0);
+    }
+    true
+}
+
+/// Triangles of any places: their grid is finite and changes no faster than places do.
+pub fn grid(bytes: &[u8]) -> bool {
+    let Some((&count, rest)) = bytes.split_first() else { return false };
+    let count = usize::from(count) + 3;
+    let Some((places, corners)) = rest.split_at_checked(6 * count) else { return false };
+    let number = |pair: &[u8]| f32::from(i16::from_le_bytes([pair[0], pair[1]])) / 1024.0;
+    let vertex = |place: &[u8]| [&place[..2], &place[2..4], &place[4..]].map(number).into();
+    let positions = places.chunks_exact(6).map(vertex).collect();
+    let corner = |corner: u8| u32::from(corner) % count as u32;
+    let triangles = corners.chunks_exact(3).map(|three| [three[0], three[1], three[2]].map(corner)).collect();
+    Mesh::new(positions, triangles).is_ok_and(|mesh| {
+        let bounds = mesh.bounds().expect("a mesh has vertices");
+        check_grid(&mesh, ((bounds.max - bounds.min).max_element() / 12.0).max(1e-3));
+        true
+    })
+}
+
+fn check_grid(mesh: &Mesh, spacing: f32) {
+    let Ok(grid) = DistanceGrid::from_open_mesh(mesh, spacing, 0.0) else { return };
+    let spacing = grid.spacing();
+    let columns = grid.cells().x as usize + 1;
+    for row in grid.nodes().chunks(columns) {
+        assert!(row.iter().all(|node| node.is_finite()));
+        for pair in row.windows(2) {
+            let change = (pair[0].w.abs() - pair[1].w.abs()).abs();
+            // Rounding of two distances in single precision.
+            let rounding = 1e-5 * (pair[0].w.abs() + spacing);
+            assert!(change <= spacing + rounding, "{change} m over {spacing} m");
+        }
+    }
+    let (distance, gradient) = grid.distance_and_gradient(grid.origin() - 1.0);
+    assert!(distance.is_finite() && (gradient.length() - 1.0).abs() < UNIT);
+}
+
+/// A scene is read or refused; what was read can be written and read again, and is then the same.
+pub fn scene(bytes: &[u8]) -> bool {
+    let Ok(text) = std::str::from_utf8(bytes) else { return false };
+    let Ok(scene) = Scene::parse(text, "fuzzed") else { return false };
+    let written = scene.to_toml();
+    let again = Scene::parse(&written, "written").expect("what was written is read");
+    assert_eq!(again.to_toml(), written);
+    true
+}
+
+/// The pose of hair is read or refused.
+pub fn pose(bytes: &[u8]) -> bool {
+    strandline::check_pose(bytes, POSE).is_ok()
+}
