@@ -1,5 +1,6 @@
 //! Laws that any implementation has to keep.
 
+mod angles;
 mod contact;
 mod curl;
 mod free_strand;
@@ -12,6 +13,8 @@ mod poisson;
 mod recovery;
 mod shake;
 mod sintel;
+mod springs;
 mod strands;
 mod stretch;
 mod transfer;
+mod volume;
