@@ -1,9 +1,12 @@
-//! pictures
+//! What is drawn: its shape, its light, and whole pictures.
 
+mod clump;
 mod coverage;
+mod drawn;
 mod golden;
 mod grooms;
 mod opacity;
 mod screen;
 mod shading;
+mod terms;
 mod tessellation;
