@@ -1,5 +1,6 @@
 //! Laws that any implementation has to keep.
 
+mod angles;
 mod attributes;
 mod contact;
 mod curl;
@@ -14,6 +15,8 @@ mod poisson;
 mod recovery;
 mod shake;
 mod sintel;
+mod springs;
 mod strands;
 mod stretch;
 mod transfer;
+mod volume;

@@ -42,8 +42,9 @@ fn shaken(on: &On, settings: &Settings) -> f32 {
 
 law! {
     fn a_minute_of_violent_shaking_stays_bounded(on) {
-        // The head itself moves at up to 6.3 m/s. A whip of hair is a few times faster, not more.
-        let bound = (3.0 * 6.3_f32).powi(2);
+        // The head itself moves at up to 6.25 m/s; the mean over all hair is no faster than half as much again,
+        // though a tip may be. 4.5 and 6.0 m/s were seen.
+        let bound = (1.5 * 6.25_f32).powi(2);
         let default = shaken(on, &Settings::default());
         assert!(default < bound, "default settings: {default} m^2/s^2");
         let thesis = shaken(on, &Settings::thesis());

@@ -80,9 +80,12 @@ fn long_runs_agree_by_statistics() {
             state.positions.iter().flat_map(|lanes| (0..8).map(|lane| lanes.get(lane))).collect();
         points.iter().sum::<glam::Vec3>() / points.len() as f32
     };
-    // Hair of 20 cm that came to rest: its centre of mass lies within a few millimetres.
+    // Hair of 20 cm that came to rest. Single points may lie on the other side of an edge where solids meet; the mean
+    // over all was 0.5 mm, and the centres of mass lay 0.03 mm apart.
     let apart = (mean(&expected) - mean(&found)).length();
-    assert!(apart < 5e-3, "{apart}");
+    assert!(apart < 1e-3, "{apart}");
+    let apart = mean_apart(&expected.positions, &found.positions, &head.guides);
+    assert!(apart < 3e-3, "{apart}");
     for (energy, state) in energies.iter_mut().zip([&expected, &found]) {
         let speeds = state.velocities.iter().flat_map(|v| (0..8).map(|lane| v.get(lane).length_squared()));
         *energy = speeds.map(f64::from).sum();

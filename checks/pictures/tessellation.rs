@@ -2,10 +2,12 @@
 
 use glam::{DVec3, Quat, Vec3};
 use strandline_body::Pose;
+use strandline_checks::law;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::{Curves, Strands, interpolate, tessellate};
 use strandline_render::{DetailLevel, LevelOfDetail, Look};
 
+use crate::drawn::Drawn;
 use crate::grooms::arcs;
 
 const SPANS: usize = 5;
@@ -79,6 +81,33 @@ fn curves_follow_the_formula() {
         let [tip, _, _] = curves.point(guide, 20);
         assert!(root.distance(guides.position(guide, 0)) < 1e-7);
         assert!(tip.distance(guides.position(guide, SPANS)) < 1e-7);
+    }
+}
+
+law! {
+    fn tangents_are_the_derivative_of_the_curve(on) {
+        let look = Look { follow_strands: 1, ..Look::brown() };
+        let detail = LevelOfDetail::full();
+        let drawn = Drawn { guides: guides(37), look, lights: Vec::new(), eye: Vec3::Z, detail };
+        let [positions, tangents, _] = drawn.curves(on);
+        let count = 4 * SPANS + 1;
+        let greatest = |shift: f64| {
+            let mut greatest = 0.0f64;
+            for guide in 0..37 {
+                let controls = controls(&drawn.guides, guide);
+                for point in 0..count {
+                    let parameter = point as f64 / 4.0 + shift;
+                    let way = de_boor(&controls, parameter + 1e-5) - de_boor(&controls, parameter - 1e-5);
+                    let found = tangents[guide * count + point].as_dvec3();
+                    greatest = greatest.max(found.distance(way.normalize()));
+                }
+            }
+            greatest
+        };
+        assert_eq!(positions.len(), 37 * count);
+        // Control points of 0.3 m in single precision, 4 cm apart, and four products.
+        assert!(greatest(0.0) < 1e-5, "{}", greatest(0.0));
+        assert!(greatest(0.01) > 1e-4, "the derivative at another parameter is not noticed");
     }
 }
 

@@ -1,4 +1,5 @@
 //! The thesis's own examples, and what is cited from its text.
 
 mod citations;
+mod scene;
 mod sort;

@@ -1,9 +1,10 @@
-//! Project chores: `cargo xtask test | ci | bless | docs | names`.
+//! Project chores: `cargo xtask test | ci | bless | docs | names | faults`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
 mod adapter;
+mod faults;
 mod names;
 mod run;
 
@@ -19,15 +20,21 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   ci       test --setup
   bless    record the golden pictures anew; look at each before you commit it
   docs     write docs/scene.md from the settings table
-  names    check that every stage has one name everywhere";
+  names    check that every stage has one name everywhere
+  faults   plant the faults of checks/faults in a copy of the tree, one after the other, and run
+           the tests that have to see each. Results are kept: a run that was broken off goes on,
+           and a fault with a result for the tree as it is is not run again unless it is named.
+           [NAME..] these only, --cpu without the tests on a GPU, --list names and meanings,
+           --table the page docs/faults.md";
 
 /// What to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 enum Chore {
     Test { setup: bool },
     Bless,
     Docs,
     Names,
+    Faults(faults::Wish),
     Help,
 }
 
@@ -39,6 +46,7 @@ fn main() -> ExitCode {
         Some(Chore::Bless) => run::bless(),
         Some(Chore::Docs) => run::docs(),
         Some(Chore::Names) => names::check(),
+        Some(Chore::Faults(wish)) => faults::faults(&wish),
         Some(Chore::Help) => {
             println!("{USAGE}");
             true
@@ -62,6 +70,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["bless"] => Some(Chore::Bless),
         ["docs"] => Some(Chore::Docs),
         ["names"] => Some(Chore::Names),
+        ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
         _ => None,
     }
 }

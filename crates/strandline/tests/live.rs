@@ -246,11 +246,16 @@ fn of_two_scenes_on_their_way_the_last_one_stays() {
     let (mut slow, mut fast) = (scene(), scene());
     slow.body.spacing = 0.004;
     (slow.style.strand_count, fast.style.strand_count) = (300, 30);
+    // How long the slow one takes by itself.
+    let begin = Instant::now();
+    strandline::Prepared::new(&slow).unwrap();
+    let needed = begin.elapsed();
+    let told = Instant::now();
     live.tell(Command::Load(Box::new(slow)));
     live.tell(Command::Load(Box::new(fast)));
     wait(|| live.take_shown().filter(|shown| shown.drawing.strands == 30));
-    // Long enough for the other one, which is left out without a word.
-    std::thread::sleep(Duration::from_secs(3));
+    // Long enough for the other one, which is left out without a word: five times what it needs.
+    std::thread::sleep((5 * needed).saturating_sub(told.elapsed()));
     let shown = live.take_shown();
     assert!(shown.is_none_or(|shown| shown.drawing.strands == 30));
     assert_eq!(live.take_news().iter().filter(|news| matches!(news, News::Loaded(..))).count(), 1);
