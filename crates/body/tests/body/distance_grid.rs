@@ -320,7 +320,7 @@ fn grids_have_limits() {
     // In millimetres, as it were.
     let huge = ball(CENTER, 1e3 * RADIUS, 1);
     let refused = DistanceGrid::from_mesh(&huge, SPACING, 0.0).unwrap_err();
-    assert!(matches!(refused, BodyError::GridTooLarge { cells: [50_000.., ..], .. }), "{refused}");
+    assert!(matches!(refused, BodyError::GridTooLarge { cells, .. } if cells[0] >= 50_000), "{refused}");
 }
 
 #[test]

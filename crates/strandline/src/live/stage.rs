@@ -12,9 +12,7 @@ use crate::{
     body::Aabb,
     hair::{Studio, place},
     prepare::Prepared,
-    render::{
-        Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings, memory::check_lights,
-    },
+    render::{Camera, FrameReport, LevelOfDetail, Look, Picture, PictureSettings, memory::check_lights},
     scene::{MotionSection, WindSection},
     sim::{SimError, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
