@@ -8,7 +8,7 @@ use crate::{Aabb, BodyError, Mesh, SignedDistance, mesh_distance};
 
 /// Most work that a mesh may be, and how much coarser a grid becomes while it is more: only triangles that
 /// cover the box around them many times are.
-const MOST_WORK: f64 = 4e8;
+const MOST_WORK: f64 = 1e8;
 const COARSER: f32 = 1.4;
 
 /// Signed distance sampled on a regular grid and interpolated trilinearly.
@@ -79,11 +79,14 @@ impl DistanceGrid {
     fn from_closed(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         let bounds = mesh.bounds().unwrap_or(Aabb { min: Vec3::ZERO, max: Vec3::ZERO });
         let mut lattice = Lattice::around(bounds, spacing, padding)?;
-        while mesh_distance::work(mesh, lattice.spacing) > MOST_WORK
-            && let Ok(coarser) = Lattice::around(bounds, COARSER * lattice.spacing, padding)
-            && coarser.spacing <= Lattice::COARSEST
-        {
-            lattice = coarser;
+        while mesh_distance::work(mesh, lattice.spacing) > MOST_WORK {
+            lattice = Lattice::around(bounds, COARSER * lattice.spacing, padding)?;
+            if lattice.spacing > Lattice::COARSEST.max(spacing) {
+                return Err(BodyError::BadMesh {
+                    found: format!("{} triangles that cover its box many times", mesh.triangles.len()),
+                    expected: "a surface",
+                });
+            }
         }
         Ok(Self::from_distances(lattice, &mesh_distance::at_nodes(mesh, &lattice)))
     }

@@ -14,7 +14,7 @@ use crate::triangle_tree::{Nearest, TriangleTree};
 /// Triangles that are looked at for all nodes together, and for each node, on the average: far more than
 /// meshes of bodies need. Where triangles overlap so much that it does not suffice, as thousands of thin
 /// ones that meet in one vertex, what is found beyond [`REACH`] of the surface may be further than the nearest.
-const LOOKS: u64 = 200_000_000;
+const LOOKS: u64 = 100_000_000;
 const LOOKS_OF_A_NODE: u64 = 32;
 
 /// Signed distance \[m\] at each node, in the order of storage.
@@ -83,14 +83,14 @@ fn nearest_in_slab(
     nearest
 }
 
-/// How much work a mesh is at a spacing \[m\], in triangles that are looked at: those of no size count for
-/// the nodes around them, long and large ones for the cells that they pass.
+/// How much work the extent of triangles is at a spacing \[m\], in nodes that look at one: long and large
+/// triangles pass many cells.
 pub(crate) fn work(mesh: &Mesh, spacing: f32) -> f64 {
     let of = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize].as_dvec3());
         let longest = (b - a).length().max((c - b).length()).max((a - c).length()) / f64::from(spacing);
         let area = (b - a).cross(c - a).length() / f64::from(spacing).powi(2);
-        40.0 * (1.0 + 0.5 * longest + 0.25 * area)
+        40.0 * (0.5 * longest + 0.25 * area)
     };
     mesh.triangles.iter().map(of).sum()
 }

@@ -129,8 +129,8 @@ mod tests {
         };
         assert_eq!(drawn(&Look::brown(), 2000), Ok(()));
         assert!(drawn(&look, 10_000).unwrap_err().starts_with("look.follow_strands is 1024"));
-        // 61 points on each of 900 x 1,024 strands are few enough to draw and too many for 8 GiB.
-        assert!(drawn(&look, 900).unwrap_err().starts_with("look.follow_strands = 1024 on each of 900"));
+        // 61 points on each of 1,000 x 1,024 strands are few enough to draw and too many for 8 GiB.
+        assert!(drawn(&look, 1000).unwrap_err().starts_with("look.follow_strands = 1024 on each of 1000"));
         let look = Look { shadow: maps, ..Look::brown() };
         assert!(drawn(&look, 10).unwrap_err().starts_with("look.shadow.map_size = 4096 for each of 32"));
     }
