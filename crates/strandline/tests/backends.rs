@@ -381,7 +381,7 @@ fn mic0_is_for_the_cpu_and_auto_takes_it_there() {
 fn a_scene_names_its_backend() {
     let scene = Scene::parse("[simulation]\nbackend = \"gpu:2\"\n", "test").unwrap();
     assert_eq!(scene.devices.simulation, Backend::Gpu(Some(2)));
-    assert!(scene.to_toml().contains("backend = \"gpu:2\""));
+    assert!(scene.to_toml().contains("simulation = \"gpu:2\""));
     let error = Scene::parse("[simulation]\nbackend = \"cuda\"\n", "test").unwrap_err().to_string();
     assert!(error.contains("expected auto, cpu, gpu"), "{error}");
 }
