@@ -276,7 +276,7 @@ law! {
         let settings = Settings { volume: settings, ..Settings::default() };
         let solver = Solver::with_rest(&guides, rest, |_, point| point == 3, &settings, Vec::new()).unwrap();
         let state = solver.rest_state(Pose::IDENTITY);
-        let given = |point: usize| Vec3::Y * if point % 2 == 0 { 1.0 } else { -1.0 };
+        let given = |point: usize| Vec3::Y * if point.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut velocities = state.velocities.clone();
         (0..POINTS).for_each(|point| (0..LANES).for_each(|lane| velocities[point].set(lane, given(point))));
         let found = match on {
