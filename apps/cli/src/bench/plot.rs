@@ -31,7 +31,7 @@ struct Machine {
     threads: usize,
 }
 
-/// Largest file of measurements [byte]: they have some thousand.
+/// Largest file of measurements \[byte\]: they have some thousand.
 const MOST: u64 = 16 << 20;
 
 /// What is plotted of `bench thesis`.
