@@ -243,8 +243,8 @@ fn a_library_that_is_missing_is_named_with_its_package() {
     }
     assert!(!error.contains("panicked"), "{error}");
     // Without a command the demo takes over.
-    let mut demo = run(&[]).stderr(std::process::Stdio::piped()).spawn().unwrap();
-    let mut lines = BufReader::new(demo.stderr.take().unwrap()).lines();
+    let mut demo = run(&[]).stdout(std::process::Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(demo.stdout.take().unwrap()).lines();
     let told = lines.find(|line| line.as_ref().is_ok_and(|line| line.contains("strandline demo:")));
     demo.kill().unwrap();
     demo.wait().unwrap();
