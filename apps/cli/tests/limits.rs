@@ -88,7 +88,8 @@ fn strands_points_and_segments_at_their_most() {
     let strands = render("style.strand_count = 8000000\ngroom.points_per_strand = 64");
     refused(&strands, &["look.follow_strands = 16 on each of 8000000 guides"]);
     let folder = tempfile::tempdir().unwrap();
-    let grown = limited(folder.path(), &["groom", "--style", "long", "--strands", "8000000", "--out", "long.hair"]);
+    let grown =
+        limited(folder.path(), &["groom", "--style", "long", "--strands", "8000000", "--out", "long.hair"]);
     refused(&grown, &["style.strand_count = 8000000"]);
 }
 

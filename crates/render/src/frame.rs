@@ -277,12 +277,16 @@ mod tests {
         assert_eq!((opacity.width, opacity.height), (look.shadow.map_size, look.shadow.map_size));
         let greys = |picture: &Picture| picture.pixels.iter().step_by(3).copied().collect::<Vec<u8>>();
         let (opacity, depth) = (greys(&opacity), greys(&depth));
-        // The strand crosses the 512 texels of the map but for a border; what has no depth has no hair.
-        assert!(depth.iter().filter(|&&grey| grey > 0).count() >= 500);
+        // The window leaves room to move, so that it keeps its texels: the strand crosses 194 of the 512 here.
+        // What has no depth has no hair.
+        let count = depth.iter().filter(|&&grey| grey > 0).count();
+        assert!(count >= 180, "{count}");
         assert!(opacity.iter().zip(&depth).all(|(opacity, depth)| (*opacity > 0) == (*depth > 0)));
         // White is its nearest point, 0.15 its farthest.
         assert_eq!(depth.iter().max(), Some(&255));
-        assert_eq!(depth.iter().filter(|&&grey| grey > 0).min(), Some(&38));
+        // A texel shows its nearest hair, so the farthest may be a grey nearer than 38.
+        let farthest = depth.iter().filter(|&&grey| grey > 0).min();
+        assert!(matches!(farthest, Some(38 | 39)), "{farthest:?}");
         for light in [1, 2] {
             assert!(renderer.opacity_map(light).is_none() && renderer.depth_map(light).is_none());
         }
