@@ -13,6 +13,7 @@ mod lengths;
 mod pendulum;
 mod poisson;
 mod recovery;
+mod rods;
 mod shake;
 mod sintel;
 mod springs;

@@ -19,11 +19,15 @@ mod settings;
 mod solver;
 mod state;
 mod step;
+pub mod strands;
 
 pub use clock::{Clock, Ticks};
 pub use error::SimError;
 pub use report::{PressureReport, StepReport};
-pub use settings::{Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, VolumeSettings};
+pub use settings::{
+    Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, StrandMethod, StrandSettings,
+    VolumeSettings,
+};
 pub use solver::Solver;
 pub use state::{Drive, State};
 pub use strandline_gpu::Backend;

@@ -3,6 +3,7 @@ use strandline_base::{Group, choices, settings};
 use strandline_gpu::Backend;
 
 use crate::SimError;
+use crate::strands::rods::settings::RodSettings;
 
 settings! {
     /// How hair moves.
@@ -33,6 +34,8 @@ settings! {
         angles: Angles = Angles::default();
         /// The pass that makes lengths exact.
         length_pass: LengthPass = LengthPass::default();
+        /// What moves a strand within a step.
+        strands: StrandSettings = StrandSettings::default();
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
         moved { backend: Backend => "devices.simulation" }
@@ -40,6 +43,14 @@ settings! {
 }
 
 impl Settings {
+    /// Mass of hair per length \[kg/m\]: that of the material of rods, or `mass_per_length`.
+    pub fn line_density(&self) -> f32 {
+        match self.strands.method {
+            StrandMethod::Constrain => self.mass_per_length,
+            StrandMethod::Rods => self.strands.rods.mass_per_length(),
+        }
+    }
+
     /// Share that a rate \[1/s\] takes in a step.
     pub(crate) fn taken(&self, rate: f32) -> f32 {
         -(-rate * self.time_step).exp_m1()
@@ -62,6 +73,27 @@ impl Settings {
     pub fn check(&self) -> Result<(), SimError> {
         Ok(self.check_as("simulation")?)
     }
+}
+
+settings! {
+    /// What moves a strand within a step.
+    pub struct StrandSettings: Copy {
+        /// How strands are solved.
+        method: StrandMethod = StrandMethod::default();
+        /// Material and solve of rods.
+        rods: RodSettings = RodSettings::default();
+    }
+}
+
+choices! {
+    /// How strands are solved.
+    pub enum StrandMethod as "simulation.strands.method" {
+        /// Springs and rounds of constraints [Chen2011 §4].
+        Constrain = "constrain",
+        /// Rods, which bend and twist by physics and keep their style; on the CPU only.
+        Rods = "rods",
+    }
+    default Constrain
 }
 
 settings! {

@@ -8,7 +8,8 @@ use crate::cpu::contacts::Contacts;
 use crate::grab::Grab;
 use crate::masses::Masses;
 use crate::state::Scratch;
-use crate::{Drive, Settings, SimError, State, StepReport};
+use crate::strands::rods::model::Rods;
+use crate::{Drive, Settings, SimError, State, StepReport, StrandMethod};
 
 /// The compiled solver: rest shape, settings and colliders. It does not change while time passes.
 #[derive(Clone)]
@@ -34,6 +35,8 @@ pub struct Solver {
     weighed: bool,
     /// Velocities at the beginning \[m/s\], head space, shape `[block][point]` of lanes; empty at rest.
     velocities: Vec<Vec3Lanes>,
+    /// None with another strand solver.
+    pub(crate) rods: Option<Rods>,
 }
 
 /// Masses at the mass per length that a solver was compiled with.
@@ -56,7 +59,7 @@ impl Solver {
     /// # Errors
     /// A setting outside its range; more memory than may be taken.
     pub fn new(guides: &Guides, settings: &Settings, colliders: Vec<Collider>) -> Result<Self, SimError> {
-        let rest = RestShape::new(guides, settings.mass_per_length);
+        let rest = RestShape::new(guides, settings.line_density());
         Self::with_rest(guides, rest, |_, point| point < Self::ROOTED_POINTS, settings, colliders)
     }
 
@@ -91,7 +94,7 @@ impl Solver {
             clearance(&colliders, guides.positions()[index].get(lane))
         });
         let compiled = Compiled {
-            mass_per_length: settings.mass_per_length,
+            mass_per_length: settings.line_density(),
             mass: rest.mass.clone(),
             inverse_mass: inverse_mass.clone(),
         };
@@ -108,7 +111,26 @@ impl Solver {
             compiled,
             weighed: guides.masses().is_some(),
             velocities: velocities(guides, &rooted),
-        })
+            rods: None,
+        }
+        .with_rods())
+    }
+
+    /// Compiles the rods, where the settings ask for them.
+    fn with_rods(mut self) -> Self {
+        let settings = &self.settings.strands;
+        self.rods = match settings.method {
+            StrandMethod::Constrain => None,
+            StrandMethod::Rods => {
+                Some(Rods::new(&self, &settings.rods.material().section(), settings.rods.rest))
+            }
+        };
+        self
+    }
+
+    /// The compiled rods; none with another strand solver.
+    pub fn rods(&self) -> Option<&Rods> {
+        self.rods.as_ref()
     }
 
     /// The settings.
@@ -124,8 +146,8 @@ impl Solver {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check()?;
         memory::check(&settings.memory(self.strand_count, self.points_per_strand))?;
-        if settings.mass_per_length != self.settings.mass_per_length && !self.weighed {
-            let factor = settings.mass_per_length / self.compiled.mass_per_length;
+        if settings.line_density() != self.settings.line_density() && !self.weighed {
+            let factor = settings.line_density() / self.compiled.mass_per_length;
             let scale = |into: &mut [Lanes], from: &[Lanes], factor: f32| {
                 for (into, from) in into.iter_mut().zip(from) {
                     *into = Lanes(from.0.map(|value| value * factor));
@@ -134,7 +156,11 @@ impl Solver {
             scale(&mut self.rest.mass, &self.compiled.mass, factor);
             scale(&mut self.inverse_mass, &self.compiled.inverse_mass, 1.0 / factor);
         }
+        let same = self.settings.strands == settings.strands && self.settings.gravity == settings.gravity;
         self.settings = settings.clone();
+        if !same {
+            *self = self.clone().with_rods();
+        }
         Ok(())
     }
 
@@ -175,7 +201,14 @@ impl Solver {
             self.positions.par_iter().map(|lanes| carried(lanes, &world_from_head)).collect();
         let blocks = positions.len() / self.points_per_strand;
         let turn = Pose { translation: Vec3::ZERO, ..world_from_head };
+        let rods = self.rods.as_ref().map_or(0, |rods| rods.sections.len());
         State {
+            sections: self
+                .rods
+                .iter()
+                .flat_map(|rods| rods.sections.iter().map(|l| carried(l, &turn)))
+                .collect(),
+            spins: vec![Lanes::default(); rods],
             corrections: vec![Vec3Lanes::default(); positions.len()],
             velocities: if self.velocities.is_empty() {
                 vec![Vec3Lanes::default(); positions.len()]

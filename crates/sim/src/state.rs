@@ -50,6 +50,11 @@ pub struct State {
     pub corrections: Vec<Vec3Lanes>,
     /// Positions \[m\] one step ago, world space, shape `[block][point]` of lanes.
     pub previous_positions: Vec<Vec3Lanes>,
+    /// First axis of the section of each segment of a rod, world space, shape `[block][point]` of
+    /// lanes; empty without rods.
+    pub sections: Vec<Vec3Lanes>,
+    /// How fast each section turns beside its segment \[rad/s\], shape as above.
+    pub spins: Vec<Lanes>,
     /// Pose of the head now.
     pub world_from_head: Pose,
     /// Time \[s\].
@@ -134,6 +139,9 @@ impl State {
         let refuse = |found: String, expected: &str| {
             Err(SettingError::new("the length scale", found, expected).into())
         };
+        if solver.rods.is_some() && scales.iter().any(|scale| *scale != 1.0) {
+            return refuse("set for rods".to_owned(), "1 with simulation.strands.method = \"rods\"");
+        }
         if scales.len() != solver.strand_count {
             return refuse(format!("given for {} strands", scales.len()), "one for each strand");
         }

@@ -12,6 +12,7 @@ use crate::cpu::solve_pressure::solve_pressure;
 use crate::cpu::splat::splat;
 use crate::cpu::{Obstacles, Volume};
 use crate::masses::Masses;
+use crate::strands::rods::step::solve_rods;
 use crate::{Drive, Solver, State, StepReport};
 
 /// Advances a state by one step [Chen2011 §4, fig. 11-12].
@@ -30,8 +31,12 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
     let mut report = StepReport::default();
     let seconds = &mut report.seconds;
     timed(seconds, "pose_roots", || pose_roots(solver, state, &drive.world_from_head));
-    timed(seconds, "integrate", || integrate(solver, state, drive.wind));
-    let non_finite = timed(seconds, "constrain", || constrain(solver, state, &obstacles));
+    let non_finite = if let Some(rods) = &solver.rods {
+        timed(seconds, "rods", || solve_rods(solver, rods, state, &obstacles, drive.wind))
+    } else {
+        timed(seconds, "integrate", || integrate(solver, state, drive.wind));
+        timed(seconds, "constrain", || constrain(solver, state, &obstacles))
+    };
     if let Some(mut volume) = volume(solver, state) {
         let (positions, velocities) = (&state.scratch.predicted, &mut state.velocities);
         let masses = &state.scratch.masses.mass;

@@ -23,7 +23,9 @@ use crate::{
 /// Its file holds four tensors of the safetensors format, 32-bit floats: `positions` \[m\], `velocities`
 /// \[m/s\] and `corrections`, what the next prediction adds to them \[m/s\], world space, shape
 /// `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and a translation
-/// \[m\]. A file without `corrections` has none. `safetensors.numpy.load_file` reads it.
+/// \[m\]. A file without `corrections` has none. With rods it holds `sections`,
+/// the first axis of the section of each segment, world space, shape `[strand][point][3]`, and `spins`, how
+/// fast it turns \[rad/s\], shape `[strand][point]`. `safetensors.numpy.load_file` reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HairPose {
     /// Strands, and points of each.
@@ -32,6 +34,9 @@ pub(crate) struct HairPose {
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
     corrections: Vec<Vec3>,
+    /// How the sections of rods are turned, and how fast \[rad/s\]; empty without rods.
+    sections: Vec<Vec3>,
+    spins: Vec<f32>,
     world_from_head: Pose,
 }
 
@@ -51,11 +56,19 @@ impl HairPose {
                 .map(|(strand, point)| lanes[strand / LANES * points + point].get(strand % LANES))
                 .collect()
         };
+        let spins = (0..strands)
+            .flat_map(|strand| (0..points).map(move |point| (strand, point)))
+            .map_while(|(strand, point)| {
+                state.spins.get(strand / LANES * points + point).map(|lanes| lanes.0[strand % LANES])
+            })
+            .collect();
         Self {
             shape,
             positions: each(positions),
             velocities: each(&state.velocities),
             corrections: each(&state.corrections),
+            sections: if state.sections.is_empty() { Vec::new() } else { each(&state.sections) },
+            spins: if state.spins.is_empty() { Vec::new() } else { spins },
             world_from_head: *world_from_head,
         }
     }
@@ -75,6 +88,12 @@ impl HairPose {
                 state.positions[index].set(lane, self.positions[from]);
                 state.velocities[index].set(lane, self.velocities[from]);
                 state.corrections[index].set(lane, self.corrections[from]);
+                if let (Some(section), Some(spin)) = (self.sections.get(from), self.spins.get(from))
+                    && index < state.sections.len()
+                {
+                    state.sections[index].set(lane, *section);
+                    state.spins[index].0[lane] = *spin;
+                }
             }
         }
         state.previous_positions.clone_from(&state.positions);
@@ -101,12 +120,17 @@ impl HairPose {
         let head = [&rotation.to_array()[..], &translation.to_array()[..]].concat();
         let [strands, points] = self.shape;
         let mut tensors = Vec::new();
-        for (name, shape, numbers) in [
+        let mut parts = vec![
             ("positions", vec![strands, points, 3], numbers(&self.positions)),
             ("velocities", vec![strands, points, 3], numbers(&self.velocities)),
             ("corrections", vec![strands, points, 3], numbers(&self.corrections)),
             ("world_from_head", vec![7], head),
-        ] {
+        ];
+        if !self.sections.is_empty() {
+            parts.push(("sections", vec![strands, points, 3], numbers(&self.sections)));
+            parts.push(("spins", vec![strands, points], self.spins.clone()));
+        }
+        for (name, shape, numbers) in parts {
             check(name, &numbers).map_err(std::io::Error::other)?;
             tensors.push((name, shape, numbers.into_iter().flat_map(f32::to_le_bytes).collect::<Vec<u8>>()));
         }
@@ -137,6 +161,7 @@ impl HairPose {
             let numbers = numbers(&tensors, name, &[strands, points, 3])?;
             Ok::<_, String>(numbers.chunks_exact(3).map(Vec3::from_slice).collect())
         };
+        let rods = tensors.names().contains(&"sections");
         let head = numbers(&tensors, "world_from_head", &[7])?;
         // As it is, to the bit: what is drawn is then what was.
         let rotation = Quat::from_slice(&head[..4]);
@@ -153,6 +178,8 @@ impl HairPose {
             } else {
                 vec![Vec3::ZERO; strands * points]
             },
+            sections: if rods { vectors("sections")? } else { Vec::new() },
+            spins: if rods { numbers(&tensors, "spins", &[strands, points])? } else { Vec::new() },
             world_from_head,
         })
     }
@@ -191,7 +218,7 @@ fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
 
 /// Reads no more than a pose of this shape needs.
 fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, String> {
-    let most = HEADER + (strands * points * 36) as u64;
+    let most = HEADER + (strands * points * 52) as u64;
     read_plain(path, most).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
             format!("larger than {strands} strands of {points} points can be ({most} bytes)")
@@ -218,6 +245,8 @@ mod tests {
             positions: (0..count).map(value).collect(),
             velocities: (0..count).map(|index| -value(index)).collect(),
             corrections: (0..count).map(|index| 0.1 * value(index)).collect(),
+            sections: Vec::new(),
+            spins: Vec::new(),
             world_from_head: Pose {
                 rotation: Quat::from_rotation_y(1.2),
                 translation: Vec3::new(0.3, 0.1, 0.0),

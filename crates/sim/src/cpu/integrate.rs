@@ -83,7 +83,7 @@ impl Strand<'_> {
 }
 
 /// What acts on every point alike.
-struct Fall {
+pub(crate) struct Fall {
     time_step: f32x8,
     gravity: Vec3x8,
     wind: Vec3x8,
@@ -95,16 +95,30 @@ struct Fall {
 
 impl Fall {
     fn new(solver: &Solver, wind: Vec3) -> Self {
+        Self::for_time(solver, solver.settings.time_step, wind)
+    }
+
+    /// For a time \[s\] that is a part of a step.
+    pub(crate) fn for_time(solver: &Solver, time_step: f32, wind: Vec3) -> Self {
         let settings = &solver.settings;
-        let time_step = settings.time_step;
+        let taken = |rate: f32| -(-rate * time_step).exp_m1();
         Self {
             time_step: splat(time_step),
             gravity: Vec3x8::splat(settings.gravity * time_step),
             wind: Vec3x8::splat(wind),
-            across: splat(settings.taken(settings.drag.across)),
-            along: splat(settings.taken(settings.drag.along)),
-            kept: splat(1.0 - settings.taken(settings.damping)),
+            across: splat(taken(settings.drag.across)),
+            along: splat(taken(settings.drag.along)),
+            kept: splat(1.0 - taken(settings.damping)),
         }
+    }
+
+    /// Velocities \[m/s\] after gravity, the air and a kick, of points with a tangent.
+    #[inline(always)]
+    pub(crate) fn velocity(&self, before: Vec3x8, tangent: Vec3x8, kick: Vec3x8) -> Vec3x8 {
+        let pushed = before + self.gravity + kick;
+        let relative = self.wind - pushed;
+        let along = tangent * (tangent.dot(relative) / (tangent.dot(tangent) + splat(1e-30)));
+        (pushed + (relative - along) * self.across + along * self.along) * self.kept
     }
 
     fn predict(
@@ -120,13 +134,9 @@ impl Fall {
         for point in 0..=last {
             let free = load(&inverse_mass[point]).simd_gt(splat(0.0));
             let before = Vec3x8::load(&velocities[point]);
-            let pushed = before + self.gravity + kicks[point];
             let tangent = Vec3x8::load(&positions[last.min(point + 1)])
                 - Vec3x8::load(&positions[point.saturating_sub(1)]);
-            let relative = self.wind - pushed;
-            let along = tangent * (tangent.dot(relative) / (tangent.dot(tangent) + splat(1e-30)));
-            let dragged = pushed + (relative - along) * self.across + along * self.along;
-            let velocity = (dragged * self.kept).or(free, before);
+            let velocity = self.velocity(before, tangent, kicks[point]).or(free, before);
             velocity.store(&mut velocities[point]);
             let ahead = velocity + Vec3x8::load(&corrections[point]);
             let end = Vec3x8::load(&positions[point]) + ahead * self.time_step;

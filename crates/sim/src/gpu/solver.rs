@@ -7,7 +7,7 @@ use super::{
     GpuState, advance, constrain, gather, integrate, lengths_alone, mark, pcg, pose_roots, solve_pressure,
     splat,
 };
-use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport};
+use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport, StrandMethod};
 use strandline_gpu::Scan;
 
 /// A solver whose stages run on a GPU.
@@ -135,6 +135,14 @@ impl Settings {
     /// A preconditioner that is a chain from cell to cell; more iterations than a driver lets a kernel take.
     pub fn check_on_gpu(&self) -> Result<(), SimError> {
         let refuse = |key, found: String, expected: &str| Err(SettingError::new(key, found, expected).into());
+        if self.strands.method == StrandMethod::Rods {
+            let key = "simulation.strands.method";
+            return refuse(
+                key,
+                "rods on a GPU".into(),
+                "constrain there, or rods on the CPU (`--sim-device cpu`)",
+            );
+        }
         if self.volume.preconditioner == Preconditioner::Mic0 {
             let found = "mic0, which is a chain from cell to cell".to_owned();
             let expected = "auto, chebyshev, jacobi or none on a GPU";

@@ -1,0 +1,3 @@
+//! Strand solvers: how a strand bends, twists and keeps its length within a step.
+
+pub mod rods;

@@ -1,0 +1,20 @@
+//! Rods: strands that bend and twist by physics [Bergou2008, Bergou2010]. A strand is stepped
+//! implicitly, all of its points at once, by a banded Newton solve.
+
+// Rows and columns of small matrices are numbers, several of them in one loop.
+#![allow(clippy::needless_range_loop)]
+
+pub mod front;
+pub mod joint;
+pub mod lengths;
+pub mod material;
+pub mod model;
+pub mod real;
+pub mod rest;
+pub mod rod;
+pub mod settings;
+mod stability;
+pub(crate) mod step;
+
+#[cfg(test)]
+mod tests;

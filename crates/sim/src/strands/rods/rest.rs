@@ -1,0 +1,95 @@
+//! The rest shape of a rod: lengths, bends and twists at which it is without moments or at which, under
+//! its load, it keeps the shape that it has.
+
+use super::joint::Joint;
+use super::joint::Segment;
+use super::real::Vector;
+use super::rod::Node;
+use super::stability::stiffening;
+
+/// Segments along points \[m\]: the first section is turned towards `across`, the others follow
+/// without twist. Points that coincide go on in the direction before.
+pub fn segments(points: &[Vector<f64>], across: Vector<f64>) -> Vec<Segment<f64>> {
+    let mut segments: Vec<Segment<f64>> = Vec::with_capacity(points.len() - 1);
+    for pair in points.windows(2) {
+        let edge = pair[1] - pair[0];
+        let next = match segments.last() {
+            Some(before) if edge.length() < 1e-9 => Segment { length: 1e-9, ..*before },
+            Some(before) => before.moved(edge, 0.0),
+            None => {
+                let length = edge.length();
+                let tangent = edge * (1.0 / length);
+                let upright = across - tangent * across.dot(tangent);
+                Segment { length, tangent, across: upright * (1.0 / upright.length()) }
+            }
+        };
+        segments.push(next);
+    }
+    segments
+}
+
+/// Makes a shape the one without moments: rest strains are those of the shape.
+pub fn unstressed(rod: &mut [Node<f64>], segments: &[Segment<f64>]) {
+    for (node, segment) in rod.iter_mut().zip(segments) {
+        node.length = segment.length;
+    }
+    for joint in 1..segments.len() {
+        rod[joint].rest = Joint::new(&segments[joint - 1], &segments[joint]).strains;
+    }
+}
+
+/// Makes a shape an equilibrium under forces on its points \[N\]: what the load bends, twists and
+/// stretches is taken off the rest strains and lengths, from tip to root, in closed form.
+///
+/// The moment that a joint carries is that of all forces beyond it; three strains give any moment.
+/// An equilibrium that would not be stable is made so by bends and twists that are stiffer; returns
+/// how many times, 1 where nothing was changed.
+pub fn sag_free(
+    rod: &mut [Node<f64>],
+    points: &[Vector<f64>],
+    segments: &[Segment<f64>],
+    forces: &[Vector<f64>],
+) -> f64 {
+    unstressed(rod, segments);
+    let mut loads = vec![[0.0; 3]; rod.len()];
+    let mut force = Vector::zero();
+    // Moment of the forces beyond about the origin.
+    let mut moment = Vector::zero();
+    for index in (0..segments.len()).rev() {
+        force = force + forces[index + 1];
+        moment = moment + points[index + 1].cross(forces[index + 1]);
+        let segment = &segments[index];
+        let tension = force.dot(segment.tangent);
+        // tension = stretch (length / rest - 1)
+        rod[index].length = segment.length / (1.0 + tension / rod[index].stretch).max(0.5);
+        if index == 0 {
+            break;
+        }
+        let about = moment - points[index].cross(force);
+        loads[index] = strains_under(&segments[index - 1], segment, about);
+    }
+    let stiffer = stiffening(rod, segments, &loads);
+    for (node, load) in rod.iter_mut().zip(loads) {
+        for axis in 0..3 {
+            node.stiffness[axis] *= stiffer;
+            if node.stiffness[axis] > 0.0 {
+                node.rest[axis] -= load[axis] / node.stiffness[axis];
+            }
+        }
+    }
+    stiffer
+}
+
+/// Generalised forces of the three strains of a joint \[N m\] that carry a moment \[N m\].
+fn strains_under(lower: &Segment<f64>, upper: &Segment<f64>, moment: Vector<f64>) -> [f64; 3] {
+    // What a rotation of everything beyond the joint changes of each strain.
+    let columns = Joint::new(lower, upper)
+        .slopes(lower, upper)
+        .map(|slope| (upper.tangent * upper.length).cross(slope.upper) + upper.tangent * slope.upper_angle);
+    let [a, b, c] = columns;
+    let volume = a.dot(b.cross(c));
+    if volume.abs() < 1e-12 {
+        return [0.0; 3];
+    }
+    [moment.dot(b.cross(c)) / volume, moment.dot(c.cross(a)) / volume, moment.dot(a.cross(b)) / volume]
+}

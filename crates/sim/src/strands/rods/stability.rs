@@ -1,0 +1,151 @@
+//! Whether a loaded rest shape is stable, and how much stiffer a strand has to be for it.
+
+use super::front::{Factors, Front, ROWS, UNKNOWNS};
+use super::joint::{Joint, Segment};
+use super::real::Vector;
+use super::rod::{Node, row};
+
+/// Stiffness that a stable shape has to spare: it is still stable with a tenth less.
+const MARGIN: f64 = 1.1;
+/// Most that a strand is stiffened: beyond, it is a wire whose shape no load can have made.
+const MOST: f64 = 1e4;
+
+/// How many times stiffer a sag-free strand has to bend and twist for its shape to be a stable
+/// equilibrium, with a margin: 1 where it is stable as it is. `loads` are the generalised forces of
+/// each joint's strains under the load, which the stiffness does not change.
+///
+/// The pivots of the second derivative of the energy are positive exactly where it is.
+pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3]]) -> f64 {
+    let curvatures: Vec<_> = (0..segments.len())
+        .map(|joint| {
+            if joint == 0 {
+                [[0.0; 8]; 8]
+            } else {
+                bent(&segments[joint - 1], &segments[joint], loads[joint])
+            }
+        })
+        .collect();
+    let stable = |factor: f64| smallest_pivot(rod, segments, &curvatures, factor / MARGIN) > 0.0;
+    if stable(1.0) {
+        return 1.0;
+    }
+    let (mut below, mut above) = (1.0, 2.0);
+    while !stable(above) {
+        (below, above) = (above, 2.0 * above);
+        if above > MOST {
+            return MOST;
+        }
+    }
+    while above / below > 1.02 {
+        let middle = (below * above).sqrt();
+        if stable(middle) { above = middle } else { below = middle }
+    }
+    above
+}
+
+/// Smallest pivot of the second derivative of the energy with bends and twists so many times
+/// stiffer under the same load.
+fn smallest_pivot(rod: &[Node<f64>], segments: &[Segment<f64>], bent: &[[[f64; 8]; 8]], factor: f64) -> f64 {
+    let mut front = Front::default();
+    let mut factors = Factors::zero();
+    let mut smallest = f64::INFINITY;
+    for (index, node) in rod.iter().enumerate() {
+        if let Some(segment) = segments.get(index) {
+            add_stretch(&mut front, node, segment);
+        }
+        if index + 1 < segments.len() {
+            let (lower, upper) = (&segments[index], &segments[index + 1]);
+            let slopes = Joint::new(lower, upper).slopes(lower, upper);
+            let rows = [row(&slopes[0]), row(&slopes[1]), row(&slopes[2])];
+            front.add_squares(&rows, rod[index + 1].stiffness.map(|stiffness| stiffness * factor));
+            add_bent(&mut front, &bent[index + 1]);
+        }
+        let free = [node.free, node.free, node.free, node.free_angle];
+        let pivot = front.eliminate(&mut factors, free);
+        // Factors of an indefinite system mean nothing any more.
+        if !(pivot > 0.0) {
+            return pivot;
+        }
+        smallest = smallest.min(pivot);
+    }
+    smallest
+}
+
+/// Second derivative of the stretching energy, compression among it.
+fn add_stretch(front: &mut Front<f64>, node: &Node<f64>, segment: &Segment<f64>) {
+    let stiffness = node.stretch / node.length;
+    let across = stiffness * (segment.length - node.length) / segment.length;
+    let tangent = segment.tangent.array();
+    for row in 0..3 {
+        for column in 0..3 {
+            let mut value = (stiffness - across) * tangent[row] * tangent[column];
+            if row == column {
+                value += across;
+            }
+            if column <= row {
+                front.add(row, column, value);
+                front.add(row + UNKNOWNS, column + UNKNOWNS, value);
+            }
+            front.add(row + UNKNOWNS, column, -value);
+        }
+    }
+}
+
+/// Second derivative of `load . strains` of a joint by its edges and angles: lower edge, upper edge,
+/// lower angle, upper angle. Central differences of the slopes, made symmetric.
+fn bent(lower: &Segment<f64>, upper: &Segment<f64>, load: [f64; 3]) -> [[f64; 8]; 8] {
+    let size = lower.length.min(upper.length);
+    let gradient = |axis: usize, step: f64| {
+        let nudge = |k: usize| if axis == k { step } else { 0.0 };
+        let moved = |segment: &Segment<f64>, first: usize, angle: usize| {
+            let edge = Vector::new(nudge(first), nudge(first + 1), nudge(first + 2));
+            segment.moved(segment.tangent * segment.length + edge, nudge(angle))
+        };
+        let (lower, upper) = (moved(lower, 0, 6), moved(upper, 3, 7));
+        let slopes = Joint::new(&lower, &upper).slopes(&lower, &upper);
+        let mut sum = [0.0; 8];
+        for (slope, load) in slopes.iter().zip(load) {
+            let [a, b, c] = slope.lower.array();
+            let [d, e, f] = slope.upper.array();
+            let values = [a, b, c, d, e, f, slope.lower_angle, slope.upper_angle];
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += load * value);
+        }
+        sum
+    };
+    let mut second = [[0.0; 8]; 8];
+    for axis in 0..8 {
+        let step = if axis < 6 { 1e-5 * size } else { 1e-5 };
+        let (before, after) = (gradient(axis, -step), gradient(axis, step));
+        for other in 0..8 {
+            let value = 0.25 * (after[other] - before[other]) / step;
+            second[axis][other] += value;
+            second[other][axis] += value;
+        }
+    }
+    second
+}
+
+/// Adds what edges and angles say to the unknowns of the joint: an edge is the difference of two points.
+fn add_bent(front: &mut Front<f64>, second: &[[f64; 8]; 8]) {
+    // Where each of the eleven unknowns enters the eight: (index, sign).
+    let parts = |unknown: usize| -> [(usize, f64); 2] {
+        match unknown {
+            0..3 => [(unknown, -1.0), (0, 0.0)],
+            3 => [(6, 1.0), (0, 0.0)],
+            4..7 => [(unknown - 4, 1.0), (unknown - 1, -1.0)],
+            7 => [(7, 1.0), (0, 0.0)],
+            _ => [(unknown - 5, 1.0), (0, 0.0)],
+        }
+    };
+    for row in 0..ROWS {
+        for column in 0..=row {
+            let mut value = 0.0;
+            for (a, sign) in parts(row) {
+                for (b, other) in parts(column) {
+                    value += sign * other * second[a][b];
+                }
+            }
+            front.add(row, column, value);
+        }
+    }
+}
