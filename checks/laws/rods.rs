@@ -88,7 +88,7 @@ fn shaken_hair_comes_to_rest_where_it_was() {
         let state =
             stepped(&solver, 5.0, |time| Motion::Shake.pose(time.min(1.0), Vec3::new(0.0, -0.1, 0.0)));
         let (moved, stored) = speeds(&solver, &state);
-        // The bound of the law is 5e-4 m/s six seconds after; some strands still slide on the shoulders.
+        // The bound of the law is 5e-4 m/s six seconds after; some strands still creep after four.
         assert!(moved < 2e-3 && stored < 2e-3, "1/{rate} s: {moved} m/s, stored {stored} m/s");
         let (mean, _) = drift(&solver, &state);
         assert!(mean < 2e-2, "1/{rate} s: {mean} from where it was");
