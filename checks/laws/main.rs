@@ -16,6 +16,7 @@ mod recovery;
 mod rods;
 mod shake;
 mod sintel;
+mod spans;
 mod springs;
 mod strands;
 mod stretch;

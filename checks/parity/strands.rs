@@ -123,7 +123,7 @@ fn constrain_agrees_on_hair_in_a_hand() {
         both_from(&head, "constrain", grab, |_, state, probe| {
             let found = probe.predicted().unwrap();
             let distance = apart(state.predicted(), &found, &head.guides);
-            // Rounding grows over the 31 passes between hand and head.
+            // Rounding grows over the 32 turns between hand and head.
             assert!(distance < 50.0 * PLACE, "{}: {distance}", head.name);
         });
     }

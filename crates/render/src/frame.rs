@@ -277,10 +277,11 @@ mod tests {
         assert_eq!((opacity.width, opacity.height), (look.shadow.map_size, look.shadow.map_size));
         let greys = |picture: &Picture| picture.pixels.iter().step_by(3).copied().collect::<Vec<u8>>();
         let (opacity, depth) = (greys(&opacity), greys(&depth));
-        // The window leaves room to move, so that it keeps its texels: the strand crosses 194 of the 512 here.
+        // Texels have sizes of steps of a quarter at most: the strand crosses four fifths of the 512, but
+        // for a border. The picture of them is turned, and shows a part of a line that is a texel wide.
+        let crossed = renderer.shadows.map(0).unwrap().texels().iter().filter(|texel| texel.x > 0.0).count();
+        assert!(crossed >= 400, "{crossed}");
         // What has no depth has no hair.
-        let count = depth.iter().filter(|&&grey| grey > 0).count();
-        assert!(count >= 180, "{count}");
         assert!(opacity.iter().zip(&depth).all(|(opacity, depth)| (*opacity > 0) == (*depth > 0)));
         // White is its nearest point, 0.15 its farthest.
         assert_eq!(depth.iter().max(), Some(&255));

@@ -9,6 +9,9 @@ use crate::Solver;
 /// Stands for the point of a strand that is not held.
 pub(crate) const NO_POINT: u32 = u32::MAX;
 
+/// Times that a hand between two rooted points is brought into the reach of both in turn.
+const CLAMPS: usize = 8;
+
 /// A hand and the strands in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grab {
@@ -92,8 +95,9 @@ impl Grab {
         self.grips.iter().map(Grip::count).sum()
     }
 
-    /// What is held of a block of strands, whose points are `positions` \[m\]: no farther from the head
-    /// than the strand reaches, which a hand cannot stretch. `lengths` are those of its segments \[m\].
+    /// What is held of a block of strands, whose points are `positions` \[m\]: no farther from the rooted
+    /// points on either side than the strand reaches, which a hand cannot stretch. `lengths` are those
+    /// of its segments \[m\].
     pub fn pinned(
         &self,
         block: usize,
@@ -105,13 +109,15 @@ impl Grab {
         let lanes = (0..LANES).filter(move |lane| grip.points[*lane] != NO_POINT);
         lanes.map(move |lane| {
             let point = grip.points[lane] as usize;
-            let goal = self.hand + grip.offsets.get(lane);
-            let mut reach = 0.0;
-            for before in (0..point).rev() {
-                reach += lengths[before].0[lane];
-                if inverse_mass[before].0[lane] == 0.0 {
-                    let root = positions[before].get(lane);
-                    return Pinned { lane, point, goal: root + (goal - root).clamp_length_max(reach) };
+            let rooted = |at: &usize| inverse_mass[*at].0[lane] == 0.0;
+            let reach = |from: usize, to: usize| (from..to).map(|at| lengths[at].0[lane]).sum::<f32>();
+            let before = (0..point).rev().find(rooted).map(|root| (root, reach(root, point)));
+            let behind = (point + 1..positions.len()).find(rooted).map(|root| (root, reach(point, root)));
+            let mut goal = self.hand + grip.offsets.get(lane);
+            for _ in 0..if behind.is_some() { CLAMPS } else { 1 } {
+                for (root, reach) in behind.into_iter().chain(before) {
+                    let root = positions[root].get(lane);
+                    goal = root + (goal - root).clamp_length_max(reach);
                 }
             }
             Pinned { lane, point, goal }

@@ -10,6 +10,7 @@ use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
 use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::length_pass::Follow;
 use super::lengths::Segments;
+use super::spans::Spans;
 use super::vec3x8::{Vec3x8, load, splat};
 use crate::grab::Pinned;
 use crate::{Solver, State};
@@ -63,10 +64,6 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> N
         .reduce(NonFinite::default, NonFinite::with)
 }
 
-/// Passes that draw a held strand tight, from the hand and from the head in turn. Gravity bends a strand
-/// of 16 segments that is pulled straight by 5 % of its length; without these passes by 11 %.
-const SWEEPS: usize = 31;
-
 /// Rounds from one look for points that were carried beside their planes to the next.
 const ROUNDS_PER_LOOK: u32 = 5;
 
@@ -82,6 +79,9 @@ struct Workspace {
     margins: Vec<f32x8>,
     /// How far the length pass moved each point \[m\], and a zero behind the last.
     corrections: Vec<Vec3x8>,
+    spans: Spans,
+    /// Points of strands that the rounds leave alone.
+    kept: Vec<Vec3Lanes>,
 }
 
 impl Workspace {
@@ -93,6 +93,8 @@ impl Workspace {
             predicted: vec![Vec3x8::ZERO; points],
             margins: vec![splat(0.0); points],
             corrections: vec![Vec3x8::ZERO; points + 1],
+            spans: Spans::new(points),
+            kept: vec![Vec3Lanes::default(); points],
         }
     }
 }
@@ -109,11 +111,14 @@ struct Strands<'a> {
 impl Strands<'_> {
     fn solve(&self, block: usize, hair: &mut Block, planes: &mut [Plane], work: &mut Workspace) {
         let Block { positions: predicted, previous: start, velocities, corrections } = hair;
+        let pass = &self.solver.settings.length_pass;
+        work.spans.find(self.joints.inverse_mass, work.pinned.iter().map(|held| (held.lane, held.point)));
+        let spanned = if pass.enabled { work.spans.held_behind } else { splat(0.0) };
         for round in 0..self.solver.settings.iterations {
             if round % ROUNDS_PER_LOOK == 0 {
                 self.find_touches(block, round == 0, predicted, start, planes, work);
             }
-            self.segments.project(predicted);
+            self.segments.project_all_but(spanned, predicted, &mut work.kept);
             if let Some(bends) = self.bends.filter(|_| round % ROUNDS_PER_PASS == 0) {
                 bends.project(self.joints, predicted);
             }
@@ -127,17 +132,16 @@ impl Strands<'_> {
             self.find_touches(block, false, predicted, start, planes, work);
             work.resolve_touches(predicted);
         }
-        let pass = &self.solver.settings.length_pass;
         work.corrections.fill(Vec3x8::ZERO);
         if pass.enabled {
-            for pinned in &work.pinned {
-                self.draw_tight(*pinned, predicted);
+            if spanned.any() {
+                work.spans.solve(self.segments.lengths, start, &work.touches, predicted);
             }
             let follow = Follow {
                 lengths: self.segments.lengths,
-                inverse_mass: self.joints.inverse_mass,
                 margins: &work.margins,
-                pinned: last_pinned(&work.pinned),
+                last_rooted: work.spans.last_rooted,
+                last_held: work.spans.last_rooted.fast_max(last_pinned(&work.pinned)),
                 solids: self.solids,
             };
             let held = self.bends.and_then(|bends| bends.held(self.joints.directions));
@@ -152,26 +156,6 @@ impl Strands<'_> {
             let free = load(&self.joints.inverse_mass[point]).simd_gt(splat(0.0));
             let correction = work.corrections[point + 1] * returned;
             correction.or(free, Vec3x8::ZERO).store(&mut corrections[point]);
-        }
-    }
-
-    /// Draws a strand tight between head and hand: its points are placed at their lengths from the hand
-    /// on, then from the head on, and so forth [Aristidou2011]. The length pass is the
-    /// last from the head; it aims the held point at where the pass before left it.
-    fn draw_tight(&self, Pinned { lane, point: last, goal }: Pinned, predicted: &mut [Vec3Lanes]) {
-        let free = |point: &usize| self.joints.inverse_mass[*point].0[lane] > 0.0;
-        let Some(root) = (0..last).rev().find(|point| !free(point)) else { return };
-        let length = |lower: usize| self.segments.lengths[lower].0[lane];
-        for sweep in 0..SWEEPS {
-            let (back, mut here) = (sweep % 2 == 0, [predicted[root].get(lane), goal][1 - sweep % 2]);
-            for step in 1..=last - root {
-                let point = if back { last - step } else { root + step };
-                let across = predicted[point].get(lane) - here;
-                here += across * (length(if back { point } else { point - 1 }) / across.length().max(1e-15));
-                if point != root {
-                    predicted[point].set(lane, here);
-                }
-            }
         }
     }
 

@@ -17,11 +17,12 @@ const TOLERATED: f32 = 2e-4;
 /// One block of strands as the pass sees it.
 pub struct Follow<'a> {
     pub lengths: &'a [Lanes],
-    pub inverse_mass: &'a [Lanes],
     /// Distance \[m\] that points keep from solids.
     pub margins: &'a [f32x8],
-    /// The point of each strand that is held by a hand, -1 where none is.
-    pub pinned: f32x8,
+    /// The last rooted point of each strand, -1 where none is: points before it stay.
+    pub last_rooted: f32x8,
+    /// The last point of each strand that is rooted or held by a hand, -1 where none is.
+    pub last_held: f32x8,
     pub solids: &'a Solids<'a>,
 }
 
@@ -29,8 +30,8 @@ impl Follow<'_> {
     /// Moves each point to its length from the one before and tells how far \[m\] that moved it.
     ///
     /// A held shape turns the segments first, and solids push points out last: neither is a correction
-    /// of a length, which gives velocity back. Segments between the head and a hand go where the hand
-    /// pulls them.
+    /// of a length, which gives velocity back. Segments between holds go where these pull
+    /// them.
     pub fn place(
         &self,
         mut held: Option<Held>,
@@ -42,10 +43,10 @@ impl Follow<'_> {
         let mut before = Vec3x8::load(&positions[0]);
         for point in 1..positions.len() {
             let mut found = Vec3x8::load(&positions[point]);
-            let free = load(&self.inverse_mass[point]).simd_gt(splat(0.0));
+            let free = splat(point as f32).simd_gt(self.last_rooted);
             let length = load(&self.lengths[point - 1]);
             if let Some(held) = &held {
-                let shaped = free & splat(point as f32).simd_gt(self.pinned);
+                let shaped = free & splat(point as f32).simd_gt(self.last_held);
                 found = (before + held.turn(point, found - before)).or(shaped, found);
             }
             let across = found - before;
@@ -68,7 +69,7 @@ impl Follow<'_> {
     /// Where a point goes that must lie at its length from `before` and outside the solids.
     fn out_of_solids(&self, point: usize, before: Vec3x8, first: Vec3x8, planes: &mut [Plane]) -> Vec3x8 {
         let (margin, length) = (self.margins[point], load(&self.lengths[point - 1]));
-        let free = load(&self.inverse_mass[point]).simd_gt(splat(0.0));
+        let free = splat(point as f32).simd_gt(self.last_rooted);
         let mut placed = first;
         for placing in 0..PLACINGS {
             let care = if placing == 0 { Care::EXACT } else { Care::ANEW };
@@ -82,7 +83,7 @@ impl Follow<'_> {
         let (mut from, mut here) = (Vec3Lanes::default(), Vec3Lanes::default());
         before.store(&mut from);
         placed.store(&mut here);
-        for lane in (0..LANES).filter(|lane| self.inverse_mass[point].0[*lane] > 0.0) {
+        for lane in (0..LANES).filter(|lane| point as f32 > self.last_rooted.to_array()[*lane]) {
             let (before, end) = (from.get(lane), here.get(lane));
             let kept = margin.to_array()[lane] - TOLERATED;
             let is_out = |place: Vec3| self.solids.nearest(place).0 > kept;

@@ -1,6 +1,7 @@
 //! Distance constraints between neighbours.
 
 use strandline_groom::{Lanes, Vec3Lanes};
+use wide::f32x8;
 
 use super::vec3x8::{Vec3x8, load};
 
@@ -18,6 +19,18 @@ impl Segments<'_> {
     pub fn project(&self, positions: &mut [Vec3Lanes]) {
         self.project_set(positions, 0);
         self.project_set(positions, 1);
+    }
+
+    /// The same for all lanes but those of a mask; `kept` is room for as many points.
+    pub fn project_all_but(&self, mask: f32x8, positions: &mut [Vec3Lanes], kept: &mut [Vec3Lanes]) {
+        if !mask.any() {
+            return self.project(positions);
+        }
+        kept.copy_from_slice(positions);
+        self.project(positions);
+        for (position, kept) in positions.iter_mut().zip(kept) {
+            Vec3x8::load(kept).or(mask, Vec3x8::load(position)).store(position);
+        }
     }
 
     #[inline(always)]

@@ -21,6 +21,7 @@ pub(crate) mod angles;
 pub(crate) mod contacts;
 pub(crate) mod length_pass;
 pub(crate) mod lengths;
+pub(crate) mod spans;
 pub(crate) mod vec3x8;
 pub(crate) mod way;
 

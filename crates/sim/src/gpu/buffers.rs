@@ -36,7 +36,7 @@ pub(super) struct Buffers {
     pub places: [Buffer<f32>; 2],
     /// Velocities of all points \[m/s\], and behind them what the next prediction adds to them.
     pub velocities: Buffer<f32>,
-    /// Five numbers: see constrain.wesl.
+    /// Five numbers: see strand.wesl.
     pub planes: Buffer<f32>,
     /// Per strand, from the hand to the point \[m\] that it holds, and its number; below 0 for none.
     pub grips: Buffer<[f32; 4]>,

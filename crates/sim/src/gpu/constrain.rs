@@ -27,7 +27,8 @@ pub(super) struct Stage {
 impl Stage {
     pub fn new(gpu: &Gpu, points: usize) -> Result<Self, GpuError> {
         let strands = strands_per_workgroup(points);
-        let constants = [("POINTS", points as f64), ("STRANDS", strands as f64)];
+        // POINTS and STRANDS of strand.wesl.
+        let constants = [("0", points as f64), ("1", strands as f64)];
         Ok(Self { kernel: Kernel::new(gpu, &constants)?, strands_per_workgroup: strands })
     }
 

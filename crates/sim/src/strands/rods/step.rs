@@ -358,13 +358,21 @@ impl Strands<'_> {
         for (placed, point) in space.placed.iter_mut().zip(&space.carried) {
             store(*point, placed);
         }
-        let mut last = [-1.0; LANES];
-        pinned.iter().for_each(|pin| last[pin.lane] = pin.point as f32);
+        let mut last_rooted = [-1.0_f32; LANES];
+        for (point, inverse_mass) in self.inverse_mass.iter().enumerate() {
+            for (last, _) in
+                last_rooted.iter_mut().zip(&inverse_mass.0).filter(|(_, inverse)| **inverse == 0.0)
+            {
+                *last = point as f32;
+            }
+        }
+        let mut last_held = last_rooted;
+        pinned.iter().for_each(|pin| last_held[pin.lane] = last_held[pin.lane].max(pin.point as f32));
         let follow = Follow {
             lengths: self.lengths,
-            inverse_mass: self.inverse_mass,
             margins: &space.margins,
-            pinned: f32x8::from(last),
+            last_rooted: f32x8::from(last_rooted),
+            last_held: f32x8::from(last_held),
             solids: &self.parts.solids,
         };
         follow.place(None, &mut space.placed, planes, &mut space.corrections);
