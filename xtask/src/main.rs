@@ -1,10 +1,11 @@
-//! Project chores: `cargo xtask test | ci | bless | docs | names | faults`.
+//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
 mod adapter;
 mod faults;
+mod house;
 mod names;
 mod run;
 
@@ -21,6 +22,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   bless    record the golden pictures anew; look at each before you commit it
   docs     write docs/scene.md from the settings table
   names    check that every stage has one name everywhere
+  house    check the plan of the house: arrows between crates, circles of files, sizes
   faults   plant the faults of checks/faults in a copy of the tree, one after the other, and run
            the tests that have to see each. Results are kept: a run that was broken off goes on,
            and a fault with a result for the tree as it is is not run again unless it is named.
@@ -34,6 +36,7 @@ enum Chore {
     Bless,
     Docs,
     Names,
+    House,
     Faults(faults::Wish),
     Help,
 }
@@ -46,6 +49,7 @@ fn main() -> ExitCode {
         Some(Chore::Bless) => run::bless(),
         Some(Chore::Docs) => run::docs(),
         Some(Chore::Names) => names::check(),
+        Some(Chore::House) => house::check(),
         Some(Chore::Faults(wish)) => faults::faults(&wish),
         Some(Chore::Help) => {
             println!("{USAGE}");
@@ -70,6 +74,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["bless"] => Some(Chore::Bless),
         ["docs"] => Some(Chore::Docs),
         ["names"] => Some(Chore::Names),
+        ["house"] => Some(Chore::House),
         ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
         _ => None,
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use crate::{adapter, names};
+use crate::{adapter, house, names};
 
 /// Sums over every `test result:` line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,6 +58,7 @@ pub fn test(setup: bool) -> bool {
     };
     step("format", cargo(&["fmt", "--all", "--check"], &[], &mut tally));
     step("names", names::check());
+    step("house", house::check());
     let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
     step("lints", cargo(&lints, &[], &mut tally));
     let tests = ["test", "--workspace", "--all-targets", "--no-fail-fast"];

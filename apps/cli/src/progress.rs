@@ -61,6 +61,9 @@ impl Drop for Progress {
     }
 }
 
+/// What is said while hair and body are loaded or grown and the body's distances are found.
+pub const LOADING: &str = "loading hair and body";
+
 /// Says that something goes on of which nobody knows how far it has come.
 pub struct Waiting(Option<ProgressBar>);
 

@@ -9,7 +9,7 @@ use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};
 use crate::non_finite::NonFinite;
 use crate::output::{self, print_line};
-use crate::progress::Progress;
+use crate::progress::{LOADING, Progress, Waiting};
 use crate::statistics::{Collector, Times};
 
 /// What `render --json` prints.
@@ -51,7 +51,9 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
 }
 
 fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
+    let waiting = Waiting::begin(LOADING);
     let mut player = Player::new(scene, scene.devices, true)?;
+    drop(waiting);
     for note in player.notes() {
         output::note(note);
     }

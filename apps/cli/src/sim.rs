@@ -7,7 +7,7 @@ use crate::arguments::SimOptions;
 use crate::interrupt::Stoppable;
 use crate::non_finite::{NonFinite, larger};
 use crate::output::{self, print_line};
-use crate::progress::Progress;
+use crate::progress::{LOADING, Progress, Waiting};
 use crate::statistics::{Collector, Times};
 
 /// What `sim --json` prints.
@@ -95,7 +95,9 @@ impl Steps {
 pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let inputs = &options.inputs;
     let scene = inputs.scene()?;
+    let waiting = Waiting::begin(LOADING);
     let mut player = Player::new(&scene, scene.devices, false)?;
+    drop(waiting);
     for note in player.notes() {
         output::note(note);
     }

@@ -4,6 +4,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod cache;
 mod folder_lock;
 pub mod memory;
 mod parts;

@@ -91,7 +91,8 @@ impl DistanceGrid {
         Ok(Self::from_distances(lattice, &mesh_distance::at_nodes(mesh, &lattice)))
     }
 
-    fn from_distances(lattice: Lattice, distances: &[f32]) -> Self {
+    /// A grid of distances \[m\] at the nodes of a lattice.
+    pub(crate) fn from_distances(lattice: Lattice, distances: &[f32]) -> Self {
         let inverse_spacing = 1.0 / lattice.spacing;
         let mut nodes = vec![Vec4::ZERO; lattice.len()];
         nodes.par_iter_mut().enumerate().for_each(|(index, node)| {

@@ -4,8 +4,6 @@ use glam::{DVec3, U64Vec3, UVec3, Vec3};
 
 use crate::{Aabb, BodyError};
 
-/// The most nodes of one grid: 16 bytes each make 128 MiB, which is what a GPU takes as one buffer.
-const NODE_LIMIT: u64 = 8 << 20;
 /// The most cells along one side.
 const SIDE_LIMIT: u64 = 1024;
 /// Layers that are worked on together.
@@ -23,6 +21,8 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
+    /// The most nodes of one grid: 16 bytes each make 128 MiB, which is what a GPU takes as one buffer.
+    pub const NODE_LIMIT: u64 = 8 << 20;
     /// The coarsest spacing \[m\] that is taken in place of one that is too fine; a body that needs more is
     /// in other units.
     pub const COARSEST: f32 = 0.1;
@@ -56,7 +56,7 @@ impl Lattice {
             spacing *= excess.max(1.001) as f32;
             cells = cells_at(size, spacing, padding);
             if spacing > Self::COARSEST {
-                return Err(BodyError::GridTooLarge { cells: asked.to_array(), limit: NODE_LIMIT });
+                return Err(BodyError::GridTooLarge { cells: asked.to_array(), limit: Lattice::NODE_LIMIT });
             }
         }
         let middle = 0.5 * (bounds.min + bounds.max);
@@ -109,8 +109,8 @@ fn excess(cells: U64Vec3) -> Option<f64> {
     let nodes = cells.saturating_add(U64Vec3::ONE);
     let total = nodes.x.saturating_mul(nodes.y).saturating_mul(nodes.z);
     let side = cells.max_element();
-    let excess = (side as f64 / SIDE_LIMIT as f64).max((total as f64 / NODE_LIMIT as f64).cbrt());
-    (side > SIDE_LIMIT || total > NODE_LIMIT).then_some(excess)
+    let excess = (side as f64 / SIDE_LIMIT as f64).max((total as f64 / Lattice::NODE_LIMIT as f64).cbrt());
+    (side > SIDE_LIMIT || total > Lattice::NODE_LIMIT).then_some(excess)
 }
 
 fn out_of_range(what: &'static str, found: f32, expected: &'static str) -> BodyError {

@@ -15,6 +15,7 @@ mod error;
 mod gltf;
 mod gltf_buffers;
 mod inside;
+mod kept_grid;
 mod keyframes;
 mod lattice;
 mod layers;

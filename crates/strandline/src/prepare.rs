@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::{Quat, Vec3};
+use strandline_base::cache;
 
 use crate::{
     Error, HeadMotion, Scene, attributes,
@@ -159,8 +160,8 @@ fn mannequin(scene: &Scene, notes: &mut Vec<String>) -> Result<Body, Error> {
 fn solid(scene: &Scene, drawn: &Mesh, notes: &mut Vec<String>) -> Result<Shape, Error> {
     let spacing = scene.body.spacing;
     let grid = match &scene.body.collider_file {
-        Some(file) => closed_or_open(&Mesh::load(&scene.path(file), scene.body.scale)?, spacing)?,
-        None => closed_or_open(drawn, spacing)?,
+        Some(file) => kept_grid(&Mesh::load(&scene.path(file), scene.body.scale)?, spacing)?,
+        None => kept_grid(drawn, spacing)?,
     };
     Ok(grid_shape(scene, grid, notes))
 }
@@ -178,11 +179,11 @@ fn grid_shape(scene: &Scene, grid: DistanceGrid, notes: &mut Vec<String>) -> Sha
     Shape::Grid(Arc::new(grid))
 }
 
-fn closed_or_open(mesh: &Mesh, spacing: f32) -> Result<DistanceGrid, Error> {
-    Ok(if mesh.is_closed() {
-        DistanceGrid::from_mesh(mesh, spacing, DISTANCE_PADDING)?
-    } else {
-        DistanceGrid::from_open_mesh(mesh, spacing, DISTANCE_PADDING)?
+/// The grid of a mesh, from the folder of what is kept where it is there.
+fn kept_grid(mesh: &Mesh, spacing: f32) -> Result<DistanceGrid, Error> {
+    Ok(match cache::folder() {
+        Some(folder) => DistanceGrid::kept(mesh, spacing, DISTANCE_PADDING, &folder.join("grids"))?,
+        None => DistanceGrid::around(mesh, spacing, DISTANCE_PADDING)?,
     })
 }
 

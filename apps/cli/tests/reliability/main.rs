@@ -3,6 +3,7 @@
 #![cfg(unix)]
 #![allow(clippy::print_stdout)] // it says what is not tested
 
+mod cache;
 mod ffmpeg;
 mod inputs;
 mod kills;

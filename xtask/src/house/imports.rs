@@ -1,0 +1,275 @@
+//! Which file of a crate imports which, and the circles among them.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::text::{blanked, without_tests};
+
+/// The files of a crate as modules.
+#[derive(Default)]
+pub struct Modules {
+    files: BTreeMap<Vec<String>, Module>,
+}
+
+struct Module {
+    file: String,
+    code: String,
+    /// What it gives on under a name of its own: the path that the name stands for.
+    given_on: BTreeMap<String, Vec<String>>,
+}
+
+impl Modules {
+    /// Reads the files of a crate; names are below its `src`.
+    pub fn read(files: &[(String, String)]) -> Self {
+        let mut modules = Self::default();
+        let mut tests = BTreeSet::new();
+        for (file, text) in files {
+            let path = module_path(file);
+            let (code, of_tests) = without_tests(&blanked(text));
+            tests.extend(of_tests.into_iter().map(|name| [path.clone(), vec![name]].concat()));
+            modules.files.insert(path, Module { file: file.clone(), code, given_on: BTreeMap::new() });
+        }
+        modules.files.retain(|path, _| !tests.iter().any(|test| path.starts_with(test)));
+        let given_on: Vec<_> = modules
+            .files
+            .iter()
+            .map(|(path, module)| (path.clone(), modules.given_on(path, &module.code)))
+            .collect();
+        for (path, given_on) in given_on {
+            if let Some(module) = modules.files.get_mut(&path) {
+                module.given_on = given_on;
+            }
+        }
+        modules
+    }
+
+    /// The files that each file imports.
+    pub fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
+        let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (path, module) in &self.files {
+            let found = imports.entry(module.file.clone()).or_default();
+            for target in self.named(path, &module.code) {
+                if let Some(other) = self.owner(&target, 0).filter(|other| other.file != module.file) {
+                    found.insert(other.file.clone());
+                }
+            }
+        }
+        imports
+    }
+
+    /// The module that a path of the crate leads to, through names that are given on.
+    fn owner(&self, path: &[String], depth: usize) -> Option<&Module> {
+        let known = (0..=path.len()).rev().find(|length| self.files.contains_key(&path[..*length]))?;
+        let module = self.files.get(&path[..known])?;
+        let Some(name) = path.get(known) else { return Some(module) };
+        match module.given_on.get(name) {
+            Some(further) if depth < 8 => {
+                let further = [further.clone(), path[known + 1..].to_vec()].concat();
+                self.owner(&further, depth + 1)
+            }
+            _ => Some(module),
+        }
+    }
+
+    /// What a module gives on: the names of its `pub use`, with the paths they stand for.
+    fn given_on(&self, path: &[String], code: &str) -> BTreeMap<String, Vec<String>> {
+        let mut found = BTreeMap::new();
+        for (is_public, tree) in uses(code) {
+            for (name, target) in leaves(tree) {
+                if let Some(target) = self.absolute(path, &target).filter(|_| is_public) {
+                    found.insert(name, target);
+                }
+            }
+        }
+        found
+    }
+
+    /// The paths of the crate that a module names: in its private `use`s and in its code.
+    fn named(&self, path: &[String], code: &str) -> Vec<Vec<String>> {
+        let mut found = Vec::new();
+        let mut rest = code.to_owned();
+        for (is_public, tree) in uses(code) {
+            rest = rest.replacen(tree, "", 1);
+            if !is_public {
+                found.extend(leaves(tree).into_iter().map(|(_, target)| target));
+            }
+        }
+        found.extend(paths(&rest));
+        found.iter().filter_map(|target| self.absolute(path, target)).collect()
+    }
+
+    /// A path from the crate's root; none where it leads out of the crate.
+    fn absolute(&self, here: &[String], target: &[String]) -> Option<Vec<String>> {
+        let first = target.first()?;
+        let mut base = here.to_vec();
+        let mut left = target;
+        match first.as_str() {
+            "crate" => (base, left) = (Vec::new(), &target[1..]),
+            "self" => left = &target[1..],
+            "super" => {
+                while left.first().is_some_and(|word| word == "super") {
+                    base.pop()?;
+                    left = &left[1..];
+                }
+            }
+            name => {
+                let child = [here.to_vec(), vec![name.to_owned()]].concat();
+                self.files.contains_key(&child).then_some(())?;
+            }
+        }
+        Some([base, left.to_vec()].concat())
+    }
+}
+
+/// `cpu/mod.rs` is `cpu`, `lib.rs` and `main.rs` the root.
+fn module_path(file: &str) -> Vec<String> {
+    let stem = Path::new(file).with_extension("");
+    let mut path: Vec<String> = stem.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    if path.last().is_some_and(|last| last == "mod")
+        || (path.len() == 1 && ["lib", "main"].contains(&path[0].as_str()))
+    {
+        path.pop();
+    }
+    path
+}
+
+/// The `use`s of a text: whether each is public, and its tree.
+fn uses(code: &str) -> Vec<(bool, &str)> {
+    let mut found = Vec::new();
+    let mut begin = 0;
+    while let Some(at) = code[begin..].find("use ").map(|at| begin + at) {
+        begin = at + 4;
+        let line = code[..at].rfind('\n').map_or(0, |at| at + 1);
+        let before = code[line..at].trim();
+        let Some(end) = code[begin..].find(';') else { break };
+        if before.is_empty() || before.starts_with("pub") {
+            found.push((before.starts_with("pub"), &code[begin..begin + end]));
+        }
+    }
+    found
+}
+
+/// The paths of a tree with the names that they get.
+fn leaves(tree: &str) -> Vec<(String, Vec<String>)> {
+    let tree = tree.trim();
+    if let Some(open) = tree.find('{') {
+        let stem: Vec<String> = words(&tree[..open]);
+        let inner = tree[open + 1..].trim_end().trim_end_matches('}');
+        let branches = split_branches(inner).into_iter().flat_map(leaves);
+        return branches
+            .map(|(name, path)| {
+                let own = path == ["self"];
+                let name = if own { stem.last().cloned().unwrap_or_default() } else { name };
+                (name, if own { stem.clone() } else { [stem.clone(), path].concat() })
+            })
+            .collect();
+    }
+    let (path, name) = tree.split_once(" as ").unwrap_or((tree, ""));
+    let path = words(path);
+    let name =
+        if name.is_empty() { path.last().cloned().unwrap_or_default() } else { name.trim().to_owned() };
+    if path.is_empty() { Vec::new() } else { vec![(name, path)] }
+}
+
+fn words(path: &str) -> Vec<String> {
+    path.split("::").map(str::trim).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+}
+
+/// Parts between the commas that lie in no braces.
+fn split_branches(text: &str) -> Vec<&str> {
+    let (mut depth, mut begin, mut found) = (0, 0, Vec::new());
+    for (at, letter) in text.char_indices() {
+        match letter {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                found.push(&text[begin..at]);
+                begin = at + 1;
+            }
+            _ => {}
+        }
+    }
+    found.push(&text[begin..]);
+    found
+}
+
+/// Paths of two words or more in code.
+fn paths(code: &str) -> Vec<Vec<String>> {
+    let is_word = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let mut found = Vec::new();
+    for run in code.split(|letter: char| !is_word(letter) && letter != ':') {
+        let path = words(run);
+        if run.contains("::") && path.len() > 1 && !run.starts_with(':') {
+            found.push(path);
+        }
+    }
+    found
+}
+
+/// The circles of a graph: files that all reach each other, sorted.
+pub fn circles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
+    let reach: BTreeMap<&String, BTreeSet<&String>> =
+        imports.keys().map(|file| (file, reached(imports, file))).collect();
+    let mut circles = BTreeSet::new();
+    for (file, others) in &reach {
+        let circle: Vec<String> = others
+            .iter()
+            .filter(|other| reach[**other].contains(file))
+            .map(|other| (*other).clone())
+            .collect();
+        if circle.len() > 1 {
+            circles.insert(circle);
+        }
+    }
+    circles.into_iter().collect()
+}
+
+fn reached<'a>(imports: &'a BTreeMap<String, BTreeSet<String>>, file: &String) -> BTreeSet<&'a String> {
+    let mut found = BTreeSet::new();
+    let mut waiting: Vec<&String> = imports.get(file).into_iter().flatten().collect();
+    while let Some(next) = waiting.pop() {
+        if found.insert(next) {
+            waiting.extend(imports.get(next).into_iter().flatten());
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+        let files: Vec<_> =
+            files.iter().map(|(file, code)| ((*file).to_owned(), (*code).to_owned())).collect();
+        circles(&Modules::read(&files).imports())
+    }
+
+    #[test]
+    fn files_that_import_each_other_are_a_circle() {
+        let circle = found(&[
+            ("lib.rs", "mod a;\nmod b;\npub use a::One;\n"),
+            ("a.rs", "use crate::b::{Two, Three};\npub struct One;"),
+            ("b.rs", "use super::One;\npub struct Two;"),
+        ]);
+        assert_eq!(circle, [["a.rs", "b.rs"]]);
+    }
+
+    #[test]
+    fn giving_names_on_is_no_import_but_calling_is() {
+        let lib = "mod a;\npub use a::One;\npub struct Two;\n";
+        let a = ("a.rs", "use crate::Two;\npub struct One;");
+        assert!(found(&[("lib.rs", lib), a]).is_empty());
+        let calling = format!("{lib}fn f() {{ a::g(); }}");
+        assert_eq!(found(&[("lib.rs", &calling), a]), [["a.rs", "lib.rs"]]);
+    }
+
+    #[test]
+    fn tests_and_comments_import_nothing() {
+        let a = "mod c { }\n// use crate::b::X;\n#[cfg(test)]\nmod tests { use crate::b::X; }";
+        assert!(found(&[("lib.rs", "mod a; mod b;"), ("a.rs", a), ("b.rs", "use crate::a::Y;")]).is_empty());
+        let a = "use crate::{\n    b::{self, X as Y},\n};";
+        let circle = found(&[("lib.rs", ""), ("a.rs", a), ("b.rs", "fn f() { crate::a::g() }")]);
+        assert_eq!(circle, [["a.rs", "b.rs"]]);
+    }
+}

@@ -1,0 +1,205 @@
+//! The plan of the house: arrows between crates point down, no circle among the files of a crate, and nothing
+//! longer than a person sees at once.
+//!
+//! What was there before the plan is listed in checks/house.toml with how large it may be: nothing may grow, and
+//! what is mended leaves the list.
+
+mod imports;
+mod sizes;
+mod text;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::Deserialize;
+
+use crate::run::root;
+
+const LONGEST_RUST: usize = 400;
+const LONGEST_SHADER: usize = 200;
+const LONGEST_FUNCTION: usize = 60;
+
+/// Each crate and those of ours that it may use.
+const ARROWS: [(&str, &[&str]); 9] = [
+    ("crates/base", &[]),
+    ("crates/body", &["strandline-base"]),
+    ("crates/gpu", &["strandline-base"]),
+    ("crates/groom", &["strandline-base", "strandline-body"]),
+    ("crates/sim", &["strandline-base", "strandline-body", "strandline-gpu", "strandline-groom"]),
+    ("crates/render", &["strandline-base", "strandline-body", "strandline-gpu", "strandline-groom"]),
+    (
+        "crates/strandline",
+        &[
+            "strandline-base",
+            "strandline-body",
+            "strandline-gpu",
+            "strandline-groom",
+            "strandline-render",
+            "strandline-sim",
+        ],
+    ),
+    ("apps/viewer", &["strandline"]),
+    ("apps/cli", &["strandline", "strandline-viewer"]),
+];
+
+/// What may be there still: lines by file, lines by function, and circles.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct Known {
+    files: BTreeMap<String, usize>,
+    functions: BTreeMap<String, usize>,
+    circles: Vec<BTreeSet<String>>,
+}
+
+/// Where the plan is not kept.
+#[derive(Debug, Default)]
+struct Found {
+    arrows: Vec<String>,
+    files: BTreeMap<String, usize>,
+    functions: BTreeMap<String, usize>,
+    circles: Vec<BTreeSet<String>>,
+}
+
+/// Prints where the plan of the house is not kept. True when it is.
+pub fn check() -> bool {
+    match problems(root()) {
+        Ok(problems) if problems.is_empty() => {
+            println!(
+                "house: arrows, circles and sizes are as planned, or no worse than checks/house.toml has them"
+            );
+            true
+        }
+        Ok(problems) => {
+            problems.iter().for_each(|problem| eprintln!("house: {problem}"));
+            false
+        }
+        Err(error) => {
+            eprintln!("house: {error:#}");
+            false
+        }
+    }
+}
+
+fn problems(root: &Path) -> Result<Vec<String>> {
+    let list = root.join("checks/house.toml");
+    let text = std::fs::read_to_string(&list).with_context(|| list.display().to_string())?;
+    let known: Known = toml::from_str(&text).with_context(|| list.display().to_string())?;
+    Ok(compare(&look(root)?, &known))
+}
+
+fn look(root: &Path) -> Result<Found> {
+    let mut found = Found::default();
+    for (folder, allowed) in ARROWS {
+        let manifest = std::fs::read_to_string(root.join(folder).join("Cargo.toml"))?;
+        found.arrows.extend(wrong_arrows(folder, &manifest, allowed)?);
+        let mut files = Vec::new();
+        read(&root.join(folder).join("src"), "", &mut files)?;
+        found.look_at(folder, &files);
+    }
+    Ok(found)
+}
+
+impl Found {
+    fn look_at(&mut self, folder: &str, files: &[(String, String)]) {
+        for (file, code) in files {
+            let name = format!("{folder}/src/{file}");
+            let most = if file.ends_with(".rs") { LONGEST_RUST } else { LONGEST_SHADER };
+            let lines = code.lines().count();
+            if lines > most {
+                self.files.insert(name.clone(), lines);
+            }
+            for (function, lines) in sizes::long_functions(&text::blanked(code), LONGEST_FUNCTION) {
+                self.functions.insert(format!("{name} {function}"), lines);
+            }
+        }
+        let rust: Vec<_> = files.iter().filter(|(file, _)| file.ends_with(".rs")).cloned().collect();
+        let circles = imports::circles(&imports::Modules::read(&rust).imports());
+        let named = |file: String| format!("{folder}/src/{file}");
+        self.circles.extend(circles.into_iter().map(|circle| circle.into_iter().map(named).collect()));
+    }
+}
+
+/// Rust and shader files below a folder, with their names from there.
+fn read(folder: &Path, name: &str, files: &mut Vec<(String, String)>) -> Result<()> {
+    let mut entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    for entry in entries {
+        let below = format!("{name}{}", entry.file_name().to_string_lossy());
+        if entry.file_type()?.is_dir() {
+            read(&entry.path(), &format!("{below}/"), files)?;
+        } else if below.ends_with(".rs") || below.ends_with(".wesl") {
+            files.push((below, std::fs::read_to_string(entry.path())?));
+        }
+    }
+    Ok(())
+}
+
+/// Dependencies on crates of ours that lie beside or above.
+fn wrong_arrows(folder: &str, manifest: &str, allowed: &[&str]) -> Result<Vec<String>> {
+    let manifest: toml::Table = manifest.parse()?;
+    let used =
+        manifest.get("dependencies").and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
+    let ours = used.filter(|name| name.starts_with("strandline") && !allowed.contains(&name.as_str()));
+    Ok(ours.map(|name| format!("{folder} uses {name}, which does not lie below it")).collect())
+}
+
+fn compare(found: &Found, known: &Known) -> Vec<String> {
+    let mut problems = found.arrows.clone();
+    for (what, found, known, most) in [
+        ("lines", &found.files, &known.files, "400, a shader 200"),
+        ("lines of a function", &found.functions, &known.functions, "60"),
+    ] {
+        for (name, lines) in found {
+            match known.get(name) {
+                None => problems.push(format!("{name}: {lines} {what}, expected {most} at most")),
+                Some(most) if lines > most => {
+                    problems.push(format!("{name}: {lines} {what}, {most} when it was listed"));
+                }
+                Some(_) => {}
+            }
+        }
+        let mended = known.keys().filter(|name| !found.contains_key(*name));
+        problems.extend(mended.map(|name| format!("{name} is as planned: take it out of checks/house.toml")));
+    }
+    for circle in &found.circles {
+        if !known.circles.iter().any(|known| circle.is_subset(known)) {
+            let files: Vec<&str> = circle.iter().map(String::as_str).collect();
+            problems.push(format!("files import each other: {}", files.join(", ")));
+        }
+    }
+    for circle in &known.circles {
+        if !found.circles.iter().any(|found| found.is_subset(circle)) {
+            problems.push(format!("{circle:?} is no circle any more: take it out of checks/house.toml"));
+        }
+    }
+    problems
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrows_point_down() {
+        let manifest = "[dependencies]\nglam = \"1\"\nstrandline-sim.workspace = true\n";
+        assert_eq!(wrong_arrows("a", manifest, &["strandline-base"]).unwrap().len(), 1);
+        assert!(wrong_arrows("a", manifest, &["strandline-sim"]).unwrap().is_empty());
+    }
+
+    #[test]
+    fn what_is_listed_may_stay_but_not_grow_and_leaves_the_list_when_mended() {
+        let circle = BTreeSet::from(["a.rs".to_owned(), "b.rs".to_owned()]);
+        let found =
+            Found { files: [("a.rs".into(), 500)].into(), circles: vec![circle.clone()], ..Found::default() };
+        assert_eq!(compare(&found, &Known::default()).len(), 2);
+        let known = |lines| Known {
+            files: [("a.rs".into(), lines)].into(),
+            circles: vec![circle.clone()],
+            ..Known::default()
+        };
+        assert!(compare(&found, &known(500)).is_empty());
+        assert_eq!(compare(&found, &known(499)).len(), 1);
+        assert_eq!(compare(&Found::default(), &known(500)).len(), 2);
+    }
+}
