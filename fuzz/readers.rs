@@ -2,16 +2,25 @@
 
 use strandline::Scene;
 use strandline::body::{DistanceGrid, Mesh, SignedDistance};
-use strandline::groom::format::{LoadOptions, Parsed, hair, prepare, tfx};
+use strandline::groom::format::{
+    LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx,
+};
 use strandline::groom::{Groom, GroomError, Guides};
 
 /// A reader's target; whether it read the bytes.
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 7] = [
+pub const TARGETS: [(&str, Target); 14] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
+    ("project", project_file),
+    ("data", data_file),
+    ("bin", bin_file),
+    ("ply", ply_file),
+    ("npz", npz_file),
+    ("npy", npy_file),
+    ("lines", lines),
     ("obj", obj),
     ("gltf", gltf),
     ("scene", scene),
@@ -32,6 +41,45 @@ pub fn hair_file(bytes: &[u8]) -> bool {
 /// A .tfx file, as a .hair file.
 pub fn tfx_file(bytes: &[u8]) -> bool {
     groom(tfx::read(bytes), |groom| tfx::write(groom).map(|bytes| tfx::read(&bytes).is_ok()))
+}
+
+/// A .tfxproj file is read or refused; it names files below its folder alone.
+pub fn project_file(bytes: &[u8]) -> bool {
+    project::read(bytes).is_ok_and(|project| {
+        assert!(!project.parts.is_empty());
+        assert!(project.parts.iter().all(|[file, _]| !file.starts_with('/') && !file.contains("..")));
+        true
+    })
+}
+
+/// A .data file, as a .hair file.
+pub fn data_file(bytes: &[u8]) -> bool {
+    groom(data::read(bytes), |groom| data::write(groom).map(|bytes| data::read(&bytes).is_ok()))
+}
+
+/// A .bin file, as a .hair file.
+pub fn bin_file(bytes: &[u8]) -> bool {
+    groom(bin::read(bytes), |groom| bin::write(groom).map(|bytes| bin::read(&bytes).is_ok()))
+}
+
+/// A .ply file, as a .hair file; bare points are strands of two.
+pub fn ply_file(bytes: &[u8]) -> bool {
+    groom(ply::read(bytes, Some(2)), |groom| ply::write(groom).map(|bytes| ply::read(&bytes, None).is_ok()))
+}
+
+/// A .npz file, as a .hair file; bare points are strands of two.
+pub fn npz_file(bytes: &[u8]) -> bool {
+    groom(npz::read(bytes, Some(2)), |groom| npz::write(groom).map(|bytes| npz::read(&bytes, None).is_ok()))
+}
+
+/// A .npy file, as a .hair file; bare points are strands of two.
+pub fn npy_file(bytes: &[u8]) -> bool {
+    groom(npy::read(bytes, Some(2)), |groom| npy::write(groom).map(|bytes| npy::read(&bytes, None).is_ok()))
+}
+
+/// Strands in an OBJ file, as a .hair file.
+pub fn lines(bytes: &[u8]) -> bool {
+    groom(obj::read(bytes), |groom| obj::write(groom).map(|bytes| obj::read(&bytes).is_ok()))
 }
 
 fn groom(parsed: Result<Parsed, GroomError>, again: impl Fn(&Groom) -> Result<bool, GroomError>) -> bool {

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
+use glam::Vec3;
+use strandline::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
 use strandline::{Backend, Scene, Style, scene::MotionName};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
@@ -71,8 +73,7 @@ pub struct Inputs {
     /// Grow this style: bob, long, wavy, curly, pixie or ponytail.
     #[arg(long, value_name = "NAME", value_parser = Style::from_str, conflicts_with = "groom")]
     pub style: Option<Style>,
-    /// Load strands from this .hair or .tfx file.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = format!("Load strands from this {} file", endings(|_| true)))]
     pub groom: Option<PathBuf>,
     /// Load the body from this .obj, .gltf or .glb file.
     #[arg(long, value_name = "FILE")]
@@ -111,7 +112,7 @@ pub struct RenderOptions {
 
 #[derive(Args, Debug)]
 pub struct ViewOptions {
-    /// A .toml scene, or a .hair, .tfx, .obj, .gltf or .glb file in place of the scene's.
+    /// A .toml scene, a groom, or an .obj, .gltf or .glb body in place of the scene's.
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,
     #[command(flatten)]
@@ -135,29 +136,67 @@ pub struct GroomOptions {
     /// Seed of every random choice.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// The .hair or .tfx file to write.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = format!("The {} file to write", written()))]
     pub out: PathBuf,
 }
 
 #[derive(Args, Debug)]
+#[command(after_help = formats())]
 pub struct ConvertOptions {
-    /// The .hair or .tfx file to read.
-    #[arg(value_name = "IN")]
-    pub input: PathBuf,
-    /// The .hair or .tfx file to write.
-    #[arg(value_name = "OUT")]
-    pub output: PathBuf,
+    /// The files to read, each a group of one groom, and the file to write.
+    #[arg(value_name = "IN... OUT", num_args = 2.., required = true)]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub reading: Reading,
+    /// Keep this number of strands, spread over the scalp and alike in shape to those left out.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8_000_000))]
+    pub thin: Option<u32>,
     /// Resample every strand to this number of points.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4096))]
     pub points: Option<u32>,
+    /// Turn the strands: degrees about x, y and z, y first, then x, then z.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    pub turn: Option<Vec3>,
+    /// Move the strands, in metres, after they are turned.
+    #[arg(long = "move", value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    pub translation: Option<Vec3>,
+    /// Push strands out of this .obj, .gltf or .glb mesh, after they are moved; their lengths stay.
+    #[arg(long, value_name = "MESH")]
+    pub outside: Option<PathBuf>,
+    /// Metres per unit of that mesh.
+    #[arg(long, value_name = "F", default_value_t = 1.0)]
+    pub mesh_scale: f32,
+}
+
+/// How a groom file is read.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Reading {
+    /// Metres per unit of the file, or auto: what makes it as large as hair can be.
+    #[arg(long, value_name = "F|auto", default_value = "auto", value_parser = parse_scale)]
+    pub scale: Scale,
+    /// The axis of the file that points up: y or z.
+    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = Up::from_str)]
+    pub up: Up,
+    /// Points of each strand, for files that do not say which points make a strand.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub per_strand: Option<u32>,
+}
+
+impl Reading {
+    /// Bad strands are left out and counted.
+    pub fn options(&self) -> LoadOptions {
+        LoadOptions { strict: false, scale: self.scale, up: self.up, per_strand: self.per_strand }
+    }
 }
 
 #[derive(Args, Debug)]
+#[command(after_help = formats())]
 pub struct InfoOptions {
-    /// The .hair or .tfx file to read.
+    /// The groom to read.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
+    #[command(flatten)]
+    pub reading: Reading,
     /// Print one JSON object.
     #[arg(long)]
     pub json: bool,
@@ -281,6 +320,36 @@ impl Inputs {
     }
 }
 
+/// The endings of formats that are written.
+fn written() -> String {
+    endings(|format| format.write.is_some())
+}
+
+/// Every format of grooms, a line each.
+fn formats() -> String {
+    let line = |format: &Format| format!("  .{:<9}{}\n", format.ending, format.about);
+    format!("Formats:\n{}", FORMATS.iter().map(line).collect::<String>())
+}
+
+fn parse_scale(text: &str) -> Result<Scale, String> {
+    let factor = text.parse().ok().filter(|factor: &f32| (1e-6..=1e6).contains(factor));
+    match (text, factor) {
+        ("auto", _) => Ok(Scale::Auto),
+        (_, Some(factor)) => Ok(Scale::Factor(factor)),
+        _ => Err(format!("`{text}` is no scale, expected auto or a number from 0.000001 to 1000000")),
+    }
+}
+
+fn parse_vector(text: &str) -> Result<Vec3, String> {
+    let expected = || format!("`{text}` is not three numbers, expected X,Y,Z such as 0,90,0");
+    let numbers: Vec<f32> =
+        text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| expected())?;
+    match numbers[..] {
+        [x, y, z] if numbers.iter().all(|number| number.abs() <= 1e6) => Ok(Vec3::new(x, y, z)),
+        _ => Err(expected()),
+    }
+}
+
 fn parse_level(text: &str) -> Result<log::LevelFilter, String> {
     text.parse().map_err(|_| format!("`{text}` is no level, expected off, error, warn, info, debug or trace"))
 }
@@ -302,6 +371,14 @@ mod tests {
         assert_eq!(parse_size("800x600"), Ok((800, 600)));
         for wrong in ["800", "800x", "x600", "0x600", "800x-1", "800x99999", "axb"] {
             assert!(parse_size(wrong).unwrap_err().contains("expected WIDTHxHEIGHT"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn vectors_are_three_numbers() {
+        assert_eq!(parse_vector("0,-90,1.5"), Ok(Vec3::new(0.0, -90.0, 1.5)));
+        for wrong in ["1,2", "1,2,3,4", "a,b,c", "nan,0,0", "1e9,0,0"] {
+            assert!(parse_vector(wrong).unwrap_err().contains("expected X,Y,Z"), "{wrong}");
         }
     }
 

@@ -1,11 +1,8 @@
-//! `strandline groom`, `convert`, `info` and `scene`: files without motion.
+//! `strandline groom`, `info` and `scene`: files without motion.
 
-use strandline::groom::{
-    Groom, StyleSettings,
-    format::{self, LoadOptions},
-};
+use strandline::groom::{Groom, StyleSettings, format};
 
-use crate::arguments::{self, ConvertOptions, GroomOptions, InfoOptions, SceneOptions};
+use crate::arguments::{self, GroomOptions, InfoOptions, SceneOptions};
 use crate::output::{self, print_line};
 use crate::progress::Waiting;
 
@@ -22,20 +19,7 @@ pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
     write(&groom, &options.out)
 }
 
-/// Reads one format and writes another.
-pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
-    let loaded = format::load(&options.input, &LoadOptions { strict: false, ..LoadOptions::default() })?;
-    for problem in &loaded.report.problems {
-        output::note(problem);
-    }
-    let groom = match options.points {
-        Some(points) => loaded.groom.resampled(points as usize)?,
-        None => loaded.groom,
-    };
-    write(&groom, &options.output)
-}
-
-fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()> {
+pub(crate) fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()> {
     for part in groom.save(path)?.left_out {
         output::note(&format!("the format cannot hold {part}: left out"));
     }
@@ -50,8 +34,7 @@ fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()> {
 
 /// Says what a file holds.
 pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
-    let report =
-        format::load(&options.file, &LoadOptions { strict: false, ..LoadOptions::default() })?.report;
+    let report = format::load(&options.file, &options.reading.options())?.report;
     if options.json {
         output::program(&format!("{}\n", serde_json::to_string(&report)?));
         return Ok(());
@@ -67,6 +50,13 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     let length = &report.length_m;
     print_line!("lengths   {:.4} to {:.4} m, mean {:.4} m", length.min, length.max, length.mean);
     print_line!("bounds    {:?} m", report.bounds_m);
+    if !report.attributes.is_empty() {
+        print_line!("has       {}", report.attributes.join(", "));
+    }
+    for (number, group) in &report.groups {
+        let name = group.name.as_deref().unwrap_or("without a name");
+        print_line!("group     {number}: {name}, {} strands", group.strands);
+    }
     for problem in &report.problems {
         print_line!("problem   {problem}");
     }

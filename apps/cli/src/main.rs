@@ -4,6 +4,7 @@
 
 mod arguments;
 mod bench;
+mod convert;
 mod exit;
 mod files;
 mod gpus;
@@ -81,7 +82,7 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(Command::Render(options)) => render::render(options),
         Some(Command::Sim(options)) => sim::sim(options),
         Some(Command::Groom(options)) => files::groom(options),
-        Some(Command::Convert(options)) => files::convert(options),
+        Some(Command::Convert(options)) => convert::convert(options),
         Some(Command::Info(options)) => files::info(options),
         Some(Command::Scene(options)) => files::scene(options),
         Some(Command::Bench(options)) => bench::bench(options),

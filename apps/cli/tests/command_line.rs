@@ -121,10 +121,18 @@ fn grooms_are_grown_converted_and_described() {
     works(at, &["groom", "--style", "curly", "--strands", "30", "--seed", "4", "--out", "a.hair"]);
     works(at, &["convert", "a.hair", "b.tfx"]);
     works(at, &["convert", "b.tfx", "c.hair", "--points", "5"]);
-    for (file, points) in [("a.hair", 30 * 64), ("b.tfx", 30 * 64), ("c.hair", 30 * 5)] {
+    let thin = ["convert", "a.hair", "d.ply", "--thin", "7", "--turn", "0,90,0", "--move", "-1,0,0"];
+    works(at, &thin);
+    works(at, &["convert", "b.tfx", "c.hair", "e.npz", "--scale", "0.5"]);
+    let output = works(at, &["info", "e.npz", "--scale", "1"]);
+    assert!(output.contains("group     1: c, 30 strands"), "{output}");
+    for (file, points) in
+        [("a.hair", 30 * 64), ("b.tfx", 30 * 64), ("c.hair", 30 * 5), ("d.ply", 7 * 64), ("e.npz", 30 * 69)]
+    {
         let output = works(at, &["info", file, "--json"]);
         let report: serde_json::Value = serde_json::from_str(&output).unwrap();
-        assert_eq!((&report["strands"], &report["points"]), (&30.into(), &points.into()), "{output}");
+        let strands = if file == "d.ply" { 7 } else { 30 + 30 * u32::from(file == "e.npz") };
+        assert_eq!((&report["strands"], &report["points"]), (&strands.into(), &points.into()), "{output}");
         for key in ["format", "points_per_strand", "length_m", "bounds_m", "problems"] {
             assert!(keys(&report).contains(&key), "{key}");
         }
@@ -189,7 +197,7 @@ fn bad_files_are_refused_with_their_path() {
     fails(at, &["info", "zip.hair"], 1, &["starts with `PK", "expected `HAIR`", "zip.hair"]);
     fails(at, &["info", "huge.hair"], 1, &["4294967295 strands", "huge.hair"]);
     fails(at, &["info", "old.tfx"], 1, &["version 2", "3 or 4", "old.tfx"]);
-    fails(at, &["convert", "good.hair", "good.fbx"], 1, &["`fbx`", ".hair or .tfx", "good.fbx"]);
+    fails(at, &["convert", "good.hair", "good.fbx"], 1, &["`fbx`", ".hair, .tfx,", "good.fbx"]);
     fails(at, &["sim", "--frames", "1", "--body", "empty.obj"], 1, &["empty.obj"]);
     fails(at, &["sim", "--frames", "1", "--body", "nan.obj"], 1, &["nan.obj"]);
 }

@@ -3,6 +3,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
+use strandline::groom::format::{Format, endings};
 use strandline::{
     Backend, Camera, Command, Error, Light, Live, News, Scene, Shown, base::SettingError, body::Aabb,
     render::PictureSettings,
@@ -140,10 +141,12 @@ impl App {
         let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
         match ending.as_deref() {
             Some("toml") => return Scene::load(file),
-            Some("hair" | "tfx") => scene.groom.file = Some(absolute),
+            // Meshes are more common than strands as lines, which `convert` reads.
             Some("obj" | "gltf" | "glb") => scene.body.file = Some(absolute),
+            _ if Format::is_of(file) => scene.groom.file = Some(absolute),
             _ => {
-                let expected = "a .toml scene, a .hair or .tfx groom, or an .obj, .gltf or .glb body";
+                let grooms = endings(|format| format.ending != "obj");
+                let expected = format!("a .toml scene, a {grooms} groom, or an .obj, .gltf or .glb body");
                 return Err(SettingError::new("the file", file.display(), expected).into());
             }
         }

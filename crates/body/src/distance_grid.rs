@@ -76,6 +76,18 @@ impl DistanceGrid {
         Self::from_closed(&mesh.without_repeats().closed(), spacing, padding)
     }
 
+    /// The same for any mesh: a closed one as it is, an open one with its holes closed.
+    ///
+    /// # Errors
+    /// As [`Self::from_open_mesh`].
+    pub fn of_mesh(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
+        if mesh.is_closed() {
+            Self::from_mesh(mesh, spacing, padding)
+        } else {
+            Self::from_open_mesh(mesh, spacing, padding)
+        }
+    }
+
     fn from_closed(mesh: &Mesh, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         let bounds = mesh.bounds().unwrap_or(Aabb { min: Vec3::ZERO, max: Vec3::ZERO });
         let mut lattice = Lattice::around(bounds, spacing, padding)?;

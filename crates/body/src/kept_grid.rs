@@ -24,26 +24,14 @@ const WORTH_A_FILE: Duration = Duration::from_millis(100);
 const MOST_BYTES: u64 = 512 << 20;
 
 impl DistanceGrid {
-    /// The signed distance of a mesh, closed or open: [`Self::from_mesh`] or [`Self::from_open_mesh`].
-    ///
-    /// # Errors
-    /// As these.
-    pub fn around(mesh: &Mesh, spacing: f32, padding: f32) -> std::result::Result<Self, BodyError> {
-        if mesh.is_closed() {
-            Self::from_mesh(mesh, spacing, padding)
-        } else {
-            Self::from_open_mesh(mesh, spacing, padding)
-        }
-    }
-
-    /// The same as [`Self::around`] to the bit, read from `folder` where a run before left it, and left there for
+    /// The same as [`Self::of_mesh`] to the bit, read from `folder` where a run before left it, and left there for
     /// the next where it took long to build.
     ///
     /// A file is found by all that the grid depends on. One that is broken, cut or of other content is built
     /// anew; a folder that cannot be read or written changes nothing but the time.
     ///
     /// # Errors
-    /// As [`Self::around`].
+    /// As [`Self::of_mesh`].
     pub fn kept(
         mesh: &Mesh,
         spacing: f32,
@@ -56,7 +44,7 @@ impl DistanceGrid {
             return Ok(grid);
         }
         let begin = Instant::now();
-        let grid = Self::around(mesh, spacing, padding)?;
+        let grid = Self::of_mesh(mesh, spacing, padding)?;
         if begin.elapsed() >= WORTH_A_FILE {
             // Nothing is lost but time.
             let _ = fs::create_dir_all(folder).and_then(|()| write(&grid, &path, &key));
@@ -168,7 +156,7 @@ mod tests {
     fn a_grid_that_is_read_is_the_one_that_was_built() {
         let folder = tempfile::tempdir().unwrap();
         let (mesh, path) = (tetrahedron(), folder.path().join("a.grid"));
-        let (grid, key) = (DistanceGrid::around(&mesh, 0.01, 0.02).unwrap(), key(&mesh, 0.01, 0.02));
+        let (grid, key) = (DistanceGrid::of_mesh(&mesh, 0.01, 0.02).unwrap(), key(&mesh, 0.01, 0.02));
         write(&grid, &path, &key).unwrap();
         assert!(same(&read(&path, &key).unwrap(), &grid));
     }
@@ -191,7 +179,7 @@ mod tests {
     fn no_byte_of_a_kept_grid_may_be_wrong_or_missing() {
         let folder = tempfile::tempdir().unwrap();
         let (mesh, path) = (tetrahedron(), folder.path().join("a.grid"));
-        let (grid, key) = (DistanceGrid::around(&mesh, 0.05, 0.0).unwrap(), key(&mesh, 0.05, 0.0));
+        let (grid, key) = (DistanceGrid::of_mesh(&mesh, 0.05, 0.0).unwrap(), key(&mesh, 0.05, 0.0));
         write(&grid, &path, &key).unwrap();
         let whole = fs::read(&path).unwrap();
         for byte in 0..whole.len() {
@@ -216,7 +204,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         fs::write(&file, "not a folder").unwrap();
-        let built = DistanceGrid::around(&tetrahedron(), 0.001, 0.02).unwrap();
+        let built = DistanceGrid::of_mesh(&tetrahedron(), 0.001, 0.02).unwrap();
         assert!(same(&DistanceGrid::kept(&tetrahedron(), 0.001, 0.02, &file).unwrap(), &built));
     }
 

@@ -1,6 +1,4 @@
-//! Masses and velocities of points, resampled with their strands.
-
-use std::ops::Range;
+//! What points have, resampled with their strands.
 
 use glam::Vec3;
 use strandline_base::SettingError;
@@ -44,15 +42,24 @@ fn refuse(name: &'static str, found: String, expected: &'static str) -> Result<(
     Err(SettingError::new(name, found, expected).into())
 }
 
-fn range(groom: &Groom, strand: usize) -> Range<usize> {
-    groom.starts[strand] as usize..groom.starts[strand + 1] as usize
-}
-
-/// Velocities of a strand \[m/s\] at `count` points at equal arc length.
-pub(crate) fn velocities(groom: &Groom, strand: usize, count: usize) -> Option<Vec<Vec3>> {
-    let velocities = &groom.velocities.as_ref()?[range(groom, strand)];
-    let places = Guides::equal_places(groom.strand(strand), count);
-    Some(places.map(|(segment, share)| velocities[segment].lerp(velocities[segment + 1], share)).collect())
+/// What points have, at `count` points at equal arc length on every strand; `mix` gives what lies between two
+/// points at a share of the way from the first to the second.
+pub(crate) fn along<T: Copy>(
+    groom: &Groom,
+    values: &[T],
+    count: usize,
+    mix: impl Fn(T, T, f32) -> T,
+) -> Vec<T> {
+    let strands = 0..groom.strand_count();
+    let mixed = strands.flat_map(|strand| {
+        let own = &values[groom.range(strand)];
+        let mix = &mix;
+        Guides::equal_places(groom.strand(strand), count).map(move |(segment, share)| match share {
+            1.0 => own[segment + 1],
+            _ => mix(own[segment], own[segment + 1], share),
+        })
+    });
+    mixed.collect()
 }
 
 /// Masses of a strand \[kg\] at `count` points at equal arc length, of the same sum.
@@ -60,7 +67,7 @@ pub(crate) fn velocities(groom: &Groom, strand: usize, count: usize) -> Option<V
 /// The mass of a point lies evenly along the halves of its segments; a new point takes what lies along the
 /// halves of its own. Points that are at equal arc length already keep their masses, but for rounding.
 pub(crate) fn masses(groom: &Groom, strand: usize, count: usize) -> Option<Vec<f32>> {
-    let masses = &groom.masses.as_ref()?[range(groom, strand)];
+    let masses = &groom.masses.as_ref()?[groom.range(strand)];
     let points = groom.strand(strand);
     // Where the share of each point ends \[m\], and the mass up to there [kg].
     let (mut ends, mut sums) = (vec![0.0_f64], vec![0.0_f64]);

@@ -50,10 +50,22 @@ pub enum GroomError {
         mend: &'static str,
     },
     /// A file ending that names no format.
-    #[error("the ending `{found}` names no groom format, expected .hair or .tfx: {}", path.display())]
+    #[error("the ending `{found}` names no groom format, expected {expected}: {}", path.display())]
     Ending {
         /// The ending.
         found: String,
+        /// The endings that name one.
+        expected: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A format that is only read.
+    #[error(".{ending} files are read, not written; expected {expected}: {}", path.display())]
+    NotWritten {
+        /// The ending.
+        ending: &'static str,
+        /// The endings of formats that are written.
+        expected: String,
         /// The file.
         path: PathBuf,
     },

@@ -52,14 +52,13 @@ impl Guides {
             }
         });
         let root_normals = (0..strand_count).map(|strand| root_normal(groom, strand)).collect();
-        let widths =
-            (0..strand_count).map(|strand| groom.widths.at(strand, groom.starts[strand] as usize)).collect();
+        let widths = groom.root_widths().collect();
         let masses =
             (0..strand_count).filter_map(|strand| attributes::masses(groom, strand, points_per_strand));
         let masses = groom.masses.is_some().then(|| masses.flatten().collect());
-        let velocities =
-            (0..strand_count).filter_map(|strand| attributes::velocities(groom, strand, points_per_strand));
-        let velocities = groom.velocities.is_some().then(|| velocities.flatten().collect());
+        let velocities = groom.velocities.as_ref().map(|all| {
+            attributes::along(groom, all, points_per_strand, |one: Vec3, two, share| one.lerp(two, share))
+        });
         Ok(Self { strand_count, points_per_strand, positions, root_normals, widths, masses, velocities })
     }
 

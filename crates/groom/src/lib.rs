@@ -4,19 +4,26 @@
 #![forbid(unsafe_code)]
 
 mod attributes;
+mod binding;
+mod choice;
 mod error;
 mod groom;
 mod guides;
+mod influences;
 mod lanes;
 mod outside;
+mod resampled;
 mod rest;
+mod selected;
 mod style;
 
 pub mod format;
 
+pub use binding::{Binding, Frame, Influence, MOST_INFLUENCES, Surface};
 pub use error::GroomError;
 pub use groom::{Groom, Widths};
 pub use guides::Guides;
+pub use influences::Influences;
 pub use lanes::{LANES, Lanes, Vec3Lanes, block_count};
 pub use outside::Outside;
 pub use rest::RestShape;

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use strandline_body::turned_out;
 
-use crate::{Guides, LANES, Vec3Lanes};
+use crate::{Groom, Guides, LANES};
 
 /// Times that a point is placed anew at most when the surface under it curves.
 const PLACINGS: usize = 16;
@@ -13,7 +13,7 @@ const GENTLE: f32 = 0.25;
 /// How far \[m\] inside a point may lie: rounding of places of some decimetres.
 const TOLERATED: f32 = 1e-6;
 
-/// What [`Guides::move_outside`] found.
+/// What [`Guides::move_outside`] and [`Groom::move_outside`] found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outside {
     /// Points that lay inside, but for roots.
@@ -38,12 +38,33 @@ impl Guides {
         let moved: Vec<Outside> = blocks
             .map(|(block, positions)| {
                 let live = (strand_count - block * LANES).min(LANES);
-                let moved = (0..LANES).map(|lane| (lane, move_strand(positions, lane, &surface)));
+                let moved = (0..LANES).map(|lane| {
+                    let mut strand: Vec<Vec3> = positions.iter().map(|point| point.get(lane)).collect();
+                    let moved = move_strand(&mut strand, &surface);
+                    positions.iter_mut().zip(strand).for_each(|(point, place)| point.set(lane, place));
+                    (lane, moved)
+                });
                 moved
                     .filter(|(lane, _)| *lane < live)
                     .fold(Outside::default(), |sum, (_, one)| sum.with(&one))
             })
             .collect();
+        moved.iter().fold(Outside::default(), Outside::with)
+    }
+}
+
+impl Groom {
+    /// As [`Guides::move_outside`], for every strand of a groom.
+    pub fn move_outside(&mut self, surface: impl Fn(Vec3) -> (f32, Vec3) + Sync) -> Outside {
+        let mut rest = &mut self.points[..];
+        let mut strands = Vec::with_capacity(self.starts.len());
+        for pair in self.starts.windows(2) {
+            let (strand, others) = rest.split_at_mut((pair[1] - pair[0]) as usize);
+            strands.push(strand);
+            rest = others;
+        }
+        let moved: Vec<Outside> =
+            strands.into_par_iter().map(|strand| move_strand(strand, &surface)).collect();
         moved.iter().fold(Outside::default(), Outside::with)
     }
 }
@@ -59,12 +80,13 @@ impl Outside {
     }
 }
 
-fn move_strand(positions: &mut [Vec3Lanes], lane: usize, surface: &impl Fn(Vec3) -> (f32, Vec3)) -> Outside {
+/// Moves one strand, root first; its root stays.
+fn move_strand(points: &mut [Vec3], surface: &impl Fn(Vec3) -> (f32, Vec3)) -> Outside {
     let mut outside = Outside::default();
-    let mut rest = positions[0].get(lane);
-    let mut before = rest;
-    for point in positions.iter_mut().skip(1) {
-        let here = point.get(lane);
+    let Some((root, points)) = points.split_first_mut() else { return outside };
+    let (mut rest, mut before) = (*root, *root);
+    for point in points {
+        let here = *point;
         let length = here.distance(rest);
         let depth = -surface(here).0;
         if depth > TOLERATED {
@@ -75,7 +97,7 @@ fn move_strand(positions: &mut [Vec3Lanes], lane: usize, surface: &impl Fn(Vec3)
         let aimed = if before == rest { here } else { before + back(here - rest, before - rest) };
         let (placed, depth) = placed_outside(before, aimed, length, surface);
         outside.depth_left = outside.depth_left.max(depth);
-        point.set(lane, placed);
+        *point = placed;
         (rest, before) = (here, placed);
     }
     outside
@@ -88,7 +110,7 @@ fn back(segment: Vec3, aside: Vec3) -> Vec3 {
 }
 
 /// The place near `aimed` that lies at `length` \[m\] from `before` and not inside; how deep it still lies.
-fn placed_outside(
+pub(crate) fn placed_outside(
     before: Vec3,
     aimed: Vec3,
     length: f32,
@@ -119,7 +141,6 @@ fn placed_outside(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Groom;
 
     const RADIUS: f32 = 0.1;
 

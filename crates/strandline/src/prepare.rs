@@ -98,7 +98,12 @@ impl Prepared {
 /// The strands of a scene: from its file, or grown.
 fn groom(scene: &Scene, notes: &mut Vec<String>) -> Result<Groom, Error> {
     let Some(file) = &scene.groom.file else { return Ok(scene.style.grow()?) };
-    let options = LoadOptions { strict: false, scale: scene.groom.scale, up: scene.groom.up };
+    let options = LoadOptions {
+        strict: false,
+        scale: scene.groom.scale,
+        up: scene.groom.up,
+        per_strand: scene.groom.per_strand,
+    };
     let loaded = format::load(&scene.path(file), &options)?;
     notes.extend(loaded.report.problems.iter().map(|problem| format!("{}: {problem}", file.display())));
     let mut groom = loaded.groom;
@@ -183,7 +188,7 @@ fn grid_shape(scene: &Scene, grid: DistanceGrid, notes: &mut Vec<String>) -> Sha
 fn kept_grid(mesh: &Mesh, spacing: f32) -> Result<DistanceGrid, Error> {
     Ok(match cache::folder() {
         Some(folder) => DistanceGrid::kept(mesh, spacing, DISTANCE_PADDING, &folder.join("grids"))?,
-        None => DistanceGrid::around(mesh, spacing, DISTANCE_PADDING)?,
+        None => DistanceGrid::of_mesh(mesh, spacing, DISTANCE_PADDING)?,
     })
 }
 

@@ -1,15 +1,15 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use strandline_base::{Key, Kind, Row, SettingError, Value, WholeFile, choices, read_plain};
 
 use super::report::Report;
-use super::{MAX_FILE_BYTES, Parsed, hair, sieve::sieve, tfx};
+use super::{
+    Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, endings, project,
+    sieve::sieve,
+};
 use crate::{Groom, GroomError, Widths};
-
-/// Diameter of a human hair \[m\], for files that name none.
-const HAIR_WIDTH: f32 = 8e-5;
 
 /// Metres for each unit of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -90,11 +90,13 @@ pub struct LoadOptions {
     pub scale: Scale,
     /// The axis that points up.
     pub up: Up,
+    /// Points of each strand, for files that hold points and do not say which of them make a strand.
+    pub per_strand: Option<u32>,
 }
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { strict: true, scale: Scale::Auto, up: Up::Y }
+        Self { strict: true, scale: Scale::Auto, up: Up::Y, per_strand: None }
     }
 }
 
@@ -114,19 +116,88 @@ pub struct Saved {
     pub left_out: Vec<&'static str>,
 }
 
-/// Loads a .hair or .tfx file; the ending names the format.
+/// Loads a file of any of the formats; its ending names it.
 ///
 /// # Errors
 /// See [`GroomError`]; the path stands last.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, GroomError> {
-    let read: fn(&[u8]) -> Result<Parsed, GroomError> = match ending(path).as_str() {
-        "hair" => hair::read,
-        "tfx" => tfx::read,
-        found => return Err(GroomError::Ending { found: found.to_owned(), path: path.to_owned() }),
-    };
+    let parsed = parse(path, options)?;
+    prepare(parsed, options).map_err(|error| error.of(path))
+}
+
+/// Loads several files as one groom: each is a group of the name of its file, unless the files have groups of
+/// their own. Their units are the same.
+///
+/// # Errors
+/// As [`load`]; no file.
+pub fn load_all(paths: &[PathBuf], options: &LoadOptions) -> Result<Loaded, GroomError> {
+    match paths {
+        [] => Err(GroomError::Empty),
+        [path] => load(path, options),
+        [first, ..] => {
+            let name = |path: &PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            let parts = paths.iter().map(|path| (path.clone(), name(path).unwrap_or_default()));
+            prepare(joined(parts, options)?, options).map_err(|error| error.of(first))
+        }
+    }
+}
+
+/// The strands of a file as they stand there.
+fn parse(path: &Path, options: &LoadOptions) -> Result<Parsed, GroomError> {
+    let format = Format::of(path)?;
     let file = |source| GroomError::File { action: "read", path: path.to_owned(), source };
     let bytes = read_plain(path, MAX_FILE_BYTES).map_err(file)?;
-    read(&bytes).and_then(|parsed| prepare(parsed, options)).map_err(|error| error.of(path))
+    match format.read {
+        Reader::Bytes(read) => read(&bytes, options.per_strand).map_err(|error| error.of(path)),
+        Reader::Project => {
+            let project = project::read(&bytes).map_err(|error| error.of(path))?;
+            let folder = path.parent().unwrap_or(Path::new(""));
+            let parts = project.parts.into_iter().map(|[file, name]| (folder.join(file), name));
+            let mut parsed = joined(parts, options)?;
+            parsed.format = ".tfxproj";
+            if let (Some(color), None) = (project.color, &parsed.groom.colors) {
+                parsed.groom.colors = Some(vec![color; parsed.groom.points.len()]);
+            }
+            Ok(parsed)
+        }
+    }
+}
+
+/// The strands of several files, each a group of a name.
+fn joined(
+    parts: impl Iterator<Item = (PathBuf, String)>,
+    options: &LoadOptions,
+) -> Result<Parsed, GroomError> {
+    let mut whole: Option<Parsed> = None;
+    for (number, (path, name)) in parts.enumerate() {
+        let mut part = parse(&path, options)?;
+        let number = number as u32;
+        part.groom.groups = Some(vec![number; part.groom.strand_count()]);
+        part.groom.group_names = [(number, name.clone())].into();
+        part.problems.iter_mut().for_each(|problem| *problem = format!("{name}: {problem}"));
+        let Some(whole) = &mut whole else {
+            whole = Some(part);
+            continue;
+        };
+        let strands = (whole.groom.strand_count() + part.groom.strand_count()) as u64;
+        let points = (whole.groom.points.len() + part.groom.points.len()) as u64;
+        if strands > MAX_STRANDS || points > MAX_POINTS {
+            let found = format!("{strands} strands of {points} points in all");
+            let expected = format!("{MAX_STRANDS} strands of {MAX_POINTS} points at most");
+            return Err(GroomError::from(SettingError::new("the groom", found, expected)).of(&path));
+        }
+        for lost in Part::ALL
+            .into_iter()
+            .filter(|lost| *lost != Part::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
+        {
+            if !matches!(lost, Part::WidthsAlong | Part::GroupNames) {
+                whole.problems.push(format!("only some of the files have {}: left out", lost.name()));
+            }
+        }
+        whole.groom.append(part.groom);
+        whole.problems.append(&mut part.problems);
+    }
+    whole.ok_or(GroomError::Empty)
 }
 
 /// Sieves, scales and turns what a reader found.
@@ -166,37 +237,30 @@ fn plausible_scale(groom: &Groom) -> f32 {
     [1.0, 0.01, 0.001, 0.0254].into_iter().find(fits).unwrap_or(1.0)
 }
 
-/// Writes a .hair or .tfx file; the ending names the format. The file is whole or not there.
+/// Writes a file of the format that its ending names. The file is whole or not there.
 ///
 /// # Errors
-/// A format that cannot hold the groom, or a folder that cannot be written.
+/// A format that is not written or cannot hold the groom, or a folder that cannot be written.
 pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
-    let mut left_out = Vec::new();
-    let mut note = |absent: bool, what| left_out.extend(absent.then_some(what));
-    note(groom.root_normals.is_some(), "root normals");
-    note(groom.groups.is_some(), "groups");
-    note(groom.masses.is_some(), "masses");
-    note(groom.velocities.is_some(), "velocities");
-    let bytes = match ending(path).as_str() {
-        "hair" => {
-            note(groom.root_uvs.is_some(), "root coordinates");
-            hair::write(groom)
-        }
-        "tfx" => {
-            note(groom.transparencies.is_some(), "transparency");
-            tfx::write(groom)
-        }
-        found => return Err(GroomError::Ending { found: found.to_owned(), path: path.to_owned() }),
+    let format = Format::of(path)?;
+    let Some(write) = format.write else {
+        return Err(GroomError::NotWritten {
+            ending: format.ending,
+            expected: endings(|format| format.write.is_some()),
+            path: path.to_owned(),
+        });
     };
-    let bytes = bytes.map_err(|error| error.of(path))?;
+    let is_lost = |part: &Part| part.is_in(groom) && !format.holds.contains(part);
+    let mut lost: Vec<Part> = Part::ALL.into_iter().filter(is_lost).collect();
+    // One of the two says it all.
+    if lost.contains(&Part::Widths) {
+        lost.retain(|part| *part != Part::WidthsAlong);
+    }
+    let bytes = write(groom).map_err(|error| error.of(path))?;
     WholeFile::save(path, &bytes).map_err(|source| GroomError::File {
         action: "write",
         path: path.to_owned(),
         source,
     })?;
-    Ok(Saved { left_out })
-}
-
-fn ending(path: &Path) -> String {
-    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+    Ok(Saved { left_out: lost.into_iter().map(Part::name).collect() })
 }

@@ -1,17 +1,29 @@
-//! Readers and writers of groom files: `.hair` and `.tfx`.
+//! Readers and writers of groom files: one file a format, listed in [`FORMATS`].
 //!
 //! Readers work on bytes in memory, check every size in 64-bit arithmetic before they allocate,
 //! and never allocate more than a small multiple of what they were given.
 
+pub mod bin;
 mod bytes;
+pub mod data;
 pub mod hair;
 mod load;
+pub mod npy;
+pub mod npz;
+pub mod obj;
+mod part;
+pub mod ply;
+pub mod project;
+mod registry;
 mod report;
 mod sieve;
 pub mod tfx;
+mod zip;
 
-pub use load::{LoadOptions, Loaded, Saved, Scale, Up, load, prepare, save};
-pub use report::{Counts, Lengths, Report};
+pub use load::{LoadOptions, Loaded, Saved, Scale, Up, load, load_all, prepare, save};
+pub use part::Part;
+pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
+pub use report::{Counts, GroupOf, Lengths, Report};
 
 /// Most strands that a reader accepts.
 pub const MAX_STRANDS: u64 = 8_000_000;
@@ -23,6 +35,8 @@ pub const MAX_POINTS: u64 = 256 << 20;
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
 /// Coordinates lie within this distance of 0, in the file's units.
 pub const MAX_COORDINATE: f32 = 1e7;
+/// Diameter of a human hair \[m\], for files that name none.
+pub const HAIR_WIDTH: f32 = 8e-5;
 
 /// What a reader found in bytes, before bad strands are sieved out; units and axes of the file.
 #[derive(Clone, Debug, PartialEq)]

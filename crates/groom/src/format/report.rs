@@ -1,5 +1,8 @@
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
+use super::Part;
 use crate::Groom;
 
 /// What a file holds.
@@ -19,8 +22,21 @@ pub struct Report {
     pub bounds_m: [[f32; 3]; 2],
     /// Metres for each unit of the file.
     pub scale: f32,
+    /// What it has beside points.
+    pub attributes: Vec<&'static str>,
+    /// Its groups by their numbers: names, where they have some, and strands.
+    pub groups: BTreeMap<u32, GroupOf>,
     /// What was odd or left out, for a person to read.
     pub problems: Vec<String>,
+}
+
+/// A group of strands.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct GroupOf {
+    /// Its name.
+    pub name: Option<String>,
+    /// Number of its strands.
+    pub strands: usize,
 }
 
 /// Fewest and most.
@@ -62,7 +78,20 @@ impl Report {
             },
             bounds_m: [bounds.min.to_array(), bounds.max.to_array()],
             scale,
+            attributes: Part::ALL.into_iter().filter(|part| part.is_in(groom)).map(Part::name).collect(),
+            groups: groups(groom),
             problems,
         }
     }
+}
+
+fn groups(groom: &Groom) -> BTreeMap<u32, GroupOf> {
+    let mut groups = BTreeMap::<u32, GroupOf>::new();
+    for number in groom.groups.iter().flatten() {
+        groups.entry(*number).or_default().strands += 1;
+    }
+    for (number, name) in &groom.group_names {
+        groups.entry(*number).or_default().name = Some(name.clone());
+    }
+    groups
 }

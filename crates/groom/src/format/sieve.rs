@@ -15,8 +15,8 @@ const FAULTS: [(&str, &str); 4] = [
     ("has a coordinate that is not a number or is too large", "finite coordinates below 1e7"),
     ("has no length", "a length above 0"),
     (
-        "has a width, colour or coordinate on the scalp that is not sound",
-        "finite numbers, widths not below 0",
+        "has a width, colour or another attribute that is not sound",
+        "finite numbers, widths not below 0, masses above 0",
     ),
 ];
 
@@ -64,10 +64,16 @@ fn fault(groom: &Groom, strand: usize, length: f32, shortest: f32) -> Option<usi
         Widths::PerPoint(widths) => widths[range.clone()].iter().all(sound_width),
     };
     let uvs = groom.root_uvs.as_ref().is_none_or(|uvs| uvs[strand].is_finite());
+    let normals = groom.root_normals.as_ref().is_none_or(|all| all[strand].is_finite());
+    let sound = |all: &Option<Vec<f32>>, is_sound: fn(f32) -> bool| {
+        all.as_ref().is_none_or(|all| all[range.clone()].iter().all(|value| is_sound(*value)))
+    };
+    let clear = sound(&groom.transparencies, f32::is_finite);
+    let masses = sound(&groom.masses, |mass| mass.is_finite() && mass > 0.0);
     let colors = groom
         .colors
         .as_ref()
         .is_none_or(|all| all[range.clone()].as_flattened().iter().all(|value| value.is_finite()));
-    let clear = groom.transparencies.as_ref().is_none_or(|all| all[range].iter().all(|v| v.is_finite()));
-    (!(widths && uvs && colors && clear)).then_some(3)
+    let velocities = groom.velocities.as_ref().is_none_or(|all| all[range].iter().all(|v| v.is_finite()));
+    (!(widths && uvs && normals && clear && masses && colors && velocities)).then_some(3)
 }

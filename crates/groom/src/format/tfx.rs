@@ -121,23 +121,7 @@ fn check(source: &Source, layout: &Layout) -> Result<(), GroomError> {
 /// # Errors
 /// Strands of different point counts, or of counts that the format cannot hold.
 pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
-    let each = groom.starts.get(1).copied().unwrap_or(0);
-    if let Some(pair) = groom.starts.windows(2).find(|pair| pair[1] - pair[0] != each) {
-        return Err(GroomError::CannotHold {
-            format: ".tfx",
-            found: format!("strands of {each} and of {} points", pair[1] - pair[0]),
-            expected: "the same number of points on every strand",
-            mend: "resample it (`--points N`)",
-        });
-    }
-    if !(2..=MAX_POINTS_PER_STRAND as u32).contains(&each) {
-        return Err(GroomError::CannotHold {
-            format: ".tfx",
-            found: format!("strands of {each} points"),
-            expected: "2 to 4096 points",
-            mend: "resample it (`--points N`)",
-        });
-    }
+    let each = each(groom, ".tfx")?;
     let strands = groom.strand_count();
     let (mut body, mut offsets) = (Vec::new(), [0_u32; 5]);
     let here = |body: &Vec<u8>| HEADER_4 as u32 + body.len() as u32;
@@ -166,4 +150,33 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
     out.resize(HEADER_4 as usize, 0);
     out.append(&mut body);
     Ok(out)
+}
+
+/// The number of points that every strand has.
+pub(super) fn each(groom: &Groom, format: &'static str) -> Result<u32, GroomError> {
+    let each = longest(groom, format)?;
+    match groom.starts.windows(2).find(|pair| pair[1] - pair[0] != each) {
+        None => Ok(each),
+        Some(pair) => Err(GroomError::CannotHold {
+            format,
+            found: format!("strands of {} and of {each} points", pair[1] - pair[0]),
+            expected: "the same number of points on every strand",
+            mend: "resample it (`--points N`)",
+        }),
+    }
+}
+
+/// Most points of a strand.
+pub(super) fn longest(groom: &Groom, format: &'static str) -> Result<u32, GroomError> {
+    let counts = || groom.starts.windows(2).map(|pair| pair[1] - pair[0]);
+    let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+    if least >= 2 && most <= MAX_POINTS_PER_STRAND as u32 {
+        return Ok(most);
+    }
+    Err(GroomError::CannotHold {
+        format,
+        found: format!("strands of {least} to {most} points"),
+        expected: "2 to 4096 points",
+        mend: "resample it (`--points N`)",
+    })
 }

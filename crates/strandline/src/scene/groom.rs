@@ -8,13 +8,16 @@ use crate::groom::format::{Scale, Up};
 settings! {
     /// Strands from a file, and how guides are made of strands.
     pub struct GroomSection {
-        /// A .hair or .tfx file; without one the `[style]` is grown.
+        /// A file of any of the formats that `strandline convert --help` lists; without one the `[style]` is
+        /// grown.
         file: Option<PathBuf> = None;
         /// Metres per unit of the file; "auto" takes the first of 1, 0.01, 0.001 and 0.0254 that makes the
         /// groom as large as a head of hair can be.
         scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
         /// The file's axis that points up.
         up: Up = Up::default();
+        /// Points of each strand, for files that hold points and do not say which of them make a strand.
+        per_strand: Option<u32> = None, in [1, 4096];
         /// Moves the strands of a file, head space.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
         /// Simulate every n-th strand of a file; the others are left out.

@@ -1,0 +1,57 @@
+//! `strandline convert`: a groom in another format, and with other strands.
+
+use anyhow::Context;
+use glam::{EulerRot, Quat, Vec3};
+use strandline::body::{DistanceGrid, Mesh, SignedDistance};
+use strandline::groom::{Groom, format};
+
+use crate::arguments::ConvertOptions;
+use crate::progress::Waiting;
+use crate::{files, output};
+
+/// Distance between the samples of a mesh that strands are pushed out of, and air around it \[m\].
+const SPACING: f32 = 0.002;
+const AIR: f32 = 0.01;
+
+/// Reads one or more files as one groom, changes it as asked, and writes it.
+pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
+    let (output, inputs) = options.files.split_last().context("clap asks for two files")?;
+    // What cannot be written is refused before anything is read.
+    format::Format::of(output)?;
+    let loaded = format::load_all(inputs, &options.reading.options())?;
+    for problem in &loaded.report.problems {
+        output::note(problem);
+    }
+    let mut groom = loaded.groom;
+    if let Some(count) = options.thin {
+        let waiting = Waiting::begin("choosing strands");
+        groom = groom.select(&groom.representatives(count as usize));
+        drop(waiting);
+    }
+    if let Some(points) = options.points {
+        groom = groom.resampled(points as usize)?;
+    }
+    let [pitch, yaw, roll] = options.turn.unwrap_or_default().to_array().map(f32::to_radians);
+    let rotation = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
+    groom.transform(1.0, rotation, options.translation.unwrap_or_default());
+    if let Some(file) = &options.outside {
+        push_out(&mut groom, &Mesh::load(file, options.mesh_scale)?)?;
+    }
+    files::write(&groom, output)
+}
+
+/// Puts what lies inside a mesh onto its surface.
+fn push_out(groom: &mut Groom, mesh: &Mesh) -> anyhow::Result<()> {
+    let waiting = Waiting::begin("pushing strands out of the mesh");
+    let grid = DistanceGrid::of_mesh(mesh, SPACING, AIR)?;
+    let found = groom.move_outside(|point: Vec3| grid.distance_and_gradient(point));
+    drop(waiting);
+    output::note(&format!(
+        "{} points of {} strands lay inside, by up to {:.2} mm: moved to the surface, {:.2} mm left at most",
+        found.point_count,
+        found.strand_count,
+        1e3 * found.depth,
+        1e3 * found.depth_left
+    ));
+    Ok(())
+}

@@ -1,0 +1,151 @@
+use super::*;
+use crate::Influences;
+
+const POINTS: usize = 8;
+
+/// Strands that stand on a square, wave, and differ in length.
+fn groom() -> Groom {
+    let mut groom = Groom::empty(8e-5);
+    for strand in 0..400 {
+        let root = Vec3::new(0.005 * (strand % 20) as f32, 0.0, 0.005 * (strand / 20) as f32);
+        let length = 0.1 + 0.0005 * (strand % 37) as f32;
+        groom.push((0..POINTS).map(|point| {
+            let share = point as f32 / (POINTS - 1) as f32;
+            root + Vec3::new(0.01 * (5.0 * share).sin(), length * share, 0.02 * share * share)
+        }));
+    }
+    groom
+}
+
+fn bound(groom: &Groom, guides: &[usize]) -> Binding {
+    let resample = |groom: &Groom| Guides::resample(groom, POINTS).unwrap();
+    Binding::new(groom, guides, resample(groom), resample(&groom.select(guides))).unwrap()
+}
+
+fn places(binding: &Binding, positions: &[Vec3Lanes], pose: &Pose) -> Vec<Vec3Lanes> {
+    let mut out = Vec::new();
+    binding.place(positions, pose, None, &mut out);
+    out
+}
+
+fn moved(guides: &Guides, change: impl Fn(Vec3) -> Vec3) -> Vec<Vec3Lanes> {
+    let mut positions = guides.positions().to_vec();
+    for lanes in &mut positions {
+        (0..LANES).for_each(|lane| lanes.set(lane, change(lanes.get(lane))));
+    }
+    positions
+}
+
+#[test]
+fn a_groom_at_rest_is_itself_wherever_the_head_is() {
+    let groom = groom();
+    let binding = bound(&groom, &groom.representatives(30));
+    let pose = Pose { rotation: Quat::from_rotation_y(0.7), translation: Vec3::new(1.0, -2.0, 0.5) };
+    let found = places(&binding, &moved(binding.guides(), |point| pose.point(point)), &pose);
+    let mut worst = 0.0_f32;
+    for strand in 0..groom.strand_count() {
+        for point in 0..POINTS {
+            let rest = pose.point(binding.strands().position(strand, point));
+            let place = found[strand / LANES * POINTS + point].get(strand % LANES);
+            worst = worst.max(place.distance(rest));
+        }
+    }
+    // Rounding of places of two metres; the bound that is promised is 1e-4 m.
+    assert!(worst < 3e-6, "{worst} m");
+}
+
+#[test]
+fn bound_strands_keep_their_lengths_and_go_where_their_guides_go() {
+    let groom = groom();
+    let binding = bound(&groom, &groom.representatives(30));
+    // Guides lean over by an angle that grows with height: an arc of their own length.
+    let lean = |point: Vec3| {
+        let angle = 6.0 * point.y;
+        Vec3::new(point.x + (1.0 - angle.cos()) / 6.0, angle.sin() / 6.0, point.z)
+    };
+    let found = places(&binding, &moved(binding.guides(), lean), &Pose::IDENTITY);
+    let place = |strand: usize, point: usize| found[strand / LANES * POINTS + point].get(strand % LANES);
+    let (mut sum, mut count) = (0.0, 0.0);
+    for strand in 0..groom.strand_count() {
+        for point in 1..POINTS {
+            let rest = |point| binding.strands().position(strand, point);
+            let length = place(strand, point).distance(place(strand, point - 1));
+            let own = rest(point).distance(rest(point - 1));
+            let of_first = place(strand, 1).distance(place(strand, 0)) / rest(1).distance(rest(0));
+            // Leaning is no rotation where strands wave: guides are longer or shorter as a whole, as are others.
+            assert!(
+                (length / own / of_first - 1.0).abs() < 1e-4,
+                "strand {strand}: {length} {own} {of_first}"
+            );
+            sum += place(strand, point).distance(lean(rest(point)));
+            count += 1.0;
+        }
+    }
+    // 4 % of a strand; the leaning itself moves them by 28 mm.
+    assert!(sum / count < 0.004, "{} m", sum / count);
+}
+
+#[test]
+fn guides_that_are_cut_cut_the_strands_about_them() {
+    let groom = groom();
+    let binding = bound(&groom, &groom.representatives(30));
+    let half = moved(binding.guides(), |point| Vec3::new(point.x, 0.5 * point.y, point.z));
+    let mut scales = Vec::new();
+    binding.scales(&half, &mut scales);
+    let found = places(&binding, &half, &Pose::IDENTITY);
+    let length: f32 = (1..POINTS).map(|point| found[point].get(3).distance(found[point - 1].get(3))).sum();
+    let share = length / groom.lengths()[3];
+    let mean = scales.iter().sum::<f32>() / scales.len() as f32;
+    assert!((share - mean).abs() < 0.05 && mean < 0.7, "{share} {mean}");
+}
+
+#[test]
+fn points_come_out_of_the_body() {
+    let groom = groom();
+    let binding = bound(&groom, &groom.representatives(30));
+    // A ground through which the guides are pushed, and a ball on it.
+    let ball = Vec3::new(0.05, 0.0, 0.07);
+    let surface = |point: Vec3| {
+        let way = point - ball;
+        if point.y < way.length() - 0.02 {
+            (point.y, Vec3::Y)
+        } else {
+            (way.length() - 0.02, way.normalize())
+        }
+    };
+    let sunk = moved(binding.guides(), |point| Vec3::new(point.x, -0.3 * point.y, point.z + point.y));
+    let deep = |surface_of: Option<&Surface>| {
+        let mut out = Vec::new();
+        binding.place(&sunk, &Pose::IDENTITY, surface_of, &mut out);
+        let place = |strand: usize, point: usize| out[strand / LANES * POINTS + point].get(strand % LANES);
+        let strands = (0..groom.strand_count()).filter(|strand| surface(place(*strand, 0)).0 >= 0.0);
+        strands
+            .flat_map(|strand| (1..POINTS).map(move |point| (strand, point)))
+            .filter(|(strand, point)| surface(place(*strand, *point)).0 < -1e-5)
+            .count()
+    };
+    assert_eq!(deep(Some(&surface)), 0);
+    assert!(deep(None) > 1000, "the comparison can fail: {}", deep(None));
+}
+
+#[test]
+fn strands_follow_the_guides_that_the_groom_names() {
+    let mut groom = groom();
+    let guides: Vec<u32> = (0..400).flat_map(|_| [10, 300, 5]).collect();
+    groom.influences = Some(Influences::new(3, guides, [0.75, 0.25, 0.0].repeat(400), 400).unwrap());
+    let binding = bound(&groom, &[10, 200, 300]);
+    let first = &binding.influences()[0];
+    assert_eq!([first[0].guide, first[1].guide], [0, 2]);
+    assert_eq!([first[0].weight, first[1].weight, first[2].weight], [0.75, 0.25, 0.0]);
+    // A guide follows itself, whatever it is said to follow.
+    assert_eq!((binding.influences()[200][0].guide, binding.influences()[200][0].weight), (1, 1.0));
+}
+
+#[test]
+fn guides_that_are_none_are_refused() {
+    let groom = groom();
+    let resample = |groom: &Groom| Guides::resample(groom, POINTS).unwrap();
+    let all = resample(&groom);
+    let wrong = Binding::new(&groom, &[1, 2], all.clone(), resample(&groom.select(&[1])));
+    assert!(wrong.unwrap_err().to_string().contains("2 guides for 400 strands"));
+}

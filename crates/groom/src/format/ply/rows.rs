@@ -1,0 +1,163 @@
+//! The rows of a `.ply` file: numbers, column by column.
+
+use super::super::bytes::Source;
+use super::header::{Element, Encoding, Header, Number};
+use crate::GroomError;
+
+/// Longest list of a row.
+const MAX_LIST: f64 = 4096.0;
+
+/// One property of all rows.
+#[derive(Default)]
+pub struct Column {
+    name: String,
+    is_byte: bool,
+    /// Where the list of each row ends among the values; empty for numbers that are no lists.
+    ends: Vec<usize>,
+    is_list: bool,
+    /// Numbers, or the lists one behind the other.
+    pub values: Vec<f64>,
+}
+
+impl Column {
+    /// The length of every list, if all are alike.
+    pub fn even(&self) -> Option<usize> {
+        let first = *self.ends.first()?;
+        self.ends.iter().enumerate().all(|(row, end)| *end == (row + 1) * first).then_some(first)
+    }
+}
+
+/// The properties of an element that were asked for.
+#[derive(Default)]
+pub struct Table {
+    pub rows: usize,
+    columns: Vec<Column>,
+}
+
+impl Table {
+    /// The numbers of a property.
+    pub fn numbers(&self, name: &str) -> Option<&[f64]> {
+        let column = self.columns.iter().find(|column| column.name == name && !column.is_list);
+        column.map(|column| &column.values[..])
+    }
+
+    pub fn floats(&self, name: &str) -> Option<Vec<f32>> {
+        Some(self.numbers(name)?.iter().map(|number| *number as f32).collect())
+    }
+
+    pub fn triples(&self, names: [&str; 3]) -> Option<Vec<[f32; 3]>> {
+        let [one, two, three] = names.map(|name| self.numbers(name));
+        let three = one?.iter().zip(two?).zip(three?);
+        Some(three.map(|((one, two), three)| [*one as f32, *two as f32, *three as f32]).collect())
+    }
+
+    /// The lists of a property.
+    pub fn list(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name && column.is_list)
+    }
+
+    /// Whether a property is of single bytes.
+    pub fn is_byte(&self, name: &str) -> bool {
+        self.columns.iter().any(|column| column.name == name && column.is_byte)
+    }
+}
+
+/// Reads one element after the other.
+pub struct Rows<'a> {
+    source: Source<'a>,
+    encoding: Encoding,
+    rest: &'a [u8],
+}
+
+impl<'a> Rows<'a> {
+    pub fn new(source: &Source<'a>, header: &Header) -> Self {
+        Self { source: *source, encoding: header.encoding, rest: &source.bytes[header.length..] }
+    }
+
+    /// The rows of the next element; properties that are not among `names` are skipped.
+    pub fn read(&mut self, element: &Element, names: &[&str]) -> Result<Table, GroomError> {
+        // What a row takes at least: nothing is taken that the file cannot fill.
+        let least = |number: Number| if self.encoding == Encoding::Text { 1 } else { number.size() as u64 };
+        let row: u64 =
+            element.properties.iter().map(|property| least(property.length.unwrap_or(property.number))).sum();
+        let needed = element.count.checked_mul(row.max(1));
+        if needed.is_none_or(|needed| needed > self.rest.len() as u64) {
+            let expected = format!("{} rows of {row} bytes of `{}`", element.count, element.name);
+            return Err(self.source.error(format!("{} bytes", self.rest.len()), expected));
+        }
+        let rows = element.count as usize;
+        let column = |property: &super::header::Property| {
+            let is_kept = names.contains(&property.name.as_str());
+            let room = if is_kept { rows } else { 0 };
+            let column = Column {
+                name: property.name.clone(),
+                is_byte: property.number == Number::U8,
+                ends: Vec::new(),
+                is_list: property.length.is_some(),
+                values: Vec::with_capacity(room),
+            };
+            (is_kept, column)
+        };
+        let mut columns: Vec<(bool, Column)> = element.properties.iter().map(column).collect();
+        for _ in 0..rows {
+            for (property, (is_kept, column)) in element.properties.iter().zip(&mut columns) {
+                let count = match property.length {
+                    None => 1,
+                    Some(length) => self.length(length)?,
+                };
+                for _ in 0..count {
+                    let number = self.number(property.number)?;
+                    if *is_kept {
+                        column.values.push(number);
+                    }
+                }
+                if *is_kept && column.is_list {
+                    column.ends.push(column.values.len());
+                }
+            }
+        }
+        let columns = columns.into_iter().filter(|(is_kept, _)| *is_kept).map(|(_, column)| column);
+        Ok(Table { rows, columns: columns.collect() })
+    }
+
+    fn length(&mut self, length: Number) -> Result<usize, GroomError> {
+        let count = self.number(length)?;
+        if (0.0..=MAX_LIST).contains(&count) && count.fract() == 0.0 {
+            return Ok(count as usize);
+        }
+        Err(self.source.error(format!("a list of {count} numbers"), format!("0 to {MAX_LIST}")))
+    }
+
+    fn number(&mut self, number: Number) -> Result<f64, GroomError> {
+        if self.encoding == Encoding::Text {
+            return self.word();
+        }
+        let Some((bytes, rest)) = self.rest.split_at_checked(number.size()) else {
+            return Err(self.cut_off());
+        };
+        self.rest = rest;
+        let mut word = [0; 8];
+        word[..bytes.len()].copy_from_slice(bytes);
+        if self.encoding == Encoding::Big {
+            word[..bytes.len()].reverse();
+        }
+        Ok(number.value(word))
+    }
+
+    fn word(&mut self) -> Result<f64, GroomError> {
+        let text = self.rest.trim_ascii_start();
+        let end = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
+        let (word, rest) = text.split_at(end);
+        if word.is_empty() {
+            return Err(self.cut_off());
+        }
+        self.rest = rest;
+        let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        let found = || format!("`{}`", word[..word.len().min(40)].escape_ascii());
+        number.ok_or_else(|| self.source.error(found(), "a number"))
+    }
+
+    fn cut_off(&self) -> GroomError {
+        self.source.error(format!("{} bytes", self.source.bytes.len()), "the rows that its header names")
+    }
+}

@@ -1,0 +1,135 @@
+//! Every format once: its ending, what it is, how it is read and written, and what of a groom it holds.
+
+use std::path::Path;
+
+use super::part::Part::{self, *};
+use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx};
+use crate::{Groom, GroomError};
+
+/// How bytes become strands; points of each strand where a file may leave them open.
+pub type Read = fn(&[u8], Option<u32>) -> Result<Parsed, GroomError>;
+/// How strands become bytes.
+pub type Write = fn(&Groom) -> Result<Vec<u8>, GroomError>;
+
+/// How the files of a format are read.
+#[derive(Clone, Copy, Debug)]
+pub enum Reader {
+    /// Strands from its bytes.
+    Bytes(Read),
+    /// Its lines name the files that hold the strands.
+    Project,
+}
+
+/// A format of groom files.
+#[derive(Clone, Copy, Debug)]
+pub struct Format {
+    /// The ending of its files, without the dot, in lower case.
+    pub ending: &'static str,
+    /// What it is, for a person to read.
+    pub about: &'static str,
+    /// How it is read.
+    pub read: Reader,
+    /// How it is written, where it can be.
+    pub write: Option<Write>,
+    /// What it holds beside points.
+    pub holds: &'static [Part],
+}
+
+/// All formats.
+pub const FORMATS: [Format; 9] = [
+    Format {
+        ending: "hair",
+        about: "HAIR of Cem Yuksel",
+        read: Reader::Bytes(|bytes, _| hair::read(bytes)),
+        write: Some(hair::write),
+        holds: &[Widths, WidthsAlong, Colors, Transparencies],
+    },
+    Format {
+        ending: "tfx",
+        about: "TressFX 3 and 4, written as 4; strands of one number of points",
+        read: Reader::Bytes(|bytes, _| tfx::read(bytes)),
+        write: Some(tfx::write),
+        holds: &[Widths, Colors, RootUvs],
+    },
+    Format {
+        ending: "tfxproj",
+        about: "a project of TressFX 3: each of its .tfx files becomes a group",
+        read: Reader::Project,
+        write: None,
+        holds: &[],
+    },
+    Format {
+        ending: "data",
+        about: "USC-HairSalon: points alone",
+        read: Reader::Bytes(|bytes, _| data::read(bytes)),
+        write: Some(data::write),
+        holds: &[],
+    },
+    Format {
+        ending: "bin",
+        about: "CT2Hair: points; normals and labels are not read, and written as 0",
+        read: Reader::Bytes(|bytes, _| bin::read(bytes)),
+        write: Some(bin::write),
+        holds: &[],
+    },
+    Format {
+        ending: "ply",
+        about: "vertices with `strand` and `edge` elements, or bare ones with `--per-strand N`",
+        read: Reader::Bytes(ply::read),
+        write: Some(ply::write),
+        holds: &Part::ALL,
+    },
+    Format {
+        ending: "npz",
+        about: "NumPy arrays by name: `points` and `starts`, or `positions` [strand, point, 3]",
+        read: Reader::Bytes(npz::read),
+        write: Some(npz::write),
+        holds: &Part::ALL,
+    },
+    Format {
+        ending: "npy",
+        about: "one NumPy array [strand, point, 3]; points alone",
+        read: Reader::Bytes(npy::read),
+        write: Some(npy::write),
+        holds: &[],
+    },
+    Format {
+        ending: "obj",
+        about: "lines (`l`), with groups by `g` and colours behind vertices",
+        read: Reader::Bytes(|bytes, _| obj::read(bytes)),
+        write: Some(obj::write),
+        holds: &[Colors, Groups, GroupNames],
+    },
+];
+
+impl Format {
+    /// The format that the ending of a path names.
+    ///
+    /// # Errors
+    /// [`GroomError::Ending`].
+    pub fn of(path: &Path) -> Result<&'static Self, GroomError> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let found = ending.unwrap_or_default();
+        FORMATS.iter().find(|format| format.ending == found).ok_or_else(|| GroomError::Ending {
+            found,
+            expected: endings(|_| true),
+            path: path.to_owned(),
+        })
+    }
+
+    /// Whether the ending of a path names one.
+    pub fn is_of(path: &Path) -> bool {
+        Self::of(path).is_ok()
+    }
+}
+
+/// The endings of the formats that are chosen, as a person lists them: ".hair, .tfx or .obj".
+pub fn endings(choose: impl Fn(&Format) -> bool) -> String {
+    let chosen: Vec<String> =
+        FORMATS.iter().filter(|format| choose(format)).map(|format| format!(".{}", format.ending)).collect();
+    match chosen.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        Some((last, _)) => last.clone(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,99 @@
+//! Grooms made of strands of others: some of one, or those of two.
+
+use glam::Vec3;
+
+use crate::{Groom, Widths};
+
+impl Groom {
+    /// The strands that a choice by index keeps, in their order.
+    pub fn kept(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let strands: Vec<usize> = (0..self.strand_count()).filter(|strand| keep(*strand)).collect();
+        self.select(&strands)
+    }
+
+    /// Some strands by their indices, in the order given, with everything that they have.
+    pub fn select(&self, strands: &[usize]) -> Self {
+        let mut groom = Self::empty(0.0);
+        groom.starts.reserve(strands.len());
+        groom.points.reserve(strands.iter().map(|strand| self.range(*strand).len()).sum());
+        for strand in strands {
+            groom.push(self.strand(*strand).iter().copied());
+        }
+        groom.widths = match &self.widths {
+            Widths::Constant(width) => Widths::Constant(*width),
+            Widths::PerStrand(widths) => Widths::PerStrand(per_strand(strands, widths)),
+            Widths::PerPoint(widths) => Widths::PerPoint(self.per_point(strands, widths)),
+        };
+        groom.root_uvs = self.root_uvs.as_ref().map(|all| per_strand(strands, all));
+        groom.root_normals = self.root_normals.as_ref().map(|all| per_strand(strands, all));
+        groom.groups = self.groups.as_ref().map(|all| per_strand(strands, all));
+        groom.group_names.clone_from(&self.group_names);
+        groom.guide_flags = self.guide_flags.as_ref().map(|all| per_strand(strands, all));
+        groom.influences = self.influences.as_ref().map(|all| all.select(strands));
+        groom.colors = self.colors.as_ref().map(|all| self.per_point(strands, all));
+        groom.transparencies = self.transparencies.as_ref().map(|all| self.per_point(strands, all));
+        groom.masses = self.masses.as_ref().map(|all| self.per_point(strands, all));
+        groom.velocities = self.velocities.as_ref().map(|all| self.per_point(strands, all));
+        groom
+    }
+
+    /// Adds the strands of another groom behind these. What only one of the two has is lost, but for widths and
+    /// names of groups.
+    pub fn append(&mut self, other: Self) {
+        self.widths = self.joined_widths(&other);
+        let first = self.points.len() as u32;
+        self.starts.extend(other.starts[1..].iter().map(|start| first + start));
+        self.points.extend(other.points);
+        join(&mut self.root_uvs, other.root_uvs);
+        join(&mut self.root_normals, other.root_normals);
+        join(&mut self.groups, other.groups);
+        self.group_names.extend(other.group_names);
+        join(&mut self.guide_flags, other.guide_flags);
+        self.influences = None;
+        join(&mut self.colors, other.colors);
+        join(&mut self.transparencies, other.transparencies);
+        join(&mut self.masses, other.masses);
+        join(&mut self.velocities, other.velocities);
+    }
+
+    fn joined_widths(&self, other: &Self) -> Widths {
+        match (&self.widths, &other.widths) {
+            (Widths::Constant(one), Widths::Constant(two)) if one == two => Widths::Constant(*one),
+            (Widths::PerPoint(_), _) | (_, Widths::PerPoint(_)) => {
+                Widths::PerPoint(self.point_widths().chain(other.point_widths()).collect())
+            }
+            _ => Widths::PerStrand(self.root_widths().chain(other.root_widths()).collect()),
+        }
+    }
+
+    /// Diameter \[m\] at every point.
+    pub fn point_widths(&self) -> impl Iterator<Item = f32> + '_ {
+        let strands = 0..self.strand_count();
+        strands.flat_map(move |strand| self.range(strand).map(move |point| self.widths.at(strand, point)))
+    }
+
+    /// Diameter \[m\] at every root.
+    pub fn root_widths(&self) -> impl Iterator<Item = f32> + '_ {
+        (0..self.strand_count()).map(|strand| self.widths.at(strand, self.starts[strand] as usize))
+    }
+
+    /// The roots \[m\].
+    pub fn roots(&self) -> impl Iterator<Item = Vec3> + '_ {
+        self.starts[..self.strand_count()].iter().map(|start| self.points[*start as usize])
+    }
+
+    fn per_point<T: Copy>(&self, strands: &[usize], values: &[T]) -> Vec<T> {
+        strands.iter().flat_map(|strand| &values[self.range(*strand)]).copied().collect()
+    }
+}
+
+fn per_strand<T: Copy>(strands: &[usize], values: &[T]) -> Vec<T> {
+    strands.iter().map(|strand| values[*strand]).collect()
+}
+
+fn join<T>(one: &mut Option<Vec<T>>, two: Option<Vec<T>>) {
+    *one = one.take().zip(two).map(|(mut one, two)| {
+        one.extend(two);
+        one
+    });
+}

@@ -1,0 +1,78 @@
+//! Bound strands of real grooms, and what a hundred thousand of them cost.
+
+use std::time::Instant;
+
+use glam::Vec3;
+use strandline_body::Pose;
+use strandline_groom::{Binding, Groom, Guides, LANES};
+
+fn bound(groom: &Groom, count: usize, points: usize) -> Binding {
+    let chosen = groom.representatives(count);
+    let resample = |groom: &Groom| Guides::resample(groom, points).unwrap();
+    Binding::new(groom, &chosen, resample(groom), resample(&groom.select(&chosen))).unwrap()
+}
+
+#[test]
+fn sintel_at_rest_is_the_groom() {
+    let folder = std::env::var_os("STRANDLINE_GROOMS")
+        .map(std::path::PathBuf::from)
+        .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/grooms").into());
+    let file = folder.join("sintel/SintelHairOriginal-sintel_hair.16points.tfx");
+    if !file.is_file() {
+        println!("skipped: no grooms folder");
+        return;
+    }
+    let groom = Groom::load(file).unwrap();
+    let binding = bound(&groom, 2000, 16);
+    assert!((1900..=2000).contains(&binding.guides().strand_count()));
+    let mut places = Vec::new();
+    binding.place(binding.guides().positions(), &Pose::IDENTITY, None, &mut places);
+    let mut worst = 0.0_f32;
+    for strand in 0..groom.strand_count() {
+        for point in 0..16 {
+            let place = places[strand / LANES * 16 + point].get(strand % LANES);
+            worst = worst.max(place.distance(binding.strands().position(strand, point)));
+        }
+    }
+    println!("worst {worst:e} m");
+    assert!(worst < 1e-4, "{worst} m");
+}
+
+/// 100,000 strands of 16 points bound to 2,000 guides about a ball for a head: prints what a frame takes.
+#[test]
+fn a_hundred_thousand_strands_are_placed() {
+    let mut groom = Groom::empty(8e-5);
+    for strand in 0..100_000 {
+        let height = 1.0 - (strand as f32 + 0.5) / 100_000.0;
+        let angle = 2.399_963 * strand as f32;
+        let flat = (1.0 - height * height).sqrt();
+        let normal = Vec3::new(flat * angle.cos(), height, flat * angle.sin());
+        groom.push((0..16).map(|point| 0.1 * normal + 0.012 * point as f32 * normal.lerp(Vec3::NEG_Y, 0.6)));
+    }
+    let begin = Instant::now();
+    let chosen = groom.representatives(2000);
+    println!("choosing {} guides: {:.0?}", chosen.len(), begin.elapsed());
+    let resample = |groom: &Groom| Guides::resample(groom, 16).unwrap();
+    let (strands, guides) = (resample(&groom), resample(&groom.select(&chosen)));
+    let begin = Instant::now();
+    let binding = Binding::new(&groom, &chosen, strands, guides).unwrap();
+    println!("binding: {:.0?}", begin.elapsed());
+    let surface = |point: Vec3| (point.length() - 0.1, point.normalize_or(Vec3::Y));
+    let mut places = Vec::new();
+    let positions = binding.guides().positions().to_vec();
+    for body in [false, true] {
+        let times = (0..8).map(|_| {
+            let begin = Instant::now();
+            binding.place(&positions, &Pose::IDENTITY, body.then_some(&surface), &mut places);
+            begin.elapsed().as_secs_f64()
+        });
+        let mut times: Vec<f64> = times.collect();
+        times.sort_by(f64::total_cmp);
+        println!(
+            "placing, with a body: {body}: {:.1} ms at best, {:.1} ms the middle",
+            1e3 * times[0],
+            1e3 * times[4]
+        );
+    }
+    assert!(places.iter().all(|lanes| (0..LANES).all(|lane| lanes.get(lane).is_finite())));
+}
