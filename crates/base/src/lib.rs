@@ -1,12 +1,14 @@
 //! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
-//! that one run writes at a time, text that is safe to print, the settings table. No hair, no GPU, nothing of
-//! ours below it.
+//! that one run writes at a time, arrays in a zip that grow while a run goes on, text that is safe to print, the
+//! settings table. No hair, no GPU, nothing of ours below it.
 
 #![forbid(unsafe_code)]
 
 pub mod cache;
 mod folder_lock;
+mod growing_file;
 pub mod memory;
+pub mod npz;
 mod parts;
 mod plain_file;
 mod printable;
@@ -16,6 +18,7 @@ mod setting_values;
 mod whole_file;
 
 pub use folder_lock::FolderLock;
+pub use growing_file::GrowingFile;
 pub use parts::{Abandoned, abandon_parts};
 pub use plain_file::{open_plain, read_plain};
 pub use printable::printable;

@@ -132,7 +132,7 @@ impl Drop for WholeFile {
 }
 
 /// The permissions of the file that would be replaced; none where there is none.
-fn permissions(path: &Path) -> Result<Option<fs::Permissions>> {
+pub(crate) fn permissions(path: &Path) -> Result<Option<fs::Permissions>> {
     let found = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         found => found?,

@@ -1,0 +1,248 @@
+//! The header of a .npy member: a Python literal of a dictionary, padded with spaces.
+
+use super::{Kind, NpzError};
+
+/// What every member begins with.
+const MAGIC: &[u8; 6] = b"\x93NUMPY";
+/// Headers are padded to a multiple of this \[byte\], as numpy has them: data that is mapped is aligned.
+pub const ALIGNMENT: u64 = 64;
+/// Length of a header whose first number may grow \[byte\]: room for 2^64 rows of three numbers each.
+pub const GROWING: usize = 128;
+/// Longest header that is read \[byte\].
+const MAX_HEADER: usize = 4096;
+/// Most axes of an array.
+const MAX_AXES: usize = 32;
+
+/// What a member says of its array.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Header {
+    pub kind: Kind,
+    pub shape: Vec<u64>,
+    /// Bytes before the data.
+    pub length: u64,
+}
+
+impl Header {
+    /// Bytes of the data; none when they are more than 64 bits count.
+    pub fn data_bytes(&self) -> Option<u64> {
+        self.shape.iter().try_fold(self.kind.bytes(), |bytes, count| bytes.checked_mul(*count))
+    }
+}
+
+/// The header of an array, `least` bytes or more.
+pub fn header(kind: Kind, shape: &[u64], least: usize) -> Vec<u8> {
+    let counts: String = shape.iter().map(|count| format!("{count}, ")).collect();
+    // A tuple of one needs its comma, others have none behind the last.
+    let counts = if shape.len() == 1 { counts.trim_end() } else { counts.trim_end_matches(", ") };
+    let text = format!("{{'descr': '{}', 'fortran_order': False, 'shape': ({counts}), }}", kind.name());
+    let length = (MAGIC.len() + 4 + text.len() + 1).next_multiple_of(ALIGNMENT as usize).max(least);
+    let mut bytes = Vec::with_capacity(length);
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&[1, 0]);
+    bytes.extend_from_slice(&((length - 10) as u16).to_le_bytes());
+    bytes.extend_from_slice(text.as_bytes());
+    bytes.resize(length - 1, b' ');
+    bytes.push(b'\n');
+    bytes
+}
+
+/// Reads a header through `read`, which fills what it is given.
+///
+/// # Errors
+/// What `read` reports; what is no header of numbers in C order.
+pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<Header, NpzError> {
+    let mut start = [0; 8];
+    read(&mut start)?;
+    if start[..6] != *MAGIC {
+        return Err(NpzError::new(format!("starts with `{}`", start[..6].escape_ascii()), "`\\x93NUMPY`"));
+    }
+    let (prefix, length) = match start[6] {
+        1 => {
+            let mut length = [0; 2];
+            read(&mut length)?;
+            (10, usize::from(u16::from_le_bytes(length)))
+        }
+        2 | 3 => {
+            let mut length = [0; 4];
+            read(&mut length)?;
+            (12, u32::from_le_bytes(length) as usize)
+        }
+        version => return Err(NpzError::new(format!("version {version} of .npy"), "1, 2 or 3")),
+    };
+    if length > MAX_HEADER {
+        return Err(NpzError::new(format!("a header of {length} bytes"), format!("{MAX_HEADER} at most")));
+    }
+    let mut text = vec![0; length];
+    read(&mut text)?;
+    let mut header = Literal { rest: &text }.header().ok_or_else(|| {
+        let found = format!("the header `{}`", text.trim_ascii_end().escape_ascii());
+        NpzError::new(found, "a dictionary of descr, fortran_order and shape")
+    })?;
+    let (name, fortran) = (header.descr, header.fortran_order);
+    let kind = Kind::of_name(&name).ok_or_else(|| {
+        let known: Vec<&str> = Kind::ALL.iter().map(|row| row.1).collect();
+        let found = format!("elements of type `{}`", name.escape_default());
+        NpzError::new(found, format!("one of {}: convert it with numpy's astype", known.join(" ")))
+    })?;
+    if fortran && header.shape.iter().filter(|count| **count != 1).count() > 1 {
+        return Err(NpzError::new(
+            "an array in Fortran's order",
+            "C order: numpy.ascontiguousarray makes it",
+        ));
+    }
+    header.shape.truncate(MAX_AXES);
+    Ok(Header { kind, shape: header.shape, length: (prefix + length) as u64 })
+}
+
+/// The three entries.
+struct Entries {
+    descr: String,
+    fortran_order: bool,
+    shape: Vec<u64>,
+}
+
+/// The part of Python's literals that numpy writes: a dictionary of a text, a truth and a tuple of numbers.
+struct Literal<'a> {
+    rest: &'a [u8],
+}
+
+impl Literal<'_> {
+    fn header(&mut self) -> Option<Entries> {
+        let (mut descr, mut fortran_order, mut shape) = (None, None, None);
+        self.expect(b'{')?;
+        while !self.take(b'}') {
+            let key = self.text()?;
+            self.expect(b':')?;
+            match key.as_str() {
+                "descr" => descr = Some(self.text()?),
+                "fortran_order" => fortran_order = Some(self.truth()?),
+                "shape" => shape = Some(self.tuple()?),
+                _ => return None,
+            }
+            if !self.take(b',') {
+                self.expect(b'}')?;
+                break;
+            }
+        }
+        self.rest.trim_ascii().is_empty().then_some(())?;
+        Some(Entries { descr: descr?, fortran_order: fortran_order?, shape: shape? })
+    }
+
+    fn take(&mut self, wanted: u8) -> bool {
+        self.rest = self.rest.trim_ascii_start();
+        let found = self.rest.first() == Some(&wanted);
+        self.rest = &self.rest[usize::from(found)..];
+        found
+    }
+
+    fn expect(&mut self, wanted: u8) -> Option<()> {
+        self.take(wanted).then_some(())
+    }
+
+    fn text(&mut self) -> Option<String> {
+        let quote = if self.take(b'\'') { b'\'' } else { self.expect(b'"').map(|()| b'"')? };
+        let end = self.rest.iter().position(|byte| *byte == quote)?;
+        let text = std::str::from_utf8(&self.rest[..end]).ok()?.to_owned();
+        self.rest = &self.rest[end + 1..];
+        Some(text)
+    }
+
+    fn truth(&mut self) -> Option<bool> {
+        self.rest = self.rest.trim_ascii_start();
+        let (value, rest) = match (self.rest.strip_prefix(b"True"), self.rest.strip_prefix(b"False")) {
+            (Some(rest), _) => (true, rest),
+            (None, Some(rest)) => (false, rest),
+            (None, None) => return None,
+        };
+        self.rest = rest;
+        Some(value)
+    }
+
+    fn tuple(&mut self) -> Option<Vec<u64>> {
+        let mut numbers = Vec::new();
+        self.expect(b'(')?;
+        while !self.take(b')') {
+            self.rest = self.rest.trim_ascii_start();
+            let end = self.rest.iter().position(|byte| !byte.is_ascii_digit())?;
+            numbers.push(std::str::from_utf8(&self.rest[..end]).ok()?.parse().ok()?);
+            self.rest = &self.rest[end..];
+            if !self.take(b',') {
+                self.expect(b')')?;
+                break;
+            }
+        }
+        (numbers.len() <= MAX_AXES).then_some(numbers)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(bytes: &[u8]) -> Result<Header, NpzError> {
+        let mut rest = bytes;
+        read(|out| {
+            let (here, after) =
+                rest.split_at_checked(out.len()).ok_or_else(|| NpzError::new("the end", "more"))?;
+            out.copy_from_slice(here);
+            rest = after;
+            Ok(())
+        })
+    }
+
+    fn literal(text: &str) -> Vec<u8> {
+        [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes()].concat()
+    }
+
+    #[test]
+    fn headers_are_what_numpy_writes_and_are_read_again() {
+        let bytes = header(Kind::F32, &[2, 3], 0);
+        let expected = b"\x93NUMPY\x01\x00v\x00{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }";
+        assert!(bytes.starts_with(expected) && bytes.len() == 128 && bytes.ends_with(b" \n"), "{bytes:?}");
+        for shape in [&[][..], &[7], &[2, 3], &[u64::MAX, u64::MAX, 3]] {
+            for (kind, ..) in Kind::ALL {
+                let bytes = header(kind, shape, GROWING);
+                assert_eq!(bytes.len(), GROWING, "{shape:?}");
+                let found = parse(&bytes).unwrap();
+                assert_eq!((found.kind, found.shape.as_slice(), found.length), (kind, shape, 128));
+            }
+        }
+        assert_eq!(parse(&header(Kind::F64, &[u64::MAX, 2], 0)).unwrap().data_bytes(), None);
+    }
+
+    #[test]
+    fn other_orders_spaces_and_quotes_are_read() {
+        let text = "{\"shape\":(4,), 'fortran_order' : True,'descr':'<u2'}  \n";
+        assert_eq!(parse(&literal(text)).unwrap().shape, [4]);
+        let mut second = literal("");
+        second[6] = 2;
+        second.truncate(8);
+        let text = header(Kind::U8, &[5], 0)[10..].to_vec();
+        second.extend((text.len() as u32).to_le_bytes());
+        second.extend(text);
+        assert_eq!(parse(&second).unwrap().kind, Kind::U8);
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_refused_with_what_was_found() {
+        let refused = |text: &str| parse(&literal(text)).unwrap_err().to_string();
+        let objects = refused("{'descr': '|O', 'fortran_order': False, 'shape': (3,), }");
+        assert!(objects.contains("type `|O`") && objects.contains("astype"), "{objects}");
+        let order = refused("{'descr': '<f4', 'fortran_order': True, 'shape': (3, 2), }");
+        assert!(order.contains("ascontiguousarray"), "{order}");
+        for text in [
+            "",
+            "{",
+            "{}",
+            "{'descr': '<f4'}",
+            "{'descr': '<f4', 'fortran_order': False, 'shape': (3 4), }",
+            "{'descr': '<f4', 'fortran_order': False, 'shape': (-3,), }",
+            "{'descr': '<f4', 'fortran_order': False, 'shape': (99999999999999999999,), }",
+            "{'descr': '<f4', 'fortran_order': False, 'shape': (3,), } x",
+        ] {
+            assert!(refused(text).contains("expected a dictionary"), "{text}");
+        }
+        let good = header(Kind::F32, &[2, 3], 0);
+        assert!((0..good.len()).all(|cut| parse(&good[..cut]).is_err()));
+    }
+}
