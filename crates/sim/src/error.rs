@@ -15,6 +15,14 @@ pub enum SimError {
         /// What fits.
         expected: &'static str,
     },
+    /// A checkpoint of other hair, or one that is damaged.
+    #[error("the state that was saved has {found}, expected {expected}: begin anew")]
+    Checkpoint {
+        /// What it has.
+        found: String,
+        /// What fits.
+        expected: String,
+    },
     /// A fluid volume that does not fit the GPU.
     #[error(
         "simulation.volume.cells is {} x {} x {}, too many for the GPU ({source}): \

@@ -8,6 +8,7 @@
 pub mod cpu;
 pub mod gpu;
 
+mod checkpoint;
 mod clock;
 mod error;
 mod grab;
@@ -21,6 +22,7 @@ mod state;
 mod step;
 pub mod strands;
 
+pub use checkpoint::{Checkpoint, Part};
 pub use clock::{Clock, Ticks};
 pub use error::SimError;
 pub use report::{PressureReport, StepReport};

@@ -76,6 +76,19 @@ impl Plane {
         distance: Lanes([f32::NEG_INFINITY; LANES]),
         friction: Lanes([0.0; LANES]),
     };
+    /// Numbers for each strand.
+    const NUMBERS: usize = 8;
+
+    fn numbers(&self) -> [[f32; LANES]; Self::NUMBERS] {
+        let Self { anchor, normal, distance, friction } = self;
+        [anchor.x, anchor.y, anchor.z, normal.x, normal.y, normal.z, distance.0, friction.0]
+    }
+
+    fn of_numbers(numbers: &[f32]) -> Self {
+        let part = |index: usize| std::array::from_fn(|lane| numbers[index * LANES + lane]);
+        let vector = |first: usize| Vec3Lanes { x: part(first), y: part(first + 1), z: part(first + 2) };
+        Self { anchor: vector(0), normal: vector(3), distance: Lanes(part(6)), friction: Lanes(part(7)) }
+    }
 }
 
 impl Contacts {
@@ -84,6 +97,24 @@ impl Contacts {
         let carriers = [Carrier::Head, Carrier::World];
         let used = carriers.iter().filter(|carrier| colliders.iter().any(|c| c.carrier == **carrier));
         Self { blocks: vec![vec![Plane::UNKNOWN; used.count() * points]; block_count] }
+    }
+
+    /// Numbers of a plane for each strand.
+    pub fn numbers_per_plane(&self) -> usize {
+        Plane::NUMBERS
+    }
+
+    /// The numbers of all planes, shape `[block][plane][number]` of lanes.
+    pub fn numbers(&self) -> Vec<f32> {
+        self.blocks.iter().flatten().flat_map(Plane::numbers).flatten().collect()
+    }
+
+    /// Takes over the numbers of all planes, of that shape.
+    pub fn set_numbers(&mut self, numbers: &[f32]) {
+        let planes = self.blocks.iter_mut().flatten();
+        for (plane, numbers) in planes.zip(numbers.chunks_exact(Plane::NUMBERS * LANES)) {
+            *plane = Plane::of_numbers(numbers);
+        }
     }
 }
 

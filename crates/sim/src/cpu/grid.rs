@@ -83,6 +83,18 @@ impl Grid {
         self.origin + Vec3::splat(self.spacing)
     }
 
+    /// Lower corner with the ring \[m\], world space, and spacing \[m\].
+    pub(crate) fn place_numbers(&self) -> [f32; 4] {
+        self.origin.extend(self.spacing).to_array()
+    }
+
+    /// Takes over what [`Grid::place_numbers`] gave; a spacing that none has is left.
+    pub(crate) fn set_place(&mut self, [x, y, z, spacing]: [f32; 4]) {
+        if spacing.is_finite() && spacing >= MIN_SPACING {
+            (self.origin, self.spacing) = (Vec3::new(x, y, z), spacing);
+        }
+    }
+
     /// Centre \[m\] of a cell, world space.
     pub fn center(&self, cell: usize) -> Vec3 {
         self.origin + (self.corner(cell) + Vec3::splat(0.5)) * self.spacing
