@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use strandline::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
-use strandline::{Backend, Scene, Style, scene::MotionName};
+use strandline::{Backend, Cache, Scene, Style, Target, What, scene::MotionName};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
@@ -68,8 +68,8 @@ impl Command {
 #[derive(Args, Clone, Debug)]
 pub struct Inputs {
     /// demo, thesis, or a .toml file [default: demo].
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "demo", hide_default_value = true)]
-    pub scene: String,
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub scene: Option<String>,
     /// Grow this style: bob, long, wavy, curly, pixie or ponytail.
     #[arg(long, value_name = "NAME", value_parser = Style::from_str, conflicts_with = "groom")]
     pub style: Option<Style>,
@@ -108,6 +108,9 @@ pub struct RenderOptions {
     /// Folder of the pictures [default: out/ and the scene's name].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Draw the guides of this moving cache in place of a simulation, with its own scene unless --scene names one.
+    #[arg(long, value_name = "FILE.npz")]
+    pub cache: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
@@ -123,6 +126,25 @@ pub struct ViewOptions {
 pub struct SimOptions {
     #[command(flatten)]
     pub inputs: Inputs,
+    /// Write the hair as it moves: .npz (a moving cache), .usda (text USD for Blender, Houdini and Unreal), or a
+    /// groom file a frame, such as out/%04d.hair.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Which strands are written: guides, those that are simulated, or strands, all that pictures draw
+    /// [default: guides].
+    #[arg(long, value_name = "NAME", requires = "out", value_parser = What::from_str)]
+    pub what: Option<What>,
+    /// Write every N-th frame, from the first [default: 1].
+    #[arg(long, value_name = "N", requires = "out", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub every: Option<u32>,
+    /// Units and axes of a .usda: any (metres, y up), unreal (centimetres, z up, groom_* attributes) or blender
+    /// (metres, z up, frames from 1) [default: any].
+    #[arg(long = "for", value_name = "NAME", requires = "out", value_parser = Target::from_str)]
+    pub target: Option<Target>,
+    /// Go on where the run of this moving cache stood, with its own scene unless --scene names one; --frames is the
+    /// length of the whole film. The result is written to it, unless --out names another file.
+    #[arg(long, value_name = "FILE.npz")]
+    pub resume: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]
@@ -279,7 +301,18 @@ pub fn scene(name: &str) -> anyhow::Result<Scene> {
 impl Inputs {
     /// The scene with what the command line replaces.
     pub fn scene(&self) -> anyhow::Result<Scene> {
-        let mut scene = scene(&self.scene)?;
+        self.changed(scene(self.scene.as_deref().unwrap_or("demo"))?)
+    }
+
+    /// The scene of a cache, unless the command line names one, with what the command line replaces.
+    pub fn scene_of(&self, cache: &Cache) -> anyhow::Result<Scene> {
+        if self.scene.is_some() || self.style.is_some() || self.groom.is_some() {
+            return self.scene();
+        }
+        self.changed(cache.scene()?)
+    }
+
+    fn changed(&self, mut scene: Scene) -> anyhow::Result<Scene> {
         if let Some(style) = self.style {
             scene.set_style(style);
         }
@@ -315,7 +348,10 @@ impl Inputs {
         match (&self.style, &self.groom) {
             (Some(style), _) => style.name().to_owned(),
             (None, Some(file)) => stem(file).unwrap_or_else(|| "groom".to_owned()),
-            (None, None) => stem(Path::new(&self.scene)).unwrap_or_else(|| "scene".to_owned()),
+            (None, None) => {
+                let scene = self.scene.as_deref().unwrap_or("demo");
+                stem(Path::new(scene)).unwrap_or_else(|| "scene".to_owned())
+            }
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Event, Film, Player, Scene};
+use strandline::{Cache, Event, Film, Player, Scene};
 
 use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};
@@ -37,27 +37,38 @@ pub fn demo() -> anyhow::Result<()> {
         scene.style.style.name(),
         f64::from(scene.film.frames) / f64::from(scene.film.frames_per_second)
     );
-    film(&scene, Path::new("out/demo"), false)
+    film(&scene, None, Path::new("out/demo"), false)
 }
 
 /// A scene as the command line names it.
 pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
-    let mut scene = options.inputs.scene()?;
+    let cache = options.cache.as_deref().map(Cache::open).transpose()?;
+    let mut scene = match &cache {
+        Some(cache) => options.inputs.scene_of(cache)?,
+        None => options.inputs.scene()?,
+    };
     if let Some((width, height)) = options.size {
         (scene.picture.width, scene.picture.height) = (width, height);
     }
-    let folder = options.out.clone().unwrap_or_else(|| Path::new("out").join(options.inputs.name()));
-    film(&scene, &folder, options.inputs.json)
+    let name = options.cache.as_deref().and_then(Path::file_stem).map(Path::new);
+    let name = name.map_or_else(|| options.inputs.name().into(), Path::to_owned);
+    let folder = options.out.clone().unwrap_or_else(|| Path::new("out").join(name));
+    film(&scene, cache, &folder, options.inputs.json)
 }
 
-fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
+fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyhow::Result<()> {
     let waiting = Waiting::begin(LOADING);
     let mut player = Player::new(scene, scene.devices, true)?;
     drop(waiting);
     for note in player.notes() {
         output::note(note);
     }
-    let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second)?;
+    let every = cache.as_ref().map_or(1, Cache::every);
+    let source = cache.as_ref().map(|cache| cache.path().display().to_string());
+    if let Some(cache) = cache {
+        player.show(cache)?;
+    }
+    let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second / every as f32)?;
     let mut drawn = Drawn::default();
     if let Err(error) = play(&mut player, &mut film, &mut drawn, json) {
         return Err(broken_off(film, folder, error));
@@ -68,7 +79,7 @@ fn film(scene: &Scene, folder: &Path, json: bool) -> anyhow::Result<()> {
     }
     let Drawn { beside, alone, strands, segments, non_finite } = drawn;
     let report = RenderReport {
-        backend: player.simulated_on(),
+        backend: source.unwrap_or_else(|| player.simulated_on()),
         render_backend: player.drawn_on(),
         frames: beside.len() + alone.len(),
         follow_strands: strands,

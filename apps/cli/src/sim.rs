@@ -1,7 +1,9 @@
 //! `strandline sim`: steps without pictures.
 
+use std::path::PathBuf;
+
 use serde::Serialize;
-use strandline::{Event, Player, sim::StepReport};
+use strandline::{Cache, Event, Out, OutSettings, Player, Scene, Written, sim::StepReport};
 
 use crate::arguments::SimOptions;
 use crate::interrupt::Stoppable;
@@ -24,6 +26,18 @@ pub struct SimReport {
     pub non_finite: NonFinite,
     pub pcg: Pcg,
     pub fluid_cells_mean: f64,
+    /// What `--out` wrote.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub out: Option<OutReport>,
+}
+
+/// A file of hair that moved.
+#[derive(Debug, Serialize)]
+pub struct OutReport {
+    pub path: PathBuf,
+    pub frames: usize,
+    pub strands: usize,
+    pub points: usize,
 }
 
 /// Length over rest length - 1: the mean over all steps and segments, and the largest.
@@ -88,21 +102,69 @@ impl Steps {
                 residual_max: self.residual_max,
             },
             fluid_cells_mean: mean(self.fluid_cells),
+            out: None,
         }
     }
 }
 
 pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let inputs = &options.inputs;
-    let scene = inputs.scene()?;
+    let mut former = options.resume.as_deref().map(Cache::open).transpose()?;
+    let scene = match &former {
+        Some(cache) => inputs.scene_of(cache)?,
+        None => inputs.scene()?,
+    };
+    let out = out_settings(options, former.as_ref());
+    out.as_ref().map_or(Ok(()), OutSettings::check)?;
+    let mut player = begin(&scene, out, former.as_mut())?;
+    drop(former);
+    let mut steps = Steps::default();
+    let played = play(&mut player, &mut steps, inputs.json);
+    let written = close(&mut player, played)?;
+    let guides = player.guides();
+    let mut report = steps.report(player.simulated_on(), guides.strand_count(), guides.points_per_strand());
+    report.out = written.map(|Written { place: path, frames, strands, points, .. }| OutReport {
+        path,
+        frames,
+        strands,
+        points,
+    });
+    if inputs.json {
+        output::program(&format!("{}\n", serde_json::to_string(&report)?));
+    } else {
+        print(&report);
+    }
+    Ok(report.non_finite.outcome()?)
+}
+
+/// What is written: what the command line names, or a cache that is gone on from.
+fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSettings> {
+    let mut settings = OutSettings::new(options.out.as_ref().or(options.resume.as_ref())?);
+    settings.what = options.what.or(former.map(Cache::what)).unwrap_or_default();
+    settings.every = options.every.or(former.map(Cache::every)).unwrap_or(1);
+    settings.target = options.target.unwrap_or_default();
+    Some(settings)
+}
+
+fn begin(scene: &Scene, out: Option<OutSettings>, former: Option<&mut Cache>) -> anyhow::Result<Player> {
     let waiting = Waiting::begin(LOADING);
-    let mut player = Player::new(&scene, scene.devices, false)?;
+    let mut player = Player::new(scene, scene.devices, false)?;
     drop(waiting);
     for note in player.notes() {
         output::note(note);
     }
-    let mut progress = Progress::new(u64::from(player.frames()), "frames", inputs.json);
-    let mut steps = Steps::default();
+    if let Some(settings) = out {
+        let out = Out::new(&settings, scene, player.guides())?;
+        player.set_out(out);
+    }
+    if let Some(former) = former {
+        player.resume(former)?;
+    }
+    Ok(player)
+}
+
+fn play(player: &mut Player, steps: &mut Steps, quiet: bool) -> anyhow::Result<()> {
+    let mut progress = Progress::new(u64::from(player.frames()), "frames", quiet);
     let stoppable = Stoppable::begin();
     while let Some(event) = player.next() {
         match event? {
@@ -120,15 +182,29 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
             stoppable.check(done, frames, "frames")?;
         }
     }
-    drop(progress);
-    let guides = player.guides();
-    let report = steps.report(player.simulated_on(), guides.strand_count(), guides.points_per_strand());
-    if inputs.json {
-        output::program(&format!("{}\n", serde_json::to_string(&report)?));
-    } else {
-        print(&report);
+    Ok(())
+}
+
+/// Closes what was written, also where the run was broken off, and then says what there is of it.
+fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Option<Written>> {
+    let written = player.close_out();
+    let Err(error) = played else {
+        let written = written?;
+        for part in written.iter().flat_map(|written| &written.left_out) {
+            output::note(&format!("the format cannot hold {part}: left out"));
+        }
+        return Ok(written);
+    };
+    match written {
+        Ok(Some(written)) if written.frames > 0 => output::note(&format!(
+            "the {} frames so far are whole; `sim --resume` goes on from a cache: {}",
+            written.frames,
+            written.place.display()
+        )),
+        // One error is enough.
+        Ok(_) | Err(_) => {}
     }
-    Ok(report.non_finite.outcome()?)
+    Err(error)
 }
 
 fn print(report: &SimReport) {
@@ -147,4 +223,7 @@ fn print(report: &SimReport) {
         report.fluid_cells_mean,
         pcg.residual_max
     );
+    if let Some(OutReport { path, frames, strands, points }) = &report.out {
+        print_line!("wrote {frames} frames of {strands} strands, {points} points to {}", path.display());
+    }
 }

@@ -9,7 +9,7 @@ pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
     let mut inputs = options.inputs.clone();
     if let Some(file) = options.file.as_deref().filter(|file| strandline::scene::is_file(file)) {
         // What else is on the command line replaces parts of it.
-        inputs.scene = file.display().to_string();
+        inputs.scene = Some(file.display().to_string());
     }
     let mut scene = inputs.scene()?;
     if let Some(file) = options.file.as_deref().filter(|file| !strandline::scene::is_file(file)) {

@@ -8,9 +8,10 @@ use strandline_gpu::Gpu;
 use crate::{
     Error,
     body::Pose,
+    groom::Vec3Lanes,
     hair_pose::HairPose,
     sim::{
-        Drive, Settings, SimError, Solver, State, StepReport,
+        Checkpoint, Drive, Settings, SimError, Solver, State, StepReport,
         gpu::{GpuSolver, GpuState},
     },
 };
@@ -134,6 +135,20 @@ impl Engine {
         self.set_state(state)
     }
 
+    /// Goes back to a state that was saved.
+    pub fn restore(&mut self, from: &Checkpoint) -> Result<(), SimError> {
+        let mut state = self.state.clone();
+        state.restore(self.solver(), from)?;
+        self.set_state(state)
+    }
+
+    /// Puts every point where `place` has it, with no motion of its own.
+    pub fn show(&mut self, place: impl FnOnce(&mut [Vec3Lanes])) -> Result<(), SimError> {
+        place(&mut self.state.positions);
+        self.state.previous_positions.clone_from(&self.state.positions);
+        self.upload()
+    }
+
     fn rest(&self, pose: Pose) -> Result<State, SimError> {
         let scales = (0..self.solver().strand_count()).map(|strand| self.state.length_scale(strand));
         let scales: Vec<f32> = scales.collect();
@@ -147,6 +162,11 @@ impl Engine {
 
     fn set_state(&mut self, state: State) -> Result<(), SimError> {
         self.state = state;
+        self.upload()
+    }
+
+    /// Brings the state to the device.
+    fn upload(&mut self) -> Result<(), SimError> {
         let failure = match &mut self.place {
             Place::Cpu(_) => return Ok(()),
             Place::Gpu(pair) => match pair.1.write(&pair.0, &self.state) {

@@ -43,6 +43,31 @@ pub enum Error {
         /// What was found.
         message: String,
     },
+    /// The file with hair that moved could not be read, or is for other hair.
+    #[error("cannot read the cache: {message}: {}", path.display())]
+    Cache {
+        /// The file.
+        path: PathBuf,
+        /// What was found.
+        message: String,
+    },
+    /// A name that no format of moving hair has.
+    #[error(
+        "`{found}` names no format of moving hair, expected .npz, .usda, or a name with a number in it for a file \
+         a frame, such as hair.%04d.hair: {}", path.display()
+    )]
+    OutName {
+        /// The ending.
+        found: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// Another run writes the file.
+    #[error("another run is writing that file, wait for it or choose another name: {}", path.display())]
+    BusyFile {
+        /// The file.
+        path: PathBuf,
+    },
     /// A scene, or where its hair is, could not be saved.
     #[error("cannot save {what}: {source}: {}", path.display())]
     Save {

@@ -22,6 +22,8 @@
 #![forbid(unsafe_code)]
 
 mod attributes;
+mod cache;
+mod course;
 mod devices;
 mod engine;
 mod error;
@@ -51,6 +53,7 @@ pub use strandline_render as render;
 pub use strandline_sim as sim;
 
 pub use body::{Motion, Pose};
+pub use cache::{Cache, Out, OutSettings, Target, What, Written, check_cache};
 pub use devices::Devices;
 pub use error::Error;
 pub use film::{Film, FilmFiles};

@@ -1,15 +1,14 @@
-use glam::Vec3;
-
 use crate::{
-    Devices, Error, Hair, Scene,
-    body::Pose,
+    Cache, Devices, Error, Hair, Out, Scene, Written,
+    cache::Snapshot,
+    course::Course,
     gpu::Gpu,
     groom::Guides,
     hair::Studio,
     prepare::Prepared,
     render::{Camera, FrameReport, Look, Picture, PictureSettings},
-    sim::{Settings, SimError, State, StepReport},
-    simulation::{Done, Job, Moment, Simulation},
+    sim::{Settings, State, StepReport},
+    simulation::{Act, Done, Job, Moment, Simulation},
     worker::{Gone, Worker},
 };
 
@@ -58,58 +57,12 @@ pub struct Player {
     /// Whether the simulation cannot go on.
     failed: bool,
     notes: Vec<String>,
-}
-
-/// Where the head and the wind are at every time.
-#[derive(Clone)]
-struct Course {
-    pose: std::sync::Arc<dyn Fn(f64) -> Pose + Send + Sync>,
-    wind: std::sync::Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
-    frames_per_second: f64,
-    settle_seconds: f64,
-    /// Time of motion and wind at the beginning \[s\].
-    start: f64,
-    /// Whether the first picture shows hair as it begins.
-    posed: bool,
-    /// What carries the head from where the motion begins to where it is with such hair.
-    aside: Pose,
-}
-
-/// Time \[s\] in which a head that a pose of hair has elsewhere than the motion comes to where that has it.
-const JOINING: f64 = 1.0 / 30.0;
-
-impl Course {
-    /// Moves to the end of a frame; the first one lets the hair hang on the resting head before, in whole
-    /// steps that are not reported. Hair that begins in a pose is shown in it first.
-    ///
-    /// Everything is asked for at times of steps, never of frames.
-    fn run(&self, simulation: &mut Simulation, frame: u32) -> Result<Vec<StepReport>, SimError> {
-        if frame == 0 && self.posed {
-            return Ok(Vec::new());
-        }
-        if frame == 0 {
-            simulation.settle(self.settle_seconds, (self.wind)(self.start))?;
-        }
-        let ended = frame + u32::from(!self.posed);
-        simulation.run_to(f64::from(ended) / self.frames_per_second, &|time| {
-            (self.head(time), (self.wind)(self.start + time))
-        })
-    }
-
-    /// Pose of the head at a time of the film \[s\].
-    fn head(&self, time: f64) -> Pose {
-        let pose = (self.pose)(self.start + time);
-        if self.aside == Pose::IDENTITY || time >= JOINING {
-            return pose;
-        }
-        let aside = self.aside.toward(&Pose::IDENTITY, (time / JOINING) as f32);
-        Pose { rotation: aside.rotation * pose.rotation, translation: aside.point(pose.translation) }
-    }
-}
-/// What carries a head that is in one pose into another.
-fn carrying(from: &Pose, to: &Pose) -> Pose {
-    let back = from.inverse();
-    Pose { rotation: to.rotation * back.rotation, translation: to.point(back.translation) }
+    /// Where frames are written as they are made.
+    out: Option<Out>,
+    /// Where frames come from in place of the simulation.
+    cache: Option<Cache>,
+    /// Whether no frame is begun any more.
+    closing: bool,
 }
 
 impl Player {
@@ -126,22 +79,12 @@ impl Player {
         let mut hair = Hair::from_scene(scene, prepared, devices)?;
         notes.extend(hair.take_notes());
         let (simulation, studio) = hair.into_parts();
-        let wind = scene.wind;
-        let (here, there) = (simulation.end(), head.pose(scene.film.start));
-        let aside = if here == there { Pose::IDENTITY } else { carrying(&there, &here) };
+        let here = simulation.end();
         Ok(Self {
             worker: Worker::new(simulation).map_err(Error::Thread)?,
             studio,
             change: None,
-            course: Course {
-                pose: std::sync::Arc::new(move |time| head.pose(time)),
-                wind: std::sync::Arc::new(move |time| wind.at(time)),
-                frames_per_second: f64::from(scene.film.frames_per_second),
-                settle_seconds: f64::from(scene.film.settle),
-                start: scene.film.start,
-                posed: scene.groom.pose.is_some(),
-                aside,
-            },
+            course: Course::new(scene, head, here),
             camera,
             look: scene.look.clone(),
             draw,
@@ -155,7 +98,73 @@ impl Player {
             told: Vec::new().into_iter(),
             failed: false,
             notes,
+            out: None,
+            cache: None,
+            closing: false,
         })
+    }
+
+    /// Writes every frame as it moves, from the next one on: see [`Player::close_out`].
+    pub fn set_out(&mut self, out: Out) {
+        self.out = Some(out);
+    }
+
+    /// Goes on where the run of a cache stood; frames before that are not told. What is written has them too.
+    ///
+    /// # Errors
+    /// A cache of other hair, without a state, or of a film that was over; a file that cannot be written.
+    pub fn resume(&mut self, cache: &mut Cache) -> Result<(), Error> {
+        let guides = self.guides();
+        if cache.what() == crate::What::Guides {
+            cache.check_guides(guides.strand_count(), guides.points_per_strand())?;
+        }
+        let path = cache.path().to_owned();
+        let refuse = |message: String| Error::Cache { path, message };
+        let Some(state) = cache.snapshot()? else {
+            return Err(refuse(
+                "it holds no state, expected the state_* arrays that `sim --out` writes".to_owned(),
+            ));
+        };
+        if state.frame + 1 >= self.frames {
+            return Err(refuse(format!(
+                "its run made {} frames, and the film has {}: ask for more with --frames",
+                state.frame + 1,
+                self.frames
+            )));
+        }
+        self.worker.work().restore(&state)?;
+        (self.started, self.taken) = (state.frame + 1, state.frame + 1);
+        if let Some(out) = &mut self.out {
+            out.copy(cache, &state)?;
+        }
+        Ok(())
+    }
+
+    /// Shows the frames of a cache in place of a simulation, as many as the film has.
+    ///
+    /// # Errors
+    /// A cache of other hair, or of drawn strands.
+    pub fn show(&mut self, cache: Cache) -> Result<(), Error> {
+        let guides = self.guides();
+        cache.check_guides(guides.strand_count(), guides.points_per_strand())?;
+        self.frames = self.frames.min(u32::try_from(cache.len()).unwrap_or(u32::MAX));
+        self.cache = Some(cache);
+        Ok(())
+    }
+
+    /// Ends what [`Player::set_out`] began; none without. A frame on its way is waited for and written, and a
+    /// film that is not over leaves a file that it can be gone on from.
+    ///
+    /// # Errors
+    /// The file cannot be written; what was written before stays.
+    pub fn close_out(&mut self) -> Result<Option<Written>, Error> {
+        self.closing = true;
+        while self.out.is_some() && self.worker.started() > 0 && !self.failed {
+            self.take()?;
+        }
+        let Some(out) = self.out.take() else { return Ok(None) };
+        let state = self.taken.checked_sub(1).map(|frame| self.worker.work().snapshot(frame));
+        out.close(self.taken == self.frames, state.as_ref()).map(Some)
     }
 
     /// Whether a frame is simulated while the one before is drawn; it is unless told otherwise.
@@ -233,27 +242,37 @@ impl Player {
     }
 
     /// Starts the simulation of the next frame, if there is one.
-    fn start(&mut self) -> Result<(), Gone> {
-        if self.started == self.frames || self.failed {
+    fn start(&mut self) -> Result<(), Error> {
+        if self.started == self.frames || self.failed || self.closing {
             return Ok(());
         }
         let (frame, course, change) = (self.started, self.course.clone(), self.change.take());
-        let act = move |simulation: &mut Simulation| {
+        let simulate = move |simulation: &mut Simulation| {
             change
                 .map_or(Ok(()), |settings| simulation.set_settings(&settings))
                 .and_then(|()| course.run(simulation, frame))
         };
+        let act: Act = match &mut self.cache {
+            None => Box::new(simulate),
+            Some(cache) => {
+                let points = self.studio.guides.points_per_strand();
+                let mut lanes = self.studio.guides.positions().to_vec();
+                let pose = cache.read_guides(frame as usize, points, &mut lanes)?;
+                Box::new(move |simulation: &mut Simulation| {
+                    simulation.show_cached(pose, |positions| positions.copy_from_slice(&lanes))?;
+                    Ok(Vec::new())
+                })
+            }
+        };
         let gpu = self.studio.painter.gpu().cloned();
         let moment = self.spare.pop().unwrap_or_default();
         self.started += 1;
-        self.worker.start(Job { act: Box::new(act), gpu, moment, is_frame: true, heard: 0 })
+        let job = Job { act, gpu, moment, is_frame: true, heard: 0 };
+        self.worker.start(job).map_err(|Gone| Error::WorkerGone)
     }
 
-    /// Takes the next frame from the worker and starts the one after it.
-    fn advance(&mut self) -> Result<(), Error> {
-        if self.worker.started() == 0 {
-            self.start().map_err(|Gone| Error::WorkerGone)?;
-        }
+    /// Takes the next frame from the worker and writes it, where frames are written.
+    fn take(&mut self) -> Result<Moment, Error> {
         let Done { moment, reports, notes, .. } = self.worker.finish().map_err(|Gone| Error::WorkerGone)?;
         self.told = notes.into_iter();
         let reports = match reports {
@@ -263,14 +282,34 @@ impl Player {
                 return Err(error.into());
             }
         };
-        self.waiting = reports.into_iter();
+        let frame = self.taken;
         self.taken += 1;
+        let wanted = self.out.as_ref().is_some_and(|out| out.wants_state(frame));
+        // Before the next frame begins.
+        let state: Option<Snapshot> = wanted.then(|| self.worker.work().snapshot(frame));
+        if self.overlap {
+            self.start()?;
+        }
+        let time = self.course.time(frame);
+        if let Some(out) = &mut self.out {
+            out.add(frame, time, &moment, &reports, state.as_ref())?;
+        }
+        self.waiting = reports.into_iter();
+        Ok(moment)
+    }
+
+    /// Takes the next frame and starts the one after it.
+    fn advance(&mut self) -> Result<(), Error> {
+        if self.worker.started() == 0 {
+            self.start()?;
+        }
+        let moment = self.take()?;
         if self.draw {
             self.shown = Some(moment);
         } else {
             self.spare.push(moment);
         }
-        if self.overlap { self.start().map_err(|Gone| Error::WorkerGone) } else { Ok(()) }
+        Ok(())
     }
 
     /// Draws a moment and hands it back.
@@ -299,7 +338,7 @@ impl Iterator for Player {
                 self.failed |= event.is_err();
                 return Some(event);
             }
-            if self.taken == self.frames || self.failed {
+            if self.taken == self.frames || self.failed || self.closing {
                 return None;
             }
             if let Err(error) = self.advance() {

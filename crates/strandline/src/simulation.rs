@@ -8,6 +8,7 @@ use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use crate::{
     body::Pose,
+    cache::Snapshot,
     engine::Engine,
     groom::Vec3Lanes,
     hair_pose::HairPose,
@@ -160,6 +161,36 @@ impl Simulation {
     pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
         self.engine.place(hair)?;
         self.begin_at(hair.world_from_head());
+        Ok(())
+    }
+
+    /// Where the run stands after a frame.
+    pub fn snapshot(&self, frame: u32) -> Snapshot {
+        let [before, now] = self.poses;
+        let state = self.engine.state().checkpoint();
+        Snapshot { frame, time: self.clock.time(), state, poses: [before, now, self.end] }
+    }
+
+    /// Goes back to where a run stood: what follows is what followed there.
+    pub fn restore(&mut self, from: &Snapshot) -> Result<(), SimError> {
+        self.engine.restore(&from.state)?;
+        let [before, now, end] = from.poses;
+        self.begin_at(end);
+        self.poses = [before, now];
+        // Steps and share follow from the time alone.
+        self.share = self.clock.advance_to(from.time).share;
+        self.passed = from.time;
+        Ok(())
+    }
+
+    /// Shows a frame of a cache: no time passes.
+    pub fn show_cached(
+        &mut self,
+        world_from_head: Pose,
+        place: impl FnOnce(&mut [Vec3Lanes]),
+    ) -> Result<(), SimError> {
+        self.engine.show(place)?;
+        self.begin_at(world_from_head);
         Ok(())
     }
 

@@ -1,0 +1,95 @@
+//! A groom file for every frame.
+
+use std::path::{Path, PathBuf};
+
+use strandline_base::FolderLock;
+
+use super::{Frame, shape::Shape};
+use crate::{
+    Error,
+    groom::{Groom, Widths},
+};
+
+/// Frames as files of a folder.
+pub(super) struct Files {
+    folder: PathBuf,
+    /// What stands before and behind the number, and its digits.
+    pattern: (String, usize, String),
+    groom: Groom,
+    left_out: Vec<String>,
+    _lock: FolderLock,
+}
+
+/// The parts of a name around `%04d` or the like.
+fn pattern(name: &str) -> Option<(String, usize, String)> {
+    let (before, rest) = name.split_once('%')?;
+    let (digits, after) = rest.split_once('d')?;
+    let count = if digits.is_empty() { 1 } else { digits.strip_prefix('0')?.parse().ok()? };
+    (1..=9).contains(&count).then(|| (before.to_owned(), count, after.to_owned()))
+}
+
+/// Whether a path names a file for every frame.
+pub(super) fn is_sequence(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| pattern(&name.to_string_lossy()).is_some())
+}
+
+impl Files {
+    /// Begins a sequence; the folder is made when it is not there.
+    pub fn new(path: &Path, shape: &Shape) -> Result<Self, Error> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let pattern = pattern(&name)
+            .ok_or_else(|| Error::OutName { found: name.into_owned(), path: path.to_owned() })?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        std::fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
+        let lock = FolderLock::take(folder).map_err(|error| match error.kind() {
+            std::io::ErrorKind::ResourceBusy => Error::Busy { path: folder.to_owned() },
+            _ => Error::write("into the output folder", folder)(error),
+        })?;
+        let mut groom = Groom::empty(0.0);
+        groom.starts.clone_from(&shape.starts);
+        let attributes = &shape.attributes;
+        if let Some(widths) = &attributes.widths {
+            groom.widths = Widths::PerPoint(widths.clone());
+        }
+        groom.colors.clone_from(&attributes.colors);
+        groom.root_uvs = attributes.root_uvs.as_ref().map(|uvs| uvs.iter().map(|uv| (*uv).into()).collect());
+        groom.groups =
+            attributes.groups.as_ref().map(|groups| groups.iter().map(|group| u32::from(*group)).collect());
+        Ok(Self { folder: folder.to_owned(), pattern, groom, left_out: Vec::new(), _lock: lock })
+    }
+
+    /// Writes the file of a frame.
+    pub fn add(&mut self, _: &Shape, frame: &Frame) -> Result<(), Error> {
+        self.groom.points.clear();
+        self.groom.points.extend_from_slice(frame.points);
+        let (before, digits, after) = &self.pattern;
+        let path = self.folder.join(format!("{before}{:0digits$}{after}", frame.number));
+        for part in self.groom.save(&path)?.left_out {
+            let part = part.to_string();
+            if !self.left_out.contains(&part) {
+                self.left_out.push(part);
+            }
+        }
+        Ok(())
+    }
+
+    /// The folder, and what the format could not hold.
+    pub fn finish(self) -> (PathBuf, Vec<String>) {
+        (self.folder, self.left_out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_with_a_number_in_it_is_a_sequence() {
+        assert_eq!(pattern("a.%04d.hair"), Some(("a.".to_owned(), 4, ".hair".to_owned())));
+        assert_eq!(pattern("%d.tfx"), Some((String::new(), 1, ".tfx".to_owned())));
+        for name in ["a.hair", "a%.hair", "%4d.hair", "%00d.hair", "%099d.hair", "%sd"] {
+            assert_eq!(pattern(name), None, "{name}");
+        }
+        assert!(is_sequence(Path::new("x/%03d.hair")) && !is_sequence(Path::new("%03d/a.hair")));
+    }
+}

@@ -1,0 +1,107 @@
+//! What a cache says of itself, as JSON in its array `meta`.
+
+use serde::{Deserialize, Serialize};
+
+use super::What;
+use crate::sim::StepReport;
+
+/// The version of the layout.
+pub(super) const LAYOUT: u32 = 1;
+
+/// The object in `meta`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Meta {
+    pub layout: u32,
+    /// What wrote it.
+    #[serde(default)]
+    pub written_by: String,
+    #[serde(default = "metres")]
+    pub units: String,
+    #[serde(default = "y")]
+    pub up_axis: String,
+    pub what: What,
+    /// Frames a second of the film, and every how many of them is in the file.
+    pub frames_per_second: f32,
+    #[serde(default = "one")]
+    pub every: u32,
+    /// Steps of the simulation up to the last frame, without settling.
+    #[serde(default)]
+    pub steps: u64,
+    #[serde(default)]
+    pub group_names: Vec<String>,
+    /// The scene as TOML, and the folder that its paths start from.
+    #[serde(default)]
+    pub scene: String,
+    #[serde(default)]
+    pub scene_folder: String,
+    #[serde(default)]
+    pub report: Report,
+}
+
+fn metres() -> String {
+    "m".to_owned()
+}
+
+fn y() -> String {
+    "y".to_owned()
+}
+
+fn one() -> u32 {
+    1
+}
+
+/// Quality of the steps that led to each frame of the file, one number a frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Report {
+    pub steps: Vec<u32>,
+    /// Length over rest length - 1; null for what is no number.
+    pub stretch_mean: Vec<Option<f32>>,
+    pub stretch_max: Vec<Option<f32>>,
+    /// Deepest point inside a solid \[m\].
+    pub penetration_max_m: Vec<Option<f32>>,
+    /// Most points in a step that were not finite.
+    pub non_finite: Vec<u64>,
+    /// The steps since the last frame.
+    pub open: Open,
+}
+
+/// Steps that led to no frame yet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Open {
+    steps: u32,
+    stretch_sum: Option<f32>,
+    stretch_max: Option<f32>,
+    penetration_max_m: f32,
+    non_finite: u64,
+}
+
+impl Report {
+    /// Adds a step.
+    pub fn step(&mut self, step: &StepReport) {
+        // What is no number stays none, where a maximum would pass over it.
+        let first = self.open.steps == 0;
+        let number = |so_far: Option<f32>, next: f32, join: fn(f32, f32) -> f32| {
+            let joined = if first { next } else { join(so_far?, next) };
+            (joined.is_finite() && next.is_finite()).then_some(joined)
+        };
+        self.open = Open {
+            steps: self.open.steps + 1,
+            stretch_sum: number(self.open.stretch_sum, step.stretch_mean, |a, b| a + b),
+            stretch_max: number(self.open.stretch_max, step.stretch_max, f32::max),
+            penetration_max_m: self.open.penetration_max_m.max(step.penetration_max),
+            non_finite: self.open.non_finite.max(step.non_finite as u64),
+        };
+    }
+
+    /// Ends the steps that led to a frame.
+    pub fn frame(&mut self) {
+        let Open { steps, stretch_sum, stretch_max, penetration_max_m, non_finite } =
+            std::mem::take(&mut self.open);
+        self.steps.push(steps);
+        self.stretch_mean.push(stretch_sum.map(|sum| sum / steps as f32));
+        self.stretch_max.push(stretch_max);
+        self.penetration_max_m.push(penetration_max_m.is_finite().then_some(penetration_max_m));
+        self.non_finite.push(non_finite);
+    }
+}

@@ -1,0 +1,192 @@
+//! What a run writes as it goes.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+use super::{Cache, Frame, Snapshot, Target, What, files::Files, shape::Shape, store::Store, usd::Usd};
+use crate::{Error, Scene, groom::Guides, sim::StepReport, simulation::Moment};
+
+/// What is written and where.
+#[derive(Clone, Debug)]
+pub struct OutSettings {
+    /// The file: `.npz` is a moving cache, `.usda` text USD; a name with `%04d` in it a file for every frame.
+    pub path: PathBuf,
+    /// Which strands.
+    pub what: What,
+    /// Every n-th frame, from the first.
+    pub every: u32,
+    /// For whom units and axes are.
+    pub target: Target,
+}
+
+/// What is there at the end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Where it lies: beside the name that was asked for when a run was broken off and an earlier file is there.
+    pub place: PathBuf,
+    /// Frames in it, strands of each and points of all of them.
+    pub frames: usize,
+    /// Strands.
+    pub strands: usize,
+    /// Points of all strands.
+    pub points: usize,
+    /// Parts of the hair that the format cannot hold.
+    pub left_out: Vec<String>,
+}
+
+/// Hair on its way into a file.
+pub struct Out {
+    shape: Shape,
+    every: u32,
+    writer: Writer,
+    points: Vec<Vec3>,
+    frames: usize,
+}
+
+enum Writer {
+    Store(Box<Store>),
+    Usd(Box<Usd>),
+    Files(Box<Files>),
+}
+
+/// What a format is, by the name of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Npz,
+    Usda,
+    Sequence,
+}
+
+fn format(path: &Path) -> Result<Format, Error> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    match ending.as_str() {
+        _ if super::files::is_sequence(path) => Ok(Format::Sequence),
+        "npz" => Ok(Format::Npz),
+        "usda" => Ok(Format::Usda),
+        _ => Err(Error::OutName { found: ending, path: path.to_owned() }),
+    }
+}
+
+impl OutSettings {
+    /// Everything as it is when nothing else is said.
+    pub fn new(path: impl Into<PathBuf>) -> Self {
+        Self { path: path.into(), what: What::default(), every: 1, target: Target::default() }
+    }
+
+    /// Refuses a name that no format has, before anything is loaded.
+    ///
+    /// # Errors
+    /// See [`Error::OutName`].
+    pub fn check(&self) -> Result<(), Error> {
+        format(&self.path).map(|_| ())
+    }
+}
+
+impl Out {
+    /// Begins to write the film of a scene with these guides.
+    ///
+    /// # Errors
+    /// A name that no format has; a file or folder that cannot be written.
+    pub fn new(settings: &OutSettings, scene: &Scene, guides: &Guides) -> Result<Self, Error> {
+        let format = format(&settings.path)?;
+        let shape = Shape::new(settings.what, scene, guides)?;
+        let (path, every) = (settings.path.as_path(), settings.every.max(1));
+        let writer = match format {
+            Format::Npz => Writer::Store(Store::new(path, scene, &shape, every)?.into()),
+            Format::Usda => Writer::Usd(Usd::new(path, scene, &shape, settings.target)?.into()),
+            Format::Sequence => Writer::Files(Files::new(path, &shape)?.into()),
+        };
+        Ok(Self { shape, every, writer, points: Vec::new(), frames: 0 })
+    }
+
+    /// Whether a frame is one of those that are written.
+    fn takes(&self, frame: u32) -> bool {
+        frame.is_multiple_of(self.every)
+    }
+
+    /// Whether the state of the simulation has to come with a frame.
+    pub(crate) fn wants_state(&self, frame: u32) -> bool {
+        match &self.writer {
+            Writer::Store(store) => self.takes(frame) && store.wants_state(),
+            Writer::Usd(_) | Writer::Files(_) => false,
+        }
+    }
+
+    /// Adds a frame of the film, where it is one of those that are written.
+    pub(crate) fn add(
+        &mut self,
+        number: u32,
+        time: f64,
+        moment: &Moment,
+        steps: &[StepReport],
+        state: Option<&Snapshot>,
+    ) -> Result<(), Error> {
+        if let Writer::Store(store) = &mut self.writer {
+            store.step(steps);
+        }
+        if !self.takes(number) {
+            return Ok(());
+        }
+        self.shape.place(&moment.positions, &moment.world_from_head, &mut self.points);
+        let points = std::mem::take(&mut self.points);
+        let frame = Frame { number, time, points: &points, world_from_head: moment.world_from_head };
+        let added = self.write(&frame, state);
+        self.points = points;
+        added
+    }
+
+    fn write(&mut self, frame: &Frame, state: Option<&Snapshot>) -> Result<(), Error> {
+        match &mut self.writer {
+            Writer::Store(store) => store.add(frame, state)?,
+            Writer::Usd(usd) => usd.add(frame)?,
+            Writer::Files(files) => files.add(&self.shape, frame)?,
+        }
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Takes over the frames of a cache up to where its run stood.
+    pub(crate) fn copy(&mut self, cache: &mut Cache, state: &Snapshot) -> Result<(), Error> {
+        let (steps, report) = cache.report();
+        if (cache.what(), cache.every()) != (self.shape.what, self.every) {
+            let (what, every) = (cache.what().name(), cache.every());
+            return Err(Error::Cache {
+                path: cache.path().to_owned(),
+                message: format!(
+                    "it holds {what}, every {every}. frame, expected what is written: go on with --what {what} --every {every}"
+                ),
+            });
+        }
+        let count = (state.frame / self.every + 1) as usize;
+        if cache.starts() != self.shape.starts || cache.len() < count {
+            return Err(Error::Cache {
+                path: cache.path().to_owned(),
+                message: format!("it holds {} frames of other hair or too few", cache.len()),
+            });
+        }
+        let mut points = Vec::new();
+        for index in 0..count {
+            let world_from_head = cache.read(index, &mut points)?;
+            let (number, time) = (index as u32 * self.every, cache.times()[index]);
+            self.write(&Frame { number, time, points: &points, world_from_head }, None)?;
+        }
+        if let Writer::Store(store) = &mut self.writer {
+            store.inherit(steps, report);
+            store.set_state(Some(state))?;
+        }
+        Ok(())
+    }
+
+    /// Ends the file of a whole film, or of one that was broken off.
+    pub(crate) fn close(self, whole: bool, state: Option<&Snapshot>) -> Result<Written, Error> {
+        let (strands, points) = (self.shape.strand_count(), self.shape.point_count());
+        let (place, left_out) = match self.writer {
+            Writer::Store(store) if whole => (store.finish(state)?, Vec::new()),
+            Writer::Store(store) => (store.leave(state)?, Vec::new()),
+            Writer::Usd(usd) => (usd.finish(whole)?, Vec::new()),
+            Writer::Files(files) => files.finish(),
+        };
+        Ok(Written { place, frames: self.frames, strands, points, left_out })
+    }
+}

@@ -1,0 +1,350 @@
+//! The moving cache as it is read: frame by frame, nothing taken that the file has no bytes for.
+
+use std::fs::File;
+use std::io::{Cursor, Read, Seek};
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use strandline_base::{
+    memory::{self, Need},
+    npz::{Kind, Npz, NpzError, Rows, f32s, f64s, u32s},
+    open_plain,
+};
+
+use super::{MAX_FRAMES, MAX_POINTS, MAX_STRANDS, Snapshot, What, meta, snapshot};
+use crate::{Error, Scene, body::Pose, groom::Vec3Lanes, sim::Part};
+
+/// Farther than this \[m\] is no hair.
+const MOST: f32 = 1e4;
+
+/// A moving cache: hair at every frame, as docs/cache.md describes it.
+pub struct Cache {
+    path: PathBuf,
+    frames: Frames<File>,
+}
+
+/// The arrays of a cache.
+struct Frames<R> {
+    npz: Npz<R>,
+    points: Rows,
+    starts: Vec<u32>,
+    times: Vec<f64>,
+    heads: Vec<Pose>,
+    meta: meta::Meta,
+    /// One frame as it is in the file.
+    bytes: Vec<u8>,
+}
+
+impl Cache {
+    /// Opens a cache.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is no cache of this layout.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let refuse = |message: String| Error::Cache { path: path.to_owned(), message };
+        let file = open_plain(path, u64::MAX - 1).map_err(|error| refuse(error.to_string()))?.into_inner();
+        let frames = Frames::new(file).map_err(refuse)?;
+        Ok(Self { path: path.to_owned(), frames })
+    }
+
+    fn refuse(&self, message: impl Into<String>) -> Error {
+        Error::Cache { path: self.path.clone(), message: message.into() }
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number of frames in the file.
+    pub fn len(&self) -> usize {
+        self.frames.times.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// First point of each strand, then the number of points.
+    pub fn starts(&self) -> &[u32] {
+        &self.frames.starts
+    }
+
+    /// Time of each frame since the beginning of the film \[s\], rising.
+    pub fn times(&self) -> &[f64] {
+        &self.frames.times
+    }
+
+    /// Which strands it holds.
+    pub fn what(&self) -> What {
+        self.frames.meta.what
+    }
+
+    /// Every how many of the film's frames is in it.
+    pub fn every(&self) -> u32 {
+        self.frames.meta.every
+    }
+
+    /// The scene that it was made with.
+    ///
+    /// # Errors
+    /// It names none, or one that this version does not read.
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let meta = &self.frames.meta;
+        if meta.scene.is_empty() {
+            return Err(self.refuse("it names no scene, expected one in `meta`: name it with --scene"));
+        }
+        let mut scene = Scene::parse(&meta.scene, &format!("{} (in the cache)", self.path.display()))?;
+        scene.folder = PathBuf::from(&meta.scene_folder);
+        Ok(scene)
+    }
+
+    /// Reads the points \[m\] of a frame, world space, strand after strand; the pose of the head then.
+    ///
+    /// # Errors
+    /// The file cannot be read, or holds points that are not finite.
+    pub fn read(&mut self, frame: usize, points: &mut Vec<Vec3>) -> Result<Pose, Error> {
+        let pose = self.frames.read(frame, points);
+        pose.map_err(|message| Error::Cache { path: self.path.clone(), message })
+    }
+
+    /// Reads a frame of guides into blocks of lanes, `points_per_strand` points each; lanes without a strand
+    /// take the last one.
+    pub(crate) fn read_guides(
+        &mut self,
+        frame: usize,
+        points_per_strand: usize,
+        lanes: &mut [Vec3Lanes],
+    ) -> Result<Pose, Error> {
+        let mut points = Vec::new();
+        let pose = self.read(frame, &mut points)?;
+        let strands = points.len() / points_per_strand;
+        for (index, vectors) in lanes.iter_mut().enumerate() {
+            for lane in 0..crate::groom::LANES {
+                let strand = (index / points_per_strand * crate::groom::LANES + lane).min(strands - 1);
+                vectors.set(lane, points[strand * points_per_strand + index % points_per_strand]);
+            }
+        }
+        Ok(pose)
+    }
+
+    /// Refuses other hair than guides of this shape.
+    pub(crate) fn check_guides(&self, strands: usize, points: usize) -> Result<(), Error> {
+        if self.what() != What::Guides {
+            return Err(self.refuse(
+                "it holds drawn strands, expected guides, of which pictures and simulations grow them: write it with \
+                 --what guides",
+            ));
+        }
+        let starts = self.starts();
+        let even = starts.len() == strands + 1
+            && starts.iter().enumerate().all(|(strand, start)| *start as usize == strand * points);
+        if even {
+            return Ok(());
+        }
+        let found = format!("{} strands, {} points", starts.len() - 1, starts.last().unwrap_or(&0));
+        Err(self.refuse(format!(
+            "it holds {found}, but the scene's hair has {strands} strands of {points} points: name the scene that it \
+             was made with"
+        )))
+    }
+
+    /// Where the run stood; none in a cache without.
+    pub(crate) fn snapshot(&mut self) -> Result<Option<Snapshot>, Error> {
+        let snapshot = self.frames.snapshot();
+        snapshot.map_err(|message| Error::Cache { path: self.path.clone(), message })
+    }
+
+    /// Steps so far, and the quality of those that led to each frame.
+    pub(super) fn report(&self) -> (u64, meta::Report) {
+        (self.frames.meta.steps, self.frames.meta.report.clone())
+    }
+}
+
+/// Whether bytes are a moving cache of which every frame can be read.
+///
+/// # Errors
+/// What they are instead.
+pub fn check_cache(bytes: &[u8]) -> Result<(), String> {
+    let mut frames = Frames::new(Cursor::new(bytes))?;
+    let mut points = Vec::new();
+    for frame in 0..frames.times.len() {
+        frames.read(frame, &mut points)?;
+    }
+    frames.snapshot().map(|_| ())
+}
+
+impl<R: Read + Seek> Frames<R> {
+    fn new(source: R) -> Result<Self, String> {
+        let mut npz = Npz::new(source).map_err(text)?;
+        let meta = read_meta(&mut npz)?;
+        let starts = starts(&mut npz)?;
+        let count = u64::from(*starts.last().unwrap_or(&0));
+        let Some(points) = npz.open("points").map_err(text)? else {
+            return Err(missing(&npz, "points"));
+        };
+        let rows = expect(&points, "points", Kind::F32, &[None, Some(count), Some(3)])?;
+        let times: Vec<f64> = numbers(&mut npz, "times", Kind::F64, &[None], |bytes| f64s(bytes).collect())?;
+        let head: Vec<f32> =
+            numbers(&mut npz, "world_from_head", Kind::F32, &[None, Some(7)], |bytes| f32s(bytes).collect())?;
+        // A run that was ended while it added a frame may have it in some of them alone.
+        let frames = (rows as usize).min(times.len()).min(head.len() / 7);
+        let times = times[..frames].to_vec();
+        if let Some(pair) = times.windows(2).find(|pair| !(pair[0] < pair[1])) {
+            return Err(format!("times hold {} after {} s, expected times that rise", pair[1], pair[0]));
+        }
+        if times.iter().any(|time| !time.is_finite()) {
+            return Err("times hold a number that is not finite".to_owned());
+        }
+        let heads = head.chunks_exact(7).take(frames).map(snapshot::pose).collect::<Result<_, String>>()?;
+        let need = Need::new(format!("a frame of {count} points"), count, 12 + 12);
+        memory::check(&[need]).map_err(|error| error.to_string())?;
+        Ok(Self { npz, points, starts, times, heads, meta, bytes: Vec::new() })
+    }
+
+    fn read(&mut self, frame: usize, points: &mut Vec<Vec3>) -> Result<Pose, String> {
+        let Some(pose) = self.heads.get(frame).copied() else {
+            return Err(format!("it holds {} frames, but frame {frame} is asked for", self.heads.len()));
+        };
+        let count = *self.starts.last().unwrap_or(&0) as usize;
+        self.bytes.resize(12 * count, 0);
+        self.npz.go_to(&mut self.points, frame as u64 * self.bytes.len() as u64).map_err(text)?;
+        self.npz.read(&mut self.points, &mut self.bytes).map_err(text)?;
+        points.clear();
+        points.extend(self.bytes.chunks_exact(12).map(|bytes| {
+            let number =
+                |at: usize| f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+            Vec3::new(number(0), number(4), number(8))
+        }));
+        match points.iter().position(|point| !(point.abs().max_element() <= MOST)) {
+            Some(at) => Err(format!(
+                "point {at} of frame {frame} lies at {}, expected no more than {MOST} m",
+                points[at]
+            )),
+            None => Ok(pose),
+        }
+    }
+
+    fn snapshot(&mut self) -> Result<Option<Snapshot>, String> {
+        let Some(mut clock) = self.npz.open("state_clock").map_err(text)? else { return Ok(None) };
+        expect(&clock, "state_clock", Kind::F64, &[Some(3)])?;
+        let clock: Vec<f64> = f64s(&self.npz.all(&mut clock).map_err(text)?).collect();
+        let poses = numbers(&mut self.npz, "state_poses", Kind::F32, &[Some(4), Some(7)], |bytes| {
+            f32s(bytes).collect::<Vec<_>>()
+        })?;
+        let mut parts = Vec::new();
+        for (name, part) in snapshot::names() {
+            let Some(mut rows) = self.npz.open(&name).map_err(text)? else { continue };
+            if rows.kind() != Kind::F32 {
+                return Err(format!("{name} of type {}, expected {}", rows.kind().name(), Kind::F32.name()));
+            }
+            // Blocks of strands of all points, four times as many numbers as the largest part has.
+            let most = 64 * (u64::from(*self.starts.last().unwrap_or(&0)) + 8 * MAX_POINTS_PER_BLOCK);
+            if rows.bytes() > 4 * most {
+                return Err(format!("{name} of shape {:?}, more than its points can need", rows.shape()));
+            }
+            check_memory(&name, rows.bytes(), 2)?;
+            let shape = rows.shape().iter().map(|count| *count as usize).collect();
+            let numbers = f32s(&self.npz.all(&mut rows).map_err(text)?).collect();
+            parts.push(Part { name: part, shape, numbers });
+        }
+        Snapshot::new(&clock, &poses, parts).map(Some)
+    }
+}
+
+/// Points on the strands of a block that need not be full.
+const MAX_POINTS_PER_BLOCK: u64 = 64;
+
+fn text(error: NpzError) -> String {
+    error.to_string()
+}
+
+fn missing<R: Read + Seek>(npz: &Npz<R>, name: &str) -> String {
+    let names: Vec<&str> = npz.names().take(20).collect();
+    format!("holds {names:?}, expected {name} and the other arrays of a moving cache (docs/cache.md)")
+}
+
+/// The length of the first axis of an array that has to have a type and a shape.
+fn expect(rows: &Rows, name: &str, kind: Kind, shape: &[Option<u64>]) -> Result<u64, String> {
+    let fits = rows.shape().len() == shape.len()
+        && rows.shape().iter().zip(shape).all(|(found, wanted)| wanted.is_none_or(|wanted| wanted == *found));
+    if rows.kind() != kind || !fits {
+        let wanted: Vec<String> =
+            shape.iter().map(|count| count.map_or("frame".to_owned(), |count| count.to_string())).collect();
+        return Err(format!(
+            "{name} of type {} and shape {:?}, expected {} and [{}]",
+            rows.kind().name(),
+            rows.shape(),
+            kind.name(),
+            wanted.join(", ")
+        ));
+    }
+    let first = rows.shape().first().copied().unwrap_or(0);
+    if shape.first() == Some(&None) && first > MAX_FRAMES {
+        return Err(format!("{name} of {first} frames, expected {MAX_FRAMES} at most"));
+    }
+    Ok(first)
+}
+
+/// Refuses what would take too much memory, in bytes of the file and so many times that.
+fn check_memory(name: &str, bytes: u64, times: u64) -> Result<(), String> {
+    memory::check(&[Need::new(format!("the array {name}"), bytes, times)]).map_err(|error| error.to_string())
+}
+
+/// All numbers of an array that has to be there.
+fn numbers<R: Read + Seek, T>(
+    npz: &mut Npz<R>,
+    name: &str,
+    kind: Kind,
+    shape: &[Option<u64>],
+    convert: impl Fn(&[u8]) -> T,
+) -> Result<T, String> {
+    let Some(mut rows) = npz.open(name).map_err(text)? else { return Err(missing(npz, name)) };
+    expect(&rows, name, kind, shape)?;
+    check_memory(name, rows.bytes(), 2)?;
+    Ok(convert(&npz.all(&mut rows).map_err(text)?))
+}
+
+fn starts<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Vec<u32>, String> {
+    let Some(mut rows) = npz.open("starts").map_err(text)? else { return Err(missing(npz, "starts")) };
+    if rows.kind() != Kind::U32
+        || rows.shape().len() != 1
+        || !(2..=MAX_STRANDS + 1).contains(&rows.shape()[0])
+    {
+        let (kind, shape) = (rows.kind().name(), rows.shape());
+        return Err(format!("starts of type {kind} and shape {shape:?}, expected <u4 and [strand + 1]"));
+    }
+    let starts: Vec<u32> = u32s(&npz.all(&mut rows).map_err(text)?).collect();
+    let rise = starts[0] == 0 && starts.windows(2).all(|pair| pair[0] < pair[1]);
+    let count = u64::from(starts[starts.len() - 1]);
+    if !rise || count > MAX_POINTS {
+        return Err(format!("starts that end with {count}, expected to rise from 0 to {MAX_POINTS} at most"));
+    }
+    Ok(starts)
+}
+
+/// Most bytes of `meta`: a report of the longest film, and a scene.
+const MOST_META: u64 = 256 << 20;
+
+fn read_meta<R: Read + Seek>(npz: &mut Npz<R>) -> Result<meta::Meta, String> {
+    let Some(mut rows) = npz.open("meta").map_err(text)? else { return Err(missing(npz, "meta")) };
+    expect(&rows, "meta", Kind::U8, &[Some(rows.bytes())])?;
+    if rows.bytes() > MOST_META {
+        return Err(format!("meta of {} bytes, expected {MOST_META} at most", rows.bytes()));
+    }
+    check_memory("meta", rows.bytes(), 8)?;
+    let bytes = npz.all(&mut rows).map_err(text)?;
+    let meta: meta::Meta = serde_json::from_slice(&bytes).map_err(|error| format!("meta: {error}"))?;
+    if meta.layout != meta::LAYOUT {
+        let (found, known) = (meta.layout, meta::LAYOUT);
+        return Err(format!("layout {found}, expected {known}: it is of another version of the program"));
+    }
+    if meta.units != "m" || meta.up_axis != "y" {
+        return Err(format!("units `{}` with {} up, expected m with y up", meta.units, meta.up_axis));
+    }
+    if meta.every == 0 {
+        return Err("meta: every is 0, expected 1 or more".to_owned());
+    }
+    Ok(meta)
+}

@@ -1,0 +1,183 @@
+//! What leaves: the strands that are written, and the attributes that they have. The one place to add an
+//! attribute: fill it in [`Shape::new`]; the writers take all that is there.
+
+use glam::Vec3;
+use strandline_base::choices;
+
+use crate::{
+    Error, Scene,
+    body::Pose,
+    groom::{Guides, LANES, Vec3Lanes},
+    render::{
+        DetailLevel, Look,
+        cpu::{Curves, Strands, interpolate, tessellate},
+    },
+};
+
+choices! {
+    /// Which strands are written.
+    pub enum What as "what" {
+        /// Those that are simulated.
+        Guides = "guides",
+        /// All that pictures draw, in full detail.
+        Strands = "strands",
+    }
+    default Guides
+}
+
+choices! {
+    /// For whom units and axes are chosen, where a format leaves the choice.
+    pub enum Target as "for" {
+        /// Metres, y up.
+        Any = "any",
+        /// Centimetres, z up, groom_* attributes.
+        Unreal = "unreal",
+        /// Metres, z up, frames from 1.
+        Blender = "blender",
+    }
+    default Any
+}
+
+/// What the strands of a file have besides places; each where the groom has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Attributes {
+    /// Diameters \[m\], shape `[point]`.
+    pub widths: Option<Vec<f32>>,
+    /// Linear RGB, shape `[point]`.
+    pub colors: Option<Vec<[f32; 3]>>,
+    /// Where each root lies on the scalp, 0 to 1, shape `[strand]`.
+    pub root_uvs: Option<Vec<[f32; 2]>>,
+    /// The group of each strand, shape `[strand]`, and the groups' names.
+    pub groups: Option<Vec<u16>>,
+    pub group_names: Vec<String>,
+    /// The strands that guides carry.
+    pub binding: Option<Binding>,
+}
+
+/// How strands that are no guides hang on guides.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Binding {
+    /// Guides of a strand.
+    pub guides_per_strand: usize,
+    /// Shape `[bound strand][guide]`.
+    pub indices: Vec<u32>,
+    pub weights: Vec<f32>,
+    /// The bound strands at rest \[m\], head space, and the first point of each.
+    pub points: Vec<Vec3>,
+    pub starts: Vec<u32>,
+}
+
+/// The strands that are written.
+pub(crate) struct Shape {
+    pub what: What,
+    /// First point of each strand, then the number of points.
+    pub starts: Vec<u32>,
+    pub attributes: Attributes,
+    source: Source,
+}
+
+/// Where points come from.
+enum Source {
+    Guides { points_per_strand: usize },
+    Strands(Box<Drawn>),
+}
+
+/// What pictures grow strands from.
+struct Drawn {
+    guides: Guides,
+    look: Look,
+    level: DetailLevel,
+    curves: Curves,
+    strands: Strands,
+}
+
+impl Shape {
+    /// The strands of a scene with these guides.
+    ///
+    /// # Errors
+    /// More points than a file may have. (The memory of drawn strands was asked for with the scene.)
+    pub fn new(what: What, scene: &Scene, guides: &Guides) -> Result<Self, Error> {
+        match what {
+            What::Guides => Ok(Self::of_guides(guides)),
+            What::Strands => Self::of_strands(scene, guides),
+        }
+    }
+
+    fn of_guides(guides: &Guides) -> Self {
+        let (strands, points) = (guides.strand_count(), guides.points_per_strand());
+        let widths = guides.widths().iter().flat_map(|width| std::iter::repeat_n(*width, points));
+        Self {
+            what: What::Guides,
+            starts: starts(strands, points),
+            attributes: Attributes { widths: Some(widths.collect()), ..Attributes::default() },
+            source: Source::Guides { points_per_strand: points },
+        }
+    }
+
+    fn of_strands(scene: &Scene, guides: &Guides) -> Result<Self, Error> {
+        let level =
+            DetailLevel::full(scene.level_of_detail.segments_per_span, scene.look.follow_strands.max(1));
+        let points = level.segment_count(guides.points_per_strand()) + 1;
+        let strands = guides.strand_count() * level.strand_count();
+        if (strands as u64).saturating_mul(points as u64) > super::MAX_POINTS {
+            let found = format!("{} strands on each guide", level.strand_count());
+            let expected = "268435456 points in all at most: take fewer look.follow_strands";
+            return Err(strandline_base::SettingError::new("what = strands", found, expected).into());
+        }
+        let mut drawn = Drawn {
+            guides: guides.clone(),
+            look: scene.look.clone(),
+            level,
+            curves: Curves::default(),
+            strands: Strands::default(),
+        };
+        drawn.grow(guides.positions(), &Pose::IDENTITY);
+        let attributes = Attributes { widths: Some(drawn.strands.widths.clone()), ..Attributes::default() };
+        Ok(Self {
+            what: What::Strands,
+            starts: starts(strands, points),
+            attributes,
+            source: Source::Strands(drawn.into()),
+        })
+    }
+
+    /// Number of strands.
+    pub fn strand_count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of points.
+    pub fn point_count(&self) -> usize {
+        self.starts.last().map_or(0, |points| *points as usize)
+    }
+
+    /// Fills `points` \[m\] with the strands of guides that are somewhere, shape `[block][point]` of lanes.
+    pub fn place(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose, points: &mut Vec<Vec3>) {
+        points.clear();
+        let strand_count = self.strand_count();
+        match &mut self.source {
+            Source::Guides { points_per_strand: each } => {
+                points.extend((0..strand_count).flat_map(|strand| {
+                    let block = &positions[strand / LANES * *each..][..*each];
+                    block.iter().map(move |lanes| lanes.get(strand % LANES))
+                }))
+            }
+            Source::Strands(drawn) => {
+                drawn.grow(positions, world_from_head);
+                points.extend_from_slice(&drawn.strands.positions);
+            }
+        }
+    }
+}
+
+impl Drawn {
+    fn grow(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose) {
+        let Self { guides, look, level, curves, strands } = self;
+        tessellate(positions, guides, world_from_head, level, curves);
+        interpolate(curves, guides, world_from_head, look, level, strands);
+    }
+}
+
+fn starts(strands: usize, points: usize) -> Vec<u32> {
+    (0..=strands).map(|strand| (strand * points) as u32).collect()
+}

@@ -1,0 +1,267 @@
+//! Text USD: one prim of linear curves with a sample of points for every frame, and the head's motion beside it.
+//!
+//! Attributes and conventions: UsdGeomBasisCurves and primvars as OpenUSD's schema has them; for Unreal the
+//! groom_* primvars of its groom schema 1.5.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use glam::{Quat, Vec3};
+use strandline_base::GrowingFile;
+
+use super::{
+    Frame, Target, What,
+    shape::{Attributes, Shape},
+    usd_text::{list, points, put, put_tuple, quoted},
+};
+use crate::{Error, Scene, body::Pose};
+
+/// Digits that the last time code may have.
+const DIGITS: usize = 10;
+
+/// A file under way.
+pub(super) struct Usd {
+    path: PathBuf,
+    file: GrowingFile,
+    /// Bytes so far, and where the last time code stands.
+    length: u64,
+    end_at: u64,
+    space: Space,
+    first: u32,
+    widest: f32,
+    /// What is written behind the points: the box around them and the head, for each frame.
+    boxes: Vec<(u32, [Vec3; 2])>,
+    heads: Vec<(u32, Pose)>,
+}
+
+/// Units and axes of a file.
+#[derive(Clone, Copy)]
+struct Space {
+    metres_per_unit: f32,
+    z_up: bool,
+}
+
+impl Space {
+    fn of(target: Target) -> Self {
+        match target {
+            Target::Any => Self { metres_per_unit: 1.0, z_up: false },
+            Target::Blender => Self { metres_per_unit: 1.0, z_up: true },
+            Target::Unreal => Self { metres_per_unit: 0.01, z_up: true },
+        }
+    }
+
+    /// Turns what faces +z under y into what faces -y under z.
+    fn turn(self, vector: Vec3) -> Vec3 {
+        if self.z_up { Vec3::new(vector.x, -vector.z, vector.y) } else { vector }
+    }
+
+    fn length(self, metres: f32) -> f32 {
+        // A hundred is exact where its inverse is not.
+        metres * (1.0 / self.metres_per_unit).round()
+    }
+
+    fn point(self, point: Vec3) -> Vec3 {
+        self.turn(point).map(|metres| self.length(metres))
+    }
+
+    /// A motion of the file's space: of what was turned with everything else.
+    fn pose(self, pose: &Pose) -> Pose {
+        let axis = self.turn(Vec3::from_slice(&pose.rotation.to_array()[..3]));
+        let rotation = Quat::from_xyzw(axis.x, axis.y, axis.z, pose.rotation.w);
+        Pose { rotation, translation: self.point(pose.translation) }
+    }
+}
+
+impl Usd {
+    /// Begins a file.
+    pub fn new(path: &Path, scene: &Scene, shape: &Shape, target: Target) -> Result<Self, Error> {
+        let file = GrowingFile::create(path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::ResourceBusy => Error::BusyFile { path: path.to_owned() },
+            _ => Error::write("the USD file", path)(error),
+        })?;
+        let first = u32::from(target == Target::Blender);
+        let widths = shape.attributes.widths.iter().flatten();
+        let mut usd = Self {
+            path: path.to_owned(),
+            file,
+            length: 0,
+            end_at: 0,
+            space: Space::of(target),
+            first,
+            widest: widths.fold(0.0, |widest, width| width.max(widest)),
+            boxes: Vec::new(),
+            heads: Vec::new(),
+        };
+        let (head, end_at) = usd.head(scene, target);
+        usd.end_at = end_at as u64;
+        usd.put(&head)?;
+        usd.put(&usd.curves(shape, target))?;
+        Ok(usd)
+    }
+
+    fn put(&mut self, text: &str) -> Result<(), Error> {
+        let written = self.file.write_at(self.length, text.as_bytes());
+        written.map_err(Error::write("the USD file", &self.path))?;
+        self.length += text.len() as u64;
+        Ok(())
+    }
+
+    /// What stands before the curves, and where in it the last time code is to stand.
+    fn head(&self, scene: &Scene, target: Target) -> (String, usize) {
+        let mut text = "#usda 1.0\n(\n    defaultPrim = \"hair\"\n".to_owned();
+        let about = format!("hair as it moved, written by strandline {}", env!("CARGO_PKG_VERSION"));
+        let _ = write!(text, "    doc = {}\n    endTimeCode = ", quoted(&about));
+        let end_at = text.len();
+        let rate = f64::from(scene.film.frames_per_second);
+        let up = if self.space.z_up { "Z" } else { "Y" };
+        let _ = write!(
+            text,
+            "{:<DIGITS$}\n    framesPerSecond = {rate}\n    metersPerUnit = {}\n    startTimeCode = {}\n    \
+             timeCodesPerSecond = {rate}\n    upAxis = \"{up}\"\n)\n\ndef Xform \"hair\" (\n",
+            self.first, self.space.metres_per_unit, self.first
+        );
+        if target == Target::Unreal {
+            text.push_str("    prepend apiSchemas = [\"GroomAPI\"]\n");
+        }
+        text.push_str("    kind = \"component\"\n)\n{\n");
+        (text, end_at)
+    }
+
+    /// The prim of the curves up to its points.
+    fn curves(&self, shape: &Shape, target: Target) -> String {
+        let counts = shape.starts.windows(2).map(|pair| pair[1] - pair[0]);
+        let counts = list(counts, |text, count| text.push_str(&count.to_string()));
+        let mut text = format!(
+            "    def BasisCurves \"{}\"\n    {{\n        uniform token type = \"linear\"\n        uniform token wrap = \
+             \"nonperiodic\"\n        int[] curveVertexCounts = {counts}\n",
+            shape.what.name()
+        );
+        for Primvar { of, name, values, interpolation } in self.primvars(shape, target) {
+            let name = if name == "widths" { name.to_owned() } else { format!("primvars:{name}") };
+            let _ = write!(
+                text,
+                "        {of}[] {name} = {values} (\n            interpolation = \"{interpolation}\"\n        )\n"
+            );
+        }
+        text.push_str("        point3f[] points.timeSamples = {\n");
+        text
+    }
+
+    /// The attributes that there are.
+    fn primvars(&self, shape: &Shape, target: Target) -> Vec<Primvar> {
+        let Attributes { widths, colors, root_uvs, groups, group_names, binding } = &shape.attributes;
+        let unreal = target == Target::Unreal;
+        let mut all = Vec::new();
+        let mut add = |of, name, values, interpolation| all.push(Primvar { of, name, values, interpolation });
+        if let Some(widths) = widths {
+            add(
+                "float",
+                "widths",
+                list(widths, |text, width| put(text, self.space.length(*width))),
+                "vertex",
+            );
+        }
+        if let Some(colors) = colors {
+            let values = || list(colors, |text, color| put_tuple(text, color));
+            add("color3f", "displayColor", values(), "vertex");
+            if unreal {
+                add("float3", "groom_color", values(), "vertex");
+            }
+        }
+        if let Some(uvs) = root_uvs {
+            let name = if unreal { "groom_root_uv" } else { "st" };
+            add("texCoord2f", name, list(uvs, |text, uv| put_tuple(text, uv)), "uniform");
+        }
+        if let Some(groups) = groups {
+            let values = list(groups, |text, group| text.push_str(&group.to_string()));
+            add("int", if unreal { "groom_group_id" } else { "group_id" }, values, "uniform");
+            let named = |group: &u16| group_names.get(usize::from(*group));
+            if groups.iter().all(|group| named(group).is_some()) {
+                let values = list(groups, |text, group| {
+                    text.push_str(&quoted(named(group).map_or("", String::as_str)));
+                });
+                add("string", if unreal { "groom_group_name" } else { "group_name" }, values, "uniform");
+            }
+        }
+        if unreal {
+            let guide = i32::from(shape.what == What::Guides);
+            add("int", "groom_guide", format!("[{guide}]"), "constant");
+            let values = list(0..shape.strand_count(), |text, strand| text.push_str(&strand.to_string()));
+            add("int", "groom_id", values, "uniform");
+            // A file of guides has no strands that hang on them; Unreal reads three guides of each.
+            if let (What::Strands, Some(binding)) = (shape.what, binding)
+                && binding.guides_per_strand >= 3
+            {
+                let indices = binding.indices.chunks_exact(binding.guides_per_strand);
+                let three = |text: &mut String, three: &[u32]| {
+                    let _ = write!(text, "({}, {}, {})", three[0], three[1], three[2]);
+                };
+                add("int3", "groom_closest_guides", list(indices, three), "uniform");
+                let weights = binding.weights.chunks_exact(binding.guides_per_strand);
+                let values = list(weights, |text, weights| put_tuple(text, &weights[..3]));
+                add("float3", "groom_guide_weights", values, "uniform");
+            }
+        }
+        all
+    }
+
+    /// Adds a frame.
+    pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
+        let (code, space) = (frame.number + self.first, self.space);
+        self.put(&format!("            {code}: "))?;
+        for piece in points(frame.points, |point| space.point(point)) {
+            self.put(&piece)?;
+        }
+        self.put(",\n")?;
+        let outside_in = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (low, high) = frame
+            .points
+            .iter()
+            .map(|point| space.point(*point))
+            .fold(outside_in, |(low, high), point| (low.min(point), high.max(point)));
+        let half = Vec3::splat(0.5 * space.length(self.widest));
+        self.boxes.push((code, [low - half, high + half]));
+        self.heads.push((code, space.pose(&frame.world_from_head)));
+        Ok(())
+    }
+
+    /// Ends the file of a whole film, or of one that was broken off; where it lies.
+    pub fn finish(mut self, whole: bool) -> Result<PathBuf, Error> {
+        let mut text = "        }\n        float3[] extent.timeSamples = {\n".to_owned();
+        for (code, corners) in &self.boxes {
+            let corners = list(corners, |text, corner| put_tuple(text, &corner.to_array()));
+            let _ = writeln!(text, "            {code}: {corners},");
+        }
+        text.push_str("        }\n    }\n\n    def Xform \"head\"\n    {\n");
+        text.push_str("        double3 xformOp:translate.timeSamples = {\n");
+        for (code, pose) in &self.heads {
+            let _ = write!(text, "            {code}: ");
+            put_tuple(&mut text, &pose.translation.to_array());
+            text.push_str(",\n");
+        }
+        text.push_str("        }\n        quatf xformOp:orient.timeSamples = {\n");
+        for (code, pose) in &self.heads {
+            let [x, y, z, w] = pose.rotation.to_array();
+            let _ = write!(text, "            {code}: ");
+            put_tuple(&mut text, &[w, x, y, z]);
+            text.push_str(",\n");
+        }
+        let order = "[\"xformOp:translate\", \"xformOp:orient\"]";
+        let _ = write!(text, "        }}\n        uniform token[] xformOpOrder = {order}\n    }}\n}}\n");
+        self.put(&text)?;
+        let last = self.boxes.last().map_or(self.first, |(code, _)| *code);
+        let Self { path, mut file, end_at, .. } = self;
+        let ended = file.write_at(end_at, format!("{last:<DIGITS$}").as_bytes());
+        let place =
+            ended.and_then(|()| if whole { file.finish().map(|()| path.clone()) } else { file.leave() });
+        place.map_err(Error::write("the USD file", &path))
+    }
+}
+
+/// An attribute of the curves.
+struct Primvar {
+    of: &'static str,
+    name: &'static str,
+    values: String,
+    interpolation: &'static str,
+}

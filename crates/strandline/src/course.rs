@@ -1,0 +1,81 @@
+//! Where the head and the wind of a film are, and the steps that lead to each frame.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::{
+    HeadMotion, Scene,
+    body::Pose,
+    sim::{SimError, StepReport},
+    simulation::Simulation,
+};
+
+/// Where the head and the wind are at every time.
+#[derive(Clone)]
+pub(crate) struct Course {
+    pose: Arc<dyn Fn(f64) -> Pose + Send + Sync>,
+    wind: Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
+    frames_per_second: f64,
+    settle_seconds: f64,
+    /// Time of motion and wind at the beginning \[s\].
+    start: f64,
+    /// Whether the first picture shows hair as it begins.
+    posed: bool,
+    /// What carries the head from where the motion begins to where it is with such hair.
+    aside: Pose,
+}
+
+/// Time \[s\] in which a head that a pose of hair has elsewhere than the motion comes to where that has it.
+const JOINING: f64 = 1.0 / 30.0;
+
+impl Course {
+    /// The course of a scene whose head moves so and is `here` at the beginning.
+    pub fn new(scene: &Scene, head: HeadMotion, here: Pose) -> Self {
+        let (wind, there) = (scene.wind, head.pose(scene.film.start));
+        Self {
+            pose: Arc::new(move |time| head.pose(time)),
+            wind: Arc::new(move |time| wind.at(time)),
+            frames_per_second: f64::from(scene.film.frames_per_second),
+            settle_seconds: f64::from(scene.film.settle),
+            start: scene.film.start,
+            posed: scene.groom.pose.is_some(),
+            aside: if here == there { Pose::IDENTITY } else { carrying(&there, &here) },
+        }
+    }
+
+    /// Moves to the end of a frame; the first one lets the hair hang on the resting head before, in whole
+    /// steps that are not reported. Hair that begins in a pose is shown in it first.
+    ///
+    /// Everything is asked for at times of steps, never of frames.
+    pub fn run(&self, simulation: &mut Simulation, frame: u32) -> Result<Vec<StepReport>, SimError> {
+        if frame == 0 && self.posed {
+            return Ok(Vec::new());
+        }
+        if frame == 0 {
+            simulation.settle(self.settle_seconds, (self.wind)(self.start))?;
+        }
+        simulation.run_to(self.time(frame), &|time| (self.head(time), (self.wind)(self.start + time)))
+    }
+
+    /// Time of the film at which a frame is shown \[s\].
+    pub fn time(&self, frame: u32) -> f64 {
+        f64::from(frame + u32::from(!self.posed)) / self.frames_per_second
+    }
+
+    /// Pose of the head at a time of the film \[s\].
+    fn head(&self, time: f64) -> Pose {
+        let pose = (self.pose)(self.start + time);
+        if self.aside == Pose::IDENTITY || time >= JOINING {
+            return pose;
+        }
+        let aside = self.aside.toward(&Pose::IDENTITY, (time / JOINING) as f32);
+        Pose { rotation: aside.rotation * pose.rotation, translation: aside.point(pose.translation) }
+    }
+}
+
+/// What carries a head that is in one pose into another.
+fn carrying(from: &Pose, to: &Pose) -> Pose {
+    let back = from.inverse();
+    Pose { rotation: to.rotation * back.rotation, translation: to.point(back.translation) }
+}
