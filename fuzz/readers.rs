@@ -11,7 +11,7 @@ use strandline::groom::{Groom, GroomError, Guides};
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 14] = [
+pub const TARGETS: [(&str, Target); 15] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
     ("project", project_file),
@@ -25,6 +25,7 @@ pub const TARGETS: [(&str, Target); 14] = [
     ("gltf", gltf),
     ("scene", scene),
     ("pose", pose),
+    ("cache", cache),
     ("grid", grid),
 ];
 
@@ -162,4 +163,9 @@ pub fn scene(bytes: &[u8]) -> bool {
 /// The pose of hair is read or refused.
 pub fn pose(bytes: &[u8]) -> bool {
     strandline::check_pose(bytes, POSE).is_ok()
+}
+
+/// A moving cache is read, every frame of it, or refused.
+pub fn cache(bytes: &[u8]) -> bool {
+    strandline::check_cache(bytes).is_ok()
 }

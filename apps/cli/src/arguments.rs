@@ -123,6 +123,7 @@ pub struct ViewOptions {
 }
 
 #[derive(Args, Debug)]
+#[command(group = clap::ArgGroup::new("written").args(["out", "resume"]).multiple(true))]
 pub struct SimOptions {
     #[command(flatten)]
     pub inputs: Inputs,
@@ -132,10 +133,10 @@ pub struct SimOptions {
     pub out: Option<PathBuf>,
     /// Which strands are written: guides, those that are simulated, or strands, all that pictures draw
     /// [default: guides].
-    #[arg(long, value_name = "NAME", requires = "out", value_parser = What::from_str)]
+    #[arg(long, value_name = "NAME", requires = "written", value_parser = What::from_str)]
     pub what: Option<What>,
     /// Write every N-th frame, from the first [default: 1].
-    #[arg(long, value_name = "N", requires = "out", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub every: Option<u32>,
     /// Units and axes of a .usda: any (metres, y up), unreal (centimetres, z up, groom_* attributes) or blender
     /// (metres, z up, frames from 1) [default: any].

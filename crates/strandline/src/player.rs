@@ -291,8 +291,10 @@ impl Player {
             self.start()?;
         }
         let time = self.course.time(frame);
-        if let Some(out) = &mut self.out {
+        if let Some(mut out) = self.out.take() {
+            // What cannot go on is left as it is: it ends with the frame before.
             out.add(frame, time, &moment, &reports, state.as_ref())?;
+            self.out = Some(out);
         }
         self.waiting = reports.into_iter();
         Ok(moment)

@@ -1,7 +1,7 @@
 //! The kept corpora of the fuzz targets, replayed: every file of them and many that are nearly them.
 //!
 //! `STRANDLINE_FUZZ_SECONDS=60 cargo test --release -p strandline --test corpora -- --nocapture` goes on for
-//! so long for each target and prints how many runs that were.
+//! so long for each target and prints how many runs that were; `STRANDLINE_FUZZ_TARGET=obj` takes one of them.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -67,7 +67,11 @@ fn change(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
 fn every_reader_reads_or_refuses_its_corpus_and_what_is_nearly_it() {
     let seconds = std::env::var("STRANDLINE_FUZZ_SECONDS").ok().map(|text| text.parse().unwrap());
     let limit = seconds.map(Duration::from_secs);
+    let only = std::env::var("STRANDLINE_FUZZ_TARGET").ok();
     for (name, target) in readers::TARGETS {
+        if only.as_ref().is_some_and(|only| only != name) {
+            continue;
+        }
         let seeds = seeds(name);
         let read = seeds.iter().filter(|(_, bytes)| target(bytes)).count();
         assert!(read > 0, "{name}: no seed is read: the target looks at nothing");

@@ -104,10 +104,8 @@ pub fn without_tests(code: &str) -> (String, Vec<String>) {
             Some(end) if item[..end].find('{').is_some_and(|open| open < end_of_line) => end,
             _ => end_of_line,
         };
-        if let Some(name) = item[..end].trim().strip_prefix("mod ") {
-            if let Some(name) = name.strip_suffix(';') {
-                modules.push(name.trim().to_owned());
-            }
+        if let Some(name) = item[..end].trim().strip_prefix("mod ").and_then(|name| name.strip_suffix(';')) {
+            modules.push(name.trim().to_owned());
         }
         left = &item[end..];
     }

@@ -75,6 +75,68 @@ fn sim_leaves_nothing() {
     end_often(&["sim", "--scene", "small.toml"], &[], &["small.toml"], "");
 }
 
+#[test]
+fn sim_leaves_whole_caches() {
+    end_often(
+        &["sim", "--scene", "small.toml", "--out", "a.npz", "--frames", "12"],
+        &[],
+        &["a.npz", "small.toml"],
+        "",
+    );
+}
+
+#[test]
+fn sim_leaves_whole_usd() {
+    end_often(&["sim", "--scene", "small.toml", "--out", "a.usda"], &[], &["a.usda", "small.toml"], "");
+}
+
+/// Whatever ends it, a run that writes a cache leaves what was done, and goes on from there to the same bytes.
+#[test]
+fn a_cache_is_gone_on_from_whatever_ended_its_run() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let sim = |out| ["sim", "--scene", "small.toml", "--frames", "120", "--out", out];
+    works(folder.path(), &sim("whole.npz"));
+    let whole = std::fs::read(at("whole.npz")).unwrap();
+    let mut random = strandline::body::Random::new(3, 0);
+    let (mut short, mut frames) = (0, Vec::new());
+    for turn in 0..9 {
+        let (name, number) = SIGNALS[turn % SIGNALS.len()];
+        let mut child = strandline(folder.path(), &sim("part.npz"))
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        wait_until("a cache", || at("part.npz").exists());
+        std::thread::sleep(Duration::from_secs_f32(0.3 * random.unit()));
+        send(name, child.id());
+        wait_until("ended", || child.try_wait().unwrap().is_some());
+        let output = child.wait_with_output().unwrap();
+        assert!(ended_by(output.status, number), "{name}: {:?}: {}", output.status, error(&output));
+        let was_ended = !output.status.success();
+        let cache = strandline::Cache::open(&at("part.npz")).unwrap();
+        assert!(!cache.is_empty() && is_whole(&at("part.npz")), "{name}");
+        frames.push(cache.len());
+        if was_ended && name != "KILL" {
+            let words = format!("the {} frames so far are whole", cache.len());
+            assert!(error(&output).contains(&words), "{name}: {}", error(&output));
+        }
+        drop(cache);
+        if was_ended {
+            short += 1;
+            works(folder.path(), &["sim", "--resume", "part.npz", "--out", "rest.npz"]);
+            assert!(std::fs::read(at("rest.npz")).unwrap() == whole, "after {name}, {frames:?}");
+            // Into the file itself, too.
+            works(folder.path(), &["sim", "--resume", "part.npz"]);
+            assert!(std::fs::read(at("part.npz")).unwrap() == whole, "after {name}, {frames:?}");
+        }
+        std::fs::remove_file(at("part.npz")).unwrap();
+    }
+    assert!(short > 3, "only {short} runs were ended: {frames:?}");
+    let left = names(folder.path());
+    assert!(left.iter().all(|name| !name.contains("unfinished")), "{left:?}");
+}
+
 /// Stops a film after some frames; returns what it says.
 fn stop(folder: &Path, signal: &str, code: i32) -> String {
     let render = ["render", "--scene", "small.toml", "--out", "out", "--frames", "400"];

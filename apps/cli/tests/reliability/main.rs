@@ -87,6 +87,8 @@ fn is_whole(path: &Path) -> bool {
         Some("png") => bytes.ends_with(b"IEND\xaeB`\x82") && image::load_from_memory(&bytes).is_ok(),
         Some("gif") => bytes.starts_with(b"GIF") && bytes.ends_with(b";"),
         Some("mp4") => boxes(&bytes).is_some_and(|names| names.contains(b"moov".as_slice())),
+        Some("npz") => strandline::check_cache(&bytes).is_ok(),
+        Some("usda") => bytes.starts_with(b"#usda 1.0\n") && bytes.ends_with(b"\n}\n"),
         Some("hair" | "tfx") => strandline::Groom::load(path).is_ok(),
         Some("toml") | None => true,
         Some("strandline-part" | "strandline-foreign-part" | "strandline-lock") => true,
@@ -134,8 +136,10 @@ fn moving(folder: &Path) -> Option<PathBuf> {
 fn the_checks_see_what_is_not_whole() {
     let folder = folder();
     works(folder.path(), &["render", "--scene", "small.toml", "--out", "out"]);
+    works(folder.path(), &["sim", "--scene", "small.toml", "--out", "out/a.npz"]);
+    works(folder.path(), &["sim", "--scene", "small.toml", "--out", "out/a.usda"]);
     let out = folder.path().join("out");
-    let good = ["frame_0000.png", "sheet.png"].map(|name| out.join(name));
+    let good = ["frame_0000.png", "sheet.png", "a.npz", "a.usda"].map(|name| out.join(name));
     for path in good.into_iter().chain(moving(&out)) {
         assert!(is_whole(&path), "{}", path.display());
         let bytes = std::fs::read(&path).unwrap();

@@ -70,3 +70,26 @@ fn a_shorter_film_says_which_frames_are_of_the_longer_one_before() {
     let output = run(folder.path(), &["render", "--scene", "small.toml", "--out", "out", "--frames", "2"]);
     assert!(error(&output).contains("of an earlier film there are still frame_0002.png and frame_0003.png"));
 }
+
+#[test]
+fn of_two_runs_that_write_one_cache_the_second_is_refused() {
+    let folder = folder();
+    let sim = ["sim", "--scene", "small.toml", "--frames", "4000", "--out", "a.npz"];
+    let mut first =
+        strandline(folder.path(), &sim).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    wait_until("a cache", || folder.path().join("a.npz").exists());
+    let second = run(folder.path(), &["sim", "--scene", "small.toml", "--out", "a.npz"]);
+    let error = error(&second);
+    assert_eq!(second.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains("another run is writing that file") && error.trim_end().ends_with("a.npz"),
+        "{error}"
+    );
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // Of the one that was killed everything stays until another is finished.
+    let before = strandline::Cache::open(&folder.path().join("a.npz")).unwrap().len();
+    assert!(before > 0);
+    works(folder.path(), &["sim", "--scene", "small.toml", "--out", "a.npz"]);
+    assert_eq!(names(folder.path()), ["a.npz", "small.toml"]);
+}

@@ -55,3 +55,16 @@ fn a_disk_that_fills_up_is_an_error_and_leaves_nothing_half() {
     );
     assert!(left.lines().all(|name| name.starts_with("frame_") && name.ends_with(".png")), "{left}");
 }
+
+#[test]
+fn a_cache_on_a_disk_that_fills_up_has_the_frames_before() {
+    let line = "strandline sim --scene ../small.toml --frames 400 --out a.npz >/dev/null; echo $?; ls -A; \
+                cp a.npz ..; cd ..; strandline render --cache a.npz --out film >/dev/null && echo drawn";
+    let Some(output) = on_small_disk(line) else {
+        println!("skipped: no right to make a small disk");
+        return;
+    };
+    let ((code, left), error) = (outcome(&output), error(&output));
+    assert_eq!((code.as_str(), left.as_str()), ("1", "a.npz\ndrawn"), "{error}");
+    assert!(error.contains("cannot write the cache: No space left"), "{error}");
+}

@@ -215,8 +215,8 @@ impl GrowingNpz {
         Ok(())
     }
 
-    /// Adds a row to every growing array, in their order; then the file has its name. Before a row for which
-    /// [`GrowingNpz::wants_tail`] a new tail has to be set.
+    /// Adds a row to every growing array, in their order. Before a row for which [`GrowingNpz::wants_tail`] a new
+    /// tail has to be set. From the first row with a tail of its time on the file has its name.
     ///
     /// # Errors
     /// Whatever the system reports, a full disk for example: the rows before stay.
@@ -238,7 +238,7 @@ impl GrowingNpz {
         }
         self.write_directory()?;
         self.write_headers()?;
-        self.file.publish()
+        if self.wants_tail() { Ok(()) } else { self.file.publish() }
     }
 
     /// Whether the tail has to be set before the next row.
@@ -262,7 +262,8 @@ impl GrowingNpz {
         let left = self.capacity.saturating_sub(self.rows).max(1);
         let room = (ROOM * length).div_ceil(last.row_bytes.max(1)).clamp(1, left) * last.row_bytes;
         let at = (last.end(self.rows) + room).max(self.end).next_multiple_of(npy::ALIGNMENT);
-        self.put_tail(tail, at)
+        self.put_tail(tail, at)?;
+        if self.rows > 0 { self.file.publish() } else { Ok(()) }
     }
 
     /// Sets the last tail right behind the rows.
