@@ -13,6 +13,7 @@ mod lengths;
 mod pendulum;
 mod poisson;
 mod recovery;
+mod rod_mechanics;
 mod rods;
 mod shake;
 mod sintel;

@@ -6,7 +6,7 @@ use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, LANES, Vec3Lanes};
 use strandline_sim::cpu::Obstacles;
 use strandline_sim::gpu::GpuSolver;
-use strandline_sim::{Drive, Settings, Solver, State, VolumeSettings};
+use strandline_sim::{Drive, Settings, Solver, State, StrandMethod, VolumeSettings};
 
 /// One kind of hair: what is compared on it.
 pub struct Head {
@@ -36,6 +36,8 @@ impl Head {
         fresh.previous_positions = state.previous_positions;
         fresh.velocities = state.velocities;
         fresh.corrections = state.corrections;
+        fresh.sections = state.sections;
+        fresh.spins = state.spins;
         fresh
     }
 }
@@ -149,6 +151,13 @@ pub fn heads() -> Vec<Head> {
             settings: with(|settings| settings.volume.cells = [4, 5, 6]),
         },
     ]
+}
+
+/// The same hair as rods.
+pub fn rods() -> Vec<Head> {
+    let mut heads = heads();
+    heads.iter_mut().for_each(|head| head.settings.strands.method = StrandMethod::Rods);
+    heads
 }
 
 /// The largest distance between the live strands of two sets of vectors.

@@ -3,6 +3,7 @@
 mod heads;
 mod host;
 mod picture;
+mod rods;
 mod shaders;
 mod strands;
 mod volume;

@@ -1,10 +1,11 @@
 //! Links the WESL modules of the stages into one WGSL text each.
 
 /// Modules with entry points; the others are imported by them.
-const MODULES: [&str; 11] = [
+const MODULES: [&str; 12] = [
     "pose_roots",
     "integrate",
     "constrain",
+    "solve_rods",
     "splat",
     "mark",
     "solve_pressure",

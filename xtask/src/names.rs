@@ -33,6 +33,7 @@ const RECIPES: [Recipe; 2] = [
             "pose_roots",
             "integrate",
             "constrain",
+            "solve_rods",
             "splat",
             "mark",
             "solve_pressure",

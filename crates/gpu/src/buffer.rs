@@ -105,12 +105,21 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// The device was lost, or there are more elements than the buffer holds.
     pub fn write(&self, elements: &[T]) -> Result<(), GpuError> {
+        self.write_at(0, elements)
+    }
+
+    /// Replaces the elements from number `first` on; it lies at a multiple of four bytes.
+    ///
+    /// # Errors
+    /// As [`Buffer::write`].
+    pub fn write_at(&self, first: usize, elements: &[T]) -> Result<(), GpuError> {
         let bytes: &[u8] = bytemuck::cast_slice(elements);
         if bytes.is_empty() {
             return Ok(());
         }
         self.gpu().count_to_device(bytes.len());
-        self.gpu().guarded(self.name, || self.gpu().queue().write_buffer(&self.raw, 0, bytes))
+        let offset = (first * size_of::<T>()) as u64;
+        self.gpu().guarded(self.name, || self.gpu().queue().write_buffer(&self.raw, offset, bytes))
     }
 
     /// Waits for the device and copies all elements back.

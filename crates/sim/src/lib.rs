@@ -25,7 +25,7 @@ pub mod strands;
 pub use checkpoint::{Checkpoint, Part};
 pub use clock::{Clock, Ticks};
 pub use error::SimError;
-pub use report::{PressureReport, StepReport};
+pub use report::{PressureReport, RodReport, StepReport};
 pub use settings::{
     Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, StrandMethod, StrandSettings,
     VolumeSettings,
@@ -33,3 +33,8 @@ pub use settings::{
 pub use solver::Solver;
 pub use state::{Drive, State};
 pub use strandline_gpu::Backend;
+
+/// Settings of rods.
+pub mod rods {
+    pub use crate::strands::rods::settings::{Rest, RodSettings};
+}

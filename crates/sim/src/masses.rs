@@ -47,12 +47,6 @@ impl Masses {
         };
         let share_lower = each(&|index, lane| share(index, lane, index));
         let share_upper = each(&|index, lane| share(index, lane, index + 1));
-        Self {
-            mass,
-            inverse_mass,
-            share_lower,
-            share_upper,
-            mass_per_length: solver.settings.mass_per_length,
-        }
+        Self { mass, inverse_mass, share_lower, share_upper, mass_per_length: solver.settings.line_density() }
     }
 }

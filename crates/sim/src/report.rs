@@ -14,6 +14,28 @@ pub struct PressureReport {
     pub fluid_cells: usize,
 }
 
+/// What the solve of rods did in a step, in the worst of its parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RodReport {
+    /// How far the last Newton step of a strand turned one of its segments at most \[rad\].
+    pub residual: f32,
+    /// Strands that would have needed more Newton steps than `newton_steps`.
+    pub unsolved: usize,
+    /// Strands that stay where they are, to the bit on the CPU.
+    pub resting: usize,
+}
+
+impl RodReport {
+    /// Both together, of different strands.
+    pub(crate) fn with(self, other: Self) -> Self {
+        Self {
+            residual: self.residual.max(other.residual),
+            unsolved: self.unsolved + other.unsolved,
+            resting: self.resting + other.resting,
+        }
+    }
+}
+
 /// Quality and cost of one step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
@@ -21,6 +43,8 @@ pub struct StepReport {
     pub seconds: Vec<(&'static str, f64)>,
     /// The pressure solve.
     pub pressure: PressureReport,
+    /// The solve of rods; none with another strand solver.
+    pub rods: Option<RodReport>,
     /// Mean of length / rest length - 1 over all segments.
     pub stretch_mean: f32,
     /// Largest length / rest length - 1 of any segment; not a number where one of them is none.

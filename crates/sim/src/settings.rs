@@ -51,9 +51,9 @@ impl Settings {
         }
     }
 
-    /// Share that a rate \[1/s\] takes in a step.
-    pub(crate) fn taken(&self, rate: f32) -> f32 {
-        -(-rate * self.time_step).exp_m1()
+    /// Whether strands are rods.
+    pub(crate) fn has_rods(&self) -> bool {
+        self.strands.method == StrandMethod::Rods
     }
 
     /// The thesis as printed: 20 rounds of distance constraints, springs, no shape and no length
@@ -90,7 +90,7 @@ choices! {
     pub enum StrandMethod as "simulation.strands.method" {
         /// Springs and rounds of constraints [Chen2011 §4].
         Constrain = "constrain",
-        /// Rods, which bend and twist by physics and keep their style; on the CPU only.
+        /// Rods, which bend and twist by physics and keep their style.
         Rods = "rods",
     }
     default Constrain

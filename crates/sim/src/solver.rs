@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::memory;
@@ -203,11 +205,7 @@ impl Solver {
         let turn = Pose { translation: Vec3::ZERO, ..world_from_head };
         let rods = self.rods.as_ref().map_or(0, |rods| rods.sections.len());
         State {
-            sections: self
-                .rods
-                .iter()
-                .flat_map(|rods| rods.sections.iter().map(|l| carried(l, &turn)))
-                .collect(),
+            sections: self.sections(&turn),
             spins: vec![Lanes::default(); rods],
             corrections: vec![Vec3Lanes::default(); positions.len()],
             velocities: if self.velocities.is_empty() {
@@ -229,6 +227,31 @@ impl Solver {
             },
             positions,
         }
+    }
+
+    /// Gives a state that was without rods the sections that they have at rest, and takes those of one that has no
+    /// rods any more.
+    pub(crate) fn give_sections(&self, state: &mut State) {
+        let count = self.rods.as_ref().map_or(0, |rods| rods.sections.len());
+        if state.sections.len() != count {
+            let turn = Pose { translation: Vec3::ZERO, ..state.world_from_head };
+            state.sections = self.sections(&turn);
+            state.spins = vec![Lanes::default(); count];
+        }
+    }
+
+    /// A state with the sections that this solver needs.
+    pub(crate) fn with_sections<'a>(&self, state: &'a State) -> Cow<'a, State> {
+        let mut state = Cow::Borrowed(state);
+        if state.sections.len() != self.rods.as_ref().map_or(0, |rods| rods.sections.len()) {
+            self.give_sections(state.to_mut());
+        }
+        state
+    }
+
+    fn sections(&self, turn: &Pose) -> Vec<Vec3Lanes> {
+        let rods = self.rods.iter();
+        rods.flat_map(|rods| rods.sections.iter().map(|lanes| carried(lanes, turn))).collect()
     }
 
     /// Advances a state by one step of `settings.time_step`.

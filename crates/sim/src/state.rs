@@ -131,7 +131,7 @@ impl State {
     /// Sets the length of every strand, shape `[strand]`: 0.05 to 2 of its rest length
     /// [Chen2011 fig. 45]. Segments near the tip shrink, to no less than a twentieth, or grow, to no more
     /// than three times their own; the others keep their length. The mass of points follows the length of
-    /// their segments. Points slide along their strand at once and keep their velocity.
+    /// their segments; so do stiffness and rest strains of rods, whose curvature per length stays. Points slide along their strand at once and keep their velocity.
     ///
     /// # Errors
     /// Another number of scales than strands, a scale outside [`State::LENGTH_SCALES`]; then nothing changes.
@@ -139,9 +139,6 @@ impl State {
         let refuse = |found: String, expected: &str| {
             Err(SettingError::new("the length scale", found, expected).into())
         };
-        if solver.rods.is_some() && scales.iter().any(|scale| *scale != 1.0) {
-            return refuse("set for rods".to_owned(), "1 with simulation.strands.method = \"rods\"");
-        }
         if scales.len() != solver.strand_count {
             return refuse(format!("given for {} strands", scales.len()), "one for each strand");
         }

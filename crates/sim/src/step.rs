@@ -9,10 +9,10 @@ use crate::cpu::integrate::integrate;
 use crate::cpu::mark::mark;
 use crate::cpu::pose_roots::pose_roots;
 use crate::cpu::solve_pressure::solve_pressure;
+use crate::cpu::solve_rods::solve_rods;
 use crate::cpu::splat::splat;
 use crate::cpu::{Obstacles, Volume};
 use crate::masses::Masses;
-use crate::strands::rods::step::solve_rods;
 use crate::{Drive, Solver, State, StepReport};
 
 /// Advances a state by one step [Chen2011 §4, fig. 11-12].
@@ -25,14 +25,18 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
         time_step: solver.settings.time_step,
     };
     state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
-    if state.scratch.masses.mass_per_length != solver.settings.mass_per_length {
+    if state.scratch.masses.mass_per_length != solver.settings.line_density() {
         state.scratch.masses = Masses::new(solver, &state.scratch.lengths);
     }
+    solver.give_sections(state);
     let mut report = StepReport::default();
     let seconds = &mut report.seconds;
     timed(seconds, "pose_roots", || pose_roots(solver, state, &drive.world_from_head));
-    let non_finite = if let Some(rods) = &solver.rods {
-        timed(seconds, "rods", || solve_rods(solver, rods, state, &obstacles, drive.wind))
+    let non_finite = if solver.rods.is_some() {
+        let solve = || solve_rods(solver, state, &obstacles, drive.wind);
+        let (non_finite, rods) = timed(seconds, "solve_rods", solve);
+        report.rods = Some(rods);
+        non_finite
     } else {
         timed(seconds, "integrate", || integrate(solver, state, drive.wind));
         timed(seconds, "constrain", || constrain(solver, state, &obstacles))

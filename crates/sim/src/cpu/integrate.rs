@@ -114,11 +114,19 @@ impl Fall {
 
     /// Velocities \[m/s\] after gravity, the air and a kick, of points with a tangent.
     #[inline(always)]
-    pub(crate) fn velocity(&self, before: Vec3x8, tangent: Vec3x8, kick: Vec3x8) -> Vec3x8 {
+    fn velocity(&self, before: Vec3x8, tangent: Vec3x8, kick: Vec3x8) -> Vec3x8 {
         let pushed = before + self.gravity + kick;
         let relative = self.wind - pushed;
         let along = tangent * (tangent.dot(relative) / (tangent.dot(tangent) + splat(1e-30)));
         (pushed + (relative - along) * self.across + along * self.along) * self.kept
+    }
+
+    /// Velocities \[m/s\] after the air and gravity: what rests has the whole weight, whatever damps it.
+    #[inline(always)]
+    pub(crate) fn weighted(&self, before: Vec3x8, tangent: Vec3x8) -> Vec3x8 {
+        let relative = self.wind - before;
+        let along = tangent * (tangent.dot(relative) / (tangent.dot(tangent) + splat(1e-30)));
+        (before + (relative - along) * self.across + along * self.along) * self.kept + self.gravity
     }
 
     fn predict(

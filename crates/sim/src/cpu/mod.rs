@@ -14,6 +14,7 @@ pub mod pcg;
 pub mod poisson;
 pub mod pose_roots;
 pub mod solve_pressure;
+pub mod solve_rods;
 pub mod splat;
 pub mod volume;
 

@@ -14,6 +14,11 @@ mirror! {
         pub penetration_max: f32,
         /// A number of points.
         pub non_finite: f32,
+        /// Of rods: see `RodReport`.
+        pub residual: f32,
+        pub unsolved: f32,
+        pub resting: f32,
+        pub unused: f32,
         pub pressure: PressureState,
     }
 }

@@ -6,10 +6,12 @@ use strandline_groom::{LANES, RestShape, Vec3Lanes};
 use super::advance::Report;
 use super::inputs::Step;
 use super::solve_pressure::PressureState;
+use super::solve_rods::{NUMBERS, RodBuffers};
 use super::volume::Volume;
 use super::{THREADS, solids};
 use crate::grab::{Grab, Grip, NO_POINT};
 use crate::masses::Masses;
+use crate::strands::rods::model::with_lengths;
 use crate::{SimError, Solver, State};
 
 /// Steps whose reports the device keeps until they are read.
@@ -25,7 +27,7 @@ pub(super) struct Buffers {
     pub step: Buffer<Step>,
     /// Head space \[m\].
     pub rest_positions: Buffer<f32>,
-    /// Six numbers: rest direction, rest length \[m\], inverse mass \[1/kg\], clearance at rest \[m\].
+    /// Six numbers: rest direction (with rods the first axis of the section), rest length \[m\], inverse mass \[1/kg\], clearance at rest \[m\].
     pub rest: Buffer<f32>,
     /// Two numbers: rest lengths of the bend and the torsion spring \[m\].
     pub springs: Buffer<f32>,
@@ -34,7 +36,8 @@ pub(super) struct Buffers {
     pub solids: Buffer<[u32; 4]>,
     /// Positions \[m\] of the last two steps; which is the newer changes with every step.
     pub places: [Buffer<f32>; 2],
-    /// Velocities of all points \[m/s\], and behind them what the next prediction adds to them.
+    /// Velocities of all points \[m/s\], and behind them what the next prediction adds to them; with rods
+    /// what solve_rods.wesl says.
     pub velocities: Buffer<f32>,
     /// Five numbers: see strand.wesl.
     pub planes: Buffer<f32>,
@@ -48,11 +51,13 @@ pub(super) struct Buffers {
     /// What a step without a volume reports.
     pub no_pressure: Buffer<PressureState>,
     pub volume: Option<Volume>,
+    pub rods: Option<RodBuffers>,
 }
 
 impl Buffers {
     /// Copies a state to the device.
     pub fn new(gpu: &Gpu, solver: &Solver, state: &State) -> Result<Self, SimError> {
+        let state = &solver.with_sections(state);
         let points = solver.points_per_strand;
         let lane_count = solver.lane_count();
         let count = lane_count * points;
@@ -76,10 +81,14 @@ impl Buffers {
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
             grips: Buffer::new(gpu, "grips", lane_count)?,
             boxes: Buffer::new(gpu, "boxes", 2 * solver.strand_count.div_ceil(THREADS))?,
-            outcomes: Buffer::new(gpu, "outcomes", workgroups)?,
+            outcomes: Buffer::new(gpu, "outcomes", 2 * workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,
+            rods: match &solver.rods {
+                Some(_) => Some(RodBuffers::new(gpu, lane_count, points)?),
+                None => None,
+            },
         };
         buffers.write_rest(solver, &state.scratch.lengths)?;
         buffers.write_grips(&state.grab)?;
@@ -114,8 +123,9 @@ impl Buffers {
         let masses = Masses::new(solver, lengths);
         let mut rest = Vec::with_capacity(6 * LANES * solver.positions.len());
         let mut springs = Vec::with_capacity(2 * LANES * solver.positions.len());
+        let axes = solver.rods.as_ref().map_or(&solver.directions, |rods| &rods.sections);
         for index in 0..solver.positions.len() {
-            rest.extend_from_slice(floats(&solver.directions[index..=index]));
+            rest.extend_from_slice(floats(&axes[index..=index]));
             for lanes in [&lengths.stretch, &masses.inverse_mass, &solver.rest_clearance] {
                 // Infinity has no place in a shader.
                 rest.extend(lanes[index].0.map(|number| number.min(f32::MAX)));
@@ -126,7 +136,28 @@ impl Buffers {
         self.rest.write(&rest)?;
         self.springs.write(&springs)?;
         self.mass.write(bytemuck::cast_slice(&masses.mass))?;
-        Ok(())
+        self.write_rods(solver, lengths, &masses)
+    }
+
+    /// Writes the nodes of rods with lengths of their strands.
+    fn write_rods(&self, solver: &Solver, lengths: &RestShape, masses: &Masses) -> Result<(), SimError> {
+        let (Some(buffers), Some(rods)) = (&self.rods, &solver.rods) else { return Ok(()) };
+        let points = solver.points_per_strand;
+        let mut nodes = Vec::with_capacity(points);
+        let mut numbers = Vec::with_capacity(buffers.nodes.len());
+        for first in (0..solver.positions.len()).step_by(points) {
+            let range = first..first + points;
+            let (rest, now) = (&solver.rest.stretch[range.clone()], &lengths.stretch[range.clone()]);
+            with_lengths(&rods.nodes[range.clone()], rest, now, &masses.mass[range.clone()], &mut nodes);
+            for (position, node) in solver.positions[range].iter().zip(&nodes) {
+                numbers.extend_from_slice(floats(std::slice::from_ref(position)));
+                let [one, two, three] = node.rest;
+                for lanes in [node.length, node.stretch, node.stiffness[0], one, two, three, node.inertia] {
+                    numbers.extend(lanes.to_array());
+                }
+            }
+        }
+        Ok(buffers.nodes.write(&numbers)?)
     }
 
     /// Writes what a hand holds; with an empty hand nobody reads it.
@@ -136,7 +167,12 @@ impl Buffers {
         }
         let grips: Vec<_> =
             grab.grips.iter().flat_map(|block| (0..LANES).map(|lane| grip(block, lane))).collect();
-        Ok(self.grips.write(&grips)?)
+        match &self.rods {
+            Some(rods) => {
+                Ok(rods.nodes.write_at(NUMBERS * self.point_count(), bytemuck::cast_slice(&grips))?)
+            }
+            None => Ok(self.grips.write(&grips)?),
+        }
     }
 }
 
@@ -147,9 +183,16 @@ fn grip(grip: &Grip, lane: usize) -> [f32; 4] {
     grip.offsets.get(lane).extend(number).to_array()
 }
 
-/// Velocities and what the next prediction adds to them, as the device has them.
+/// Velocities and what the next prediction adds to them, as the device has them; of rods sections and their
+/// speeds, and room for how strands were solved.
 pub(super) fn speeds(state: &State) -> Vec<f32> {
-    [floats(&state.velocities), floats(&state.corrections)].concat()
+    if state.sections.is_empty() {
+        return [floats(&state.velocities), floats(&state.corrections)].concat();
+    }
+    let blocks = state.length_scale.len();
+    let outcomes = vec![0.0; 2 * LANES * blocks];
+    let spins: &[f32] = bytemuck::cast_slice(&state.spins);
+    [floats(&state.velocities), floats(&state.sections), spins, &outcomes].concat()
 }
 
 /// Vectors as the numbers that they are.

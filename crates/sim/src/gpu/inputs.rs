@@ -19,6 +19,28 @@ mirror! {
 }
 
 mirror! {
+    /// What rods take of a step. Mirrors `RodStep` in common.wesl.
+    pub(super) struct RodStep {
+        /// Turns what rests on the head through a part of the step.
+        pub part_rotation: [f32; 4],
+        /// Of the head at the start of the step, and how far a part takes it \[m\].
+        pub start_translation: [f32; 3],
+        pub part_time: f32,
+        pub part_translation: [f32; 3],
+        pub viscous: f32,
+        pub parts: u32,
+        pub newton_steps: u32,
+        pub head_moves: u32,
+        /// Second bending stiffness over the first, twisting stiffness over the first.
+        pub bend_ratio: f32,
+        pub twist_ratio: f32,
+        pub unused_a: u32,
+        pub unused_b: u32,
+        pub unused_c: u32,
+    }
+}
+
+mirror! {
     /// Mirrors `Step` in common.wesl.
     pub(super) struct Step {
         pub world_from_head: Rigid,
@@ -27,7 +49,7 @@ mirror! {
         pub end_from_start: Rigid,
         pub start_from_end: Rigid,
         pub head_rotation: [f32; 4],
-        /// What gravity adds in a step \[m/s\].
+        /// What gravity adds in a step, or in a part of one \[m/s\].
         pub gravity: [f32; 3],
         pub time_step: f32,
         pub wind: [f32; 3],
@@ -65,6 +87,7 @@ mirror! {
         /// Where the hand is \[m\].
         pub hand: [f32; 3],
         pub unused_a: u32,
+        pub rods: RodStep,
     }
 }
 
@@ -80,11 +103,36 @@ impl Rigid {
     }
 }
 
+impl RodStep {
+    fn new(solver: &Solver, start: &Pose, end: &Pose, part_time: f32) -> Self {
+        let rods = &solver.settings.strands.rods;
+        let part = start.toward(end, 1.0 / rods.substeps as f32);
+        let section = rods.material().section();
+        Self {
+            part_rotation: (part.rotation * start.rotation.inverse()).to_array(),
+            start_translation: start.translation.to_array(),
+            part_time,
+            part_translation: ((end.translation - start.translation) / rods.substeps as f32).to_array(),
+            viscous: rods.damping / part_time,
+            parts: rods.substeps,
+            newton_steps: rods.newton_steps,
+            head_moves: u32::from(start != end),
+            bend_ratio: (section.bend[1] / section.bend[0]) as f32,
+            twist_ratio: (section.twist / section.bend[0]) as f32,
+            ..Self::default()
+        }
+    }
+}
+
 impl Step {
     /// What a step needs that starts at a pose of the head.
     pub fn new(solver: &Solver, start: &Pose, drive: &Drive, grab: &Grab, slot: usize) -> Self {
         let settings = &solver.settings;
         let end = drive.world_from_head;
+        // What acts on all points alike acts in each part of a step of rods.
+        let parts = if settings.has_rods() { settings.strands.rods.substeps } else { 1 };
+        let part_time = settings.time_step / parts as f32;
+        let taken = |rate: f32| -(-rate * part_time).exp_m1();
         let from_start = |a: &Pose, b: Pose| Pose {
             rotation: a.rotation * b.rotation,
             translation: a.point(b.translation),
@@ -97,16 +145,16 @@ impl Step {
             end_from_start: Rigid::new(&from_start(&end, start.inverse())),
             start_from_end: Rigid::new(&from_start(start, end.inverse())),
             head_rotation: end.rotation.to_array(),
-            gravity: (settings.gravity * settings.time_step).to_array(),
+            gravity: (settings.gravity * part_time).to_array(),
             time_step: settings.time_step,
             wind: drive.wind.to_array(),
             margin: settings.collision_margin,
             stretch_spring: spring(&settings.springs.stretch),
             bend_spring: spring(&settings.springs.bend),
             torsion_spring: spring(&settings.springs.torsion),
-            drag_across: settings.taken(settings.drag.across),
-            drag_along: settings.taken(settings.drag.along),
-            kept: 1.0 - settings.taken(settings.damping),
+            drag_across: taken(settings.drag.across),
+            drag_along: taken(settings.drag.along),
+            kept: 1.0 - taken(settings.damping),
             near: care.near,
             cos_limit: settings.angles.limit.cos(),
             sin_limit: settings.angles.limit.sin(),
@@ -131,6 +179,7 @@ impl Step {
             slot: slot as u32,
             holds: u32::from(!grab.grips.is_empty()),
             hand: grab.hand.to_array(),
+            rods: RodStep::new(solver, start, &end, part_time),
             ..Self::default()
         }
     }

@@ -4,6 +4,7 @@ strandline_gpu::linked! {
     POSE_ROOTS = "pose_roots",
     INTEGRATE = "integrate",
     CONSTRAIN = "constrain",
+    SOLVE_RODS = "solve_rods",
     SPLAT = "splat",
     MARK = "mark",
     PCG = "pcg",

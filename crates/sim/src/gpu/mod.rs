@@ -18,6 +18,7 @@ mod pose_roots;
 mod probe;
 mod solids;
 mod solve_pressure;
+mod solve_rods;
 mod solver;
 mod splat;
 mod state;

@@ -87,7 +87,7 @@ impl<'a> Probe<'a> {
         Ok(vectors(&self.velocities_and_corrections()?.0))
     }
 
-    /// What the next prediction adds to the velocities \[m/s\].
+    /// What the next prediction adds to the velocities \[m/s\]; with rods the first axes of their sections.
     ///
     /// # Errors
     /// The device was lost.
@@ -97,7 +97,9 @@ impl<'a> Probe<'a> {
 
     fn velocities_and_corrections(&self) -> Result<(Vec<f32>, Vec<f32>), SimError> {
         let mut velocities = self.state.buffers.velocities.read()?;
-        let corrections = velocities.split_off(velocities.len() / 2);
+        let count = 3 * self.state.buffers.point_count();
+        let mut corrections = velocities.split_off(count);
+        corrections.truncate(count);
         Ok((velocities, corrections))
     }
 

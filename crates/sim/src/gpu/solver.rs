@@ -5,9 +5,9 @@ use strandline_gpu::{Bindings, Declaration, Gpu, GpuError};
 use super::buffers::Buffers;
 use super::{
     GpuState, advance, constrain, gather, integrate, lengths_alone, mark, pcg, pose_roots, solve_pressure,
-    splat,
+    solve_rods, splat,
 };
-use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport, StrandMethod};
+use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport};
 use strandline_gpu::Scan;
 
 /// A solver whose stages run on a GPU.
@@ -27,6 +27,7 @@ pub(super) struct Kernels {
     pub pose_roots: pose_roots::Stage,
     pub integrate: integrate::Stage,
     pub constrain: constrain::Stage,
+    pub solve_rods: solve_rods::Stage,
     pub scan: Scan,
     pub splat: splat::Stage,
     pub mark: mark::Stage,
@@ -47,6 +48,7 @@ impl GpuSolver {
             pose_roots: pose_roots::Stage::new(gpu)?,
             integrate: integrate::Stage::new(gpu)?,
             constrain: constrain::Stage::new(gpu, solver.points_per_strand)?,
+            solve_rods: solve_rods::Stage::new(gpu)?,
             scan: Scan::new(gpu)?,
             splat: splat::Stage::new(gpu)?,
             mark: mark::Stage::new(gpu)?,
@@ -75,10 +77,25 @@ impl GpuSolver {
     pub fn set_settings(&mut self, settings: &Settings, state: &mut GpuState) -> Result<(), SimError> {
         settings.check_on_gpu()?;
         self.gpu.check()?;
+        let had_rods = self.solver.rods.is_some();
+        let host = if settings.has_rods() == had_rods {
+            None
+        } else {
+            state.drain(self)?;
+            Some(state.to_host(&self.solver)?)
+        };
         self.solver.set_settings(settings)?;
         state.unbind();
-        // Masses may have changed.
-        state.buffers.write_rest(&self.solver, &state.lengths)
+        match host {
+            // Another strand solver has other buffers.
+            Some(host) => {
+                state.buffers = Buffers::new(&self.gpu, &self.solver, &host)?;
+                state.side = 0;
+            }
+            // Masses may have changed.
+            None => state.buffers.write_rest(&self.solver, &state.lengths)?,
+        }
+        Ok(())
     }
 
     /// The guides at rest, carried by a pose of the head.
@@ -135,14 +152,6 @@ impl Settings {
     /// A preconditioner that is a chain from cell to cell; more iterations than a driver lets a kernel take.
     pub fn check_on_gpu(&self) -> Result<(), SimError> {
         let refuse = |key, found: String, expected: &str| Err(SettingError::new(key, found, expected).into());
-        if self.strands.method == StrandMethod::Rods {
-            let key = "simulation.strands.method";
-            return refuse(
-                key,
-                "rods on a GPU".into(),
-                "constrain there, or rods on the CPU (`--sim-device cpu`)",
-            );
-        }
         if self.volume.preconditioner == Preconditioner::Mic0 {
             let found = "mic0, which is a chain from cell to cell".to_owned();
             let expected = "auto, chebyshev, jacobi or none on a GPU";
@@ -173,6 +182,7 @@ pub fn declarations() -> Vec<Declaration> {
         pose_roots::PoseRoots::declaration(),
         integrate::Integrate::declaration(),
         constrain::Constrain::declaration(),
+        solve_rods::SolveRods::declaration(),
         splat::Bounds::declaration(),
         splat::Follow::declaration(),
         splat::FindCells::declaration(),

@@ -10,7 +10,7 @@ use super::volume::Volume;
 use super::{Gradient, Spread};
 use crate::grab::Grab;
 use crate::masses::Masses;
-use crate::{SimError, Solver, State, StepReport};
+use crate::{RodReport, SimError, Solver, State, StepReport};
 
 /// All that changes with time, on the device.
 pub struct GpuState {
@@ -152,7 +152,7 @@ impl GpuState {
     }
 
     /// Reads the reports that lie on the device.
-    fn drain(&mut self, solver: &GpuSolver) -> Result<(), SimError> {
+    pub(super) fn drain(&mut self, solver: &GpuSolver) -> Result<(), SimError> {
         if self.pending == 0 {
             return Ok(());
         }
@@ -167,7 +167,7 @@ impl GpuState {
                 Some(timer) => timer.seconds(&marks[slot * stride..(slot + 1) * stride]),
                 None => Vec::new(),
             };
-            self.reports.push(step_report(report, seconds, solver.segment_count));
+            self.reports.push(step_report(report, seconds, solver));
         }
         self.pending = 0;
         Ok(())
@@ -184,7 +184,8 @@ impl GpuState {
     }
 
     /// Waits for the device and copies what a picture needs into a state of the host: positions,
-    /// those of one step ago, the head's pose and the time; and the velocities with their corrections.
+    /// those of one step ago, the head's pose and the time; and the velocities with their corrections, of rods
+    /// how their sections are turned.
     ///
     /// # Errors
     /// The device was lost; the state is then as it was.
@@ -197,9 +198,16 @@ impl GpuState {
         let [positions, previous, velocities] = parts.map(|part| copied.take(part));
         floats_mut(&mut state.positions).copy_from_slice(&positions);
         floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
-        let (velocities, corrections) = velocities.split_at(velocities.len() / 2);
+        let count = self.buffers.point_count();
+        let (velocities, others) = velocities.split_at(3 * count);
         floats_mut(&mut state.velocities).copy_from_slice(velocities);
-        floats_mut(&mut state.corrections).copy_from_slice(corrections);
+        if self.buffers.rods.is_some() {
+            state.corrections.fill(Vec3Lanes::default());
+            floats_mut(&mut state.sections).copy_from_slice(&others[..3 * count]);
+            bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
+        } else {
+            floats_mut(&mut state.corrections).copy_from_slice(others);
+        }
         state.world_from_head = self.world_from_head;
         state.time = self.time;
         state.grab.hand = self.grab.hand;
@@ -214,7 +222,7 @@ impl GpuState {
         self.buffers.write_rest(&solver.solver, &state.scratch.lengths)?;
         self.buffers.places[self.side].write(floats(&state.positions))?;
         self.buffers.places[1 - self.side].write(floats(&state.previous_positions))?;
-        self.buffers.velocities.write(&speeds(state))?;
+        self.buffers.velocities.write(&speeds(&solver.solver.with_sections(state)))?;
         self.length_scale.clone_from(&state.length_scale);
         self.lengths.clone_from(&state.scratch.lengths);
         self.world_from_head = state.world_from_head;
@@ -237,10 +245,16 @@ pub(super) fn floats_mut(lanes: &mut [Vec3Lanes]) -> &mut [f32] {
     bytemuck::cast_slice_mut(lanes)
 }
 
-fn step_report(report: &Report, seconds: Vec<(&'static str, f64)>, segment_count: usize) -> StepReport {
+fn step_report(report: &Report, seconds: Vec<(&'static str, f64)>, solver: &GpuSolver) -> StepReport {
+    let (rods, segment_count) = (solver.solver.rods.is_some(), solver.segment_count);
     StepReport {
         seconds,
         pressure: report.pressure.into(),
+        rods: rods.then_some(RodReport {
+            residual: report.residual,
+            unsolved: report.unsolved as usize,
+            resting: report.resting as usize,
+        }),
         stretch_mean: report.stretch_sum / segment_count.max(1) as f32,
         stretch_max: report.stretch_max,
         penetration_max: report.penetration_max,

@@ -19,16 +19,20 @@ impl Stages {
         let (gpu, kernels) = (&solver.gpu, &solver.kernels);
         let preconditioner = solver.solver.settings.volume.preconditioner;
         let scan = &kernels.scan;
-        let list = vec![
-            ("pose_roots", kernels.pose_roots.bind(gpu, buffers, side)?),
-            ("integrate", kernels.integrate.bind(gpu, buffers, side)?),
-            ("constrain", kernels.constrain.bind(gpu, buffers, side)?),
+        let mut list = vec![("pose_roots", kernels.pose_roots.bind(gpu, buffers, side)?)];
+        if buffers.rods.is_some() {
+            list.push(("solve_rods", kernels.solve_rods.bind(gpu, buffers, side)?));
+        } else {
+            list.push(("integrate", kernels.integrate.bind(gpu, buffers, side)?));
+            list.push(("constrain", kernels.constrain.bind(gpu, buffers, side)?));
+        }
+        list.extend([
             ("splat", kernels.splat.bind(gpu, buffers, scan, side)?),
             ("mark", kernels.mark.bind(gpu, buffers)?),
             ("solve_pressure", kernels.solve_pressure.bind(gpu, buffers, scan, preconditioner)?),
             ("gather", kernels.gather.bind(gpu, buffers, side)?),
             ("advance", kernels.advance.bind(gpu, buffers, side)?),
-        ];
+        ]);
         Ok(Self { list })
     }
 }

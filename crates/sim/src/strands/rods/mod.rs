@@ -14,7 +14,7 @@ pub mod rest;
 pub mod rod;
 pub mod settings;
 mod stability;
-pub(crate) mod step;
+pub(crate) mod workspace;
 
 #[cfg(test)]
 mod tests;

@@ -52,6 +52,47 @@ impl Rods {
     }
 }
 
+/// Most that bending may pull harder at a point beside its inertia where segments are shorter than at rest: with
+/// the length of a segment it goes as its fourth power, and single precision carries no 160,000 times. Only what is
+/// left of the segments of a cut end, which are a twentieth as long, is softer than it should be.
+const STIFFEST: f64 = 16.0;
+
+/// The nodes of eight strands whose segments have other lengths \[m\] than at rest: curvatures and twists per
+/// length stay, masses \[kg\] and stiffness follow.
+pub(crate) fn with_lengths(
+    nodes: &[Node<f32x8>],
+    rest: &[Lanes],
+    lengths: &[Lanes],
+    mass: &[Lanes],
+    scaled: &mut Vec<Node<f32x8>>,
+) {
+    scaled.clear();
+    let zero = f32x8::ZERO;
+    let last = nodes.len() - 1;
+    // What a segment gives to the cells of the joints beside it; rigid ones give nothing.
+    let turning =
+        |lanes: &[Lanes], index: usize| nodes[index].free_angle.choose(f32x8::new(lanes[index].0), zero);
+    for (index, node) in nodes.iter().enumerate() {
+        let mut node = *node;
+        node.mass = f32x8::new(mass[index].0);
+        if index < last {
+            let ratio = f32x8::new(lengths[index].0) / f32x8::new(rest[index].0);
+            node.length *= ratio;
+            node.inertia *= ratio;
+            node.stretch *= ratio.or_less(f32x8::of(1.0));
+        }
+        if index > 0 && index < last {
+            let cell = turning(rest, index - 1) + turning(rest, index);
+            let now = turning(lengths, index - 1) + turning(lengths, index);
+            let factor = cell.choose(now / cell, f32x8::of(1.0));
+            let stiffer = (f32x8::of(1.0) / factor).or_less(f32x8::of(STIFFEST) * factor * factor * factor);
+            node.stiffness = node.stiffness.map(|stiffness| stiffness * stiffer);
+            node.rest = node.rest.map(|strain| strain * factor);
+        }
+        scaled.push(node);
+    }
+}
+
 /// The rods of eight strands.
 struct Block {
     nodes: Vec<Node<f32x8>>,

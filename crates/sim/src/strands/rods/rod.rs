@@ -57,6 +57,10 @@ pub struct Pull<R> {
     pub stiffness: R,
     /// Whether it only pushes, as a solid does: while the displacement is less than the reach.
     pub one_sided: bool,
+    /// Coulomb friction coefficient of what only pushes.
+    pub friction: R,
+    /// Displacement \[m\] with which the node sticks to it.
+    pub stuck: Vector<R>,
 }
 
 /// How a step is made.
@@ -137,19 +141,36 @@ impl<R: Real> Work<R> {
         }
         let stiffer = R::of(1.0) + viscous;
         let mut unsolved = R::of(1.0);
+        let mut residual = R::of(0.0);
         let mut steps = 0;
         while steps < settings.newton_steps && unsolved.any_positive() {
-            self.factorise(rod, pulls, stiffer, settings.time_step);
+            let pressed = self.factorise(rod, pulls, stiffer, settings.time_step, steps == 0);
             substitute(&self.factors, &mut self.step);
             let turn = self.take_step(unsolved);
-            unsolved = unsolved.choose(turn - R::of(settings.tolerance), R::of(0.0));
+            residual = unsolved.choose(turn, residual);
+            let open = if steps == 0 {
+                // What touches a solid has not yet said whether it sticks.
+                pressed.choose(R::of(1.0), turn - R::of(settings.tolerance))
+            } else {
+                turn - R::of(settings.tolerance)
+            };
+            unsolved = unsolved.choose(open, R::of(0.0));
             steps += 1;
         }
-        Solved { steps, unsolved }
+        Solved { steps, unsolved, residual }
     }
 
-    /// Assembles the gradient and the positive part of the Hessian, and eliminates from root to tip.
-    fn factorise(&mut self, rod: &[Node<R>], pulls: &[Pull<R>], stiffer: R, time_step: f64) {
+    /// Assembles the gradient and the positive part of the Hessian, and eliminates from root to tip. Above 0 for
+    /// strands that a solid presses.
+    fn factorise(
+        &mut self,
+        rod: &[Node<R>],
+        pulls: &[Pull<R>],
+        stiffer: R,
+        time_step: f64,
+        first: bool,
+    ) -> R {
+        let mut pressed = R::of(0.0);
         let per_square = R::of(1.0 / (time_step * time_step));
         let mut front = Front::default();
         let mut pulls = pulls.iter().peekable();
@@ -158,7 +179,8 @@ impl<R: Real> Work<R> {
             let node = &rod[index];
             self.add_inertia(&mut front, index, node, per_square);
             while let Some(pull) = pulls.next_if(|pull| pull.node == index) {
-                self.add_pull(&mut front, pull);
+                let force = self.add_pull(&mut front, pull, node.mass * per_square, first);
+                pressed = pressed.or_more(force);
             }
             if index < last {
                 self.add_stretch(&mut front, index, node);
@@ -169,6 +191,7 @@ impl<R: Real> Work<R> {
             let free = [node.free, node.free, node.free, node.free_angle];
             front.eliminate(&mut self.factors[index], free);
         }
+        pressed
     }
 
     #[inline(always)]
@@ -182,19 +205,48 @@ impl<R: Real> Work<R> {
         }
     }
 
+    /// A solid presses with the force that its spring has, at `first` with the one that would stop the inertia
+    /// of its point. Across the normal it holds with a spring too, as weak as Coulomb's limit asks for the
+    /// slip that there was: it never pushes a point farther back than it came from. Returns the force of
+    /// a solid \[N\].
     #[inline(always)]
-    fn add_pull(&self, front: &mut Front<R>, pull: &Pull<R>) {
-        let normal = pull.normal.array();
-        let [x, y, z, _] = self.moved[pull.node];
-        let missing = pull.reach - pull.normal.dot(Vector::new(x, y, z));
-        let acts = if pull.one_sided { missing.choose(pull.stiffness, R::of(0.0)) } else { pull.stiffness };
+    fn add_pull(&self, front: &mut Front<R>, pull: &Pull<R>, inertia: R, first: bool) -> R {
+        let vector = |[x, y, z, _]: [R; UNKNOWNS]| Vector::new(x, y, z);
+        let (here, normal, none) = (vector(self.moved[pull.node]), pull.normal, R::of(0.0));
+        let missing = pull.reach - normal.dot(here);
+        let (mut acts, mut holds, mut solid) = (pull.stiffness, none, none);
+        let mut slip = Vector::zero();
+        if pull.one_sided {
+            let along = |place: Vector<R>| {
+                let slip = place - pull.stuck;
+                slip - normal * normal.dot(slip)
+            };
+            slip = along(here);
+            solid = missing * pull.stiffness;
+            let (mut size, mut rate) = (slip.length(), pull.stiffness);
+            if first {
+                let wanted = vector(self.wanted[pull.node]);
+                rate = pull.stiffness.choose(inertia, none);
+                solid = solid.or_more((pull.reach - normal.dot(wanted)) * rate);
+                size = along(wanted).length();
+            }
+            solid = solid.or_more(none);
+            acts = solid.choose(pull.stiffness, none);
+            let limit = pull.friction * solid;
+            holds = (limit - rate * size).choose(pull.stiffness, limit / size);
+        }
+        let (push, normal, slip) = (acts * missing, normal.array(), slip.array());
         for row in 0..3 {
-            let weight = normal[row] * acts;
-            front.add_right(row, weight * missing);
+            front.add_right(row, normal[row] * push - holds * slip[row]);
             for column in 0..=row {
-                front.add(row, column, weight * normal[column]);
+                let mut value = normal[row] * (acts - holds) * normal[column];
+                if row == column {
+                    value += holds;
+                }
+                front.add(row, column, value);
             }
         }
+        solid
     }
 
     /// Tension, and the positive part of its derivative: along the segment, and across it where it pulls.
@@ -277,6 +329,8 @@ pub struct Solved<R> {
     pub steps: u32,
     /// Above 0 for strands that were not solved by them.
     pub unsolved: R,
+    /// How far a segment turned at most in the last Newton step of its strand \[rad\].
+    pub residual: R,
 }
 
 /// Most that an end of a segment moves beside the other in a Newton step, over the segment's length, and most

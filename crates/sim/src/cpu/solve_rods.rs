@@ -6,20 +6,20 @@ use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::lengths::Lengths;
-use super::model::{Rods, all, load, store};
-use super::real::{Real, Vector};
-use super::rod::{Node, Pull, StepSettings, Work};
-use super::settings::RodSettings;
-use crate::cpu::Obstacles;
-use crate::cpu::advance::{Block, NonFinite, recover};
-use crate::cpu::contacts::{Care, Plane, Query, Solids};
-use crate::cpu::integrate::Fall;
-use crate::cpu::length_pass::Follow;
-use crate::cpu::vec3x8::{self, Vec3x8};
+use super::Obstacles;
+use super::advance::{Block, NonFinite, recover};
+use super::constrain::live_lanes;
+use super::contacts::{Care, Plane, Query, Solids};
+use super::integrate::Fall;
+use super::length_pass::Follow;
+use super::vec3x8::{self, Vec3x8};
 use crate::grab::Pinned;
-use crate::solver::carried;
-use crate::{Solver, State};
+use crate::strands::rods::model::{all, load, store, with_lengths};
+use crate::strands::rods::real::{Real, Vector};
+use crate::strands::rods::rod::{Node, Pull, Solved, StepSettings};
+use crate::strands::rods::settings::RodSettings;
+use crate::strands::rods::workspace::{Carry, Workspace};
+use crate::{RodReport, Solver, State};
 
 /// Stiffness of a contact or a pin over the mass of its point and the square of the step: what rests on a
 /// solid sinks in by a thousandth of its fall in a step.
@@ -28,30 +28,27 @@ const STIFF: f64 = 1e3;
 const LENGTH_ROUNDS: u32 = 2;
 /// A strand is solved when a Newton step turns none of its segments farther \[rad\].
 const TOLERANCE: f64 = 1e-4;
-/// Most that a point of a strand at rest moves in a part of a step \[m\]: a few roundings of single precision a
-/// metre away. Below, the strand stays where it is to the bit.
-const STILL: f64 = 5e-7;
+/// Most that a point of a strand at rest moves in a part of a step \[m\], squared: what two thousandths of gravity
+/// take it, but a few roundings of single precision a metre away. Below, the strand stays where it is to the bit.
+fn still(time_step: f64) -> f32 {
+    let way = (0.02 * time_step * time_step).clamp(1e-7, 5e-7);
+    (way * way) as f32
+}
 
 /// Forces, elasticity, lengths and solids: writes the predicted positions, the sections and the
-/// velocities. Returns the number of points that were not finite; their strands are back at rest.
-pub(crate) fn solve_rods(
+/// velocities. Returns the points that were not finite, whose strands are back at rest, and how the
+/// strands were solved. Without rods nothing is done.
+pub fn solve_rods(
     solver: &Solver,
-    rods: &Rods,
     state: &mut State,
     obstacles: &Obstacles,
     wind: Vec3,
-) -> NonFinite {
+) -> (NonFinite, RodReport) {
+    let Some(rods) = &solver.rods else { return Default::default() };
     let points = solver.points_per_strand;
-    let settings = &solver.settings.strands.rods;
-    if state.sections.len() != rods.sections.len() {
-        // The solver was another one so far: sections as at rest, put upright where a part begins.
-        let turn = Pose { translation: Vec3::ZERO, ..state.world_from_head };
-        state.sections = rods.sections.iter().map(|lanes| carried(lanes, &turn)).collect();
-        state.spins = vec![Lanes::default(); rods.sections.len()];
-    }
-    let parts = Parts::new(solver, settings, obstacles, wind);
+    let parts = Parts::new(solver, &solver.settings.strands.rods, obstacles, wind);
     let (scratch, grab) = (&mut state.scratch, &state.grab);
-    let lengths = &scratch.lengths.stretch;
+    let (lengths, masses) = (&scratch.lengths.stretch, &scratch.masses);
     scratch
         .predicted
         .par_chunks_mut(points)
@@ -61,33 +58,47 @@ pub(crate) fn solve_rods(
         .zip(state.sections.par_chunks_mut(points))
         .zip(state.spins.par_chunks_mut(points))
         .zip(state.corrections.par_chunks_mut(points))
+        .zip(&state.length_scale)
         .enumerate()
         .with_min_len(8)
         .map_init(
             || Workspace::new(points),
-            |work, (block, ((((((predicted, velocities), start), planes), sections), spins), corrections))| {
+            |work,
+             (
+                block,
+                (((((((predicted, velocities), start), planes), sections), spins), corrections), scale),
+            )| {
                 let range = block * points..(block + 1) * points;
+                work.load(start, velocities, sections, spins);
+                let mut nodes = std::mem::take(&mut work.nodes);
+                let is_scaled = scale.0.iter().any(|scale| *scale != 1.0);
+                if is_scaled {
+                    let rest = &solver.rest.stretch[range.clone()];
+                    let (lengths, mass) = (&lengths[range.clone()], &masses.mass[range.clone()]);
+                    with_lengths(&rods.nodes[range.clone()], rest, lengths, mass, &mut nodes);
+                }
                 let strands = Strands {
                     solver,
                     parts: &parts,
-                    nodes: &rods.nodes[range.clone()],
+                    nodes: if is_scaled { &nodes } else { &rods.nodes[range.clone()] },
                     lengths: &lengths[range.clone()],
-                    inverse_mass: &solver.inverse_mass[range.clone()],
+                    inverse_mass: &masses.inverse_mass[range.clone()],
                     rest: &solver.positions[range.clone()],
                     clearance: &solver.rest_clearance[range.clone()],
                     rest_sections: &rods.sections[range],
+                    live: live_lanes(solver, block),
                 };
-                work.load(start, velocities, sections, spins);
                 let pinned: Vec<Pinned> =
                     grab.pinned(block, predicted, strands.lengths, strands.inverse_mass).collect();
                 strands.solve(work, planes, &pinned);
+                work.nodes = nodes;
                 work.store(predicted, velocities, sections, spins);
                 corrections.fill(Vec3Lanes::default());
                 let hair = Block { positions: predicted, previous: start, velocities, corrections };
-                recover(solver, &obstacles.end, block, hair)
+                (recover(solver, &obstacles.end, block, hair), work.report)
             },
         )
-        .reduce(NonFinite::default, NonFinite::with)
+        .reduce(Default::default, |one, other| (one.0.with(other.0), one.1.with(other.1)))
 }
 
 /// What all strands share in a step.
@@ -130,101 +141,6 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Rigid motion of all lanes.
-struct Carry {
-    columns: [Vector<f32x8>; 3],
-    translation: Vector<f32x8>,
-}
-
-impl Carry {
-    fn new(pose: &Pose) -> Self {
-        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| all(pose.direction(axis)));
-        Self { columns, translation: all(pose.translation) }
-    }
-
-    #[inline(always)]
-    fn direction(&self, vector: Vector<f32x8>) -> Vector<f32x8> {
-        self.columns[0] * vector.x + self.columns[1] * vector.y + self.columns[2] * vector.z
-    }
-
-    #[inline(always)]
-    fn point(&self, point: Vector<f32x8>) -> Vector<f32x8> {
-        self.direction(point) + self.translation
-    }
-}
-
-/// What a thread works in.
-struct Workspace {
-    points: Vec<Vector<f32x8>>,
-    velocities: Vec<Vector<f32x8>>,
-    sections: Vec<Vector<f32x8>>,
-    spins: Vec<f32x8>,
-    /// The shape that the head carried along: where a part begins.
-    carried: Vec<Vector<f32x8>>,
-    /// How far forces alone would take the points from there.
-    wanted: Vec<Vector<f32x8>>,
-    pulls: Vec<Pull<f32x8>>,
-    margins: Vec<f32x8>,
-    placed: Vec<Vec3Lanes>,
-    corrections: Vec<Vec3x8>,
-    inverse_mass: Vec<f32x8>,
-    length: Vec<f32x8>,
-    work: Work<f32x8>,
-    project: Lengths<f32x8>,
-}
-
-impl Workspace {
-    fn new(points: usize) -> Self {
-        let (zero, none) = (Vector::zero(), f32x8::of(0.0));
-        Self {
-            points: vec![zero; points],
-            velocities: vec![zero; points],
-            sections: vec![zero; points],
-            spins: vec![none; points],
-            carried: vec![zero; points],
-            wanted: vec![zero; points],
-            pulls: Vec::with_capacity(4 * points),
-            margins: vec![none; points],
-            placed: vec![Vec3Lanes::default(); points],
-            corrections: vec![Vec3x8::ZERO; points + 1],
-            inverse_mass: vec![none; points],
-            length: vec![none; points],
-            work: Work::new(points),
-            project: Lengths::new(points),
-        }
-    }
-
-    fn load(
-        &mut self,
-        start: &[Vec3Lanes],
-        velocities: &[Vec3Lanes],
-        sections: &[Vec3Lanes],
-        spins: &[Lanes],
-    ) {
-        for point in 0..start.len() {
-            self.points[point] = load(&start[point]);
-            self.velocities[point] = load(&velocities[point]);
-            self.sections[point] = load(&sections[point]);
-            self.spins[point] = f32x8::new(spins[point].0);
-        }
-    }
-
-    fn store(
-        &self,
-        predicted: &mut [Vec3Lanes],
-        velocities: &mut [Vec3Lanes],
-        sections: &mut [Vec3Lanes],
-        spins: &mut [Lanes],
-    ) {
-        for point in 0..predicted.len() {
-            store(self.points[point], &mut predicted[point]);
-            store(self.velocities[point], &mut velocities[point]);
-            store(self.sections[point], &mut sections[point]);
-            spins[point] = Lanes(self.spins[point].to_array());
-        }
-    }
-}
-
 /// One block of strands.
 struct Strands<'a> {
     solver: &'a Solver,
@@ -235,6 +151,8 @@ struct Strands<'a> {
     rest: &'a [Vec3Lanes],
     clearance: &'a [Lanes],
     rest_sections: &'a [Vec3Lanes],
+    /// Lanes that hold strands.
+    live: usize,
 }
 
 impl Strands<'_> {
@@ -243,6 +161,7 @@ impl Strands<'_> {
             space.inverse_mass[point] = f32x8::new(self.inverse_mass[point].0);
             space.length[point] = f32x8::new(self.lengths[point].0);
         }
+        (space.bad, space.report) = (f32x8::ZERO, RodReport::default());
         for part in 0..self.parts.count {
             let (pose, moved) = &self.parts.poses[part as usize];
             self.want(space, &Carry::new(pose), moved);
@@ -263,7 +182,7 @@ impl Strands<'_> {
             let rides = if *moved == Pose::IDENTITY { here } else { carry.point(here) };
             space.carried[point] = Vector::choose(free, rides, held);
             let tangent = space.points[last.min(point + 1)] - space.points[point.saturating_sub(1)];
-            let fallen = self.parts.fall.velocity(pass(space.velocities[point]), pass(tangent), Vec3x8::ZERO);
+            let fallen = self.parts.fall.weighted(pass(space.velocities[point]), pass(tangent));
             let wanted = here + Vector::new(fallen.x, fallen.y, fallen.z) * step - space.carried[point];
             space.wanted[point] = wanted;
             let [x, y, z] = wanted.array();
@@ -300,12 +219,20 @@ impl Strands<'_> {
                 if let Some(touch) = self.parts.solids.touch(planes, point, query) {
                     let height = touch.height(pass(space.carried[point]));
                     let near = height.simd_lt(f32x8::splat(1.0));
+                    // What the head carries has gone where it is already.
+                    let stays = touch.stuck.x.simd_eq(space.points[point].x)
+                        & touch.stuck.y.simd_eq(space.points[point].y)
+                        & touch.stuck.z.simd_eq(space.points[point].z);
+                    let stays = stays.bitselect(f32x8::of(1.0), f32x8::ZERO);
+                    let back = space.points[point] - space.carried[point];
                     space.pulls.push(Pull {
                         node: point,
                         normal: Vector::new(touch.normal.x, touch.normal.y, touch.normal.z),
                         reach: near.bitselect(-height, f32x8::splat(-1.0)),
                         stiffness: (node.mass * stiff) & near,
                         one_sided: true,
+                        friction: touch.friction,
+                        stuck: Vector::choose(stays, back, Vector::zero()),
                     });
                 }
             }
@@ -330,7 +257,16 @@ impl Strands<'_> {
         let missing = (load(&goals) - space.carried[point]).array();
         for (axis, reach) in missing.into_iter().enumerate() {
             let normal = all([Vec3::X, Vec3::Y, Vec3::Z][axis]);
-            space.pulls.push(Pull { node: point, normal, reach, stiffness, one_sided: false });
+            let (friction, stuck) = (f32x8::ZERO, Vector::zero());
+            space.pulls.push(Pull {
+                node: point,
+                normal,
+                reach,
+                stiffness,
+                one_sided: false,
+                friction,
+                stuck,
+            });
         }
     }
 
@@ -343,14 +279,14 @@ impl Strands<'_> {
             tolerance: TOLERANCE,
             damping: f64::from(self.parts.settings.damping),
         };
-        work.solve(self.nodes, &space.pulls, &settings);
+        let solved = work.solve(self.nodes, &space.pulls, &settings);
         for (point, carried) in space.carried.iter_mut().enumerate() {
             let [x, y, z, _] = space.work.moved[point];
             *carried = *carried + Vector::new(x, y, z);
         }
         space.project.project(&mut space.carried, &space.inverse_mass, &space.length, LENGTH_ROUNDS);
         self.place(space, planes, pinned);
-        self.take(space);
+        self.take(space, &solved);
     }
 
     /// Lengths to the last bit, from root to tip, outside the solids.
@@ -382,16 +318,22 @@ impl Strands<'_> {
     }
 
     /// The new state: velocities are what takes the points there; strands at rest stay.
-    fn take(&self, space: &mut Workspace) {
+    fn take(&self, space: &mut Workspace, solved: &Solved<f32x8>) {
         let last = self.nodes.len() - 1;
         let per_step = f32x8::of(1.0 / self.parts.time_step);
-        let mut largest = f32x8::ZERO;
+        let (mut largest, mut nothing) = (f32x8::ZERO, f32x8::ZERO);
         for point in 0..=last {
             let moved = space.carried[point] - space.points[point];
-            largest = largest.fast_max(moved.dot(moved));
+            let square = moved.dot(moved);
+            largest = largest.fast_max(square);
+            // 0 for finite numbers, else not a number.
+            nothing += (square + space.velocities[point].dot(space.velocities[point])) * f32x8::ZERO;
         }
+        let bad = nothing.is_nan();
+        space.bad |= bad;
         // 1 where the strand moves.
-        let moves = largest - f32x8::of(if self.parts.moved { -1.0 } else { STILL * STILL });
+        let limit = f32x8::splat(if self.parts.moved { -1.0 } else { still(self.parts.time_step) });
+        let moves = (largest.simd_gt(limit) | bad).bitselect(f32x8::of(1.0), f32x8::ZERO);
         for point in 0..=last {
             let moved = space.carried[point] - space.points[point];
             space.velocities[point] = Vector::choose(moves, moved * per_step, Vector::zero());
@@ -402,8 +344,29 @@ impl Strands<'_> {
                 let section = space.work.segments[point].across;
                 space.sections[point] = Vector::choose(moves, section, space.sections[point]);
             }
+            // A strand that goes back to rest has the sections of its rest, which the next step finds.
+            space.sections[point] = keep(space.bad, space.sections[point]);
+            space.spins[point] = space.bad.bitselect(f32x8::ZERO, space.spins[point]);
         }
+        self.count(space, solved, moves);
     }
+
+    fn count(&self, space: &mut Workspace, solved: &Solved<f32x8>, moves: f32x8) {
+        let count = |mask: f32x8| (mask.to_bitmask() & ((1 << self.live) - 1)).count_ones() as usize;
+        let residual =
+            solved.residual.to_array()[..self.live].iter().fold(0.0, |most: f32, one| most.max(*one));
+        let report = &mut space.report;
+        report.residual = report.residual.max(residual);
+        report.unsolved = report.unsolved.max(count(solved.unsolved.simd_gt(f32x8::ZERO)));
+        report.resting = count(moves.simd_eq(f32x8::ZERO));
+    }
+}
+
+/// A vector, zero in the lanes of a mask.
+#[inline(always)]
+fn keep(bad: f32x8, vector: Vector<f32x8>) -> Vector<f32x8> {
+    let kept = |value: f32x8| bad.bitselect(f32x8::ZERO, value);
+    Vector::new(kept(vector.x), kept(vector.y), kept(vector.z))
 }
 
 /// 1 for unit vectors, 0 for what a strand left that was put back to rest.

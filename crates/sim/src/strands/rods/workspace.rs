@@ -1,0 +1,116 @@
+//! What a block of strands is solved in.
+
+use glam::Vec3;
+use strandline_body::Pose;
+use strandline_groom::{Lanes, Vec3Lanes};
+use wide::f32x8;
+
+use super::lengths::Lengths;
+use super::model::{all, load, store};
+use super::real::{Real, Vector};
+use super::rod::{Node, Pull, Work};
+use crate::RodReport;
+use crate::cpu::vec3x8::Vec3x8;
+
+/// Rigid motion of all lanes.
+pub(crate) struct Carry {
+    pub columns: [Vector<f32x8>; 3],
+    pub translation: Vector<f32x8>,
+}
+
+impl Carry {
+    pub fn new(pose: &Pose) -> Self {
+        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| all(pose.direction(axis)));
+        Self { columns, translation: all(pose.translation) }
+    }
+
+    #[inline(always)]
+    pub fn direction(&self, vector: Vector<f32x8>) -> Vector<f32x8> {
+        self.columns[0] * vector.x + self.columns[1] * vector.y + self.columns[2] * vector.z
+    }
+
+    #[inline(always)]
+    pub fn point(&self, point: Vector<f32x8>) -> Vector<f32x8> {
+        self.direction(point) + self.translation
+    }
+}
+
+/// What a thread works in.
+pub(crate) struct Workspace {
+    pub points: Vec<Vector<f32x8>>,
+    pub velocities: Vec<Vector<f32x8>>,
+    pub sections: Vec<Vector<f32x8>>,
+    pub spins: Vec<f32x8>,
+    /// The shape that the head carried along: where a part begins.
+    pub carried: Vec<Vector<f32x8>>,
+    /// How far forces alone would take the points from there.
+    pub wanted: Vec<Vector<f32x8>>,
+    pub pulls: Vec<Pull<f32x8>>,
+    pub margins: Vec<f32x8>,
+    pub placed: Vec<Vec3Lanes>,
+    pub corrections: Vec<Vec3x8>,
+    pub inverse_mass: Vec<f32x8>,
+    pub length: Vec<f32x8>,
+    /// Nodes of strands of another length than at rest.
+    pub nodes: Vec<Node<f32x8>>,
+    /// Lanes of which a number is not finite.
+    pub bad: f32x8,
+    pub report: RodReport,
+    pub work: Work<f32x8>,
+    pub project: Lengths<f32x8>,
+}
+
+impl Workspace {
+    pub fn new(points: usize) -> Self {
+        let (zero, none) = (Vector::zero(), f32x8::of(0.0));
+        Self {
+            points: vec![zero; points],
+            velocities: vec![zero; points],
+            sections: vec![zero; points],
+            spins: vec![none; points],
+            carried: vec![zero; points],
+            wanted: vec![zero; points],
+            pulls: Vec::with_capacity(4 * points),
+            margins: vec![none; points],
+            placed: vec![Vec3Lanes::default(); points],
+            corrections: vec![Vec3x8::ZERO; points + 1],
+            inverse_mass: vec![none; points],
+            length: vec![none; points],
+            nodes: Vec::with_capacity(points),
+            bad: none,
+            report: RodReport::default(),
+            work: Work::new(points),
+            project: Lengths::new(points),
+        }
+    }
+
+    pub fn load(
+        &mut self,
+        start: &[Vec3Lanes],
+        velocities: &[Vec3Lanes],
+        sections: &[Vec3Lanes],
+        spins: &[Lanes],
+    ) {
+        for point in 0..start.len() {
+            self.points[point] = load(&start[point]);
+            self.velocities[point] = load(&velocities[point]);
+            self.sections[point] = load(&sections[point]);
+            self.spins[point] = f32x8::new(spins[point].0);
+        }
+    }
+
+    pub fn store(
+        &self,
+        predicted: &mut [Vec3Lanes],
+        velocities: &mut [Vec3Lanes],
+        sections: &mut [Vec3Lanes],
+        spins: &mut [Lanes],
+    ) {
+        for point in 0..predicted.len() {
+            store(self.points[point], &mut predicted[point]);
+            store(self.velocities[point], &mut velocities[point]);
+            store(self.sections[point], &mut sections[point]);
+            spins[point] = Lanes(self.spins[point].to_array());
+        }
+    }
+}
