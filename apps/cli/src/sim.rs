@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use strandline::{Cache, Event, Out, OutSettings, Player, Scene, Written, sim::StepReport};
+use strandline::{
+    Cache, Event, Out, OutSettings, Player, Scene, Written,
+    sim::{Drift, StepReport},
+};
 
 use crate::arguments::SimOptions;
 use crate::interrupt::Stoppable;
@@ -22,6 +25,11 @@ pub struct SimReport {
     pub ms_per_step: Times,
     pub stretch: Stretch,
     pub penetration_max_m: f32,
+    pub drift: Spread,
+    pub speed: Spread,
+    pub stiffened: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rods: Option<Rods>,
     #[serde(flatten)]
     pub non_finite: NonFinite,
     pub pcg: Pcg,
@@ -47,6 +55,25 @@ pub struct Stretch {
     pub max: f32,
 }
 
+/// A mean and a largest value: of `drift` the distance of points at the end from the groom as loaded,
+/// carried by the head, over the strand's length; of `speed` what moved in the last second \[m/s\].
+#[derive(Debug, Default, Serialize)]
+pub struct Spread {
+    pub mean: f32,
+    pub max: f32,
+}
+
+/// How rods were solved.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Rods {
+    /// How far the last Newton step of a strand turned one of its segments at most.
+    pub residual_max_rad: f32,
+    /// Most strands of a step that would have needed more Newton steps.
+    pub unsolved_max: usize,
+    /// Strands at rest in the last step.
+    pub resting: usize,
+}
+
 /// The conjugate gradients.
 #[derive(Debug, Serialize)]
 pub struct Pcg {
@@ -68,7 +95,38 @@ pub struct Steps {
     residual_max: f32,
     stretch_max: f32,
     penetration_max: f32,
+    /// Mean and largest speed of each step.
+    speeds: Vec<(f32, f32)>,
+    rods: Option<Rods>,
     non_finite: NonFinite,
+}
+
+/// What a simulation is when its steps are over.
+pub struct Ended {
+    /// The device.
+    pub backend: String,
+    pub strands: usize,
+    pub points_per_strand: usize,
+    pub drift: Drift,
+    /// Strands of rods that had to be stiffer.
+    pub stiffened: usize,
+    /// \[s\].
+    pub time_step: f32,
+}
+
+impl Ended {
+    /// What a player of a scene has come to.
+    pub fn of(player: &Player, scene: &Scene) -> Self {
+        let guides = player.guides();
+        Self {
+            backend: player.simulated_on(),
+            strands: guides.strand_count(),
+            points_per_strand: guides.points_per_strand(),
+            drift: player.drift(),
+            stiffened: player.stiffened().0,
+            time_step: scene.simulation.time_step,
+        }
+    }
 }
 
 impl Steps {
@@ -82,10 +140,25 @@ impl Steps {
         self.residual_max = self.residual_max.max(report.pressure.relative_residual);
         self.stretch_max = larger(self.stretch_max, report.stretch_max);
         self.penetration_max = self.penetration_max.max(report.penetration_max);
+        self.speeds.push((report.speed_mean, report.speed_max));
+        if let Some(step) = &report.rods {
+            let rods = self.rods.get_or_insert_default();
+            rods.residual_max_rad = rods.residual_max_rad.max(step.residual);
+            rods.unsolved_max = rods.unsolved_max.max(step.unsolved);
+            rods.resting = step.resting;
+        }
         self.non_finite.add(report, frame)
     }
 
-    pub fn report(&self, backend: String, strands: usize, points_per_strand: usize) -> SimReport {
+    /// Mean and largest speed \[m/s\] of the last steps.
+    fn speed(&self, count: usize) -> Spread {
+        let last = &self.speeds[self.speeds.len().saturating_sub(count)..];
+        let mean = last.iter().map(|(mean, _)| mean).sum::<f32>() / last.len().max(1) as f32;
+        Spread { mean, max: last.iter().fold(0.0, |most: f32, (_, max)| most.max(*max)) }
+    }
+
+    pub fn report(&self, end: Ended) -> SimReport {
+        let Ended { backend, strands, points_per_strand, drift, .. } = end;
         let mean = |sum: f64| sum / self.times.len().max(1) as f64;
         SimReport {
             backend,
@@ -95,6 +168,10 @@ impl Steps {
             ms_per_step: self.times.times(),
             stretch: Stretch { mean: mean(self.stretch), max: self.stretch_max },
             penetration_max_m: self.penetration_max,
+            drift: Spread { mean: drift.mean, max: drift.max },
+            speed: self.speed((1.0 / end.time_step).round() as usize),
+            stiffened: end.stiffened,
+            rods: self.rods,
             non_finite: self.non_finite.clone(),
             pcg: Pcg {
                 iterations_mean: mean(self.iterations),
@@ -121,8 +198,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let mut steps = Steps::default();
     let played = play(&mut player, &mut steps, inputs.json);
     let written = close(&mut player, played)?;
-    let guides = player.guides();
-    let mut report = steps.report(player.simulated_on(), guides.strand_count(), guides.points_per_strand());
+    let mut report = steps.report(Ended::of(&player, &scene));
     report.out = written.map(|Written { place: path, frames, strands, points, .. }| OutReport {
         path,
         frames,
@@ -216,6 +292,21 @@ fn print(report: &SimReport) {
     }
     print_line!("stretch: mean {:.4} %, largest {:.3} %", 100.0 * stretch.mean, 100.0 * stretch.max);
     print_line!("deepest point inside a solid: {:.2} mm", 1e3 * report.penetration_max_m);
+    print_line!(
+        "from the groom as loaded: mean {:.3} %, largest {:.2} % of a strand",
+        100.0 * report.drift.mean,
+        100.0 * report.drift.max
+    );
+    print_line!("in the last second: mean {:.4} m/s, largest {:.3} m/s", report.speed.mean, report.speed.max);
+    if let Some(rods) = &report.rods {
+        print_line!(
+            "rods: {} stiffened, {} at rest, at most {} in a step not solved, residual {:.1e} rad",
+            report.stiffened,
+            rods.resting,
+            rods.unsolved_max,
+            rods.residual_max_rad
+        );
+    }
     print_line!("points that are not finite: {}", report.non_finite.points);
     print_line!(
         "pressure: {:.1} iterations on {:.0} fluid cells, largest residual {:.1e}",

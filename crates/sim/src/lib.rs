@@ -25,7 +25,7 @@ pub mod strands;
 pub use checkpoint::{Checkpoint, Part};
 pub use clock::{Clock, Ticks};
 pub use error::SimError;
-pub use report::{PressureReport, RodReport, StepReport};
+pub use report::{Drift, PressureReport, RodReport, StepReport};
 pub use settings::{
     Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, StrandMethod, StrandSettings,
     VolumeSettings,

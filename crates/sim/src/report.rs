@@ -52,8 +52,21 @@ pub struct StepReport {
     /// Depth \[m\] of the deepest free point inside a collider, looked up where points are after the
     /// step; 0 when none is inside. Of a sampled collider it is as true as the samples.
     pub penetration_max: f32,
+    /// Mean speed of all points \[m/s\]: of what moved in the step, whatever the stored velocities say.
+    pub speed_mean: f32,
+    /// Largest speed of a point \[m/s\], likewise.
+    pub speed_max: f32,
     /// Points whose position or velocity is not finite.
     pub non_finite: usize,
     /// The first strand with such a point, from 0; a GPU does not tell.
     pub non_finite_strand: Option<usize>,
+}
+
+/// How far points lie from where they are at rest on the head, over the lengths of their strands.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drift {
+    /// Mean over all points.
+    pub mean: f32,
+    /// Largest of any point.
+    pub max: f32,
 }

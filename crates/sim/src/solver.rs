@@ -11,7 +11,7 @@ use crate::grab::Grab;
 use crate::masses::Masses;
 use crate::state::Scratch;
 use crate::strands::rods::model::Rods;
-use crate::{Drive, Settings, SimError, State, StepReport, StrandMethod};
+use crate::{Drift, Drive, Settings, SimError, State, StepReport, StrandMethod};
 
 /// The compiled solver: rest shape, settings and colliders. It does not change while time passes.
 #[derive(Clone)]
@@ -227,6 +227,23 @@ impl Solver {
             },
             positions,
         }
+    }
+
+    /// How far a state lies from the hair at rest that the head of the state carries.
+    pub fn drift(&self, state: &State) -> Drift {
+        let points = self.points_per_strand;
+        let (mut sum, mut max) = (0.0, 0.0_f32);
+        for strand in 0..self.strand_count {
+            let (first, lane) = (strand / LANES * points, strand % LANES);
+            let length: f32 = (first..first + points).map(|index| self.rest.stretch[index].0[lane]).sum();
+            for index in first..first + points {
+                let home = state.world_from_head.point(self.positions[index].get(lane));
+                let apart = state.positions[index].get(lane).distance(home) / length;
+                sum += f64::from(apart);
+                max = max.max(apart);
+            }
+        }
+        Drift { mean: (sum / (self.strand_count * points) as f64) as f32, max }
     }
 
     /// Gives a state that was without rods the sections that they have at rest, and takes those of one that has no

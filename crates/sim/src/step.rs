@@ -55,6 +55,8 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
     report.stretch_mean = outcome.stretch_mean();
     report.stretch_max = outcome.stretch_max;
     report.penetration_max = outcome.penetration_max;
+    report.speed_mean = (outcome.speed_sum / (solver.strand_count * solver.points_per_strand) as f64) as f32;
+    report.speed_max = outcome.speed_max;
     let non_finite = non_finite.with(outcome.non_finite);
     (report.non_finite, report.non_finite_strand) = (non_finite.count, non_finite.first_strand);
     report

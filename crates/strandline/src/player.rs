@@ -7,7 +7,7 @@ use crate::{
     hair::Studio,
     prepare::Prepared,
     render::{Camera, FrameReport, Look, Picture, PictureSettings},
-    sim::{Settings, State, StepReport},
+    sim::{Drift, Settings, SimError, State, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
     worker::{Gone, Worker},
 };
@@ -204,6 +204,19 @@ impl Player {
     /// The state of the simulation: as long as a frame is on its way, before it or after.
     pub fn state(&self) -> State {
         self.worker.work().engine.state().clone()
+    }
+
+    /// How far the hair lies from the groom as loaded, which the head carries.
+    pub fn drift(&self) -> Drift {
+        let work = self.worker.work();
+        work.engine.solver().drift(work.engine.state())
+    }
+
+    /// Strands of rods that had to be stiffer for their shape to be stable, and how many times stiffer the stiffest
+    /// of them is; 0 without rods.
+    pub fn stiffened(&self) -> (usize, f32) {
+        let work = self.worker.work();
+        work.engine.solver().rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest))
     }
 
     /// The device that the hair is simulated on; none on the CPU.

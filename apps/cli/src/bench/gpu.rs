@@ -14,7 +14,7 @@ use strandline::{
 
 use crate::output::print_line;
 use crate::progress::Progress;
-use crate::sim::{SimReport, Steps};
+use crate::sim::{Ended, SimReport, Steps};
 
 /// Steps that are queued before their reports are read.
 const QUEUED: usize = 16;
@@ -133,8 +133,15 @@ impl Device {
             progress.reached((first + queued) as u64);
         }
         drop(progress);
-        let steps =
-            steps.report(self.adapter.name.clone(), guides.strand_count(), guides.points_per_strand());
+        let plain = solver.solver();
+        let steps = steps.report(Ended {
+            backend: self.adapter.name.clone(),
+            strands: guides.strand_count(),
+            points_per_strand: guides.points_per_strand(),
+            drift: plain.drift(&solver.download(&state)?),
+            stiffened: plain.rods().map_or(0, |rods| rods.stiffened),
+            time_step: scene.simulation.time_step,
+        });
         let costs = state.costs();
         let solve = steps.ms_per_step.stages.sum(&["solve_pressure"]);
         let rest: f64 = steps.ms_per_step.stages.iter().map(|(_, time)| time).sum::<f64>() - solve;

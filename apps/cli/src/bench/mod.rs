@@ -22,7 +22,7 @@ use strandline::{Backend, Error, Event, Player, Scene, base::WholeFile};
 use crate::arguments::{Bench, BenchOptions};
 use crate::output::print_line;
 use crate::progress::Progress;
-use crate::sim::{SimReport, Steps};
+use crate::sim::{Ended, SimReport, Steps};
 use crate::statistics::{Collector, Times};
 use gpu::{Adapter, Device};
 use machine::Machine;
@@ -106,7 +106,6 @@ fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimReport, 
         }
         progress.reached(u64::from(player.frames_done()));
     }
-    let guides = player.guides();
-    let report = steps.report("cpu".to_owned(), guides.strand_count(), guides.points_per_strand());
+    let report = steps.report(Ended { backend: "cpu".to_owned(), ..Ended::of(&player, scene) });
     Ok((report, pictures.times(), segments))
 }

@@ -23,6 +23,10 @@ pub struct Outcome {
     pub stretch_max: f32,
     /// Deepest free point inside a solid \[m\].
     pub penetration_max: f32,
+    /// Sum over all points of the speed \[m/s\] of what moved.
+    pub speed_sum: f64,
+    /// Largest of them.
+    pub speed_max: f32,
     /// Points that were not finite.
     pub non_finite: NonFinite,
 }
@@ -76,6 +80,10 @@ pub fn advance(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> Out
                 let stretch = (pair[1] - pair[0]).length() / load(&lengths[point - 1]) - splat(1.0);
                 outcome.add_stretch(stretch, free.simd_gt(splat(0.0)), live);
             }
+            for (now, before) in positions.iter().zip(&*previous) {
+                let moved = (Vec3x8::load(now) - Vec3x8::load(before)).length();
+                outcome.add_speed(moved * splat(1.0 / solver.settings.time_step), live);
+            }
             outcome.penetration_max = deepest(&solids, positions, inverse_mass, live);
             outcome
         })
@@ -95,8 +103,17 @@ impl Outcome {
         }
     }
 
+    fn add_speed(&mut self, speed: f32x8, live: usize) {
+        for speed in speed.to_array().into_iter().take(live) {
+            self.speed_sum += f64::from(speed);
+            self.speed_max = self.speed_max.max(speed);
+        }
+    }
+
     fn with(self, other: &Self) -> Self {
         Self {
+            speed_sum: self.speed_sum + other.speed_sum,
+            speed_max: self.speed_max.max(other.speed_max),
             stretch_sum: self.stretch_sum + other.stretch_sum,
             segment_count: self.segment_count + other.segment_count,
             stretch_max: larger(self.stretch_max, other.stretch_max),

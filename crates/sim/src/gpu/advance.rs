@@ -18,7 +18,11 @@ mirror! {
         pub residual: f32,
         pub unsolved: f32,
         pub resting: f32,
-        pub unused: f32,
+        pub speed_sum: f32,
+        pub speed_max: f32,
+        pub unused_a: f32,
+        pub unused_b: f32,
+        pub unused_c: f32,
         pub pressure: PressureState,
     }
 }

@@ -81,7 +81,7 @@ impl Buffers {
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
             grips: Buffer::new(gpu, "grips", lane_count)?,
             boxes: Buffer::new(gpu, "boxes", 2 * solver.strand_count.div_ceil(THREADS))?,
-            outcomes: Buffer::new(gpu, "outcomes", 2 * workgroups)?,
+            outcomes: Buffer::new(gpu, "outcomes", 3 * workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,

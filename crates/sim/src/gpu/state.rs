@@ -258,6 +258,8 @@ fn step_report(report: &Report, seconds: Vec<(&'static str, f64)>, solver: &GpuS
         stretch_mean: report.stretch_sum / segment_count.max(1) as f32,
         stretch_max: report.stretch_max,
         penetration_max: report.penetration_max,
+        speed_mean: report.speed_sum / (solver.solver.strand_count * solver.solver.points_per_strand) as f32,
+        speed_max: report.speed_max,
         non_finite: report.non_finite as usize,
         non_finite_strand: None,
     }
