@@ -7,7 +7,7 @@ use crate::{
     hair::Studio,
     prepare::Prepared,
     render::{Camera, FrameReport, Look, Picture, PictureSettings},
-    sim::{Drift, Settings, SimError, State, StepReport},
+    sim::{Drift, Settings, State, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
     worker::{Gone, Worker},
 };
@@ -115,12 +115,13 @@ impl Player {
     /// A cache of other hair, without a state, or of a film that was over; a file that cannot be written.
     pub fn resume(&mut self, cache: &mut Cache) -> Result<(), Error> {
         let guides = self.guides();
+        let (strands, points) = (guides.strand_count(), guides.points_per_strand());
         if cache.what() == crate::What::Guides {
-            cache.check_guides(guides.strand_count(), guides.points_per_strand())?;
+            cache.check_guides(strands, points)?;
         }
         let path = cache.path().to_owned();
         let refuse = |message: String| Error::Cache { path, message };
-        let Some(state) = cache.snapshot()? else {
+        let Some(state) = cache.snapshot(strands, points)? else {
             return Err(refuse(
                 "it holds no state, expected the state_* arrays that `sim --out` writes".to_owned(),
             ));

@@ -59,7 +59,7 @@ impl Files {
     }
 
     /// Writes the file of a frame.
-    pub fn add(&mut self, _: &Shape, frame: &Frame) -> Result<(), Error> {
+    pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
         self.groom.points.clear();
         self.groom.points.extend_from_slice(frame.points);
         let (before, digits, after) = &self.pattern;

@@ -11,6 +11,8 @@ mod read;
 mod shape;
 mod snapshot;
 mod store;
+#[cfg(test)]
+mod tests;
 mod usd;
 mod usd_text;
 

@@ -140,7 +140,7 @@ impl Out {
         match &mut self.writer {
             Writer::Store(store) => store.add(frame, state)?,
             Writer::Usd(usd) => usd.add(frame)?,
-            Writer::Files(files) => files.add(&self.shape, frame)?,
+            Writer::Files(files) => files.add(frame)?,
         }
         self.frames += 1;
         Ok(())

@@ -12,7 +12,13 @@ use strandline_base::{
 };
 
 use super::{MAX_FRAMES, MAX_POINTS, MAX_STRANDS, Snapshot, What, meta, snapshot};
-use crate::{Error, Scene, body::Pose, groom::Vec3Lanes, sim::Part};
+use crate::{
+    Error, Scene,
+    body::Pose,
+    groom::{LANES, Vec3Lanes, block_count},
+    scene::MAX_FILE_BYTES,
+    sim::Part,
+};
 
 /// Farther than this \[m\] is no hair.
 const MOST: f32 = 1e4;
@@ -121,8 +127,8 @@ impl Cache {
         let pose = self.read(frame, &mut points)?;
         let strands = points.len() / points_per_strand;
         for (index, vectors) in lanes.iter_mut().enumerate() {
-            for lane in 0..crate::groom::LANES {
-                let strand = (index / points_per_strand * crate::groom::LANES + lane).min(strands - 1);
+            for lane in 0..LANES {
+                let strand = (index / points_per_strand * LANES + lane).min(strands - 1);
                 vectors.set(lane, points[strand * points_per_strand + index % points_per_strand]);
             }
         }
@@ -150,9 +156,9 @@ impl Cache {
         )))
     }
 
-    /// Where the run stood; none in a cache without.
-    pub(crate) fn snapshot(&mut self) -> Result<Option<Snapshot>, Error> {
-        let snapshot = self.frames.snapshot();
+    /// Where the run of guides of this shape stood; none in a cache without.
+    pub(crate) fn snapshot(&mut self, strands: usize, points: usize) -> Result<Option<Snapshot>, Error> {
+        let snapshot = self.frames.snapshot((block_count(strands) * LANES * points) as u64);
         snapshot.map_err(|message| Error::Cache { path: self.path.clone(), message })
     }
 
@@ -172,13 +178,12 @@ pub fn check_cache(bytes: &[u8]) -> Result<(), String> {
     for frame in 0..frames.times.len() {
         frames.read(frame, &mut points)?;
     }
-    frames.snapshot().map(|_| ())
+    frames.snapshot(bytes.len() as u64).map(|_| ())
 }
 
 impl<R: Read + Seek> Frames<R> {
     fn new(source: R) -> Result<Self, String> {
         let mut npz = Npz::new(source).map_err(text)?;
-        let meta = read_meta(&mut npz)?;
         let starts = starts(&mut npz)?;
         let count = u64::from(*starts.last().unwrap_or(&0));
         let Some(points) = npz.open("points").map_err(text)? else {
@@ -198,6 +203,7 @@ impl<R: Read + Seek> Frames<R> {
             return Err("times hold a number that is not finite".to_owned());
         }
         let heads = head.chunks_exact(7).take(frames).map(snapshot::pose).collect::<Result<_, String>>()?;
+        let meta = read_meta(&mut npz, frames as u64)?;
         let need = Need::new(format!("a frame of {count} points"), count, 12 + 12);
         memory::check(&[need]).map_err(|error| error.to_string())?;
         Ok(Self { npz, points, starts, times, heads, meta, bytes: Vec::new() })
@@ -226,7 +232,8 @@ impl<R: Read + Seek> Frames<R> {
         }
     }
 
-    fn snapshot(&mut self) -> Result<Option<Snapshot>, String> {
+    /// Where the run stood, of so many points with those that fill up the last block.
+    fn snapshot(&mut self, points: u64) -> Result<Option<Snapshot>, String> {
         let Some(mut clock) = self.npz.open("state_clock").map_err(text)? else { return Ok(None) };
         expect(&clock, "state_clock", Kind::F64, &[Some(3)])?;
         let clock: Vec<f64> = f64s(&self.npz.all(&mut clock).map_err(text)?).collect();
@@ -239,10 +246,11 @@ impl<R: Read + Seek> Frames<R> {
             if rows.kind() != Kind::F32 {
                 return Err(format!("{name} of type {}, expected {}", rows.kind().name(), Kind::F32.name()));
             }
-            // Blocks of strands of all points, four times as many numbers as the largest part has.
-            let most = 64 * (u64::from(*self.starts.last().unwrap_or(&0)) + 8 * MAX_POINTS_PER_BLOCK);
-            if rows.bytes() > 4 * most {
-                return Err(format!("{name} of shape {:?}, more than its points can need", rows.shape()));
+            if rows.bytes() > 4 * NUMBERS_PER_POINT * points {
+                let (shape, kind) = (rows.shape(), rows.kind().name());
+                return Err(format!(
+                    "{name} of type {kind} and shape {shape:?}, but the scene's hair has {points} points"
+                ));
             }
             check_memory(&name, rows.bytes(), 2)?;
             let shape = rows.shape().iter().map(|count| *count as usize).collect();
@@ -253,8 +261,8 @@ impl<R: Read + Seek> Frames<R> {
     }
 }
 
-/// Points on the strands of a block that need not be full.
-const MAX_POINTS_PER_BLOCK: u64 = 64;
+/// Most numbers that a part of a state has for a point: the planes of two carriers.
+const NUMBERS_PER_POINT: u64 = 16;
 
 fn text(error: NpzError) -> String {
     error.to_string()
@@ -324,14 +332,17 @@ fn starts<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Vec<u32>, String> {
     Ok(starts)
 }
 
-/// Most bytes of `meta`: a report of the longest film, and a scene.
-const MOST_META: u64 = 256 << 20;
+/// Most bytes of `meta` besides its report: a scene of the longest kind, spelled as JSON.
+const SCENE: u64 = 2 * MAX_FILE_BYTES;
+/// Most bytes that the report has of a frame.
+const REPORT: u64 = 160;
 
-fn read_meta<R: Read + Seek>(npz: &mut Npz<R>) -> Result<meta::Meta, String> {
+fn read_meta<R: Read + Seek>(npz: &mut Npz<R>, frames: u64) -> Result<meta::Meta, String> {
     let Some(mut rows) = npz.open("meta").map_err(text)? else { return Err(missing(npz, "meta")) };
     expect(&rows, "meta", Kind::U8, &[Some(rows.bytes())])?;
-    if rows.bytes() > MOST_META {
-        return Err(format!("meta of {} bytes, expected {MOST_META} at most", rows.bytes()));
+    let most = SCENE + REPORT * frames;
+    if rows.bytes() > most {
+        return Err(format!("meta of {} bytes, expected {most} at most for {frames} frames", rows.bytes()));
     }
     check_memory("meta", rows.bytes(), 8)?;
     let bytes = npz.all(&mut rows).map_err(text)?;
