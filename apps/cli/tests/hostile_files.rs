@@ -55,6 +55,9 @@ fn give(name: &str, bytes: &[u8]) {
     let arguments = match name.rsplit_once('.').unwrap().1 {
         "toml" => vec!["sim", "--scene", name],
         "hair" | "tfx" => [&scene[..], &["--groom", name]].concat(),
+        // With the scene that it names, and with this one.
+        "npz" if name.starts_with("own") => vec!["render", "--cache", name, "--out", "out"],
+        "npz" => vec!["render", "--cache", name, "--scene", "scene.toml", "--out", "out"],
         _ => [&scene[..], &["--body", name]].concat(),
     };
     let (code, peak, error) = run(folder.path(), &arguments);
@@ -206,4 +209,80 @@ fn scenes_of_many_sections() {
     give("keys.toml", &keys.as_bytes()[..keys.len().min(LARGEST)]);
     give("deep.toml", ("a=".to_owned() + &"[".repeat(LARGEST - 8)).as_bytes());
     give("quotes.toml", &[b'"'; LARGEST]);
+}
+
+/// A zip of deflated arrays: their names, headers, and bytes that are repeated.
+fn cache(arrays: &[(&str, &str, &[u8], usize)]) -> Vec<u8> {
+    let (mut zip, mut directory) = (Vec::new(), Vec::new());
+    let short = |number: usize| (number as u16).to_le_bytes();
+    let long = |number: usize| (number as u32).to_le_bytes();
+    for (name, header, bytes, times) in arrays {
+        let mut encoder = flate2::write::DeflateEncoder::new(Vec::new(), flate2::Compression::best());
+        let mut crc = flate2::Crc::new();
+        let text = format!("{{{header}}}\n");
+        let start = [b"\x93NUMPY\x01\x00".as_slice(), &short(text.len()), text.as_bytes()].concat();
+        let pieces = std::iter::once(start.as_slice()).chain(std::iter::repeat_n(*bytes, *times));
+        for piece in pieces {
+            crc.update(piece);
+            std::io::Write::write_all(&mut encoder, piece).unwrap();
+        }
+        let packed = encoder.finish().unwrap();
+        let size = start.len() + bytes.len() * times;
+        let mut common = [20, 0, 8, 0, 33].map(short).concat();
+        common.extend([crc.sum() as usize, packed.len(), size].map(long).concat());
+        common.extend([name.len(), 0].map(short).concat());
+        directory.extend(
+            [&b"PK\x01\x02\x14\x00"[..], &common, &[0; 10], &long(zip.len()), name.as_bytes()].concat(),
+        );
+        zip.extend([&b"PK\x03\x04"[..], &common, name.as_bytes(), &packed].concat());
+    }
+    let end = [&b"PK\x05\x06\0\0\0\0"[..], &short(arrays.len()), &short(arrays.len())].concat();
+    let places = [directory.len(), zip.len()].map(long).concat();
+    [zip, directory, end, places, vec![0; 2]].concat()
+}
+
+const ROW: &str = "'fortran_order': False, 'shape'";
+
+#[test]
+fn caches_that_unpack_to_much() {
+    let meta = br#"{"layout":1,"what":"guides","frames_per_second":30.0,"scene":"film.frames = 1\nstyle.strand_count = 8"}"#;
+    let zeros = [0; 1 << 16];
+    let head = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0].map(f32::to_le_bytes).concat();
+    let count = 16_u32 << 20;
+    let starts = [0, count].map(u32::to_le_bytes).concat();
+    let array = |kind: &str, shape: &str| format!("'descr': '{kind}', {ROW}: ({shape})");
+    let points = array("<f4", &format!("1, {count}, 3"));
+    let usual = [array("<f8", "1,"), array("<f4", "1, 7"), array("<u4", "2,")];
+    let [times, heads, two] = usual.each_ref().map(String::as_str);
+    let own = array("|u1", &format!("{},", meta.len()));
+    let bomb = [
+        ("times.npy", times, &[0; 8][..], 1),
+        ("world_from_head.npy", heads, &head, 1),
+        ("starts.npy", two, &starts, 1),
+        ("points.npy", &points, &zeros, 3 * 4 * count as usize >> 16),
+        ("meta.npy", &own, meta, 1),
+    ];
+    for name in ["own.npz", "other.npz"] {
+        give(name, &cache(&bomb));
+    }
+    // A report of more frames than there are.
+    let long = [
+        br#"{"layout":1,"what":"guides","frames_per_second":30.0,"report":{"steps":[0"#.as_slice(),
+        &b",0".repeat(8 << 20),
+        b"]}}",
+    ]
+    .concat();
+    let header = array("|u1", &format!("{},", long.len()));
+    let mut talker = bomb;
+    talker[4] = ("meta.npy", &header, &long, 1);
+    give("own.npz", &cache(&talker));
+    // As many strands as there may be, of no points.
+    let many = array("<u4", "8000000,");
+    let mut crowd = bomb;
+    crowd[2] = ("starts.npy", &many, &zeros, 4 * 8_000_000 >> 16);
+    give("other.npz", &cache(&crowd));
+    let most = array("|u1", "700000000,");
+    let mut giant = bomb;
+    giant[4] = ("meta.npy", &most, &zeros, 700_000_000 >> 16);
+    give("own.npz", &cache(&giant));
 }
