@@ -191,19 +191,24 @@ impl Strands<'_> {
                 (work.touches[point], work.friction[point]) = (None, splat(0.0));
             }
             let moved = (position - work.predicted[point]).length();
-            let looked = is_first || (free & moved.simd_gt(splat(care.near))).any();
-            if !looked || !free.any() {
+            let looked = if is_first { free } else { free & moved.simd_gt(splat(care.near)) };
+            if !looked.any() {
                 continue;
             }
             let margin = work.margins[point];
-            let query = Query { position, start: Some(start), margin, free, care };
-            work.touches[point] = self.solids.touch(planes, point, query);
-            if let Some(touch) = &work.touches[point] {
-                touch.place.or(free, position).store(&mut predicted[point]);
+            let query = Query { position, start: Some(start), margin, free: looked, care };
+            let found = self.solids.touch(planes, point, query);
+            if let Some(touch) = &found {
+                touch.place.or(looked, position).store(&mut predicted[point]);
                 if is_first {
                     work.friction[point] = touch.friction_of(position);
                 }
             }
+            work.touches[point] = match (found, work.touches[point]) {
+                (Some(found), Some(old)) => Some(found.or(looked, &old)),
+                (Some(found), None) => Some(found.except(!looked)),
+                (None, old) => old.map(|old| old.except(looked)),
+            };
         }
     }
 }

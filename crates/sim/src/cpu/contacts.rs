@@ -318,13 +318,23 @@ impl Touch {
 
     #[inline(always)]
     fn nearer(&self, other: &Self, position: Vec3x8) -> Self {
-        let mine = self.height(position).simd_lt(other.height(position));
+        self.or(self.height(position).simd_lt(other.height(position)), other)
+    }
+
+    /// This where the mask is set, else `other`.
+    #[inline(always)]
+    pub fn or(&self, mask: f32x8, other: &Self) -> Self {
         Self {
-            normal: self.normal.or(mine, other.normal),
-            offset: mine.bitselect(self.offset, other.offset),
-            friction: mine.bitselect(self.friction, other.friction),
-            stuck: self.stuck.or(mine, other.stuck),
-            place: self.place.or(mine, other.place),
+            normal: self.normal.or(mask, other.normal),
+            offset: mask.bitselect(self.offset, other.offset),
+            friction: mask.bitselect(self.friction, other.friction),
+            stuck: self.stuck.or(mask, other.stuck),
+            place: self.place.or(mask, other.place),
         }
+    }
+
+    /// This but where the mask is set, where nothing is touched.
+    pub fn except(&self, mask: f32x8) -> Self {
+        Self { offset: mask.bitselect(splat(f32::NEG_INFINITY), self.offset), ..*self }
     }
 }
