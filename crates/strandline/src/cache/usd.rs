@@ -12,7 +12,7 @@ use strandline_base::GrowingFile;
 use super::{
     Frame, Target, What,
     shape::{Attributes, Shape},
-    usd_text::{list, points, put, put_tuple, quoted},
+    usd_text::{list, put, put_points, put_tuple, quoted},
 };
 use crate::{Error, Scene, body::Pose};
 
@@ -29,6 +29,8 @@ pub(super) struct Usd {
     space: Space,
     first: u32,
     widest: f32,
+    /// One frame.
+    text: String,
     /// What is written behind the points: the box around them and the head, for each frame.
     boxes: Vec<(u32, [Vec3; 2])>,
     heads: Vec<(u32, Pose)>,
@@ -89,6 +91,7 @@ impl Usd {
             space: Space::of(target),
             first,
             widest: widths.fold(0.0, |widest, width| width.max(widest)),
+            text: String::new(),
             boxes: Vec::new(),
             heads: Vec::new(),
         };
@@ -208,11 +211,13 @@ impl Usd {
     /// Adds a frame.
     pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
         let (code, space) = (frame.number + self.first, self.space);
-        self.put(&format!("            {code}: "))?;
-        for piece in points(frame.points, |point| space.point(point)) {
-            self.put(&piece)?;
-        }
-        self.put(",\n")?;
+        let mut text = std::mem::take(&mut self.text);
+        text.clear();
+        let _ = write!(text, "            {code}: ");
+        put_points(&mut text, frame.points.iter().map(|point| space.point(*point)));
+        text.push_str(",\n");
+        self.put(&text)?;
+        self.text = text;
         let outside_in = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (low, high) = frame
             .points

@@ -1,13 +1,6 @@
 //! Values as USD's text format has them.
 
 use glam::Vec3;
-use rayon::prelude::*;
-
-/// Points that a task turns into text.
-const CHUNK: usize = 4096;
-
-/// Bytes of a point's text at most, about.
-const POINT_BYTES: usize = 40;
 
 /// Appends the shortest text that is read as the same number.
 pub fn put(text: &mut String, number: f32) {
@@ -41,25 +34,14 @@ pub fn quoted(text: &str) -> String {
     format!("\"{plain}\"")
 }
 
-/// The pieces of `[(x, y, z), ...]` of points that are moved first, in their order.
-pub fn points(points: &[Vec3], place: impl Fn(Vec3) -> Vec3 + Sync) -> Vec<String> {
-    let mut pieces: Vec<String> = points
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(index, chunk)| {
-            let mut text = String::with_capacity(POINT_BYTES * chunk.len());
-            for (point, at) in chunk.iter().zip(index * CHUNK..) {
-                text.push_str(if at > 0 { ", " } else { "[" });
-                put_tuple(&mut text, &place(*point).to_array());
-            }
-            text
-        })
-        .collect();
-    match pieces.last_mut() {
-        Some(last) => last.push(']'),
-        None => pieces.push("[]".to_owned()),
+/// Appends `[(x, y, z), ...]`.
+pub fn put_points(text: &mut String, points: impl Iterator<Item = Vec3>) {
+    text.push('[');
+    for (index, point) in points.enumerate() {
+        text.push_str(if index > 0 { ", " } else { "" });
+        put_tuple(text, &point.to_array());
     }
-    pieces
+    text.push(']');
 }
 
 #[cfg(test)]
@@ -76,11 +58,11 @@ mod tests {
     }
 
     #[test]
-    fn points_are_one_list_however_many_tasks_write_them() {
-        let many: Vec<Vec3> = (0..2 * CHUNK + 3).map(|index| Vec3::splat(index as f32 * 0.1)).collect();
-        let whole = points(&many, |point| point).concat();
-        assert_eq!(whole, list(&many, |text, point| put_tuple(text, &point.to_array())));
-        assert_eq!(points(&[], |point| point).concat(), "[]");
+    fn lists_are_as_usd_reads_them() {
+        let mut text = String::new();
+        put_points(&mut text, [Vec3::ZERO, Vec3::new(0.5, -1.0, 1e-9)].into_iter());
+        assert_eq!(text, "[(0.0, 0.0, 0.0), (0.5, -1.0, 1e-9)]");
+        assert_eq!(list([1, 2], |text, number| text.push_str(&number.to_string())), "[1, 2]");
         assert_eq!(quoted("a\"b\\\nc"), "\"abc\"");
     }
 }
