@@ -259,7 +259,7 @@ fn caches_that_unpack_to_much() {
         ("times.npy", times, &[0; 8][..], 1),
         ("world_from_head.npy", heads, &head, 1),
         ("starts.npy", two, &starts, 1),
-        ("points.npy", &points, &zeros, 3 * 4 * count as usize >> 16),
+        ("points.npy", &points, &zeros, (12 * count as usize) >> 16),
         ("meta.npy", &own, meta, 1),
     ];
     for name in ["own.npz", "other.npz"] {
@@ -279,7 +279,7 @@ fn caches_that_unpack_to_much() {
     // As many strands as there may be, of no points.
     let many = array("<u4", "8000000,");
     let mut crowd = bomb;
-    crowd[2] = ("starts.npy", &many, &zeros, 4 * 8_000_000 >> 16);
+    crowd[2] = ("starts.npy", &many, &zeros, (4 * 8_000_000) >> 16);
     give("other.npz", &cache(&crowd));
     let most = array("|u1", "700000000,");
     let mut giant = bomb;

@@ -4,7 +4,6 @@
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
-use crate::cpu::Volume;
 use crate::state::Scratch;
 use crate::{SimError, Solver, State};
 
@@ -112,7 +111,7 @@ impl State {
             scratch,
         } = self;
         // Lengths and masses follow from the length scales; predictions are made anew in every step.
-        let Scratch { predicted: _, contacts, lengths: _, masses: _, volume } = scratch;
+        let Scratch { predicted: _, contacts, lengths: _, masses: _, volume, place } = scratch;
         let blocks = length_scale.len();
         let points = positions.len() / blocks.max(1);
         let mut parts = Vec::new();
@@ -134,8 +133,8 @@ impl State {
         add(LENGTH_SCALE, &[blocks, LANES], scalars(length_scale));
         let planes = contacts.blocks.first().map_or(0, Vec::len);
         add(CONTACTS, &[blocks, planes, contacts.numbers_per_plane(), LANES], contacts.numbers());
-        if let Some(volume) = volume {
-            add(VOLUME, &[4], volume.grid.place_numbers().to_vec());
+        if let Some(place) = volume.as_ref().map(|volume| volume.grid.place_numbers()).or(*place) {
+            add(VOLUME, &[4], place.to_vec());
         }
         Checkpoint { parts, world_from_head: *world_from_head, time: *time }
     }
@@ -173,11 +172,8 @@ impl State {
         if let Ok(Some(numbers)) = from.numbers(CONTACTS, &[blocks, planes, numbers, LANES]) {
             contacts.set_numbers(numbers);
         }
-        let settings = &solver.settings.volume;
-        if let (true, Some(numbers)) = (settings.enabled, from.numbers(VOLUME, &[4])?) {
-            let mut volume = Volume::new(settings, solver.strand_count, points);
-            volume.grid.set_place([numbers[0], numbers[1], numbers[2], numbers[3]]);
-            state.scratch.volume = Some(volume);
+        if let Some(numbers) = from.numbers(VOLUME, &[4])? {
+            state.scratch.place = Some([numbers[0], numbers[1], numbers[2], numbers[3]]);
         }
         state.time = from.time;
         *self = state;

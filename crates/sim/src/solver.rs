@@ -224,6 +224,7 @@ impl Solver {
                 masses: Masses::new(self, &self.rest),
                 lengths: self.rest.clone(),
                 volume: None,
+                place: None,
             },
             positions,
         }

@@ -78,6 +78,9 @@ pub(crate) struct Scratch {
     pub masses: Masses,
     /// The fluid volume; none while it is off.
     pub volume: Option<Volume>,
+    /// Where the box of the volume is, lower corner with the ring \[m\] and spacing \[m\], while there is none
+    /// here: on a device, or in a state that was saved.
+    pub place: Option<[f32; 4]>,
 }
 
 impl State {

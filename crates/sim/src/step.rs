@@ -65,9 +65,12 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
 /// The fluid volume of a state, unless it is switched off.
 fn volume(solver: &Solver, state: &mut State) -> Option<Volume> {
     let settings = &solver.settings.volume;
-    let old = state.scratch.volume.take();
-    let new = || Volume::keep_or_new(old, settings, solver.strand_count, solver.points_per_strand);
-    settings.enabled.then(new)
+    let (old, place) = (state.scratch.volume.take(), state.scratch.place.take());
+    settings.enabled.then(|| {
+        let mut volume = Volume::keep_or_new(old, settings, solver.strand_count, solver.points_per_strand);
+        place.into_iter().for_each(|place| volume.grid.set_place(place));
+        volume
+    })
 }
 
 /// Runs a stage and notes how long it took \[s\].

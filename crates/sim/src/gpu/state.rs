@@ -6,7 +6,7 @@ use super::advance::Report;
 use super::buffers::{Buffers, REPORTS, floats, speeds};
 use super::solver::GpuSolver;
 use super::step::Stages;
-use super::volume::Volume;
+use super::volume::{GridState, Volume};
 use super::{Gradient, Spread};
 use crate::grab::Grab;
 use crate::masses::Masses;
@@ -22,6 +22,8 @@ pub struct GpuState {
     pub(super) world_from_head: Pose,
     pub(super) time: f64,
     length_scale: Vec<Lanes>,
+    /// Where the box of the volume is to be from the next step on \[m\]; none leaves it.
+    place: Option<[f32; 4]>,
     pub(super) grab: Grab,
     /// The rest shape with the length scales applied.
     pub(super) lengths: RestShape,
@@ -57,6 +59,7 @@ impl GpuState {
             world_from_head: state.world_from_head,
             time: state.time,
             length_scale: state.length_scale.clone(),
+            place: state.scratch.place,
             grab: state.grab.clone(),
             lengths: state.scratch.lengths.clone(),
             timer: Timer::new(gpu)?,
@@ -121,6 +124,9 @@ impl GpuState {
             }
             None => None,
         };
+        if let (Some(volume), Some(place)) = (&self.buffers.volume, self.place.take()) {
+            volume.put(place)?;
+        }
         if changed || self.stages.is_none() {
             // Times of stages that are no longer there cannot be told apart later.
             self.drain(solver)?;
@@ -194,7 +200,9 @@ impl GpuState {
         let velocities = &self.buffers.velocities;
         let mut batch = Readback::new();
         let parts = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
+        let grid = self.buffers.volume.as_ref().map(|volume| batch.add(&volume.grid, 1));
         let copied = batch.read(velocities.gpu())?;
+        state.scratch.place = grid.and_then(|grid| copied.take(grid).first().map(GridState::place));
         let [positions, previous, velocities] = parts.map(|part| copied.take(part));
         floats_mut(&mut state.positions).copy_from_slice(&positions);
         floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
@@ -225,6 +233,7 @@ impl GpuState {
         self.buffers.velocities.write(&speeds(&solver.solver.with_sections(state)))?;
         self.length_scale.clone_from(&state.length_scale);
         self.lengths.clone_from(&state.scratch.lengths);
+        self.place = state.scratch.place;
         self.world_from_head = state.world_from_head;
         self.time = state.time;
         self.write_grab(state)

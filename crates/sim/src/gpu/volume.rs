@@ -28,6 +28,14 @@ mirror! {
     }
 }
 
+impl GridState {
+    /// Lower corner with the ring \[m\], world space, and spacing \[m\].
+    pub fn place(&self) -> [f32; 4] {
+        let [x, y, z] = self.origin;
+        [x, y, z, self.spacing]
+    }
+}
+
 /// Vectors of the Poisson system, as numbered in poisson.wesl.
 const VECTORS: usize = 9;
 
@@ -90,5 +98,15 @@ impl Volume {
             states: Buffer::new(gpu, "state of the pressure", 2)?,
             partials: Buffer::new(gpu, "partial sums", 2 * workgroups)?,
         })
+    }
+
+    /// Puts the box to a lower corner with the ring \[m\], with a spacing \[m\]; none below the finest.
+    pub fn put(&self, [x, y, z, spacing]: [f32; 4]) -> Result<(), GpuError> {
+        if !(spacing.is_finite() && spacing >= MIN_SPACING) {
+            return Ok(());
+        }
+        let grid = Grid::new(self.cells.map(|count| count as usize));
+        let (size, cell_count) = (grid.size().map(|count| count as u32), self.cell_count as u32);
+        self.grid.write(&[GridState { origin: [x, y, z], spacing, size, cell_count }])
     }
 }
