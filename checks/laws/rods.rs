@@ -1,6 +1,6 @@
 //! Rods: a style is an equilibrium, and hair comes to rest in it.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use strandline::{Prepared, Scene};
 use strandline_body::{Motion, Pose};
 use strandline_checks::{On, Rig, law};
@@ -70,14 +70,36 @@ fn stepped(on: &On, solver: &Solver, seconds: f32, motion: impl Fn(f64) -> Pose)
 
 law! {
     fn a_style_stays_as_it_was_groomed(on) {
-        let styles = [Style::Bob, Style::Wavy, Style::Pixie, Style::Ponytail];
-        for name in styles.into_iter().take(on.either(4, 2)) {
-            let solver = style(name, &settings(StrandMethod::Rods, 1.0 / 60.0));
-            let (mean, most) = drift(&solver, &stepped(on, &solver, on.either(3.0, 1.5), |_| Pose::IDENTITY));
-            // The shape is an equilibrium without the body; what rests nearer to it than the margin is pushed
-            // out, which shifts it.
-            assert!(mean < 4e-3 && most < 5e-2, "{name:?}: {mean} on average, {most} at most");
+        let styles = [Style::Bob, Style::Wavy, Style::Curly, Style::Long, Style::Pixie, Style::Ponytail];
+        for name in styles.into_iter().take(on.either(6, 2)) {
+            for volume in [true, false].into_iter().take(on.either(2, 1)) {
+                let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
+                settings.volume.enabled = volume;
+                let solver = style(name, &settings);
+                let state = stepped(on, &solver, on.either(1.5, 0.5), |_| Pose::IDENTITY);
+                let (mean, most) = drift(&solver, &state);
+                // Of 2,000 strands of each style nothing moved by a bit in 5 s on the CPU, but for some two curls that
+                // lie so near the body that they are pushed: by 1.1 %, 0.001 % on average.
+                let (bound, largest) = if name == Style::Curly { (1e-3, 0.03) } else { (1e-5, 1e-3) };
+                assert!(mean < bound && most < largest, "{name:?}, volume {volume}: {mean}, at most {most}");
+            }
         }
+    }
+}
+
+law! {
+    fn hair_on_a_head_that_turned_and_came_back_is_as_it_was(on) {
+        let solver = style(Style::Wavy, &settings(StrandMethod::Rods, 1.0 / 60.0));
+        // Once around and back, slowly; a software adapter takes a quarter of the way.
+        let (turn, ends) = on.either((std::f32::consts::TAU, 8.0), (0.5 * std::f32::consts::PI, 2.0));
+        let motion = |time: f64| {
+            let along = (time as f32 / ends).min(1.0);
+            let angle = 0.5 * turn * (1.0 - (std::f32::consts::TAU * along).cos());
+            Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), Quat::from_rotation_y(angle))
+        };
+        let state = stepped(on, &solver, ends + on.either(4.0, 2.0), motion);
+        let (mean, _) = drift(&solver, &state);
+        assert!(mean < 0.03, "{mean} from where it was");
     }
 }
 

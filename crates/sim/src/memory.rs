@@ -7,6 +7,9 @@ use crate::Settings;
 /// Bytes of a simulated point: its rest shape in guides and solver, its state in both halves of a step,
 /// what it remembers of the solids of two carriers, its place in the volume, and the copies that are drawn.
 const POINT_BYTES: u64 = 256;
+/// Bytes of a point of a rod besides: its node, its section and spin, and the copies of them that a change of settings
+/// or a device holds.
+const ROD_BYTES: u64 = 192;
 /// Bytes of a cell: velocities and their changes on three faces, points, kind, distance and unknown.
 const CELL_BYTES: u64 = 44;
 
@@ -15,7 +18,8 @@ impl Settings {
     pub fn memory(&self, strand_count: usize, points_per_strand: usize) -> Vec<Need> {
         let points = (strand_count as u64).saturating_mul(points_per_strand as u64);
         let strands = format!("{points_per_strand} points on each of {strand_count} simulated strands");
-        let mut needs = vec![Need::new(strands, points, POINT_BYTES)];
+        let bytes = POINT_BYTES + if self.has_rods() { ROD_BYTES } else { 0 };
+        let mut needs = vec![Need::new(strands, points, bytes)];
         if self.volume.enabled {
             let cells = self.volume.cells;
             // A ring of cells lies around the box.
