@@ -18,12 +18,12 @@ use strandline_render::{
 
 /// Everything that a picture is made of, and what both backends make of it.
 pub(crate) struct Both {
-    guides: Guides,
-    mesh: Mesh,
-    pose: Pose,
-    look: Look,
-    lights: Vec<Light>,
-    camera: Camera,
+    pub(crate) guides: Guides,
+    pub(crate) mesh: Mesh,
+    pub(crate) pose: Pose,
+    pub(crate) look: Look,
+    pub(crate) lights: Vec<Light>,
+    pub(crate) camera: Camera,
     detail: LevelOfDetail,
     pub(crate) settings: PictureSettings,
 }
@@ -76,12 +76,12 @@ impl Both {
         }
     }
 
-    fn level(&self) -> DetailLevel {
+    pub(crate) fn level(&self) -> DetailLevel {
         let distance = self.camera.position.distance(self.middle());
         self.detail.level(distance, self.look.follow_strands)
     }
 
-    fn middle(&self) -> Vec3 {
+    pub(crate) fn middle(&self) -> Vec3 {
         let all = |f: fn(Vec3, Vec3) -> Vec3, start: Vec3| {
             let count = self.guides.points_per_strand();
             (0..self.guides.strand_count())
@@ -407,6 +407,7 @@ fn resolve_agrees_at_every_setting() {
         (2, true, 0.0, ToneMap::Filmic),
         (2, false, 1.5, ToneMap::Filmic),
         (2, false, 0.7, ToneMap::Off),
+        (1, false, 0.5, ToneMap::Aces),
     ] {
         let mut both = Both::new(Style::Bob, 8);
         // An odd size: rows of pictures on the device are longer than those of the picture.

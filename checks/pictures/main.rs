@@ -3,8 +3,11 @@
 mod clump;
 mod coverage;
 mod drawn;
+mod fibre;
 mod golden;
 mod grooms;
+mod light;
+mod linear;
 mod opacity;
 mod screen;
 mod shading;

@@ -116,7 +116,7 @@ impl Accuracy {
 }
 
 /// A uniform cubic B-spline through tripled end points, four segments to a span.
-fn spline(controls: &[Vec3]) -> Vec<Vec3> {
+pub fn spline(controls: &[Vec3]) -> Vec<Vec3> {
     let (first, last) = (controls[0], controls[controls.len() - 1]);
     let mut points = vec![first, first];
     points.extend(controls);

@@ -1,7 +1,7 @@
 //! Links the WESL modules of the stages into one WGSL text each.
 
 /// Modules with entry points; the others are imported by them.
-const MODULES: [&str; 12] = [
+const MODULES: [&str; 17] = [
     "tessellate",
     "interpolate",
     "fit",
@@ -9,6 +9,11 @@ const MODULES: [&str; 12] = [
     "opacity_layers",
     "occlude",
     "shade",
+    "light_sums",
+    "light_prepare",
+    "light_grid",
+    "light_gather",
+    "shade_chiang",
     "sort",
     "draw",
     "body",

@@ -6,9 +6,11 @@ use strandline_groom::{Guides, Vec3Lanes};
 
 use crate::cpu::skin::Skin;
 use crate::cpu::{
-    Curves, Draw, DrawInput, Occlusion, Resolve, Samples, Shadows, Strands, interpolate, layer_colors,
-    opacity_depth, opacity_layers, shade, tessellate,
+    Curves, Draw, DrawInput, Lit, Occlusion, Resolve, Samples, Scattering, Shadows, Strands, interpolate,
+    layer_colors, opacity_depth, opacity_layers, shade, tessellate,
 };
+use crate::fibre::FibreModel;
+use crate::lights::{at_samples, first_sample};
 use crate::memory::check_lights;
 use crate::{BodyLook, Camera, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
 
@@ -67,6 +69,7 @@ pub struct Renderer {
     strands: Strands,
     shadows: Shadows,
     occlusion: Occlusion,
+    scattering: Scattering,
     layers_of: Option<usize>,
     samples: Samples,
     draw: Draw,
@@ -91,6 +94,7 @@ impl Renderer {
             strands: Strands::default(),
             shadows: Shadows::default(),
             occlusion: Occlusion::default(),
+            scattering: Scattering::default(),
             layers_of: None,
             samples: Samples::default(),
             draw: Draw::new(body.cloned()),
@@ -149,12 +153,15 @@ impl Renderer {
     /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
         input.validate()?;
+        let lights = at_samples(input.lights);
+        let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
+        let input = &FrameInput { lights: &lights, ..*input };
         let middle = input.world_from_head.point(self.middle);
         let distance = input.camera.position.distance(middle);
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
         let (guides, pose) = (&self.guides, &input.world_from_head);
         input.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
-        let Self { curves, strands, shadows, occlusion, layers_of, draw, samples, settings, .. } = self;
+        let Self { curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } = self;
         let mut clock = Clock::start();
 
         tessellate(input.positions, guides, pose, &level, curves);
@@ -162,12 +169,20 @@ impl Renderer {
         interpolate(curves, guides, pose, input.look, &level, strands);
         clock.lap("interpolate");
         draw.place_body(input.world_from_head);
-        opacity_depth(strands, draw.shadow_body(), input.lights, middle, &input.look.shadow, shadows);
+        opacity_depth(strands, draw.shadow_body(), input.lights, middle, &input.look.hair_shadow(), shadows);
         clock.lap("opacity_depth");
         opacity_layers(strands, shadows);
         clock.lap("opacity_layers");
         occlusion.set_middle(middle);
-        shade(strands, shadows, input.lights, input.look, input.camera.position, occlusion);
+        let eye = input.camera.position;
+        match input.look.fibre.model {
+            FibreModel::Scheuermann => shade(strands, shadows, input.lights, input.look, eye, occlusion),
+            FibreModel::Chiang => {
+                let body = draw.shadow_body().map(|body| (body, input.body_look.color));
+                let lit = Lit { lights: input.lights, shadows, body, look: input.look, eye };
+                scattering.shade(strands, &lit, occlusion);
+            }
+        }
         if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
             layer_colors(strands, map);
         }
@@ -183,6 +198,7 @@ impl Renderer {
             lights: input.lights,
             shadows,
             occlusion,
+            grid: (input.look.fibre.model == FibreModel::Chiang).then(|| scattering.grid()),
             environment: &input.look.environment,
             eye: input.camera.position,
         };

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 pub mod cpu;
+pub mod fibre;
 pub mod gpu;
 
 mod body_look;

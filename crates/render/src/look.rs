@@ -1,12 +1,14 @@
 use glam::Vec3;
 use strandline_base::{Group, Key, SettingError, settings};
 
+use crate::fibre::{Fibre, FibreModel};
 use crate::{Environment, RenderError};
 
 settings! {
     /// Colour and shape of the drawn hair.
     ///
-    /// Colours are linear RGB. The named looks (brown, black, blonde, red, grey) differ in colour only.
+    /// Colours are linear RGB. The named looks (brown, black, blonde, red, grey) differ in colour and
+    /// pigment only.
     pub struct Look {
         /// Follow strands of each guide, the guide itself among them.
         follow_strands: u32 = 16, in [1, 1024], slider [1, 64],
@@ -22,6 +24,8 @@ settings! {
         root_color: Vec3 = Vec3::new(0.115, 0.056, 0.027), in [0.0, 1.0];
         /// Reflectance at the tip, linear RGB.
         tip_color: Vec3 = Vec3::new(0.22, 0.115, 0.058), in [0.0, 1.0];
+        /// How one hair scatters light.
+        fibre: Fibre = Fibre::default();
         /// Spread of brightness among strands as a share of it.
         variation: f32 = 0.35, in [0.0, 1.0], more "strands that differ more";
         /// Share of strands that have turned white.
@@ -96,6 +100,10 @@ settings! {
         body_bias: f32 = 0.004, in [0.0, 1.0] "m", slider [0.0, 0.02], more "fewer false shadows on the body";
         /// Depth over which that shadow grows to its full.
         body_softness: f32 = 0.008, in [1e-6, 1.0] "m", slider [0.001, 0.05], more "softer shadows of the body";
+        plain {
+            /// Whether a hair hides all that lies behind it, whatever `opacity` says.
+            solid: bool,
+        }
     }
     also Shadow::rising;
 }
@@ -103,7 +111,7 @@ settings! {
 impl Shadow {
     /// Logarithm of the share of light that one hair lets through.
     pub(crate) fn log_transmission(&self) -> f32 {
-        (1.0 - self.opacity).ln()
+        if self.solid { -1.0 } else { (1.0 - self.opacity).ln() }
     }
 
     fn rising(&self, key: &Key) -> Result<(), SettingError> {
@@ -124,26 +132,50 @@ impl Look {
 
     /// Black hair.
     pub fn black() -> Self {
-        Self::colored([0.016, 0.013, 0.012], [0.026, 0.021, 0.019])
+        Self::colored([0.016, 0.013, 0.012], [0.026, 0.021, 0.019]).with_melanin(8.0, 0.0)
     }
 
     /// Blonde hair, lighter toward the tips.
     pub fn blonde() -> Self {
-        Self::colored([0.46, 0.31, 0.165], [0.68, 0.51, 0.31])
+        Self::colored([0.46, 0.31, 0.165], [0.68, 0.51, 0.31]).with_melanin(0.3, 0.0)
     }
 
     /// Red hair.
     pub fn red() -> Self {
-        Self::colored([0.34, 0.10, 0.035], [0.46, 0.165, 0.06])
+        Self::colored([0.34, 0.10, 0.035], [0.46, 0.165, 0.06]).with_melanin(0.2, 1.4)
     }
 
     /// Grey hair: dark strands among white ones.
     pub fn grey() -> Self {
-        Self { grey: 0.6, ..Self::colored([0.17, 0.16, 0.15], [0.22, 0.21, 0.20]) }
+        Self { grey: 0.6, ..Self::colored([0.17, 0.16, 0.15], [0.22, 0.21, 0.20]) }.with_melanin(1.2, 0.0)
+    }
+
+    /// The same with other pigments of [`FibreModel::Chiang`].
+    fn with_melanin(mut self, eumelanin: f32, pheomelanin: f32) -> Self {
+        (self.fibre.chiang.eumelanin, self.fibre.chiang.pheomelanin) = (eumelanin, pheomelanin);
+        self
+    }
+
+    /// The same with the fibre of \[Chiang2016\], light that is scattered many times, and layers of shadow as thin as
+    /// hair that hides all behind it asks for.
+    pub fn physical(mut self) -> Self {
+        self.fibre.model = FibreModel::Chiang;
+        self.shadow.layers = [0.005, 0.015, 0.05];
+        self.highlight_noise = 1.5;
+        self
     }
 
     fn colored(root_color: [f32; 3], tip_color: [f32; 3]) -> Self {
         Self { root_color: root_color.into(), tip_color: tip_color.into(), ..Self::brown() }
+    }
+
+    /// How hair and body cast shadows with this fibre: what meets a hair of [`FibreModel::Chiang`] does not go
+    /// straight on.
+    pub fn hair_shadow(&self) -> Shadow {
+        match self.fibre.model {
+            FibreModel::Scheuermann => self.shadow,
+            FibreModel::Chiang => Shadow { solid: true, ..self.shadow },
+        }
     }
 
     /// Checks every setting.

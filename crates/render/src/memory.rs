@@ -6,6 +6,7 @@ use strandline_base::{
 };
 
 use crate::cpu::ribbons::Segment;
+use crate::fibre::FibreModel;
 use crate::{DetailLevel, FrameInput, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
 /// Most lights of a picture: each point that is drawn asks every one of them.
@@ -21,6 +22,9 @@ const CURVE_BYTES: u64 = 36;
 /// Bytes of a shadow map's texel: layers and depths, and those that each of the threads fills.
 const TEXEL_BYTES: u64 = 24;
 const PART_BYTES: u64 = 16;
+/// Cells of the grid of scattered light, and bytes of one: light along 26 directions four times, sums and fields.
+const GRID_CELLS: u64 = 43 * 43 * 43;
+const CELL_BYTES: u64 = 26 * 16 * 4 + 600;
 
 /// What is drawn of a groom, as far as memory goes.
 #[derive(Clone, Copy, Debug)]
@@ -52,13 +56,18 @@ impl Drawn<'_> {
         let curve_points = level.segment_count(self.points_per_strand) as u64 + 1;
         let follow_strands = self.look.follow_strands;
         let drawn = format!("look.follow_strands = {follow_strands} on each of {} guides", self.guide_count);
-        let shadows = self.lights.iter().filter(|light| light.shadow).count() as u64;
+        let casting = self.lights.iter().filter(|light| light.shadow);
+        let shadows: u64 = casting.map(|light| light.sample_count() as u64).sum();
         let size = u64::from(self.look.shadow.map_size);
         let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");
         let texel = TEXEL_BYTES + PART_BYTES * crate::cpu::shadow_hair::part_count() as u64;
         let PictureSettings { width, height, supersampling, .. } = self.picture;
         let picture = format!("a picture of {width} x {height} pixels at supersampling {supersampling}");
+        let scatters = self.look.fibre.model == FibreModel::Chiang;
+        let (cells, known) = if scatters { (GRID_CELLS, shadows) } else { (0, 0) };
         vec![
+            Need::new("scattered light (look.fibre.model = \"chiang\")", cells, CELL_BYTES),
+            Need::new("light that reaches points", self.points(level), 4 * known),
             Need::new(drawn, self.points(level), POINT_BYTES),
             Need::new("curves", (self.guide_count as u64).saturating_mul(curve_points), CURVE_BYTES),
             Need::new(maps, shadows * size * size, texel),

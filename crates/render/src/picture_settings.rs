@@ -32,6 +32,9 @@ choices! {
         Off = "off",
         /// Unchanged up to a knee, then rolled off smoothly toward white.
         Filmic = "filmic",
+        /// With a toe, a long shoulder and more contrast between, each channel by itself, as film scanned with
+        /// ACES [Narkowicz2015].
+        Aces = "aces",
     }
     default Filmic
 }

@@ -45,6 +45,8 @@ fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {
             if button(ui, name, "colours of the hair\ndefault brown") {
                 (look.root_color, look.tip_color, look.grey) =
                     (preset.root_color, preset.tip_color, preset.grey);
+                (look.fibre.chiang.eumelanin, look.fibre.chiang.pheomelanin) =
+                    (preset.fibre.chiang.eumelanin, preset.fibre.chiang.pheomelanin);
             }
         }
     });

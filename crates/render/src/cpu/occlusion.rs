@@ -65,6 +65,12 @@ impl Occlusion {
         }
     }
 
+    /// Lays the cells around the hair, as if it hid nothing.
+    pub(crate) fn place(&mut self, strands: &Strands) {
+        self.fit(&strands.positions);
+        self.cubes.clear();
+    }
+
     /// Visibility, 0 to 1, of the surroundings from a point \[m\] toward +x, -x, +y, -y, +z, -z.
     pub fn visibilities(&self, point: Vec3) -> [f32; 6] {
         let cube = self.cube(point);
@@ -82,6 +88,11 @@ impl Occlusion {
         let cube = self.cube(point);
         // Over the cosine lobe about a normal, the height of a direction averages two thirds of the normal's.
         environment.radiance(normal * (2.0 / 3.0)) * toward(&cube, normal)
+    }
+
+    /// The grid of the last picture.
+    pub(crate) fn grid(&self) -> GridBox {
+        GridBox { min: self.min, cell: self.cell, counts: self.counts }
     }
 
     #[inline]
@@ -179,6 +190,57 @@ impl Occlusion {
                 }
             }
             std::mem::swap(light, next);
+        }
+    }
+}
+
+/// Where the cells of a grid lie.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GridBox {
+    /// Its least corner \[m\].
+    pub(crate) min: Vec3,
+    /// Size of a cell \[m\].
+    pub(crate) cell: f32,
+    pub(crate) counts: [usize; 3],
+}
+
+impl GridBox {
+    pub(crate) fn cell_count(&self) -> usize {
+        self.counts.iter().product()
+    }
+
+    /// The middle of a cell \[m\].
+    pub(crate) fn middle(&self, index: usize) -> Vec3 {
+        let [columns, rows, _] = self.counts;
+        let at = [index % columns, index / columns % rows, index / columns / rows];
+        self.min + Vec3::from(at.map(|at| at as f32 + 0.5)) * self.cell
+    }
+
+    /// Whether a box \[m\] touches the grid.
+    pub(crate) fn holds(&self, min: Vec3, max: Vec3) -> bool {
+        let end = self.min + Vec3::from(self.counts.map(|count| count as f32)) * self.cell;
+        max.cmpge(self.min).all() && min.cmple(end).all()
+    }
+
+    /// The first of the eight cells whose middles surround a place \[m\], and the share of the others.
+    #[inline]
+    pub(crate) fn place(&self, place: Vec3) -> (usize, Vec3) {
+        let last = Vec3::from(self.counts.map(|count| count as f32 - 1.001));
+        let at = ((place - self.min) / self.cell - Vec3::splat(0.5)).clamp(Vec3::ZERO, last.max(Vec3::ZERO));
+        let [columns, rows, _] = self.counts;
+        let first = (at.z as usize * rows + at.y as usize) * columns + at.x as usize;
+        (first, at - at.floor())
+    }
+
+    /// Hands the eight cells around a place \[m\] to `add`, each with its share.
+    #[inline]
+    pub(crate) fn spread(&self, place: Vec3, mut add: impl FnMut(usize, f32)) {
+        let (first, part) = self.place(place);
+        let [columns, rows, _] = self.counts;
+        for corner in 0..8 {
+            let (dx, dy, dz) = (corner & 1, corner >> 1 & 1, corner >> 2);
+            let share = side(part.x, dx) * side(part.y, dy) * side(part.z, dz);
+            add(first + (dz * rows + dy) * columns + dx, share);
         }
     }
 }

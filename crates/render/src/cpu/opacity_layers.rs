@@ -24,7 +24,7 @@ pub fn opacity_layers(strands: &Strands, out: &mut Shadows) {
 fn sum_parts(map: &mut ShadowMap, strands: &Strands) {
     let size = map.size;
     let (view, window, parts, depths) = (map.view, map.hair_window, part_count(), &map.depths);
-    let [second, third, end] = map.borders;
+    let ([second, third, end], solid) = (map.borders, map.solid);
     map.layer_parts.resize_with(parts, Vec::new);
     map.layer_parts.par_iter_mut().enumerate().for_each(|(part, layers)| {
         layers.clear();
@@ -35,10 +35,21 @@ fn sum_parts(map: &mut ShadowMap, strands: &Strands) {
                 return;
             }
             let layer = usize::from(behind > second) + usize::from(behind > third);
+            let hidden = if solid { piece.coverage * hiding(piece.width) } else { piece.coverage };
             let sum = &mut layers[3 * piece.texel + layer];
-            *sum = sum.saturating_add((piece.coverage * UNITS) as u32);
+            *sum = sum.saturating_add((hidden * UNITS) as u32);
         });
     });
+}
+
+/// Optical depth of a solid hair of a width \[texel\] over the share of the texel that it covers: hairs one behind
+/// the other leave open the product of what each leaves. Looking up between four texels spreads a hair over two.
+///
+/// On the reference groom the exact counts ask for 1.19, 1.20, 1.24 and 1.40 at widths of 0.26, 0.36, 0.51 and 1.02;
+/// this says 1.07, 1.10, 1.16 and 1.40.
+fn hiding(width: f32) -> f32 {
+    let share = (0.5 * width).clamp(0.01, 0.9);
+    -(1.0 - share).ln() / share
 }
 
 fn merge(map: &mut ShadowMap) {

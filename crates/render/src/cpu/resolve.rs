@@ -170,10 +170,15 @@ impl ToneMap {
     /// Brings linear light into 0..1.
     ///
     /// The filmic curve works on the largest component and scales the others along, so that hue stays;
-    /// what the curve takes away turns the colour toward white, as film does.
+    /// what the curve takes away turns the colour toward white, as film does. That of ACES works on each.
     #[inline]
     pub fn apply(self, light: Vec3) -> Vec3 {
         let light = light.max(Vec3::ZERO);
+        if self == Self::Aces {
+            // [Narkowicz2015]
+            let shown = light * (light * 2.51 + 0.03) / (light * (light * 2.43 + 0.59) + 0.14);
+            return shown.min(Vec3::ONE);
+        }
         let peak = light.max_element();
         if self == Self::Off || peak <= KNEE {
             return light.min(Vec3::ONE);
@@ -233,7 +238,7 @@ mod tests {
 
     #[test]
     fn tone_mapping_is_monotone_keeps_hue_and_stays_in_range() {
-        for tone_map in [ToneMap::Off, ToneMap::Filmic] {
+        for tone_map in [ToneMap::Off, ToneMap::Filmic, ToneMap::Aces] {
             let mut last = Vec3::ZERO;
             for step in 0..4000 {
                 let light = Vec3::new(1.0, 0.6, 0.2) * (step as f32 * 0.005);

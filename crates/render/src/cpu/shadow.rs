@@ -25,13 +25,14 @@ pub(crate) struct LightView {
 impl LightView {
     /// The view of a light; a point light looks at `middle` \[m\].
     pub(crate) fn new(light: &Light, middle: Vec3) -> Self {
-        let target = if light.kind == LightKind::Point { middle } else { light.target };
+        let looks_at_hair = matches!(light.kind, LightKind::Point | LightKind::Rectangle | LightKind::Disc);
+        let target = if looks_at_hair { middle } else { light.target };
         let forward = (target - light.position).normalize_or(Vec3::NEG_Y);
         let (right, up) = across(forward);
         let reach = match light.kind {
             LightKind::Directional => f32::INFINITY,
             LightKind::Spot => light.cone_angle.to_radians().tan(),
-            LightKind::Point => 10.0,
+            LightKind::Point | LightKind::Rectangle | LightKind::Disc => 10.0,
         };
         let parallel = light.kind == LightKind::Directional;
         Self { origin: light.position, right, up, forward, parallel, reach }
@@ -147,6 +148,8 @@ pub struct ShadowMap {
     log_transmission: f32,
     body_bias: f32,
     inverse_softness: f32,
+    /// Whether a hair hides all behind it.
+    pub(crate) solid: bool,
 }
 
 impl ShadowMap {
@@ -158,6 +161,7 @@ impl ShadowMap {
             Vec4::new(1.0 / first, 1.0 / (second - first), 1.0 / (third - second), 0.0);
         self.borders = settings.layers;
         self.log_transmission = settings.log_transmission();
+        self.solid = settings.solid;
         self.body_bias = settings.body_bias;
         self.inverse_softness = 1.0 / settings.body_softness;
     }

@@ -45,6 +45,8 @@ pub(crate) struct Piece {
     pub(crate) depth: f32,
     /// Share of the texel that the piece covers.
     pub(crate) coverage: f32,
+    /// Width of the hair \[texel\].
+    pub(crate) width: f32,
 }
 
 /// Cuts segments into pieces no longer than a texel along the axis that they follow most, and
@@ -96,6 +98,7 @@ fn cut(start: (Vec3, f32), end: (Vec3, f32), size: usize, take: &mut impl FnMut(
                 texel: at.y as usize * size + at.x as usize,
                 depth: at.z,
                 coverage: length * width,
+                width,
             });
         }
         at += step;

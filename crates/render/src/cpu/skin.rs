@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 
-use super::{Occlusion, Shadows};
+use super::{LightGrid, Occlusion, Shadows};
 use crate::{BodyLook, Environment, Light};
 
 /// What lights the body.
@@ -18,6 +18,8 @@ pub struct Skin<'a> {
     pub shadows: &'a Shadows,
     /// How much of the surroundings the hair hides.
     pub occlusion: &'a Occlusion,
+    /// Light that hair and skin scatter, where the fibre has it; that from all around is in it.
+    pub grid: Option<&'a LightGrid>,
     /// Light from all around.
     pub environment: &'a Environment,
     /// Where the camera stands \[m\], world space.
@@ -28,7 +30,10 @@ impl Skin<'_> {
     /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space.
     pub fn radiance(&self, point: Vec3, normal: Vec3) -> Vec3 {
         let to_eye = (self.eye - point).normalize_or(normal);
-        let around = self.occlusion.ambient_on(point, normal, self.environment);
+        let around = match self.grid {
+            Some(grid) => grid.on_skin(point, normal),
+            None => self.occlusion.ambient_on(point, normal, self.environment),
+        };
         let lights = self.lights.iter().enumerate();
         lights.fold(self.look.color * around, |sum, (index, light)| {
             let lit = light.at(point);

@@ -17,7 +17,7 @@ pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Numbers of the box around the hair, and of what each shadow light sees.
 const BOUNDS: usize = 6 + 8 * MAX_SHADOWS;
 /// Cells of the grid of the surroundings: 44 along each side.
-const CELLS: usize = 44 * 44 * 44;
+pub(super) const CELLS: usize = 44 * 44 * 44;
 
 /// The buffers that depend on nothing but the groom and the body.
 pub(super) struct Groom {

@@ -2,10 +2,13 @@
 
 use strandline_gpu::{Amount, Bound, BoundDrawing, Recorder, Targets, groups, wgpu};
 
-use super::buffers::Maps;
+use super::buffers::{CELLS, Maps};
+use super::light_grid::{self, LightGrid};
 use super::renderer::{GpuRenderer, Scene};
 use super::stages::Stages;
 use super::{THREADS, draw, fit, opacity_depth};
+use crate::cpu::lattice::DIRECTIONS;
+use crate::fibre::FibreModel;
 
 /// What a frame is recorded from.
 pub(super) struct Bounds<'a> {
@@ -33,7 +36,14 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     recorder.clear(&groom.areas);
     recorder.stage("shade", &one(&stages.sum_areas, segments));
     recorder.stage("shade", &[(stages.sweep.clone(), [6, 1, 1])]);
-    recorder.stage("shade", &one(&stages.shade, points));
+    match &scattering(scene, bounds) {
+        Some((grid, light)) => {
+            recorder.clear(grid.sums());
+            recorder.stage("shade", &light_stages(scene, light, segments));
+            recorder.stage("shade", &one(&light.shade, points));
+        }
+        None => recorder.stage("shade", &one(&stages.shade, points)),
+    }
     if let Some(layer_colors) = &bounds.layer_colors {
         recorder.stage("shade", &one(layer_colors, points));
     }
@@ -45,6 +55,32 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     let target =
         Targets { color: Some((bounds.target, wgpu::LoadOp::Clear(wgpu::Color::BLACK))), depth: None };
     recorder.draw("resolve", &target, &[(bounds.resolve, Amount::Vertices { count: 3, instance: 0 })]);
+}
+
+/// Scattered light, where the look has it.
+fn scattering<'a>(scene: &Scene, bounds: &Bounds<'a>) -> Option<(&'a LightGrid, &'a light_grid::Bounds)> {
+    let renderer = bounds.renderer;
+    let scatters = scene.input.look.fibre.model == FibreModel::Chiang;
+    if scatters { renderer.light_grid.as_ref().zip(renderer.light_bounds.as_ref()) } else { None }
+}
+
+/// Hair and skin summed into cells, and light carried through them.
+fn light_stages(scene: &Scene, light: &light_grid::Bounds, segments: usize) -> Vec<(Bound, [u32; 3])> {
+    let cells = groups(CELLS, THREADS);
+    let mut list = vec![(light.sum_hair.clone(), groups(segments, THREADS))];
+    if scene.triangle_count > 0 {
+        list.push((light.sum_skin.clone(), groups(scene.triangle_count, THREADS)));
+    }
+    list.push((light.prepare.clone(), cells));
+    let [x, y, _] = groups(light_grid::LINES, THREADS);
+    let carry = (light.carry.clone(), [x, y, DIRECTIONS as u32]);
+    for _ in 0..scene.input.look.fibre.chiang.scatterings {
+        list.push(carry.clone());
+        list.push((light.scatter.clone(), groups(CELLS, 1)));
+    }
+    list.push(carry);
+    list.push((light.gather.clone(), cells));
+    list
 }
 
 /// Records the deep opacity maps of every light with shadow.
@@ -115,7 +151,8 @@ fn samples(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds, segments: us
     }
     if scene.triangle_count > 0 {
         let count = 3 * scene.triangle_count as u32;
-        list.push((&bounds.stages.body, Amount::Vertices { count, instance: 0 }));
+        let body = scattering(scene, bounds).map_or(&bounds.stages.body, |(_, light)| &light.body);
+        list.push((body, Amount::Vertices { count, instance: 0 }));
     }
     list.push((&bounds.stages.hair, Amount::Instanced { indices: &renderer.indices, instances }));
     let targets = Targets {

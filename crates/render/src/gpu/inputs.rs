@@ -6,6 +6,7 @@ use strandline_gpu::mirror;
 
 use super::renderer::Scene;
 use crate::cpu::shadow::LightView;
+use crate::fibre::FibreModel;
 use crate::{Highlight, LightKind, ToneMap};
 
 mirror! {
@@ -86,12 +87,14 @@ mirror! {
         /// Exposure as a factor.
         pub gain: f32,
         pub supersampling: u32,
-        pub filmic: u32,
+        /// 0 off, 1 filmic, 2 of ACES.
+        pub tone_map: u32,
         /// 0 none, 1 open, 2 closed: every edge joins two triangles.
         pub body_kind: u32,
         /// Middle of the hair at rest \[m\]: texels and cells keep their places beside it.
         pub middle: [f32; 3],
-        pub unused: u32,
+        /// Whether light is scattered many times: the fibre of [Chiang2016].
+        pub scatters: u32,
     }
 }
 
@@ -100,7 +103,7 @@ mirror! {
     pub(super) struct LightSource {
         /// \[m\]
         pub position: [f32; 3],
-        /// 0 directional, 1 spot, 2 point.
+        /// 0 directional, 1 spot, 2 point, 3 a place on a surface.
         pub kind: u32,
         /// Unit direction from the target to the light.
         pub axis: [f32; 3],
@@ -155,7 +158,7 @@ impl Frame {
     /// What a frame needs.
     pub fn new(scene: &Scene) -> Self {
         let Scene { input, settings, level, .. } = scene;
-        let (look, body, shadow) = (input.look, input.body_look, &input.look.shadow);
+        let (look, body, shadow) = (input.look, input.body_look, &input.look.hair_shadow());
         let (width, height) = (settings.width as f32, settings.height as f32);
         let scale = settings.supersampling as f32;
         let share = look.first_highlight.strength + look.second_highlight.strength;
@@ -209,10 +212,14 @@ impl Frame {
             triangle_count: scene.triangle_count as u32,
             gain: settings.exposure.exp2(),
             supersampling: settings.supersampling,
-            filmic: u32::from(settings.tone_map == ToneMap::Filmic),
+            tone_map: match settings.tone_map {
+                ToneMap::Off => 0,
+                ToneMap::Filmic => 1,
+                ToneMap::Aces => 2,
+            },
             body_kind: scene.body_kind,
             middle: scene.middle.to_array(),
-            unused: 0,
+            scatters: u32::from(look.fibre.model == FibreModel::Chiang),
         }
     }
 }
@@ -246,6 +253,7 @@ impl LightSource {
                     LightKind::Directional => 0,
                     LightKind::Spot => 1,
                     LightKind::Point => 2,
+                    LightKind::Rectangle | LightKind::Disc => 3,
                 },
                 axis: axis.normalize_or(Vec3::Y).to_array(),
                 axis_square: axis.length_squared(),

@@ -12,6 +12,7 @@ mod fit;
 mod frame;
 mod inputs;
 mod interpolate;
+mod light_grid;
 mod linked;
 mod occlude;
 mod opacity_depth;

@@ -7,11 +7,14 @@ use strandline_groom::Guides;
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::frame::{Bounds, record};
 use super::inputs::{Frame, LightSource};
+use super::light_grid::{self, LightGrid};
 use super::resolve::{Own, PICTURE, ToFormat};
 use super::shade::LayerColors;
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
+use crate::fibre::FibreModel;
 use crate::frame::middle;
+use crate::lights::at_samples;
 use crate::{DetailLevel, FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
 /// Guide points that lie on the device, `[block][point][component][lane]` \[m\], world space: at the two
@@ -47,6 +50,9 @@ pub struct GpuRenderer {
     formats: Vec<ToFormat>,
     pub(super) indices: Buffer<u32>,
     pub(super) stages: Option<Stages>,
+    /// Scattered light, once a look asks for it, and its kernels bound.
+    pub(super) light_grid: Option<LightGrid>,
+    pub(super) light_bounds: Option<light_grid::Bounds>,
     /// `tessellate` bound to pairs of buffers of guide points.
     tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
     timer: Option<Timer>,
@@ -126,6 +132,8 @@ impl GpuRenderer {
             formats: Vec::new(),
             indices: draw::indices(gpu)?,
             stages: None,
+            light_grid: None,
+            light_bounds: None,
             tessellates: Vec::new(),
             timer: Timer::new(gpu)?,
             layers_of: None,
@@ -230,6 +238,8 @@ impl GpuRenderer {
         own: Option<&Own>,
     ) -> Result<FrameReport, RenderError> {
         input.validate()?;
+        let (given, lights) = (input.lights, at_samples(input.lights));
+        let input = &FrameInput { lights: &lights, ..*input };
         self.check_points(input, points)?;
         let settings = self.settings;
         let scene = self.scene(input, &settings, points.map_or(1.0, |points| points.share));
@@ -237,7 +247,7 @@ impl GpuRenderer {
         self.prepare_format(format)?;
         self.write(&scene, points.is_none())?;
         let tessellate = self.tessellate(points)?;
-        let layer_colors = self.layer_colors(input.lights)?;
+        let layer_colors = self.layer_colors(given)?;
         let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
         let resolve =
             &self.formats.iter().find(|known| known.format == format).expect("prepared above").bound;
@@ -343,12 +353,16 @@ impl GpuRenderer {
         {
             self.stages = Some(Stages::new(&self.gpu, &self.kernels, &self.groom, strands, maps)?);
         }
+        if scene.input.look.fibre.model == FibreModel::Chiang {
+            self.prepare_light(scene.input.look)?;
+        }
         Ok(())
     }
 
     /// What was drawn is lost with the buffers that held it.
     fn forget(&mut self) {
         self.stages = None;
+        self.light_bounds = None;
         self.drawn = Drawn::default();
         self.lit.0.clear();
     }

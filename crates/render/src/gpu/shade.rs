@@ -5,6 +5,7 @@ use strandline_gpu::{Bound, Kernel, kernel};
 use super::GpuRenderer;
 use super::buffers::{Groom, Strands};
 use super::inputs::{Frame, LightSource};
+use crate::lights::first_sample;
 use crate::{Light, RenderError};
 
 kernel! {
@@ -42,6 +43,7 @@ impl GpuRenderer {
     /// What colours the hair by layers, if a light with shadow is chosen for it.
     pub(super) fn layer_colors(&mut self, lights: &[Light]) -> Result<Option<Bound>, RenderError> {
         let chosen = self.layers_of.filter(|&light| lights.get(light).is_some_and(|light| light.shadow));
+        let chosen = chosen.map(|light| first_sample(lights, light));
         let (Some(light), Some(strands), Some(maps)) = (chosen, &self.strands, &self.maps) else {
             return Ok(None);
         };

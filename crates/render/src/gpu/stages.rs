@@ -6,8 +6,8 @@ use strandline_gpu::{
 
 use super::buffers::{Groom, Maps, Strands};
 use super::{
-    background, body, draw, fit, interpolate, occlude, opacity_depth, opacity_layers, resolve, shade, sort,
-    tessellate,
+    background, body, draw, fit, interpolate, light_grid, occlude, opacity_depth, opacity_layers, resolve,
+    shade, sort, tessellate,
 };
 
 /// Every kernel and drawing, compiled.
@@ -150,6 +150,13 @@ pub fn declarations() -> Vec<Declaration> {
         occlude::Sweep::declaration(),
         shade::Shade::declaration(),
         shade::LayerColors::declaration(),
+        light_grid::SumHair::declaration(),
+        light_grid::SumSkin::declaration(),
+        light_grid::Prepare::declaration(),
+        light_grid::Carry::declaration(),
+        light_grid::Scatter::declaration(),
+        light_grid::Gather::declaration(),
+        light_grid::ShadeChiang::declaration(),
         sort::ListSegments::declaration(),
         sort::OrderSegments::declaration(),
         draw::Hair::declaration(),

@@ -1,0 +1,116 @@
+//! Hair and skin summed into the cells of the grid that carries scattered light.
+
+use std::ops::Range;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::ShadowBody;
+use super::light_grid::Scene;
+use super::occlusion::GridBox;
+
+/// Parts that the strands are shared out to.
+const PARTS: usize = 4;
+/// Whole numbers make sums that do not depend on their order: parts of a square metre, 2^40.
+pub(super) const UNITS: f32 = 1_099_511_627_776.0;
+/// Sums of a cell's hair: its area, that times its direction, and behind these that times what reaches it of each light.
+pub(super) const HAIR_SUMS: usize = 4;
+/// Sums of a cell's skin, behind those of its hair: area times normal, light on it.
+pub(super) const SKIN_SUMS: usize = 6;
+
+/// Sums both in parts, shape `[part][cell][sum]`.
+pub(super) fn sum(grid: &GridBox, scene: &Scene, parts: &mut Vec<Vec<i64>>) {
+    let (cells, strands) = (grid.cell_count(), scene.strands);
+    let width = HAIR_SUMS + scene.lights.len() + SKIN_SUMS;
+    parts.resize_with(PARTS, Vec::new);
+    parts.par_iter_mut().enumerate().for_each(|(part, sums)| {
+        sums.clear();
+        sums.resize(cells * width, 0);
+        let range = |count: usize| count * part / PARTS..count * (part + 1) / PARTS;
+        sum_hair(grid, scene, range(strands.strand_count), width, sums);
+        if let Some((body, _)) = &scene.body {
+            sum_skin(grid, scene, body, range(body.triangles.len()), width, sums);
+        }
+    });
+}
+
+/// Adds strands' segments: their area, that times their direction, and that times what reaches them of each light.
+fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, sums: &mut [i64]) {
+    let strands = scene.strands;
+    let count = strands.points_per_strand;
+    let mut values = vec![0.0; width - SKIN_SUMS];
+    for point in range.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
+        let (start, end) = (strands.positions[point], strands.positions[point + 1]);
+        let way = end - start;
+        let length = way.length();
+        let longest = way.abs().max_element() / grid.cell;
+        if !(length > 0.0 && longest < 1e4) {
+            continue;
+        }
+        let pieces = longest.ceil().max(1.0);
+        for piece in 0..pieces as usize {
+            let along = (piece as f32 + 0.5) / pieces;
+            let mix = |values: &[f32]| values[point] + (values[point + 1] - values[point]) * along;
+            let area = length / pieces * mix(&strands.widths);
+            values[0] = area;
+            values[1..4].copy_from_slice(&(way * (area / length)).to_array());
+            for (value, reached) in values[HAIR_SUMS..].iter_mut().zip(scene.reached) {
+                *value = if reached.is_empty() { 0.0 } else { area * mix(reached) };
+            }
+            grid.spread(start + way * along, |index, share| {
+                let cell = &mut sums[index * width..][..width];
+                for (sum, value) in cell.iter_mut().zip(&values) {
+                    *sum += (value * share * UNITS) as i64;
+                }
+            });
+        }
+    }
+}
+
+/// Adds skin: its area times its normal, and light that meets it.
+fn sum_skin(
+    grid: &GridBox,
+    scene: &Scene,
+    body: &ShadowBody,
+    range: Range<usize>,
+    width: usize,
+    sums: &mut [i64],
+) {
+    for corners in &body.triangles[range] {
+        let [a, b, c] = corners.map(|corner| body.positions[corner as usize]);
+        let (ab, ac) = (b - a, c - a);
+        let across = 0.5 * ab.cross(ac);
+        let normal = across.normalize_or_zero();
+        let longest = ab.length().max(ac.length()).max(b.distance(c)) / grid.cell;
+        if !(longest < 1e3) || normal == Vec3::ZERO || !grid.holds(a.min(b).min(c), a.max(b).max(c)) {
+            continue;
+        }
+        let pieces = (2.0 * longest).ceil().max(1.0) as usize;
+        let share = 1.0 / (pieces * pieces) as f32;
+        for (first, second) in (0..pieces).flat_map(|row| (0..2 * row + 1).map(move |at| (row, at))) {
+            // The middle of one of the equal triangles.
+            let (row, at) = (first as f32, second as f32);
+            let upright = second % 2 == 0;
+            let along = (row + if upright { 2.0 / 3.0 } else { 1.0 / 3.0 }) / pieces as f32;
+            let aside = (0.5 * at + if upright { 1.0 / 3.0 } else { 1.0 / 6.0 }) / pieces as f32;
+            let place = a + ab * (along - aside) + ac * aside;
+            let mut light = Vec3::ZERO;
+            for (index, source) in scene.lights.iter().enumerate() {
+                let lit = source.at(place);
+                let facing = normal.dot(lit.to_light);
+                if facing > 0.0 {
+                    let passed = scene.shadows.map(index).map_or(1.0, |map| map.transmittance(place));
+                    light += lit.radiance * (facing * passed);
+                }
+            }
+            let area = across * share;
+            let light = light * area.length();
+            grid.spread(place, |index, share| {
+                let sums = &mut sums[(index + 1) * width - SKIN_SUMS..][..SKIN_SUMS];
+                for (sum, value) in sums.iter_mut().zip([area, light].iter().flat_map(|v| v.to_array())) {
+                    *sum += (value * share * UNITS) as i64;
+                }
+            });
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! The rough dielectric fibre of \[Chiang2016\], seen from afar: what is thinner than a pixel shows the mean over
+//! its width.
+
+mod lobes;
+mod moments;
+mod table;
+
+use glam::{DVec3, Vec3};
+use strandline_base::{choices, settings};
+
+pub use lobes::{LOBES, Lobes};
+pub use moments::MOMENTS;
+pub use table::{ENTRIES, LEVELS, Table};
+
+/// Absorption per fibre radius of one unit of eumelanin and of pheomelanin \[d'Eon2011\].
+const EUMELANIN: DVec3 = DVec3::new(0.419, 0.697, 1.37);
+const PHEOMELANIN: DVec3 = DVec3::new(0.187, 0.4, 1.05);
+
+settings! {
+    /// The rough dielectric fibre [Chiang2016]. Its paths: R is reflected, TT goes through, TRT comes back from
+    /// inside.
+    pub struct Chiang: Copy {
+        /// What gives hair its colour.
+        pigment: Pigment = Pigment::default();
+        /// Brown to black pigment: 0.3 blonde, 0.6 brown, 8 black.
+        eumelanin: f32 = 0.6, in [0.0, 100.0], slider [0.0, 8.0], more "darker hair";
+        /// Red to yellow pigment.
+        pheomelanin: f32 = 0.2, in [0.0, 100.0], slider [0.0, 4.0], more "redder hair";
+        /// Pigment at the tip as a share of that at the root.
+        tip_pigment: f32 = 1.0, in [0.0, 2.0], more "darker tips";
+        /// Roughness along the fibre.
+        roughness_along: f32 = 0.3, in [0.05, 1.0], more "a wider, duller highlight";
+        /// Roughness around the fibre.
+        roughness_around: f32 = 0.3, in [0.05, 1.0], more "softer light through hair";
+        /// Tilt of the scales of the fibre: the white highlight moves toward the root, the coloured one
+        /// toward the tip.
+        tilt: f32 = 2.0, in [-10.0, 10.0] "degrees", more "highlights further apart";
+        /// Index of refraction.
+        index: f32 = 1.55, in [1.05, 3.0], more "a brighter surface";
+        /// How many times light is scattered on from hair to hair before it is left.
+        scatterings: u32 = 8, in [0, 64], slider [0, 16], more "brighter light hair, at a cost";
+    }
+}
+
+choices! {
+    /// What gives hair its colour.
+    pub enum Pigment as "look.fibre.chiang.pigment" {
+        /// `eumelanin` and `pheomelanin`.
+        Melanin = "melanin",
+        /// As much as makes a mass of such hair reflect `look.root_color`.
+        Color = "color",
+    }
+    default Melanin
+}
+
+impl Chiang {
+    /// The fibre's lobes.
+    pub fn lobes(&self) -> Lobes {
+        let [along, around] = [self.roughness_along, self.roughness_around].map(f64::from);
+        Lobes::new(along, around, f64::from(self.tilt).to_radians(), f64::from(self.index))
+    }
+
+    /// Absorption per fibre radius at the root of the three channels; `color` is the reflectance of a mass of
+    /// hair, for [`Pigment::Color`].
+    pub fn absorption(&self, color: Vec3) -> [f64; 3] {
+        match self.pigment {
+            Pigment::Melanin => {
+                let [eumelanin, pheomelanin] = [self.eumelanin, self.pheomelanin].map(f64::from);
+                (eumelanin * EUMELANIN + pheomelanin * PHEOMELANIN).to_array()
+            }
+            Pigment::Color => {
+                let b = f64::from(self.roughness_around);
+                // [Chiang2016 §4.2]
+                let scale = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
+                color.to_array().map(|c| (f64::from(c).clamp(1e-4, 1.0).ln() / scale).powi(2))
+            }
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! The fibre seen from afar as tables, derived once on the host and read by both backends.
+//!
+//! Radiance over irradiance is the sum over the kinds of paths of a term along the fibre, which depends on both
+//! inclinations, times one around it, which depends on the eye's inclination, the turn and the pigment. All entries
+//! are vectors of four.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::lobes::{LOBES, Lobes};
+use super::moments::{MOMENTS, moments, powers};
+
+/// Nodes of the sum of both inclinations, -pi to pi.
+pub const SUMS: usize = 257;
+/// Nodes of the light's inclination less the eye's, -pi to pi.
+pub const DIFFERENCES: usize = 49;
+/// Nodes of the eye's inclination, 0 to pi / 2.
+pub const EYES: usize = 17;
+/// Nodes of the turn between light and eye, 0 to pi.
+pub const TURNS: usize = 49;
+/// Nodes of the eye's inclination of the moments, -pi / 2 to pi / 2.
+pub const MOMENT_EYES: usize = 2 * EYES - 1;
+/// Multiples of the pigment at the root for which there are entries; the first is white hair.
+pub const LEVELS: [f32; 6] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0];
+/// Offsets across the width that are summed.
+const OFFSETS: usize = 96;
+
+/// First entry of the terms around the fibre: two for each `[level][eye][turn]`.
+pub const AROUND: usize = SUMS * DIFFERENCES;
+/// First entry of the moments: [`MOMENTS`] for each `[level][eye]`.
+pub const FIRST_MOMENT: usize = AROUND + 2 * LEVELS.len() * EYES * TURNS;
+/// First entry of the shares of the kinds of paths: two for each `[level][eye]`, as those around the fibre.
+pub const FIRST_SHARE: usize = FIRST_MOMENT + MOMENTS * LEVELS.len() * MOMENT_EYES;
+/// Number of entries.
+pub const ENTRIES: usize = FIRST_SHARE + 2 * LEVELS.len() * EYES;
+
+/// The tables of one fibre.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Entries, shape `[...][4]`: along the fibre R, TT and TRT, times [`evened`]; around it TT and R (last), then TRT; moments.
+    pub entries: Vec<Vec4>,
+    /// Least product of cosines by which the terms along the fibre are evened out.
+    pub floor: f32,
+}
+
+/// Terms around the fibre of one inclination of the eye, `[turn][lobe][channel]`.
+pub(super) type Ring = Vec<[[f64; 3]; LOBES]>;
+
+impl Table {
+    /// The tables of a fibre; absorption per fibre radius at the root.
+    pub fn new(lobes: &Lobes, absorption: [f64; 3]) -> Self {
+        let mut entries = Vec::with_capacity(ENTRIES);
+        // Wide lobes depend on little, and need no evening out.
+        let floor = lobes.variance().powi(6).clamp(0.02, 1.0) as f32;
+        for sum in 0..SUMS {
+            for difference in 0..DIFFERENCES {
+                let [sum, difference] = [node(sum, SUMS, PI), node(difference, DIFFERENCES, PI)];
+                let [eye, light] = [0.5 * (sum - difference), 0.5 * (sum + difference)];
+                let [r, tt, trt, _] = lobes
+                    .inclinations(eye, light)
+                    .map(|density| density * f64::from(evened((eye.cos() * light.cos()) as f32, floor)));
+                entries.push(Vec4::new(r as f32, tt as f32, trt as f32, 0.0));
+            }
+        }
+        let rings: Vec<[Ring; LEVELS.len()]> = (0..EYES)
+            .into_par_iter()
+            .map(|eye| rings(lobes, FRAC_PI_2 * eye as f64 / (EYES - 1) as f64, absorption))
+            .collect();
+        let levels = 0..LEVELS.len();
+        for level in levels.clone() {
+            for &[r, tt, trt, rest] in rings.iter().flat_map(|rings| &rings[level]) {
+                entries.push(vector(tt).extend(r[0] as f32));
+                // The rest is as wide along the fibre as TRT, and little.
+                entries.push((vector(trt) + vector(rest)).extend(0.0));
+            }
+        }
+        let along: Vec<_> = (0..MOMENT_EYES)
+            .into_par_iter()
+            .map(|eye| powers(lobes, node(eye, MOMENT_EYES, FRAC_PI_2)))
+            .collect();
+        for level in levels.clone() {
+            for (eye, along) in along.iter().enumerate() {
+                // The nodes are those of the rings, on both sides of 0.
+                let ring = &rings[eye.abs_diff(EYES - 1)][level];
+                entries.extend(moments(along, ring).map(|moment| vector(moment).extend(0.0)));
+            }
+        }
+        for level in levels.clone() {
+            for rings in &rings {
+                let [r, tt, trt, rest] = turn_sums(&rings[level], |_| 1.0);
+                entries.push(vector(tt).extend(r[0] as f32));
+                entries.push((vector(trt) + vector(rest)).extend(0.0));
+            }
+        }
+        debug_assert_eq!(entries.len(), ENTRIES);
+        Self { entries, floor }
+    }
+
+    /// Reflectance times the cosine of the light's inclination \[1/sr\], for the inclinations' sines of eye and
+    /// light, the cosine of the turn between them, and a multiple of the pigment. `shift` \[rad\] moves the
+    /// highlights.
+    #[inline]
+    pub fn scatter(&self, eye: f32, light: f32, turn: f32, pigment: f32, shift: f32) -> Vec3 {
+        let [r, tt, trt] = self.by_path(eye, light, turn, pigment, shift);
+        r + tt + trt
+    }
+
+    /// [`Table::scatter`] of R, TT and TRT.
+    #[inline]
+    pub fn by_path(&self, eye: f32, light: f32, turn: f32, pigment: f32, shift: f32) -> [Vec3; 3] {
+        let cosines = ((1.0 - eye * eye) * (1.0 - light * light)).max(0.0).sqrt();
+        let (eye, light) = (arc_sine(eye), arc_sine(light));
+        let along = self.along(eye, light, shift) / evened(cosines, self.floor);
+        let [first, second] = self.around(eye, FRAC_PI_2 as f32 - arc_sine(turn), pigment);
+        [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
+    }
+
+    /// Terms along the fibre of R, TT and TRT, times [`evened`].
+    #[inline]
+    fn along(&self, eye: f32, light: f32, shift: f32) -> Vec4 {
+        const WHOLE: f32 = std::f32::consts::PI;
+        let (row, part) = place((eye + light + shift + WHOLE) / (2.0 * WHOLE), SUMS);
+        let (column, across) = place((light - eye + WHOLE) / (2.0 * WHOLE), DIFFERENCES);
+        let first = row * DIFFERENCES + column;
+        let near = self.entries[first].lerp(self.entries[first + 1], across);
+        let far = self.entries[first + DIFFERENCES].lerp(self.entries[first + DIFFERENCES + 1], across);
+        near.lerp(far, part)
+    }
+
+    /// Terms around the fibre.
+    #[inline]
+    fn around(&self, eye: f32, turn: f32, pigment: f32) -> [Vec4; 2] {
+        let (row, down) = place(eye.abs() * std::f32::consts::FRAC_2_PI, EYES);
+        let (column, across) = place(turn * std::f32::consts::FRAC_1_PI, TURNS);
+        let (level, between) = level_of(pigment);
+        let at = |level: usize| {
+            let first = AROUND + 2 * ((level * EYES + row) * TURNS + column);
+            [0, 1].map(|part| {
+                let entry = |offset: usize| self.entries[first + part + 2 * offset];
+                let near = entry(0).lerp(entry(1), across);
+                near.lerp(entry(TURNS).lerp(entry(TURNS + 1), across), down)
+            })
+        };
+        let (low, high) = (at(level), at(level + 1));
+        [low[0].lerp(high[0], between), low[1].lerp(high[1], between)]
+    }
+
+    /// Shares of light that go as R, TT and TRT, for the sine of the eye's inclination.
+    #[inline]
+    pub fn shares(&self, eye: f32, pigment: f32) -> [Vec3; 3] {
+        let (row, part) = place(arc_sine(eye).abs() * std::f32::consts::FRAC_2_PI, EYES);
+        let (level, between) = level_of(pigment);
+        let [first, second] = [0, 1].map(|half| {
+            let at = |level: usize| {
+                let first = FIRST_SHARE + 2 * (level * EYES + row) + half;
+                self.entries[first].lerp(self.entries[first + 2], part)
+            };
+            at(level).lerp(at(level + 1), between)
+        });
+        [Vec3::splat(first.w), first.truncate(), second.truncate()]
+    }
+
+    /// The fibre's moments (see [`moments`]) for the sine of the eye's inclination and a multiple of the pigment.
+    #[inline]
+    pub fn moments(&self, eye: f32, pigment: f32) -> [Vec4; MOMENTS] {
+        let (row, part) = place(0.5 + arc_sine(eye) * std::f32::consts::FRAC_1_PI, MOMENT_EYES);
+        let (level, between) = level_of(pigment);
+        let first = FIRST_MOMENT + MOMENTS * (level * MOMENT_EYES + row);
+        std::array::from_fn(|moment| {
+            let at = |first: usize| {
+                self.entries[first + moment].lerp(self.entries[first + MOMENTS + moment], part)
+            };
+            at(first).lerp(at(first + MOMENTS * MOMENT_EYES), between)
+        })
+    }
+}
+
+/// What the terms along the fibre are multiplied with, so that they depend on the sum of the inclinations almost
+/// alone; from the product of the cosines.
+#[inline]
+fn evened(cosines: f32, floor: f32) -> f32 {
+    cosines.max(floor).sqrt()
+}
+
+/// The angle of a sine of -1 to 1, to 7e-5.
+#[inline]
+pub(crate) fn arc_sine(sine: f32) -> f32 {
+    let x = sine.abs().min(1.0);
+    // [Abramowitz1964 eq. 4.4.45]
+    let series = 1.570_728_8 + x * (-0.212_114_4 + x * (0.074_261 - 0.018_729_3 * x));
+    (FRAC_PI_2 as f32 - (1.0 - x).sqrt() * series).copysign(sine)
+}
+
+/// A node of so many from -`end` to `end`.
+fn node(index: usize, count: usize, end: f64) -> f64 {
+    end * (2.0 * index as f64 / (count - 1) as f64 - 1.0)
+}
+
+/// The node before a share of the way, and how far the next one is.
+#[inline]
+fn place(share: f32, count: usize) -> (usize, f32) {
+    let at = (share * (count - 1) as f32).clamp(0.0, count as f32 - 1.0);
+    let low = (at as usize).min(count - 2);
+    (low, at - low as f32)
+}
+
+/// The level before a multiple of the pigment, and how far the next one is.
+#[inline]
+fn level_of(pigment: f32) -> (usize, f32) {
+    let level = LEVELS[1..LEVELS.len() - 1].iter().filter(|level| pigment >= **level).count();
+    let (low, high) = (LEVELS[level], LEVELS[level + 1]);
+    (level, ((pigment - low) / (high - low)).clamp(0.0, 1.0))
+}
+
+fn vector(channels: [f64; 3]) -> Vec3 {
+    Vec3::from(channels.map(|channel| channel as f32))
+}
+
+/// The mean over the width of shares times densities of the turn, at every node of it, for each level of pigment.
+fn rings(lobes: &Lobes, eye: f64, absorption: [f64; 3]) -> [Ring; LEVELS.len()] {
+    let absorptions = LEVELS.map(|level| absorption.map(|channel| channel * f64::from(level)));
+    let mut rings = LEVELS.map(|_| vec![[[0.0; 3]; LOBES]; TURNS]);
+    for offset in 0..OFFSETS {
+        // Even steps of the angle at which the ray meets the surface; both sides are the same but for the turn's sign.
+        let angle = FRAC_PI_2 * (offset as f64 + 0.5) / OFFSETS as f64;
+        let (h, weight) = (angle.sin(), angle.cos() * FRAC_PI_2 / OFFSETS as f64);
+        let shares = absorptions.map(|absorption| lobes.shares(eye, h, absorption));
+        for index in 0..TURNS {
+            let turn = PI * index as f64 / (TURNS - 1) as f64;
+            let (one, other) = (lobes.turns(eye, h, turn), lobes.turns(eye, h, -turn));
+            for (ring, shares) in rings.iter_mut().zip(&shares) {
+                for lobe in 0..LOBES {
+                    let density = 0.5 * weight * (one[lobe] + other[lobe]);
+                    (0..3).for_each(|channel| ring[index][lobe][channel] += density * shares[lobe][channel]);
+                }
+            }
+        }
+    }
+    for (ring, absorption) in rings.iter_mut().zip(absorptions) {
+        balance(ring, lobes, eye, absorption);
+    }
+    rings
+}
+
+/// Scales each kind of path so that what the table's straight lines sum to is the share that goes that way.
+fn balance(ring: &mut Ring, lobes: &Lobes, eye: f64, absorption: [f64; 3]) {
+    let mut shares = [[0.0; 3]; LOBES];
+    for offset in 0..4 * OFFSETS {
+        let angle = FRAC_PI_2 * (offset as f64 + 0.5) / (4 * OFFSETS) as f64;
+        let weight = angle.cos() * FRAC_PI_2 / (4 * OFFSETS) as f64;
+        let found = lobes.shares(eye, angle.sin(), absorption);
+        for lobe in 0..LOBES {
+            (0..3).for_each(|channel| shares[lobe][channel] += weight * found[lobe][channel]);
+        }
+    }
+    let whole = turn_sums(ring, |_| 1.0);
+    for found in ring.iter_mut() {
+        for lobe in 0..LOBES {
+            for channel in 0..3 {
+                found[lobe][channel] *= shares[lobe][channel] / whole[lobe][channel].max(1e-300);
+            }
+        }
+    }
+}
+
+/// Sums a ring over the whole turn, weighted, with straight lines between its nodes.
+pub(super) fn turn_sums(ring: &Ring, weight: impl Fn(f64) -> f64) -> [[f64; 3]; LOBES] {
+    let mut sums = [[0.0; 3]; LOBES];
+    let step = PI / (TURNS - 1) as f64;
+    for (index, found) in ring.iter().enumerate() {
+        let half = if index == 0 || index == TURNS - 1 { 0.5 } else { 1.0 };
+        // Both sides of the eye.
+        let share = 2.0 * step * half * weight(step * index as f64);
+        for lobe in 0..LOBES {
+            (0..3).for_each(|channel| sums[lobe][channel] += share * found[lobe][channel]);
+        }
+    }
+    sums
+}

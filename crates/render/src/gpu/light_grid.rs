@@ -1,0 +1,260 @@
+//! Light that hair and skin scatter many times, and `shade` with it.
+
+use strandline_gpu::{Bound, BoundDrawing, Buffer, Drawing, Gpu, GpuError, Kernel, kernel};
+
+use super::body::Body;
+use super::buffers::{CELLS, Groom, Maps, Strands};
+use super::inputs::{Frame, LightSource};
+use super::{GpuRenderer, MAX_SHADOWS, draw};
+use crate::cpu::lattice::DIRECTIONS;
+use crate::cpu::shade_chiang::{Made, made_from};
+use crate::fibre::chiang::Table;
+use crate::{Look, RenderError};
+
+/// Sums of a cell, as in light_sums.wesl.
+const SUMS: usize = 10 + MAX_SHADOWS;
+/// Vectors of a cell behind the fibre's tables, and where they begin, as in light_cells.wesl.
+const GLOW: usize = 13;
+const FIRST_GLOW: usize = 24_576;
+/// Lines that begin on one of three faces of the grid, as in light_grid.wesl.
+pub(super) const LINES: usize = 3 * 44 * 44;
+
+kernel! {
+    /// One thread is one segment.
+    pub(super) struct SumHair in "light_sums" (super::linked::LIGHT_SUMS), entry "sum_hair" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        2 lights: Read LightSource,
+        3 fitted: Read [f32; 4],
+        4 maps: Read [u32; 4],
+        5 body_depths: Read f32,
+        9 sums: ReadWrite u32,
+    }
+}
+
+kernel! {
+    /// One thread is one triangle.
+    pub(super) struct SumSkin in "light_sums" (super::linked::LIGHT_SUMS), entry "sum_skin" {
+        0 frame: Read Frame,
+        2 lights: Read LightSource,
+        3 fitted: Read [f32; 4],
+        4 maps: Read [u32; 4],
+        5 body_depths: Read f32,
+        7 triangles: Read u32,
+        8 vertices: Read [f32; 4],
+        9 sums: ReadWrite u32,
+    }
+}
+
+kernel! {
+    /// One thread is one cell.
+    pub(super) struct Prepare in "light_prepare" (super::linked::LIGHT_PREPARE), entry "prepare" {
+        0 frame: Read Frame,
+        2 lights: Read LightSource,
+        3 fitted: Read [f32; 4],
+        4 open: Read [f32; 4],
+        6 cubes: Read [f32; 4],
+        9 sums: ReadWrite u32,
+        10 cells: ReadWrite [f32; 4],
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One thread is one line of cells along one direction.
+    pub(super) struct Carry in "light_grid" (super::linked::LIGHT_GRID), entry "carry" {
+        0 frame: Read Frame,
+        3 fitted: Read [f32; 4],
+        10 cells: ReadWrite [f32; 4],
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One workgroup is one cell.
+    pub(super) struct Scatter in "light_grid" (super::linked::LIGHT_GRID), entry "scatter" {
+        0 frame: Read Frame,
+        3 fitted: Read [f32; 4],
+        6 cubes: Read [f32; 4],
+        10 cells: ReadWrite [f32; 4],
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One thread is one cell.
+    pub(super) struct Gather in "light_gather" (super::linked::LIGHT_GATHER), entry "gather" {
+        0 frame: Read Frame,
+        3 fitted: Read [f32; 4],
+        4 open: Read [f32; 4],
+        6 cubes: Read [f32; 4],
+        7 glow: ReadWrite [f32; 4],
+        10 cells: ReadWrite [f32; 4],
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One thread is one point.
+    pub(super) struct ShadeChiang in "shade_chiang" (super::linked::SHADE_CHIANG), entry "shade_chiang" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        2 lights: Read LightSource,
+        3 fitted: Read [f32; 4],
+        4 maps: Read [u32; 4],
+        5 body_depths: Read f32,
+        6 cubes: Read [f32; 4],
+        7 radiances: ReadWrite [u32; 2],
+    }
+}
+
+/// The kernels and buffers of scattered light, there once a look asks for them.
+pub(super) struct LightGrid {
+    sum_hair: Kernel<SumHair<'static>>,
+    sum_skin: Kernel<SumSkin<'static>>,
+    prepare: Kernel<Prepare<'static>>,
+    carry: Kernel<Carry<'static>>,
+    scatter: Kernel<Scatter<'static>>,
+    gather: Kernel<Gather<'static>>,
+    shade: Kernel<ShadeChiang<'static>>,
+    body: Drawing<Body<'static>>,
+    sums: Buffer<u32>,
+    cells: Buffer<[f32; 4]>,
+    rays: Buffer<[f32; 4]>,
+    /// The fibre's tables with its scattering among directions.
+    lattice: Buffer<[f32; 4]>,
+    /// The fibre's tables, and scattered light of every cell.
+    glow: Buffer<[f32; 4]>,
+    made: Option<Made>,
+}
+
+/// The kernels, bound to the buffers of the moment.
+pub(super) struct Bounds {
+    pub sum_hair: Bound,
+    pub sum_skin: Bound,
+    pub prepare: Bound,
+    pub carry: Bound,
+    pub scatter: Bound,
+    pub gather: Bound,
+    pub shade: Bound,
+    pub body: BoundDrawing,
+}
+
+impl LightGrid {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            sum_hair: Kernel::new(gpu, &[])?,
+            sum_skin: Kernel::new(gpu, &[])?,
+            prepare: Kernel::new(gpu, &[])?,
+            carry: Kernel::new(gpu, &[])?,
+            scatter: Kernel::new(gpu, &[])?,
+            gather: Kernel::new(gpu, &[])?,
+            shade: Kernel::new(gpu, &[])?,
+            body: Drawing::new(gpu, &draw::body_output(), &[])?,
+            sums: Buffer::new(gpu, "sums of cells", SUMS * CELLS)?,
+            cells: Buffer::new(gpu, "cells", 4 * CELLS)?,
+            rays: Buffer::new(gpu, "light along directions", 2 * DIRECTIONS * CELLS)?,
+            lattice: Buffer::new(gpu, "scattering among directions", Made::lattice_len())?,
+            glow: Buffer::new(gpu, "scattered light", FIRST_GLOW + GLOW * CELLS)?,
+            made: None,
+        })
+    }
+
+    /// Tables of the fibre of a look, where they are not there yet.
+    pub fn write(&mut self, look: &Look) -> Result<(), RenderError> {
+        if self.made.as_ref().is_some_and(|made| made.from == made_from(look)) {
+            return Ok(());
+        }
+        let made = Made::new(look);
+        let table = made.device_table();
+        let numbers =
+            |entries: Vec<glam::Vec4>| entries.iter().map(|entry| entry.to_array()).collect::<Vec<_>>();
+        self.glow.write(&numbers(table))?;
+        self.lattice.write(&numbers(made.device_lattice()))?;
+        self.made = Some(made);
+        Ok(())
+    }
+
+    /// The sums, to be cleared before each frame.
+    pub fn sums(&self) -> &Buffer<u32> {
+        &self.sums
+    }
+
+    /// Binds the kernels.
+    pub fn bind(&self, gpu: &Gpu, groom: &Groom, strands: &Strands, maps: &Maps) -> Result<Bounds, GpuError> {
+        let Groom { frame, lights, fitted, cubes: open, triangles, vertices, .. } = groom;
+        let Strands { points, radiances, .. } = strands;
+        let Maps { texels: maps, body: body_depths, .. } = maps;
+        let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
+        Ok(Bounds {
+            sum_hair: self
+                .sum_hair
+                .bind(gpu, &SumHair { frame, points, lights, fitted, maps, body_depths, sums })?,
+            sum_skin: self.sum_skin.bind(
+                gpu,
+                &SumSkin { frame, lights, fitted, maps, body_depths, triangles, vertices, sums },
+            )?,
+            prepare: self
+                .prepare
+                .bind(gpu, &Prepare { frame, lights, fitted, open, cubes, sums, cells, rays })?,
+            carry: self.carry.bind(gpu, &Carry { frame, fitted, cells, rays })?,
+            scatter: self.scatter.bind(gpu, &Scatter { frame, fitted, cubes, cells, rays })?,
+            gather: self.gather.bind(gpu, &Gather { frame, fitted, open, cubes, glow, cells, rays })?,
+            shade: self.shade.bind(
+                gpu,
+                &ShadeChiang { frame, points, lights, fitted, maps, body_depths, cubes: glow, radiances },
+            )?,
+            body: self.body.bind(
+                gpu,
+                &Body { frame, lights, fitted, maps, body_depths, cubes: glow, triangles, vertices },
+            )?,
+        })
+    }
+}
+
+impl GpuRenderer {
+    /// Makes room for scattered light, and the fibre's tables.
+    pub(super) fn prepare_light(&mut self, look: &Look) -> Result<(), RenderError> {
+        if self.light_grid.is_none() {
+            self.light_grid = Some(LightGrid::new(&self.gpu)?);
+        }
+        let Some(grid) = &mut self.light_grid else { unreachable!("made above") };
+        grid.write(look)?;
+        if self.light_bounds.is_none()
+            && let (Some(strands), Some(maps)) = (&self.strands, &self.maps)
+        {
+            self.light_bounds = Some(grid.bind(&self.gpu, &self.groom, strands, maps)?);
+        }
+        Ok(())
+    }
+}
+
+const _: () = assert!(crate::fibre::chiang::ENTRIES <= FIRST_GLOW);
+
+impl Made {
+    /// The tables as a device reads them.
+    fn device_table(&self) -> Vec<glam::Vec4> {
+        let mut entries = self.table.entries.clone();
+        self.note(&self.table, &mut entries);
+        entries
+    }
+
+    /// Behind the tables directions of hair and what it shows.
+    fn device_lattice(&self) -> Vec<glam::Vec4> {
+        let mut entries = self.lattice.entries();
+        self.note(self.lattice.table(), &mut entries);
+        entries
+    }
+
+    /// Single numbers, in the last lanes of the first entries.
+    fn note(&self, table: &Table, entries: &mut [glam::Vec4]) {
+        let albedo = self.lattice.albedo();
+        let numbers = [table.floor, albedo.x, albedo.y, albedo.z, self.from.2, self.from.0.tip_pigment];
+        entries.iter_mut().zip(numbers).for_each(|(entry, number)| entry.w = number);
+    }
+
+    fn lattice_len() -> usize {
+        use crate::cpu::lattice::TANGENTS;
+        crate::fibre::chiang::ENTRIES + TANGENTS + TANGENTS * DIRECTIONS * DIRECTIONS
+    }
+}
