@@ -99,9 +99,9 @@ mod tests {
         let expected: f32 = sphere().map(|w| light(w) * 4.0 * w.dot(n).max(0.0) / 4000.0).sum();
         let found = on_surface(&field, n).x;
         assert!((found - expected).abs() < 2e-3, "{found} {expected}");
-        // A strong light from one side sends nothing below nothing to the other.
+        // Light from one side is hardly taken for light from the other: the second order leaves 1 of 17.
         let mut field = Field::default();
         add(&mut field, Vec3::Y, Vec4::ONE);
-        assert_eq!(on_surface(&field, Vec3::NEG_Y).min_element(), 0.0);
+        assert!(on_surface(&field, Vec3::NEG_Y).x < 0.06 * on_surface(&field, Vec3::Y).x);
     }
 }
