@@ -2,6 +2,7 @@
 
 mod angles;
 mod attributes;
+mod bound;
 mod contact;
 mod curl;
 mod free_strand;

@@ -4,7 +4,7 @@ use glam::{Quat, Vec3, Vec4};
 use strandline_body::{Mannequin, Mesh, Pose};
 use strandline_checks::flip::compare;
 use strandline_checks::gpu;
-use strandline_groom::{Guides, Style, StyleSettings};
+use strandline_groom::{Guides, Style, StyleSettings, Widths};
 use strandline_render::cpu::layer_colors::{LAYER_COLORS, layer_colors};
 use strandline_render::cpu::{
     Curves, Occlusion, ShadowBody, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade,
@@ -51,6 +51,19 @@ impl Both {
             detail: LevelOfDetail::default(),
             settings: PictureSettings::sized(256, 256),
         }
+    }
+
+    /// The same of a groom with colours and widths of its own, which change along its strands.
+    pub(crate) fn colored() -> Self {
+        let both = Self::new(Style::Bob, 12);
+        let mut groom = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) }.grow().unwrap();
+        let count = groom.points.len();
+        let number = |point: usize, step: f32| (step * point as f32).fract();
+        groom.widths =
+            Widths::PerPoint((0..count).map(|point| 1e-4 * (0.2 + number(point, 0.618))).collect());
+        groom.colors =
+            Some((0..count).map(|point| [0.31, 0.57, 0.73].map(|step| number(point, step))).collect());
+        Self { guides: Guides::resample(&groom, 12).unwrap(), ..both }
     }
 
     /// Guide points as they hang at rest from the head's pose.
@@ -227,6 +240,32 @@ fn shade_agrees_point_by_point() {
         let worst = pairs.filter(|(one, other)| (**one - **other).abs().max_element() > 0.01).count();
         assert!(worst * 10_000 <= found.len(), "{style:?}: {worst} of {}", found.len());
     }
+}
+
+#[test]
+fn colours_and_widths_of_the_groom_are_drawn_alike() {
+    let both = Both::colored();
+    let positions = both.positions();
+    let (_, strands, _) = both.on_cpu(&positions);
+    let plain = Both::new(Style::Bob, 12);
+    let (_, of_look, _) = plain.on_cpu(&positions);
+    let change = |one: f32, other: f32| (one - other).abs() > 0.1 * other;
+    let thinner =
+        strands.widths.iter().zip(&of_look.widths).filter(|(one, other)| change(**one, **other)).count();
+    assert!(thinner * 2 > strands.widths.len(), "the groom's widths count: {thinner}");
+    let green = |strands: &Strands| strands.radiances.iter().map(|radiance| radiance.y).sum::<f32>();
+    assert!(change(green(&strands), green(&of_look)), "the groom's colours count");
+    let Some(renderer) = drawn_on_gpu(&both, &positions, false) else { return };
+    let found = renderer.strands().unwrap();
+    for (expected, width) in strands.widths.iter().zip(&found.widths) {
+        // Shares of 1 are mixed, then multiplied: four roundings.
+        assert!((width - expected).abs() <= 4e-6 * expected.max(1e-6), "{width} and {expected}");
+    }
+    let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
+    let pairs = strands.radiances.iter().zip(&found.radiances);
+    let off: f32 = pairs.map(|(one, other)| (*one - *other).abs().element_sum()).sum();
+    // Half floats of colours, then of radiances: each rounds by 1.2e-4 of the value in the mean.
+    assert!(off <= 1e-3 * all, "{off} of {all}");
 }
 
 #[test]

@@ -235,8 +235,8 @@ impl App {
     fn take_news(&mut self) {
         for news in self.live.take_news() {
             match news {
-                News::Loaded(number, camera, bounds, notes) => {
-                    self.take_scene(number, camera, bounds);
+                News::Loaded(number, scene, camera, bounds, notes) => {
+                    self.take_scene(number, *scene, camera, bounds);
                     notes.into_iter().for_each(|note| self.note(note));
                 }
                 News::Note(note) => self.note(note),
@@ -261,9 +261,11 @@ impl App {
     }
 
     /// Makes the scene that has come the one that the controls change.
-    fn take_scene(&mut self, number: u64, camera: Camera, bounds: Aabb) {
-        let Some((_, scene)) = self.pending.take_if(|(pending, _)| *pending == number) else { return };
-        (self.scene, self.loaded) = (*scene, number);
+    fn take_scene(&mut self, number: u64, scene: Scene, camera: Camera, bounds: Aabb) {
+        if self.pending.take_if(|(pending, _)| *pending == number).is_none() {
+            return;
+        }
+        (self.scene, self.loaded) = (scene, number);
         if self.scene.lights.is_empty() {
             // Those that it is lit with, for the panel to change.
             self.scene.lights = Light::three_point(0.5 * (bounds.min + bounds.max)).to_vec();

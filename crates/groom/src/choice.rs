@@ -132,6 +132,28 @@ impl Groom {
         chosen
     }
 
+    /// Distance \[m\] of roots from the nearest other one, of about so many strands.
+    pub fn nearest_roots(&self, count: usize) -> Vec<f32> {
+        let features = features(self);
+        let roots = Roots::new(&features);
+        let every = (self.strand_count() / count.max(1)).max(1);
+        let strands: Vec<usize> = (0..self.strand_count()).step_by(every).collect();
+        let nearest = |strand: usize| {
+            let (root, mut nearest) = (features[strand].root, f32::INFINITY);
+            roots.outward(root, |other| {
+                let distance = features[other].root.distance(root);
+                // Strands that share a root stand for one.
+                if other != strand && distance > 0.0 {
+                    nearest = nearest.min(distance);
+                }
+                nearest
+            });
+            nearest
+        };
+        let found = strands.into_par_iter().map(nearest);
+        found.filter(|distance| distance.is_finite()).collect()
+    }
+
     /// The strands that are marked as guides, by their indices; none when no strand is.
     pub fn marked_guides(&self) -> Vec<usize> {
         let flags = self.guide_flags.as_deref().unwrap_or_default();

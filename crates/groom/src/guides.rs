@@ -2,7 +2,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::SettingError;
 
-use crate::{Groom, GroomError, LANES, Vec3Lanes, attributes, block_count};
+use crate::{Groom, GroomError, LANES, Vec3Lanes, Widths, attributes, block_count};
 
 /// The simulated strands at rest: each resampled to the same number of points at equal arc
 /// length, stored in blocks of [`LANES`] strands.
@@ -16,6 +16,8 @@ pub struct Guides {
     positions: Vec<Vec3Lanes>,
     root_normals: Vec<Vec3>,
     widths: Vec<f32>,
+    profiles: Option<Vec<f32>>,
+    colors: Option<Vec<[f32; 3]>>,
     masses: Option<Vec<f32>>,
     velocities: Option<Vec<Vec3>>,
 }
@@ -52,14 +54,29 @@ impl Guides {
             }
         });
         let root_normals = (0..strand_count).map(|strand| root_normal(groom, strand)).collect();
-        let widths = groom.root_widths().collect();
+        let (widths, profiles) = widths(groom, points_per_strand);
+        let colors = groom.colors.as_ref().map(|all| {
+            attributes::along(groom, all, points_per_strand, |one: [f32; 3], two, share| {
+                std::array::from_fn(|channel| one[channel] + (two[channel] - one[channel]) * share)
+            })
+        });
         let masses =
             (0..strand_count).filter_map(|strand| attributes::masses(groom, strand, points_per_strand));
         let masses = groom.masses.is_some().then(|| masses.flatten().collect());
         let velocities = groom.velocities.as_ref().map(|all| {
             attributes::along(groom, all, points_per_strand, |one: Vec3, two, share| one.lerp(two, share))
         });
-        Ok(Self { strand_count, points_per_strand, positions, root_normals, widths, masses, velocities })
+        Ok(Self {
+            strand_count,
+            points_per_strand,
+            positions,
+            root_normals,
+            widths,
+            profiles,
+            colors,
+            masses,
+            velocities,
+        })
     }
 
     /// Number of strands.
@@ -102,9 +119,20 @@ impl Guides {
         self.root_normals = root_normals;
     }
 
-    /// Root diameters \[m\], shape `[strand]`.
+    /// Largest diameters \[m\], shape `[strand]`.
     pub fn widths(&self) -> &[f32] {
         &self.widths
+    }
+
+    /// Diameters as shares of the largest of their strand, shape `[strand][point]`, where the groom has diameters
+    /// that change along strands.
+    pub fn profiles(&self) -> Option<&[f32]> {
+        self.profiles.as_deref()
+    }
+
+    /// Colours, linear RGB, shape `[strand][point]`, where the groom has some.
+    pub fn colors(&self) -> Option<&[[f32; 3]]> {
+        self.colors.as_deref()
     }
 
     /// Masses \[kg\], shape `[strand][point]`, where the groom has some.
@@ -171,6 +199,19 @@ impl Guides {
     }
 }
 
+/// The largest diameter \[m\] of each strand, and those along it as shares of that, where they change.
+fn widths(groom: &Groom, points_per_strand: usize) -> (Vec<f32>, Option<Vec<f32>>) {
+    let Widths::PerPoint(widths) = &groom.widths else { return (groom.root_widths().collect(), None) };
+    let mut along =
+        attributes::along(groom, widths, points_per_strand, |one: f32, two, share| one + (two - one) * share);
+    let largest = along.chunks_exact_mut(points_per_strand).map(|widths| {
+        let largest = widths.iter().copied().fold(0.0, f32::max);
+        widths.iter_mut().for_each(|width| *width /= largest.max(f32::MIN_POSITIVE));
+        largest
+    });
+    (largest.collect(), Some(along))
+}
+
 fn root_normal(groom: &Groom, strand: usize) -> Vec3 {
     let points = groom.strand(strand);
     match &groom.root_normals {
@@ -199,6 +240,20 @@ mod tests {
             assert!((guides.position(0, point) - expected).length() < 1e-6);
         }
         assert_eq!(guides.positions()[4].get(7), guides.position(0, 4));
+    }
+
+    #[test]
+    fn widths_and_colours_along_strands_are_those_at_the_new_points() {
+        let mut groom = Groom::empty(8e-5);
+        groom.push([Vec3::ZERO, Vec3::X]);
+        groom.push([Vec3::ZERO, Vec3::X, Vec3::X * 4.0]);
+        groom.widths = Widths::PerPoint(vec![2.0, 2.0, 1.0, 4.0, 1.0]);
+        groom.colors = Some((0..5).map(|point| [point as f32, 0.5, 1.0]).collect());
+        let guides = Guides::resample(&groom, 5).unwrap();
+        assert_eq!(guides.widths(), [2.0, 4.0]);
+        assert_eq!(guides.profiles().unwrap()[5..], [0.25, 1.0, 0.75, 0.5, 0.25]);
+        assert_eq!(guides.colors().unwrap()[2], [0.5, 0.5, 1.0]);
+        assert_eq!(guides.colors().unwrap()[6], [3.0, 0.5, 1.0]);
     }
 
     #[test]

@@ -3,7 +3,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use crate::{
-    Devices, Error, Ray, Scene,
+    BoundStrands, Devices, Error, Ray, Scene,
     body::{Aabb, Collider, Mesh, Pose},
     devices::{Opened, Pair},
     engine::Engine,
@@ -105,7 +105,7 @@ impl Hair {
         settings: &Settings,
     ) -> Result<Self, Error> {
         let pair = devices.into().open()?;
-        Self::placed(pair, guides, mesh, colliders, settings)
+        Self::placed(pair, guides, None, mesh, colliders, settings)
     }
 
     /// As [`Hair::with_body`], simulated and drawn on a device that the host owns.
@@ -121,12 +121,13 @@ impl Hair {
     ) -> Result<Self, Error> {
         let opened = || Opened { gpu: Some(gpu.clone()), fall_back: false };
         let pair = Pair { simulation: opened(), pictures: opened(), notes: Vec::new() };
-        Self::placed(pair, guides, mesh, colliders, settings)
+        Self::placed(pair, guides, None, mesh, colliders, settings)
     }
 
     fn placed(
         devices: Pair,
         guides: Guides,
+        bound: Option<BoundStrands>,
         mesh: Option<&Mesh>,
         colliders: Vec<Collider>,
         settings: &Settings,
@@ -134,9 +135,9 @@ impl Hair {
         let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
         let mut engine = Engine::new(gpu.as_ref(), Solver::new(&guides, settings, colliders)?, fall_back)?;
         engine.notes.extend(notes);
-        let bounds = prepare::bounds(&guides, mesh);
+        let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
         let studio = Studio {
-            painter: Painter::new(pictures, &guides, mesh)?,
+            painter: Painter::new(pictures, &guides, bound, mesh)?,
             guides,
             bounds,
             lights: Vec::new(),
@@ -174,8 +175,9 @@ impl Hair {
     pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
         // What only pictures need is refused now too, not when the first one is drawn.
         scene.check()?;
-        let Prepared { guides, mesh, colliders, head, pose, .. } = prepared;
-        let mut hair = Self::with_body(devices, guides, mesh.as_ref(), colliders, &scene.simulation)?;
+        let Prepared { guides, bound, mesh, colliders, head, pose, .. } = prepared;
+        let pair = devices.into().open()?;
+        let mut hair = Self::placed(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
         if !scene.lights.is_empty() {
             hair.lights.clone_from(&scene.lights);
         }

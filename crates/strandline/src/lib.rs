@@ -22,6 +22,7 @@
 #![forbid(unsafe_code)]
 
 mod attributes;
+mod bound;
 mod cache;
 mod course;
 mod devices;
@@ -53,6 +54,7 @@ pub use strandline_render as render;
 pub use strandline_sim as sim;
 
 pub use body::{Motion, Pose};
+pub use bound::BoundStrands;
 pub use cache::{Cache, Out, OutSettings, Target, What, Written, check_cache};
 pub use devices::Devices;
 pub use error::Error;

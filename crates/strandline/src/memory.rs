@@ -7,14 +7,15 @@ use crate::{
     render::{Light, RenderError, memory::Drawn},
 };
 
-/// Refuses a scene of so many simulated strands that would take more memory than a run may.
-pub(crate) fn check(scene: &Scene, strand_count: usize) -> Result<(), Error> {
+/// Refuses a scene of so many strands that are simulated, and that others are grown about for pictures, that would
+/// take more memory than a run may.
+pub(crate) fn check(scene: &Scene, simulated: usize, drawn: usize) -> Result<(), Error> {
     let points_per_strand = scene.groom.points_per_strand as usize;
-    let mut needs = scene.simulation.memory(strand_count, points_per_strand);
+    let mut needs = scene.simulation.memory(simulated, points_per_strand);
     let default = [Light::default(); 3];
     let lights = if scene.lights.is_empty() { &default } else { scene.lights.as_slice() };
     let (look, picture) = (&scene.look, &scene.picture);
-    let drawn = Drawn { guide_count: strand_count, points_per_strand, look, lights, picture };
+    let drawn = Drawn { guide_count: drawn, points_per_strand, look, lights, picture };
     needs.extend(drawn.memory(&scene.level_of_detail));
     Ok(memory::check(&needs)?)
 }

@@ -1,11 +1,14 @@
 //! Pictures on whichever backend draws them.
 
+use std::time::Instant;
+
 use strandline_gpu::Gpu;
 
 use crate::{
+    BoundStrands,
     body::Mesh,
     devices::Opened,
-    groom::Guides,
+    groom::{Guides, Vec3Lanes},
     hair::place,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
@@ -19,7 +22,11 @@ pub(crate) struct Painter {
     /// Draws what is more than the GPU draws, and whether it drew the last picture.
     stand_in: Option<Box<Renderer>>,
     stands_in: bool,
-    guides: Guides,
+    /// The strands that are drawn, at rest.
+    strands: Guides,
+    /// What moves them where they are not the simulated ones, and where it has them.
+    bound: Option<BoundStrands>,
+    places: Vec<Vec3Lanes>,
     mesh: Option<Mesh>,
     settings: PictureSettings,
     /// The light whose layers colour the hair.
@@ -37,11 +44,17 @@ enum Place {
 
 impl Painter {
     /// A painter on a device, or on the CPU without one.
-    pub fn new(device: Opened, guides: &Guides, mesh: Option<&Mesh>) -> Result<Self, RenderError> {
+    pub fn new(
+        device: Opened,
+        guides: &Guides,
+        bound: Option<BoundStrands>,
+        mesh: Option<&Mesh>,
+    ) -> Result<Self, RenderError> {
+        let strands = bound.as_ref().map_or(guides, BoundStrands::strands).clone();
         let settings = PictureSettings::default();
         let mut notes = Vec::new();
         let placed = match &device.gpu {
-            Some(gpu) => match GpuRenderer::new(gpu, guides, mesh, &settings) {
+            Some(gpu) => match GpuRenderer::new(gpu, &strands, mesh, &settings) {
                 Err(error) if device.fall_back => {
                     notes.push(format!("drawing on the CPU: {error}"));
                     None
@@ -52,16 +65,16 @@ impl Painter {
         };
         let place = match placed {
             Some(place) => place,
-            None => Place::Cpu(Renderer::new(guides, mesh, &settings)?.into()),
+            None => Place::Cpu(Renderer::new(&strands, mesh, &settings)?.into()),
         };
-        let (guides, mesh) = (guides.clone(), mesh.cloned());
-        let stand_in = None;
         Ok(Self {
             place,
-            stand_in,
+            stand_in: None,
             stands_in: false,
-            guides,
-            mesh,
+            strands,
+            bound,
+            places: Vec::new(),
+            mesh: mesh.cloned(),
             settings,
             layers_of: None,
             fall_back: device.fall_back,
@@ -110,6 +123,17 @@ impl Painter {
         points: Option<DevicePoints>,
     ) -> Result<(Picture, FrameReport), RenderError> {
         let mut picture = Picture::default();
+        let mut places = std::mem::take(&mut self.places);
+        let begin = Instant::now();
+        let (bound, positions, points) = match &self.bound {
+            None => (None, input.positions, points),
+            // The host has the guides' points whatever device they are on.
+            Some(bound) => {
+                bound.place(input.positions, &input.world_from_head, &mut places);
+                (Some(begin.elapsed().as_secs_f64()), &places[..], None)
+            }
+        };
+        let input = &FrameInput { positions, ..*input };
         let drawn = match &mut self.place {
             Place::Cpu(renderer) => {
                 renderer.show_layers(self.layers_of);
@@ -122,9 +146,16 @@ impl Painter {
         };
         self.stands_in = self.fall_back && matches!(drawn, Err(RenderError::TooMany { .. }));
         let report = match drawn {
-            Err(failure) if self.stands_in => self.stand_in(failure)?.draw_into(input, &mut picture)?,
-            drawn => drawn?,
+            Err(failure) if self.stands_in => {
+                self.stand_in(failure).and_then(|renderer| renderer.draw_into(input, &mut picture))
+            }
+            drawn => drawn,
         };
+        self.places = places;
+        let mut report = report?;
+        if let Some(seconds) = bound {
+            report.seconds.insert(0, ("bind", seconds));
+        }
         Ok((picture, report))
     }
 
@@ -134,7 +165,7 @@ impl Painter {
             Some(renderer) => renderer,
             none => {
                 self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
-                let renderer = Renderer::new(&self.guides, self.mesh.as_ref(), &self.settings)?;
+                let renderer = Renderer::new(&self.strands, self.mesh.as_ref(), &self.settings)?;
                 none.insert(renderer.into())
             }
         };
@@ -162,7 +193,7 @@ impl Painter {
         if !(self.fall_back && failure.is_of_gpu() && self.gpu().is_some()) {
             return Err(failure);
         }
-        self.place = Place::Cpu(Renderer::new(&self.guides, self.mesh.as_ref(), settings)?.into());
+        self.place = Place::Cpu(Renderer::new(&self.strands, self.mesh.as_ref(), settings)?.into());
         self.notes.push(format!("drawing on the CPU from here on: {failure}"));
         Ok(())
     }

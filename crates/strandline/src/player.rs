@@ -74,6 +74,8 @@ impl Player {
         let mut prepared = Prepared::new(scene)?;
         let head = prepared.head.clone();
         let mut notes = std::mem::take(&mut prepared.notes);
+        let fitted = prepared.scene.clone();
+        let scene = &fitted;
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
         let camera = scene.camera.camera(prepared.bounds, aspect);
         let mut hair = Hair::from_scene(scene, prepared, devices)?;

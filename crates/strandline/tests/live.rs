@@ -293,7 +293,7 @@ fn hair_is_pulled_by_a_hand() {
     let live = Live::new(long, || ()).unwrap();
     let camera = wait(|| {
         live.take_news().into_iter().find_map(|news| match news {
-            News::Loaded(_, camera, ..) => Some(camera),
+            News::Loaded(_, _, camera, ..) => Some(camera),
             _ => None,
         })
     });

@@ -117,7 +117,7 @@ impl Play {
         loop {
             for news in self.live.take_news() {
                 match news {
-                    News::Loaded(_, camera, ..) => self.camera = camera,
+                    News::Loaded(_, _, camera, ..) => self.camera = camera,
                     News::NotLoaded(_, error) | News::Error(error) => anyhow::bail!("{error}"),
                     _ => {}
                 }

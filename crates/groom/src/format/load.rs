@@ -72,13 +72,15 @@ impl From<Scale> for ScaleText {
 
 choices! {
     /// The axis of a file that points up.
-    pub enum Up as "groom.up" {
+    pub enum Up as "up" {
+        /// The one that groom and body show, y where there is no body.
+        Auto = "auto",
         /// y, as here; the face looks along +z.
         Y = "y",
         /// z; the face looks along -y.
         Z = "z",
     }
-    default Y
+    default Auto
 }
 
 /// How a file is read.
@@ -218,7 +220,7 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
         problems.push(format!("one unit of the file is taken as {scale} m"));
     }
     let rotation = match options.up {
-        Up::Y => Quat::IDENTITY,
+        Up::Auto | Up::Y => Quat::IDENTITY,
         Up::Z => Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2),
     };
     groom.transform(scale, rotation, Vec3::ZERO);

@@ -29,8 +29,10 @@ pub fn interpolate(
     let strands_per_guide = level.strand_count();
     let points_per_strand = curves.points_per_curve;
     out.resize(curves.guide_count, strands_per_guide, points_per_strand);
+    color(curves, guides, out);
     let shared = Shared {
         curves,
+        guides,
         look,
         level,
         tapers: tapers(&curves.parameters, &look.clump),
@@ -42,14 +44,15 @@ pub fn interpolate(
         .zip_eq(out.tangents.par_chunks_mut(size))
         .zip_eq(out.widths.par_chunks_mut(size))
         .enumerate()
-        .for_each_init(Vec::new, |curve, (guide, ((positions, tangents), widths))| {
-            let skin = skin_frame(guides.root_normals()[guide], world_from_head);
-            let guide = Guide::new(&shared, guide, skin, guides.widths()[guide], curve);
+        .for_each_init(Vec::new, |curve, (guide_index, ((positions, tangents), widths))| {
+            let skin = skin_frame(guides.root_normals()[guide_index], world_from_head);
+            let width = guides.widths()[guide_index];
+            let guide = Guide::new(&shared, guide_index, skin, width, curve);
             for index in 0..strands_per_guide {
                 let range = index * points_per_strand..(index + 1) * points_per_strand;
                 let strand = Strand::new(&shared, &guide, index);
                 strand.place(&shared, &guide, &mut positions[range.clone()]);
-                strand.widen(&shared, &guide, index, &mut widths[range.clone()]);
+                strand.widen(&shared, &guide, guide_index, index, &mut widths[range.clone()]);
                 differentiate(&positions[range.clone()], &mut tangents[range]);
             }
         });
@@ -58,6 +61,7 @@ pub fn interpolate(
 /// What all guides have in common.
 struct Shared<'a> {
     curves: &'a Curves,
+    guides: &'a Guides,
     look: &'a Look,
     level: &'a DetailLevel,
     /// Clump radius \[m\] at each point.
@@ -217,15 +221,46 @@ impl Strand {
         guide.curve[segment].lerp(&guide.curve[segment + 1], share)
     }
 
-    fn widen(&self, shared: &Shared, guide: &Guide, index: usize, widths: &mut [f32]) {
+    fn widen(&self, shared: &Shared, guide: &Guide, guide_index: usize, index: usize, widths: &mut [f32]) {
         let root = guide.width * shared.level.width_scale(index);
         let tip = shared.look.tip_width;
+        let own = shared.guides.profiles().map(|all| of_guide(shared.guides, all, guide_index));
         for (width, parameter) in widths.iter_mut().zip(&shared.curves.parameters) {
             // Even for most of the length, then thinning ever faster toward the tip.
             let thinning = parameter * parameter * parameter;
-            *width = root * (1.0 - (1.0 - tip) * thinning);
+            let of_look = || 1.0 - (1.0 - tip) * thinning;
+            let of_groom = |own| between(own, *parameter, |one: f32, two, share| one + (two - one) * share);
+            *width = root * own.map_or_else(of_look, of_groom);
         }
     }
+}
+
+/// What the points of one guide have.
+fn of_guide<'a, T>(guides: &Guides, all: &'a [T], guide: usize) -> &'a [T] {
+    let count = guides.points_per_strand();
+    &all[guide * count..(guide + 1) * count]
+}
+
+/// What lies at a parameter, 0 to 1, of a guide between two of its points.
+fn between<T: Copy, M>(values: &[T], parameter: f32, mix: impl Fn(T, T, f32) -> M) -> M {
+    let place = parameter * (values.len() - 1) as f32;
+    let segment = (place as usize).min(values.len() - 2);
+    mix(values[segment], values[segment + 1], place - segment as f32)
+}
+
+/// The colours of the groom at the points of the curves.
+fn color(curves: &Curves, guides: &Guides, out: &mut Strands) {
+    out.colors.clear();
+    let Some(colors) = guides.colors() else { return };
+    out.colors.resize(curves.guide_count * curves.points_per_curve, Vec3::ZERO);
+    let rows = out.colors.par_chunks_mut(curves.points_per_curve).enumerate();
+    rows.for_each(|(guide, row)| {
+        let own = of_guide(guides, colors, guide);
+        for (color, parameter) in row.iter_mut().zip(&curves.parameters) {
+            *color =
+                between(own, *parameter, |one: [f32; 3], two, share| Vec3::from(one).lerp(two.into(), share));
+        }
+    });
 }
 
 /// Length of a follow strand over that of its guide.

@@ -28,6 +28,7 @@ pub fn shade(
     let count = strands.points_per_strand;
     let per_guide = strands.strands_per_guide;
     let shared = Shared::new(shadows, lights, look, eye, occlusion);
+    let colors = &strands.colors;
     strands
         .radiances
         .par_chunks_mut(count * per_guide)
@@ -35,13 +36,14 @@ pub fn shade(
         .zip_eq(strands.tangents.par_chunks(count * per_guide))
         .enumerate()
         .for_each(|(guide, ((radiances, positions), tangents))| {
+            let own = colors.get(guide * count..(guide + 1) * count).filter(|own| !own.is_empty());
             let places = positions.chunks(count).zip(tangents.chunks(count));
             for (index, (radiances, (positions, tangents))) in
                 radiances.chunks_mut(count).zip(places).enumerate()
             {
                 let color = StrandColor::new(look, guide as u32, index as u32);
                 for first in (0..count).step_by(LANES) {
-                    let points = Points::load(positions, tangents, first, &color);
+                    let points = Points::load(positions, tangents, first, &color, own);
                     let radiance = shared.radiance(&points);
                     let lanes = (count - first).min(LANES);
                     for (lane, slot) in radiances[first..first + lanes].iter_mut().enumerate() {
@@ -54,6 +56,8 @@ pub fn shade(
 
 /// Noise nodes along a strand.
 const NODES: usize = 8;
+/// Greatest reflectance.
+const MOST: f32 = 0.99;
 
 /// What sets one strand apart from the others.
 struct StrandColor {
@@ -76,7 +80,7 @@ impl StrandColor {
         let white = random.unit() < look.grey;
         let color = |color: Vec3| {
             let color = if white { Vec3::new(0.62, 0.62, 0.60) } else { color };
-            (color * brightness).clamp(Vec3::ZERO, Vec3::splat(0.99))
+            (color * brightness).clamp(Vec3::ZERO, Vec3::splat(MOST))
         };
         let jitter = 2.0 * look.highlight_noise.to_radians();
         let whole = 2.0 * random.unit() - 1.0;
@@ -101,7 +105,13 @@ struct Points {
 }
 
 impl Points {
-    fn load(positions: &[Vec3], tangents: &[Vec3], first: usize, strand: &StrandColor) -> Self {
+    fn load(
+        positions: &[Vec3],
+        tangents: &[Vec3],
+        first: usize,
+        strand: &StrandColor,
+        own: Option<&[Vec3]>,
+    ) -> Self {
         let last = positions.len() - 1;
         let mut lanes = [Vec3Lanes::default(); 3];
         let mut places = [Vec3::ZERO; LANES];
@@ -118,7 +128,11 @@ impl Points {
             places[lane] = positions[point];
             lanes[0].set(lane, positions[point]);
             lanes[1].set(lane, tangents[point]);
-            lanes[2].set(lane, strand.root.lerp(strand.tip, share));
+            let color = match own {
+                Some(own) => own[point].clamp(Vec3::ZERO, Vec3::splat(MOST)),
+                None => strand.root.lerp(strand.tip, share),
+            };
+            lanes[2].set(lane, color);
         }
         let color = Wide3::load(&lanes[2]);
         // The second highlight crosses the hair once there and back, diffuse light many hairs: its

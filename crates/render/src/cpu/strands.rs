@@ -18,6 +18,8 @@ pub struct Strands {
     pub tangents: Vec<Vec3>,
     /// Diameters \[m\], after taper and level of detail.
     pub widths: Vec<f32>,
+    /// Colours of the groom, linear RGB, shape `[guide][point]`; empty where it has none.
+    pub colors: Vec<Vec3>,
     /// Radiance toward the camera, linear RGB; filled by `shade`.
     pub radiances: Vec<Vec3>,
 }

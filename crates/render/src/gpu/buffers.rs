@@ -30,7 +30,8 @@ pub(super) struct Groom {
     pub areas: Buffer<u32>,
     /// Guide points \[m\], world space, `[block][point][component][lane]`.
     pub places: Buffer<f32>,
-    /// Three vectors a guide: see tessellate.wesl.
+    /// Three vectors a guide: see tessellate.wesl. Behind them, where the groom has colours or widths along
+    /// strands, one of each guide's points: colour and share of the largest width.
     pub roots: Buffer<[f32; 4]>,
     /// Per guide: see tessellate.wesl.
     pub clumps: Buffer<[f32; 4]>,
@@ -52,6 +53,7 @@ impl Groom {
                 let [first, second] = skin_axes(normal);
                 [normal.extend(width), first.extend(0.0), second.extend(0.0)].map(|vector| vector.to_array())
             })
+            .chain(own(guides))
             .collect();
         let empty = Mesh::default();
         let mesh = body.unwrap_or(&empty);
@@ -85,6 +87,17 @@ impl Groom {
         let planes = std::iter::repeat_n([u32::MAX, u32::MAX, 0, 0], 2 * MAX_SHADOWS).flatten();
         [[u32::MAX; 3], [0; 3]].into_iter().flatten().chain(planes).collect()
     }
+}
+
+/// Colour and share of the largest width at every guide point, where the groom has either.
+fn own(guides: &Guides) -> impl Iterator<Item = [f32; 4]> + '_ {
+    let (colors, profiles) = (guides.colors(), guides.profiles());
+    let has_some = colors.is_some() || profiles.is_some();
+    let count = if has_some { guides.strand_count() * guides.points_per_strand() } else { 0 };
+    (0..count).map(move |point| {
+        let [red, green, blue] = colors.map_or([0.0; 3], |all| all[point]);
+        [red, green, blue, profiles.map_or(1.0, |all| all[point])]
+    })
 }
 
 /// Lanes as the numbers that they are.

@@ -93,8 +93,9 @@ mirror! {
         pub body_kind: u32,
         /// Middle of the hair at rest \[m\]: texels and cells keep their places beside it.
         pub middle: [f32; 3],
-        /// Whether light is scattered many times: the fibre of [Chiang2016].
-        pub scatters: u32,
+        /// What is drawn, in bits: 1 the groom's colours, 2 its widths along strands, in place of the look's;
+        /// 4 light that is scattered many times, with the fibre of [Chiang2016].
+        pub kinds: u32,
     }
 }
 
@@ -219,7 +220,7 @@ impl Frame {
             },
             body_kind: scene.body_kind,
             middle: scene.middle.to_array(),
-            scatters: u32::from(look.fibre.model == FibreModel::Chiang),
+            kinds: scene.own | if look.fibre.model == FibreModel::Chiang { 4 } else { 0 },
         }
     }
 }

@@ -9,6 +9,7 @@ kernel! {
     pub(super) struct Interpolate in "interpolate" (super::linked::INTERPOLATE), entry "interpolate" {
         0 frame: Read Frame,
         1 points: ReadWrite [f32; 4],
+        7 radiances: ReadWrite [u32; 2],
         9 roots: Read [f32; 4],
         10 tables: Read [f32; 4],
         11 curves: Read [f32; 4],

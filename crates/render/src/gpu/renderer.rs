@@ -85,6 +85,8 @@ pub(super) struct Scene<'a> {
     /// 0 none, 1 open, 2 closed.
     pub body_kind: u32,
     pub body_ball: (Vec3, f32),
+    /// What of the groom is drawn: see common.wesl.
+    pub own: u32,
     /// Middle of the hair \[m\], world space.
     pub middle: Vec3,
 }
@@ -315,6 +317,7 @@ impl GpuRenderer {
             triangle_count: self.triangle_count,
             body_kind: self.body_kind,
             body_ball: self.body_ball,
+            own: u32::from(self.guides.colors().is_some()) | u32::from(self.guides.profiles().is_some()) << 1,
             middle,
         }
     }

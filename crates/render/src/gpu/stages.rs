@@ -94,7 +94,8 @@ impl Stages {
         let Maps { texels, body: body_depths, .. } = maps;
         // Kernels that add to them see single numbers.
         let (texel_numbers, cube_numbers) = (&texels.viewed_as(), &cubes.viewed_as());
-        let interpolate = interpolate::Interpolate { frame, points, roots, tables, curves, clumps, scales };
+        let interpolate =
+            interpolate::Interpolate { frame, points, radiances, roots, tables, curves, clumps, scales };
         let depth = opacity_depth::OpacityDepth { frame, points, lights, fitted, maps: texel_numbers };
         let layers = opacity_layers::OpacityLayers { frame, points, lights, fitted, maps: texel_numbers };
         let body_depth = opacity_depth::BodyDepth { frame, lights, fitted, triangles, vertices };

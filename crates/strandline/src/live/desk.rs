@@ -226,7 +226,8 @@ impl Desk {
             // Another scene was asked for since.
             _ if load != course.load => {}
             Ok(mut stage) => {
-                self.say(News::Loaded(load, stage.camera, stage.bounds, stage.notes.clone()));
+                let Stage { scene, camera, bounds, notes, .. } = &*stage;
+                self.say(News::Loaded(load, scene.clone(), *camera, *bounds, notes.clone()));
                 if let (Some(old), Some(_)) = (&course.stage, &course.recorder) {
                     let picture = Command::Picture(stage.picture());
                     self.change(&mut stage, of_size(picture, old.picture()));

@@ -107,9 +107,9 @@ pub struct Shown {
 /// What a [`Live`] has to tell, in its order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
-    /// The scene of the command with this number is there: its camera, the box around hair and body \[m\],
-    /// and what a person should read.
-    Loaded(u64, Camera, Aabb, Vec<String>),
+    /// The scene of the command with this number is there: with what it left open chosen to fit its groom, its
+    /// camera, the box around hair and body \[m\], and what a person should read.
+    Loaded(u64, Box<Scene>, Camera, Aabb, Vec<String>),
     /// Something that a person should read.
     Note(String),
     /// The scene of the command with this number could not be loaded; what was there stays.

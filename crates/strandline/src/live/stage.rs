@@ -49,6 +49,8 @@ pub(super) struct Stage {
     shown: Option<Moment>,
     pub simulated_on: String,
     pub bounds: Aabb,
+    /// The scene as it was loaded, with what it left open.
+    pub scene: Box<Scene>,
     pub notes: Vec<String>,
 }
 
@@ -63,6 +65,8 @@ impl Stage {
         let mut prepared = Prepared::new(scene)?;
         let (head, bounds) = (prepared.head.clone(), prepared.bounds);
         let mut notes = std::mem::take(&mut prepared.notes);
+        let fitted = prepared.scene.clone();
+        let scene = &fitted;
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
         let camera = scene.camera.camera(bounds, aspect);
         let mut hair = Hair::from_scene(scene, prepared, scene.devices)?;
@@ -92,6 +96,7 @@ impl Stage {
             shown: Some(shown),
             simulated_on,
             bounds,
+            scene: fitted.clone().into(),
             notes,
         })
     }

@@ -7,6 +7,7 @@ use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word, c
 use crate::{
     Error,
     body::{Carrier, Collider, Shape},
+    groom::format::{Scale, Up},
 };
 
 choices! {
@@ -31,8 +32,15 @@ settings! {
         file: Option<PathBuf> = None;
         /// A closed mesh that hair hits in place of the drawn one.
         collider_file: Option<PathBuf> = None;
-        /// Metres per unit of the body's files.
-        scale: f32 = 1.0, in [1e-6, 1e6] "m", slider [0.01, 10.0], more "a larger body";
+        /// Metres per unit of the body's files; "auto" takes the first of 1, 0.01, 0.001 and 0.0254 that makes the
+        /// body as large as a doll to a bear.
+        scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
+        /// The files' axis that points up; "auto" as for the groom.
+        up: Up = Up::default();
+        /// Turns the body of a file: pitch (about x), yaw (about y), roll (about z).
+        rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
+        /// Moves the body of a file, head space.
+        translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
         /// Whether the body is drawn.
         visible: bool = true;
         /// Whether hair hits the body.

@@ -11,17 +11,31 @@ settings! {
         /// A file of any of the formats that `strandline convert --help` lists; without one the `[style]` is
         /// grown.
         file: Option<PathBuf> = None;
-        /// Metres per unit of the file; "auto" takes the first of 1, 0.01, 0.001 and 0.0254 that makes the
-        /// groom as large as a head of hair can be.
+        /// Metres per unit of the file; "auto" takes that of 1, 0.01, 0.001 and 0.0254 that brings the roots to
+        /// the body, or that of the body; without a body the first that makes the groom as large as a head of
+        /// hair can be.
         scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
-        /// The file's axis that points up.
+        /// The file's axis that points up; "auto" takes z where roots lie high along it on the body and
+        /// strands hang down it, or where it alone brings groom and body together.
         up: Up = Up::default();
         /// Points of each strand, for files that hold points and do not say which of them make a strand.
         per_strand: Option<u32> = None, in [1, 4096];
+        /// Whether colours and widths of the file are drawn in place of the look's.
+        own_look: bool = true;
+        /// Turns the strands of a file: pitch (about x), yaw (about y), roll (about z). Where neither groom nor
+        /// body is turned, both are when hair shows that the face does not look along +z.
+        rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
         /// Moves the strands of a file, head space.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
-        /// Simulate every n-th strand of a file; the others are left out.
-        guide_every: u32 = 1, in [1, 1_000_000], more "fewer strands";
+        /// Strands that are simulated: so many, spread over the scalp and alike in shape to the others, which
+        /// are bound to them. Without it they are those that a file marks as guides; without such marks all, or
+        /// 2,000 of a file of more than 3,000. All strands are drawn.
+        guides: Option<u32> = None, in [1, 8_000_000], slider [100, 10_000], more "truer motion at a higher cost";
+        /// Simulate every n-th strand; the others are bound to them. `guides` comes before it.
+        guide_every: u32 = 1, in [1, 1_000_000], more "fewer simulated strands";
+        /// Strands that a style grows in all, of which `style.strand_count` are simulated and the others bound
+        /// to them; not more than those, all are simulated.
+        bound: u32 = 0, in [0, 8_000_000], slider [0, 100_000], more "hair of its own in place of tufts";
         /// Points on each guide. Without a groom file the default is that of the style.
         points_per_strand: u32 = 16, in [4, 64], more "finer curls at a higher cost";
         /// Length of every strand over its own.

@@ -19,6 +19,7 @@ pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 use crate::{
     Backend, Devices, Error,
     groom::StyleSettings,
+    prepare::Given,
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, memory::MAX_LIGHTS},
     sim::Settings,
 };
@@ -68,6 +69,8 @@ settings! {
         plain {
             /// The folder that relative paths start from; not part of the file.
             folder: PathBuf,
+            /// Which settings the file gives that a groom would else choose.
+            given: Given,
         }
     }
     prepare Scene::prepare;
@@ -88,6 +91,23 @@ impl Scene {
             self.simulation.angles.hold = Settings::default().angles.hold;
             self.level_of_detail.segments_per_span = LevelOfDetail::default().segments_per_span;
         }
+        let look = given.look.as_ref();
+        let clump = look.and_then(|look| look.clump.as_ref());
+        let level = given.level_of_detail.as_ref();
+        let angles = given.simulation.as_ref().and_then(|simulation| simulation.angles.as_ref());
+        self.given = Given {
+            follow_strands: look.is_some_and(|look| look.follow_strands.is_some()),
+            hair_count: look.is_some_and(|look| look.hair_count.is_some()),
+            width_scale: look.is_some_and(|look| look.width_scale.is_some()),
+            root_radius: clump.is_some_and(|clump| clump.root_radius.is_some()),
+            tip_radius: clump.is_some_and(|clump| clump.tip_radius.is_some()),
+            wave_amplitude: clump.is_some_and(|clump| clump.wave_amplitude.is_some()),
+            points_per_strand: given.groom.as_ref().is_some_and(|groom| groom.points_per_strand.is_some()),
+            segments_per_span: level.is_some_and(|level| level.segments_per_span.is_some()),
+            full_distance: level.is_some_and(|level| level.full_distance.is_some()),
+            spacing: given.body.as_ref().is_some_and(|body| body.spacing.is_some()),
+            hold: angles.is_some_and(|angles| angles.hold.is_some()),
+        };
         let simulation = given.simulation.as_ref().and_then(|simulation| simulation.backend);
         let pictures = given.picture.as_ref().and_then(|picture| picture.backend);
         self.devices.simulation = simulation.unwrap_or(self.devices.simulation);

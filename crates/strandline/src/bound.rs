@@ -1,0 +1,69 @@
+//! The strands of a groom that are not simulated, moved by those that are.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::{
+    body::{Carrier, Collider, Pose, Shape},
+    groom::{Binding, Guides, Vec3Lanes},
+};
+
+/// Share of the distance between samples of a solid that strands stay away from it, and how far at most \[m\]: samples
+/// err by about so much where the surface curves.
+const CLEARANCE: f32 = 0.25;
+const MOST_CLEARANCE: f32 = 0.002;
+
+/// How far \[m\] bound strands stay away from a solid.
+pub(crate) fn clearance(shape: &Shape) -> f32 {
+    match shape {
+        Shape::Grid(grid) => (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE),
+        Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Mannequin(_) => 0.0,
+    }
+}
+
+/// All strands of a groom, bound to the simulated ones among them, and the solids that they stay out of.
+#[derive(Clone, Debug)]
+pub struct BoundStrands {
+    binding: Arc<Binding>,
+    solids: Arc<[Collider]>,
+}
+
+impl BoundStrands {
+    /// Strands and solids; what the head carries is in head space.
+    pub fn new(binding: Binding, solids: Vec<Collider>) -> Self {
+        Self { binding: Arc::new(binding), solids: solids.into() }
+    }
+
+    /// All strands at rest, head space.
+    pub fn strands(&self) -> &Guides {
+        self.binding.strands()
+    }
+
+    /// Which guides each strand follows.
+    pub fn binding(&self) -> &Binding {
+        &self.binding
+    }
+
+    /// Where all strands are \[m\], world space, shape `[block][point]` of lanes, given where the guides are, in
+    /// the same shape.
+    pub fn place(&self, guides: &[Vec3Lanes], world_from_head: &Pose, out: &mut Vec<Vec3Lanes>) {
+        let head_from_world = world_from_head.inverse();
+        let surface = |point: Vec3| {
+            let in_head = head_from_world.point(point);
+            let start = (f32::INFINITY, Vec3::Y, Carrier::World);
+            let nearest = self.solids.iter().fold(start, |best, solid| {
+                let place = if solid.carrier == Carrier::Head { in_head } else { point };
+                let (distance, gradient) = solid.shape.distance_and_gradient(place);
+                let distance = distance - clearance(&solid.shape);
+                if distance < best.0 { (distance, gradient, solid.carrier) } else { best }
+            });
+            let (distance, gradient, carrier) = nearest;
+            let turned =
+                if carrier == Carrier::Head { world_from_head.direction(gradient) } else { gradient };
+            (distance, turned)
+        };
+        let surface = (!self.solids.is_empty()).then_some(&surface as &crate::groom::Surface);
+        self.binding.place(guides, world_from_head, surface, out);
+    }
+}

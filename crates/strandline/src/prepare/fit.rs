@@ -1,0 +1,257 @@
+//! Settings that a scene leaves open, chosen to fit a groom from a file: points of strands, drawn strands about
+//! each, their widths and colours, and how firmly a style is held.
+
+use glam::Vec3;
+
+use crate::{
+    Scene,
+    body::Mesh,
+    groom::{
+        Groom,
+        format::{HAIR_WIDTH, Part},
+    },
+    render::LevelOfDetail,
+    sim::Settings,
+};
+
+/// Hair that is drawn when a groom has fewer strands, about \[strand\].
+const DRAWN: usize = 40_000;
+/// Most strands that are drawn about each.
+const MOST_FOLLOW: usize = 32;
+/// Segments of a picture \[segment\]: what can be drawn in a second or two on a processor.
+const SEGMENTS: usize = 2_200_000;
+/// Radius of a clump as a share of the distance between strands, at the roots and the tips; and the amplitude of
+/// waves of its own that a drawn strand has.
+const ROOT_SHARE: f32 = 0.35;
+const TIP_SHARE: f32 = 0.22;
+const WAVE_SHARE: f32 = 0.13;
+/// Points that a strand may have, and how far from it \[m\], and as a share of its length, a polyline of fewer may be.
+const POINTS: [u32; 7] = [8, 12, 16, 24, 32, 48, 64];
+const ASTRAY: f32 = 3e-4;
+const ASTRAY_SHARE: f32 = 0.002;
+/// Samples of a body's distance along its diagonal, and the farthest that they may be apart \[m\].
+const CELLS: f32 = 250.0;
+const COARSEST: f32 = 0.1;
+/// Distance up to which all is drawn, over the diagonal of the body: a picture that it fills.
+const NEAR: f32 = 2.5;
+/// Strands that are looked at.
+const LOOKED_AT: usize = 400;
+/// Rate of hold \[1/s\] of hair that stands against gravity, and of hair that hangs and is as long as this \[m\]: the
+/// longer it is, the more it swings by itself, as the built-in styles do.
+const STANDING_HOLD: f32 = 80.0;
+const HANGING_HOLD: f32 = 40.0;
+const LENGTH: f32 = 0.25;
+const HANGING_HOLDS: std::ops::RangeInclusive<f32> = 8.0..=60.0;
+/// Diameter of a hair over the distance of hairs on a head of a hundred thousand.
+const DENSITY: f32 = 0.095;
+/// Cosine of the angle to the way down up to which hair hangs.
+const HANGS: f32 = 0.7;
+
+/// Which settings a scene file gives that a groom would else choose. Scenes are the same whether a file gave what
+/// they say or not.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Given {
+    pub follow_strands: bool,
+    pub hair_count: bool,
+    pub width_scale: bool,
+    pub root_radius: bool,
+    pub tip_radius: bool,
+    pub wave_amplitude: bool,
+    pub points_per_strand: bool,
+    pub segments_per_span: bool,
+    pub hold: bool,
+    pub spacing: bool,
+    pub full_distance: bool,
+}
+
+impl PartialEq for Given {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// Fills in what a scene leaves open, and says what was chosen.
+///
+/// A setting is open where no file gives it and it still has its default: that of the demo or of a groom file.
+pub(super) fn fit(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<String> {
+    let (given, default) = (scene.given, Scene::default());
+    let strands = groom.strand_count();
+    let mut chosen = Vec::new();
+    if !given.points_per_strand && scene.groom.points_per_strand == default.groom.points_per_strand {
+        scene.groom.points_per_strand = points(groom);
+        chosen.push(format!("groom.points_per_strand = {}", scene.groom.points_per_strand));
+    }
+    let look = &mut scene.look;
+    if !given.follow_strands && look.follow_strands == default.look.follow_strands {
+        look.follow_strands = DRAWN.div_ceil(strands).clamp(1, MOST_FOLLOW) as u32;
+        chosen.push(format!("look.follow_strands = {}", look.follow_strands));
+    }
+    let level = &mut scene.level_of_detail;
+    let spans = [default.level_of_detail, LevelOfDetail::default()].map(|level| level.segments_per_span);
+    if !given.segments_per_span && spans.contains(&level.segments_per_span) {
+        let spans = strands * look.follow_strands as usize * (scene.groom.points_per_strand as usize - 1);
+        level.segments_per_span = (SEGMENTS / spans.max(1)).clamp(1, 3) as u32;
+        chosen.push(format!("level_of_detail.segments_per_span = {}", level.segments_per_span));
+    }
+    let spacing = spacing(groom);
+    let clump = &mut look.clump;
+    let of_default = default.look.clump;
+    let mut radius = |value: &mut f32, given: bool, default: f32, share: f32, key: &str| {
+        if !given && *value == default {
+            *value = (share * spacing).min(*value);
+            chosen.push(format!("look.clump.{key} = {value:.5}"));
+        }
+    };
+    radius(&mut clump.root_radius, given.root_radius, of_default.root_radius, ROOT_SHARE, "root_radius");
+    radius(&mut clump.tip_radius, given.tip_radius, of_default.tip_radius, TIP_SHARE, "tip_radius");
+    let (waves, of_waves) = (given.wave_amplitude, of_default.wave_amplitude);
+    radius(&mut clump.wave_amplitude, waves, of_waves, WAVE_SHARE, "wave_amplitude");
+    fit_widths(scene, groom, spacing, &default, &mut chosen);
+    let holds = [default.simulation.angles.hold, Settings::default().angles.hold];
+    let size = mesh.and_then(Mesh::bounds).map_or(0.0, |bounds| bounds.min.distance(bounds.max));
+    let body = &mut scene.body;
+    if !given.spacing && body.spacing == default.body.spacing && size > CELLS * body.spacing {
+        body.spacing = (size / CELLS).min(COARSEST);
+        chosen.push(format!("body.spacing = {:.4}", body.spacing));
+    }
+    let level = &mut scene.level_of_detail;
+    let is_open = !given.full_distance && level.full_distance == default.level_of_detail.full_distance;
+    if is_open && NEAR * size > level.full_distance {
+        level.full_distance = NEAR * size;
+        chosen.push(format!("level_of_detail.full_distance = {:.1}", level.full_distance));
+    }
+    if !given.hold && holds.contains(&scene.simulation.angles.hold) {
+        scene.simulation.angles.hold = hold(groom);
+        chosen.push(format!("simulation.angles.hold = {:.0}", scene.simulation.angles.hold));
+    }
+    (!chosen.is_empty()).then(|| format!("chosen to fit the groom: {}", chosen.join(", ")))
+}
+
+/// Widths: with those of the file drawn strands cover together what its strands cover, without them as much of
+/// the skin as hairs do.
+fn fit_widths(scene: &mut Scene, groom: &Groom, spacing: f32, default: &Scene, chosen: &mut Vec<String>) {
+    let look = &mut scene.look;
+    let is_open = !scene.given.width_scale && look.width_scale == default.look.width_scale;
+    if !Part::Widths.is_in(groom) && is_open && look.hair_count > 0 {
+        // Hairs are as much denser than strands as they are more.
+        let of_hairs = spacing * (groom.strand_count() as f32 / look.hair_count as f32).sqrt();
+        look.width_scale = (DENSITY * of_hairs / HAIR_WIDTH).clamp(0.5, 50.0);
+        chosen.push(format!("look.width_scale = {:.2}", look.width_scale));
+    }
+    if Part::Widths.is_in(groom) && !scene.given.hair_count && look.hair_count == default.look.hair_count {
+        look.hair_count = groom.strand_count() as u32;
+        chosen.push(format!("look.hair_count = {}", look.hair_count));
+    }
+}
+
+fn some(groom: &Groom) -> impl Iterator<Item = usize> {
+    (0..groom.strand_count()).step_by((groom.strand_count() / LOOKED_AT).max(1))
+}
+
+/// Fewest points with which 95 of 100 strands keep their shape; no more than most of them have.
+fn points(groom: &Groom) -> u32 {
+    let mut counts: Vec<u32> = some(groom).map(|strand| groom.strand(strand).len() as u32).collect();
+    counts.sort_unstable();
+    let own = counts.get(counts.len() / 2).copied().unwrap_or(0);
+    let most = POINTS[POINTS.len() - 1];
+    let keeps = |count: u32| count >= own.min(most) || astray(groom, count as usize) <= 1.0;
+    POINTS.into_iter().find(|count| keeps(*count)).unwrap_or(most)
+}
+
+/// How far strands of so many points stray from themselves over what is allowed, of 95 in 100.
+fn astray(groom: &Groom, count: usize) -> f32 {
+    let mut found: Vec<f32> = some(groom)
+        .map(|strand| {
+            let own = groom.strand(strand);
+            let few = groom.select(&[strand]).resampled(count).map(|groom| groom.points).unwrap_or_default();
+            let length: f32 = own.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+            let apart = |point: &Vec3| {
+                let ways = few.windows(2).map(|pair| {
+                    let way = pair[1] - pair[0];
+                    let share = (*point - pair[0]).dot(way) / way.length_squared().max(f32::MIN_POSITIVE);
+                    (pair[0] + way * share.clamp(0.0, 1.0)).distance(*point)
+                });
+                ways.fold(f32::INFINITY, f32::min)
+            };
+            let farthest = own.iter().map(apart).fold(0.0, f32::max);
+            farthest / ASTRAY.max(ASTRAY_SHARE * length)
+        })
+        .collect();
+    found.sort_by(f32::total_cmp);
+    found.get(found.len() * 95 / 100).copied().unwrap_or(0.0)
+}
+
+/// Middle distance \[m\] of roots from their nearest neighbours, as on a grid.
+fn spacing(groom: &Groom) -> f32 {
+    let mut nearest: Vec<f32> = groom.nearest_roots(LOOKED_AT);
+    nearest.sort_by(f32::total_cmp);
+    // Roots at random are half as far from their nearest as those of a grid of the same density [Clark1954].
+    2.0 * nearest.get(nearest.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// How firmly a style has to be held: as firmly as its outer halves stand against gravity, and as it is short.
+fn hold(groom: &Groom) -> f32 {
+    let (mut standing, mut lengths, mut count) = (0.0, 0.0, 0.0);
+    for strand in some(groom) {
+        let points = groom.strand(strand);
+        let half = points.len() / 2 - 1;
+        let stands = |pair: &[Vec3]| (pair[0] - pair[1]).normalize_or_zero().y < HANGS;
+        let outer = points[half..].windows(2);
+        standing += outer.clone().filter(|pair| stands(pair)).count() as f32 / outer.count().max(1) as f32;
+        lengths += points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>();
+        count += 1.0;
+    }
+    let (share, length) = (standing / count, lengths / count);
+    let hanging = (HANGING_HOLD * (LENGTH / length.max(1e-3)).powi(2))
+        .clamp(*HANGING_HOLDS.start(), *HANGING_HOLDS.end());
+    hanging + (STANDING_HOLD - hanging) * share
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Strands on a square at distances of 2 mm that hang, curl or stand up.
+    fn groom(turns: f32, up: f32) -> Groom {
+        let mut groom = Groom::empty(8e-5);
+        for strand in 0..2500 {
+            let root = Vec3::new(0.002 * (strand % 50) as f32, 0.0, 0.002 * (strand / 50) as f32);
+            groom.push((0..100).map(|point| {
+                let share = point as f32 / 99.0;
+                let angle = std::f32::consts::TAU * turns * share;
+                root + Vec3::new(0.005 * angle.cos(), 0.2 * up * share, 0.005 * angle.sin())
+            }));
+        }
+        groom
+    }
+
+    #[test]
+    fn points_keep_curls_and_hold_keeps_what_stands() {
+        assert_eq!(points(&groom(0.0, -1.0)), 8);
+        let curly = points(&groom(5.0, -1.0));
+        assert!(curly >= 48, "{curly}");
+        // 0.2 m long: 62.5, but for the most that hair which hangs is held.
+        assert!((hold(&groom(0.0, -1.0)) - 60.0).abs() < 0.1);
+        assert_eq!(hold(&groom(0.0, 1.0)), STANDING_HOLD);
+        let spacing = spacing(&groom(0.0, -1.0));
+        assert!((0.0019..0.0041).contains(&spacing), "{spacing}");
+    }
+
+    #[test]
+    fn what_is_given_stays() {
+        let mut scene = Scene::default();
+        scene.groom.file = Some("a.hair".into());
+        let mut own = scene.clone();
+        own.given = Given { follow_strands: true, ..Given::default() };
+        own.look.clump.tip_radius = 0.002;
+        let note = fit(&mut scene, &groom(0.0, -1.0), None).unwrap();
+        assert_eq!(scene.look.follow_strands, 16, "40,000 of 2,500");
+        assert!(
+            note.contains("look.clump.tip_radius") && note.contains("simulation.angles.hold = 60"),
+            "{note}"
+        );
+        let note = fit(&mut own, &groom(0.0, -1.0), None).unwrap();
+        assert_eq!((own.look.follow_strands, own.look.clump.tip_radius), (16, 0.002));
+        assert!(!note.contains("follow_strands") && !note.contains("tip_radius"), "{note}");
+    }
+}

@@ -1,0 +1,172 @@
+//! From a scene to what runs: strands, body, solids and motion.
+
+mod body;
+mod fit;
+mod placing;
+mod strands;
+
+use glam::Vec3;
+
+pub use fit::Given;
+
+use body::Body;
+
+use crate::{
+    BoundStrands, Error, HeadMotion, Scene, attributes,
+    body::{Aabb, Carrier, Collider, Mesh, Shape},
+    bound::clearance,
+    groom::{Binding, Groom, Guides},
+    hair_pose::HairPose,
+    memory,
+};
+
+/// What a scene names, loaded or grown.
+pub struct Prepared {
+    /// The simulated strands.
+    pub guides: Guides,
+    /// All strands, where some are not simulated.
+    pub bound: Option<BoundStrands>,
+    /// The drawn body.
+    pub mesh: Option<Mesh>,
+    /// Everything that hair hits.
+    pub colliders: Vec<Collider>,
+    /// How the head moves.
+    pub head: HeadMotion,
+    /// Where the strands are to begin with; none at rest.
+    pub(crate) pose: Option<HairPose>,
+    /// The box around hair and drawn body at rest \[m\], head space.
+    pub bounds: Aabb,
+    /// The scene with what it leaves open chosen to fit its groom.
+    pub scene: Scene,
+    /// What was mended or left out while loading, for a person to read.
+    pub notes: Vec<String>,
+}
+
+impl Prepared {
+    /// Loads and grows all that a scene names.
+    ///
+    /// # Errors
+    /// Whatever a reader or a validation found; more memory than may be taken.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        scene.check()?;
+        let mut notes = Vec::new();
+        if scene.groom.file.is_none() {
+            let drawn = scene.style.strand_count.max(scene.groom.bound as usize);
+            memory::check(scene, scene.style.strand_count, drawn)?;
+        }
+        let mut scene = scene.clone();
+        let Loaded { groom, body } = loaded(&mut scene, &mut notes)?;
+        let scene = &scene;
+        let chosen = strands::guides(scene, &groom, &mut notes);
+        let simulated = chosen.as_ref().map_or(groom.strand_count(), Vec::len);
+        memory::check(scene, simulated, groom.strand_count())?;
+        let all = resampled(scene, &groom, body.shape.as_ref())?;
+        let mut guides = match &chosen {
+            None => all.clone(),
+            Some(chosen) => resampled(scene, &groom.select(chosen), body.shape.as_ref())?,
+        };
+        if let Some(file) = &scene.groom.attributes {
+            attributes::load(&scene.path(file), &mut guides)?;
+        }
+        let shape = [guides.strand_count(), guides.points_per_strand()];
+        let pose = scene.groom.pose.as_ref().map(|file| HairPose::load(&scene.path(file), shape));
+        let pose = pose.transpose()?;
+        let colliders = colliders(scene, body.shape)?;
+        notes.extend(strands::move_outside(&mut guides, &colliders, |_| 0.0));
+        let bound = chosen.map(|chosen| bind(&groom, &chosen, all, &guides, &colliders)).transpose()?;
+        let mesh = body.mesh.filter(|_| scene.body.visible);
+        let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
+        let pivot = scene.motion.pivot.or(body.pivot).unwrap_or_else(|| low_center(bounds));
+        let head = HeadMotion::new(&scene.motion, pivot)?;
+        Ok(Self { guides, bound, mesh, colliders, head, pose, bounds, scene: scene.clone(), notes })
+    }
+}
+
+/// Strands and body of a scene, head space.
+struct Loaded {
+    groom: Groom,
+    body: Body,
+}
+
+/// Loads or grows strands and body, brings them together, and fits the scene to what it names.
+fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
+    let (mut groom, mut mesh) = (strands::load(scene, notes)?, body::mesh(scene)?);
+    let placings = placing::guess(scene, groom.as_ref(), mesh.as_ref());
+    notes.extend(placings.note);
+    if let Some(mesh) = &mut mesh {
+        placing::place_mesh(mesh, placings.body, scene.body.rotation, scene.body.translation);
+    }
+    if let Some(groom) = &mut groom {
+        strands::place(groom, placings.groom, scene);
+        notes.extend(fit::fit(scene, groom, mesh.as_ref()));
+    }
+    let groom = match groom {
+        Some(groom) => groom,
+        None => strands::grown(scene)?,
+    };
+    notes.extend(mesh.as_ref().and_then(|mesh| placing::apart(&groom, mesh)));
+    let body = body::body(scene, mesh, placings.body, notes)?;
+    Ok(Loaded { groom, body })
+}
+
+/// Strands as they are simulated and drawn; roots without a normal take that of the body.
+fn resampled(scene: &Scene, groom: &Groom, body: Option<&Shape>) -> Result<Guides, Error> {
+    let mut guides = Guides::resample(groom, scene.groom.points_per_strand as usize)?;
+    if groom.root_normals.is_none()
+        && let Some(shape) = body
+    {
+        let normal = |strand| shape.distance_and_gradient(guides.position(strand, 0)).1;
+        guides.set_root_normals((0..guides.strand_count()).map(normal).collect());
+    }
+    Ok(guides)
+}
+
+/// Everything that hair hits.
+fn colliders(scene: &Scene, body: Option<Shape>) -> Result<Vec<Collider>, Error> {
+    let mut colliders = Vec::new();
+    if let Some(shape) = body.filter(|_| scene.body.solid) {
+        colliders.push(Collider::new(shape, Carrier::Head, scene.body.friction)?);
+    }
+    for section in &scene.colliders {
+        colliders.push(section.collider()?);
+    }
+    Ok(colliders)
+}
+
+/// All strands, bound to their guides.
+fn bind(
+    groom: &Groom,
+    chosen: &[usize],
+    mut all: Guides,
+    guides: &Guides,
+    colliders: &[Collider],
+) -> Result<BoundStrands, Error> {
+    // The guides' note says it; these are near them.
+    strands::move_outside(&mut all, colliders, clearance);
+    Ok(BoundStrands::new(Binding::new(groom, chosen, all, guides.clone())?, colliders.to_vec()))
+}
+
+/// The box around strands and body \[m\].
+pub(crate) fn bounds(guides: &Guides, mesh: Option<&Mesh>) -> Aabb {
+    let (min, max) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
+    let mut bounds = mesh.and_then(Mesh::bounds).unwrap_or(Aabb { min, max });
+    for strand in 0..guides.strand_count() {
+        for point in 0..guides.points_per_strand() {
+            let point = guides.position(strand, point);
+            bounds = Aabb { min: bounds.min.min(point), max: bounds.max.max(point) };
+        }
+    }
+    bounds
+}
+
+/// The middle of a box \[m\].
+pub(crate) fn center(bounds: Aabb) -> Vec3 {
+    0.5 * (bounds.min + bounds.max)
+}
+
+/// Where the neck of an unknown head may be: in the middle, a third of the way up.
+fn low_center(bounds: Aabb) -> Vec3 {
+    let mut center = center(bounds);
+    center.y = bounds.min.y + (bounds.max.y - bounds.min.y) / 3.0;
+    center
+}

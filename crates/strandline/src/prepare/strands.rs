@@ -1,0 +1,109 @@
+//! The strands of a scene: from a file, or grown; those that are simulated, and those that are bound to them.
+
+use glam::Vec3;
+
+use crate::{
+    Error, Scene,
+    body::{Carrier, Collider, Shape},
+    groom::{
+        Groom, Guides, Outside, Widths,
+        format::{self, HAIR_WIDTH, LoadOptions, Part, Scale, Up},
+    },
+    head::rotation,
+};
+
+use super::placing::Placing;
+
+/// Depth \[m\] up to which nobody is told: less than what samples of a body err by.
+const WORTH_A_NOTE: f32 = 1e-4;
+/// Strands of a file above which some stand for all, when nothing else is said, and how many then do.
+const MANY: usize = 3000;
+const GUIDES: usize = 2000;
+
+/// The strands of a scene's file, in its units and axes.
+pub(super) fn load(scene: &Scene, notes: &mut Vec<String>) -> Result<Option<Groom>, Error> {
+    let Some(file) = &scene.groom.file else { return Ok(None) };
+    let options = LoadOptions {
+        strict: false,
+        scale: Scale::Factor(1.0),
+        up: Up::Y,
+        per_strand: scene.groom.per_strand,
+    };
+    let loaded = format::load(&scene.path(file), &options)?;
+    notes.extend(loaded.report.problems.iter().map(|problem| format!("{}: {problem}", file.display())));
+    Ok(Some(loaded.groom))
+}
+
+/// Places strands: scaled and turned as guessed, then turned and moved as a scene says.
+pub(super) fn place(groom: &mut Groom, placing: Placing, scene: &Scene) {
+    if !scene.groom.own_look {
+        groom.colors = None;
+    }
+    let has_widths = scene.groom.own_look && Part::Widths.is_in(groom);
+    groom.transform(placing.scale, placing.turn, Vec3::ZERO);
+    groom.transform(1.0, rotation(scene.groom.rotation), scene.groom.translation);
+    // The width of a hair is in metres already.
+    if !has_widths {
+        groom.widths = Widths::Constant(HAIR_WIDTH);
+    }
+}
+
+/// A grown style: its guides, or as many strands as are bound to guides among them.
+pub(super) fn grown(scene: &Scene) -> Result<Groom, Error> {
+    let mut style = scene.style.clone();
+    style.strand_count = style.strand_count.max(scene.groom.bound as usize);
+    Ok(style.grow()?)
+}
+
+/// The strands that are simulated, by their indices in rising order; all when none are bound.
+pub(super) fn guides(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<usize>> {
+    let count = groom.strand_count();
+    let marked = groom.marked_guides();
+    let every = scene.groom.guide_every as usize;
+    let (guides, how) = match scene.groom.guides {
+        Some(wanted) => (groom.representatives(wanted as usize), "chosen"),
+        None if every > 1 => ((0..count).step_by(every).collect(), "every n-th"),
+        None if scene.groom.file.is_none() => (groom.representatives(scene.style.strand_count), "chosen"),
+        None if !marked.is_empty() => (marked, "marked in the file"),
+        None if count > MANY => (groom.representatives(GUIDES), "chosen"),
+        None => return None,
+    };
+    if guides.len() >= count || guides.is_empty() {
+        return None;
+    }
+    let bound = count - guides.len();
+    notes.push(format!("{} strands are simulated ({how}), {bound} are bound to them", guides.len()));
+    Some(guides)
+}
+
+/// The signed distance \[m\] of all solids that the head carries, less how far strands stay away from each, and its
+/// unit gradient.
+fn nearest(solids: &[(&Shape, f32)], point: Vec3) -> (f32, Vec3) {
+    let start = (f32::INFINITY, Vec3::Y);
+    solids.iter().fold(start, |best, (shape, clearance)| {
+        let (distance, gradient) = shape.distance_and_gradient(point);
+        if distance - clearance < best.0 { (distance - clearance, gradient) } else { best }
+    })
+}
+
+/// Puts what rests inside the solids that the head carries onto their surface; a note when there was such.
+pub(super) fn move_outside(
+    guides: &mut Guides,
+    colliders: &[Collider],
+    clearance: impl Fn(&Shape) -> f32,
+) -> Option<String> {
+    let on_head = colliders.iter().filter(|solid| solid.carrier == Carrier::Head).map(|solid| &solid.shape);
+    let solids: Vec<(&Shape, f32)> = on_head.map(|shape| (shape, clearance(shape))).collect();
+    let found = guides.move_outside(|point| nearest(&solids, point));
+    let Outside { point_count, strand_count, depth, depth_left } = found;
+    let mut note = format!(
+        "{point_count} points of {strand_count} strands rested inside solids, by up to {:.2} mm: moved to the \
+         surface, lengths kept",
+        1e3 * depth
+    );
+    if depth_left > 1e-4 {
+        note +=
+            &format!("; up to {:.2} mm of that is left where segments do not reach out", 1e3 * depth_left);
+    }
+    (depth > WORTH_A_NOTE).then_some(note)
+}
