@@ -141,6 +141,6 @@ mod tests {
     fn an_empty_folder_lacks_everything() {
         let folder = std::env::temp_dir().join("strandline-names-of-nothing");
         // A row each; a file and a label on the CPU; two files, a label and a check on the GPU.
-        assert_eq!(problems(&folder).len(), (8 + 7) * (1 + 2 + 4));
+        assert_eq!(problems(&folder).len(), (9 + 7) * (1 + 2 + 4));
     }
 }
