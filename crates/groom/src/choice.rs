@@ -71,7 +71,7 @@ impl Groom {
     /// over shapes, so that each strand has one near it that is alike; every group has some. All strands when
     /// there are no more.
     ///
-    /// Each new one is the strand farthest from those chosen [Gonzalez1985]; then each gives its place to the
+    /// Each new one is the strand farthest from those chosen \[Gonzalez1985\]; then each gives its place to the
     /// strand in the middle of those nearest to it.
     pub fn representatives(&self, count: usize) -> Vec<usize> {
         if count >= self.strand_count() {

@@ -39,7 +39,7 @@ pub const ENTRIES: usize = FIRST_SHARE + 2 * LEVELS.len() * EYES;
 /// The tables of one fibre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Entries, shape `[...][4]`: along the fibre R, TT and TRT, times [`evened`]; around it TT and R (last), then TRT; moments.
+    /// Entries, shape `[...][4]`: along the fibre R, TT and TRT, times `evened`; around it TT and R (last), then TRT; moments.
     pub entries: Vec<Vec4>,
     /// Least product of cosines by which the terms along the fibre are evened out.
     pub floor: f32,
@@ -117,7 +117,7 @@ impl Table {
         [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
     }
 
-    /// Terms along the fibre of R, TT and TRT, times [`evened`].
+    /// Terms along the fibre of R, TT and TRT, times `evened`.
     #[inline]
     fn along(&self, eye: f32, light: f32, shift: f32) -> Vec4 {
         const WHOLE: f32 = std::f32::consts::PI;
@@ -162,7 +162,7 @@ impl Table {
         [Vec3::splat(first.w), first.truncate(), second.truncate()]
     }
 
-    /// The fibre's moments (see [`moments`]) for the sine of the eye's inclination and a multiple of the pigment.
+    /// The fibre's moments (see `moments.rs`) for the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
     pub fn moments(&self, eye: f32, pigment: f32) -> [Vec4; MOMENTS] {
         let (row, part) = place(0.5 + arc_sine(eye) * std::f32::consts::FRAC_1_PI, MOMENT_EYES);
