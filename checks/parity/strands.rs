@@ -76,25 +76,18 @@ fn integrate_agrees() {
 #[test]
 fn constrain_agrees() {
     for head in heads() {
-        both(&head, "constrain", |solver, state, probe| {
+        both(&head, "constrain", |_, state, probe| {
             let distance = apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
             let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);
-            // Rounding grows over 20 rounds along up to 63 segments. The CPU takes a plane from up to
-            // a millimetre away, which is wrong by 6 um on a skull and by up to that millimetre in
-            // the edge where two solids meet; the GPU always takes the plane where the point is.
-            // With 7 rounds on 64 points the backends were found 0.45 mm apart. That is not explained yet.
-            let few_rounds = head.settings.iterations < 20;
-            let limit = match solver.colliders().len() {
-                0 => 20.0 * PLACE,
-                1 if !few_rounds => 5e-5,
-                _ => 1e-3,
-            };
+            // Rounding grows over 20 rounds along up to 63 segments; in the edge where two solids meet it may
+            // choose the other one, which is as near.
+            let limit = if head.colliders.len() > 1 { 50.0 } else { 20.0 } * PLACE;
             assert!(distance < limit, "{}: {distance}", head.name);
             assert!(speed < limit / head.settings.time_step, "{}: {speed}", head.name);
             let correction = apart(&state.corrections, &probe.corrections().unwrap(), &head.guides);
             assert!(correction < limit / head.settings.time_step, "{}: {correction}", head.name);
             let mean = mean_apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
-            assert!(mean < 1e-5, "{}: {mean}", head.name);
+            assert!(mean < PLACE, "{}: {mean}", head.name);
         });
     }
 }

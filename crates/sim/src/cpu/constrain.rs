@@ -177,8 +177,9 @@ impl Strands<'_> {
         let settings = &self.solver.settings;
         let mut care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
         if !is_first {
-            // The planes that points have left are what this look is for.
-            care.stale = care.stale.min(care.near);
+            // The planes that points have left are what this look is for, also those of where a solid
+            // stopped them.
+            care.stale = 0.0;
         }
         let most = splat(settings.collision_margin);
         let clearance = &self.solver.rest_clearance[block * predicted.len()..];
