@@ -1,6 +1,10 @@
 //! Links the WESL modules of the stages into one WGSL text each.
 
+#[cfg(not(feature = "gpu"))]
+fn main() {}
+
 /// Modules with entry points; the others are imported by them.
+#[cfg(feature = "gpu")]
 const MODULES: [&str; 17] = [
     "tessellate",
     "interpolate",
@@ -21,6 +25,7 @@ const MODULES: [&str; 17] = [
     "resolve",
 ];
 
+#[cfg(feature = "gpu")]
 fn main() {
     println!("cargo::rerun-if-changed=src/gpu");
     let linker = wesl::Wesl::new("src/gpu");

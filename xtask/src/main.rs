@@ -4,6 +4,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
 
 mod adapter;
+mod bare;
 mod faults;
 mod house;
 mod names;

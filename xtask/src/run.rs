@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use crate::{adapter, house, names};
+use crate::{adapter, bare, house, names};
 
 /// Sums over every `test result:` line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,6 +61,9 @@ pub fn test(setup: bool) -> bool {
     step("house", house::check());
     let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
     step("lints", cargo(&lints, &[], &mut tally));
+    let bare: Vec<&str> =
+        ["clippy", "--quiet"].into_iter().chain(bare::CHOICE).chain(["--", "-D", "warnings"]).collect();
+    step("without GPUs and window", bare::check() && cargo(&bare, &[], &mut tally));
     let tests = ["test", "--workspace", "--all-targets", "--no-fail-fast"];
     step("tests", cargo(&tests, required, &mut tally));
     step("doc tests", cargo(&["test", "--workspace", "--doc", "--no-fail-fast"], &[], &mut tally));

@@ -17,6 +17,10 @@ mod quiet;
 mod render;
 mod sim;
 mod statistics;
+#[cfg(feature = "window")]
+mod view;
+#[cfg(not(feature = "window"))]
+#[path = "no_view.rs"]
 mod view;
 
 use std::process::ExitCode;

@@ -41,7 +41,7 @@ impl Backend {
     pub fn open(self) -> Result<Option<Gpu>, GpuError> {
         match self {
             Self::Auto => match Gpu::auto() {
-                Err(GpuError::NoAdapter { .. }) => Ok(None),
+                Err(GpuError::NoAdapter { .. } | GpuError::NotBuilt) => Ok(None),
                 opened => opened.map(Some),
             },
             Self::Cpu => Ok(None),

@@ -147,3 +147,19 @@ impl<T> Buffer<T> {
         &self.raw
     }
 }
+
+impl Gpu {
+    /// Copies the first buffer of each pair into the second, which is as long.
+    ///
+    /// # Errors
+    /// The device was lost, or a buffer is another device's.
+    pub fn copy<T: Pod>(&self, what: &str, pairs: [[&Buffer<T>; 2]; 2]) -> Result<(), GpuError> {
+        self.guarded(what, || {
+            let mut encoder = self.device().create_command_encoder(&Default::default());
+            for [from, to] in pairs {
+                encoder.copy_buffer_to_buffer(from.raw(), 0, to.raw(), 0, from.raw().size());
+            }
+            self.queue().submit([encoder.finish()]);
+        })
+    }
+}

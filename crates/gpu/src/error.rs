@@ -12,6 +12,9 @@ pub enum GpuError {
         /// What there is.
         offered: Vec<Adapter>,
     },
+    /// This build has no GPUs.
+    #[error("this build is without GPUs: use the CPU backend, or build it with the feature `gpu`")]
+    NotBuilt,
     /// The adapter or WebGPU's default limits do not allow it.
     #[error("{adapter}: {what} needs {needed}, but the limit is {limit}")]
     Limit {

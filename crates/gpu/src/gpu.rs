@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::{Adapter, GpuError};
+use crate::{Adapter, Crossed, GpuError};
 
 /// How long a submission may take before the device counts as hung: a software adapter on a busy
 /// machine takes seconds.
@@ -40,15 +40,6 @@ pub(crate) struct Compiled {
 struct Memory {
     used: u64,
     most: u64,
-}
-
-/// Bytes that crossed between a host and a device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Crossed {
-    /// To the device.
-    pub to_device: u64,
-    /// From the device.
-    pub from_device: u64,
 }
 
 impl Gpu {
@@ -155,6 +146,11 @@ impl Gpu {
     /// The queue.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.shared.queue
+    }
+
+    /// Whether both are one device.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.device() == other.device()
     }
 
     /// The adapter.

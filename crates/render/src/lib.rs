@@ -5,6 +5,10 @@
 
 pub mod cpu;
 pub mod fibre;
+#[cfg(feature = "gpu")]
+pub mod gpu;
+#[cfg(not(feature = "gpu"))]
+#[path = "no_gpu.rs"]
 pub mod gpu;
 
 mod body_look;

@@ -41,3 +41,13 @@ pub enum SimError {
     #[error(transparent)]
     Gpu(#[from] strandline_gpu::GpuError),
 }
+
+impl SimError {
+    /// The GPU's refusal, if it is one.
+    pub fn gpu(&self) -> Option<&strandline_gpu::GpuError> {
+        match self {
+            Self::Gpu(source) | Self::Cells { source, .. } => Some(source),
+            _ => None,
+        }
+    }
+}

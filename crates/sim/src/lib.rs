@@ -4,8 +4,14 @@
 //! [`State`] is all that changes with time.
 
 #![forbid(unsafe_code)]
+// Some of what is here is asked for by the kernels alone.
+#![cfg_attr(not(feature = "gpu"), allow(dead_code))]
 
 pub mod cpu;
+#[cfg(feature = "gpu")]
+pub mod gpu;
+#[cfg(not(feature = "gpu"))]
+#[path = "no_gpu.rs"]
 pub mod gpu;
 
 mod checkpoint;

@@ -1,5 +1,5 @@
 use glam::Vec3;
-use strandline_base::{Group, choices, settings};
+use strandline_base::{Group, SettingError, choices, settings};
 use strandline_gpu::Backend;
 
 use crate::SimError;
@@ -242,6 +242,30 @@ choices! {
         None = "none",
     }
     default Auto
+}
+
+/// Most iterations of a solve: one kernel may have to run them all.
+const MOST_ITERATIONS: u32 = 2000;
+
+impl Settings {
+    /// Checks what only a GPU cannot do.
+    ///
+    /// # Errors
+    /// A preconditioner that is a chain from cell to cell; more iterations than a driver lets a kernel take.
+    pub fn check_on_gpu(&self) -> Result<(), SimError> {
+        let refuse = |key, found: String, expected: &str| Err(SettingError::new(key, found, expected).into());
+        if self.volume.preconditioner == Preconditioner::Mic0 {
+            let found = "mic0, which is a chain from cell to cell".to_owned();
+            let expected = "auto, chebyshev, jacobi or none on a GPU";
+            return refuse("simulation.volume.preconditioner", found, expected);
+        }
+        if self.volume.max_iterations > MOST_ITERATIONS {
+            let found = self.volume.max_iterations.to_string();
+            let expected = "1 to 2000 on a GPU, whose driver ends what takes long";
+            return refuse("simulation.volume.max_iterations", found, expected);
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

@@ -394,6 +394,6 @@ pub(crate) fn place(gpu: Option<&Gpu>) -> String {
 /// The points of the simulation, where the pictures are drawn on the device that they lie on.
 fn device_points<'a>(simulation: &'a Simulation, painter: &Painter) -> Option<DevicePoints<'a>> {
     let [after, before] = simulation.engine.device_points()?;
-    let is_same = painter.gpu()?.device() == after.gpu().device();
+    let is_same = painter.gpu()?.is_same(after.gpu());
     is_same.then_some(DevicePoints { before, after, share: simulation.share() })
 }

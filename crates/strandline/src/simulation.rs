@@ -342,7 +342,7 @@ impl Simulation {
         let kept = moment.device.take();
         self.show(moment);
         let Some([after, before]) = self.engine.device_points() else { return };
-        let Some(gpu) = gpu.filter(|gpu| gpu.device() == after.gpu().device()) else { return };
+        let Some(gpu) = gpu.filter(|gpu| gpu.is_same(after.gpu())) else { return };
         // What cannot be copied there is drawn from the host's copy.
         moment.device = copied(gpu, [before, after], kept, self.share).ok();
     }
@@ -362,12 +362,6 @@ fn copied(
             share,
         },
     };
-    gpu.guarded("copying points", || {
-        let mut encoder = gpu.device().create_command_encoder(&Default::default());
-        for (from, to) in [(before, &copy.before), (after, &copy.after)] {
-            encoder.copy_buffer_to_buffer(from.raw(), 0, to.raw(), 0, from.raw().size());
-        }
-        gpu.queue().submit([encoder.finish()]);
-    })?;
+    gpu.copy("copying points", [[before, &copy.before], [after, &copy.after]])?;
     Ok(copy)
 }

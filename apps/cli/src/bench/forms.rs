@@ -1,9 +1,8 @@
 //! One thread a strand against one a point: the rounds of lengths alone [Chen2011 fig. 16-17].
 
-use serde::Serialize;
 use strandline::sim::gpu::{LengthsForm, LengthsInput, lengths_alone};
 
-use super::gpu::Device;
+use super::gpu::{Device, Forms};
 use crate::output::print_line;
 
 /// Strands and points of each; the first is the thesis's groom.
@@ -15,39 +14,33 @@ const ROUNDS: u32 = 20;
 const IN_A_ROW: usize = 8;
 const ROWS: usize = 3;
 
-/// GPU time of 20 rounds of all strands \[us\].
-#[derive(Debug, Serialize)]
-pub struct Forms {
-    strands: usize,
-    points_per_strand: usize,
-    us_strand_a_thread: f64,
-    us_point_a_thread: f64,
-}
-
-/// Measures both forms, and prints them.
-pub fn measure(device: &Device, quick: bool) -> anyhow::Result<Vec<Forms>> {
-    print_line!("\n{ROUNDS} rounds of lengths alone, GPU time [us]");
-    print_line!("{:>10}{:>10}{:>22}{:>22}", "strands", "points", "a strand a thread", "a point a thread");
-    let count = if quick || device.adapter.software { FEW } else { GROOMS.len() };
-    let mut all = Vec::new();
-    for (strands, points_per_strand) in GROOMS.into_iter().take(count) {
-        let (points, lengths) = stretched(strands, points_per_strand);
-        let input = LengthsInput { points: &points, lengths: &lengths, points_per_strand, rounds: ROUNDS };
-        let mut best = [f64::INFINITY; 2];
-        for _ in 0..ROWS {
-            for (best, form) in best.iter_mut().zip([LengthsForm::Strand, LengthsForm::Point]) {
-                if let (_, Some(seconds)) = lengths_alone(&device.gpu, &input, form, IN_A_ROW)? {
-                    *best = best.min(1e6 * seconds);
+impl Device {
+    /// Measures both forms, and prints them.
+    pub fn forms(&self, quick: bool) -> anyhow::Result<Vec<Forms>> {
+        print_line!("\n{ROUNDS} rounds of lengths alone, GPU time [us]");
+        print_line!("{:>10}{:>10}{:>22}{:>22}", "strands", "points", "a strand a thread", "a point a thread");
+        let count = if quick || self.adapter.software { FEW } else { GROOMS.len() };
+        let mut all = Vec::new();
+        for (strands, points_per_strand) in GROOMS.into_iter().take(count) {
+            let (points, lengths) = stretched(strands, points_per_strand);
+            let input =
+                LengthsInput { points: &points, lengths: &lengths, points_per_strand, rounds: ROUNDS };
+            let mut best = [f64::INFINITY; 2];
+            for _ in 0..ROWS {
+                for (best, form) in best.iter_mut().zip([LengthsForm::Strand, LengthsForm::Point]) {
+                    if let (_, Some(seconds)) = lengths_alone(&self.gpu, &input, form, IN_A_ROW)? {
+                        *best = best.min(1e6 * seconds);
+                    }
                 }
             }
+            let [us_strand_a_thread, us_point_a_thread] = best;
+            print_line!(
+                "{strands:>10}{points_per_strand:>10}{us_strand_a_thread:>22.2}{us_point_a_thread:>22.2}"
+            );
+            all.push(Forms { strands, points_per_strand, us_strand_a_thread, us_point_a_thread });
         }
-        let [us_strand_a_thread, us_point_a_thread] = best;
-        print_line!(
-            "{strands:>10}{points_per_strand:>10}{us_strand_a_thread:>22.2}{us_point_a_thread:>22.2}"
-        );
-        all.push(Forms { strands, points_per_strand, us_strand_a_thread, us_point_a_thread });
+        Ok(all)
     }
-    Ok(all)
 }
 
 /// Strands a little longer than they should be, held at their first point.

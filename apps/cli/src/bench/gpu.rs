@@ -1,23 +1,10 @@
 //! Steps on a GPU, measured by its own clock.
 
-use std::time::Instant;
-
 use serde::Serialize;
-use strandline::{
-    Backend, Prepared, Scene,
-    gpu::Gpu,
-    sim::{
-        Drive, SimError, Solver,
-        gpu::{GpuSolver, GpuState, Gradient},
-    },
-};
+use strandline::{Backend, gpu::Gpu};
 
 use crate::output::print_line;
-use crate::progress::Progress;
-use crate::sim::{Ended, SimReport, Steps};
-
-/// Steps that are queued before their reports are read.
-const QUEUED: usize = 16;
+use crate::sim::SimReport;
 
 /// The GPU that is measured.
 pub struct Device {
@@ -61,24 +48,13 @@ pub struct GradientTimes {
     pub in_a_row: usize,
 }
 
-impl GradientTimes {
-    /// After the last step, whose markers and pressure it takes.
-    fn measured(solver: &GpuSolver, state: &GpuState, software: bool) -> anyhow::Result<Option<Self>> {
-        const ROWS: usize = 5;
-        let in_a_row = if software { 8 } else { 64 };
-        // Both in turn, so that whatever else happens falls on both.
-        let mut best = [f64::INFINITY; 2];
-        for _ in 0..ROWS {
-            for (best, gradient) in best.iter_mut().zip([Gradient::Joint, Gradient::Split]) {
-                match solver.seconds_of_gradient(state, gradient, in_a_row)? {
-                    Some(seconds) => *best = best.min(1e6 * seconds),
-                    None => return Ok(None),
-                }
-            }
-        }
-        let [one_kernel, three_kernels] = best;
-        Ok(Some(Self { one_kernel, three_kernels, in_a_row }))
-    }
+/// One thread a strand against one a point: GPU time of 20 rounds of all strands \[us\].
+#[derive(Debug, Serialize)]
+pub struct Forms {
+    pub strands: usize,
+    pub points_per_strand: usize,
+    pub us_strand_a_thread: f64,
+    pub us_point_a_thread: f64,
 }
 
 impl Device {
@@ -105,68 +81,5 @@ impl Device {
     /// What the command line calls it.
     pub fn backend(&self) -> Backend {
         Backend::Gpu(Some(self.gpu.adapter().index))
-    }
-
-    /// Plays a scene without pictures.
-    pub fn measure(&self, scene: &Scene, what: &'static str) -> anyhow::Result<GpuRun> {
-        let Prepared { guides, colliders, head, .. } = Prepared::new(scene)?;
-        let solver = GpuSolver::new(&self.gpu, Solver::new(&guides, &scene.simulation, colliders)?)?;
-        let mut state = solver.rest_state(head.pose(0.0))?;
-        let mut steps = Steps::default();
-        let count = scene.film.frames as usize;
-        let mut progress = Progress::new(count as u64, what, false);
-        // The first steps compile and allocate.
-        self.run(&solver, &mut state, 2, |_| Drive::default())?;
-        let mut wall = 0.0;
-        for first in (0..count).step_by(QUEUED) {
-            let queued = QUEUED.min(count - first);
-            let begin = Instant::now();
-            let drive = |step: usize| {
-                let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
-                Drive { world_from_head: head.pose(time), wind: scene.wind.at(time), hand: None }
-            };
-            for (step, report) in self.run(&solver, &mut state, queued, drive)?.iter().enumerate() {
-                let note = steps.add(report, (first + step) as u32);
-                note.into_iter().for_each(|note| progress.note(&note));
-            }
-            wall += begin.elapsed().as_secs_f64();
-            progress.reached((first + queued) as u64);
-        }
-        drop(progress);
-        let plain = solver.solver();
-        let steps = steps.report(Ended {
-            backend: self.adapter.name.clone(),
-            strands: guides.strand_count(),
-            points_per_strand: guides.points_per_strand(),
-            drift: plain.drift(&solver.download(&state)?),
-            stiffened: plain.rods().map_or(0, |rods| rods.stiffened),
-            time_step: scene.simulation.time_step,
-        });
-        let costs = state.costs();
-        let solve = steps.ms_per_step.stages.sum(&["solve_pressure"]);
-        let rest: f64 = steps.ms_per_step.stages.iter().map(|(_, time)| time).sum::<f64>() - solve;
-        let copied = self.adapter.copy_bytes_per_second * rest * 1e-3;
-        Ok(GpuRun {
-            us_of_gradient: GradientTimes::measured(&solver, &state, self.adapter.software)?,
-            steps,
-            wall_ms_per_step: 1e3 * wall / count.max(1) as f64,
-            dispatches: costs.dispatches,
-            dispatches_without_solve: costs.dispatches - costs.solve_dispatches,
-            bytes_per_step: costs.bytes,
-            share_of_copy_bandwidth: if copied > 0.0 { costs.bytes as f64 / copied } else { 0.0 },
-        })
-    }
-
-    fn run(
-        &self,
-        solver: &GpuSolver,
-        state: &mut GpuState,
-        count: usize,
-        drive: impl Fn(usize) -> Drive,
-    ) -> Result<Vec<strandline::sim::StepReport>, SimError> {
-        for step in 0..count {
-            solver.step(state, &drive(step))?;
-        }
-        solver.reports(state)
     }
 }

@@ -1,9 +1,14 @@
 //! `strandline bench`: the thesis's tables beside ours, and how cost grows.
 
 mod chart;
+#[cfg(feature = "gpu")]
 mod forms;
 mod gpu;
+#[cfg(feature = "gpu")]
+mod gpu_runs;
 mod machine;
+#[cfg(not(feature = "gpu"))]
+mod no_gpu_runs;
 mod plot;
 mod scaling;
 mod tables;

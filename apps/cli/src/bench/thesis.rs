@@ -3,8 +3,7 @@
 use serde::Serialize;
 use strandline::{Backend, Devices, Event, Player, Scene, sim::Preconditioner};
 
-use super::forms::{self, Forms};
-use super::gpu::{Device, GpuRun};
+use super::gpu::{Device, Forms, GpuRun};
 use super::{measure, tables, workers};
 use crate::progress::Progress;
 use crate::sim::SimReport;
@@ -99,7 +98,7 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let gpu_shares_percent =
         grids[1].gpu.as_ref().map_or(Vec::new(), |gpu| tables::shares(&gpu.chebyshev.steps));
     let pictures_on_cpu = Pictures { ms_beside_simulation, ms_alone };
-    let lengths_alone = device.map(|device| forms::measure(device, quick)).transpose()?.unwrap_or_default();
+    let lengths_alone = device.map(|device| device.forms(quick)).transpose()?.unwrap_or_default();
     let results =
         Results { grids, pictures_on_cpu, segments, shares_percent, gpu_shares_percent, lengths_alone };
     tables::print(&results);

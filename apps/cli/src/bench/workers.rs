@@ -150,7 +150,7 @@ pub fn play(scene: &Scene, devices: Devices, frames: u32, overlap: bool) -> anyh
     let what = if overlap { "frames, both at once" } else { "frames, one after the other" };
     let mut progress = Progress::new(u64::from(frames) + 1, what, false);
     let mut gpus: Vec<Gpu> = player.gpu().into_iter().chain(player.picture_gpu()).collect();
-    gpus.dedup_by(|one, other| one.device() == other.device());
+    gpus.dedup_by(|one, other| one.is_same(other));
     let mut before = Crossed::default();
     let (mut last, mut simulated) = (Instant::now(), None);
     for event in player {

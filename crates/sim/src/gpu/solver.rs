@@ -1,4 +1,3 @@
-use strandline_base::SettingError;
 use strandline_body::Pose;
 use strandline_gpu::{Bindings, Declaration, Gpu, GpuError};
 
@@ -7,7 +6,7 @@ use super::{
     GpuState, advance, constrain, gather, integrate, lengths_alone, mark, pcg, pose_roots, solve_pressure,
     solve_rods, splat,
 };
-use crate::{Drive, Preconditioner, Settings, SimError, Solver, State, StepReport};
+use crate::{Drive, Settings, SimError, Solver, State, StepReport};
 use strandline_gpu::Scan;
 
 /// A solver whose stages run on a GPU.
@@ -142,30 +141,6 @@ impl GpuSolver {
     }
 }
 
-/// Most iterations of a solve: one kernel may have to run them all.
-const MOST_ITERATIONS: u32 = 2000;
-
-impl Settings {
-    /// Checks what only a GPU cannot do.
-    ///
-    /// # Errors
-    /// A preconditioner that is a chain from cell to cell; more iterations than a driver lets a kernel take.
-    pub fn check_on_gpu(&self) -> Result<(), SimError> {
-        let refuse = |key, found: String, expected: &str| Err(SettingError::new(key, found, expected).into());
-        if self.volume.preconditioner == Preconditioner::Mic0 {
-            let found = "mic0, which is a chain from cell to cell".to_owned();
-            let expected = "auto, chebyshev, jacobi or none on a GPU";
-            return refuse("simulation.volume.preconditioner", found, expected);
-        }
-        if self.volume.max_iterations > MOST_ITERATIONS {
-            let found = self.volume.max_iterations.to_string();
-            let expected = "1 to 2000 on a GPU, whose driver ends what takes long";
-            return refuse("simulation.volume.max_iterations", found, expected);
-        }
-        Ok(())
-    }
-}
-
 fn segment_count(solver: &Solver) -> usize {
     let points = solver.points_per_strand;
     let free = |strand: usize, point: usize| {
@@ -212,14 +187,6 @@ impl SimError {
         match source {
             GpuError::Limit { .. } | GpuError::OutOfMemory { .. } => Self::Cells { cells, source },
             other => Self::Gpu(other),
-        }
-    }
-
-    /// The GPU's refusal, if it is one.
-    pub fn gpu(&self) -> Option<&GpuError> {
-        match self {
-            Self::Gpu(source) | Self::Cells { source, .. } => Some(source),
-            _ => None,
         }
     }
 }

@@ -13,6 +13,16 @@ pub struct Adapter {
     pub software: bool,
 }
 
+/// Bytes that crossed between a host and a device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Crossed {
+    /// To the device.
+    pub to_device: u64,
+    /// From the device.
+    pub from_device: u64,
+}
+
+#[cfg(feature = "wgpu")]
 impl Adapter {
     pub(crate) fn new(index: usize, info: &wgpu::AdapterInfo) -> Self {
         Self {

@@ -1,0 +1,15 @@
+//! What stands for the window in a build without one.
+
+use crate::{arguments::ViewOptions, render};
+
+/// There is none.
+pub fn view(_: &ViewOptions) -> anyhow::Result<()> {
+    anyhow::bail!(
+        "this build is without a window: build it with the feature `window`, or use `strandline render`"
+    )
+}
+
+/// The pictures of the demo.
+pub fn view_or_demo() -> anyhow::Result<()> {
+    render::demo()
+}

@@ -1,0 +1,109 @@
+//! What stands for a device in a build without GPUs: there is none, and none can be made.
+
+use std::marker::PhantomData;
+
+use crate::{Adapter, Crossed, GpuError};
+
+/// A device and its queue: none, in this build.
+#[derive(Clone, Debug)]
+pub enum Gpu {}
+
+impl Gpu {
+    /// None.
+    ///
+    /// # Errors
+    /// Always: there are no GPUs in this build. So do the next two.
+    pub fn auto() -> Result<Self, GpuError> {
+        Err(GpuError::NotBuilt)
+    }
+
+    /// None.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn any() -> Result<Self, GpuError> {
+        Err(GpuError::NotBuilt)
+    }
+
+    /// None.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn open(_: usize) -> Result<Self, GpuError> {
+        Err(GpuError::NotBuilt)
+    }
+
+    /// No adapter.
+    pub fn list() -> Vec<Adapter> {
+        Vec::new()
+    }
+
+    /// The adapter.
+    pub fn adapter(&self) -> &Adapter {
+        match *self {}
+    }
+
+    /// Whether both are one device.
+    pub fn is_same(&self, _: &Self) -> bool {
+        match *self {}
+    }
+
+    /// Whether the device can tell how long its work takes.
+    pub fn has_timestamps(&self) -> bool {
+        match *self {}
+    }
+
+    /// Bytes that all buffers together hold.
+    pub fn memory_used(&self) -> u64 {
+        match *self {}
+    }
+
+    /// Bytes that crossed.
+    pub fn crossed(&self) -> Crossed {
+        match *self {}
+    }
+
+    /// Bytes per second that a copy reads and writes.
+    ///
+    /// # Errors
+    /// None.
+    pub fn copy_bandwidth(&self, _: usize) -> Result<f64, GpuError> {
+        match *self {}
+    }
+
+    /// Copies buffers.
+    ///
+    /// # Errors
+    /// None.
+    pub fn copy<T>(&self, _: &str, _: [[&Buffer<T>; 2]; 2]) -> Result<(), GpuError> {
+        match *self {}
+    }
+}
+
+/// Memory of a device.
+#[derive(Clone, Debug)]
+pub struct Buffer<T> {
+    gpu: Gpu,
+    element: PhantomData<T>,
+}
+
+impl<T> Buffer<T> {
+    /// A buffer of zeros.
+    ///
+    /// # Errors
+    /// None.
+    pub fn new(gpu: &Gpu, _: &'static str, _: usize) -> Result<Self, GpuError> {
+        match *gpu {}
+    }
+
+    /// Number of elements.
+    #[expect(clippy::len_without_is_empty, reason = "nobody asks")]
+    pub fn len(&self) -> usize {
+        match self.gpu {}
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+}

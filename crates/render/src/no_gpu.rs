@@ -1,0 +1,63 @@
+//! What stands for the renderer on a GPU in a build without GPUs: nothing of it can be made.
+
+use strandline_body::Mesh;
+use strandline_gpu::{Buffer, Gpu};
+use strandline_groom::Guides;
+
+use crate::{FrameInput, FrameReport, Picture, PictureSettings, RenderError};
+
+/// Guide points that lie on a device.
+#[derive(Clone, Copy, Debug)]
+pub struct DevicePoints<'a> {
+    /// Before the moment shown.
+    pub before: &'a Buffer<f32>,
+    /// After it.
+    pub after: &'a Buffer<f32>,
+    /// Where the moment lies between them.
+    pub share: f32,
+}
+
+/// A renderer on a GPU.
+#[derive(Debug)]
+pub enum GpuRenderer {}
+
+/// No shader modules.
+pub fn modules() -> Vec<(&'static str, &'static str)> {
+    Vec::new()
+}
+
+#[expect(missing_docs, clippy::missing_errors_doc, reason = "none of it can be called")]
+impl GpuRenderer {
+    pub fn new(gpu: &Gpu, _: &Guides, _: Option<&Mesh>, _: &PictureSettings) -> Result<Self, RenderError> {
+        match *gpu {}
+    }
+
+    pub fn gpu(&self) -> &Gpu {
+        match *self {}
+    }
+
+    pub fn set_picture(&mut self, _: &PictureSettings) -> Result<(), RenderError> {
+        match *self {}
+    }
+
+    pub fn show_layers(&mut self, _: Option<usize>) {
+        match *self {}
+    }
+
+    pub fn draw_into(
+        &mut self,
+        _: &FrameInput,
+        _: Option<DevicePoints>,
+        _: &mut Picture,
+    ) -> Result<FrameReport, RenderError> {
+        match *self {}
+    }
+
+    pub fn opacity_map(&self, _: usize) -> Result<Option<Picture>, RenderError> {
+        match *self {}
+    }
+
+    pub fn depth_map(&self, _: usize) -> Result<Option<Picture>, RenderError> {
+        match *self {}
+    }
+}
