@@ -19,7 +19,7 @@ fn pulled_aside(on: &On, limit: f32) -> f32 {
     let settings = Settings {
         gravity: Vec3::X * 9.81,
         damping: 5.0,
-        angles: Angles { limit, stiffness: 0.0, hold: 0.0 },
+        angles: Angles { limit, stiffness: 0.0 },
         ..bare(1.0 / 60.0, 20)
     };
     let mut rig = hanging(on, &settings);
@@ -43,11 +43,8 @@ law! {
 
 /// Angular frequency \[1/s\] at which one free segment swings, by two passages through rest.
 fn swing(on: &On, stiffness: f32, time_step: f32) -> f32 {
-    let settings = Settings {
-        gravity: Vec3::ZERO,
-        angles: Angles { limit: PI, stiffness, hold: 0.0 },
-        ..bare(time_step, 20)
-    };
+    let settings =
+        Settings { gravity: Vec3::ZERO, angles: Angles { limit: PI, stiffness }, ..bare(time_step, 20) };
     let mut rig = hanging(on, &settings);
     rig.change(|state| {
         let joint = state.positions[2].get(0);

@@ -57,7 +57,7 @@ fn depth_below(
 ) -> f32 {
     let mut settings = Settings {
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
-        ..Settings::default()
+        ..Settings::constrained()
     };
     settings.length_pass.enabled = exact;
     let solver = Solver::new(hair, &settings, collider.into_iter().collect()).unwrap();

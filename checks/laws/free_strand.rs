@@ -94,7 +94,7 @@ law! {
         let settings = Settings {
             gravity: Vec3::ZERO,
             springs: Springs { stretch: stiff, bend: stiff, torsion: stiff },
-            angles: Angles { limit: 0.1, stiffness: 100.0, hold: 0.0 },
+            angles: Angles { limit: 0.1, stiffness: 100.0 },
             ..bare(1.0 / 60.0, 20)
         };
         let solver = Solver::new(&one_strand(&helix(12)), &settings, Vec::new()).unwrap();

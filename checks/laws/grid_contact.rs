@@ -79,7 +79,7 @@ fn lowered(on: &On, ball: &Ball, colliders: Vec<Collider>, settings: &Settings) 
 law! {
     fn hair_that_leaves_the_box_of_a_grid_and_comes_back_stays_outside(on) {
         let ball = Ball { center: Vec3::NEG_Y * 0.75, radius: 0.1 };
-        let mut settings = Settings::default();
+        let mut settings = Settings::constrained();
         settings.volume.enabled = false;
         let solid = vec![sampled(&ball, Carrier::World)];
         let (deepest, _) = lowered(on, &ball, solid.clone(), &settings);
@@ -105,7 +105,7 @@ law! {
             groom.push(line(root, root + Vec3::NEG_Y * 0.02, 8));
         }
         let hair = Guides::resample(&groom, 8).unwrap();
-        let mut settings = Settings::default();
+        let mut settings = Settings::constrained();
         settings.volume.enabled = false;
         let solver = Solver::new(&hair, &settings, vec![sampled(&ball, Carrier::World)]).unwrap();
         let mut rig = Rig::new(on, solver);
@@ -146,7 +146,7 @@ law! {
         let shape = Shape::Sphere { center: Vec3::ZERO, radius: 0.1 };
         let exact = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
         for solid in [exact, sampled(&ball, Carrier::Head)] {
-            let deepest = shaken(on, solid.clone(), &Settings::default());
+            let deepest = shaken(on, solid.clone(), &Settings::constrained());
             assert!(deepest < 2e-3, "{deepest} m deep in {:?}", solid.carrier);
             let thesis = shaken(on, solid, &Settings::thesis());
             assert!(thesis < 2e-3, "the thesis: {thesis} m deep");
@@ -166,7 +166,7 @@ law! {
         let shape = Shape::Sphere { center: Vec3::ZERO, radius: 0.05 };
         let exact = Collider { shape, carrier: Carrier::World, friction: 0.3 };
         for (solids, stays) in [(vec![exact], true), (vec![sampled(&ball, Carrier::World)], true), (Vec::new(), false)] {
-            for settings in [Settings::default(), Settings::thesis()] {
+            for settings in [Settings::constrained(), Settings::thesis()] {
                 let loose = |_: usize, _: usize| false;
                 let solver = Solver::with_rest(&hair, rest.clone(), loose, &settings, solids.clone()).unwrap();
                 let mut rig = Rig::new(on, solver);

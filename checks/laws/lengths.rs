@@ -16,7 +16,7 @@ const HAIR: [(usize, f32); 2] = [(12, 0.3), (16, 0.5)];
 fn head(on: &On, strands: usize, hair: (usize, f32), volume: bool) -> Rig {
     let settings = Settings {
         volume: VolumeSettings { enabled: volume, ..VolumeSettings::default() },
-        ..Settings::default()
+        ..Settings::constrained()
     };
     let guides = ball_of_hair(strands, hair.0, hair.1);
     Rig::new(on, Solver::new(&guides, &settings, vec![skull(0.3)]).unwrap())

@@ -12,7 +12,7 @@ fn strand(on: &On) -> Rig {
     let settings = Settings {
         springs: Springs { stretch: spring, bend: spring, torsion: spring },
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
-        ..Settings::default()
+        ..Settings::constrained()
     };
     let guides = one_strand(&line(Vec3::ZERO, Vec3::X * 0.3, 11));
     Rig::new(on, Solver::new(&guides, &settings, Vec::new()).unwrap())

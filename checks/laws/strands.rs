@@ -17,7 +17,7 @@ pub fn bare(time_step: f32, iterations: u32) -> Settings {
         angles: Angles::OFF,
         length_pass: LengthPass { enabled: false, ..LengthPass::default() },
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
-        ..Settings::default()
+        ..Settings::constrained()
     }
 }
 

@@ -125,7 +125,7 @@ impl Cloud {
         let mut groom = Groom::empty(8e-5);
         (0..self.strands).for_each(|_| groom.push([Vec3::ZERO, Vec3::NEG_Y]));
         let guides = Guides::resample(&groom, POINTS).unwrap();
-        let settings = Settings { volume, time_step, ..Settings::default() };
+        let settings = Settings { volume, time_step, ..Settings::constrained() };
         GpuSolver::new(gpu, Solver::new(&guides, &settings, colliders).unwrap()).unwrap()
     }
 
@@ -273,7 +273,7 @@ law! {
         let guides = Guides::resample(&groom, POINTS).unwrap();
         let rest = RestShape::new(&guides, 1e-5);
         let settings = VolumeSettings { cells: [4; 3], flip_share: 0.0, ..VolumeSettings::default() };
-        let settings = Settings { volume: settings, ..Settings::default() };
+        let settings = Settings { volume: settings, ..Settings::constrained() };
         let solver = Solver::with_rest(&guides, rest, |_, point| point == 3, &settings, Vec::new()).unwrap();
         let state = solver.rest_state(Pose::IDENTITY);
         let given = |point: usize| Vec3::Y * if point.is_multiple_of(2) { 1.0 } else { -1.0 };

@@ -103,7 +103,7 @@ pub fn solids() -> Vec<Collider> {
 /// The hair that every stage is compared on: an ordinary head and the edges.
 pub fn heads() -> Vec<Head> {
     let with = |change: fn(&mut Settings)| {
-        let mut settings = Settings { volume: volume(16), ..Settings::default() };
+        let mut settings = Settings { volume: volume(16), ..Settings::constrained() };
         change(&mut settings);
         settings
     };
@@ -112,7 +112,7 @@ pub fn heads() -> Vec<Head> {
             name: "300 strands of 16 points on solids of every kind",
             guides: ball(300, 16),
             colliders: solids(),
-            settings: with(|settings| settings.angles.hold = 8.0),
+            settings: with(|_| ()),
         },
         Head {
             name: "the thesis: 6 points, no bends, no length pass",

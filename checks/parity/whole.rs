@@ -131,7 +131,7 @@ fn more_points_than_a_row_of_workgroups_holds_all_move() {
     let guides = Guides::resample(&groom, 4).unwrap();
     drop(groom);
     let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
-    let settings = Settings { volume, iterations: 2, ..Settings::default() };
+    let settings = Settings { volume, iterations: 2, ..Settings::constrained() };
     let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
     let mut expected = solver.rest_state(Pose::IDENTITY);
     let gpu_solver = GpuSolver::new(&gpu, solver).unwrap();

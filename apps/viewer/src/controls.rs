@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Response, Slider, SliderClamping, Ui, emath::Numeric};
 use glam::Vec3;
-use strandline::base::Row;
+use strandline::base::{Kind, Row};
 
 /// A section of the panel.
 pub fn section(ui: &mut Ui, name: &str, open: bool, add: impl FnOnce(&mut Ui)) {
@@ -48,6 +48,27 @@ pub fn tick_of(ui: &mut Ui, (value, default): (&mut bool, bool), name: &str, tip
     let response = ui.checkbox(value, name);
     let response = response.on_hover_text(tip_of(tip, if default { "on" } else { "off" }));
     set_back(ui, &response, (value, default)) || response.changed()
+}
+
+/// A list of the words that a setting may be; true when it changed.
+pub fn choose<C: Copy + PartialEq>(
+    ui: &mut Ui,
+    (value, default): (&mut C, C),
+    choices: &[C],
+    row: &Row,
+    name: &str,
+) -> bool {
+    let Kind::Words(words) = row.kind else { unreachable!("{} is no choice", row.name) };
+    let word = |choice: C| choices.iter().position(|other| *other == choice).map_or("", |at| words[at].name);
+    let before = *value;
+    let list = egui::ComboBox::from_label(name).selected_text(word(before));
+    let response = list.show_ui(ui, |ui| {
+        for (choice, word) in choices.iter().zip(words) {
+            ui.selectable_value(value, *choice, word.name).on_hover_text(word.about());
+        }
+    });
+    let response = response.response.on_hover_text(tip_of(&about(row), word(default)));
+    set_back(ui, &response, (value, default)) || *value != before
 }
 
 /// A colour, linear RGB; true when it changed.

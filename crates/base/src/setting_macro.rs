@@ -153,6 +153,31 @@ macro_rules! settings {
     (@ends $least:expr, $most:expr) => { Some([$least as f64, $most as f64]) };
 }
 
+/// A key of old files that no setting takes the place of. A section lists it under `moved` with this type, and a
+/// file that names it is refused with what to write instead.
+///
+/// ```
+/// strandline_base::gone! {
+///     /// How far it once bent.
+///     NoBend, "`bend` is gone: `stiffness` tells how far it bends"
+/// }
+/// assert!(toml::from_str::<NoBend>("bend = 3").is_err());
+/// ```
+#[macro_export]
+macro_rules! gone {
+    ($(#[doc = $about:literal])* $Name:ident, $message:literal) => {
+        $(#[doc = $about])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $Name;
+
+        impl<'de> ::serde::Deserialize<'de> for $Name {
+            fn deserialize<D: ::serde::Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
+                Err(<D::Error as ::serde::de::Error>::custom($message))
+            }
+        }
+    };
+}
+
 /// An enum that a file names by a word: its words stand once.
 ///
 /// ```

@@ -1,5 +1,5 @@
 use glam::Vec3;
-use strandline_base::{Group, SettingError, choices, settings};
+use strandline_base::{Group, SettingError, choices, gone, settings};
 use strandline_gpu::Backend;
 
 use crate::SimError;
@@ -11,13 +11,13 @@ settings! {
         /// Length of a step.
         time_step: f32 = 1.0 / 60.0, in [1e-5, 0.1] "s", slider [0.002, 0.05],
             more "faster, softer and less exact";
-        /// Rounds of the constraints in a step [Chen2011 §6].
+        /// Rounds of the constraints in a step, where strands are no rods [Chen2011 §6].
         iterations: u32 = 20, in [1, 10_000], slider [1, 100],
             more "stiffer bends and firmer contacts, at a higher cost";
         /// Gravity, world space.
         gravity: Vec3 = Vec3::new(0.0, -9.81, 0.0), in [-1000.0, 1000.0] "m/s^2", slider [-20.0, 5.0];
-        /// Mass of hair per length; the default is that of a hair 80 um thick. Points with masses of their
-        /// own keep them.
+        /// Mass of hair per length where strands are no rods, whose mass is that of their material; the default is
+        /// that of a hair 80 um thick. Points with masses of their own keep them.
         mass_per_length: f32 = 6.5e-6, in [1e-9, 1.0] "kg/m", slider [1e-6, 5e-5],
             more "springs that move hair less";
         /// Share of the velocity that is lost per second.
@@ -28,11 +28,11 @@ settings! {
             more "less skin that shows through, hair that floats over it";
         /// Drag of the air.
         drag: Drag = Drag::default();
-        /// Elastic springs, each can be off.
+        /// Elastic springs of strands that are no rods, each can be off.
         springs: Springs = Springs::default();
-        /// Bends at the points of a strand.
+        /// Bends at the points of strands that are no rods.
         angles: Angles = Angles::default();
-        /// The pass that makes lengths exact.
+        /// The pass that makes lengths of strands exact that are no rods; those of rods always are.
         length_pass: LengthPass = LengthPass::default();
         /// What moves a strand within a step.
         strands: StrandSettings = StrandSettings::default();
@@ -56,13 +56,21 @@ impl Settings {
         self.strands.method == StrandMethod::Rods
     }
 
+    /// Strands of springs and rounds of constraints in place of rods [Chen2011 §4], with bends toward the groom's
+    /// and exact lengths, which the thesis has not.
+    pub fn constrained() -> Self {
+        let mut settings = Self::default();
+        settings.strands.method = StrandMethod::Constrain;
+        settings
+    }
+
     /// The thesis as printed: 20 rounds of distance constraints, springs, no shape and no length
     /// pass [Chen2011 §4, §6].
     pub fn thesis() -> Self {
         Self {
             angles: Angles::OFF,
             length_pass: LengthPass { enabled: false, ..LengthPass::default() },
-            ..Self::default()
+            ..Self::constrained()
         }
     }
 
@@ -93,7 +101,7 @@ choices! {
         /// Rods, which bend and twist by physics and keep their style.
         Rods = "rods",
     }
-    default Constrain
+    default Rods
 }
 
 settings! {
@@ -165,21 +173,24 @@ settings! {
         /// Angular frequency at which a lone bent segment would swing back to rest; 0 is off.
         stiffness: f32 = 25.0, in [0.0, 10_000.0] "1/s", slider [0.0, 100.0],
             more "hair that keeps its shape against gravity";
-        /// Rate at which the length pass turns every segment to the direction that it has at rest from
-        /// the segment before; 0 is off. It goes from root to tip, so that curls of many points hold
-        /// where the other bends, which work both ways, let them hang.
-        hold: f32 = 0.0, in [0.0, 10_000.0] "1/s", slider [0.0, 100.0],
-            more "curls that stay, hair that moves as one piece";
+        moved { hold: NoHold => "simulation.strands.rods" }
     }
+}
+
+gone! {
+    /// The rate at which segments once turned back to their style.
+    NoHold, "`simulation.angles.hold` is gone: rods keep a style by the stiffness of hair. Leave it out, and set \
+             `simulation.strands.rods.youngs_modulus` or `radius` if hair is to be stiffer or softer; or take the \
+             strands without it, `simulation.strands.method = \"constrain\"`"
 }
 
 impl Angles {
     /// Bends are free.
-    pub const OFF: Self = Self { limit: std::f32::consts::PI, stiffness: 0.0, hold: 0.0 };
+    pub const OFF: Self = Self { limit: std::f32::consts::PI, stiffness: 0.0 };
 
     /// Whether bends are free.
     pub fn is_off(&self) -> bool {
-        self.limit >= std::f32::consts::PI && self.stiffness == 0.0 && self.hold == 0.0
+        self.limit >= std::f32::consts::PI && self.stiffness == 0.0
     }
 }
 

@@ -179,7 +179,7 @@ mod tests {
         groom.push([Vec3::X, Vec3::X + Vec3::NEG_Y * 0.3]);
         let guides = Guides::resample(&groom, 7).unwrap();
         let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
-        let settings = Settings { volume, ..Settings::default() };
+        let settings = Settings { volume, ..Settings::constrained() };
         let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
         let state = solver.rest_state(Pose::IDENTITY);
         (solver, state)

@@ -183,7 +183,7 @@ impl Play {
         match count % 8 {
             0 => {
                 let mut settings = self.scene.simulation.clone();
-                settings.iterations = 20 + count / 8 % 2;
+                settings.damping = 0.1 * (count / 8 % 2) as f32;
                 self.act(Command::Settings(Box::new(settings)))
             }
             1 => {

@@ -4,19 +4,28 @@ use eframe::egui::Ui;
 use strandline::{
     Command,
     base::Group,
-    sim::{Angles, Drag, LengthPass, Settings, Spring, Springs, VolumeSettings},
+    sim::{
+        Angles, Drag, LengthPass, Settings, Spring, Springs, StrandMethod, StrandSettings, VolumeSettings,
+        rods::RodSettings,
+    },
 };
 
 use crate::{
     App,
-    controls::{about, button, slide, slide_in, tick},
+    controls::{about, button, choose, slide, slide_in, tick},
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     let before = app.scene.simulation.clone();
     let (settings, base) = (&mut app.scene.simulation, &app.base.simulation);
     strands(settings, base, ui);
-    springs(settings, base, ui);
+    match settings.strands.method {
+        StrandMethod::Rods => rods(&mut settings.strands.rods, &base.strands.rods, ui),
+        StrandMethod::Constrain => {
+            bends(settings, base, ui);
+            springs(settings, base, ui);
+        }
+    }
     volume(settings, base, ui);
     if button(ui, "Defaults", "sets every setting back to that of the scene") {
         *settings = base.clone();
@@ -27,15 +36,30 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 }
 
 fn strands(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
-    let (rows, drag, angles) = (&Settings::ROWS, &Drag::ROWS, &Angles::ROWS);
-    slide(ui, (&mut settings.iterations, base.iterations), &rows.iterations, "iterations");
+    let (rows, drag) = (&Settings::ROWS, &Drag::ROWS);
+    let method = (&mut settings.strands.method, base.strands.method);
+    choose(ui, method, &StrandMethod::ALL, &StrandSettings::ROWS.method, "strands");
     slide(ui, (&mut settings.gravity.y, base.gravity.y), &rows.gravity, "gravity");
     slide(ui, (&mut settings.damping, base.damping), &rows.damping, "damping");
     slide(ui, (&mut settings.drag.across, base.drag.across), &drag.across, "drag across");
     slide(ui, (&mut settings.drag.along, base.drag.along), &drag.along, "drag along");
+}
+
+fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {
+    let rows = &RodSettings::ROWS;
+    slide(ui, (&mut rods.radius, base.radius), &rows.radius, "radius, um");
+    slide(ui, (&mut rods.youngs_modulus, base.youngs_modulus), &rows.youngs_modulus, "stiffness, GPa");
+    slide(ui, (&mut rods.density, base.density), &rows.density, "density, kg/m^3");
+    slide(ui, (&mut rods.damping, base.damping), &rows.damping, "bends' damping, s");
+    slide(ui, (&mut rods.substeps, base.substeps), &rows.substeps, "parts of a step");
+    slide(ui, (&mut rods.newton_steps, base.newton_steps), &rows.newton_steps, "Newton steps");
+}
+
+fn bends(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
+    let (rows, angles) = (&Settings::ROWS, &Angles::ROWS);
+    slide(ui, (&mut settings.iterations, base.iterations), &rows.iterations, "iterations");
     let (bends, base_bends) = (&mut settings.angles, &base.angles);
     slide(ui, (&mut bends.stiffness, base_bends.stiffness), &angles.stiffness, "bend stiffness");
-    slide(ui, (&mut bends.hold, base_bends.hold), &angles.hold, "hold");
     slide(ui, (&mut bends.limit, base_bends.limit), &angles.limit, "bend limit");
     let enabled = (&mut settings.length_pass.enabled, base.length_pass.enabled);
     tick(ui, enabled, &LengthPass::ROWS.enabled, "length pass");

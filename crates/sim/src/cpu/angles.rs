@@ -23,28 +23,17 @@ pub struct Bends {
     cos_limit: f32x8,
     sin_limit: f32x8,
     share: f32x8,
-    hold: f32x8,
     head: Quat,
 }
 
-/// What a pass over the bends takes of the gap to the rest shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct BendShares {
-    /// Share of the gap that a pass among the rounds closes.
-    pub share: f32,
-    /// Share that the walk from root to tip closes.
-    pub hold: f32,
-}
-
-impl BendShares {
-    pub fn new(angles: &Angles, time_step: f32, iterations: u32) -> Self {
-        // One backward Euler step of a spring of this frequency closes this share of the gap; the
-        // passes of a step share it, so that their number does not matter.
-        let turn = (angles.stiffness * time_step).powi(2);
-        let left = 1.0 / (1.0 + turn);
-        let passes = iterations.div_ceil(ROUNDS_PER_PASS);
-        Self { share: 1.0 - left.powf(1.0 / passes as f32), hold: 1.0 - (-angles.hold * time_step).exp() }
-    }
+/// Share of the gap to the rest shape that a pass over the bends closes.
+pub(crate) fn bend_share(angles: &Angles, time_step: f32, iterations: u32) -> f32 {
+    // One backward Euler step of a spring of this frequency closes this share of the gap; the
+    // passes of a step share it, so that their number does not matter.
+    let turn = (angles.stiffness * time_step).powi(2);
+    let left = 1.0 / (1.0 + turn);
+    let passes = iterations.div_ceil(ROUNDS_PER_PASS);
+    1.0 - left.powf(1.0 / passes as f32)
 }
 
 /// One block of strands as bends see it.
@@ -61,12 +50,10 @@ impl Bends {
         if angles.is_off() {
             return None;
         }
-        let BendShares { share, hold } = BendShares::new(angles, time_step, iterations);
         Some(Self {
             cos_limit: splat(angles.limit.cos()),
             sin_limit: splat(angles.limit.sin()),
-            share: splat(share),
-            hold: splat(hold),
+            share: splat(bend_share(angles, time_step, iterations)),
             head,
         })
     }
@@ -104,12 +91,6 @@ impl Bends {
         joint.store(&mut positions[last]);
     }
 
-    /// A shape to hold from root to tip, when there is one.
-    pub fn held<'a>(&self, directions: &'a [Vec3Lanes]) -> Option<Held<'a>> {
-        let frame = Turn::splat(self.head);
-        (self.hold.to_array()[0] > 0.0).then_some(Held { share: self.hold, directions, frame })
-    }
-
     /// How far a unit direction has to go: into the cone about `expected`, then a share of the way.
     #[inline(always)]
     fn gap(&self, expected: Vec3x8, direction: Vec3x8) -> Vec3x8 {
@@ -118,34 +99,6 @@ impl Bends {
         let on_cone = expected * self.cos_limit + aside * (self.sin_limit / aside.length());
         let allowed = on_cone.or(cos.simd_lt(self.cos_limit), direction);
         (allowed - direction) + (expected - allowed) * self.share
-    }
-}
-
-/// The shape that a walk from root to tip gives back to a strand.
-pub struct Held<'a> {
-    share: f32x8,
-    directions: &'a [Vec3Lanes],
-    frame: Turn,
-}
-
-impl Held<'_> {
-    /// A segment that ends at `point`, turned a share of the way to its rest direction.
-    #[inline(always)]
-    pub fn turn(&self, point: usize, across: Vec3x8) -> Vec3x8 {
-        let length = across.length();
-        let expected = self.frame.apply(Vec3x8::load(&self.directions[point - 1]));
-        let direction = across * (splat(1.0) / length);
-        let turned = direction + (expected - direction) * self.share;
-        // Opposite directions may meet in nothing: then the segment stays.
-        let size = turned.length();
-        (turned * (length / size)).or(size.simd_gt(splat(1e-3)), across)
-    }
-
-    /// Carries the frame over the segment that now ends at `point`.
-    #[inline(always)]
-    pub fn pass(&mut self, point: usize, across: Vec3x8) {
-        let expected = self.frame.apply(Vec3x8::load(&self.directions[point - 1]));
-        self.frame = self.frame.then_from_to(expected, across * (splat(1.0) / across.length()));
     }
 }
 

@@ -141,11 +141,9 @@ impl Strands<'_> {
                 lengths: self.segments.lengths,
                 margins: &work.margins,
                 last_rooted: work.spans.last_rooted,
-                last_held: work.spans.last_rooted.fast_max(last_pinned(&work.pinned)),
                 solids: self.solids,
             };
-            let held = self.bends.and_then(|bends| bends.held(self.joints.directions));
-            follow.place(held, predicted, planes, &mut work.corrections);
+            follow.place(predicted, planes, &mut work.corrections);
         }
         let rate = splat(1.0 / self.solver.settings.time_step);
         let returned = rate * splat(-pass.correction);
@@ -222,13 +220,6 @@ impl Workspace {
             }
         }
     }
-}
-
-/// The point of each strand that is held, -1 where none is.
-fn last_pinned(pinned: &[Pinned]) -> f32x8 {
-    let mut points = [-1.0; LANES];
-    pinned.iter().for_each(|pinned| points[pinned.lane] = pinned.point as f32);
-    f32x8::from(points)
 }
 
 /// Strands of a block that carry hair, as lanes.

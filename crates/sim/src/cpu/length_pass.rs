@@ -5,7 +5,6 @@ use strandline_body::turned_out;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::angles::Held;
 use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::vec3x8::{Vec3x8, load, splat};
 
@@ -21,34 +20,20 @@ pub struct Follow<'a> {
     pub margins: &'a [f32x8],
     /// The last rooted point of each strand, -1 where none is: points before it stay.
     pub last_rooted: f32x8,
-    /// The last point of each strand that is rooted or held by a hand, -1 where none is.
-    pub last_held: f32x8,
     pub solids: &'a Solids<'a>,
 }
 
 impl Follow<'_> {
     /// Moves each point to its length from the one before and tells how far \[m\] that moved it.
     ///
-    /// A held shape turns the segments first, and solids push points out last: neither is a correction
-    /// of a length, which gives velocity back. Segments between holds go where these pull
-    /// them.
-    pub fn place(
-        &self,
-        mut held: Option<Held>,
-        positions: &mut [Vec3Lanes],
-        planes: &mut [Plane],
-        corrections: &mut [Vec3x8],
-    ) {
+    /// Solids push points out last, which is no correction of a length that gives velocity back.
+    pub fn place(&self, positions: &mut [Vec3Lanes], planes: &mut [Plane], corrections: &mut [Vec3x8]) {
         corrections[0] = Vec3x8::ZERO;
         let mut before = Vec3x8::load(&positions[0]);
         for point in 1..positions.len() {
-            let mut found = Vec3x8::load(&positions[point]);
+            let found = Vec3x8::load(&positions[point]);
             let free = splat(point as f32).simd_gt(self.last_rooted);
             let length = load(&self.lengths[point - 1]);
-            if let Some(held) = &held {
-                let shaped = free & splat(point as f32).simd_gt(self.last_held);
-                found = (before + held.turn(point, found - before)).or(shaped, found);
-            }
             let across = found - before;
             let mut placed = before + across * (length / across.length());
             corrections[point] = (placed - found).or(free, Vec3x8::ZERO);
@@ -57,9 +42,6 @@ impl Follow<'_> {
             }
             let placed = placed.or(free, found);
             placed.store(&mut positions[point]);
-            if let Some(held) = &mut held {
-                held.pass(point, placed - before);
-            }
             before = placed;
         }
     }

@@ -166,7 +166,7 @@ impl Strands<'_> {
             let (pose, moved) = &self.parts.poses[part as usize];
             self.want(space, &Carry::new(pose), moved);
             self.find_pulls(space, planes, pinned, part);
-            self.solve_part(space, planes, pinned);
+            self.solve_part(space, planes);
         }
     }
 
@@ -270,7 +270,7 @@ impl Strands<'_> {
         }
     }
 
-    fn solve_part(&self, space: &mut Workspace, planes: &mut [Plane], pinned: &[Pinned]) {
+    fn solve_part(&self, space: &mut Workspace, planes: &mut [Plane]) {
         let Workspace { carried, sections, work, .. } = space;
         work.begin(|index| carried[index + 1] - carried[index], |index| sections[index]);
         let settings = StepSettings {
@@ -285,12 +285,12 @@ impl Strands<'_> {
             *carried = *carried + Vector::new(x, y, z);
         }
         space.project.project(&mut space.carried, &space.inverse_mass, &space.length, LENGTH_ROUNDS);
-        self.place(space, planes, pinned);
+        self.place(space, planes);
         self.take(space, &solved);
     }
 
     /// Lengths to the last bit, from root to tip, outside the solids.
-    fn place(&self, space: &mut Workspace, planes: &mut [Plane], pinned: &[Pinned]) {
+    fn place(&self, space: &mut Workspace, planes: &mut [Plane]) {
         for (placed, point) in space.placed.iter_mut().zip(&space.carried) {
             store(*point, placed);
         }
@@ -302,16 +302,13 @@ impl Strands<'_> {
                 *last = point as f32;
             }
         }
-        let mut last_held = last_rooted;
-        pinned.iter().for_each(|pin| last_held[pin.lane] = last_held[pin.lane].max(pin.point as f32));
         let follow = Follow {
             lengths: self.lengths,
             margins: &space.margins,
             last_rooted: f32x8::from(last_rooted),
-            last_held: f32x8::from(last_held),
             solids: &self.parts.solids,
         };
-        follow.place(None, &mut space.placed, planes, &mut space.corrections);
+        follow.place(&mut space.placed, planes, &mut space.corrections);
         for (placed, point) in space.placed.iter().zip(&mut space.carried) {
             *point = load(placed);
         }

@@ -4,7 +4,7 @@ use glam::{Mat3, Vec3};
 use strandline_body::Pose;
 use strandline_gpu::mirror;
 
-use crate::cpu::angles::BendShares;
+use crate::cpu::angles::bend_share;
 use crate::cpu::contacts::Care;
 use crate::grab::Grab;
 use crate::{Drive, Preconditioner, Solver, Spring};
@@ -66,7 +66,6 @@ mirror! {
         pub cos_limit: f32,
         pub sin_limit: f32,
         pub bend_share: f32,
-        pub hold: f32,
         pub bends: u32,
         pub length_pass: u32,
         pub correction: f32,
@@ -82,11 +81,11 @@ mirror! {
         pub preconditioner: u32,
         /// Where the report goes.
         pub slot: u32,
-        /// Whether a hand holds hair.
-        pub holds: u32,
+        pub unused_a: [u32; 2],
         /// Where the hand is \[m\].
         pub hand: [f32; 3],
-        pub unused_a: u32,
+        /// Whether a hand holds hair.
+        pub holds: u32,
         pub rods: RodStep,
     }
 }
@@ -137,7 +136,6 @@ impl Step {
             rotation: a.rotation * b.rotation,
             translation: a.point(b.translation),
         };
-        let shares = BendShares::new(&settings.angles, settings.time_step, settings.iterations);
         let care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
         Self {
             world_from_head: Rigid::new(&end),
@@ -158,8 +156,7 @@ impl Step {
             near: care.near,
             cos_limit: settings.angles.limit.cos(),
             sin_limit: settings.angles.limit.sin(),
-            bend_share: shares.share,
-            hold: shares.hold,
+            bend_share: bend_share(&settings.angles, settings.time_step, settings.iterations),
             bends: u32::from(!settings.angles.is_off()),
             length_pass: u32::from(settings.length_pass.enabled),
             correction: settings.length_pass.correction,

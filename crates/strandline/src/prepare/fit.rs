@@ -1,5 +1,5 @@
 //! Settings that a scene leaves open, chosen to fit a groom from a file: points of strands, drawn strands about
-//! each, their widths and colours, and how firmly a style is held.
+//! each, their widths and colours.
 
 use glam::Vec3;
 
@@ -11,7 +11,6 @@ use crate::{
         format::{HAIR_WIDTH, Part},
     },
     render::LevelOfDetail,
-    sim::Settings,
 };
 
 /// Hair that is drawn when a groom has fewer strands, about \[strand\].
@@ -36,16 +35,8 @@ const COARSEST: f32 = 0.1;
 const NEAR: f32 = 2.5;
 /// Strands that are looked at.
 const LOOKED_AT: usize = 400;
-/// Rate of hold \[1/s\] of hair that stands against gravity, and of hair that hangs and is as long as this \[m\]: the
-/// longer it is, the more it swings by itself, as the built-in styles do.
-const STANDING_HOLD: f32 = 80.0;
-const HANGING_HOLD: f32 = 40.0;
-const LENGTH: f32 = 0.25;
-const HANGING_HOLDS: std::ops::RangeInclusive<f32> = 8.0..=60.0;
 /// Diameter of a hair over the distance of hairs on a head of a hundred thousand.
 const DENSITY: f32 = 0.095;
-/// Cosine of the angle to the way down up to which hair hangs.
-const HANGS: f32 = 0.7;
 
 /// Which settings a scene file gives that a groom would else choose. Scenes are the same whether a file gave what
 /// they say or not.
@@ -59,7 +50,6 @@ pub struct Given {
     pub wave_amplitude: bool,
     pub points_per_strand: bool,
     pub segments_per_span: bool,
-    pub hold: bool,
     pub spacing: bool,
     pub full_distance: bool,
 }
@@ -107,7 +97,6 @@ pub(super) fn fit(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Opti
     let (waves, of_waves) = (given.wave_amplitude, of_default.wave_amplitude);
     radius(&mut clump.wave_amplitude, waves, of_waves, WAVE_SHARE, "wave_amplitude");
     fit_widths(scene, groom, spacing, &default, &mut chosen);
-    let holds = [default.simulation.angles.hold, Settings::default().angles.hold];
     let size = mesh.and_then(Mesh::bounds).map_or(0.0, |bounds| bounds.min.distance(bounds.max));
     let body = &mut scene.body;
     if !given.spacing && body.spacing == default.body.spacing && size > CELLS * body.spacing {
@@ -119,10 +108,6 @@ pub(super) fn fit(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Opti
     if is_open && NEAR * size > level.full_distance {
         level.full_distance = NEAR * size;
         chosen.push(format!("level_of_detail.full_distance = {:.1}", level.full_distance));
-    }
-    if !given.hold && holds.contains(&scene.simulation.angles.hold) {
-        scene.simulation.angles.hold = hold(groom);
-        chosen.push(format!("simulation.angles.hold = {:.0}", scene.simulation.angles.hold));
     }
     (!chosen.is_empty()).then(|| format!("chosen to fit the groom: {}", chosen.join(", ")))
 }
@@ -189,51 +174,30 @@ fn spacing(groom: &Groom) -> f32 {
     2.0 * nearest.get(nearest.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// How firmly a style has to be held: as firmly as its outer halves stand against gravity, and as it is short.
-fn hold(groom: &Groom) -> f32 {
-    let (mut standing, mut lengths, mut count) = (0.0, 0.0, 0.0);
-    for strand in some(groom) {
-        let points = groom.strand(strand);
-        let half = points.len() / 2 - 1;
-        let stands = |pair: &[Vec3]| (pair[0] - pair[1]).normalize_or_zero().y < HANGS;
-        let outer = points[half..].windows(2);
-        standing += outer.clone().filter(|pair| stands(pair)).count() as f32 / outer.count().max(1) as f32;
-        lengths += points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f32>();
-        count += 1.0;
-    }
-    let (share, length) = (standing / count, lengths / count);
-    let hanging = (HANGING_HOLD * (LENGTH / length.max(1e-3)).powi(2))
-        .clamp(*HANGING_HOLDS.start(), *HANGING_HOLDS.end());
-    hanging + (STANDING_HOLD - hanging) * share
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Strands on a square at distances of 2 mm that hang, curl or stand up.
-    fn groom(turns: f32, up: f32) -> Groom {
+    /// Strands on a square at distances of 2 mm that hang or curl.
+    fn groom(turns: f32) -> Groom {
         let mut groom = Groom::empty(8e-5);
         for strand in 0..2500 {
             let root = Vec3::new(0.002 * (strand % 50) as f32, 0.0, 0.002 * (strand / 50) as f32);
             groom.push((0..100).map(|point| {
                 let share = point as f32 / 99.0;
                 let angle = std::f32::consts::TAU * turns * share;
-                root + Vec3::new(0.005 * angle.cos(), 0.2 * up * share, 0.005 * angle.sin())
+                root + Vec3::new(0.005 * angle.cos(), -0.2 * share, 0.005 * angle.sin())
             }));
         }
         groom
     }
 
     #[test]
-    fn points_keep_curls_and_hold_keeps_what_stands() {
-        assert_eq!(points(&groom(0.0, -1.0)), 8);
-        let curly = points(&groom(5.0, -1.0));
+    fn points_keep_curls() {
+        assert_eq!(points(&groom(0.0)), 8);
+        let curly = points(&groom(5.0));
         assert!(curly >= 48, "{curly}");
-        // 0.2 m long: 62.5, but for the most that hair which hangs is held.
-        assert!((hold(&groom(0.0, -1.0)) - 60.0).abs() < 0.1);
-        assert_eq!(hold(&groom(0.0, 1.0)), STANDING_HOLD);
-        let spacing = spacing(&groom(0.0, -1.0));
+        let spacing = spacing(&groom(0.0));
         assert!((0.0019..0.0041).contains(&spacing), "{spacing}");
     }
 
@@ -244,13 +208,10 @@ mod tests {
         let mut own = scene.clone();
         own.given = Given { follow_strands: true, ..Given::default() };
         own.look.clump.tip_radius = 0.002;
-        let note = fit(&mut scene, &groom(0.0, -1.0), None).unwrap();
+        let note = fit(&mut scene, &groom(0.0), None).unwrap();
         assert_eq!(scene.look.follow_strands, 16, "40,000 of 2,500");
-        assert!(
-            note.contains("look.clump.tip_radius") && note.contains("simulation.angles.hold = 60"),
-            "{note}"
-        );
-        let note = fit(&mut own, &groom(0.0, -1.0), None).unwrap();
+        assert!(note.contains("look.clump.tip_radius") && !note.contains("simulation"), "{note}");
+        let note = fit(&mut own, &groom(0.0), None).unwrap();
         assert_eq!((own.look.follow_strands, own.look.clump.tip_radius), (16, 0.002));
         assert!(!note.contains("follow_strands") && !note.contains("tip_radius"), "{note}");
     }

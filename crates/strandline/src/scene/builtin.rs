@@ -17,23 +17,19 @@ impl Scene {
     }
 
     /// Replaces the strands by a built-in style, with as many points on a guide as its curls need
-    /// (`groom.points_per_strand`), a drawn segment about every centimetre
-    /// (`level_of_detail.segments_per_span`), and a hold that keeps its shape (`simulation.angles.hold`).
-    /// A file that names a style and none of these three gets the same.
+    /// (`groom.points_per_strand`) and a drawn segment about every centimetre
+    /// (`level_of_detail.segments_per_span`). A file that names a style and neither of these gets the same.
     pub fn set_style(&mut self, style: Style) {
         let (seed, strand_count) = (self.style.seed, self.style.strand_count);
         self.groom.file = None;
         self.begin_at_rest();
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
-        let (points, segments, hold) = match style {
-            Style::Curly => (56, 1, 120.0),
-            Style::Wavy => (28, 2, 60.0),
-            Style::Pixie | Style::Ponytail => (16, 3, 80.0),
-            Style::Bob => (16, 3, 25.0),
-            Style::Long => (16, 3, 8.0),
+        let (points, segments) = match style {
+            Style::Curly => (56, 1),
+            Style::Wavy => (28, 2),
+            Style::Pixie | Style::Ponytail | Style::Bob | Style::Long => (16, 3),
         };
         self.groom.points_per_strand = points;
-        self.simulation.angles.hold = hold;
         self.level_of_detail.segments_per_span = segments;
     }
 
@@ -45,7 +41,7 @@ impl Scene {
             groom: GroomSection { points_per_strand: 6, ..GroomSection::default() },
             style: StyleSettings { strand_count: 1750, ..StyleSettings::new(Style::Bob) },
             simulation: Settings::thesis(),
-            film: FilmSection::default(),
+            film: FilmSection { settle: FilmSection::SETTLE, ..FilmSection::default() },
             ..Self::default()
         };
         scene.motion.name = MotionName::Shake;

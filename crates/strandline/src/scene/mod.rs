@@ -21,7 +21,7 @@ use crate::{
     groom::StyleSettings,
     prepare::Given,
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, memory::MAX_LIGHTS},
-    sim::Settings,
+    sim::{Settings, StrandMethod},
 };
 
 /// Largest file that is read \[bytes\]: unknown keys take some 30 times as much memory, and a scene of ten
@@ -49,7 +49,7 @@ settings! {
         wind: WindSection = WindSection::default();
         /// Solids beside the body, at most 1,024.
         colliders: Vec<ColliderSection> = Vec::new();
-        /// How hair moves. Without a groom file the default of `angles.hold` is that of the style.
+        /// How hair moves.
         simulation: Settings = Settings::default();
         /// Colour and shape of the drawn hair.
         look: Look = Look::default();
@@ -88,13 +88,15 @@ impl Scene {
             self.set_style(style.unwrap_or(self.style.style));
         } else {
             self.groom.points_per_strand = GroomSection::default().points_per_strand;
-            self.simulation.angles.hold = Settings::default().angles.hold;
             self.level_of_detail.segments_per_span = LevelOfDetail::default().segments_per_span;
         }
         let look = given.look.as_ref();
         let clump = look.and_then(|look| look.clump.as_ref());
         let level = given.level_of_detail.as_ref();
-        let angles = given.simulation.as_ref().and_then(|simulation| simulation.angles.as_ref());
+        let strands = given.simulation.as_ref().and_then(|simulation| simulation.strands.as_ref());
+        if strands.and_then(|strands| strands.method) == Some(StrandMethod::Constrain) {
+            self.film.settle = FilmSection::SETTLE;
+        }
         self.given = Given {
             follow_strands: look.is_some_and(|look| look.follow_strands.is_some()),
             hair_count: look.is_some_and(|look| look.hair_count.is_some()),
@@ -106,7 +108,6 @@ impl Scene {
             segments_per_span: level.is_some_and(|level| level.segments_per_span.is_some()),
             full_distance: level.is_some_and(|level| level.full_distance.is_some()),
             spacing: given.body.as_ref().is_some_and(|body| body.spacing.is_some()),
-            hold: angles.is_some_and(|angles| angles.hold.is_some()),
         };
         let simulation = given.simulation.as_ref().and_then(|simulation| simulation.backend);
         let pictures = given.picture.as_ref().and_then(|picture| picture.backend);

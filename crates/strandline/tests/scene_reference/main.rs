@@ -7,7 +7,7 @@ mod page;
 
 use std::path::Path;
 
-use strandline::{Backend, Scene, Style, groom::StyleSettings};
+use strandline::{Backend, Scene, Style, groom::StyleSettings, sim::StrandMethod};
 
 /// docs/scene.md as it is; recorded anew with STRANDLINE_BLESS=1, as `cargo xtask docs` does.
 fn page() -> String {
@@ -51,12 +51,42 @@ fn a_style_in_a_file_is_the_style_of_the_command_line() {
         assert_eq!(Scene::parse(&text, "scene").unwrap(), set);
     }
     assert_eq!(Scene::parse("", "scene").unwrap(), Scene::demo());
-    let own = "style.style = \"wavy\"\nsimulation.angles.hold = 3\ngroom.points_per_strand = 20";
+    let own = "style.style = \"wavy\"\nsimulation.damping = 3\ngroom.points_per_strand = 20";
     let scene = Scene::parse(own, "scene").unwrap();
-    assert_eq!((scene.simulation.angles.hold, scene.groom.points_per_strand), (3.0, 20));
+    assert_eq!((scene.simulation.damping, scene.groom.points_per_strand), (3.0, 20));
     assert_eq!(scene.level_of_detail.segments_per_span, 2, "what is not said is the style's");
     let file = Scene::parse("groom.file = \"a.hair\"\nstyle.style = \"wavy\"", "scene").unwrap();
-    assert_eq!((file.simulation.angles.hold, file.groom.points_per_strand), (0.0, 16), "a file has no style");
+    assert_eq!(
+        (file.level_of_detail.segments_per_span, file.groom.points_per_strand),
+        (4, 16),
+        "a file has no style"
+    );
+}
+
+/// What held a style before there were rods.
+#[test]
+fn what_rods_replace_is_refused_and_other_keys_of_older_files_are_taken() {
+    let old = "[simulation.angles]\nhold = 8.0\n";
+    let refused = Scene::parse(old, "old.toml").unwrap_err().to_string();
+    assert!(refused.contains("simulation.angles.hold") && refused.contains("line 2"), "{refused}");
+    assert!(refused.contains("simulation.strands.rods") && refused.contains("old.toml"), "{refused}");
+    let alone = toml::from_str::<strandline::Settings>("angles.hold = 8").unwrap_err().to_string();
+    assert!(alone.contains("simulation.strands.rods"), "{alone}");
+    let scene = Scene::parse("[simulation.angles]\nstiffness = 30.0\n", "scene").unwrap();
+    assert_eq!(
+        (scene.simulation.angles.stiffness, scene.simulation.strands.method),
+        (30.0, StrandMethod::Rods)
+    );
+}
+
+/// Strands of constraints sag at first, rods begin at rest.
+#[test]
+fn only_hair_that_sags_settles_before_a_film() {
+    let constrained = "simulation.strands.method = \"constrain\"\n";
+    let settle = |text: &str| Scene::parse(text, "scene").unwrap().film.settle;
+    assert_eq!((settle(""), settle(constrained)), (0.0, 1.0));
+    assert_eq!(settle(&format!("{constrained}film.settle = 0.25")), 0.25);
+    assert_eq!(Scene::thesis().film.settle, 1.0);
 }
 
 #[test]

@@ -43,6 +43,8 @@ frames = 60
 const OLD: &str = "\n## Keys of older files
 
 `simulation.backend` and `picture.backend` are read as `devices.simulation` and `devices.pictures`, which win where both are given.
+
+`simulation.angles.hold`, a rate at which segments turned back to their style, is refused: rods keep a style by the stiffness of hair (`[simulation.strands.rods]`). Scenes that move hair by springs and rounds of constraints say `method = \"constrain\"` in `[simulation.strands]`.
 ";
 
 /// The whole page.
@@ -57,13 +59,12 @@ pub fn written() -> String {
 
 /// What a style sets besides strands.
 fn styles() -> String {
-    let mut text = "Without a groom file the `[style]` is grown, and three keys of other sections take their default from it:\n\n\
-                    | style | `groom.points_per_strand` | `simulation.angles.hold` | `level_of_detail.segments_per_span` |\n|---|---|---|---|\n"
+    let mut text = "Without a groom file the `[style]` is grown, and two keys of other sections take their default from it:\n\n\
+                    | style | `groom.points_per_strand` | `level_of_detail.segments_per_span` |\n|---|---|---|\n"
         .to_owned();
     let mut line = |name: &str, scene: &Scene| {
-        let (points, hold) = (scene.groom.points_per_strand, scene.simulation.angles.hold);
-        let segments = scene.level_of_detail.segments_per_span;
-        writeln!(text, "| {name} | {points} | {hold} | {segments} |").unwrap();
+        let (points, segments) = (scene.groom.points_per_strand, scene.level_of_detail.segments_per_span);
+        writeln!(text, "| {name} | {points} | {segments} |").unwrap();
     };
     for style in Style::ALL {
         let mut scene = Scene::demo();
