@@ -6,12 +6,13 @@ use strandline::groom::format::{
     LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx,
 };
 use strandline::groom::{Groom, GroomError, Guides};
+use strandline::render::surroundings::{Panorama, Surroundings};
 
 /// A reader's target; whether it read the bytes.
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 15] = [
+pub const TARGETS: [(&str, Target); 16] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
     ("project", project_file),
@@ -27,6 +28,7 @@ pub const TARGETS: [(&str, Target); 15] = [
     ("pose", pose),
     ("cache", cache),
     ("grid", grid),
+    ("surroundings", surroundings),
 ];
 
 /// Strands and points that a pose is read for.
@@ -169,4 +171,16 @@ pub fn pose(bytes: &[u8]) -> bool {
 /// A moving cache is read, every frame of it, or refused.
 pub fn cache(bytes: &[u8]) -> bool {
     strandline::check_cache(bytes).is_ok()
+}
+
+/// A picture of the surroundings is read or refused; what was read lights with finite numbers.
+pub fn surroundings(bytes: &[u8]) -> bool {
+    Panorama::read(bytes).is_ok_and(|panorama| {
+        let [width, height] = panorama.size();
+        assert!(width == 2 * height && panorama.pixels().len() == width * height);
+        assert!(panorama.pixels().iter().all(|pixel| pixel.is_finite()));
+        let surroundings = Surroundings::new(&panorama, 30.0, 1.0);
+        assert!(surroundings.suns().len() <= 2);
+        true
+    })
 }

@@ -2,15 +2,21 @@
 
 use glam::Vec3;
 use strandline_groom::Style;
+use strandline_render::Look;
 use strandline_render::cpu::{
     Curves, Lit, Occlusion, Scattering, ShadowBody, Shadows, Strands, interpolate, opacity_depth,
     opacity_layers, tessellate,
 };
-use strandline_render::fibre::FibreModel;
+use strandline_render::fibre::Pigment;
 
 use crate::picture::{Both, drawn_on_gpu};
 
 impl Both {
+    fn own_color(&self) -> Option<Vec3> {
+        let colors = self.guides.colors()?;
+        Some(colors.iter().map(|&color| Vec3::from(color)).sum::<Vec3>() / colors.len() as f32)
+    }
+
     /// The strands on the CPU with light that is scattered many times.
     fn scattered_on_cpu(
         &self,
@@ -32,6 +38,7 @@ impl Both {
             shadows: &shadows,
             body: body.map(|body| (body, Vec3::splat(0.3))),
             look: &self.look,
+            own_color: self.own_color(),
             eye: self.camera.position,
         };
         Scattering::default().shade(&mut strands, &lit, &mut occlusion);
@@ -41,24 +48,37 @@ impl Both {
 
 #[test]
 fn the_fibre_of_chiang_agrees_point_by_point() {
-    for body in [false, true] {
+    for (pigment, body) in [(Pigment::Melanin, false), (Pigment::Melanin, true), (Pigment::Color, true)] {
         let mut both = Both::new(Style::Wavy, 16);
-        both.look.fibre.model = FibreModel::Chiang;
+        both.look = Look { grey: 0.2, ..Look::brown() };
+        both.look.fibre.chiang.pigment = pigment;
         both.look.fibre.chiang.tip_pigment = 0.7;
-        // As many as a software adapter does in a short time.
-        both.look.fibre.chiang.scatterings = 3;
-        let positions = both.positions();
-        let Some(renderer) = drawn_on_gpu(&both, &positions, body) else { return };
-        let found = renderer.strands().unwrap().radiances;
-        let placed: Vec<Vec3> = both.mesh.positions.iter().map(|&point| both.pose.point(point)).collect();
-        let shape = body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles });
-        let strands = both.scattered_on_cpu(&positions, shape);
-        let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
-        let pairs = strands.radiances.iter().zip(&found);
-        let off: f32 = pairs.map(|(one, other)| (*one - *other).abs().element_sum()).sum();
-        // Half floats round by 1.2e-4 in the mean, sums of cells by 1e-6 of a face's area; some hair lies between two
-        // known directions of the lattice and takes one here, the other there.
-        assert!(off <= 5e-3 * all, "{body}: {off} of {all}");
-        assert!(all > 0.01 * found.len() as f32, "{all} on {} points", found.len());
+        agree(both, body);
     }
+}
+
+#[test]
+fn colours_of_the_groom_agree_point_by_point() {
+    let mut both = Both::colored();
+    both.look = Look::brown();
+    agree(both, true);
+}
+
+/// Holds what a GPU makes of it to what the CPU does.
+fn agree(mut both: Both, body: bool) {
+    // As many as a software adapter does in a short time.
+    both.look.fibre.chiang.scatterings = 3;
+    let positions = both.positions();
+    let Some(renderer) = drawn_on_gpu(&both, &positions, body) else { return };
+    let found = renderer.strands().unwrap().radiances;
+    let placed: Vec<Vec3> = both.mesh.positions.iter().map(|&point| both.pose.point(point)).collect();
+    let shape = body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles });
+    let strands = both.scattered_on_cpu(&positions, shape);
+    let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
+    let pairs = strands.radiances.iter().zip(&found);
+    let off: f32 = pairs.map(|(one, other)| (*one - *other).abs().element_sum()).sum();
+    // Half floats round by 1.2e-4 in the mean, sums of cells by 1e-6 of a face's area; some hair lies between two
+    // known directions of the lattice and takes one here, the other there.
+    assert!(off <= 5e-3 * all, "{body}: {off} of {all}");
+    assert!(all > 0.01 * found.len() as f32, "{all} on {} points", found.len());
 }

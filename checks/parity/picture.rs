@@ -45,7 +45,7 @@ impl Both {
             mesh: Mannequin::new().mesh(),
             // Turned, so that head and world space differ.
             pose: Pose { rotation: Quat::from_rotation_y(0.4), translation: Vec3::new(0.02, -0.01, 0.03) },
-            look: Look { grey: 0.2, ..Look::brown() },
+            look: Look { grey: 0.2, ..Look::thesis() },
             lights,
             camera,
             detail: LevelOfDetail::default(),

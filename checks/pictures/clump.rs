@@ -29,7 +29,7 @@ fn clumps(clump: Clump, follow_strands: u32) -> Drawn {
     });
     Drawn {
         guides: guides(lines, 5),
-        look: Look { clump, follow_strands, ..Look::brown() },
+        look: Look { clump, follow_strands, ..Look::thesis() },
         lights: Vec::new(),
         eye: Vec3::Z,
         detail: LevelOfDetail::full(),
@@ -122,7 +122,7 @@ fn widths(on: &On, look: Look, distance: f32, detail: LevelOfDetail) -> (f32, Ve
 
 law! {
     fn fewer_strands_are_wider_and_cover_the_same(on) {
-        let look = Look { follow_strands: 16, hair_count: 50_000, clump: STRAIGHT, ..Look::brown() };
+        let look = Look { follow_strands: 16, hair_count: 50_000, clump: STRAIGHT, ..Look::thesis() };
         let detail = LevelOfDetail::default();
         // All hairs that the strands stand for, side by side.
         let expected = 50_000.0 * 8e-5;
@@ -146,7 +146,7 @@ law! {
 
 law! {
     fn strands_thin_toward_the_tip_to_their_share(on) {
-        let look = Look { tip_width: 0.4, clump: STRAIGHT, ..Look::brown() };
+        let look = Look { tip_width: 0.4, clump: STRAIGHT, ..Look::thesis() };
         let strands = Drawn { look, ..clumps(STRAIGHT, 16) }.strands(on);
         let count = strands.points_per_strand;
         for widths in strands.widths.chunks(count) {

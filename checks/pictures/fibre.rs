@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 use strandline_render::fibre::Chiang;
-use strandline_render::fibre::chiang::{LOBES, Lobes, Table};
+use strandline_render::fibre::chiang::{LOBES, Lobes, Pigments, Table};
 
 /// The rows of a table of reference, without its head and with its words left out.
 fn rows(name: &str) -> Vec<Vec<f64>> {
@@ -69,7 +69,7 @@ fn energy_goes_the_ways_that_rays_through_a_cylinder_take() {
 /// The far field for inclinations and a turn \[rad\].
 fn shown(table: &Table, eye: f64, light: f64, turn: f64, pigment: f32) -> [f64; 3] {
     let [eye, light, turn] = [eye.sin(), light.sin(), turn.cos()].map(|value| value as f32);
-    table.scatter(eye, light, turn, pigment, 0.0).to_array().map(f64::from)
+    table.scatter(eye, light, turn, Pigments::Even(pigment), 0.0).to_array().map(f64::from)
 }
 
 /// What a white fibre shows of even light, by a sum over inclinations and turns of the table's far field.
@@ -185,7 +185,7 @@ fn moments_are_those_of_the_far_field() {
                 }
             }
         }
-        for (sum, found) in sums.iter().zip(table.moments(eye.sin() as f32, 0.5)) {
+        for (sum, found) in sums.iter().zip(table.moments(eye.sin() as f32, Pigments::Even(0.5))) {
             // Between nodes of the eye's inclination, 5.6 degrees apart, both are straight lines.
             (0..3).for_each(|channel| {
                 assert!((f64::from(found[channel]) - sum[channel]).abs() < 3e-3, "{eye}: {sum:?} {found}");

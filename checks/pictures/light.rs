@@ -9,7 +9,7 @@ use strandline_checks::gpu;
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::resolve_linear;
-use strandline_render::fibre::{Chiang, Fibre, FibreModel};
+use strandline_render::fibre::{Chiang, Fibre, FibreModel, Pigment};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     Background, BodyLook, Camera, Clump, Environment, FrameInput, LevelOfDetail, Light, LightKind, Look,
@@ -41,6 +41,7 @@ fn look(chiang: Chiang) -> Look {
         follow_strands: 1,
         hair_count: 0,
         tip_width: 0.5,
+        root_width: 1.0,
         variation: 0.0,
         highlight_noise: 0.0,
         clump: Clump {
@@ -52,7 +53,6 @@ fn look(chiang: Chiang) -> Look {
         },
         fibre: Fibre { model: FibreModel::Chiang, chiang },
         environment: Environment { sky: Vec3::ZERO, ground: Vec3::ZERO },
-        shadow: Shadow { layers: [0.005, 0.015, 0.05], ..Shadow::default() },
         ..Look::brown()
     }
 }
@@ -340,4 +340,48 @@ fn a_head_lit_from_behind_is_lit_as_path_tracing_lights_it() {
     // The goal for the means is 15 %: red, which is scattered most, reaches 0.81. Cells of 12 mm even out the light
     // of the first millimetres.
     assert!(found.sound(0.15, 0.2), "{found:?}");
+}
+
+/// Mean light of a picture of the groom on a black ball in the sun, with colours on its strands and a look's pigment.
+fn mean_in_the_sun(color: Option<Vec3>, change: impl FnOnce(&mut Look)) -> Vec3 {
+    let groom = Groom::load(folder().join("shadow_groom.hair")).unwrap();
+    let mut scene = sphere(Some(sun()), 0.0);
+    let mut lines = Groom::empty(4e-4);
+    (0..groom.strand_count()).for_each(|strand| lines.push(spline(groom.strand(strand))));
+    lines.colors = color.map(|color| vec![color.to_array(); lines.points.len()]);
+    scene.guides = Guides::resample(&lines, 48).unwrap();
+    scene.body_look.color = Vec3::ZERO;
+    change(&mut scene.look);
+    let drawn = scene.drawn();
+    drawn.pixels.iter().sum::<Vec3>() / drawn.pixels.len() as f32
+}
+
+#[test]
+fn colours_of_strands_colour_the_hair() {
+    let (color, turned) = (Vec3::new(0.5, 0.1, 0.02), Vec3::new(0.02, 0.1, 0.5));
+    let [one, other] = [color, turned].map(|color| mean_in_the_sun(Some(color), |_| ()));
+    // Channels know nothing of each other.
+    assert!((one - Vec3::new(other.z, other.y, other.x)).abs().max_element() < 1e-4 * one.x, "{one} {other}");
+    assert!(one.x > 3.0 * one.z, "{one}");
+    // The same colours as the look's.
+    let of_look = mean_in_the_sun(None, |look| {
+        look.fibre.chiang.pigment = Pigment::Color;
+        (look.root_color, look.tip_color) = (color, color);
+    });
+    assert!((of_look - one).abs().max_element() < 1e-4 * one.x, "{of_look} {one}");
+    let brown = mean_in_the_sun(None, |_| ());
+    assert!((brown - one).abs().max_element() > 0.1 * one.x, "colours must be seen: {brown} {one}");
+}
+
+#[test]
+fn a_colour_is_as_much_pigment_as_makes_it() {
+    let chiang = Chiang { eumelanin: 0.6, pheomelanin: 0.2, ..Chiang::default() };
+    // [Chiang2016 §4.2] the other way round.
+    let scale = 0.5_f64.ln() / chiang.absorption_of_color(Vec3::splat(0.5))[0].sqrt();
+    let color = Vec3::from(chiang.absorption(Vec3::ZERO).map(|sigma| (scale * sigma.sqrt()).exp() as f32));
+    let of_pigment = mean_in_the_sun(None, |_| ());
+    let of_color = mean_in_the_sun(Some(color), |_| ());
+    let ratio = of_color / of_pigment;
+    // Tables have other nodes of the pigment, between which they are straight lines.
+    assert!((ratio - Vec3::ONE).abs().max_element() < 0.02, "{ratio}");
 }

@@ -41,7 +41,7 @@ fn shadows(strands: &Strands, light: &Light, settings: &Shadow) -> Shadows {
 
 /// As [`shadows`] with the usual settings, on a GPU.
 fn shadows_on(gpu: &Gpu, strands: &Strands, light: &Light) -> Shadows {
-    shadows_in(&mut renderer(gpu), strands, light, &Look { follow_strands: 1, ..Look::default() })
+    shadows_in(&mut renderer(gpu), strands, light, &Look { follow_strands: 1, ..Look::thesis() })
 }
 
 /// A renderer of any guides: strands take their place.

@@ -1,4 +1,4 @@
-//! `shade`: energy, shadow and depth.
+//! `shade` with the fibre of the thesis: energy, shadow and depth.
 
 use glam::Vec3;
 use strandline_body::Pose;
@@ -7,9 +7,15 @@ use strandline_render::cpu::fibre::reflectance;
 use strandline_render::cpu::{
     Curves, Occlusion, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade, tessellate,
 };
-use strandline_render::{DetailLevel, Environment, Light, Look};
+use strandline_render::{DetailLevel, Environment, Light, Look, Preset};
 
 use crate::grooms::{Random, arcs};
+
+/// A named look's colours with the fibre of the thesis.
+fn thesis(preset: Preset) -> Look {
+    let Look { root_color, tip_color, .. } = Look::named(preset);
+    Look { root_color, tip_color, ..Look::thesis() }
+}
 
 const EYE: Vec3 = Vec3::new(0.2, 0.1, 1.0);
 
@@ -35,7 +41,7 @@ fn furnace(look: &Look, color: Vec3, tangent: Vec3, to_eye: Vec3) -> f32 {
 
 #[test]
 fn a_white_hair_in_a_white_furnace_does_not_shine() {
-    let looks = [Look::brown(), Look::blonde(), Look::black()];
+    let looks = [Preset::Brown, Preset::Blonde, Preset::Black].map(thesis);
     let mut random = Random(2);
     for look in looks {
         for _ in 0..40 {
@@ -53,10 +59,10 @@ fn a_white_hair_in_a_white_furnace_does_not_shine() {
 fn the_furnace_sees_a_hair_that_gives_back_more() {
     // Where the eye looks across the hair, all of its light comes back.
     let shown = |look: &Look, color: f32| furnace(look, Vec3::splat(color), Vec3::Y, Vec3::X);
-    assert!(shown(&Look::brown(), 1.0) < 1.01);
+    assert!(shown(&Look::thesis(), 1.0) < 1.01);
     // Hair that sends back more diffuse light than it takes; highlights that take more than there is.
-    assert!(shown(&Look::brown(), 1.1) > 1.01, "{}", shown(&Look::brown(), 1.1));
-    let mut strong = Look::brown();
+    assert!(shown(&Look::thesis(), 1.1) > 1.01, "{}", shown(&Look::thesis(), 1.1));
+    let mut strong = Look::thesis();
     (strong.first_highlight.strength, strong.second_highlight.strength) = (0.6, 0.6);
     assert!(shown(&strong, 1.0) > 1.05, "{}", shown(&strong, 1.0));
 }
@@ -90,7 +96,7 @@ fn mean(radiances: impl Iterator<Item = Vec3>) -> f32 {
 fn hair_in_even_light_never_outshines_it() {
     let white = Vec3::ONE;
     let environment = Environment { sky: white, ground: white };
-    let look = Look { root_color: white, tip_color: white, environment, ..Look::brown() };
+    let look = Look { root_color: white, tip_color: white, environment, ..Look::thesis() };
     let strands = shaded(&look, &[]);
     assert!(
         strands
@@ -102,7 +108,7 @@ fn hair_in_even_light_never_outshines_it() {
 
 #[test]
 fn the_inside_is_darker_than_the_outside() {
-    let look = Look::brown();
+    let look = Look::thesis();
     let strands = shaded(&look, &Light::three_point(Vec3::ZERO));
     let distance = |point: &Vec3| point.length();
     let part = |near: f32, far: f32| {
@@ -113,7 +119,7 @@ fn the_inside_is_darker_than_the_outside() {
     };
     let (inside, outside) = (part(0.0, 0.10), part(0.15, 1.0));
     assert!(inside < 0.8 * outside, "{inside} inside, {outside} outside");
-    let mut flat = Look::brown();
+    let mut flat = Look::thesis();
     flat.hair_count = 1;
     let strands = shaded(&flat, &Light::three_point(Vec3::ZERO));
     let places = strands.positions.iter().zip(&strands.radiances);
@@ -125,7 +131,7 @@ fn the_inside_is_darker_than_the_outside() {
 fn shading_holds_for_any_number_of_threads() {
     let in_pool = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| shaded(&Look::brown(), &Light::three_point(Vec3::ZERO)).radiances)
+        pool.install(|| shaded(&Look::thesis(), &Light::three_point(Vec3::ZERO)).radiances)
     };
     let one = in_pool(1);
     assert_eq!(one, in_pool(5));
@@ -135,7 +141,7 @@ fn shading_holds_for_any_number_of_threads() {
 #[test]
 fn highlights_lie_where_their_shifts_put_them() {
     // The eye looks across the strand; the light turns in the plane of both.
-    let look = Look::brown();
+    let look = Look::thesis();
     let brightest = |pick: fn(Vec3) -> f32, look: &Look| {
         (-80..=80)
             .max_by(|&one, &other| {
@@ -172,7 +178,7 @@ fn hair_hides_the_sky_but_not_the_ground() {
         }
     }
     strands.widths.fill(4e-4);
-    let look = Look::brown();
+    let look = Look::thesis();
     let mut occlusion = Occlusion::default();
     occlusion.fill(&strands, &look.shadow);
     // Cells of 5 mm hold more or less of hair 4 mm apart: a mean over many places is what counts.

@@ -44,7 +44,7 @@ impl Maps {
                 shadows
             }
             Self::Gpu(renderer) => {
-                shadows_in(renderer, &strands, light, &Look { shadow, follow_strands: 1, ..Look::default() })
+                shadows_in(renderer, &strands, light, &Look { shadow, follow_strands: 1, ..Look::thesis() })
             }
         };
         let map = shadows.map(0).unwrap();

@@ -32,7 +32,7 @@ fn plain(color: Vec3) -> Look {
         environment: DARK,
         shadow: Shadow { opacity: 0.0, ..Shadow::default() },
         clump: Clump { wave_amplitude: 0.0, shorter: 0.0, ..Clump::default() },
-        ..Look::brown()
+        ..Look::thesis()
     }
 }
 

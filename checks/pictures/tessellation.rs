@@ -86,7 +86,7 @@ fn curves_follow_the_formula() {
 
 law! {
     fn tangents_are_the_derivative_of_the_curve(on) {
-        let look = Look { follow_strands: 1, ..Look::brown() };
+        let look = Look { follow_strands: 1, ..Look::thesis() };
         let detail = LevelOfDetail::full();
         let drawn = Drawn { guides: guides(37), look, lights: Vec::new(), eye: Vec3::Z, detail };
         let [positions, tangents, _] = drawn.curves(on);

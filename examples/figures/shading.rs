@@ -23,7 +23,7 @@ pub fn layers(studio: &Studio) -> Figure {
 /// The map of one light: opacity down to the end of each layer as red, green and blue, and the first depth.
 pub fn opacity_map(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 288, 288)?;
-    let mut look = Look::brown();
+    let mut look = Look::thesis();
     look.shadow.map_size = if studio.quick { 60 } else { 288 };
     let picture = hair.picture(&bust(THREE_QUARTER), &look)?;
     let maps = [hair.opacity_map(0)?, hair.depth_map(0)?];
@@ -34,7 +34,7 @@ pub fn opacity_map(studio: &Studio) -> Figure {
 pub fn light_directions(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 256, 256)?;
     let environment = Environment { sky: Vec3::splat(0.06), ground: Vec3::splat(0.04) };
-    let look = Look { environment, ..Look::brown() };
+    let look = Look { environment, ..Look::thesis() };
     let target = Vec3::new(0.0, -0.09, 0.0);
     let mut draw = |direction: [f32; 3]| -> Figure {
         let position = target + 2.0 * Vec3::from(direction).normalize();
@@ -66,7 +66,7 @@ pub fn highlights(studio: &Studio) -> Figure {
     let position = Vec3::new(0.5, 1.2, -1.6);
     hair.lights = vec![Light { position, intensity: 2.0, ..Light::default() }];
     let environment = Environment { sky: Vec3::splat(0.12), ground: Vec3::splat(0.06) };
-    let both = Look { environment, ..Look::brown() };
+    let both = Look { environment, ..Look::thesis() };
     let none = |highlight: Highlight| Highlight { strength: 0.0, ..highlight };
     let first = Look { second_highlight: none(both.second_highlight), ..both.clone() };
     let second = Look { first_highlight: none(both.first_highlight), ..both.clone() };

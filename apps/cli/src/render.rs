@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Cache, Event, Film, Player, Scene};
+use strandline::{Backend, Cache, Event, Film, Player, Scene};
 
 use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};
@@ -50,10 +50,63 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
     if let Some((width, height)) = options.size {
         (scene.picture.width, scene.picture.height) = (width, height);
     }
+    if let Some(path) = options.out.as_deref().filter(|path| is_exr(path)) {
+        scene.picture.layers = true;
+        scene.devices.pictures = Backend::Cpu;
+        return channels(&scene, cache, path, options.inputs.json);
+    }
     let name = options.cache.as_deref().and_then(Path::file_stem).map(Path::new);
     let name = name.map_or_else(|| options.inputs.name().into(), Path::to_owned);
     let folder = options.out.clone().unwrap_or_else(|| Path::new("out").join(name));
     film(&scene, cache, &folder, options.inputs.json)
+}
+
+fn is_exr(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+}
+
+/// Writes an .exr file, or of more frames one each with its number before the ending.
+fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow::Result<()> {
+    let mut player = Player::new(scene, scene.devices, true)?;
+    if let Some(cache) = cache {
+        player.show(cache)?;
+    }
+    player.notes().iter().for_each(|note| output::note(note));
+    let frames = player.frames();
+    let mut progress = Progress::new(u64::from(frames), "frames", json);
+    let stoppable = Stoppable::begin();
+    let mut files = Vec::new();
+    while let Some(event) = player.next() {
+        match event? {
+            Event::Note(note) => progress.note(&note),
+            Event::Stepped(_) => {}
+            Event::Drawn { frame, report, .. } => {
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                let file = if frames == 1 {
+                    path.to_owned()
+                } else {
+                    path.with_file_name(format!("{name}_{frame:04}.exr"))
+                };
+                if let Some(layers) = &report.layers {
+                    layers.save(&file)?;
+                    files.push(file);
+                }
+            }
+        }
+        let done = u64::from(player.frames_done());
+        progress.reached(done);
+        if done < u64::from(frames) {
+            stoppable.check(done, u64::from(frames), "frames")?;
+        }
+    }
+    drop(progress);
+    if json {
+        output::program(&format!("{}\n", serde_json::json!({ "frames": files.len(), "files": files })));
+    } else {
+        let last = files.last().map_or(path, PathBuf::as_path);
+        print_line!("wrote {} files: look at {}", files.len(), last.display());
+    }
+    Ok(())
 }
 
 fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyhow::Result<()> {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::groom::format::{Format, endings};
 use strandline::{
-    Backend, Camera, Command, Error, Light, Live, News, Scene, Shown, base::SettingError, body::Aabb,
+    Backend, Camera, Command, Error, Live, News, Scene, Shown, base::SettingError, body::Aabb,
     render::PictureSettings,
 };
 
@@ -268,7 +268,7 @@ impl App {
         (self.scene, self.loaded) = (scene, number);
         if self.scene.lights.is_empty() {
             // Those that it is lit with, for the panel to change.
-            self.scene.lights = Light::three_point(0.5 * (bounds.min + bounds.max)).to_vec();
+            self.scene.lights = self.scene.look.lights(0.5 * (bounds.min + bounds.max));
         }
         self.base = self.scene.clone();
         (self.camera, self.home, self.grabs) = (camera, camera, false);

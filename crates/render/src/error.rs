@@ -38,6 +38,14 @@ pub enum RenderError {
     /// Whatever the GPU refuses.
     #[error(transparent)]
     Gpu(#[from] strandline_gpu::GpuError),
+    /// A picture of the surroundings could not be read.
+    #[error("cannot read the surroundings: {reason}: {}", path.display())]
+    Surroundings {
+        /// What was found and what was expected.
+        reason: String,
+        /// The file.
+        path: PathBuf,
+    },
     /// A picture could not be written.
     #[error("cannot write the picture: {reason}: {}", path.display())]
     Save {

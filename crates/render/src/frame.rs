@@ -1,6 +1,9 @@
+mod channels;
+
+use std::sync::Arc;
 use std::time::Instant;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use strandline_body::{Mesh, Pose};
 use strandline_groom::{Guides, Vec3Lanes};
 
@@ -12,7 +15,7 @@ use crate::cpu::{
 use crate::fibre::FibreModel;
 use crate::lights::{at_samples, first_sample};
 use crate::memory::check_lights;
-use crate::{BodyLook, Camera, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
+use crate::{BodyLook, Camera, Layers, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
 
 /// What one picture is made from.
 #[derive(Clone, Copy)]
@@ -56,6 +59,8 @@ pub struct FrameReport {
     pub segments: usize,
     /// Wall-clock seconds of each stage, in order.
     pub seconds: Vec<(&'static str, f64)>,
+    /// Linear light and more, where `picture.layers` asks for it.
+    pub layers: Option<Arc<Layers>>,
 }
 
 /// Draws frames of one groom on one body; keeps its buffers from frame to frame.
@@ -71,6 +76,8 @@ pub struct Renderer {
     occlusion: Occlusion,
     scattering: Scattering,
     layers_of: Option<usize>,
+    /// Mean of the guides' colours.
+    own_color: Option<Vec3>,
     samples: Samples,
     draw: Draw,
     resolve: Resolve,
@@ -96,6 +103,7 @@ impl Renderer {
             occlusion: Occlusion::default(),
             scattering: Scattering::default(),
             layers_of: None,
+            own_color: mean_color(guides),
             samples: Samples::default(),
             draw: Draw::new(body.cloned()),
             resolve: Resolve::default(),
@@ -144,6 +152,10 @@ impl Renderer {
         let start = Instant::now();
         self.resolve.resolve(&self.samples, &self.settings, picture);
         report.seconds.push(("resolve", start.elapsed().as_secs_f64()));
+        if self.settings.layers {
+            let lights = at_samples(input.lights, input.look);
+            report.layers = Some(Arc::new(self.channels(&FrameInput { lights: &lights, ..*input })));
+        }
         Ok(report)
     }
 
@@ -153,7 +165,7 @@ impl Renderer {
     /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
         input.validate()?;
-        let lights = at_samples(input.lights);
+        let lights = at_samples(input.lights, input.look);
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
         let input = &FrameInput { lights: &lights, ..*input };
         let middle = input.world_from_head.point(self.middle);
@@ -161,6 +173,7 @@ impl Renderer {
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
         let (guides, pose) = (&self.guides, &input.world_from_head);
         input.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
+        let own_color = self.own_color;
         let Self { curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } = self;
         let mut clock = Clock::start();
 
@@ -179,7 +192,7 @@ impl Renderer {
             FibreModel::Scheuermann => shade(strands, shadows, input.lights, input.look, eye, occlusion),
             FibreModel::Chiang => {
                 let body = draw.shadow_body().map(|body| (body, input.body_look.color));
-                let lit = Lit { lights: input.lights, shadows, body, look: input.look, eye };
+                let lit = Lit { lights: input.lights, shadows, body, look: input.look, own_color, eye };
                 scattering.shade(strands, &lit, occlusion);
             }
         }
@@ -199,7 +212,7 @@ impl Renderer {
             shadows,
             occlusion,
             grid: (input.look.fibre.model == FibreModel::Chiang).then(|| scattering.grid()),
-            environment: &input.look.environment,
+            environment: &input.look.gradient(),
             eye: input.camera.position,
         };
         draw.draw(&draw_input, &skin, samples);
@@ -208,6 +221,7 @@ impl Renderer {
             strands: strands.strand_count,
             segments: strands.segment_count(),
             seconds: clock.seconds,
+            layers: None,
         })
     }
 
@@ -244,6 +258,13 @@ pub(crate) fn middle(guides: &Guides) -> Vec3 {
     let (min, max) =
         points.fold((Vec3::MAX, Vec3::MIN), |(min, max), point| (min.min(point), max.max(point)));
     0.5 * (min + max)
+}
+
+/// Mean of the colours of the guides' points, linear RGB, where they have some.
+pub(crate) fn mean_color(guides: &Guides) -> Option<Vec3> {
+    let colors = guides.colors().filter(|colors| !colors.is_empty())?;
+    let sum: DVec3 = colors.iter().map(|&color| Vec3::from(color).as_dvec3()).sum();
+    Some((sum / colors.len() as f64).as_vec3())
 }
 
 /// Notes how long each stage takes.

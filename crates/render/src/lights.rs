@@ -1,7 +1,8 @@
 use glam::Vec3;
 use strandline_base::{Group, Key, SettingError, choices, settings};
 
-use crate::RenderError;
+use crate::cpu::light_field::Field;
+use crate::{Look, RenderError};
 
 choices! {
     /// How a light's rays spread.
@@ -62,6 +63,34 @@ pub struct Illumination {
 }
 
 impl Light {
+    /// A soft box before and above a head at `target` \[m\] that faces +z, and a cool strip behind it: what most hair is
+    /// photographed with.
+    pub fn studio(target: Vec3) -> [Self; 2] {
+        let light = |x, y, z| Self {
+            kind: LightKind::Rectangle,
+            position: target + Vec3::new(x, y, z),
+            target,
+            ..Self::default()
+        };
+        [
+            Self {
+                color: Vec3::new(1.0, 0.96, 0.92),
+                intensity: 1.3,
+                width: 0.8,
+                height: 0.8,
+                ..light(-0.9, 1.25, 1.35)
+            },
+            Self {
+                color: Vec3::new(0.9, 0.95, 1.0),
+                intensity: 0.9,
+                width: 0.3,
+                height: 0.9,
+                samples: 1,
+                ..light(1.1, 1.2, -1.2)
+            },
+        ]
+    }
+
     /// Three lights about a head at `target` \[m\] that faces +z [Chen2011 §6]: a warm key and a cool rim, two spot lights
     /// with shadows, and a fill without.
     pub fn three_point(target: Vec3) -> [Self; 3] {
@@ -168,9 +197,11 @@ impl Light {
     }
 }
 
-/// The lights with those that have an area as the places that they shine from, in order.
-pub(crate) fn at_samples(lights: &[Light]) -> Vec<Light> {
-    lights.iter().flat_map(|light| light.at_samples()).collect()
+/// The lights with those that have an area as the places that they shine from, in order; behind them the suns of the
+/// surroundings.
+pub(crate) fn at_samples(lights: &[Light], look: &Look) -> Vec<Light> {
+    let suns = look.surroundings.iter().flat_map(|surroundings| surroundings.suns());
+    lights.iter().flat_map(|light| light.at_samples()).chain(suns.copied()).collect()
 }
 
 /// Number of the first place of a light among those of all lights.
@@ -182,13 +213,21 @@ settings! {
     /// Light from all around: a sky above and a ground below, even between.
     pub struct Environment: Copy {
         /// Radiance from straight above, linear RGB.
-        sky: Vec3 = Vec3::new(0.26, 0.29, 0.33), in [0.0, 1000.0];
+        sky: Vec3 = Vec3::new(0.13, 0.145, 0.165), in [0.0, 1000.0];
         /// Radiance from straight below, linear RGB.
-        ground: Vec3 = Vec3::new(0.13, 0.11, 0.10), in [0.0, 1000.0];
+        ground: Vec3 = Vec3::new(0.065, 0.055, 0.05), in [0.0, 1000.0];
     }
 }
 
 impl Environment {
+    /// The same as spherical harmonics.
+    pub fn field(&self) -> Field {
+        let mut field = Field::default();
+        field[0] = (0.5 * (self.sky + self.ground)).extend(0.0);
+        field[2] = (0.5 * (self.sky - self.ground)).extend(0.0);
+        field
+    }
+
     /// Radiance from a unit direction, linear RGB.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         self.ground.lerp(self.sky, 0.5 + 0.5 * direction.y)
@@ -202,7 +241,8 @@ mod tests {
     #[test]
     fn a_rectangle_shines_as_its_places_do() {
         let light = Light { kind: LightKind::Rectangle, position: Vec3::Y, samples: 4, ..Light::default() };
-        let places = at_samples(&[light, Light { kind: LightKind::Disc, ..light }, Light::default()]);
+        let lights = [light, Light { kind: LightKind::Disc, ..light }, Light::default()];
+        let places = at_samples(&lights, &Look::default());
         assert_eq!(places.len(), 33);
         assert_eq!(first_sample(&[light, light], 1), 16);
         // Over a square of 0.5 m at 1 m: the integral of cosine^4 / pi by finer places than these.
@@ -231,6 +271,7 @@ mod tests {
     #[test]
     fn bad_lights_are_refused() {
         assert!(Light::three_point(Vec3::ZERO).iter().all(|light| light.validate().is_ok()));
+        assert!(Light::studio(Vec3::ONE).iter().all(|light| light.validate().is_ok()));
         assert!(Light { position: Vec3::ZERO, ..Light::default() }.validate().is_err());
         assert!(Light { intensity: -1.0, ..Light::default() }.validate().is_err());
         assert!(Light { color: Vec3::splat(f32::NAN), ..Light::default() }.validate().is_err());

@@ -1,15 +1,21 @@
-use glam::Vec3;
-use strandline_base::{Group, Key, SettingError, settings};
+use std::sync::Arc;
 
-use crate::fibre::{Fibre, FibreModel};
-use crate::{Environment, RenderError};
+use glam::Vec3;
+use strandline_base::{Key, SettingError, settings};
+
+use crate::Environment;
+use crate::fibre::Fibre;
+use crate::looks::Preset;
+use crate::surroundings::Surroundings;
 
 settings! {
     /// Colour and shape of the drawn hair.
     ///
-    /// Colours are linear RGB. The named looks (brown, black, blonde, red, grey) differ in colour and
-    /// pigment only.
+    /// Colours are linear RGB. `root_color` or `tip_color` without `fibre.chiang.pigment` means "color".
     pub struct Look {
+        /// The look that what is not given comes from: pigment and colours, fibre, highlights, layers of shadow and
+        /// surroundings. "thesis" brings `picture.tone_map`, `picture.background` and lights too.
+        preset: Preset = Preset::default();
         /// Follow strands of each guide, the guide itself among them.
         follow_strands: u32 = 16, in [1, 1024], slider [1, 64],
             more "denser hair of thinner strands, at a cost that grows with it";
@@ -20,9 +26,11 @@ settings! {
         width_scale: f32 = 1.0, in [0.0, 1000.0], slider [0.1, 5.0], more "wider strands";
         /// Diameter at the tip as a share of that at the root.
         tip_width: f32 = 0.3, in [0.0, 1.0], more "blunter tips";
-        /// Reflectance at the root, linear RGB.
+        /// Diameter where a strand leaves the skin as a share of that 4 mm on; a file's widths are taken as they are.
+        root_width: f32 = 1.0, in [0.0, 1.0], more "blunter roots";
+        /// Reflectance at the root, linear RGB; of a mass of hair with `fibre.chiang.pigment = "color"`.
         root_color: Vec3 = Vec3::new(0.115, 0.056, 0.027), in [0.0, 1.0];
-        /// Reflectance at the tip, linear RGB.
+        /// Reflectance at the tip, linear RGB, likewise.
         tip_color: Vec3 = Vec3::new(0.22, 0.115, 0.058), in [0.0, 1.0];
         /// How one hair scatters light.
         fibre: Fibre = Fibre::default();
@@ -35,7 +43,7 @@ settings! {
         /// The coloured highlight, from light that crossed the hair.
         second_highlight: Highlight = Highlight { shift: 7.0, width: 9.0, strength: 0.2 };
         /// Noise along and among strands by which both highlights are moved.
-        highlight_noise: f32 = 4.0, in [0.0, 45.0] "degrees", more "more ragged highlights";
+        highlight_noise: f32 = 1.5, in [0.0, 45.0] "degrees", more "more ragged highlights";
         /// How far a second noise breaks the second highlight up into sparkles.
         sparkle: f32 = 0.7, in [0.0, 1.0], more "fewer, brighter sparkles";
         /// How much further light goes through bright hair than through black.
@@ -43,12 +51,17 @@ settings! {
         /// How the drawn strands lie about their guide.
         clump: Clump = Clump::default();
         /// How hair and body cast shadows.
-        shadow: Shadow = Shadow::default();
+        shadow: Shadow = Shadow { layers: [0.005, 0.015, 0.05], ..Shadow::default() };
         /// Light from all around.
         environment: Environment = Environment::default();
         /// Seed of every random choice of the look.
         seed: u32 = 0, in [0, u32::MAX];
+        plain {
+            /// A picture of the surroundings in the place of `environment`.
+            surroundings: Option<Arc<Surroundings>>,
+        }
     }
+    prepare Look::prepare;
 }
 
 settings! {
@@ -121,68 +134,5 @@ impl Shadow {
         }
         let expected = "three distances that rise";
         Err(SettingError::new(key.of("layers"), format!("{:?}", self.layers), expected))
-    }
-}
-
-impl Look {
-    /// Brown hair, the default.
-    pub fn brown() -> Self {
-        Self::default()
-    }
-
-    /// Black hair.
-    pub fn black() -> Self {
-        Self::colored([0.016, 0.013, 0.012], [0.026, 0.021, 0.019]).with_melanin(8.0, 0.0)
-    }
-
-    /// Blonde hair, lighter toward the tips.
-    pub fn blonde() -> Self {
-        Self::colored([0.46, 0.31, 0.165], [0.68, 0.51, 0.31]).with_melanin(0.3, 0.0)
-    }
-
-    /// Red hair.
-    pub fn red() -> Self {
-        Self::colored([0.34, 0.10, 0.035], [0.46, 0.165, 0.06]).with_melanin(0.2, 1.4)
-    }
-
-    /// Grey hair: dark strands among white ones.
-    pub fn grey() -> Self {
-        Self { grey: 0.6, ..Self::colored([0.17, 0.16, 0.15], [0.22, 0.21, 0.20]) }.with_melanin(1.2, 0.0)
-    }
-
-    /// The same with other pigments of [`FibreModel::Chiang`].
-    fn with_melanin(mut self, eumelanin: f32, pheomelanin: f32) -> Self {
-        (self.fibre.chiang.eumelanin, self.fibre.chiang.pheomelanin) = (eumelanin, pheomelanin);
-        self
-    }
-
-    /// The same with the fibre of \[Chiang2016\], light that is scattered many times, and layers of shadow as thin as
-    /// hair that hides all behind it asks for.
-    pub fn physical(mut self) -> Self {
-        self.fibre.model = FibreModel::Chiang;
-        self.shadow.layers = [0.005, 0.015, 0.05];
-        self.highlight_noise = 1.5;
-        self
-    }
-
-    fn colored(root_color: [f32; 3], tip_color: [f32; 3]) -> Self {
-        Self { root_color: root_color.into(), tip_color: tip_color.into(), ..Self::brown() }
-    }
-
-    /// How hair and body cast shadows with this fibre: what meets a hair of [`FibreModel::Chiang`] does not go
-    /// straight on.
-    pub fn hair_shadow(&self) -> Shadow {
-        match self.fibre.model {
-            FibreModel::Scheuermann => self.shadow,
-            FibreModel::Chiang => Shadow { solid: true, ..self.shadow },
-        }
-    }
-
-    /// Checks every setting.
-    ///
-    /// # Errors
-    /// The first setting outside its range.
-    pub fn validate(&self) -> Result<(), RenderError> {
-        Ok(self.check_as("look")?)
     }
 }

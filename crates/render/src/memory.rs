@@ -57,7 +57,8 @@ impl Drawn<'_> {
         let follow_strands = self.look.follow_strands;
         let drawn = format!("look.follow_strands = {follow_strands} on each of {} guides", self.guide_count);
         let casting = self.lights.iter().filter(|light| light.shadow);
-        let shadows: u64 = casting.map(|light| light.sample_count() as u64).sum();
+        let suns = self.look.surroundings.as_ref().map_or(0, |surroundings| surroundings.suns().len() as u64);
+        let shadows: u64 = casting.map(|light| light.sample_count() as u64).sum::<u64>() + suns;
         let size = u64::from(self.look.shadow.map_size);
         let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");
         let texel = TEXEL_BYTES + PART_BYTES * crate::cpu::shadow_hair::part_count() as u64;

@@ -60,7 +60,8 @@ impl Picture {
     }
 }
 
-fn reason(error: &std::io::Error) -> String {
+/// What went wrong while a file was written, and how to mend it.
+pub(crate) fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "the folder does not exist, create it first".into(),
         ErrorKind::PermissionDenied => "no permission to write there, choose another folder".into(),

@@ -21,6 +21,9 @@ settings! {
         background: Background = Background::default();
         /// Whether the background is left out and opacity written instead.
         transparent: bool = false;
+        /// Whether linear light, depth, the hair's coverage, its directions and strands are kept too, as for an .exr
+        /// file; on the CPU alone.
+        layers: bool = false;
         moved { backend: Backend => "devices.pictures" }
     }
 }
@@ -36,16 +39,16 @@ choices! {
         /// ACES [Narkowicz2015].
         Aces = "aces",
     }
-    default Filmic
+    default Aces
 }
 
 settings! {
-    /// A vertical gradient, linear RGB as shown: neither exposure nor tone map changes its hue.
+    /// A vertical gradient, linear RGB before exposure and tone map.
     pub struct Background: Copy {
         /// At the top of the picture.
-        top: Vec3 = Vec3::new(0.30, 0.33, 0.37), in [0.0, 1000.0];
+        top: Vec3 = Vec3::new(0.13, 0.14, 0.155), in [0.0, 1000.0];
         /// At the bottom of the picture.
-        bottom: Vec3 = Vec3::new(0.11, 0.12, 0.135), in [0.0, 1000.0];
+        bottom: Vec3 = Vec3::new(0.05, 0.054, 0.06), in [0.0, 1000.0];
     }
 }
 

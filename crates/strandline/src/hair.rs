@@ -148,7 +148,7 @@ impl Hair {
             simulation: Simulation::new(engine, settings.time_step),
             studio,
             moment: Moment::default(),
-            lights: Light::three_point(prepare::center(bounds)).to_vec(),
+            lights: Look::default().lights(prepare::center(bounds)),
             wind: Vec3::ZERO,
             body_look: BodyLook::default(),
             level_of_detail: LevelOfDetail::default(),
@@ -178,9 +178,11 @@ impl Hair {
         let Prepared { guides, bound, mesh, colliders, head, pose, .. } = prepared;
         let pair = devices.into().open()?;
         let mut hair = Self::placed(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
-        if !scene.lights.is_empty() {
-            hair.lights.clone_from(&scene.lights);
-        }
+        hair.lights = if scene.lights.is_empty() {
+            scene.look.lights(prepare::center(hair.studio.bounds))
+        } else {
+            scene.lights.clone()
+        };
         hair.body_look = scene.body_look;
         hair.level_of_detail = scene.level_of_detail;
         hair.set_picture(&scene.picture)?;

@@ -4,12 +4,12 @@ use eframe::egui::Ui;
 use strandline::{
     Command,
     base::Group,
-    render::{LevelOfDetail, PictureSettings},
+    render::{Background, LevelOfDetail, PictureSettings, ToneMap},
 };
 
 use crate::{
     App,
-    controls::{slide, tick_of},
+    controls::{choose, colour, slide, tick_of},
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -22,6 +22,11 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let (picture, base, rows) = (&mut app.scene.picture, &app.base.picture, &PictureSettings::ROWS);
     slide(ui, (&mut picture.supersampling, base.supersampling), &rows.supersampling, "samples");
     slide(ui, (&mut picture.exposure, base.exposure), &rows.exposure, "exposure");
+    let words = ToneMap::ALL.map(|map| (map, map.name()));
+    choose(ui, (&mut picture.tone_map, base.tone_map), &words, &rows.tone_map, "tone map");
+    let (back, base, rows) = (&mut picture.background, &base.background, &Background::ROWS);
+    colour(ui, (&mut back.top, base.top), &rows.top, "backdrop above");
+    colour(ui, (&mut back.bottom, base.bottom), &rows.bottom, "backdrop below");
     let tip = "fewer strands and samples while the hair moves, where a picture takes long";
     tick_of(ui, (&mut app.adapts, true), "simpler while it moves", tip);
     if app.scene.level_of_detail != before.0 {

@@ -11,7 +11,7 @@ use strandline::{
 
 use crate::{
     App,
-    controls::{about, button, colour, slide, slide_in, tick},
+    controls::{button, choose, colour, slide, slide_in, tick},
 };
 
 /// Radius of a ball \[point\].
@@ -23,7 +23,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let before = app.scene.lights.clone();
     let (lights, camera) = (&mut app.scene.lights, &app.camera);
     let mut gone = None;
-    // A scene without lights is lit by three.
+    // A scene without lights is lit by those of its look.
     let is_last = lights.len() == 1;
     for (index, light) in lights.iter_mut().enumerate() {
         let base = app.base.lights.get(index).copied().unwrap_or_default();
@@ -65,7 +65,7 @@ fn one(
                 ui.strong(format!("light {}", index + 1));
                 gone = !is_last && button(ui, "x", "removes this light");
             });
-            kinds(light, ui);
+            kinds(light, base, ui);
             tick(ui, (&mut light.shadow, base.shadow), &Light::ROWS.shadow, "shadow");
             if button(ui, "From here", "puts the light where you look from") {
                 light.position = camera.position;
@@ -83,21 +83,26 @@ fn one(
     if light.kind == LightKind::Spot {
         slide(ui, (&mut light.cone_angle, base.cone_angle), &rows.cone_angle, "cone");
     }
+    if matches!(light.kind, LightKind::Rectangle | LightKind::Disc) {
+        slide(ui, (&mut light.width, base.width), &rows.width, "width");
+        if light.kind == LightKind::Rectangle {
+            slide(ui, (&mut light.height, base.height), &rows.height, "height");
+        }
+        slide(ui, (&mut light.samples, base.samples), &rows.samples, "places");
+    }
     ui.separator();
     gone
 }
 
-fn kinds(light: &mut Light, ui: &mut Ui) {
-    ui.horizontal(|ui| {
-        let kinds = [(LightKind::Spot, "spot"), (LightKind::Directional, "sun"), (LightKind::Point, "point")];
-        for (kind, name) in kinds {
-            ui.selectable_value(&mut light.kind, kind, name).on_hover_text(format!(
-                "{}\ndefault {}",
-                about(&Light::ROWS.kind),
-                LightKind::default().name()
-            ));
-        }
-    });
+fn kinds(light: &mut Light, base: &Light, ui: &mut Ui) {
+    let words = [
+        (LightKind::Rectangle, "soft box"),
+        (LightKind::Disc, "disc"),
+        (LightKind::Spot, "spot"),
+        (LightKind::Directional, "sun"),
+        (LightKind::Point, "point"),
+    ];
+    choose(ui, (&mut light.kind, base.kind), &words, &Light::ROWS.kind, "");
 }
 
 /// The light on its ball: a disc before, a ring behind what it points at.

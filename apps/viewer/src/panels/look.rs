@@ -4,12 +4,15 @@ use eframe::egui::Ui;
 use strandline::{
     Look,
     base::Group,
-    render::{Clump, Highlight},
+    render::{
+        Clump, Environment, Highlight, Preset,
+        fibre::{Chiang, Fibre, FibreModel, Pigment},
+    },
 };
 
 use crate::{
     App,
-    controls::{button, colour, slide},
+    controls::{button, choose, colour, slide},
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -22,11 +25,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let (clump, base_clump) = (&mut look.clump, &base.clump);
     slide(ui, (&mut clump.root_radius, base_clump.root_radius), &Clump::ROWS.root_radius, "clump root");
     slide(ui, (&mut clump.tip_radius, base_clump.tip_radius), &Clump::ROWS.tip_radius, "clump tip");
-    highlight(&mut look.first_highlight, &base.first_highlight, "first highlight", ui);
-    highlight(&mut look.second_highlight, &base.second_highlight, "second highlight", ui);
+    fibre(look, base, ui);
     slide(ui, (&mut look.highlight_noise, base.highlight_noise), &rows.highlight_noise, "noise");
-    slide(ui, (&mut look.sparkle, base.sparkle), &rows.sparkle, "sparkle");
-    slide(ui, (&mut look.translucency, base.translucency), &rows.translucency, "translucency");
+    surroundings(look, base, ui);
     if app.scene.look != before {
         app.send_look();
     }
@@ -34,27 +35,57 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 
 fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
-        let looks = [
-            ("brown", Look::brown()),
-            ("black", Look::black()),
-            ("blonde", Look::blonde()),
-            ("red", Look::red()),
-            ("grey", Look::grey()),
-        ];
-        for (name, preset) in looks {
-            if button(ui, name, "colours of the hair\ndefault brown") {
-                (look.root_color, look.tip_color, look.grey) =
-                    (preset.root_color, preset.tip_color, preset.grey);
-                (look.fibre.chiang.eumelanin, look.fibre.chiang.pheomelanin) =
-                    (preset.fibre.chiang.eumelanin, preset.fibre.chiang.pheomelanin);
+        for preset in Preset::ALL {
+            if button(ui, preset.name(), "colours of the hair, and how light meets it\ndefault brown") {
+                look.dress(preset);
             }
         }
     });
-    let rows = &Look::ROWS;
-    colour(ui, (&mut look.root_color, base.root_color), &rows.root_color, "root");
-    colour(ui, (&mut look.tip_color, base.tip_color), &rows.tip_color, "tip");
+    let (rows, fibre) = (&Look::ROWS, &mut look.fibre);
+    let models = [(FibreModel::Chiang, "physical"), (FibreModel::Scheuermann, "thesis")];
+    choose(ui, (&mut fibre.model, base.fibre.model), &models, &Fibre::ROWS.model, "fibre");
+    let mut by_color = true;
+    if fibre.model == FibreModel::Chiang {
+        let (own, base, rows) = (&mut fibre.chiang, &base.fibre.chiang, &Chiang::ROWS);
+        let words = Pigment::ALL.map(|pigment| (pigment, pigment.name()));
+        choose(ui, (&mut own.pigment, base.pigment), &words, &rows.pigment, "pigment");
+        by_color = own.pigment == Pigment::Color;
+        if !by_color {
+            slide(ui, (&mut own.eumelanin, base.eumelanin), &rows.eumelanin, "eumelanin");
+            slide(ui, (&mut own.pheomelanin, base.pheomelanin), &rows.pheomelanin, "pheomelanin");
+            slide(ui, (&mut own.tip_pigment, base.tip_pigment), &rows.tip_pigment, "at the tip");
+        }
+    }
+    if by_color {
+        colour(ui, (&mut look.root_color, base.root_color), &rows.root_color, "root");
+        colour(ui, (&mut look.tip_color, base.tip_color), &rows.tip_color, "tip");
+    }
     slide(ui, (&mut look.variation, base.variation), &rows.variation, "variation");
     slide(ui, (&mut look.grey, base.grey), &rows.grey, "grey");
+}
+
+/// How one hair scatters light.
+fn fibre(look: &mut Look, base: &Look, ui: &mut Ui) {
+    if look.fibre.model == FibreModel::Scheuermann {
+        let rows = &Look::ROWS;
+        highlight(&mut look.first_highlight, &base.first_highlight, "first highlight", ui);
+        highlight(&mut look.second_highlight, &base.second_highlight, "second highlight", ui);
+        slide(ui, (&mut look.sparkle, base.sparkle), &rows.sparkle, "sparkle");
+        slide(ui, (&mut look.translucency, base.translucency), &rows.translucency, "translucency");
+        return;
+    }
+    let (own, base, rows) = (&mut look.fibre.chiang, &base.fibre.chiang, &Chiang::ROWS);
+    slide(ui, (&mut own.roughness_along, base.roughness_along), &rows.roughness_along, "roughness along");
+    slide(ui, (&mut own.roughness_around, base.roughness_around), &rows.roughness_around, "roughness around");
+    slide(ui, (&mut own.tilt, base.tilt), &rows.tilt, "tilt of scales");
+    slide(ui, (&mut own.index, base.index), &rows.index, "index");
+    slide(ui, (&mut own.scatterings, base.scatterings), &rows.scatterings, "scatterings");
+}
+
+fn surroundings(look: &mut Look, base: &Look, ui: &mut Ui) {
+    let (own, base, rows) = (&mut look.environment, &base.environment, &Environment::ROWS);
+    colour(ui, (&mut own.sky, base.sky), &rows.sky, "light from above");
+    colour(ui, (&mut own.ground, base.ground), &rows.ground, "light from below");
 }
 
 fn highlight(highlight: &mut Highlight, base: &Highlight, name: &str, ui: &mut Ui) {

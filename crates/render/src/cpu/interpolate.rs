@@ -13,6 +13,8 @@ use crate::{DetailLevel, Look};
 
 /// Share of a strand along which its offset turns from the skin's plane into the strand's own.
 const ROOT_SHARE: f32 = 0.12;
+/// Length over which a strand grows to its width \[m\].
+const ROOT_TAPER: f32 = 0.004;
 
 /// Grows the follow strands of every guide about its curve; follow strand 0 is the guide itself.
 ///
@@ -223,12 +225,16 @@ impl Strand {
 
     fn widen(&self, shared: &Shared, guide: &Guide, guide_index: usize, index: usize, widths: &mut [f32]) {
         let root = guide.width * shared.level.width_scale(index);
-        let tip = shared.look.tip_width;
+        let (tip, bare) = (shared.look.tip_width, shared.look.root_width);
         let own = shared.guides.profiles().map(|all| of_guide(shared.guides, all, guide_index));
         for (width, parameter) in widths.iter_mut().zip(&shared.curves.parameters) {
             // Even for most of the length, then thinning ever faster toward the tip.
             let thinning = parameter * parameter * parameter;
-            let of_look = || 1.0 - (1.0 - tip) * thinning;
+            let of_look = || {
+                let grown = (parameter * guide.length * (1.0 / ROOT_TAPER)).min(1.0);
+                let rooted = bare + (1.0 - bare) * grown * grown * (3.0 - 2.0 * grown);
+                rooted * (1.0 - (1.0 - tip) * thinning)
+            };
             let of_groom = |own| between(own, *parameter, |one: f32, two, share| one + (two - one) * share);
             *width = root * own.map_or_else(of_look, of_groom);
         }

@@ -7,7 +7,7 @@ use glam::{IVec3, Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::light_field;
-use crate::fibre::chiang::{Lobes, Table};
+use crate::fibre::chiang::{Lobes, Pigments, Table};
 
 /// Directions along which light is carried.
 pub const DIRECTIONS: usize = 26;
@@ -57,7 +57,7 @@ impl Lattice {
         let table = Table::new(&lobes.spread(SPREAD), absorption);
         let ways = directions().map(|(step, share)| (step.as_vec3().normalize(), share));
         let tangents: Vec<Vec3> = (0..TANGENTS).map(tangent).collect();
-        let albedo = table.moments(0.5, pigment)[0];
+        let albedo = table.moments(0.5, Pigments::Even(pigment))[0];
         let mut lattice = Self { table, pigment, ways, tangents, shown: Vec::new(), albedo };
         lattice.shown =
             lattice.tangents.par_iter().map(|&t| ways.map(|(way, _)| lattice.weights(t, way))).collect();
@@ -108,7 +108,7 @@ impl Lattice {
         let sine_light = t.dot(to_light);
         let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();
         let turn = (u.dot(to_light) / flat).clamp(-1.0, 1.0);
-        self.table.by_path(sine, sine_light, turn, self.pigment, 0.0)
+        self.table.by_path(sine, sine_light, turn, Pigments::Even(self.pigment), 0.0)
     }
 
     /// Adds what hair of unit tangent `t` shows along every direction of light of the given radiance (of a white

@@ -36,6 +36,16 @@ pub fn add(field: &mut Field, w: Vec3, light: Vec4) {
     }
 }
 
+/// Radiance from a unit direction.
+#[inline]
+pub fn radiance(field: &Field, w: Vec3) -> Vec4 {
+    let [a, bx, by, bz, xx, yy, xy, xz, yz] = field;
+    let second = *xx * (w.x * w.x - w.z * w.z)
+        + *yy * (w.y * w.y - w.z * w.z)
+        + (*xy * (w.x * w.y) + *xz * (w.x * w.z) + *yz * (w.y * w.z)) * 2.0;
+    (*a + *bx * w.x + *by * w.y + *bz * w.z + second).max(Vec4::ZERO)
+}
+
 /// What a fibre of unit tangent `t` shows toward where `u` points, a unit vector across it; see
 /// [`moments`](crate::fibre::chiang).
 #[inline]
@@ -96,6 +106,7 @@ mod tests {
         let mut field = Field::default();
         sphere().for_each(|w| add(&mut field, w, Vec4::splat(light(w) / 4000.0)));
         let n = Vec3::new(0.48, 0.6, 0.64);
+        assert!((radiance(&field, n).x - light(n)).abs() < 2e-3, "{} {}", radiance(&field, n).x, light(n));
         let expected: f32 = sphere().map(|w| light(w) * 4.0 * w.dot(n).max(0.0) / 4000.0).sum();
         let found = on_surface(&field, n).x;
         assert!((found - expected).abs() < 2e-3, "{found} {expected}");

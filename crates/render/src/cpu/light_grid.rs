@@ -5,41 +5,40 @@
 //! matte surface does, once more with every round. What is found holds all light but that which comes straight from
 //! a light.
 
-use glam::{IVec3, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::fast_math::exp;
-use super::lattice::{DIRECTIONS, Lattice, Rays, directions};
+use super::lattice::{Lattice, Rays};
+use super::light_carry::Carried;
 use super::light_field::{self, Field};
 use super::light_sums::{HAIR_SUMS, SKIN_SUMS, UNITS, sum};
 use super::occlusion::{GridBox, Occlusion, toward};
 use super::{ShadowBody, Shadows, Strands};
-use crate::{Environment, Light};
+use crate::Light;
+use crate::fibre::chiang::Pigments;
 
-/// Mean cosine between random hairs and the plane across a direction.
-const MEAN_COSINE: f32 = std::f32::consts::FRAC_PI_4;
+/// Cosine of the angle between lights that are taken for one where straight light enters the grid.
+const ONE_BEAM: f32 = 0.985;
 /// Most by which hair shows more than the field says.
 const MOST_CORRECTION: f32 = 4.0;
-/// How much less light skin lets through than cells that are evenly filled with it would.
-const SKIN_EXTINCTION: f32 = 4.0;
 
 /// What lies in a cell.
 #[derive(Clone, Copy, Debug, Default)]
-struct Cell {
+pub(super) struct Cell {
+    /// Which cell of the grid it is.
+    pub(super) index: usize,
     /// Area of its hair, full width times length, over that of a face.
-    hair: f32,
+    pub(super) hair: f32,
     /// Mean direction of the hair, of unit length.
-    tangent: Vec3,
+    pub(super) tangent: Vec3,
     /// Share of the hair that has it; the rest lies every way.
-    order: f32,
+    pub(super) order: f32,
     /// Area of skin over that of a face, times its normal.
-    skin: Vec3,
+    pub(super) skin: Vec3,
     /// Light that skin meets straight from lights, as radiance of a white surface.
-    skin_light: Vec4,
-    /// Radiance of the skin.
-    skin_shown: Vec4,
+    pub(super) skin_light: Vec4,
     /// The lattice's number of the tangent.
-    nearest: usize,
+    pub(super) nearest: usize,
 }
 
 /// Scattered light around and in the hair.
@@ -47,25 +46,12 @@ struct Cell {
 pub struct LightGrid {
     grid: GridBox,
     parts: Vec<Vec<i64>>,
+    /// The cells that hold something, in order.
     cells: Vec<Cell>,
-    /// What each cell's hair shows along every direction of straight light.
-    direct: Vec<Rays>,
-    /// All light but the straight one.
-    fields: Vec<Field>,
-    /// What hair of each cell's tangent shows toward the eye of that light, and what the field alone says of it.
-    toward_eye: Vec<[Vec4; 2]>,
-    carried: Vec<Carried>,
-}
-
-/// Light along one direction, shape `[cell]`.
-#[derive(Clone, Debug, Default)]
-struct Carried {
-    /// Mean radiance within each cell's hair.
-    mean: Vec<Vec4>,
-    /// Radiance that leaves it.
-    leaving: Vec<Vec4>,
-    /// What its hair shows.
-    shown: Vec<Vec4>,
+    carried: Carried,
+    /// All light but the straight one; what hair of each cell's tangent shows toward the eye of it, and what the field
+    /// alone says of that.
+    found: Vec<(Field, [Vec4; 2])>,
 }
 
 /// What light is scattered by.
@@ -84,7 +70,7 @@ pub struct Scene<'a> {
     /// The lights.
     pub lights: &'a [Light],
     /// Light from all around.
-    pub environment: &'a Environment,
+    pub around: Field,
     /// The fibre's scattering among directions.
     pub lattice: &'a Lattice,
     /// Where the camera stands \[m\], world space.
@@ -101,26 +87,11 @@ impl LightGrid {
         self.grid = scene.occlusion.grid();
         sum(&self.grid, scene, &mut self.parts);
         self.prepare(scene);
-        let cells = self.cells.len();
-        self.fields.clear();
-        self.toward_eye.clear();
-        self.carried.resize_with(DIRECTIONS, Carried::default);
-        let around = scene.environment.radiance(Vec3::X).extend(0.0);
-        let albedo = scene.lattice.albedo();
-        let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color).extend(0.0);
-        self.cells.iter_mut().for_each(|cell| cell.skin_shown = (cell.skin_light + around) * color);
-        for (way, carried) in self.carried.iter_mut().enumerate() {
-            carried.mean.resize(cells, Vec4::ZERO);
-            carried.leaving.resize(cells, Vec4::ZERO);
-            carried.shown.clear();
-            // As if the surroundings reached every hair: even light is found at once.
-            carried.shown.extend(self.direct.iter().map(|direct| direct[way] + around * albedo));
-        }
         for _ in 0..scene.rounds {
-            self.carry(scene);
-            self.scatter(scene);
+            self.carried.carry(&self.grid, &scene.around);
+            self.carried.scatter(&self.cells, scene);
         }
-        self.carry(scene);
+        self.carried.carry(&self.grid, &scene.around);
         self.gather(scene);
     }
 
@@ -129,7 +100,7 @@ impl LightGrid {
     pub fn field(&self, place: Vec3) -> (Field, Vec4) {
         let mut sum = Field::default();
         let mut shown = [Vec4::ZERO; 2];
-        if self.fields.is_empty() || !place.is_finite() {
+        if self.found.is_empty() || !place.is_finite() {
             return (sum, Vec4::ONE);
         }
         let (first, part) = self.grid.place(place);
@@ -139,11 +110,12 @@ impl LightGrid {
             let side = |part: f32, upper: usize| if upper == 1 { part } else { 1.0 - part };
             let weight = side(part.x, dx) * side(part.y, dy) * side(part.z, dz);
             let cell = first + (dz * rows + dy) * columns + dx;
-            for (sum, field) in sum.iter_mut().zip(&self.fields[cell]) {
+            let (field, toward_eye) = &self.found[cell];
+            for (sum, field) in sum.iter_mut().zip(field) {
                 *sum += *field * weight;
             }
-            for (sum, shown) in shown.iter_mut().zip(self.toward_eye[cell]) {
-                *sum += shown * weight;
+            for (sum, shown) in shown.iter_mut().zip(toward_eye) {
+                *sum += *shown * weight;
             }
         }
         let ratio = shown[0] / shown[1].max(Vec4::splat(1e-12));
@@ -162,193 +134,118 @@ impl LightGrid {
         let width = HAIR_SUMS + scene.lights.len() + SKIN_SUMS;
         let scale = 1.0 / (UNITS * grid.cell * grid.cell);
         let skin_sums = width - SKIN_SUMS;
-        self.cells.resize(grid.cell_count(), Cell::default());
-        self.direct.resize(grid.cell_count(), Rays::default());
-        let albedo = scene.lattice.albedo();
-        let both = self.cells.par_iter_mut().zip(self.direct.par_iter_mut());
-        both.enumerate().for_each(|(index, (cell, direct))| {
-            let number = |at: usize| {
-                let whole: i64 = parts.iter().map(|part| part[index * width + at]).sum();
-                whole as f32 * scale
-            };
-            let vector = |at: usize| Vec3::new(number(at), number(at + 1), number(at + 2));
-            *cell = Cell { hair: number(0), skin: vector(skin_sums), ..Cell::default() };
-            *direct = Rays::default();
-            if cell.hair > 0.0 {
-                let mean = vector(1) / cell.hair;
+        let around = scene.around[0];
+        let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color).extend(0.0);
+        let number = |index: usize, at: usize| {
+            let whole: i64 = parts.iter().map(|part| part[index * width + at]).sum();
+            whole as f32 * scale
+        };
+        let vector = |index, at| Vec3::new(number(index, at), number(index, at + 1), number(index, at + 2));
+        let holding = (0..grid.cell_count()).into_par_iter().filter_map(|index| {
+            let (hair, skin) = (number(index, 0), vector(index, skin_sums));
+            let area = skin.length();
+            if hair <= 0.0 && area <= 0.0 {
+                return None;
+            }
+            let mut cell = Cell { index, hair: hair.max(0.0), skin, ..Cell::default() };
+            if hair > 0.0 {
+                let mean = vector(index, 1) / hair;
                 cell.tangent = mean.normalize_or(Vec3::Y);
                 cell.order = mean.length_squared().min(1.0);
                 cell.nearest = scene.lattice.nearest(cell.tangent);
-                let middle = grid.middle(index);
-                let cube = scene.occlusion.cube(middle);
-                for (light, source) in scene.lights.iter().enumerate() {
-                    let lit = source.at(middle);
-                    let share = if source.shadow {
-                        number(HAIR_SUMS + light) / cell.hair
-                    } else {
-                        toward(&cube, lit.to_light)
-                    };
-                    let light = lit.radiance * share;
-                    scene.lattice.add_light(cell.tangent, lit.to_light, light * cell.order, direct);
-                    // Irradiance, pi times the radiance, over the whole sphere.
-                    let even = albedo * light.extend(0.0) * (0.25 * (1.0 - cell.order));
-                    direct.iter_mut().for_each(|shown| *shown += even);
-                }
             }
-            let skin = cell.skin.length();
-            if skin > 0.0 {
-                cell.skin_light = vector(skin_sums + 3).extend(0.0) / skin;
+            if area > 0.0 {
+                cell.skin_light = vector(index, skin_sums + 3).extend(0.0) / area;
             }
+            Some(cell)
         });
-    }
-
-    /// Carries light along every direction through what the cells hold.
-    fn carry(&mut self, scene: &Scene) {
-        let (grid, cells) = (self.grid, &self.cells);
-        let directions = directions();
-        self.carried.par_iter_mut().zip(directions).for_each(|(carried, (step, _))| {
-            let way = Way::new(scene, step);
-            let [columns, rows, layers] = grid.counts.map(|count| count as i32);
-            let turned = |at: i32, count: i32, step: i32| if step < 0 { count - 1 - at } else { at };
-            let inside = |at: i32, count: i32| (0..count).contains(&at);
-            let back = (step.z * rows + step.y) * columns + step.x;
-            for z in (0..layers).map(|z| turned(z, layers, step.z)) {
-                for y in (0..rows).map(|y| turned(y, rows, step.y)) {
-                    let known = inside(z - step.z, layers) && inside(y - step.y, rows);
-                    for x in (0..columns).map(|x| turned(x, columns, step.x)) {
-                        let index = (z * rows + y) * columns + x;
-                        let arrived = if known && inside(x - step.x, columns) {
-                            carried.leaving[(index - back) as usize]
-                        } else {
-                            way.outside
-                        };
-                        let index = index as usize;
-                        let [mean, leaving] = way.cross(&cells[index], carried.shown[index], arrived);
-                        carried.mean[index] = mean;
-                        carried.leaving[index] = leaving;
-                    }
-                }
-            }
-        });
-    }
-
-    /// Light along every direction in a cell.
-    fn rays(&self, index: usize) -> Rays {
-        std::array::from_fn(|way| self.carried[way].mean[index])
-    }
-
-    /// What hair and skin show of what was carried.
-    fn scatter(&mut self, scene: &Scene) {
-        let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color).extend(0.0);
-        let shown: Vec<Option<(Rays, Vec4)>> = self
-            .cells
-            .par_iter()
-            .enumerate()
-            .map(|(index, cell)| {
-                let skin = cell.skin.length();
-                if cell.hair == 0.0 && skin == 0.0 {
-                    return None;
-                }
-                let rays = self.rays(index);
-                let mut shown = self.direct[index];
-                if cell.hair > 0.0 {
-                    scene.lattice.add_shown(cell.nearest, cell.order, &rays, &mut shown);
-                }
-                let normal = cell.skin / skin.max(1e-12);
-                let mut met = Vec4::ZERO;
-                let mut whole = 1e-12;
-                for (light, (way, share)) in rays.iter().zip(scene.lattice.ways()) {
-                    let weight = share * (-normal.dot(*way)).max(0.0);
-                    met += *light * weight;
-                    whole += weight;
-                }
-                let on_skin = cell.skin_light + met / whole;
-                Some((shown, on_skin * color))
-            })
-            .collect();
-        for (index, shown) in shown.into_iter().enumerate() {
-            let Some((shown, skin)) = shown else { continue };
-            self.cells[index].skin_shown = skin;
-            self.carried.iter_mut().zip(shown).for_each(|(carried, shown)| carried.shown[index] = shown);
-        }
+        self.cells.clear();
+        self.cells.par_extend(holding);
+        let straight = |cell: &Cell| {
+            let reached = |light: usize| number(cell.index, HAIR_SUMS + light) / cell.hair;
+            straight_light(cell, grid.middle(cell.index), scene, &reached)
+        };
+        // As if the surroundings reached every hair: even light is found at once.
+        let even = around * scene.lattice.albedo();
+        let skin = |cell: &Cell| (cell.skin_light + around) * color;
+        self.carried.begin(&grid, &self.cells, even, straight, skin);
     }
 
     /// Sums what was carried into fields, and finds what hair shows toward the eye.
     fn gather(&mut self, scene: &Scene) {
-        let (grid, this) = (self.grid, &*self);
-        let found: Vec<(Field, [Vec4; 2])> = (0..self.cells.len())
-            .into_par_iter()
-            .map(|index| {
-                let (cell, rays) = (&this.cells[index], this.rays(index));
-                let mut field = Field::default();
-                for (light, (way, share)) in rays.iter().zip(scene.lattice.ways()) {
-                    light_field::add(&mut field, -*way, *light * *share);
-                }
-                if cell.hair == 0.0 {
-                    return (field, [Vec4::ZERO; 2]);
-                }
-                let to_eye = (scene.eye - grid.middle(index)).normalize_or(Vec3::Z);
-                let weights = scene.lattice.weights(cell.tangent, to_eye);
-                let shown =
-                    rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
-                let moments = scene.lattice.table().moments(cell.tangent.dot(to_eye), scene.pigment);
-                let u = light_field::across(cell.tangent, to_eye);
-                let known = light_field::shown(&field, &moments, cell.tangent, u);
-                // Weighted with the cell's hair: empty cells have no say.
-                (field, [shown * cell.hair, known * cell.hair])
-            })
-            .collect();
-        (self.fields, self.toward_eye) = found.into_iter().unzip();
+        let (grid, cells, carried) = (self.grid, &self.cells, &self.carried);
+        self.found.resize(grid.cell_count(), Default::default());
+        self.found.par_iter_mut().enumerate().for_each(|(index, found)| {
+            let rays = carried.rays(index);
+            let mut field = Field::default();
+            for (light, (way, share)) in rays.iter().zip(scene.lattice.ways()) {
+                light_field::add(&mut field, -*way, *light * *share);
+            }
+            let cell = carried.slot(index).map(|slot| &cells[slot]).filter(|cell| cell.hair > 0.0);
+            *found =
+                (field, cell.map_or([Vec4::ZERO; 2], |cell| toward_eye(cell, &grid, &rays, &field, scene)));
+        });
     }
 }
 
-/// Light along one direction.
-struct Way {
-    /// Unit direction in which light goes.
-    direction: Vec3,
-    /// Length of a step over that of a cell.
-    length: f32,
-    /// Radiance where the grid ends.
-    outside: Vec4,
+/// What a cell's hair shows toward the eye of light along every direction, and what the field alone says of that.
+fn toward_eye(cell: &Cell, grid: &GridBox, rays: &Rays, field: &Field, scene: &Scene) -> [Vec4; 2] {
+    let to_eye = (scene.eye - grid.middle(cell.index)).normalize_or(Vec3::Z);
+    let weights = scene.lattice.weights(cell.tangent, to_eye);
+    let shown = rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
+    let moments = scene.lattice.table().moments(cell.tangent.dot(to_eye), Pigments::Even(scene.pigment));
+    let u = light_field::across(cell.tangent, to_eye);
+    let known = light_field::shown(field, &moments, cell.tangent, u);
+    // Weighted with the cell's hair: empty cells have no say.
+    [shown * cell.hair, known * cell.hair]
 }
 
-impl Way {
-    fn new(scene: &Scene, step: IVec3) -> Self {
-        let length = step.as_vec3().length();
-        let direction = step.as_vec3() / length;
-        let outside = scene.environment.radiance(-direction).extend(0.0);
-        Self { direction, length, outside }
+/// What a cell's hair shows along every direction of straight light, a share of which reaches it of each light.
+fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usize) -> f32) -> Rays {
+    let mut shown = Rays::default();
+    if cell.hair == 0.0 {
+        return shown;
     }
-
-    /// Mean radiance in a cell and what leaves it.
-    #[inline]
-    fn cross(&self, cell: &Cell, shown: Vec4, arrived: Vec4) -> [Vec4; 2] {
-        let facing = cell.skin.dot(self.direction);
-        if cell.hair == 0.0 && facing == 0.0 {
-            return [arrived; 2];
+    let mut show = |beam: &Beam| {
+        let (to_light, light) = (beam.way.normalize_or(Vec3::Y), beam.light);
+        scene.lattice.add_light(cell.tangent, to_light, light * cell.order, &mut shown);
+        // Irradiance, pi times the radiance, over the whole sphere.
+        let even = scene.lattice.albedo() * light.extend(0.0) * (0.25 * (1.0 - cell.order));
+        shown.iter_mut().for_each(|shown| *shown += even);
+    };
+    let mut beam = Beam::default();
+    for (light, source) in scene.lights.iter().enumerate() {
+        let lit = source.at(middle);
+        let share =
+            if source.shadow { reached(light) } else { toward(&scene.occlusion.cube(middle), lit.to_light) };
+        if !beam.take(lit.to_light, lit.radiance * share) {
+            show(&beam);
+            beam = Beam::default();
+            beam.take(lit.to_light, lit.radiance * share);
         }
-        let bare = exp(-SKIN_EXTINCTION * self.length * facing.abs());
-        // Skin that light goes toward lies behind the hair, skin that it comes from before it. The inside of the body
-        // is as bright as its skin, so that places between cells within and without are not dark.
-        let cross_skin = |light: Vec4| light * bare + cell.skin_shown * (1.0 - bare);
-        let [mean, left] =
-            self.cross_hair(cell, shown, if facing > 0.0 { cross_skin(arrived) } else { arrived });
-        [mean, if facing > 0.0 { left } else { cross_skin(left) }]
     }
+    show(&beam);
+    shown
+}
 
-    #[inline]
-    fn cross_hair(&self, cell: &Cell, shown: Vec4, entered: Vec4) -> [Vec4; 2] {
-        if cell.hair == 0.0 {
-            return [entered; 2];
+/// Light of neighbouring lights that come from nearly one direction.
+#[derive(Clone, Copy, Default)]
+struct Beam {
+    /// The way to it, as long as there is light.
+    way: Vec3,
+    light: Vec3,
+}
+
+impl Beam {
+    /// Takes more light, unless it comes from elsewhere.
+    fn take(&mut self, to_light: Vec3, light: Vec3) -> bool {
+        let weight = light.element_sum();
+        let apart = self.way.dot(to_light) < ONE_BEAM * self.way.length();
+        if weight > 0.0 && apart {
+            return false;
         }
-        let sine = cell.tangent.dot(self.direction);
-        let cosine = (1.0 - sine * sine).max(0.0).sqrt();
-        let depth = cell.hair * self.length * (cell.order * cosine + (1.0 - cell.order) * MEAN_COSINE);
-        if depth < 1e-6 {
-            return [entered; 2];
-        }
-        let passed = exp(-depth);
-        let mean = shown + (entered - shown) * ((1.0 - passed) / depth);
-        [mean, shown + (entered - shown) * passed]
+        self.way += to_light * weight;
+        self.light += light;
+        true
     }
 }

@@ -11,7 +11,7 @@ use super::lanes::Wide3;
 use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, mean_radiance, toward};
 use super::{Shadows, Strands};
-use crate::{Light, LightKind, Look};
+use crate::{Environment, Light, LightKind, Look};
 
 /// Fills the radiances of all strands \[linear RGB\] as seen from `eye` \[m\], world space.
 ///
@@ -163,6 +163,7 @@ struct Shared<'a> {
     shadows: &'a Shadows,
     sources: Vec<Source>,
     look: &'a Look,
+    environment: Environment,
     fibre: Fibre,
     eye: Wide3,
     occlusion: &'a Occlusion,
@@ -188,6 +189,7 @@ impl<'a> Shared<'a> {
             shadows,
             sources: sources.collect(),
             look,
+            environment: look.gradient(),
             fibre: Fibre::new(look),
             eye: Wide3::splat(eye),
             occlusion,
@@ -199,7 +201,7 @@ impl<'a> Shared<'a> {
         let cubes = points.places.map(|place| self.occlusion.cube(place));
         let mut ambient = Vec3Lanes::default();
         for (lane, cube) in cubes.iter().enumerate() {
-            ambient.set(lane, mean_radiance(cube, &self.look.environment));
+            ambient.set(lane, mean_radiance(cube, &self.environment));
         }
         let mut sum = points.color.times(Wide3::load(&ambient));
         let to_eye = (self.eye - points.position).normalize_or(Wide3::splat(Vec3::Z));

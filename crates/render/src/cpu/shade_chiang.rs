@@ -10,8 +10,8 @@ use super::light_grid::{LightGrid, Scene};
 use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, toward};
 use super::{ShadowBody, Shadows, Strands};
-use crate::fibre::Chiang;
-use crate::fibre::chiang::Table;
+use crate::fibre::chiang::{INK, Pigments, Table};
+use crate::fibre::{Chiang, Pigment};
 use crate::{Light, Look};
 
 /// Noise nodes along a strand.
@@ -19,27 +19,46 @@ const NODES: usize = 8;
 /// Pigment of white hair, as a multiple of that of the others.
 const WHITE: f32 = 0.02;
 
+/// What the tables of a look are made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Source {
+    pub(crate) fibre: Chiang,
+    /// Mean colour of the hair, where its points have colours in place of pigment.
+    pub(crate) color: Option<Vec3>,
+    /// Mean pigment as a multiple of that of the look, or of hair of that colour.
+    pub(crate) pigment: f32,
+}
+
+impl Source {
+    /// Of a look, and the mean colour of a groom that has colours.
+    pub(crate) fn new(look: &Look, own: Option<Vec3>) -> Self {
+        let fibre = look.fibre.chiang;
+        let of_look = (fibre.pigment == Pigment::Color).then(|| 0.5 * (look.root_color + look.tip_color));
+        let color = own.or(of_look);
+        let white = if own.is_some() { 0.0 } else { look.grey };
+        let tip = if color.is_some() { 1.0 } else { fibre.tip_pigment };
+        Self { fibre, color, pigment: (1.0 - white) * 0.5 * (1.0 + tip) + white * WHITE }
+    }
+}
+
 /// Tables of a look's fibre.
 #[derive(Clone, Debug)]
 pub(crate) struct Made {
-    /// Fibre, colour of a mass of hair and mean pigment.
-    pub(crate) from: (Chiang, Vec3, f32),
+    pub(crate) from: Source,
     pub(crate) table: Table,
     pub(crate) lattice: Lattice,
 }
 
-/// What the tables of a look are made from.
-pub(crate) fn made_from(look: &Look) -> (Chiang, Vec3, f32) {
-    (look.fibre.chiang, look.root_color, mean_pigment(look))
-}
-
 impl Made {
-    pub(crate) fn new(look: &Look) -> Self {
-        let from = made_from(look);
-        let (fibre, color, pigment) = from;
-        let (lobes, absorption) = (fibre.lobes(), fibre.absorption(color));
-        let lattice = Lattice::new(&lobes, absorption, pigment);
-        Self { from, table: Table::new(&lobes, absorption), lattice }
+    pub(crate) fn new(from: Source) -> Self {
+        let (fibre, lobes) = (from.fibre, from.fibre.lobes());
+        let mean = match from.color {
+            Some(color) => fibre.absorption_of_color(color),
+            None => fibre.absorption(Vec3::ZERO),
+        };
+        let of_table = if from.color.is_some() { [INK; 3] } else { mean };
+        let lattice = Lattice::new(&lobes, mean, from.pigment);
+        Self { from, table: Table::new(&lobes, of_table), lattice }
     }
 }
 
@@ -63,6 +82,8 @@ pub struct Lit<'a> {
     pub body: Option<(ShadowBody<'a>, Vec3)>,
     /// The hair's look.
     pub look: &'a Look,
+    /// Mean of the groom's colours, where it has some.
+    pub own_color: Option<Vec3>,
     /// Where the camera stands \[m\], world space.
     pub eye: Vec3,
 }
@@ -82,8 +103,9 @@ impl Scattering {
         } else {
             occlusion.fill(strands, &look.hair_shadow());
         }
-        if self.made.as_ref().is_none_or(|made| made.from != made_from(look)) {
-            self.made = Some(Made::new(look));
+        let source = Source::new(look, lit.own_color);
+        if self.made.as_ref().is_none_or(|made| made.from != source) {
+            self.made = Some(Made::new(source));
         }
         let Some(Made { table, lattice, .. }) = &self.made else { return };
         reach(strands, lit, &mut self.reached);
@@ -94,19 +116,14 @@ impl Scattering {
             shadows: lit.shadows,
             occlusion,
             lights: lit.lights,
-            environment: &look.environment,
+            around: look.around(),
             lattice,
             eye: lit.eye,
-            pigment: mean_pigment(look),
+            pigment: source.pigment,
             rounds: look.fibre.chiang.scatterings,
         });
         radiances(strands, lit, table, &self.reached, &self.grid, occlusion);
     }
-}
-
-/// Mean pigment of a look's hair as a multiple of that at the root.
-fn mean_pigment(look: &Look) -> f32 {
-    (1.0 - look.grey) * 0.5 * (1.0 + look.fibre.chiang.tip_pigment) + look.grey * WHITE
 }
 
 /// Share of each shadow light that body and hair let through to every point.
@@ -130,37 +147,54 @@ fn reach(strands: &Strands, lit: &Lit, reached: &mut Vec<Vec<f32>>) {
 }
 
 /// What sets one strand apart from the others.
-struct Strand {
-    /// Pigment at root and tip, as a multiple of the look's at the root.
-    pigments: [f32; 2],
+struct Strand<'a> {
+    look: &'a Look,
+    /// Pigment as a multiple of the look's.
+    darker: f32,
+    /// Colours of its points, where the groom has some.
+    own: Option<&'a [Vec3]>,
     /// Shift of the highlights \[rad\] at even distances from root to tip.
     shifts: [f32; NODES],
 }
 
-impl Strand {
-    fn new(look: &Look, guide: u32, index: u32) -> Self {
+impl<'a> Strand<'a> {
+    fn new(look: &'a Look, own: Option<&'a [Vec3]>, guide: u32, index: u32) -> Self {
         let seed = hash_pair(look.seed ^ 0x10_5e, guide);
         // Half of the variation belongs to the whole clump, as in real locks.
         let clump = unit(seed) - 0.5;
         let mut random = Random::new(hash_pair(seed, index));
-        let own = random.unit() - 0.5;
-        let darker = (-look.variation * (clump + own)).exp2();
-        let root = if random.unit() < look.grey { WHITE } else { darker };
+        let apart = random.unit() - 0.5;
+        let darker = (-look.variation * (clump + apart)).exp2();
+        let darker = if random.unit() < look.grey { WHITE } else { darker };
         let noise = 2.0 * look.highlight_noise.to_radians();
         let whole = 2.0 * random.unit() - 1.0;
-        Self {
-            pigments: [root, root * look.fibre.chiang.tip_pigment],
-            shifts: std::array::from_fn(|_| noise * (0.6 * whole + 0.8 * random.unit() - 0.4)),
+        let shifts = std::array::from_fn(|_| noise * (0.6 * whole + 0.8 * random.unit() - 0.4));
+        Self { look, darker, own, shifts }
+    }
+
+    /// Pigment of a point at a share of the way to the tip.
+    #[inline]
+    fn pigments(&self, point: usize, share: f32) -> Pigments {
+        let fibre = &self.look.fibre.chiang;
+        match (self.own, fibre.pigment) {
+            (Some(own), _) => Pigments::Channels(fibre.inks(own[point])),
+            (None, Pigment::Color) => {
+                let color = self.look.root_color.lerp(self.look.tip_color, share);
+                Pigments::Channels(fibre.inks(color) * self.darker)
+            }
+            (None, Pigment::Melanin) => {
+                Pigments::Even(self.darker * (1.0 + (fibre.tip_pigment - 1.0) * share))
+            }
         }
     }
 
-    /// Pigment and shift at a share of the way to the tip.
-    fn at(&self, share: f32) -> [f32; 2] {
+    /// Shift of the highlights at a share of the way to the tip.
+    #[inline]
+    fn shift(&self, share: f32) -> f32 {
         let at = share * (NODES - 1) as f32;
         let node = (at as usize).min(NODES - 2);
-        let between = |low: f32, high: f32, part: f32| low + (high - low) * part;
-        let [root, tip] = self.pigments;
-        [between(root, tip, share), between(self.shifts[node], self.shifts[node + 1], at - node as f32)]
+        let (low, high) = (self.shifts[node], self.shifts[node + 1]);
+        low + (high - low) * (at - node as f32)
     }
 }
 
@@ -173,18 +207,22 @@ fn radiances(
     occlusion: &Occlusion,
 ) {
     let (count, per_guide) = (strands.points_per_strand, strands.strands_per_guide);
-    let (positions, tangents) = (&strands.positions, &strands.tangents);
+    let (positions, tangents, colors) = (&strands.positions, &strands.tangents, &strands.colors);
     strands.radiances.par_chunks_mut(count).enumerate().for_each(|(strand, radiances)| {
-        let own = Strand::new(lit.look, (strand / per_guide) as u32, (strand % per_guide) as u32);
+        let guide = strand / per_guide;
+        let own = colors.get(guide * count..(guide + 1) * count);
+        let own = Strand::new(lit.look, own, guide as u32, (strand % per_guide) as u32);
         for (index, radiance) in radiances.iter_mut().enumerate() {
             let point = strand * count + index;
             let (place, t) = (positions[point], tangents[point]);
-            let [pigment, shift] = own.at(index as f32 / (count - 1) as f32);
+            let share = index as f32 / (count - 1) as f32;
+            let (pigments, shift) = (own.pigments(index, share), own.shift(share));
             let to_eye = (lit.eye - place).normalize_or(Vec3::Z);
             let sine = t.dot(to_eye);
             let u = light_field::across(t, to_eye);
             let (field, more) = grid.field(place);
-            let mut sum = (light_field::shown(&field, &table.moments(sine, pigment), t, u) * more).truncate();
+            let moments = table.moments(sine, pigments);
+            let mut sum = (light_field::shown(&field, &moments, t, u) * more).truncate();
             for (light, source) in lit.lights.iter().enumerate() {
                 let from = source.at(place);
                 let share = match reached[light].get(point) {
@@ -195,7 +233,7 @@ fn radiances(
                     let sine_light = t.dot(from.to_light);
                     let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();
                     let turn = (u.dot(from.to_light) / flat).clamp(-1.0, 1.0);
-                    let shown = table.scatter(sine, sine_light, turn, pigment, shift);
+                    let shown = table.scatter(sine, sine_light, turn, pigments, shift);
                     sum += shown * from.radiance * (share * std::f32::consts::PI);
                 }
             }

@@ -25,5 +25,5 @@ choices! {
         /// A rough dielectric fibre with absorption [Chiang2016], and light that is scattered many times.
         Chiang = "chiang",
     }
-    default Scheuermann
+    default Chiang
 }

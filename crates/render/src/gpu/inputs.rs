@@ -6,8 +6,8 @@ use strandline_gpu::mirror;
 
 use super::renderer::Scene;
 use crate::cpu::shadow::LightView;
-use crate::fibre::FibreModel;
-use crate::{Highlight, LightKind, ToneMap};
+use crate::fibre::{FibreModel, Pigment};
+use crate::{Highlight, LightKind, Look, ToneMap};
 
 mirror! {
     /// Rows of a rotation, each with its component of the translation \[m\] behind it.
@@ -19,10 +19,36 @@ mirror! {
 }
 
 mirror! {
+    /// Light that changes slowly with direction: see cpu/light_field.rs. The last number of `a` is the share of its width
+    /// that a strand has at the skin.
+    pub(super) struct Around {
+        pub a: [f32; 4],
+        pub bx: [f32; 4],
+        pub by: [f32; 4],
+        pub bz: [f32; 4],
+        pub xx: [f32; 4],
+        pub yy: [f32; 4],
+        pub xy: [f32; 4],
+        pub xz: [f32; 4],
+        pub yz: [f32; 4],
+    }
+}
+
+impl Around {
+    fn new(look: &Look) -> Self {
+        let [a, bx, by, bz, xx, yy, xy, xz, yz] = look.around().map(|part| part.to_array());
+        let a = [a[0], a[1], a[2], look.root_width];
+        Self { a, bx, by, bz, xx, yy, xy, xz, yz }
+    }
+}
+
+mirror! {
     /// Mirrors `Frame` in common.wesl.
     pub(super) struct Frame {
         pub world_from_head: Rigid,
         pub view_from_world: Rigid,
+        /// Light from all around.
+        pub around: Around,
         /// \[m\]
         pub eye: [f32; 3],
         /// Between the two buffers of guide points, 0 to 1.
@@ -94,7 +120,7 @@ mirror! {
         /// Middle of the hair at rest \[m\]: texels and cells keep their places beside it.
         pub middle: [f32; 3],
         /// What is drawn, in bits: 1 the groom's colours, 2 its widths along strands, in place of the look's;
-        /// 4 light that is scattered many times, with the fibre of [Chiang2016].
+        /// 4 light that is scattered many times, with the fibre of [Chiang2016], 8 the look's colours with it.
         pub kinds: u32,
     }
 }
@@ -160,20 +186,22 @@ impl Frame {
     pub fn new(scene: &Scene) -> Self {
         let Scene { input, settings, level, .. } = scene;
         let (look, body, shadow) = (input.look, input.body_look, &input.look.hair_shadow());
+        let gradient = look.gradient();
         let (width, height) = (settings.width as f32, settings.height as f32);
         let scale = settings.supersampling as f32;
         let share = look.first_highlight.strength + look.second_highlight.strength;
         Self {
             world_from_head: Rigid::of_pose(&input.world_from_head),
             view_from_world: Rigid::of_affine(&input.camera.view_from_world()),
+            around: Around::new(look),
             eye: input.camera.position.to_array(),
             share: scene.share,
             size: [width * scale, height * scale],
             focal: 0.5 * height * scale * input.camera.focal(),
             near: input.camera.near,
-            sky: look.environment.sky.to_array(),
+            sky: gradient.sky.to_array(),
             tip_width: look.tip_width,
-            ground: look.environment.ground.to_array(),
+            ground: gradient.ground.to_array(),
             lift: look.clump.lift,
             root_color: look.root_color.to_array(),
             variation: look.variation,
@@ -220,7 +248,9 @@ impl Frame {
             },
             body_kind: scene.body_kind,
             middle: scene.middle.to_array(),
-            kinds: scene.own | if look.fibre.model == FibreModel::Chiang { 4 } else { 0 },
+            kinds: scene.own
+                | if look.fibre.model == FibreModel::Chiang { 4 } else { 0 }
+                | if look.fibre.chiang.pigment == Pigment::Color { 8 } else { 0 },
         }
     }
 }

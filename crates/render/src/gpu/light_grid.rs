@@ -6,16 +6,16 @@ use super::body::Body;
 use super::buffers::{CELLS, Groom, Maps, Strands};
 use super::inputs::{Frame, LightSource};
 use super::{GpuRenderer, MAX_SHADOWS, draw};
+use crate::RenderError;
 use crate::cpu::lattice::DIRECTIONS;
-use crate::cpu::shade_chiang::{Made, made_from};
+use crate::cpu::shade_chiang::{Made, Source};
 use crate::fibre::chiang::Table;
-use crate::{Look, RenderError};
 
 /// Sums of a cell, as in light_sums.wesl.
 const SUMS: usize = 10 + MAX_SHADOWS;
 /// Vectors of a cell behind the fibre's tables, and where they begin, as in light_cells.wesl.
 const GLOW: usize = 13;
-const FIRST_GLOW: usize = 24_576;
+const FIRST_GLOW: usize = 28_672;
 /// Lines that begin on one of three faces of the grid, as in light_grid.wesl.
 pub(super) const LINES: usize = 3 * 44 * 44;
 
@@ -160,12 +160,12 @@ impl LightGrid {
         })
     }
 
-    /// Tables of the fibre of a look, where they are not there yet.
-    pub fn write(&mut self, look: &Look) -> Result<(), RenderError> {
-        if self.made.as_ref().is_some_and(|made| made.from == made_from(look)) {
+    /// Tables of a fibre, where they are not there yet.
+    pub fn write(&mut self, source: Source) -> Result<(), RenderError> {
+        if self.made.as_ref().is_some_and(|made| made.from == source) {
             return Ok(());
         }
-        let made = Made::new(look);
+        let made = Made::new(source);
         let table = made.device_table();
         let numbers =
             |entries: Vec<glam::Vec4>| entries.iter().map(|entry| entry.to_array()).collect::<Vec<_>>();
@@ -214,12 +214,12 @@ impl LightGrid {
 
 impl GpuRenderer {
     /// Makes room for scattered light, and the fibre's tables.
-    pub(super) fn prepare_light(&mut self, look: &Look) -> Result<(), RenderError> {
+    pub(super) fn prepare_light(&mut self, source: Source) -> Result<(), RenderError> {
         if self.light_grid.is_none() {
             self.light_grid = Some(LightGrid::new(&self.gpu)?);
         }
         let Some(grid) = &mut self.light_grid else { unreachable!("made above") };
-        grid.write(look)?;
+        grid.write(source)?;
         if self.light_bounds.is_none()
             && let (Some(strands), Some(maps)) = (&self.strands, &self.maps)
         {
@@ -249,7 +249,9 @@ impl Made {
     /// Single numbers, in the last lanes of the first entries.
     fn note(&self, table: &Table, entries: &mut [glam::Vec4]) {
         let albedo = self.lattice.albedo();
-        let numbers = [table.floor, albedo.x, albedo.y, albedo.z, self.from.2, self.from.0.tip_pigment];
+        let Source { fibre, pigment, .. } = self.from;
+        let scale = fibre.color_scale() as f32;
+        let numbers = [table.floor, albedo.x, albedo.y, albedo.z, pigment, fibre.tip_pigment, scale];
         entries.iter_mut().zip(numbers).for_each(|(entry, number)| entry.w = number);
     }
 

@@ -4,16 +4,18 @@ use strandline_body::Mesh;
 use strandline_gpu::{Bound, Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
 use strandline_groom::Guides;
 
+use super::body::ball;
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::frame::{Bounds, record};
 use super::inputs::{Frame, LightSource};
 use super::light_grid::{self, LightGrid};
-use super::resolve::{Own, PICTURE, ToFormat};
+use super::resolve::{Own, PICTURE, ToFormat, check_picture};
 use super::shade::LayerColors;
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
+use crate::cpu::shade_chiang::Source;
 use crate::fibre::FibreModel;
-use crate::frame::middle;
+use crate::frame::{mean_color, middle};
 use crate::lights::at_samples;
 use crate::{DetailLevel, FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
@@ -62,6 +64,8 @@ pub struct GpuRenderer {
     pub(super) drawn: Drawn,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
     pub(super) lit: (Vec<Light>, Shadow, Vec3),
+    /// Mean of the guides' colours.
+    own_color: Option<Vec3>,
 }
 
 /// What the last frame drew.
@@ -117,7 +121,7 @@ impl GpuRenderer {
         body: Option<&Mesh>,
         settings: &PictureSettings,
     ) -> Result<Self, RenderError> {
-        settings.validate()?;
+        check_picture(settings)?;
         Ok(Self {
             middle: middle(guides),
             body_ball: ball(body),
@@ -142,6 +146,7 @@ impl GpuRenderer {
             layer_colors: None,
             drawn: Drawn::default(),
             lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
+            own_color: mean_color(guides),
             guides: guides.clone(),
             gpu: gpu.clone(),
         })
@@ -162,7 +167,7 @@ impl GpuRenderer {
     /// # Errors
     /// As for [`GpuRenderer::new`]; the settings then stay as they were.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
-        settings.validate()?;
+        check_picture(settings)?;
         let size = |settings: &PictureSettings| (settings.width, settings.height, settings.supersampling);
         if size(settings) != size(&self.settings) {
             let targets = Targets::new(&self.gpu, settings)?;
@@ -240,7 +245,7 @@ impl GpuRenderer {
         own: Option<&Own>,
     ) -> Result<FrameReport, RenderError> {
         input.validate()?;
-        let (given, lights) = (input.lights, at_samples(input.lights));
+        let (given, lights) = (input.lights, at_samples(input.lights, input.look));
         let input = &FrameInput { lights: &lights, ..*input };
         self.check_points(input, points)?;
         let settings = self.settings;
@@ -275,8 +280,8 @@ impl GpuRenderer {
         let middle = scene.middle;
         self.lit.0.clear();
         self.lit.0.extend_from_slice(input.lights);
-        (self.lit.1, self.lit.2) = (input.look.shadow, middle);
-        Ok(FrameReport { strands, segments: strands * (curve_points - 1), seconds: Vec::new() })
+        (self.lit.1, self.lit.2) = (input.look.hair_shadow(), middle);
+        Ok(FrameReport { strands, segments: strands * (curve_points - 1), ..FrameReport::default() })
     }
 
     /// Guide points must be those of the renderer's guides, and on its device.
@@ -357,7 +362,7 @@ impl GpuRenderer {
             self.stages = Some(Stages::new(&self.gpu, &self.kernels, &self.groom, strands, maps)?);
         }
         if scene.input.look.fibre.model == FibreModel::Chiang {
-            self.prepare_light(scene.input.look)?;
+            self.prepare_light(Source::new(scene.input.look, self.own_color))?;
         }
         Ok(())
     }
@@ -418,17 +423,4 @@ impl GpuRenderer {
         self.tessellates.push((pair, bound.clone()));
         Ok(bound)
     }
-}
-
-/// A ball around a mesh: the middle of its box and the way to a corner.
-fn ball(mesh: Option<&Mesh>) -> (Vec3, f32) {
-    let positions = mesh.map_or(&[][..], |mesh| &mesh.positions);
-    if positions.is_empty() {
-        return (Vec3::ZERO, 0.0);
-    }
-    let (low, high) = positions
-        .iter()
-        .fold((Vec3::MAX, Vec3::MIN), |(low, high), &point| (low.min(point), high.max(point)));
-    // A hundredth more keeps rounding inside.
-    (0.5 * (low + high), 0.505 * low.distance(high))
 }

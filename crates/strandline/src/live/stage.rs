@@ -12,7 +12,9 @@ use crate::{
     body::Aabb,
     hair::{Studio, place},
     prepare::Prepared,
-    render::{Camera, FrameReport, LevelOfDetail, Look, Picture, PictureSettings, memory::check_lights},
+    render::{
+        Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings, memory::check_lights,
+    },
     scene::{MotionSection, WindSection},
     sim::{SimError, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
@@ -54,11 +56,13 @@ pub(super) struct Stage {
     pub notes: Vec<String>,
 }
 
-/// A simpler picture has at most so many follow strands of a guide and segments of a span, and shadow maps
-/// of so many texels a side; it has one sample for four pixels.
+/// A simpler picture has at most so many follow strands of a guide and segments of a span, shadow maps of so many
+/// texels a side, one place on each light, and light that is scattered so often; it is half as wide and high, with
+/// the samples that keep its edges smooth.
 const FEW_STRANDS: u32 = 8;
 const FEW_SEGMENTS: u32 = 2;
 const SMALL_MAP: u32 = 256;
+const FEW_SCATTERINGS: u32 = 3;
 
 impl Stage {
     pub fn new(scene: &Scene) -> Result<Self, Error> {
@@ -183,14 +187,21 @@ impl Stage {
         let mut look = self.look.clone();
         look.follow_strands = look.follow_strands.min(FEW_STRANDS);
         look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
-        self.studio.draw(moment, &self.camera, &look)
+        let scatterings = &mut look.fibre.chiang.scatterings;
+        *scatterings = (*scatterings).min(FEW_SCATTERINGS);
+        let one_place = |light: &Light| Light { samples: 1, ..*light };
+        let simpler = self.studio.lights.iter().map(one_place).collect();
+        let lights = std::mem::replace(&mut self.studio.lights, simpler);
+        let drawn = self.studio.draw(moment, &self.camera, &look);
+        self.studio.lights = lights;
+        drawn
     }
 
     fn picture_settings(&self, draft: bool) -> PictureSettings {
         let PictureSettings { width, height, .. } = self.picture;
         let half = |side: u32| side.div_ceil(2);
         let small =
-            PictureSettings { width: half(width), height: half(height), supersampling: 1, ..self.picture };
+            PictureSettings { width: half(width), height: half(height), supersampling: 2, ..self.picture };
         if draft { small } else { self.picture }
     }
 

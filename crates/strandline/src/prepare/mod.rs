@@ -55,6 +55,7 @@ impl Prepared {
             memory::check(scene, scene.style.strand_count, drawn)?;
         }
         let mut scene = scene.clone();
+        scene.load_surroundings()?;
         let Loaded { groom, body } = loaded(&mut scene, &mut notes)?;
         let scene = &scene;
         let chosen = strands::guides(scene, &groom, &mut notes);

@@ -1,12 +1,13 @@
 use std::str::FromStr;
 
+use glam::Vec3;
 use strandline_base::SettingError;
 
 use super::{FilmSection, GroomSection, MotionName, Scene};
 use crate::{
     Error,
     groom::{Style, StyleSettings},
-    render::LevelOfDetail,
+    render::{Background, LevelOfDetail, Preset, ToneMap},
     sim::Settings,
 };
 
@@ -33,6 +34,13 @@ impl Scene {
         self.level_of_detail.segments_per_span = segments;
     }
 
+    /// What goes with the look of the thesis in a picture.
+    pub(super) fn dress_thesis(&mut self) {
+        self.picture.tone_map = ToneMap::Filmic;
+        self.picture.background =
+            Background { top: Vec3::new(0.30, 0.33, 0.37), bottom: Vec3::new(0.11, 0.12, 0.135) };
+    }
+
     /// The thesis's scene [Chen2011 §6]: 1,750 guides x 6 points, 32^3 cells, 20 iterations, 16
     /// follow strands, 560,000 segments, three lights of which two cast shadows, head shake.
     pub fn thesis() -> Self {
@@ -45,7 +53,9 @@ impl Scene {
             ..Self::default()
         };
         scene.motion.name = MotionName::Shake;
+        scene.look.dress(Preset::Thesis);
         scene.look.follow_strands = 16;
+        scene.dress_thesis();
         scene.level_of_detail = LevelOfDetail::full();
         (scene.picture.width, scene.picture.height) = (800, 600);
         scene

@@ -5,6 +5,7 @@ mod builtin;
 mod film;
 mod groom;
 mod motion;
+mod surroundings;
 
 use std::path::{Path, PathBuf};
 
@@ -15,12 +16,13 @@ pub use body::{BodySection, CapsuleSection, ColliderSection, Model, SphereSectio
 pub use film::{CameraSection, FilmSection, View};
 pub use groom::GroomSection;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
+pub use surroundings::SurroundingsSection;
 
 use crate::{
     Backend, Devices, Error,
     groom::StyleSettings,
     prepare::Given,
-    render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, memory::MAX_LIGHTS},
+    render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, Preset, memory::MAX_LIGHTS},
     sim::{Settings, StrandMethod},
 };
 
@@ -60,8 +62,11 @@ settings! {
         level_of_detail: LevelOfDetail = LevelOfDetail::default();
         /// Where the picture is taken from.
         camera: CameraSection = CameraSection::default();
-        /// The lights, at most 64; none named means three: a key and a rim with shadows, and a fill.
+        /// The lights, at most 64; none named means a soft box before and a strip behind the head, or three lights of the
+        /// look "thesis".
         lights: Vec<Light> = Vec::new();
+        /// Surroundings as a picture.
+        surroundings: SurroundingsSection = SurroundingsSection::default();
         /// Size and finish of a picture.
         picture: PictureSettings = PictureSettings::default();
         /// How many pictures, how fast.
@@ -91,6 +96,9 @@ impl Scene {
             self.level_of_detail.segments_per_span = LevelOfDetail::default().segments_per_span;
         }
         let look = given.look.as_ref();
+        if look.is_some_and(|look| look.preset == Some(Preset::Thesis)) {
+            self.dress_thesis();
+        }
         let clump = look.and_then(|look| look.clump.as_ref());
         let level = given.level_of_detail.as_ref();
         let strands = given.simulation.as_ref().and_then(|simulation| simulation.strands.as_ref());

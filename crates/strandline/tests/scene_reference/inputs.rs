@@ -1,6 +1,6 @@
 //! docs/limits.md has the limits of inputs as the code has them.
 
-use strandline::{groom::format, scene};
+use strandline::{groom::format, render::surroundings::Panorama, scene};
 
 #[test]
 fn the_limits_of_inputs_are_documented() {
@@ -13,6 +13,11 @@ fn the_limits_of_inputs_are_documented() {
             format::MAX_STRANDS,
             format::MAX_POINTS_PER_STRAND,
             format::MAX_POINTS
+        ),
+        format!(
+            "| surroundings (.hdr .exr) | {} MiB {} pixels |",
+            Panorama::MAX_BYTES >> 20,
+            Panorama::MAX_PIXELS
         ),
     ] {
         assert!(text.contains(&words), "`{words}` is missing");

@@ -121,3 +121,22 @@ fn devices_of_older_files_are_taken_and_newer_ones_win() {
     }
     assert_eq!(Scene::parse(&saved.to_string(), "scene").unwrap(), Scene::thesis());
 }
+
+#[test]
+fn colours_and_looks_that_a_file_gives_are_meant() {
+    use strandline::render::{
+        Look, ToneMap,
+        fibre::{FibreModel, Pigment},
+    };
+    let read = |text: &str| Scene::parse(text, "scene").unwrap();
+    assert_eq!(read("[look]\npreset = 'red'").look, Look::red());
+    assert_eq!(read("").look.fibre.chiang.pigment, Pigment::Melanin);
+    assert_eq!(read("[look]\ntip_color = [0.1, 0.2, 0.3]").look.fibre.chiang.pigment, Pigment::Color);
+    let both = "[look]\nroot_color = [0.1, 0.2, 0.3]\n[look.fibre.chiang]\npigment = 'melanin'";
+    assert_eq!(read(both).look.fibre.chiang.pigment, Pigment::Melanin);
+    let thesis = read("[look]\npreset = 'thesis'\nhighlight_noise = 2.0");
+    assert_eq!((thesis.look.fibre.model, thesis.look.highlight_noise), (FibreModel::Scheuermann, 2.0));
+    assert_eq!((thesis.picture.tone_map, read("").picture.tone_map), (ToneMap::Filmic, ToneMap::Aces));
+    let own = read("[look]\npreset = 'thesis'\n[picture]\ntone_map = 'off'");
+    assert_eq!(own.picture.tone_map, ToneMap::Off);
+}

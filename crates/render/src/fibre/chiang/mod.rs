@@ -10,11 +10,16 @@ use strandline_base::{choices, settings};
 
 pub use lobes::{LOBES, Lobes};
 pub use moments::MOMENTS;
-pub use table::{ENTRIES, LEVELS, Table};
+pub use table::{ENTRIES, LEVELS, Pigments, Table};
 
 /// Absorption per fibre radius of one unit of eumelanin and of pheomelanin \[d'Eon2011\].
 const EUMELANIN: DVec3 = DVec3::new(0.419, 0.697, 1.37);
 const PHEOMELANIN: DVec3 = DVec3::new(0.187, 0.4, 1.05);
+
+/// Absorption per fibre radius of the tables of hair that has a colour for each point.
+pub(crate) const INK: f64 = 0.6;
+/// Least reflectance that hair is taken to have.
+const LEAST_COLOR: f32 = 1e-4;
 
 settings! {
     /// The rough dielectric fibre [Chiang2016]. Its paths: R is reflected, TT goes through, TRT comes back from
@@ -26,7 +31,7 @@ settings! {
         eumelanin: f32 = 0.6, in [0.0, 100.0], slider [0.0, 8.0], more "darker hair";
         /// Red to yellow pigment.
         pheomelanin: f32 = 0.2, in [0.0, 100.0], slider [0.0, 4.0], more "redder hair";
-        /// Pigment at the tip as a share of that at the root.
+        /// Pigment at the tip as a share of that at the root, for `pigment = "melanin"`.
         tip_pigment: f32 = 1.0, in [0.0, 2.0], more "darker tips";
         /// Roughness along the fibre.
         roughness_along: f32 = 0.3, in [0.05, 1.0], more "a wider, duller highlight";
@@ -47,7 +52,8 @@ choices! {
     pub enum Pigment as "look.fibre.chiang.pigment" {
         /// `eumelanin` and `pheomelanin`.
         Melanin = "melanin",
-        /// As much as makes a mass of such hair reflect `look.root_color`.
+        /// As much as makes a mass of such hair reflect `look.root_color` and `look.tip_color`, or what colours the
+        /// strands of a file have.
         Color = "color",
     }
     default Melanin
@@ -68,12 +74,25 @@ impl Chiang {
                 let [eumelanin, pheomelanin] = [self.eumelanin, self.pheomelanin].map(f64::from);
                 (eumelanin * EUMELANIN + pheomelanin * PHEOMELANIN).to_array()
             }
-            Pigment::Color => {
-                let b = f64::from(self.roughness_around);
-                // [Chiang2016 §4.2]
-                let scale = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
-                color.to_array().map(|c| (f64::from(c).clamp(1e-4, 1.0).ln() / scale).powi(2))
-            }
+            Pigment::Color => self.absorption_of_color(color),
         }
+    }
+
+    /// Absorption per fibre radius of the three channels of hair a mass of which has a reflectance.
+    pub fn absorption_of_color(&self, color: Vec3) -> [f64; 3] {
+        color.to_array().map(|c| (f64::from(c.clamp(LEAST_COLOR, 1.0)).ln() / self.color_scale()).powi(2))
+    }
+
+    /// What the logarithm of such a reflectance is divided by [Chiang2016 §4.2].
+    pub(crate) fn color_scale(&self) -> f64 {
+        let b = f64::from(self.roughness_around);
+        5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))))
+    }
+
+    /// Multiples of [`INK`] of such hair.
+    pub(crate) fn inks(&self, color: Vec3) -> Vec3 {
+        let inverse = (1.0 / self.color_scale()) as f32;
+        let roots = color.clamp(Vec3::splat(LEAST_COLOR), Vec3::ONE).map(|c| c.ln() * inverse);
+        roots * roots * (1.0 / INK as f32)
     }
 }

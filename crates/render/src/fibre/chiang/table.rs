@@ -23,7 +23,7 @@ pub const TURNS: usize = 49;
 /// Nodes of the eye's inclination of the moments, -pi / 2 to pi / 2.
 pub const MOMENT_EYES: usize = 2 * EYES - 1;
 /// Multiples of the pigment at the root for which there are entries; the first is white hair.
-pub const LEVELS: [f32; 6] = [0.0, 0.25, 0.5, 1.0, 2.0, 4.0];
+pub const LEVELS: [f32; 8] = [0.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0];
 /// Offsets across the width that are summed.
 const OFFSETS: usize = 96;
 
@@ -43,6 +43,15 @@ pub struct Table {
     pub entries: Vec<Vec4>,
     /// Least product of cosines by which the terms along the fibre are evened out.
     pub floor: f32,
+}
+
+/// Pigment of a point as multiples of that of the tables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pigments {
+    /// The same for all channels.
+    Even(f32),
+    /// One for each channel.
+    Channels(Vec3),
 }
 
 /// Terms around the fibre of one inclination of the eye, `[turn][lobe][channel]`.
@@ -102,18 +111,25 @@ impl Table {
     /// light, the cosine of the turn between them, and a multiple of the pigment. `shift` \[rad\] moves the
     /// highlights.
     #[inline]
-    pub fn scatter(&self, eye: f32, light: f32, turn: f32, pigment: f32, shift: f32) -> Vec3 {
-        let [r, tt, trt] = self.by_path(eye, light, turn, pigment, shift);
+    pub fn scatter(&self, eye: f32, light: f32, turn: f32, pigments: Pigments, shift: f32) -> Vec3 {
+        let [r, tt, trt] = self.by_path(eye, light, turn, pigments, shift);
         r + tt + trt
     }
 
     /// [`Table::scatter`] of R, TT and TRT.
     #[inline]
-    pub fn by_path(&self, eye: f32, light: f32, turn: f32, pigment: f32, shift: f32) -> [Vec3; 3] {
+    pub fn by_path(&self, eye: f32, light: f32, turn: f32, pigments: Pigments, shift: f32) -> [Vec3; 3] {
         let cosines = ((1.0 - eye * eye) * (1.0 - light * light)).max(0.0).sqrt();
         let (eye, light) = (arc_sine(eye), arc_sine(light));
         let along = self.along(eye, light, shift) / evened(cosines, self.floor);
-        let [first, second] = self.around(eye, FRAC_PI_2 as f32 - arc_sine(turn), pigment);
+        let turn = FRAC_PI_2 as f32 - arc_sine(turn);
+        let [first, second] = match pigments {
+            Pigments::Even(pigment) => self.around(eye, turn, pigment),
+            Pigments::Channels(pigments) => {
+                let found = pigments.to_array().map(|pigment| self.around(eye, turn, pigment));
+                channels(found, [0, 1].map(|term| found[0][term].w))
+            }
+        };
         [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
     }
 
@@ -164,7 +180,18 @@ impl Table {
 
     /// The fibre's moments (see `moments.rs`) for the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
-    pub fn moments(&self, eye: f32, pigment: f32) -> [Vec4; MOMENTS] {
+    pub fn moments(&self, eye: f32, pigments: Pigments) -> [Vec4; MOMENTS] {
+        match pigments {
+            Pigments::Even(pigment) => self.even_moments(eye, pigment),
+            Pigments::Channels(pigments) => {
+                let found = pigments.to_array().map(|pigment| self.even_moments(eye, pigment));
+                channels(found, [0.0; MOMENTS])
+            }
+        }
+    }
+
+    #[inline]
+    fn even_moments(&self, eye: f32, pigment: f32) -> [Vec4; MOMENTS] {
         let (row, part) = place(0.5 + arc_sine(eye) * std::f32::consts::FRAC_1_PI, MOMENT_EYES);
         let (level, between) = level_of(pigment);
         let first = FIRST_MOMENT + MOMENTS * (level * MOMENT_EYES + row);
@@ -175,6 +202,12 @@ impl Table {
             at(first).lerp(at(first + MOMENTS * MOMENT_EYES), between)
         })
     }
+}
+
+/// One channel of each of three, and last lanes.
+#[inline]
+fn channels<const N: usize>(found: [[Vec4; N]; 3], last: [f32; N]) -> [Vec4; N] {
+    std::array::from_fn(|at| Vec4::new(found[0][at].x, found[1][at].y, found[2][at].z, last[at]))
 }
 
 /// What the terms along the fibre are multiplied with, so that they depend on the sum of the inclinations almost

@@ -1,0 +1,177 @@
+//! Looks by name.
+
+use glam::Vec3;
+use strandline_base::{Group, Value, choices};
+
+use crate::cpu::light_field::{self, Field};
+use crate::fibre::{FibreModel, chiang::Pigment};
+use crate::{Environment, Light, Look, RenderError, Shadow};
+
+choices! {
+    /// A look by its name.
+    pub enum Preset as "look.preset" {
+        /// Brown hair.
+        Brown = "brown",
+        /// Black hair.
+        Black = "black",
+        /// Blonde hair, lighter toward the tips.
+        Blonde = "blonde",
+        /// Red hair.
+        Red = "red",
+        /// Grey hair: white strands among dark ones.
+        Grey = "grey",
+        /// Brown hair as [Chen2011] lights it: the fibre of [Scheuermann2004], brighter surroundings.
+        Thesis = "thesis",
+    }
+    default Brown
+}
+
+impl Look {
+    /// Brown hair, the default.
+    pub fn brown() -> Self {
+        Self::default()
+    }
+
+    /// Black hair.
+    pub fn black() -> Self {
+        Self::named(Preset::Black)
+    }
+
+    /// Blonde hair, lighter toward the tips.
+    pub fn blonde() -> Self {
+        Self::named(Preset::Blonde)
+    }
+
+    /// Red hair.
+    pub fn red() -> Self {
+        Self::named(Preset::Red)
+    }
+
+    /// Grey hair: white strands among dark ones.
+    pub fn grey() -> Self {
+        Self::named(Preset::Grey)
+    }
+
+    /// Brown hair as [Chen2011 §3.4] lights it, with the fibre of \[Scheuermann2004\].
+    pub fn thesis() -> Self {
+        Self::named(Preset::Thesis)
+    }
+
+    /// A look by its name.
+    pub fn named(preset: Preset) -> Self {
+        let mut look = Self::default();
+        look.dress(preset);
+        look
+    }
+
+    /// Takes what light meets from a named look: colours and pigment, fibre, highlights, layers of shadow, surroundings
+    /// and how roots taper. How strands lie and how many there are stays.
+    pub fn dress(&mut self, preset: Preset) {
+        let base = Self::default();
+        self.preset = preset;
+        self.fibre = base.fibre;
+        self.highlight_noise = base.highlight_noise;
+        self.shadow.layers = base.shadow.layers;
+        self.environment = base.environment;
+        self.root_width = base.root_width;
+        let (root, tip, melanin, grey) = match preset {
+            Preset::Brown | Preset::Thesis => (base.root_color, base.tip_color, [0.6, 0.2, 1.0], 0.0),
+            Preset::Black => {
+                (Vec3::new(0.016, 0.013, 0.012), Vec3::new(0.026, 0.021, 0.019), [8.0, 0.0, 1.0], 0.0)
+            }
+            Preset::Blonde => {
+                (Vec3::new(0.46, 0.31, 0.165), Vec3::new(0.68, 0.51, 0.31), [0.3, 0.0, 0.7], 0.0)
+            }
+            Preset::Red => (Vec3::new(0.34, 0.10, 0.035), Vec3::new(0.46, 0.165, 0.06), [0.2, 1.4, 1.0], 0.0),
+            Preset::Grey => (Vec3::new(0.17, 0.16, 0.15), Vec3::new(0.22, 0.21, 0.20), [1.2, 0.0, 1.0], 0.6),
+        };
+        (self.root_color, self.tip_color, self.grey) = (root, tip, grey);
+        let fibre = &mut self.fibre.chiang;
+        [fibre.eumelanin, fibre.pheomelanin, fibre.tip_pigment] = melanin;
+        if preset == Preset::Thesis {
+            self.fibre.model = FibreModel::Scheuermann;
+            self.highlight_noise = 4.0;
+            self.root_width = 1.0;
+            self.shadow.layers = Shadow::default().layers;
+            self.environment =
+                Environment { sky: Vec3::new(0.26, 0.29, 0.33), ground: Vec3::new(0.13, 0.11, 0.10) };
+        }
+    }
+
+    /// What is not given comes from the look that is named; colours that are given are meant.
+    pub(crate) fn prepare(&mut self, given: &<Self as Value>::Given) {
+        if let Some(preset) = given.preset {
+            self.dress(preset);
+        }
+        if given.root_color.is_some() || given.tip_color.is_some() {
+            self.fibre.chiang.pigment = Pigment::Color;
+        }
+    }
+
+    /// Light from all around, and none of its suns.
+    pub fn around(&self) -> Field {
+        match &self.surroundings {
+            Some(surroundings) => surroundings.field,
+            None => self.environment.field(),
+        }
+    }
+
+    /// That light as a gradient from below to above.
+    pub(crate) fn gradient(&self) -> Environment {
+        match &self.surroundings {
+            None => self.environment,
+            Some(surroundings) => {
+                let from = |way| light_field::radiance(&surroundings.field, way).truncate();
+                Environment { sky: from(Vec3::Y), ground: from(Vec3::NEG_Y) }
+            }
+        }
+    }
+
+    /// The lights that a scene without lights has, about a head at `target` \[m\] that faces +z: none where a picture of
+    /// the surroundings lights it.
+    pub fn lights(&self, target: Vec3) -> Vec<Light> {
+        if self.surroundings.is_some() {
+            return Vec::new();
+        }
+        match self.fibre.model {
+            FibreModel::Scheuermann => Light::three_point(target).to_vec(),
+            FibreModel::Chiang => Light::studio(target).to_vec(),
+        }
+    }
+
+    /// How hair and body cast shadows with this fibre: what meets a hair of [`FibreModel::Chiang`] does not go
+    /// straight on.
+    pub fn hair_shadow(&self) -> Shadow {
+        match self.fibre.model {
+            FibreModel::Scheuermann => self.shadow,
+            FibreModel::Chiang => Shadow { solid: true, ..self.shadow },
+        }
+    }
+
+    /// Checks every setting.
+    ///
+    /// # Errors
+    /// The first setting outside its range.
+    pub fn validate(&self) -> Result<(), RenderError> {
+        Ok(self.check_as("look")?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_look_by_name_is_dressed_anew() {
+        for preset in Preset::ALL {
+            let mut look = Look::named(preset);
+            look.validate().unwrap();
+            look.follow_strands = 3;
+            look.dress(Preset::Black);
+            look.dress(preset);
+            assert_eq!(look, Look { follow_strands: 3, ..Look::named(preset) });
+        }
+        assert_eq!(Look::brown(), Look::named(Preset::Brown));
+        assert_ne!(Look::thesis().fibre.model, Look::brown().fibre.model);
+    }
+}

@@ -1,0 +1,77 @@
+//! OpenEXR pictures of surroundings.
+
+use std::io::Cursor;
+
+use exr::image::read::read as reading;
+use exr::math::Vec2;
+use exr::meta::MetaData;
+use exr::prelude::{ReadChannels, ReadLayers, RgbChannels};
+use glam::Vec3;
+
+use super::panorama::{Panorama, check_size};
+
+/// What such a file begins with.
+pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// Width, height and pixels of the first layer with channels R, G and B.
+pub(super) fn read(bytes: &[u8]) -> Result<(usize, usize, Vec<Vec3>), String> {
+    let told = |error: exr::error::Error| strandline_base::printable(&error.to_string()).into_owned();
+    // Sizes are looked at before anything is taken for them.
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).map_err(told)?;
+    let sizes = meta.headers.iter().map(|header| header.layer_size);
+    if let Some(size) = sizes.clone().find(|size| size.0.saturating_mul(size.1) > Panorama::MAX_PIXELS) {
+        check_size(size.0, size.1)?;
+    }
+    let begin = |size: Vec2<usize>, _: &RgbChannels| (size.0, vec![Vec3::ZERO; size.0 * size.1]);
+    let put =
+        |(width, pixels): &mut (usize, Vec<Vec3>), at: Vec2<usize>, (red, green, blue): (f32, f32, f32)| {
+            if let Some(pixel) = pixels.get_mut(at.1 * *width + at.0) {
+                *pixel = Vec3::new(red, green, blue);
+            }
+        };
+    let picture = reading()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(begin, put)
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(told)?;
+    let (width, pixels) = picture.layer_data.channel_data.pixels;
+    let height = pixels.len() / width.max(1);
+    check_size(width, height)?;
+    Ok((width, height, pixels))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Layers;
+
+    fn written(width: u32, height: u32) -> Vec<u8> {
+        let count = (width * height) as usize;
+        let channel = |name: &str, at: f32| {
+            (name.to_owned(), (0..count).map(|pixel| at + pixel as f32).collect::<Vec<f32>>())
+        };
+        let channels =
+            vec![channel("R", 0.25), channel("G", 0.5), channel("B", 0.75), channel("depth.Z", 3.0)];
+        Layers { width, height, channels }.encode().unwrap()
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let (width, height, pixels) = read(&written(8, 4)).unwrap();
+        assert_eq!((width, height), (8, 4));
+        assert_eq!(pixels[9], Vec3::new(9.25, 9.5, 9.75));
+    }
+
+    #[test]
+    fn other_shapes_and_damage_are_told() {
+        assert!(read(&written(4, 4)).unwrap_err().contains("twice as wide as high"));
+        let whole = written(8, 4);
+        for end in [5, 40, whole.len() / 2, whole.len() - 1] {
+            assert!(read(&whole[..end]).is_err(), "{end}");
+        }
+    }
+}

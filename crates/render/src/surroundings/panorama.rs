@@ -1,0 +1,108 @@
+//! A picture of radiance from every direction.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use strandline_base::read_plain;
+
+use super::{exr, hdr};
+use crate::RenderError;
+
+/// Radiance from every direction, linear RGB, rows from straight above to straight below, twice as wide as high.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panorama {
+    width: usize,
+    pixels: Vec<Vec3>,
+}
+
+impl Panorama {
+    /// Largest file that is read \[bytes\].
+    pub const MAX_BYTES: u64 = 1 << 29;
+    /// Most pixels that are read: 8,192 x 4,096.
+    pub const MAX_PIXELS: usize = 1 << 25;
+
+    /// A picture of pixels, shape `[row][column]`.
+    ///
+    /// # Errors
+    /// Another shape; a number that is not finite or below 0.
+    pub fn new(width: usize, height: usize, pixels: Vec<Vec3>) -> Result<Self, String> {
+        check_size(width, height)?;
+        if pixels.len() != width * height {
+            return Err(format!("it has {} pixels, expected {width} x {height}", pixels.len()));
+        }
+        let sound = |pixel: &Vec3| pixel.is_finite() && pixel.min_element() >= 0.0;
+        match pixels.iter().position(|pixel| !sound(pixel)) {
+            None => Ok(Self { width, pixels }),
+            Some(at) => Err(format!(
+                "the pixel in column {} of row {} is {}, expected finite light of 0 or more",
+                at % width,
+                at / width,
+                pixels[at]
+            )),
+        }
+    }
+
+    /// Reads a .hdr (Radiance) or .exr (OpenEXR) picture.
+    ///
+    /// # Errors
+    /// What was found and what was expected.
+    pub fn read(bytes: &[u8]) -> Result<Self, String> {
+        let (width, height, pixels) = if bytes.starts_with(b"#?") {
+            hdr::read(bytes)?
+        } else if bytes.starts_with(&exr::MAGIC) {
+            exr::read(bytes)?
+        } else {
+            return Err("neither a .hdr picture (which starts with `#?`) nor an OpenEXR file".to_owned());
+        };
+        Self::new(width, height, pixels)
+    }
+
+    /// Loads such a picture.
+    ///
+    /// # Errors
+    /// [`RenderError::Surroundings`].
+    pub fn load(path: &Path) -> Result<Self, RenderError> {
+        let failed = |reason| RenderError::Surroundings { reason, path: PathBuf::from(path) };
+        let bytes = read_plain(path, Self::MAX_BYTES).map_err(|error| failed(error.to_string()))?;
+        Self::read(&bytes).map_err(failed)
+    }
+
+    /// Width and height \[pixel\].
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.pixels.len() / self.width]
+    }
+
+    /// Radiance, linear RGB, shape `[row][column]`.
+    pub fn pixels(&self) -> &[Vec3] {
+        &self.pixels
+    }
+
+    /// Means of blocks, of at most so many rows where they can be divided.
+    pub(super) fn reduced(&self, rows: usize) -> Self {
+        let mut small = self.clone();
+        while small.size()[1] > rows && small.size()[1].is_multiple_of(2) {
+            let [width, height] = small.size().map(|side| side / 2);
+            let mean = |index: usize| {
+                let (column, row) = (index % width, index / width);
+                let pixel = |x, y| small.pixels[(2 * row + y) * 2 * width + 2 * column + x];
+                0.25 * (pixel(0, 0) + pixel(1, 0) + pixel(0, 1) + pixel(1, 1))
+            };
+            small = Self { width, pixels: (0..width * height).map(mean).collect() };
+        }
+        small
+    }
+}
+
+/// Refuses sizes that no panorama has.
+pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
+    let pixels = width.saturating_mul(height);
+    if pixels > Panorama::MAX_PIXELS {
+        return Err(format!("{width} x {height} pixels, at most 8192 x 4096 are read: make it smaller"));
+    }
+    if pixels == 0 || width != 2 * height {
+        return Err(format!(
+            "{width} x {height} pixels, expected a picture of all directions that is twice as wide as high"
+        ));
+    }
+    Ok(())
+}
