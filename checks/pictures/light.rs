@@ -382,6 +382,7 @@ fn a_colour_is_as_much_pigment_as_makes_it() {
     let of_pigment = mean_in_the_sun(None, |_| ());
     let of_color = mean_in_the_sun(Some(color), |_| ());
     let ratio = of_color / of_pigment;
-    // Tables have other nodes of the pigment, between which they are straight lines.
-    assert!((ratio - Vec3::ONE).abs().max_element() < 0.02, "{ratio}");
+    // Nodes of the pigment lie a factor of two apart, with straight lines between them: what falls in the middle of two
+    // lets through up to 5.5 % more, in the tables of colours and in those of pigment at other places.
+    assert!((ratio - Vec3::ONE).abs().max_element() < 0.06, "{ratio}");
 }
