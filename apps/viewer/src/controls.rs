@@ -88,27 +88,6 @@ pub fn colour(ui: &mut Ui, (value, default): (&mut Vec3, Vec3), row: &Row, name:
     .inner
 }
 
-/// One of some words for a setting, each with its name.
-pub fn choose<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    (value, default): (&mut T, T),
-    words: &[(T, &str)],
-    row: &Row,
-    name: &str,
-) {
-    ui.horizontal_wrapped(|ui| {
-        let word = |of: T| words.iter().find(|(choice, _)| *choice == of).map_or("", |(_, word)| word);
-        let tip = tip_of(&about(row), word(default));
-        for (choice, word) in words {
-            let response = ui.selectable_value(value, *choice, *word).on_hover_text(&tip);
-            set_back(ui, &response, (value, default));
-        }
-        if !name.is_empty() {
-            ui.label(name);
-        }
-    });
-}
-
 /// A button with a tip; true when it was pressed.
 pub fn button(ui: &mut Ui, name: &str, tip: &str) -> bool {
     ui.button(name).on_hover_text(tip).clicked()

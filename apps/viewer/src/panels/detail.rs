@@ -22,8 +22,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let (picture, base, rows) = (&mut app.scene.picture, &app.base.picture, &PictureSettings::ROWS);
     slide(ui, (&mut picture.supersampling, base.supersampling), &rows.supersampling, "samples");
     slide(ui, (&mut picture.exposure, base.exposure), &rows.exposure, "exposure");
-    let words = ToneMap::ALL.map(|map| (map, map.name()));
-    choose(ui, (&mut picture.tone_map, base.tone_map), &words, &rows.tone_map, "tone map");
+    choose(ui, (&mut picture.tone_map, base.tone_map), &ToneMap::ALL, &rows.tone_map, "tone map");
     let (back, base, rows) = (&mut picture.background, &base.background, &Background::ROWS);
     colour(ui, (&mut back.top, base.top), &rows.top, "backdrop above");
     colour(ui, (&mut back.bottom, base.bottom), &rows.bottom, "backdrop below");

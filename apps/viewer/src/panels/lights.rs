@@ -65,7 +65,7 @@ fn one(
                 ui.strong(format!("light {}", index + 1));
                 gone = !is_last && button(ui, "x", "removes this light");
             });
-            kinds(light, base, ui);
+            choose(ui, (&mut light.kind, base.kind), &LightKind::ALL, &Light::ROWS.kind, "kind");
             tick(ui, (&mut light.shadow, base.shadow), &Light::ROWS.shadow, "shadow");
             if button(ui, "From here", "puts the light where you look from") {
                 light.position = camera.position;
@@ -92,17 +92,6 @@ fn one(
     }
     ui.separator();
     gone
-}
-
-fn kinds(light: &mut Light, base: &Light, ui: &mut Ui) {
-    let words = [
-        (LightKind::Rectangle, "soft box"),
-        (LightKind::Disc, "disc"),
-        (LightKind::Spot, "spot"),
-        (LightKind::Directional, "sun"),
-        (LightKind::Point, "point"),
-    ];
-    choose(ui, (&mut light.kind, base.kind), &words, &Light::ROWS.kind, "");
 }
 
 /// The light on its ball: a disc before, a ring behind what it points at.

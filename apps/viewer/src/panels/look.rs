@@ -42,13 +42,11 @@ fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {
         }
     });
     let (rows, fibre) = (&Look::ROWS, &mut look.fibre);
-    let models = [(FibreModel::Chiang, "physical"), (FibreModel::Scheuermann, "thesis")];
-    choose(ui, (&mut fibre.model, base.fibre.model), &models, &Fibre::ROWS.model, "fibre");
+    choose(ui, (&mut fibre.model, base.fibre.model), &FibreModel::ALL, &Fibre::ROWS.model, "fibre");
     let mut by_color = true;
     if fibre.model == FibreModel::Chiang {
         let (own, base, rows) = (&mut fibre.chiang, &base.fibre.chiang, &Chiang::ROWS);
-        let words = Pigment::ALL.map(|pigment| (pigment, pigment.name()));
-        choose(ui, (&mut own.pigment, base.pigment), &words, &rows.pigment, "pigment");
+        choose(ui, (&mut own.pigment, base.pigment), &Pigment::ALL, &rows.pigment, "pigment");
         by_color = own.pigment == Pigment::Color;
         if !by_color {
             slide(ui, (&mut own.eumelanin, base.eumelanin), &rows.eumelanin, "eumelanin");
