@@ -1,18 +1,23 @@
 //! Whole pictures of grown styles on the mannequin.
 
-use strandline_body::{Mannequin, Mesh, Pose};
+use glam::Vec3;
+use strandline_body::{Carrier, Collider, Mannequin, Mesh, Motion, Pose, Shape};
 use strandline_checks::gpu;
-use strandline_groom::{Guides, Style, StyleSettings};
+use strandline_groom::{Guides, Style, StyleSettings, Vec3Lanes};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, Picture, PictureSettings, Renderer,
 };
 
 use strandline_checks::flip::{assert_flip, compare};
+use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
 
 /// A style of few guides, each with 16 follow strands, and what is needed to draw it.
 struct Sitting {
     guides: Guides,
+    /// The guides' points \[m\], world space.
+    positions: Vec<Vec3Lanes>,
+    world_from_head: Pose,
     mesh: Mesh,
     camera: Camera,
     look: Look,
@@ -22,8 +27,11 @@ struct Sitting {
 impl Sitting {
     fn new(style: Style, points_per_strand: usize, camera: Camera) -> Self {
         let groom = StyleSettings { strand_count: 1_000, ..StyleSettings::new(style) }.grow().unwrap();
+        let guides = Guides::resample(&groom, points_per_strand).unwrap();
         Self {
-            guides: Guides::resample(&groom, points_per_strand).unwrap(),
+            positions: guides.positions().to_vec(),
+            world_from_head: Pose::IDENTITY,
+            guides,
             mesh: Mannequin::new().mesh(),
             camera,
             look: Look::brown(),
@@ -38,10 +46,28 @@ impl Sitting {
         self
     }
 
+    /// The hair after some steps of the whole simulation on a head that shakes, on the CPU.
+    fn shaken(mut self, steps: u32) -> Self {
+        let shape = Shape::Mannequin(Mannequin::new());
+        let solid = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
+        let volume = VolumeSettings { cells: [24; 3], ..VolumeSettings::default() };
+        let settings = Settings { volume, ..Settings::default() };
+        let solver = Solver::new(&self.guides, &settings, vec![solid]).unwrap();
+        let mut state = solver.rest_state(Pose::IDENTITY);
+        for step in 1..=steps {
+            let time = f64::from(step) * f64::from(settings.time_step);
+            let world_from_head = Motion::Shake.pose(time, Vec3::NEG_Y * 0.1);
+            let report = solver.step(&mut state, &Drive { world_from_head, ..Drive::default() });
+            assert_eq!(report.non_finite, 0);
+        }
+        (self.positions, self.world_from_head) = (state.positions, state.world_from_head);
+        self
+    }
+
     fn draw(&self, draw: impl FnOnce(&FrameInput) -> Picture) -> Picture {
         draw(&FrameInput {
-            positions: self.guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            positions: &self.positions,
+            world_from_head: self.world_from_head,
             camera: &self.camera,
             look: &self.look,
             body_look: &BodyLook::default(),
@@ -72,7 +98,10 @@ const MEAN: f32 = 0.01;
 const ONE_IN_A_HUNDRED: f32 = 0.15;
 
 fn check(name: &str, style: Style, points_per_strand: usize, camera: Camera) {
-    let sitting = Sitting::new(style, points_per_strand, camera);
+    check_sitting(name, Sitting::new(style, points_per_strand, camera));
+}
+
+fn check_sitting(name: &str, sitting: Sitting) {
     let settings = PictureSettings::sized(256, 256);
     assert_flip(&sitting.on_cpu(&settings), name, MEAN, ONE_IN_A_HUNDRED);
     let sitting = sitting.simpler();
@@ -103,6 +132,12 @@ fn short_hair_from_behind() {
 }
 
 #[test]
+fn long_hair_in_a_shake() {
+    // Half a second: the head has turned and comes back, and the hair swings out.
+    check_sitting("long_shaken", Sitting::new(Style::Long, 16, Camera::three_quarter()).shaken(30));
+}
+
+#[test]
 fn the_bounds_notice_a_shift_by_a_pixel_and_a_change_of_light() {
     let settings = PictureSettings::sized(256, 256);
     let picture = draw(Style::Bob, 12, Camera::side(), settings);
@@ -111,6 +146,9 @@ fn the_bounds_notice_a_shift_by_a_pixel_and_a_change_of_light() {
     assert!(compare(&shifted, &picture, MEAN, ONE_IN_A_HUNDRED).is_err());
     let brighter = draw(Style::Bob, 12, Camera::side(), PictureSettings { exposure: 0.2, ..settings });
     assert!(compare(&brighter, &picture, MEAN, ONE_IN_A_HUNDRED).is_err());
+    // Hair that is simulated for two steps more.
+    let shaken = |steps| Sitting::new(Style::Bob, 12, Camera::side()).shaken(steps).on_cpu(&settings);
+    assert!(compare(&shaken(14), &shaken(12), MEAN, ONE_IN_A_HUNDRED).is_err());
 }
 
 #[test]
