@@ -153,6 +153,7 @@ fn sphere(light: Option<Light>, around: f32) -> Scene {
             color: Vec3::new(0.35, 0.25, 0.2),
             wrap: 0.0,
             specular: 0.0,
+            scalp: 0.0,
             ..BodyLook::default()
         },
         lights: light.into_iter().collect(),
@@ -290,6 +291,7 @@ fn head(folder: &Path, lights: Vec<Light>) -> Scene {
             wrap: 0.0,
             specular: 0.04,
             roughness: 0.45,
+            scalp: 0.0,
         },
         lights,
         settings: PictureSettings {

@@ -50,6 +50,7 @@ impl Screen {
             lights: &[],
             shadows: &Shadows::default(),
             occlusion: &Occlusion::default(),
+            scalp: Vec3::ONE,
             grid: None,
             environment: &Environment { sky: Vec3::ZERO, ground: Vec3::ZERO },
             eye: Vec3::Z * DISTANCE,

@@ -14,6 +14,8 @@ settings! {
         specular: f32 = 0.03, in [0.0, 1.0], more "a brighter highlight";
         /// Width of the highlight, from polished to matt.
         roughness: f32 = 0.5, in [0.05, 1.0], more "a wider, duller highlight";
+        /// How far skin where roots are dense takes the colour of the hair; the look "thesis" has none of it.
+        scalp: f32 = 0.6, in [0.0, 1.0], more "a darker scalp";
     }
 }
 

@@ -7,6 +7,7 @@ use glam::{DVec3, Vec3};
 use strandline_body::{Mesh, Pose};
 use strandline_groom::{Guides, Vec3Lanes};
 
+use crate::cpu::scalp::root_densities;
 use crate::cpu::skin::Skin;
 use crate::cpu::{
     Curves, Draw, DrawInput, Lit, Occlusion, Resolve, Samples, Scattering, Shadows, Strands, interpolate,
@@ -108,6 +109,8 @@ impl Renderer {
             draw: Draw::new(body.cloned()),
             resolve: Resolve::default(),
         };
+        let densities = body.map(|body| root_densities(&body.positions, guides));
+        renderer.draw.set_roots(densities.unwrap_or_default());
         renderer.set_picture(settings)?;
         Ok(renderer)
     }
@@ -211,6 +214,7 @@ impl Renderer {
             lights: input.lights,
             shadows,
             occlusion,
+            scalp: input.look.scalp(input.body_look.scalp, own_color),
             grid: (input.look.fibre.model == FibreModel::Chiang).then(|| scattering.grid()),
             environment: &input.look.gradient(),
             eye: input.camera.position,

@@ -127,6 +127,16 @@ impl Look {
         }
     }
 
+    /// What the colour of skin is multiplied with where roots are dense; hair is of `own` colour where it has one.
+    pub(crate) fn scalp(&self, share: f32, own: Option<Vec3>) -> Vec3 {
+        if self.fibre.model == FibreModel::Scheuermann {
+            return Vec3::ONE;
+        }
+        let color = own.unwrap_or_else(|| self.fibre.chiang.color(self.root_color));
+        // Light comes through few hairs there: paler than a mass of them.
+        Vec3::ONE.lerp(color.max(Vec3::ZERO).map(f32::sqrt), share)
+    }
+
     /// The lights that a scene without lights has, about a head at `target` \[m\] that faces +z: none where a picture of
     /// the surroundings lights it.
     pub fn lights(&self, target: Vec3) -> Vec<Light> {

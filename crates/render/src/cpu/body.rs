@@ -31,6 +31,8 @@ pub struct Body {
     pub positions: Vec<Vec3>,
     /// Vertex normals, world space.
     pub normals: Vec<Vec3>,
+    /// How dense roots lie about every vertex, 0 to 1; empty for nowhere.
+    pub roots: Vec<f32>,
     screen: Vec<Vec4>,
     runs: Vec<Vec<ScreenTriangle>>,
     faces: Vec<ScreenTriangle>,

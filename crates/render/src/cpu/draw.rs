@@ -50,6 +50,13 @@ impl Draw {
         Self { body: body.map(Body::new), ..Self::default() }
     }
 
+    /// Takes how dense roots lie about every vertex of the body, 0 to 1.
+    pub fn set_roots(&mut self, densities: Vec<f32>) {
+        if let Some(body) = &mut self.body {
+            body.roots = densities;
+        }
+    }
+
     /// Carries the body to its place; to be done before the shadows and the picture of a frame.
     pub fn place_body(&mut self, world_from_head: Pose) {
         if let Some(body) = &mut self.body {
@@ -256,7 +263,9 @@ impl Under<'_> {
         let (point, normal) = (mix(&self.body.positions), mix(&self.body.normals).normalize_or(Vec3::Y));
         // The inside of an open mesh is lit like its outside.
         let normal = if normal.dot(sight) > 0.0 && face.dot(sight) > 0.0 { -normal } else { normal };
-        let radiance = self.skin.radiance(point, normal);
+        let root = |corner: usize| self.body.roots.get(corner).copied().unwrap_or(0.0);
+        let rooted = Vec3::from(corners.map(root)).dot(shares);
+        let radiance = self.skin.radiance(point, normal, rooted);
         if radiance.is_finite() { radiance.extend(1.0) } else { Vec4::W }
     }
 }

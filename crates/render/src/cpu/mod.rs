@@ -22,6 +22,7 @@ mod projection;
 pub mod resolve;
 pub(crate) mod ribbons;
 pub mod samples;
+pub(crate) mod scalp;
 pub mod shade;
 pub(crate) mod shade_chiang;
 pub mod shadow;

@@ -22,22 +22,27 @@ pub struct Skin<'a> {
     pub grid: Option<&'a LightGrid>,
     /// Light from all around.
     pub environment: &'a Environment,
+    /// What its colour is multiplied with where roots are dense.
+    pub scalp: Vec3,
     /// Where the camera stands \[m\], world space.
     pub eye: Vec3,
 }
 
 impl Skin<'_> {
-    /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space.
-    pub fn radiance(&self, point: Vec3, normal: Vec3) -> Vec3 {
+    /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space, where roots are so
+    /// dense, 0 to 1.
+    pub fn radiance(&self, point: Vec3, normal: Vec3, rooted: f32) -> Vec3 {
+        let color = self.look.color * Vec3::ONE.lerp(self.scalp, rooted);
+        let look = &BodyLook { color, ..*self.look };
         let to_eye = (self.eye - point).normalize_or(normal);
         let around = match self.grid {
             Some(grid) => grid.on_skin(point, normal),
             None => self.occlusion.ambient_on(point, normal, self.environment),
         };
         let lights = self.lights.iter().enumerate();
-        lights.fold(self.look.color * around, |sum, (index, light)| {
+        lights.fold(look.color * around, |sum, (index, light)| {
             let lit = light.at(point);
-            let reflected = reflectance(self.look, normal, to_eye, lit.to_light);
+            let reflected = reflectance(look, normal, to_eye, lit.to_light);
             if reflected == Vec3::ZERO || lit.radiance == Vec3::ZERO {
                 return sum;
             }
@@ -81,7 +86,7 @@ mod tests {
 
     #[test]
     fn no_more_light_leaves_than_arrives() {
-        let look = BodyLook { color: Vec3::ONE, wrap: 0.5, specular: 0.04, roughness: 0.5 };
+        let look = BodyLook { color: Vec3::ONE, wrap: 0.5, specular: 0.04, roughness: 0.5, scalp: 0.0 };
         let to_light = Vec3::new(0.6, 0.8, 0.0);
         let mut total = 0.0;
         let count = 200;

@@ -60,6 +60,7 @@ impl Renderer {
             lights: &[],
             shadows: &self.shadows,
             occlusion: &self.occlusion,
+            scalp: Vec3::ONE,
             grid: None,
             environment: &Environment { sky: Vec3::ZERO, ground: Vec3::ZERO },
             eye: input.camera.position,

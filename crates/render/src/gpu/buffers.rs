@@ -7,6 +7,7 @@ use strandline_groom::Guides;
 
 use super::inputs::{Frame, LightSource};
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
+use crate::cpu::scalp::root_densities;
 use crate::cpu::tessellate::skin_axes;
 use crate::{PictureSettings, RenderError};
 
@@ -36,7 +37,7 @@ pub(super) struct Groom {
     /// Per guide: see tessellate.wesl.
     pub clumps: Buffer<[f32; 4]>,
     pub triangles: Buffer<u32>,
-    /// Two vectors a vertex: position \[m\], unit normal, head space.
+    /// Two vectors a vertex, head space: position \[m\] with the density of roots, unit normal.
     pub vertices: Buffer<[f32; 4]>,
     /// Per place in the order of depth: see sort.wesl.
     pub starts: Buffer<u32>,
@@ -61,8 +62,9 @@ impl Groom {
             .positions
             .iter()
             .zip(&mesh.normals)
-            .flat_map(|(position, normal): (&Vec3, &Vec3)| {
-                [position, normal].map(|v| v.extend(0.0).to_array())
+            .zip(root_densities(&mesh.positions, guides))
+            .flat_map(|((position, normal), roots): ((&Vec3, &Vec3), f32)| {
+                [position.extend(roots).to_array(), normal.extend(0.0).to_array()]
             })
             .collect();
         Ok(Self {

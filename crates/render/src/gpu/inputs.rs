@@ -19,8 +19,8 @@ mirror! {
 }
 
 mirror! {
-    /// Light that changes slowly with direction: see cpu/light_field.rs. The last number of `a` is the share of its width
-    /// that a strand has at the skin.
+    /// Light that changes slowly with direction: see cpu/light_field.rs. Last numbers: the share of its width that a
+    /// strand has at the skin; what skin is multiplied with where roots are dense.
     pub(super) struct Around {
         pub a: [f32; 4],
         pub bx: [f32; 4],
@@ -35,9 +35,11 @@ mirror! {
 }
 
 impl Around {
-    fn new(look: &Look) -> Self {
-        let [a, bx, by, bz, xx, yy, xy, xz, yz] = look.around().map(|part| part.to_array());
-        let a = [a[0], a[1], a[2], look.root_width];
+    fn new(look: &Look, scalp: Vec3) -> Self {
+        let mut parts = look.around();
+        let last = [look.root_width, scalp.x, scalp.y, scalp.z];
+        parts.iter_mut().zip(last).for_each(|(part, last)| part.w = last);
+        let [a, bx, by, bz, xx, yy, xy, xz, yz] = parts.map(|part| part.to_array());
         Self { a, bx, by, bz, xx, yy, xy, xz, yz }
     }
 }
@@ -193,7 +195,7 @@ impl Frame {
         Self {
             world_from_head: Rigid::of_pose(&input.world_from_head),
             view_from_world: Rigid::of_affine(&input.camera.view_from_world()),
-            around: Around::new(look),
+            around: Around::new(look, look.scalp(body.scalp, scene.own_color)),
             eye: input.camera.position.to_array(),
             share: scene.share,
             size: [width * scale, height * scale],

@@ -93,6 +93,8 @@ pub(super) struct Scene<'a> {
     pub own: u32,
     /// Middle of the hair \[m\], world space.
     pub middle: Vec3,
+    /// Mean of the guides' colours.
+    pub own_color: Option<Vec3>,
 }
 
 impl Scene<'_> {
@@ -324,6 +326,7 @@ impl GpuRenderer {
             body_ball: self.body_ball,
             own: u32::from(self.guides.colors().is_some()) | u32::from(self.guides.profiles().is_some()) << 1,
             middle,
+            own_color: self.own_color,
         }
     }
 

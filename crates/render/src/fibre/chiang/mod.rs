@@ -89,6 +89,12 @@ impl Chiang {
         5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))))
     }
 
+    /// Reflectance of a mass of hair of this pigment.
+    pub(crate) fn color(&self, of_look: Vec3) -> Vec3 {
+        let reflectance = |sigma: f64| (-self.color_scale() * sigma.sqrt()).exp() as f32;
+        Vec3::from(self.absorption(of_look).map(reflectance))
+    }
+
     /// Multiples of [`INK`] of such hair.
     pub(crate) fn inks(&self, color: Vec3) -> Vec3 {
         let inverse = (1.0 / self.color_scale()) as f32;
