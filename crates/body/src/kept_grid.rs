@@ -14,7 +14,7 @@ use crate::{BodyError, DistanceGrid, Mesh};
 
 /// What a file begins with. Its number counts the ways of building a grid: one more whenever another way gives
 /// other distances.
-const MAGIC: &[u8; 16] = b"strandline grid1";
+const MAGIC: &[u8; 16] = b"strandline grid2";
 /// Bytes before the distances: the magic, the key, place, spacing and number of nodes.
 const HEADER: usize = 16 + DIGEST + 7 * 4;
 const DIGEST: usize = 32;

@@ -12,6 +12,7 @@ mod collider;
 mod distance;
 mod distance_grid;
 mod error;
+mod far_nodes;
 mod gltf;
 mod gltf_buffers;
 mod inside;

@@ -68,6 +68,22 @@ impl Mesh {
         mesh.complete(path)
     }
 
+    /// Adds the triangles of another mesh to these.
+    ///
+    /// # Errors
+    /// More vertices than indices can name.
+    pub fn append(&mut self, other: &Self) -> Result<(), BodyError> {
+        let count = self.positions.len() + other.positions.len();
+        let (first, Ok(_)) = (self.positions.len() as u32, u32::try_from(count)) else {
+            let found = format!("{count} vertices with those of another");
+            return Err(BodyError::BadMesh { found, expected: "4,294,967,295 at most" });
+        };
+        self.positions.extend_from_slice(&other.positions);
+        self.normals.extend_from_slice(&other.normals);
+        self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|corner| first + corner)));
+        Ok(())
+    }
+
     /// Reads an OBJ file from its bytes, in the units of the file.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::Mesh;
 use crate::buried::OutsideCounts;
+use crate::far_nodes::FarNodes;
 use crate::inside::inside_nodes;
 use crate::lattice::{Lattice, SLAB};
 use crate::layers::{Corners, Layers};
@@ -19,7 +20,8 @@ const LOOKS_OF_A_NODE: u64 = 32;
 
 /// Signed distance \[m\] at each node, in the order of storage.
 ///
-/// The distance is exact, from the nearest triangle. Its sign comes from counting the surface along
+/// The distance is exact, from the nearest triangle; of a large lattice it may be less more than ten cells from the
+/// surface, by half a cell where the surface is smooth ([`FarNodes`]). Its sign comes from counting the surface along
 /// lines of nodes, since the sign that the nearest triangle gives is wrong near its edges.
 pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
     let triangles = corners_in_cells(mesh, lattice);
@@ -35,9 +37,10 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
     }
     let tree = TriangleTree::new(&triangles, skin.clone());
     let layers = Layers::new(&triangles, skin);
+    let far = FarNodes::new(&tree, lattice, LOOKS / lattice.len() as u64 * LOOKS_OF_A_NODE);
     let mut distances = vec![0.0; lattice.len()];
     distances.par_chunks_mut(lattice.layer_len() * SLAB).enumerate().for_each(|(slab, distances)| {
-        let nearest = nearest_in_slab(&tree, &layers, lattice, slab * SLAB, distances.len());
+        let nearest = nearest_in_slab(&tree, &layers, far.as_ref(), lattice, slab * SLAB, distances.len());
         for (distance, nearest) in distances.iter_mut().zip(nearest) {
             *distance = (nearest.squared.sqrt() * f64::from(lattice.spacing)) as f32;
         }
@@ -52,6 +55,7 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
 fn nearest_in_slab(
     tree: &TriangleTree,
     layers: &Layers,
+    far: Option<&FarNodes>,
     lattice: &Lattice,
     first_layer: usize,
     count: usize,
@@ -66,6 +70,10 @@ fn nearest_in_slab(
             continue;
         }
         let node = lattice.node(first_layer * layer_len + index);
+        if let Some(known) = far.and_then(|far| far.at(node, lattice)) {
+            nearest[index] = known;
+            continue;
+        }
         let point = node.as_dvec3();
         let place = [node.x as usize, node.y as usize, node.z as usize - first_layer];
         // What is nearest to a neighbour is nearly the nearest here: the search only has to make sure.

@@ -11,12 +11,18 @@ use crate::layers::Corners;
 pub(crate) fn distance_squared(corners: &Corners, point: DVec3) -> f64 {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);
-    let edges = [edge(a, b, normal, point), edge(b, c, normal, point), edge(c, a, normal, point)];
-    if edges.iter().all(|(_, is_inner)| *is_inner) {
+    let mut nearest = f64::INFINITY;
+    for [start, end] in [[a, b], [b, c], [c, a]] {
+        // The nearest place lies on an edge that has the point on its outer side, or within all of them.
+        if is_outer(start, end, normal, point) {
+            nearest = nearest.min(from_edge(start, end, point));
+        }
+    }
+    if nearest == f64::INFINITY {
         let height = (point - a).dot(normal);
         return height * height / normal.length_squared();
     }
-    edges[0].0.min(edges[1].0).min(edges[2].0)
+    nearest
 }
 
 /// Whether a point is further than `reach` from the plane of a triangle; never for one without an area.
@@ -27,11 +33,15 @@ pub(crate) fn is_beyond_plane(corners: &Corners, point: DVec3, reach: f64) -> bo
     height * height > reach * reach * normal.length_squared()
 }
 
-/// The squared distance of a point from an edge, and whether the point is on its inner side.
-fn edge(start: DVec3, end: DVec3, normal: DVec3, point: DVec3) -> (f64, bool) {
+/// Whether a point is not on the inner side of an edge; always for a triangle without an area.
+fn is_outer(start: DVec3, end: DVec3, normal: DVec3, point: DVec3) -> bool {
+    (end - start).cross(point - start).dot(normal) <= 0.0
+}
+
+/// The squared distance of a point from an edge.
+fn from_edge(start: DVec3, end: DVec3, point: DVec3) -> f64 {
     let (axis, offset) = (end - start, point - start);
     // An edge of no length is its start.
     let share = (offset.dot(axis) / axis.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-    let is_inner = axis.cross(offset).dot(normal) > 0.0;
-    ((offset - axis * share).length_squared(), is_inner)
+    (offset - axis * share).length_squared()
 }

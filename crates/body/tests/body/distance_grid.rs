@@ -160,6 +160,26 @@ fn every_node_is_exact() {
 }
 
 #[test]
+fn far_nodes_of_a_large_grid_are_never_farther_than_the_surface() {
+    let mesh = ball(CENTER, RADIUS, 3);
+    let spacing = 0.003;
+    let grid = DistanceGrid::from_mesh(&mesh, spacing, 0.06).unwrap();
+    assert!(grid.nodes().len() > 1 << 20);
+    let (mut less, mut most) = (0, 0.0_f64);
+    for point in nodes(&grid).step_by(397) {
+        let (distance, exact) = (f64::from(grid.distance(point).abs()), distance_by_search(&mesh, point));
+        let missing = (exact - distance) / f64::from(spacing);
+        // Rounding of places of 1.6 m; up to 14 cells less a block's diagonal nothing is left to bounds.
+        assert!(missing > -1e-3, "{point}: {distance}, not {exact}");
+        assert!(missing < 1e-3 || exact > 7.0 * f64::from(spacing), "{point}: {distance}, not {exact}");
+        less += usize::from(missing > 1e-2);
+        most = most.max(missing);
+    }
+    // Half a cell outside; in the middle of the ball, where the nearest surface changes, a block's half.
+    assert!(less > 100 && most < 2.5, "{less} nodes, {most} cells");
+}
+
+#[test]
 fn lines_through_corners_and_edges_are_counted_once() {
     // All powers of two: the corners on the axes and the edges between them lie exactly on lines of nodes.
     let mesh = ball(Vec3::ZERO, 0.5, 2);
