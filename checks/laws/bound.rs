@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline::{BoundStrands, Prepared};
 use strandline_body::{Mesh, Pose};
 use strandline_checks::{On, Rig};
-use strandline_groom::{LANES, Vec3Lanes};
+use strandline_groom::{Frames, LANES, Vec3Lanes};
 use strandline_sim::{Drive, Settings, Solver};
 
 /// Her hair with so many guides, to which the other strands are bound.
@@ -71,8 +71,8 @@ fn bound_strands_go_where_they_would_go_and_stay_out_of_the_head() {
     let (points, strands) = (some.guides.points_per_strand(), bound.strands().strand_count());
     assert_eq!(strands, all.guides.strand_count());
 
-    let mut placed = Vec::new();
-    bound.place(some.guides.positions(), &Pose::IDENTITY, &mut placed);
+    let (mut frames, mut placed) = (Frames::default(), Vec::new());
+    bound.place(some.guides.positions(), &Pose::IDENTITY, &mut frames, &mut placed);
     let at_rest = (0..strands)
         .map(|strand| {
             let own = (0..points).map(|point| bound.strands().position(strand, point));
@@ -83,7 +83,7 @@ fn bound_strands_go_where_they_would_go_and_stay_out_of_the_head() {
         .fold(0.0, f32::max);
     let (truth, pose) = shaken(&all);
     let (guides, _) = shaken(&some);
-    bound.place(&guides, &pose, &mut placed);
+    bound.place(&guides, &pose, &mut frames, &mut placed);
     let still: Vec<Vec3Lanes> = all.guides.positions().to_vec();
     let share = |found: &dyn Fn(usize, usize) -> Vec3| {
         let mut sum = 0.0;

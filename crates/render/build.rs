@@ -5,7 +5,9 @@ fn main() {}
 
 /// Modules with entry points; the others are imported by them.
 #[cfg(feature = "gpu")]
-const MODULES: [&str; 17] = [
+const MODULES: [&str; 19] = [
+    "bound_frames",
+    "bound",
     "tessellate",
     "interpolate",
     "fit",

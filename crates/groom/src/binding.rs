@@ -13,12 +13,12 @@ use strandline_body::Pose;
 use crate::{
     Groom, GroomError, Guides, LANES, Vec3Lanes,
     choice::{self, Feature, Roots},
-    outside::placed_outside,
 };
 
 /// The signed distance \[m\] of a body at a point \[m\], world space, negative inside, and its unit gradient.
 pub type Surface<'a> = dyn Fn(Vec3) -> (f32, Vec3) + Sync + 'a;
 
+mod place;
 #[cfg(test)]
 mod tests;
 mod weights;
@@ -28,26 +28,36 @@ pub const MOST_INFLUENCES: usize = 3;
 /// Lengths within this share of those at rest are those at rest.
 const UNSCALED: f32 = 0.01;
 
-/// A frame of a guide's point as a map from rest to now: rows of a matrix with the translation \[m\] behind each.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Frame {
-    /// Rows: what gives x, y and z, world space, of a place at rest \[m\], head space.
-    pub rows: [[f32; 4]; 3],
+/// A frame of a guide's point as a map from rest to now.
+#[repr(C, align(64))]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Frame {
+    /// Where the map has the three axes, and the translation \[m\], world space; the map is of places at rest \[m\],
+    /// head space.
+    columns: [Vec4; 4],
 }
 
 impl Frame {
     fn new(rotation: Quat, rest: Vec3, now: Vec3) -> Self {
         let matrix = Mat3::from_quat(rotation);
         let translation = now - matrix * rest;
-        let rows = matrix.transpose();
-        Self {
-            rows: [
-                rows.x_axis.extend(translation.x).to_array(),
-                rows.y_axis.extend(translation.y).to_array(),
-                rows.z_axis.extend(translation.z).to_array(),
-            ],
-        }
+        let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis, translation];
+        Self { columns: columns.map(|column| column.extend(0.0)) }
+    }
+}
+
+/// Where guides are, as the strands that are bound to them see it; used again from picture to picture.
+#[derive(Clone, Debug, Default)]
+pub struct Frames {
+    /// Shape `[guide][point]`.
+    points: Vec<Frame>,
+    scales: Vec<f32>,
+}
+
+impl Frames {
+    /// Length of each guide over its length at rest, shape `[guide]`: other than 1 where it was cut or grew.
+    pub fn scales(&self) -> &[f32] {
+        &self.scales
     }
 }
 
@@ -72,6 +82,8 @@ pub struct Binding {
     guides: Guides,
     /// Shape `[strand][MOST_INFLUENCES]`; weights of 0 stand for none.
     influences: Vec<[Influence; MOST_INFLUENCES]>,
+    /// The same, one lane a strand, shape `[block][MOST_INFLUENCES]`.
+    blocks: Vec<[place::Followed; MOST_INFLUENCES]>,
 }
 
 impl Binding {
@@ -116,10 +128,16 @@ impl Binding {
                 let pace = lengths[strand] / lengths[strands_of_guides[guide]].max(f32::MIN_POSITIVE);
                 *slot = Influence { guide: guide as u32, weight, pace };
             }
+            // What is followed by nothing is a guide that is followed anyway: 0 times what is no number is none.
+            let first = influences[0];
+            for none in influences.iter_mut().filter(|influence| influence.weight == 0.0) {
+                *none = Influence { weight: 0.0, ..first };
+            }
             influences
         });
-        let influences = influences.collect();
-        Ok(Self { strands, guides, influences })
+        let influences: Vec<_> = influences.collect();
+        let blocks = place::blocks(&influences);
+        Ok(Self { strands, guides, influences, blocks })
     }
 
     /// All strands at rest.
@@ -137,128 +155,38 @@ impl Binding {
         &self.influences
     }
 
-    /// Frames of the guides' points, shape `[guide][point]`, given where they are \[m\], world space, shape
-    /// `[block][point]` of lanes.
+    /// Notes where the guides are \[m\], world space, shape `[block][point]` of lanes: a frame of each of their
+    /// points, and how long they are.
     ///
     /// The first frame turns with the head, and as little more as takes the first segment where it is; each
     /// further one turns as little as it can against the one before.
-    pub fn frames(&self, positions: &[Vec3Lanes], world_from_head: &Pose, out: &mut Vec<Frame>) {
+    pub fn follow(&self, positions: &[Vec3Lanes], world_from_head: &Pose, frames: &mut Frames) {
         let count = self.guides.points_per_strand();
-        out.resize(self.guides.strand_count() * count, Frame { rows: [[0.0; 4]; 3] });
-        out.par_chunks_mut(count).enumerate().for_each(|(guide, frames)| {
+        frames.points.resize(self.guides.strand_count() * count, Frame::default());
+        frames.scales.resize(self.guides.strand_count(), 1.0);
+        let guides = frames.points.par_chunks_mut(count).zip_eq(&mut frames.scales).enumerate();
+        guides.for_each(|(guide, (frames, scale))| {
             let now = |point: usize| positions[guide / LANES * count + point].get(guide % LANES);
             let rest = |point: usize| self.guides.position(guide, point);
             let mut rotation = world_from_head.rotation;
+            let (mut length, mut own) = (0.0, 0.0);
             for (point, frame) in frames.iter_mut().enumerate() {
                 // The last point has no segment of its own.
                 let start = point.min(count - 2);
-                let from = (rotation * (rest(start + 1) - rest(start))).normalize_or_zero();
-                let to = (now(start + 1) - now(start)).normalize_or_zero();
+                let segments = [rest(start + 1) - rest(start), now(start + 1) - now(start)];
+                if point == start {
+                    (length, own) = (length + segments[1].length(), own + segments[0].length());
+                }
+                let from = (rotation * segments[0]).normalize_or_zero();
+                let to = segments[1].normalize_or_zero();
                 if from != to && from != Vec3::ZERO && to != Vec3::ZERO {
                     rotation = (Quat::from_rotation_arc(from, to) * rotation).normalize();
                 }
                 *frame = Frame::new(rotation, rest(point), now(point));
             }
-        });
-    }
-
-    /// Length of each guide over its length at rest, shape `[guide]`: other than 1 where it was cut or grew.
-    pub fn scales(&self, positions: &[Vec3Lanes], out: &mut Vec<f32>) {
-        let count = self.guides.points_per_strand();
-        let scale = |guide: usize| {
-            let now = |point: usize| positions[guide / LANES * count + point].get(guide % LANES);
-            let rest = |point: usize| self.guides.position(guide, point);
-            let length = |place: &dyn Fn(usize) -> Vec3| -> f32 {
-                (1..count).map(|point| place(point).distance(place(point - 1))).sum()
-            };
-            let scale = length(&now) / length(&rest).max(f32::MIN_POSITIVE);
+            let found = length / own.max(f32::MIN_POSITIVE);
             // What the solver leaves of stretch is not what was asked for.
-            if (scale - 1.0).abs() < UNSCALED { 1.0 } else { scale }
-        };
-        (0..self.guides.strand_count()).into_par_iter().map(scale).collect_into_vec(out);
-    }
-
-    /// Where all strands are \[m\], world space, shape `[block][point]` of lanes, given where the guides are, in
-    /// the same shape. Roots move with the head, segments have the lengths that they have at rest, or that share
-    /// of them that those of the guides have; points inside the body are put onto its surface.
-    pub fn place(
-        &self,
-        positions: &[Vec3Lanes],
-        world_from_head: &Pose,
-        surface: Option<&Surface>,
-        out: &mut Vec<Vec3Lanes>,
-    ) {
-        let (mut frames, mut scales) = (Vec::new(), Vec::new());
-        self.frames(positions, world_from_head, &mut frames);
-        self.scales(positions, &mut scales);
-        let count = self.strands.points_per_strand();
-        out.resize(self.strands.positions().len(), Vec3Lanes::default());
-        out.par_chunks_mut(count).enumerate().for_each(|(block, places)| {
-            for lane in 0..LANES {
-                let strand = (block * LANES + lane).min(self.strands.strand_count() - 1);
-                let put = |point: usize, place| places[point].set(lane, place);
-                self.place_strand(strand, &frames, &scales, world_from_head, surface, put);
-            }
+            *scale = if (found - 1.0).abs() < UNSCALED { 1.0 } else { found };
         });
-    }
-
-    fn place_strand(
-        &self,
-        strand: usize,
-        frames: &[Frame],
-        scales: &[f32],
-        world_from_head: &Pose,
-        surface: Option<&Surface>,
-        mut put: impl FnMut(usize, Vec3),
-    ) {
-        let influences = &self.influences[strand];
-        let followed = || influences.iter().filter(|influence| influence.weight > 0.0);
-        let scale: f32 =
-            followed().map(|influence| influence.weight * scales[influence.guide as usize]).sum();
-        let mut rest = self.strands.position(strand, 0);
-        let mut before = world_from_head.point(rest);
-        // Where the frames have the point before: segments lead as from one such place to the next.
-        let mut blended_before = before;
-        // How far \[m\] the surface is at least.
-        let mut clear = 0.0;
-        put(0, before);
-        for point in 1..self.strands.points_per_strand() {
-            let here = self.strands.position(strand, point);
-            let blended = self.blend(influences, frames, point, here);
-            let (segment, step) = (here - rest, blended - blended_before);
-            let stretched = step.length_squared();
-            let way = if stretched > 0.0 { step } else { world_from_head.direction(segment) };
-            let own = segment.length_squared();
-            let share = if stretched > 0.0 { own / stretched } else { 1.0 };
-            let mut placed = before + way * (scale * share.sqrt());
-            if let Some(surface) = surface {
-                let length = before.distance(placed);
-                clear -= length;
-                if clear <= 0.0 {
-                    clear = surface(placed).0;
-                }
-                if clear < 0.0 {
-                    placed = placed_outside(before, placed, length, &surface).0;
-                    clear = 0.0;
-                }
-            }
-            put(point, placed);
-            (rest, before, blended_before) = (here, placed, blended);
-        }
-    }
-
-    /// Where the guides about a strand have a point of it, which is at `here` at rest \[m\].
-    fn blend(&self, influences: &[Influence], frames: &[Frame], point: usize, here: Vec3) -> Vec3 {
-        let last = self.guides.points_per_strand() - 1;
-        let mut rows = [Vec4::ZERO; 3];
-        for influence in influences.iter().filter(|influence| influence.weight > 0.0) {
-            let along = (point as f32 * influence.pace) as usize;
-            let frame = &frames[influence.guide as usize * (last + 1) + along.min(last)];
-            for (row, of_frame) in rows.iter_mut().zip(&frame.rows) {
-                *row += Vec4::from(*of_frame) * influence.weight;
-            }
-        }
-        let here = here.extend(1.0);
-        Vec3::new(rows[0].dot(here), rows[1].dot(here), rows[2].dot(here))
     }
 }

@@ -19,7 +19,7 @@ mod style;
 
 pub mod format;
 
-pub use binding::{Binding, Frame, Influence, MOST_INFLUENCES, Surface};
+pub use binding::{Binding, Frames, Influence, MOST_INFLUENCES, Surface};
 pub use error::GroomError;
 pub use groom::{Groom, Widths};
 pub use guides::Guides;

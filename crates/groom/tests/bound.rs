@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use strandline_body::Pose;
-use strandline_groom::{Binding, Groom, Guides, LANES};
+use strandline_groom::{Binding, Frames, Groom, Guides, LANES};
 
 fn bound(groom: &Groom, count: usize, points: usize) -> Binding {
     let chosen = groom.representatives(count);
@@ -25,8 +25,9 @@ fn sintel_at_rest_is_the_groom() {
     let groom = Groom::load(file).unwrap();
     let binding = bound(&groom, 2000, 16);
     assert!((1900..=2000).contains(&binding.guides().strand_count()));
-    let mut places = Vec::new();
-    binding.place(binding.guides().positions(), &Pose::IDENTITY, None, &mut places);
+    let (mut frames, mut places) = (Frames::default(), Vec::new());
+    binding.follow(binding.guides().positions(), &Pose::IDENTITY, &mut frames);
+    binding.place(&frames, &Pose::IDENTITY, None, &mut places);
     let mut worst = 0.0_f32;
     for strand in 0..groom.strand_count() {
         for point in 0..16 {
@@ -69,12 +70,13 @@ fn a_hundred_thousand_strands_are_placed() {
     let binding = Binding::new(&groom, &chosen, strands, guides).unwrap();
     println!("binding: {:.0?}", begin.elapsed());
     let surface = |point: Vec3| (point.length() - 0.1, point.normalize_or(Vec3::Y));
-    let mut places = Vec::new();
+    let (mut frames, mut places) = (Frames::default(), Vec::new());
     let positions = binding.guides().positions().to_vec();
     for body in [false, true] {
         let (begin, before) = (Instant::now(), processor_ms());
         for _ in 0..RUNS {
-            binding.place(&positions, &Pose::IDENTITY, body.then_some(&surface), &mut places);
+            binding.follow(&positions, &Pose::IDENTITY, &mut frames);
+            binding.place(&frames, &Pose::IDENTITY, body.then_some(&surface), &mut places);
         }
         let wall = begin.elapsed().as_secs_f64() * 1e3 / f64::from(RUNS);
         let used = processor_ms().zip(before).map(|(after, before)| (after - before) / f64::from(RUNS));

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::{
     body::{Carrier, Collider, Pose, Shape},
-    groom::{Binding, Guides, Vec3Lanes},
+    groom::{Binding, Frames, Guides, Vec3Lanes},
 };
 
 /// Share of the distance between samples of a solid that strands stay away from it, and how far at most \[m\]: samples
@@ -46,8 +46,14 @@ impl BoundStrands {
     }
 
     /// Where all strands are \[m\], world space, shape `[block][point]` of lanes, given where the guides are, in
-    /// the same shape.
-    pub fn place(&self, guides: &[Vec3Lanes], world_from_head: &Pose, out: &mut Vec<Vec3Lanes>) {
+    /// the same shape. `frames` is used again from picture to picture.
+    pub fn place(
+        &self,
+        guides: &[Vec3Lanes],
+        world_from_head: &Pose,
+        frames: &mut Frames,
+        out: &mut Vec<Vec3Lanes>,
+    ) {
         let head_from_world = world_from_head.inverse();
         let surface = |point: Vec3| {
             let in_head = head_from_world.point(point);
@@ -64,6 +70,12 @@ impl BoundStrands {
             (distance, turned)
         };
         let surface = (!self.solids.is_empty()).then_some(&surface as &crate::groom::Surface);
-        self.binding.place(guides, world_from_head, surface, out);
+        self.binding.follow(guides, world_from_head, frames);
+        self.binding.place(frames, world_from_head, surface, out);
+    }
+
+    /// The solids that strands stay out of, and how far \[m\] from each.
+    pub fn solids(&self) -> Vec<(Collider, f32)> {
+        self.solids.iter().map(|solid| (solid.clone(), clearance(&solid.shape))).collect()
     }
 }

@@ -8,7 +8,7 @@ use crate::{
     BoundStrands,
     body::Mesh,
     devices::Opened,
-    groom::{Guides, Vec3Lanes},
+    groom::{Frames, Guides, Vec3Lanes},
     hair::place,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
@@ -26,6 +26,7 @@ pub(crate) struct Painter {
     strands: Guides,
     /// What moves them where they are not the simulated ones, and where it has them.
     bound: Option<BoundStrands>,
+    frames: Frames,
     places: Vec<Vec3Lanes>,
     mesh: Option<Mesh>,
     settings: PictureSettings,
@@ -54,7 +55,7 @@ impl Painter {
         let settings = PictureSettings::default();
         let mut notes = Vec::new();
         let placed = match &device.gpu {
-            Some(gpu) => match GpuRenderer::new(gpu, &strands, mesh, &settings) {
+            Some(gpu) => match on_gpu(gpu, &strands, bound.as_ref(), mesh, &settings) {
                 Err(error) if device.fall_back => {
                     notes.push(format!("drawing on the CPU: {error}"));
                     None
@@ -73,6 +74,7 @@ impl Painter {
             stands_in: false,
             strands,
             bound,
+            frames: Frames::default(),
             places: Vec::new(),
             mesh: mesh.cloned(),
             settings,
@@ -93,6 +95,11 @@ impl Painter {
             Place::Gpu(renderer) => Some(renderer.gpu()),
             Place::Cpu(_) => None,
         }
+    }
+
+    /// The strands that guides carry, where there are such.
+    pub fn bound(&self) -> Option<&BoundStrands> {
+        self.bound.as_ref()
     }
 
     /// The body that is drawn, head space.
@@ -123,22 +130,9 @@ impl Painter {
         points: Option<DevicePoints>,
     ) -> Result<(Picture, FrameReport), RenderError> {
         let mut picture = Picture::default();
-        let mut places = std::mem::take(&mut self.places);
-        let begin = Instant::now();
-        let (bound, positions, points) = match &self.bound {
-            None => (None, input.positions, points),
-            // The host has the guides' points whatever device they are on.
-            Some(bound) => {
-                bound.place(input.positions, &input.world_from_head, &mut places);
-                (Some(begin.elapsed().as_secs_f64()), &places[..], None)
-            }
-        };
-        let input = &FrameInput { positions, ..*input };
         let drawn = match &mut self.place {
-            Place::Cpu(renderer) => {
-                renderer.show_layers(self.layers_of);
-                renderer.draw_into(input, &mut picture)
-            }
+            Place::Cpu(_) => self.draw_on_cpu(input, &mut picture),
+            // It places bound strands itself.
             Place::Gpu(renderer) => {
                 renderer.show_layers(self.layers_of);
                 renderer.draw_into(input, points, &mut picture)
@@ -147,30 +141,40 @@ impl Painter {
         self.stands_in = self.fall_back && matches!(drawn, Err(RenderError::TooMany { .. }));
         let report = match drawn {
             Err(failure) if self.stands_in => {
-                self.stand_in(failure).and_then(|renderer| renderer.draw_into(input, &mut picture))
+                self.stand_in(failure)?;
+                self.draw_on_cpu(input, &mut picture)
             }
             drawn => drawn,
         };
-        self.places = places;
-        let mut report = report?;
-        if let Some(seconds) = bound {
-            report.seconds.insert(0, ("bind", seconds));
-        }
-        Ok((picture, report))
+        Ok((picture, report?))
     }
 
-    /// The renderer that draws what is more than the GPU draws.
-    fn stand_in(&mut self, failure: RenderError) -> Result<&mut Renderer, RenderError> {
-        let renderer = match &mut self.stand_in {
-            Some(renderer) => renderer,
-            none => {
-                self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
-                let renderer = Renderer::new(&self.strands, self.mesh.as_ref(), &self.settings)?;
-                none.insert(renderer.into())
-            }
+    /// Draws on the CPU, where there is a renderer for it: strands that guides carry are placed first.
+    fn draw_on_cpu(&mut self, input: &FrameInput, picture: &mut Picture) -> Result<FrameReport, RenderError> {
+        let begin = Instant::now();
+        let bind = self.bound.as_ref().map(|bound| {
+            bound.place(input.positions, &input.world_from_head, &mut self.frames, &mut self.places);
+            ("bind", begin.elapsed().as_secs_f64())
+        });
+        let positions = if bind.is_some() { &self.places } else { input.positions };
+        let renderer = match (&mut self.place, &mut self.stand_in) {
+            (Place::Cpu(renderer), _) | (Place::Gpu(_), Some(renderer)) => renderer,
+            (Place::Gpu(_), None) => unreachable!("made before"),
         };
         renderer.show_layers(self.layers_of);
-        Ok(renderer)
+        let mut report = renderer.draw_into(&FrameInput { positions, ..*input }, picture)?;
+        report.seconds.splice(0..0, bind);
+        Ok(report)
+    }
+
+    /// Makes the renderer that draws what is more than the GPU draws.
+    fn stand_in(&mut self, failure: RenderError) -> Result<(), RenderError> {
+        if self.stand_in.is_none() {
+            self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
+            let renderer = Renderer::new(&self.strands, self.mesh.as_ref(), &self.settings)?;
+            self.stand_in = Some(renderer.into());
+        }
+        Ok(())
     }
 
     /// The opacity map of a light, and the depths of its first hair.
@@ -197,4 +201,19 @@ impl Painter {
         self.notes.push(format!("drawing on the CPU from here on: {failure}"));
         Ok(())
     }
+}
+
+/// A renderer on a GPU that places bound strands itself.
+fn on_gpu(
+    gpu: &Gpu,
+    strands: &Guides,
+    bound: Option<&BoundStrands>,
+    mesh: Option<&Mesh>,
+    settings: &PictureSettings,
+) -> Result<GpuRenderer, RenderError> {
+    let mut renderer = GpuRenderer::new(gpu, strands, mesh, settings)?;
+    if let Some(bound) = bound {
+        renderer.bind(bound.binding(), &bound.solids())?;
+    }
+    Ok(renderer)
 }

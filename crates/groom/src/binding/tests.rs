@@ -23,8 +23,9 @@ fn bound(groom: &Groom, guides: &[usize]) -> Binding {
 }
 
 fn places(binding: &Binding, positions: &[Vec3Lanes], pose: &Pose) -> Vec<Vec3Lanes> {
-    let mut out = Vec::new();
-    binding.place(positions, pose, None, &mut out);
+    let (mut frames, mut out) = (Frames::default(), Vec::new());
+    binding.follow(positions, pose, &mut frames);
+    binding.place(&frames, pose, None, &mut out);
     out
 }
 
@@ -90,8 +91,9 @@ fn guides_that_are_cut_cut_the_strands_about_them() {
     let groom = groom();
     let binding = bound(&groom, &groom.representatives(30));
     let half = moved(binding.guides(), |point| Vec3::new(point.x, 0.5 * point.y, point.z));
-    let mut scales = Vec::new();
-    binding.scales(&half, &mut scales);
+    let mut frames = Frames::default();
+    binding.follow(&half, &Pose::IDENTITY, &mut frames);
+    let scales = frames.scales();
     let found = places(&binding, &half, &Pose::IDENTITY);
     let length: f32 = (1..POINTS).map(|point| found[point].get(3).distance(found[point - 1].get(3))).sum();
     let share = length / groom.lengths()[3];
@@ -115,8 +117,9 @@ fn points_come_out_of_the_body() {
     };
     let sunk = moved(binding.guides(), |point| Vec3::new(point.x, -0.3 * point.y, point.z + point.y));
     let deep = |surface_of: Option<&Surface>| {
-        let mut out = Vec::new();
-        binding.place(&sunk, &Pose::IDENTITY, surface_of, &mut out);
+        let (mut frames, mut out) = (Frames::default(), Vec::new());
+        binding.follow(&sunk, &Pose::IDENTITY, &mut frames);
+        binding.place(&frames, &Pose::IDENTITY, surface_of, &mut out);
         let place = |strand: usize, point: usize| out[strand / LANES * POINTS + point].get(strand % LANES);
         let strands = (0..groom.strand_count()).filter(|strand| surface(place(*strand, 0)).0 >= 0.0);
         strands
@@ -139,6 +142,20 @@ fn strands_follow_the_guides_that_the_groom_names() {
     assert_eq!([first[0].weight, first[1].weight, first[2].weight], [0.75, 0.25, 0.0]);
     // A guide follows itself, whatever it is said to follow.
     assert_eq!((binding.influences()[200][0].guide, binding.influences()[200][0].weight), (1, 1.0));
+}
+
+#[test]
+fn a_guide_that_is_no_number_spoils_its_own_strands_alone() {
+    let groom = groom();
+    let binding = bound(&groom, &[0, 150, 399]);
+    let mut positions = moved(binding.guides(), |point| point);
+    (0..POINTS).for_each(|point| positions[point].set(0, Vec3::NAN));
+    let found = places(&binding, &positions, &Pose::IDENTITY);
+    let is_finite = |strand: usize| {
+        (0..POINTS).all(|point| found[strand / LANES * POINTS + point].get(strand % LANES).is_finite())
+    };
+    // The other guides follow themselves.
+    assert!(!is_finite(0) && is_finite(150) && is_finite(399));
 }
 
 #[test]

@@ -12,6 +12,8 @@ use crate::fibre::FibreModel;
 
 /// What a frame is recorded from.
 pub(super) struct Bounds<'a> {
+    /// What places strands that guides carry; nothing without such.
+    pub bound: Vec<(Bound, [u32; 3])>,
     pub tessellate: Bound,
     /// What colours the hair by layers, where that is asked for.
     pub layer_colors: Option<Bound>,
@@ -30,6 +32,9 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     let one = |bound: &Bound, threads: usize| [(bound.clone(), groups(threads, THREADS))];
     let groom = &bounds.renderer.groom;
 
+    if !bounds.bound.is_empty() {
+        recorder.stage("bind", &bounds.bound);
+    }
     recorder.stage("tessellate", &one(&bounds.tessellate, scene.guide_count));
     recorder.stage("interpolate", &one(&stages.interpolate, points));
     record_opacity(recorder, scene, stages, bounds.maps);

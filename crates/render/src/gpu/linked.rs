@@ -1,6 +1,8 @@
 //! The linked text of every shader module, as `build.rs` left it.
 
 strandline_gpu::linked! {
+    BOUND_FRAMES = "bound_frames",
+    BOUND = "bound",
     TESSELLATE = "tessellate",
     INTERPOLATE = "interpolate",
     FIT = "fit",

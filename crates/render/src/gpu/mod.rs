@@ -6,6 +6,8 @@
 
 mod background;
 mod body;
+mod bound;
+mod bound_solids;
 mod buffers;
 mod draw;
 mod fit;
@@ -17,6 +19,7 @@ mod linked;
 mod occlude;
 mod opacity_depth;
 mod opacity_layers;
+mod points;
 mod probe;
 mod renderer;
 mod resolve;
@@ -26,7 +29,8 @@ mod stages;
 mod tessellate;
 
 pub use linked::modules;
-pub use renderer::{DevicePoints, GpuRenderer};
+pub use points::DevicePoints;
+pub use renderer::GpuRenderer;
 pub use stages::declarations;
 
 /// Most lights of a picture.

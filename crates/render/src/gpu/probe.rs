@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_gpu::{Buffer, Recorder};
+use strandline_groom::Vec3Lanes;
 
 use super::GpuRenderer;
 use super::frame::record_opacity;
@@ -31,6 +32,15 @@ impl GpuRenderer {
 
     fn first<T: bytemuck::Pod>(buffer: &Buffer<T>, count: usize) -> Result<Vec<T>, RenderError> {
         Ok(buffer.read_first(count)?)
+    }
+
+    /// Where the strands of the last frame were \[m\], world space, shape `[block][point]` of lanes: the host's points,
+    /// or what guides carry.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn places(&self) -> Result<Vec<Vec3Lanes>, RenderError> {
+        Ok(Self::first(&self.groom.places.viewed_as::<Vec3Lanes>(), self.guides.positions().len())?)
     }
 
     /// The curves of the last frame: positions \[m\], tangents and normals, shape `[guide][point]`.

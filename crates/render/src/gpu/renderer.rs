@@ -5,10 +5,12 @@ use strandline_gpu::{Bound, Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
 use strandline_groom::Guides;
 
 use super::body::ball;
+use super::bound::BoundStrands;
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::frame::{Bounds, record};
 use super::inputs::{Frame, LightSource};
 use super::light_grid::{self, LightGrid};
+use super::points::DevicePoints;
 use super::resolve::{Own, PICTURE, ToFormat, check_picture};
 use super::shade::LayerColors;
 use super::stages::{Kernels, Stages};
@@ -18,18 +20,6 @@ use crate::fibre::FibreModel;
 use crate::frame::{mean_color, middle};
 use crate::lights::at_samples;
 use crate::{DetailLevel, FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
-
-/// Guide points that lie on the device, `[block][point][component][lane]` \[m\], world space: at the two
-/// states between which a picture lies.
-#[derive(Clone, Copy)]
-pub struct DevicePoints<'a> {
-    /// Before the moment shown.
-    pub before: &'a Buffer<f32>,
-    /// After it.
-    pub after: &'a Buffer<f32>,
-    /// Where the moment lies between them, 0 to 1.
-    pub share: f32,
-}
 
 /// Draws frames of one groom on one body on a GPU; keeps its buffers from frame to frame.
 pub struct GpuRenderer {
@@ -55,8 +45,10 @@ pub struct GpuRenderer {
     /// Scattered light, once a look asks for it, and its kernels bound.
     pub(super) light_grid: Option<LightGrid>,
     pub(super) light_bounds: Option<light_grid::Bounds>,
+    /// What places the strands where guides carry them.
+    pub(super) bound: Option<BoundStrands>,
     /// `tessellate` bound to pairs of buffers of guide points.
-    tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
+    pub(super) tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
     timer: Option<Timer>,
     /// The light whose layers colour the hair, and the kernel that does so.
     pub(super) layers_of: Option<usize>,
@@ -142,6 +134,7 @@ impl GpuRenderer {
             stages: None,
             light_grid: None,
             light_bounds: None,
+            bound: None,
             tessellates: Vec::new(),
             timer: Timer::new(gpu)?,
             layers_of: None,
@@ -255,12 +248,14 @@ impl GpuRenderer {
         self.prepare(&scene)?;
         self.prepare_format(format)?;
         self.write(&scene, points.is_none())?;
+        let bound = self.bound_stages(points)?;
         let tessellate = self.tessellate(points)?;
         let layer_colors = self.layer_colors(given)?;
         let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
         let resolve =
             &self.formats.iter().find(|known| known.format == format).expect("prepared above").bound;
-        let bounds = Bounds { tessellate, layer_colors, stages, resolve, maps, target, renderer: self };
+        let bounds =
+            Bounds { bound, tessellate, layer_colors, stages, resolve, maps, target, renderer: self };
         let submitted = self.gpu.guarded("a frame", || {
             let mut recorder = Recorder::new(&self.gpu, self.timer.as_ref());
             self.timer.iter().for_each(Timer::restart);
@@ -284,25 +279,6 @@ impl GpuRenderer {
         self.lit.0.extend_from_slice(input.lights);
         (self.lit.1, self.lit.2) = (input.look.hair_shadow(), middle);
         Ok(FrameReport { strands, segments: strands * (curve_points - 1), ..FrameReport::default() })
-    }
-
-    /// Guide points must be those of the renderer's guides, and on its device.
-    fn check_points(&self, input: &FrameInput, points: Option<DevicePoints>) -> Result<(), RenderError> {
-        let expected = self.groom.places.len();
-        let (found, here) = match points {
-            None => (floats(input.positions).len(), true),
-            Some(DevicePoints { before, after, .. }) => (
-                if before.len() == expected { after.len() } else { before.len() },
-                [before, after].iter().all(|buffer| buffer.gpu().device() == self.gpu.device()),
-            ),
-        };
-        if found == expected && here {
-            return Ok(());
-        }
-        let device = if here { "" } else { " on another device" };
-        let expected = "those of the renderer's guides, on its device";
-        Err(SettingError::new("the number of guide points", format!("{}{device}", found / 3), expected)
-            .into())
     }
 
     pub(super) fn scene<'a>(
@@ -400,30 +376,8 @@ impl GpuRenderer {
         let scales = (0..scene.level.strand_count()).map(|index| scene.level.width_scale(index));
         strands.scales.write(&scales.collect::<Vec<f32>>())?;
         if host_points {
-            groom.places.write(floats(scene.input.positions))?;
+            self.host_points().write(floats(scene.input.positions))?;
         }
         Ok(())
-    }
-
-    /// `tessellate`, bound to guide points; the last two pairs of buffers stay bound.
-    fn tessellate(&mut self, points: Option<DevicePoints>) -> Result<Bound, RenderError> {
-        let Some(strands) = &self.strands else { unreachable!("made before") };
-        let (before, after) = match &points {
-            Some(points) => (points.before, points.after),
-            None => (&self.groom.places, &self.groom.places),
-        };
-        let pair = [before.raw().clone(), after.raw().clone()];
-        if let Some((_, bound)) = self.tessellates.iter().find(|(known, _)| *known == pair) {
-            return Ok(bound.clone());
-        }
-        let Groom { frame, roots, clumps, .. } = &self.groom;
-        let Strands { tables, curves, scales, .. } = strands;
-        let buffers = tessellate::Tessellate { frame, before, after, roots, tables, curves, clumps, scales };
-        let bound = self.kernels.tessellate.bind(&self.gpu, &buffers)?;
-        if self.tessellates.len() > 1 {
-            self.tessellates.remove(0);
-        }
-        self.tessellates.push((pair, bound.clone()));
-        Ok(bound)
     }
 }

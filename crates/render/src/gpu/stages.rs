@@ -6,8 +6,8 @@ use strandline_gpu::{
 
 use super::buffers::{Groom, Maps, Strands};
 use super::{
-    background, body, draw, fit, interpolate, light_grid, occlude, opacity_depth, opacity_layers, resolve,
-    shade, sort, tessellate,
+    background, body, bound, draw, fit, interpolate, light_grid, occlude, opacity_depth, opacity_layers,
+    resolve, shade, sort, tessellate,
 };
 
 /// Every kernel and drawing, compiled.
@@ -138,6 +138,8 @@ impl Stages {
 /// Every kernel's and drawing's declaration, to be held against its shader.
 pub fn declarations() -> Vec<Declaration> {
     vec![
+        bound::FollowGuides::declaration(),
+        bound::PlaceBound::declaration(),
         tessellate::Tessellate::declaration(),
         interpolate::Interpolate::declaration(),
         fit::MeasureHair::declaration(),

@@ -1,0 +1,146 @@
+//! Bound strands placed on a GPU against the same on the CPU.
+
+use glam::{Quat, Vec3};
+use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape};
+use strandline_checks::gpu;
+use strandline_groom::{Binding, Frames, Guides, LANES, Style, StyleSettings, Surface, Vec3Lanes};
+use strandline_render::gpu::GpuRenderer;
+use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
+
+const POINTS: usize = 12;
+const STRANDS: usize = 1200;
+
+/// Strands of a style, of which every thirtieth is a guide.
+fn binding() -> Binding {
+    let groom = StyleSettings { strand_count: STRANDS, ..StyleSettings::new(Style::Long) }.grow().unwrap();
+    let chosen: Vec<usize> = (0..groom.strand_count()).step_by(30).collect();
+    let resample = |groom| Guides::resample(groom, POINTS).unwrap();
+    Binding::new(&groom, &chosen, resample(&groom), resample(&groom.select(&chosen))).unwrap()
+}
+
+fn pose() -> Pose {
+    Pose { rotation: Quat::from_rotation_y(0.5), translation: Vec3::new(0.3, -0.1, 0.2) }
+}
+
+/// The guides where the head is, blown aside the more the lower they hang; every fifth is cut to half.
+fn blown(guides: &Guides) -> Vec<Vec3Lanes> {
+    let mut places = guides.positions().to_vec();
+    for (index, lanes) in places.iter_mut().enumerate() {
+        for lane in 0..LANES {
+            let strand = (index / POINTS * LANES + lane).min(guides.strand_count() - 1);
+            let (root, here) = (guides.position(strand, 0), lanes.get(lane));
+            let here = if strand % 5 == 0 { root.lerp(here, 0.5) } else { here };
+            let drop = (root.y - here.y).max(0.0);
+            lanes.set(lane, pose().point(here + Vec3::new(2.0 * drop * drop, 0.3 * drop, -0.5 * drop)));
+        }
+    }
+    places
+}
+
+/// A head that is sampled, a ball in it and a bar beside it that stays where it is.
+fn solids() -> Vec<(Collider, f32)> {
+    let grid = DistanceGrid::from_field(&*Mannequin::new(), 0.006, 0.02).unwrap();
+    let head = Collider::new(Shape::Grid(grid.into()), Carrier::Head, 0.3).unwrap();
+    let ball = Shape::Sphere { center: Vec3::new(0.0, -0.1, 0.05), radius: 0.1 };
+    let bar =
+        Shape::Capsule { start: Vec3::new(0.1, -0.3, 0.1), end: Vec3::new(0.7, -0.3, 0.2), radius: 0.06 };
+    let others = [(ball, Carrier::Head), (bar, Carrier::World)]
+        .map(|(shape, carrier)| (Collider::new(shape, carrier, 0.3).unwrap(), 0.0));
+    [(head, 0.0015)].into_iter().chain(others).collect()
+}
+
+fn nearest(solids: &[(Collider, f32)], point: Vec3) -> (f32, Vec3) {
+    let (mut best, head_from_world) = ((f32::INFINITY, Vec3::Y), pose().inverse());
+    for (solid, clearance) in solids {
+        let carried = solid.carrier == Carrier::Head;
+        let place = if carried { head_from_world.point(point) } else { point };
+        let (distance, gradient) = solid.shape.distance_and_gradient(place);
+        if distance - clearance < best.0 {
+            best = (distance - clearance, if carried { pose().direction(gradient) } else { gradient });
+        }
+    }
+    best
+}
+
+fn on_cpu(binding: &Binding, solids: &[(Collider, f32)]) -> Vec<Vec3Lanes> {
+    let surface = |point: Vec3| nearest(solids, point);
+    let surface = (!solids.is_empty()).then_some(&surface as &Surface);
+    let (mut frames, mut places) = (Frames::default(), Vec::new());
+    binding.follow(&blown(binding.guides()), &pose(), &mut frames);
+    binding.place(&frames, &pose(), surface, &mut places);
+    places
+}
+
+/// None without a GPU.
+fn on_gpu(binding: &Binding, solids: &[(Collider, f32)]) -> Option<Vec<Vec3Lanes>> {
+    let settings = PictureSettings::sized(32, 32);
+    let mut renderer = GpuRenderer::new(&gpu()?, binding.strands(), None, &settings).unwrap();
+    renderer.bind(binding, solids).unwrap();
+    let look = Look { follow_strands: 1, ..Look::brown() };
+    let input = FrameInput {
+        positions: &blown(binding.guides()),
+        world_from_head: pose(),
+        camera: &Camera::front(),
+        look: &look,
+        body_look: &BodyLook::default(),
+        lights: &[Light::default()],
+        level_of_detail: &LevelOfDetail::default(),
+    };
+    let (_, report) = renderer.draw(&input).unwrap();
+    assert_eq!(report.strands, binding.strands().strand_count());
+    Some(renderer.places().unwrap())
+}
+
+fn apart(one: &[Vec3Lanes], two: &[Vec3Lanes], strands: usize) -> Vec<f32> {
+    let points = (0..strands).flat_map(|strand| (0..POINTS).map(move |point| (strand, point)));
+    let mut apart: Vec<f32> = points
+        .map(|(strand, point)| {
+            let at = |all: &[Vec3Lanes]| all[strand / LANES * POINTS + point].get(strand % LANES);
+            at(one).distance(at(two))
+        })
+        .collect();
+    apart.sort_by(f32::total_cmp);
+    apart
+}
+
+#[test]
+fn bound_strands_lie_where_the_cpu_has_them() {
+    let binding = binding();
+    let Some(on_gpu) = on_gpu(&binding, &[]) else { return };
+    let on_cpu = on_cpu(&binding, &[]);
+    let strands = binding.strands().strand_count();
+    let apart_most = *apart(&on_cpu, &on_gpu, strands).last().unwrap();
+    // Rotations that are carried along twelve points, as quaternions and as matrices, on strands of 0.4 m.
+    assert!(apart_most < 1e-5, "{apart_most} m");
+    let (mut frames, mut still) = (Frames::default(), Vec::new());
+    binding.follow(binding.guides().positions(), &Pose::IDENTITY, &mut frames);
+    binding.place(&frames, &Pose::IDENTITY, None, &mut still);
+    assert!(apart(&on_cpu, &still, strands)[strands * POINTS / 2] > 0.05, "the comparison can fail");
+}
+
+#[test]
+fn they_stay_out_of_solids_as_on_the_cpu() {
+    let (binding, solids) = (binding(), solids());
+    let Some(on_gpu) = on_gpu(&binding, &solids) else { return };
+    let on_cpu = on_cpu(&binding, &solids);
+    let strands = binding.strands().strand_count();
+    let found = apart(&on_cpu, &on_gpu, strands);
+    // What touches a surface at a point that rounding moves takes another way from there on: few strands.
+    let [most, last] = [found.len() * 98 / 100, found.len() - 1].map(|place| found[place]);
+    println!("98 of 100 within {most:e} m, all within {last:e} m");
+    assert!(most < 1e-4, "{most} m");
+    let deep = |places: &[Vec3Lanes]| {
+        let points = (0..strands).flat_map(|strand| (1..POINTS).map(move |point| (strand, point)));
+        points
+            .filter(|(strand, point)| {
+                let place = places[strand / LANES * POINTS + point].get(strand % LANES);
+                nearest(&solids, place).0 < -1e-4
+            })
+            .count()
+    };
+    let (free, both) = (deep(&self::on_cpu(&binding, &[])), [deep(&on_cpu), deep(&on_gpu)]);
+    println!("inside: {free} of {} without a look at solids, {both:?} with", strands * (POINTS - 1));
+    assert!(free > 300, "the comparison can fail: {free}");
+    // Points whose segment cannot reach out; as many on both, but for rounding.
+    assert!(both[1] <= both[0] + 5 && both[0] < free / 20, "{both:?}");
+}

@@ -1,0 +1,138 @@
+//! Bound strands: where the guides have them that they are bound to, as `Binding::follow` and `Binding::place` say.
+
+use strandline_body::Collider;
+use strandline_gpu::{Bound, Buffer, Gpu, GpuError, Kernel, groups, kernel, wgpu};
+use strandline_groom::Binding;
+
+use super::buffers::floats;
+use super::inputs::Frame;
+use super::points::DevicePoints;
+use super::{THREADS, bound_solids};
+use crate::RenderError;
+
+kernel! {
+    /// One thread is one guide.
+    pub(super) struct FollowGuides in "bound_frames" (super::linked::BOUND_FRAMES), entry "follow_guides" {
+        0 frame: Read Frame,
+        2 rest: Read f32,
+        4 solids: Read u32,
+        5 frames: ReadWrite [f32; 4],
+        7 before: Read f32,
+        8 after: Read f32,
+    }
+}
+
+kernel! {
+    /// One thread is one bound strand.
+    pub(super) struct PlaceBound in "bound" (super::linked::BOUND), entry "place_bound" {
+        0 frame: Read Frame,
+        2 rest: Read f32,
+        3 influences: Read [u32; 4],
+        4 solids: Read u32,
+        5 frames: Read [f32; 4],
+        6 places: ReadWrite f32,
+    }
+}
+
+/// The strands of a renderer, bound to guides.
+pub(super) struct BoundStrands {
+    follow: Kernel<FollowGuides<'static>>,
+    /// The guides at rest \[m\], head space, and as the host has them \[m\], world space.
+    rest: Buffer<f32>,
+    now: Buffer<f32>,
+    guide_count: usize,
+    strand_count: usize,
+    solids: Buffer<u32>,
+    frames: Buffer<[f32; 4]>,
+    place: Bound,
+    /// `follow_guides` bound to pairs of buffers of guide points.
+    follows: Vec<([wgpu::Buffer; 2], Bound)>,
+}
+
+impl BoundStrands {
+    /// `frame` and `places` are the renderer's; strands stay as far \[m\] out of each solid as is said with it.
+    ///
+    /// # Errors
+    /// Whatever the device refuses.
+    pub fn new(
+        gpu: &Gpu,
+        binding: &Binding,
+        solids: &[(Collider, f32)],
+        frame: &Buffer<Frame>,
+        places: &Buffer<f32>,
+    ) -> Result<Self, RenderError> {
+        let (strands, guides) = (binding.strands(), binding.guides());
+        let points = guides.strand_count() * guides.points_per_strand();
+        let of_strands = Buffer::from_slice(gpu, "bound strands at rest", floats(strands.positions()))?;
+        let influences: Vec<[u32; 4]> = binding
+            .influences()
+            .as_flattened()
+            .iter()
+            .map(|one| [one.guide, one.weight.to_bits(), one.pace.to_bits(), 0])
+            .collect();
+        let influences = Buffer::from_slice(gpu, "influences of guides", &influences)?;
+        let solids = bound_solids::upload(gpu, guides.strand_count(), solids)?;
+        let frames = Buffer::new(gpu, "frames of guides", 3 * points + guides.strand_count())?;
+        let place = Kernel::<PlaceBound<'static>>::new(gpu, &[])?;
+        let place = place.bind(
+            gpu,
+            &PlaceBound {
+                frame,
+                rest: &of_strands,
+                influences: &influences,
+                solids: &solids,
+                frames: &frames,
+                places,
+            },
+        )?;
+        Ok(Self {
+            follow: Kernel::new(gpu, &[])?,
+            rest: Buffer::from_slice(gpu, "guides at rest", floats(guides.positions()))?,
+            now: Buffer::from_slice(gpu, "guide points", floats(guides.positions()))?,
+            guide_count: guides.strand_count(),
+            strand_count: strands.strand_count(),
+            solids,
+            frames,
+            place,
+            follows: Vec::new(),
+        })
+    }
+
+    /// Where the host puts guide points.
+    pub fn now(&self) -> &Buffer<f32> {
+        &self.now
+    }
+
+    /// What places the strands, given where the guides are; the host's points without any. The last two pairs of
+    /// buffers stay bound.
+    ///
+    /// # Errors
+    /// Whatever the device refuses.
+    pub fn stages(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Buffer<Frame>,
+        points: Option<DevicePoints>,
+    ) -> Result<[(Bound, [u32; 3]); 2], GpuError> {
+        let (before, after) = points.map_or((&self.now, &self.now), |points| (points.before, points.after));
+        let pair = [before.raw().clone(), after.raw().clone()];
+        let known = self.follows.iter().find(|(known, _)| *known == pair).map(|(_, bound)| bound.clone());
+        let follow = match known {
+            Some(bound) => bound,
+            None => {
+                let Self { rest, solids, frames, .. } = &*self;
+                let bound =
+                    self.follow.bind(gpu, &FollowGuides { frame, rest, solids, frames, before, after })?;
+                if self.follows.len() > 1 {
+                    self.follows.remove(0);
+                }
+                self.follows.push((pair, bound.clone()));
+                bound
+            }
+        };
+        Ok([
+            (follow, groups(self.guide_count, THREADS)),
+            (self.place.clone(), groups(self.strand_count, THREADS)),
+        ])
+    }
+}
