@@ -1,12 +1,12 @@
 //! What may stand on the command line.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use strandline::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
-use strandline::{Backend, Cache, Scene, Style, Target, What, scene::MotionName};
+use strandline::{Backend, Style, Target, What, scene::MotionName};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
@@ -73,11 +73,13 @@ pub struct Inputs {
     /// Grow this style: bob, long, wavy, curly, pixie or ponytail.
     #[arg(long, value_name = "NAME", value_parser = Style::from_str, conflicts_with = "groom")]
     pub style: Option<Style>,
-    #[arg(long, value_name = "FILE", help = format!("Load strands from this {} file", endings(|_| true)))]
-    pub groom: Option<PathBuf>,
-    /// Load the body from this .obj, .gltf or .glb file.
+    #[arg(long, value_name = "FILE", help = format!(
+        "Load strands from this {} file; given again: further strands of the same hair", endings(|_| true)
+    ))]
+    pub groom: Vec<PathBuf>,
+    /// Load the body from this .obj, .gltf or .glb file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
-    pub body: Option<PathBuf>,
+    pub body: Vec<PathBuf>,
     /// still, shake, nod, turn or keyframes.
     #[arg(long, value_name = "NAME", value_parser = MotionName::from_str)]
     pub motion: Option<MotionName>,
@@ -139,6 +141,9 @@ pub struct SimOptions {
     /// Write every N-th frame, from the first [default: 1].
     #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub every: Option<u32>,
+    /// Write frames from this one on, counted from 0; the film is simulated from its beginning [default: 0].
+    #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    pub from: Option<u32>,
     /// Units and axes of a .usda: any (metres, y up), unreal (centimetres, z up, groom_* attributes) or blender
     /// (metres, z up, frames from 1) [default: any].
     #[arg(long = "for", value_name = "NAME", requires = "out", value_parser = Target::from_str)]
@@ -291,72 +296,6 @@ pub enum Bench {
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct Usage(pub String);
-
-/// A scene by name or path.
-pub fn scene(name: &str) -> anyhow::Result<Scene> {
-    if strandline::scene::is_file(Path::new(name)) {
-        return Ok(Scene::load(Path::new(name))?);
-    }
-    Scene::from_str(name).map_err(|error| Usage(error.to_string()).into())
-}
-
-impl Inputs {
-    /// The scene with what the command line replaces.
-    pub fn scene(&self) -> anyhow::Result<Scene> {
-        self.changed(scene(self.scene.as_deref().unwrap_or("demo"))?)
-    }
-
-    /// The scene of a cache, unless the command line names one, with what the command line replaces.
-    pub fn scene_of(&self, cache: &Cache) -> anyhow::Result<Scene> {
-        if self.scene.is_some() || self.style.is_some() || self.groom.is_some() {
-            return self.scene();
-        }
-        self.changed(cache.scene()?)
-    }
-
-    fn changed(&self, mut scene: Scene) -> anyhow::Result<Scene> {
-        if let Some(style) = self.style {
-            scene.set_style(style);
-        }
-        // Paths given here are relative to the current folder, not to the scene's.
-        if let Some(file) = &self.groom {
-            scene.groom.file = Some(std::path::absolute(file)?);
-            scene.begin_at_rest();
-        }
-        if let Some(file) = &self.body {
-            scene.body.file = Some(std::path::absolute(file)?);
-            scene.begin_at_rest();
-        }
-        if let Some(name) = self.motion {
-            scene.motion.name = name;
-            // It begins at its beginning.
-            scene.film.start = 0.0;
-        }
-        if let Some(backend) = self.sim_device.or(self.backend) {
-            scene.devices.simulation = backend;
-        }
-        if let Some(backend) = self.render_device.or(self.backend) {
-            scene.devices.pictures = backend;
-        }
-        if let Some(frames) = self.frames {
-            scene.film.frames = frames;
-        }
-        Ok(scene)
-    }
-
-    /// What the output is called: the style, the groom's or the scene's name.
-    pub fn name(&self) -> String {
-        let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        match (&self.style, &self.groom) {
-            (Some(style), _) => style.name().to_owned(),
-            (None, Some(file)) => stem(file).unwrap_or_else(|| "groom".to_owned()),
-            (None, None) => {
-                let scene = self.scene.as_deref().unwrap_or("demo");
-                stem(Path::new(scene)).unwrap_or_else(|| "scene".to_owned())
-            }
-        }
-    }
-}
 
 /// The endings of formats that are written.
 fn written() -> String {

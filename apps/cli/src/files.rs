@@ -2,7 +2,8 @@
 
 use strandline::groom::{Groom, StyleSettings, format};
 
-use crate::arguments::{self, GroomOptions, InfoOptions, SceneOptions};
+use crate::arguments::{GroomOptions, InfoOptions, SceneOptions};
+use crate::inputs;
 use crate::output::{self, print_line};
 use crate::progress::Waiting;
 
@@ -65,6 +66,6 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
 
 /// Prints a scene with every key.
 pub fn scene(options: &SceneOptions) -> anyhow::Result<()> {
-    output::program(&arguments::scene(&options.scene)?.to_toml());
+    output::program(&inputs::scene(&options.scene)?.to_toml());
     Ok(())
 }

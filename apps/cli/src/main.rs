@@ -8,6 +8,7 @@ mod convert;
 mod exit;
 mod files;
 mod gpus;
+mod inputs;
 mod interrupt;
 mod logging;
 mod non_finite;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use strandline::{
-    Cache, Event, Out, OutSettings, Player, Scene, Written,
+    Cache, Event, OutSettings, Player, Scene, Written,
     sim::{Drift, StepReport},
 };
 
@@ -218,6 +218,7 @@ fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSetti
     let mut settings = OutSettings::new(options.out.as_ref().or(options.resume.as_ref())?);
     settings.what = options.what.or(former.map(Cache::what)).unwrap_or_default();
     settings.every = options.every.or(former.map(Cache::every)).unwrap_or(1);
+    settings.first = options.from.or(former.map(Cache::first)).unwrap_or(0);
     settings.target = options.target.unwrap_or_default();
     Some(settings)
 }
@@ -230,8 +231,7 @@ fn begin(scene: &Scene, out: Option<OutSettings>, former: Option<&mut Cache>) ->
         output::note(note);
     }
     if let Some(settings) = out {
-        let out = Out::new(&settings, scene, player.guides())?;
-        player.set_out(out);
+        player.set_out(&settings)?;
     }
     if let Some(former) = former {
         player.resume(former)?;

@@ -9,7 +9,7 @@ use strandline::{
     render::PictureSettings,
 };
 
-use crate::{files, messages, panels, rescue, saves, stage, strip};
+use crate::{export, files, messages, panels, rescue, saves, stage, strip};
 
 /// The window's state: what plays, and what a person made of it.
 pub struct App {
@@ -58,6 +58,9 @@ pub struct App {
     stepped: u64,
     wants_step: bool,
     pub(crate) dialog: Option<files::Dialog>,
+    /// Moving hair that is being written, and what of it.
+    pub(crate) exporting: Option<export::Export>,
+    pub(crate) export_wanted: export::Wanted,
     /// Where the next picture and scene are saved.
     pub folder: PathBuf,
 }
@@ -127,6 +130,8 @@ impl App {
             stepped: 0,
             wants_step: false,
             dialog: None,
+            exporting: None,
+            export_wanted: export::Wanted::default(),
             folder: PathBuf::from("out"),
         })
     }
@@ -142,8 +147,14 @@ impl App {
         match ending.as_deref() {
             Some("toml") => return Scene::load(file),
             // Meshes are more common than strands as lines, which `convert` reads.
-            Some("obj" | "gltf" | "glb") => scene.body.file = Some(absolute),
-            _ if Format::is_of(file) => scene.groom.file = Some(absolute),
+            Some("obj" | "gltf" | "glb") => {
+                scene.body.file = Some(absolute);
+                scene.body.parts.clear();
+            }
+            _ if Format::is_of(file) => {
+                scene.groom.file = Some(absolute);
+                scene.groom.parts.clear();
+            }
             _ => {
                 let grooms = endings(|format| format.ending != "obj");
                 let expected = format!("a .toml scene, a {grooms} groom, or an .obj, .gltf or .glb body");
@@ -306,14 +317,9 @@ impl App {
         scene.camera.target = Some(self.camera.target);
         scene.camera.field_of_view = Some(self.camera.field_of_view);
         // It may be saved elsewhere.
-        let absolute = |path: &PathBuf| {
-            let path = self.scene.folder.join(path);
-            std::path::absolute(&path).unwrap_or(path)
-        };
-        let groom = &mut scene.groom;
-        let (body, files) = (&mut scene.body, [&mut groom.file, &mut groom.attributes]);
-        for file in files.into_iter().chain([&mut body.file, &mut body.collider_file]) {
-            *file = file.as_ref().map(absolute);
+        for file in scene.paths_mut() {
+            let path = self.scene.folder.join(&file);
+            *file = std::path::absolute(&path).unwrap_or(path);
         }
         scene
     }
@@ -334,6 +340,7 @@ impl App {
         self.take_picture(ui.ctx());
         files::take_answer(self);
         self.take_saved();
+        self.take_exported();
         self.keep_scene();
         stage::keys(self, ui);
         egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));

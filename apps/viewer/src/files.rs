@@ -17,6 +17,8 @@ pub enum Wanted {
     Picture,
     /// To save the scene to.
     Scene,
+    /// To write moving hair to.
+    Moving,
 }
 
 /// A dialog that is open.
@@ -67,6 +69,10 @@ fn question(wanted: Wanted) -> Question {
             let dialog = dialog.set_title("Save the scene").add_filter("scene", &["toml"]);
             Box::pin(dialog.set_file_name("view.toml").save_file())
         }
+        Wanted::Moving => {
+            let dialog = dialog.set_title("Write moving hair").add_filter("moving hair", &["npz", "usda"]);
+            Box::pin(dialog.set_file_name("hair.npz").save_file())
+        }
     }
 }
 
@@ -84,6 +90,7 @@ pub fn take_answer(app: &mut App) {
         (Some(file), Wanted::Open) => app.open_file(&file),
         (Some(file), Wanted::Picture) => app.save_picture(Some(file)),
         (Some(file), Wanted::Scene) => app.save_scene(Some(&file)),
+        (Some(file), Wanted::Moving) => app.export(Some(&file)),
         (None, Wanted::Open) if since.elapsed() < AT_ONCE => {
             app.note("this system has no file dialog: type a path, or drop a file on the window".to_owned());
         }

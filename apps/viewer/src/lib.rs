@@ -4,6 +4,7 @@
 
 mod app;
 mod controls;
+mod export;
 mod files;
 mod libraries;
 mod messages;

@@ -159,7 +159,7 @@ impl App {
     }
 
     /// The path with its ending, or a free one; none after an error that was told.
-    fn path_or_free(&mut self, path: Option<&Path>, stem: &str, ending: &str) -> Option<PathBuf> {
+    pub(crate) fn path_or_free(&mut self, path: Option<&Path>, stem: &str, ending: &str) -> Option<PathBuf> {
         let has_ending =
             |path: &Path| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
         let path = match path {

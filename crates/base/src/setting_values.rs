@@ -108,6 +108,7 @@ macro_rules! free {
 free! {
     bool: Kind::Flag;
     PathBuf: Kind::Text("the path of a file");
+    String: Kind::Text("a text");
 }
 
 impl<T: Value<Given = T> + DeserializeOwned> Value for Option<T> {

@@ -32,7 +32,7 @@ pub use frame::{FrameInput, FrameReport, Renderer};
 pub use layers::Layers;
 pub use level_of_detail::{DetailLevel, LevelOfDetail};
 pub use lights::{Environment, Illumination, Light, LightKind};
-pub use look::{Clump, Highlight, Look, Shadow};
+pub use look::{Clump, GroupLook, Highlight, Look, Shadow};
 pub use looks::Preset;
 pub use picture::Picture;
 pub use picture_settings::{Background, PictureSettings, ToneMap};

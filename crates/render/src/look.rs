@@ -1,7 +1,8 @@
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_base::{Key, SettingError, settings};
+use strandline_base::{Group, Key, SettingError, settings};
 
 use crate::Environment;
 use crate::fibre::Fibre;
@@ -54,6 +55,14 @@ settings! {
         shadow: Shadow = Shadow { layers: [0.005, 0.015, 0.05], ..Shadow::default() };
         /// Light from all around.
         environment: Environment = Environment::default();
+        /// A .png with the colour of each strand, sRGB, over where roots lie on the scalp (the groom's root
+        /// coordinates; the first is to the right, the second up). It replaces colours of the groom. A scene takes
+        /// maps and groups in when it is loaded.
+        color_map: Option<PathBuf> = None;
+        /// A .png with the width of each strand as a share of its own: white is all of it, black none.
+        width_map: Option<PathBuf> = None;
+        /// Groups of strands that look other than all, at most 256.
+        group: Vec<GroupLook> = Vec::new(), in [0, 256];
         /// Seed of every random choice of the look.
         seed: u32 = 0, in [0, u32::MAX];
         plain {
@@ -62,6 +71,25 @@ settings! {
         }
     }
     prepare Look::prepare;
+}
+
+settings! {
+    /// The look of one group of strands; what it does not give is that of all. The first that names a group counts.
+    pub struct GroupLook {
+        /// Name of the group in the groom, or its number; of files that are brought together each is a group of
+        /// its name.
+        name: String = String::new(), required true;
+        /// Reflectance at the root, linear RGB.
+        root_color: Option<Vec3> = None, in [0.0, 1.0];
+        /// Reflectance at the tip, linear RGB; without it that at the root.
+        tip_color: Option<Vec3> = None, in [0.0, 1.0];
+        /// Multiple of the groom's root diameters, besides that of all.
+        width_scale: f32 = 1.0, in [0.0, 1000.0], slider [0.1, 5.0], more "wider strands";
+        /// A .png with the colour of each strand, as `look.color_map`.
+        color_map: Option<PathBuf> = None;
+        /// A .png with the width of each strand, as `look.width_map`.
+        width_map: Option<PathBuf> = None;
+    }
 }
 
 settings! {

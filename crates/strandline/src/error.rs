@@ -43,6 +43,14 @@ pub enum Error {
         /// What was found.
         message: String,
     },
+    /// A picture with values over the scalp could not be read.
+    #[error("cannot read the map: {message}: {}", path.display())]
+    Map {
+        /// The file.
+        path: PathBuf,
+        /// What was found and what was expected.
+        message: String,
+    },
     /// The file with hair that moved could not be read, or is for other hair.
     #[error("cannot read the cache: {message}: {}", path.display())]
     Cache {

@@ -40,6 +40,7 @@ mod player;
 mod prepare;
 mod simulation;
 mod sync;
+mod tags;
 mod worker;
 #[cfg(test)]
 mod worker_tests;
@@ -55,7 +56,7 @@ pub use strandline_sim as sim;
 
 pub use body::{Motion, Pose};
 pub use bound::BoundStrands;
-pub use cache::{Cache, Out, OutSettings, Target, What, Written, check_cache};
+pub use cache::{Cache, OutSettings, Target, What, Written, check_cache};
 pub use devices::Devices;
 pub use error::Error;
 pub use film::{Film, FilmFiles};
@@ -70,3 +71,4 @@ pub use prepare::Prepared;
 pub use render::{Camera, Light, Look, Picture};
 pub use scene::Scene;
 pub use sim::{Backend, Settings};
+pub use tags::Tags;

@@ -1,6 +1,6 @@
 use crate::{
-    Cache, Devices, Error, Hair, Out, Scene, Written,
-    cache::Snapshot,
+    Cache, Devices, Error, Hair, OutSettings, Scene, Written,
+    cache::{Leaving, Out, Snapshot},
     course::Course,
     gpu::Gpu,
     groom::Guides,
@@ -9,6 +9,7 @@ use crate::{
     render::{Camera, FrameReport, Look, Picture, PictureSettings},
     sim::{Drift, Settings, State, StepReport},
     simulation::{Act, Done, Job, Moment, Simulation},
+    tags::Tags,
     worker::{Gone, Worker},
 };
 
@@ -37,6 +38,9 @@ pub enum Event {
 pub struct Player {
     worker: Worker<Simulation>,
     studio: Studio,
+    /// With what it leaves open chosen to fit its groom.
+    scene: Scene,
+    tags: Tags,
     /// Changed by [`Player::set_settings`] before the next frame is simulated.
     change: Option<Settings>,
     course: Course,
@@ -74,6 +78,7 @@ impl Player {
         let mut prepared = Prepared::new(scene)?;
         let head = prepared.head.clone();
         let mut notes = std::mem::take(&mut prepared.notes);
+        let tags = std::mem::take(&mut prepared.tags);
         let fitted = prepared.scene.clone();
         let scene = &fitted;
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
@@ -85,6 +90,8 @@ impl Player {
         Ok(Self {
             worker: Worker::new(simulation).map_err(Error::Thread)?,
             studio,
+            scene: scene.clone(),
+            tags,
             change: None,
             course: Course::new(scene, head, here),
             camera,
@@ -106,9 +113,16 @@ impl Player {
         })
     }
 
-    /// Writes every frame as it moves, from the next one on: see [`Player::close_out`].
-    pub fn set_out(&mut self, out: Out) {
-        self.out = Some(out);
+    /// Writes every frame as it moves, from the next one on: see [`Player::close_out`]. What leaves is what the
+    /// scene draws: strands that guides carry too, with what the groom says of them.
+    ///
+    /// # Errors
+    /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
+    pub fn set_out(&mut self, settings: &OutSettings) -> Result<(), Error> {
+        let Studio { guides, painter, .. } = &self.studio;
+        let leaving = Leaving { guides, bound: painter.bound(), tags: &self.tags };
+        self.out = Some(Out::new(settings, &self.scene, leaving)?);
+        Ok(())
     }
 
     /// Goes on where the run of a cache stood; frames before that are not told. What is written has them too.

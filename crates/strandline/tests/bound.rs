@@ -1,12 +1,12 @@
 //! Strands that are bound to simulated ones, from a scene to a picture.
 
 use strandline::{
-    Backend, Devices, Event, Picture, Player, Prepared, Scene,
+    Backend, Cache, Devices, Event, OutSettings, Picture, Player, Prepared, Scene, What,
     groom::{
         Groom,
         format::{Part, Scale},
     },
-    scene::MotionName,
+    scene::{BodyPart, GroomPart, MotionName},
 };
 
 /// A style of 900 strands of which 90 are simulated, drawn small.
@@ -102,4 +102,136 @@ fn guides_are_those_that_a_file_marks_or_a_scene_asks_for() {
     assert_eq!((all.guides.strand_count(), all.bound.is_none()), (200, true));
     let plain = prepared(|scene| scene.groom.own_look = false);
     assert!(plain.guides.colors().is_none());
+}
+
+/// A film of one frame of a lawn of which 50 of 200 strands are simulated, with groups and root coordinates.
+fn film(path: &std::path::Path) -> Scene {
+    lawn(path);
+    let mut groom = Groom::load(path).unwrap();
+    groom.groups = Some((0..200).map(|strand| strand / 100).collect());
+    groom.group_names = [(1, "back".to_owned())].into();
+    groom.root_uvs = Some((0..200).map(|strand| glam::Vec2::new(0.005 * strand as f32, 0.5)).collect());
+    groom.save(path).unwrap();
+    let mut scene = Scene::default();
+    scene.groom.file = Some(path.to_owned());
+    scene.groom.scale = Scale::Factor(1.0);
+    (scene.film.frames, scene.film.settle) = (1, 0.0);
+    scene.motion.name = MotionName::Still;
+    scene.look.follow_strands = 1;
+    scene.devices = Backend::Cpu.into();
+    scene
+}
+
+/// What a film leaves in a cache: its path.
+fn written(scene: &Scene, path: &std::path::Path, what: What) -> strandline::base::npz::Npz<std::fs::File> {
+    let mut player = Player::new(scene, scene.devices, false).unwrap();
+    player.set_out(&OutSettings { what, ..OutSettings::new(path) }).unwrap();
+    player.by_ref().for_each(|event| drop(event.unwrap()));
+    player.close_out().unwrap().unwrap();
+    assert_eq!(Cache::open(path).unwrap().what(), what);
+    strandline::base::npz::Npz::new(std::fs::File::open(path).unwrap()).unwrap()
+}
+
+#[test]
+fn strands_that_guides_carry_leave_with_what_the_groom_says_of_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = film(&folder.path().join("lawn.npz"));
+    let rows = |npz: &mut strandline::base::npz::Npz<_>, name: &str| {
+        npz.open(name).unwrap().map_or(0, |rows| rows.shape()[0])
+    };
+    let all = &mut written(&scene, &folder.path().join("all.npz"), What::Strands);
+    let points = rows(all, "colors");
+    assert_eq!([rows(all, "starts"), rows(all, "root_uv"), rows(all, "groups")], [201, 200, 200]);
+    assert_eq!(rows(all, "widths"), points);
+    assert_eq!(rows(all, "guide_indices"), 0);
+    let guides = &mut written(&scene, &folder.path().join("guides.npz"), What::Guides);
+    assert_eq!([rows(guides, "starts"), rows(guides, "root_uv"), rows(guides, "groups")], [51, 50, 50]);
+    // Those that are carried: by which guides, and where they rest.
+    assert_eq!([rows(guides, "guide_indices"), rows(guides, "bound_starts")], [150, 151]);
+    assert_eq!(rows(guides, "colors"), rows(guides, "widths"));
+    // Frames from one on.
+    let mut longer = scene.clone();
+    longer.film.frames = 5;
+    let path = folder.path().join("late.npz");
+    let mut player = Player::new(&longer, longer.devices, false).unwrap();
+    player.set_out(&OutSettings { first: 2, every: 2, ..OutSettings::new(&path) }).unwrap();
+    player.by_ref().for_each(|event| drop(event.unwrap()));
+    assert_eq!(player.close_out().unwrap().unwrap().frames, 2);
+    let cache = Cache::open(&path).unwrap();
+    assert_eq!((cache.first(), cache.every()), (2, 2));
+    assert!((cache.times()[0] - 3.0 / 30.0).abs() < 2.0 / 30.0, "{:?}", cache.times());
+}
+
+/// A square of 40 cm in the plane of the lawn, y up.
+const GROUND: &str = "v -0.1 0 -0.1\nv 0.3 0 -0.1\nv 0.3 0 0.3\nv -0.1 0 0.3\nf 1 4 3 2\n";
+
+#[test]
+fn several_files_are_one_groom_and_one_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lawn.npz");
+    lawn(&path);
+    // The same strands in centimetres, unmarked, without colours.
+    let mut weeds = Groom::load(&path).unwrap();
+    (weeds.colors, weeds.guide_flags) = (None, None);
+    weeds.transform(100.0, glam::Quat::IDENTITY, glam::Vec3::ZERO);
+    weeds.save(&folder.path().join("weeds.npz")).unwrap();
+    let mut scene = Scene::default();
+    for name in ["ground.obj", "stone.obj"] {
+        std::fs::write(folder.path().join(name), GROUND).unwrap();
+    }
+    scene.folder = folder.path().to_owned();
+    scene.groom.file = Some("lawn.npz".into());
+    scene.groom.parts = vec![GroomPart { file: "weeds.npz".into(), ..GroomPart::default() }];
+    scene.body.file = Some("ground.obj".into());
+    let translation = glam::Vec3::Y;
+    scene.body.parts = vec![BodyPart { file: "stone.obj".into(), translation, ..BodyPart::default() }];
+    let prepared = Prepared::new(&scene).unwrap();
+    let bound = prepared.bound.as_ref().unwrap();
+    assert_eq!(bound.strands().strand_count(), 400);
+    // A quarter of the second file stands for it, as of the first.
+    assert!((90..=110).contains(&prepared.guides.strand_count()), "{}", prepared.guides.strand_count());
+    assert_eq!(prepared.tags.group_names, ["lawn", "weeds"]);
+    assert!(bound.strands().colors().is_some());
+    assert!(
+        prepared.notes.iter().any(|note| note.contains("weeds.npz: a unit is 0.01 m")),
+        "{:?}",
+        prepared.notes
+    );
+    let bounds = prepared.mesh.as_ref().unwrap().bounds().unwrap();
+    assert_eq!((bounds.min.y, bounds.max.y), (0.0, 1.0));
+    // Both lie in the same place.
+    let apart = bound.strands().position(0, 0).distance(bound.strands().position(200, 0));
+    assert!(apart < 1e-4, "{apart} m");
+    let mut none = scene.clone();
+    none.groom.file = None;
+    assert!(Prepared::new(&none).err().unwrap().to_string().contains("groom.parts"));
+}
+
+#[test]
+fn a_style_grows_on_the_head_of_a_body() {
+    let grooms = std::env::var_os("STRANDLINE_GROOMS").map_or_else(
+        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/grooms"),
+        Into::into,
+    );
+    let bust = grooms.join("bust/hm08_bust_female.obj");
+    if !bust.is_file() {
+        return println!("skipped: no grooms folder");
+    }
+    let mut scene = Scene::demo();
+    (scene.style.strand_count, scene.body.file) = (400, Some(bust));
+    scene.body.spacing = 0.008;
+    let prepared = Prepared::new(&scene).unwrap();
+    let shape = &prepared.colliders[0].shape;
+    let bounds = prepared.mesh.as_ref().unwrap().bounds().unwrap();
+    for strand in 0..prepared.guides.strand_count() {
+        let root = prepared.guides.position(strand, 0);
+        // Samples 8 mm apart.
+        assert!(shape.distance(root).abs() < 1e-3, "{root}");
+        assert!(root.y > bounds.max.y - 0.25, "{root}");
+    }
+    assert!(
+        prepared.notes.iter().any(|note| note.contains("grows on the highest part")),
+        "{:?}",
+        prepared.notes
+    );
 }

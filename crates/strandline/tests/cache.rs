@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use strandline::{
-    Backend, Cache, Event, Out, OutSettings, Picture, Player, Scene, Target, What, scene::MotionName,
+    Backend, Cache, Event, OutSettings, Picture, Player, Scene, Target, What, scene::MotionName,
     sim::StrandMethod,
 };
 
@@ -36,8 +36,7 @@ fn rods() -> Scene {
 
 fn player(scene: &Scene, settings: &OutSettings) -> Player {
     let mut player = Player::new(scene, scene.devices, false).unwrap();
-    let out = Out::new(settings, scene, player.guides()).unwrap();
-    player.set_out(out);
+    player.set_out(settings).unwrap();
     player
 }
 

@@ -1,6 +1,7 @@
 //! Buttons that save what is seen.
 
-use eframe::egui::Ui;
+use eframe::egui::{self, DragValue, Ui};
+use strandline::{Target, What};
 
 use crate::{App, controls::button, files};
 
@@ -20,6 +21,43 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         }
         if button(ui, "as...", "the same, to a place of your choice") {
             files::ask(app, files::Wanted::Scene, ui.ctx());
+        }
+    });
+    moving(app, ui);
+}
+
+/// Moving hair: a range of the film, which strands, for whom.
+fn moving(app: &mut App, ui: &mut Ui) {
+    if let Some(export) = &app.exporting {
+        ui.add(egui::ProgressBar::new(export.share()).show_percentage());
+        if button(ui, "Stop", "ends the file; what was done stays") {
+            app.export(None);
+        }
+        return;
+    }
+    let wanted = &mut app.export_wanted;
+    ui.horizontal(|ui| {
+        for (value, name) in [(&mut wanted.from, "from"), (&mut wanted.to, "to")] {
+            let tip = "time of the film; it is simulated from its beginning, with the scene as it is now";
+            ui.label(name);
+            ui.add(DragValue::new(value).range(0.0..=3600.0).speed(0.05).suffix(" s")).on_hover_text(tip);
+        }
+    });
+    ui.horizontal(|ui| {
+        for what in What::ALL {
+            ui.radio_value(&mut wanted.what, what, what.name());
+        }
+        for target in Target::ALL {
+            ui.radio_value(&mut wanted.target, target, target.name())
+                .on_hover_text("units and axes of a .usda");
+        }
+    });
+    ui.horizontal(|ui| {
+        if button(ui, "Moving hair", "as a moving cache (.npz) into out/") {
+            app.export(None);
+        }
+        if button(ui, "as...", "as .npz or .usda, to a place of your choice") {
+            files::ask(app, files::Wanted::Moving, ui.ctx());
         }
     });
 }

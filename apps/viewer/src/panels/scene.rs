@@ -20,6 +20,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     if picked && (!grown || chosen != app.scene.style.style) {
         let mut scene = app.scene.clone();
         scene.groom.file = None;
+        scene.groom.parts.clear();
         scene.set_style(chosen);
         app.load(scene);
     }

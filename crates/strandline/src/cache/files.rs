@@ -55,6 +55,8 @@ impl Files {
         groom.root_uvs = attributes.root_uvs.as_ref().map(|uvs| uvs.iter().map(|uv| (*uv).into()).collect());
         groom.groups =
             attributes.groups.as_ref().map(|groups| groups.iter().map(|group| u32::from(*group)).collect());
+        let names = (0..).zip(&attributes.group_names).filter(|(_, name)| !name.is_empty());
+        groom.group_names = names.map(|(group, name)| (group, name.clone())).collect();
         Ok(Self { folder: folder.to_owned(), pattern, groom, left_out: Vec::new(), _lock: lock })
     }
 

@@ -20,8 +20,10 @@ pub(super) struct Meta {
     #[serde(default = "y")]
     pub up_axis: String,
     pub what: What,
-    /// Frames a second of the film, and every how many of them is in the file.
+    /// Frames a second of the film, the first of them in the file, and every how many is.
     pub frames_per_second: f32,
+    #[serde(default)]
+    pub first: u32,
     #[serde(default = "one")]
     pub every: u32,
     /// Steps of the simulation up to the last frame, without settling.

@@ -1,7 +1,7 @@
 //! Hair that moved, as a file: the moving cache, text USD, and one groom file a frame. docs/cache.md is the page
 //! for users.
 //!
-//! [`Out`] writes frames while a run goes on, [`Cache`] reads a moving cache. What leaves is decided in `shape`
+//! An `Out` writes frames while a run goes on, [`Cache`] reads a moving cache. What leaves is decided in `shape`
 //! alone: strands, and whatever attributes they have; every writer takes them from there.
 
 mod files;
@@ -16,8 +16,10 @@ mod tests;
 mod usd;
 mod usd_text;
 
-pub use out::{Out, OutSettings, Written};
+pub(crate) use out::Out;
+pub use out::{OutSettings, Written};
 pub use read::{Cache, check_cache};
+pub(crate) use shape::Leaving;
 pub use shape::{Target, What};
 pub(crate) use snapshot::Snapshot;
 

@@ -4,8 +4,14 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
-use super::{Cache, Frame, Snapshot, Target, What, files::Files, shape::Shape, store::Store, usd::Usd};
-use crate::{Error, Scene, groom::Guides, sim::StepReport, simulation::Moment};
+use super::{
+    Cache, Frame, Snapshot, Target, What,
+    files::Files,
+    shape::{Leaving, Shape},
+    store::Store,
+    usd::Usd,
+};
+use crate::{Error, Scene, sim::StepReport, simulation::Moment};
 
 /// What is written and where.
 #[derive(Clone, Debug)]
@@ -16,6 +22,8 @@ pub struct OutSettings {
     pub what: What,
     /// Every n-th frame, from the first.
     pub every: u32,
+    /// The first frame that is written.
+    pub first: u32,
     /// For whom units and axes are.
     pub target: Target,
 }
@@ -38,6 +46,7 @@ pub struct Written {
 /// Hair on its way into a file.
 pub struct Out {
     shape: Shape,
+    first: u32,
     every: u32,
     writer: Writer,
     points: Vec<Vec3>,
@@ -71,7 +80,7 @@ fn format(path: &Path) -> Result<Format, Error> {
 impl OutSettings {
     /// Everything as it is when nothing else is said.
     pub fn new(path: impl Into<PathBuf>) -> Self {
-        Self { path: path.into(), what: What::default(), every: 1, target: Target::default() }
+        Self { path: path.into(), what: What::default(), first: 0, every: 1, target: Target::default() }
     }
 
     /// Refuses a name that no format has, before anything is loaded.
@@ -84,25 +93,25 @@ impl OutSettings {
 }
 
 impl Out {
-    /// Begins to write the film of a scene with these guides.
+    /// Begins to write the film of a scene.
     ///
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written.
-    pub fn new(settings: &OutSettings, scene: &Scene, guides: &Guides) -> Result<Self, Error> {
+    pub(crate) fn new(settings: &OutSettings, scene: &Scene, leaving: Leaving) -> Result<Self, Error> {
         let format = format(&settings.path)?;
-        let shape = Shape::new(settings.what, scene, guides)?;
-        let (path, every) = (settings.path.as_path(), settings.every.max(1));
+        let shape = Shape::new(settings.what, scene, leaving)?;
+        let (path, first, every) = (settings.path.as_path(), settings.first, settings.every.max(1));
         let writer = match format {
-            Format::Npz => Writer::Store(Store::new(path, scene, &shape, every)?.into()),
+            Format::Npz => Writer::Store(Store::new(path, scene, &shape, [first, every])?.into()),
             Format::Usda => Writer::Usd(Usd::new(path, scene, &shape, settings.target)?.into()),
             Format::Sequence => Writer::Files(Files::new(path, &shape)?.into()),
         };
-        Ok(Self { shape, every, writer, points: Vec::new(), frames: 0 })
+        Ok(Self { shape, first, every, writer, points: Vec::new(), frames: 0 })
     }
 
     /// Whether a frame is one of those that are written.
     fn takes(&self, frame: u32) -> bool {
-        frame.is_multiple_of(self.every)
+        frame.checked_sub(self.first).is_some_and(|frame| frame.is_multiple_of(self.every))
     }
 
     /// Whether the state of the simulation has to come with a frame.
@@ -149,16 +158,18 @@ impl Out {
     /// Takes over the frames of a cache up to where its run stood.
     pub(crate) fn copy(&mut self, cache: &mut Cache, state: &Snapshot) -> Result<(), Error> {
         let (steps, report) = cache.report();
-        if (cache.what(), cache.every()) != (self.shape.what, self.every) {
-            let (what, every) = (cache.what().name(), cache.every());
+        if (cache.what(), cache.first(), cache.every()) != (self.shape.what, self.first, self.every) {
+            let (what, first, every) = (cache.what().name(), cache.first(), cache.every());
             return Err(Error::Cache {
                 path: cache.path().to_owned(),
                 message: format!(
-                    "it holds {what}, every {every}. frame, expected what is written: go on with --what {what} --every {every}"
+                    "it holds {what}, every {every}. frame from {first} on, expected what is written: go on with \
+                     --what {what} --every {every} --from {first}"
                 ),
             });
         }
-        let count = (state.frame / self.every + 1) as usize;
+        let after = state.frame.checked_sub(self.first);
+        let count = after.map_or(0, |frames| (frames / self.every + 1) as usize);
         if cache.starts() != self.shape.starts || cache.len() < count {
             return Err(Error::Cache {
                 path: cache.path().to_owned(),
@@ -168,7 +179,7 @@ impl Out {
         let mut points = Vec::new();
         for index in 0..count {
             let world_from_head = cache.read(index, &mut points)?;
-            let (number, time) = (index as u32 * self.every, cache.times()[index]);
+            let (number, time) = (self.first + index as u32 * self.every, cache.times()[index]);
             self.write(&Frame { number, time, points: &points, world_from_head }, None)?;
         }
         if let Writer::Store(store) = &mut self.writer {

@@ -92,6 +92,11 @@ impl Cache {
         self.frames.meta.every
     }
 
+    /// The first frame of the film that it holds.
+    pub fn first(&self) -> u32 {
+        self.frames.meta.first
+    }
+
     /// The scene that it was made with.
     ///
     /// # Errors

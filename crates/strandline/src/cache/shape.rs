@@ -5,13 +5,14 @@ use glam::Vec3;
 use strandline_base::choices;
 
 use crate::{
-    Error, Scene,
+    BoundStrands, Error, Scene,
     body::Pose,
-    groom::{Guides, LANES, Vec3Lanes},
+    groom::{Frames, Guides, LANES, MOST_INFLUENCES, Vec3Lanes},
     render::{
         DetailLevel, Look,
         cpu::{Curves, Strands, interpolate, tessellate},
     },
+    tags::Tags,
 };
 
 choices! {
@@ -84,59 +85,93 @@ enum Source {
 
 /// What pictures grow strands from.
 struct Drawn {
-    guides: Guides,
+    /// The strands that are drawn, at rest, and what carries them where guides do.
+    drawn: Guides,
+    bound: Option<BoundStrands>,
+    frames: Frames,
+    places: Vec<Vec3Lanes>,
     look: Look,
     level: DetailLevel,
     curves: Curves,
     strands: Strands,
 }
 
+/// The hair of a scene that may leave.
+#[derive(Clone, Copy)]
+pub(crate) struct Leaving<'a> {
+    /// The simulated strands.
+    pub guides: &'a Guides,
+    /// All strands, where some are not simulated.
+    pub bound: Option<&'a BoundStrands>,
+    pub tags: &'a Tags,
+}
+
 impl Shape {
-    /// The strands of a scene with these guides.
+    /// The strands of a scene.
     ///
     /// # Errors
     /// More points than a file may have. (The memory of drawn strands was asked for with the scene.)
-    pub fn new(what: What, scene: &Scene, guides: &Guides) -> Result<Self, Error> {
+    pub fn new(what: What, scene: &Scene, leaving: Leaving) -> Result<Self, Error> {
         match what {
-            What::Guides => Ok(Self::of_guides(guides)),
-            What::Strands => Self::of_strands(scene, guides),
+            What::Guides => Ok(Self::of_guides(leaving)),
+            What::Strands => Self::of_strands(scene, leaving),
         }
     }
 
-    fn of_guides(guides: &Guides) -> Self {
+    fn of_guides(Leaving { guides, bound, tags }: Leaving) -> Self {
         let (strands, points) = (guides.strand_count(), guides.points_per_strand());
-        let widths = guides.widths().iter().flat_map(|width| std::iter::repeat_n(*width, points));
+        let share = |point: usize| guides.profiles().map_or(1.0, |profiles| profiles[point]);
+        let widths = (0..strands * points).map(|point| guides.widths()[point / points] * share(point));
+        let attributes = Attributes {
+            widths: Some(widths.collect()),
+            colors: guides.colors().map(<[_]>::to_vec),
+            binding: bound.map(|bound| carried(bound, tags)),
+            ..Attributes::default()
+        };
         Self {
             what: What::Guides,
             starts: starts(strands, points),
-            attributes: Attributes { widths: Some(widths.collect()), ..Attributes::default() },
+            attributes: attributes.with(tags.of_guides()),
             source: Source::Guides { points_per_strand: points },
         }
     }
 
-    fn of_strands(scene: &Scene, guides: &Guides) -> Result<Self, Error> {
+    fn of_strands(scene: &Scene, Leaving { guides, bound, tags }: Leaving) -> Result<Self, Error> {
         let level =
             DetailLevel::full(scene.level_of_detail.segments_per_span, scene.look.follow_strands.max(1));
-        let points = level.segment_count(guides.points_per_strand()) + 1;
-        let strands = guides.strand_count() * level.strand_count();
+        let all = bound.map_or(guides, BoundStrands::strands);
+        let points = level.segment_count(all.points_per_strand()) + 1;
+        let strands = all.strand_count() * level.strand_count();
         if (strands as u64).saturating_mul(points as u64) > super::MAX_POINTS {
-            let found = format!("{} strands on each guide", level.strand_count());
+            let found = format!("{} strands on each of {}", level.strand_count(), all.strand_count());
             let expected = "268435456 points in all at most: take fewer look.follow_strands";
             return Err(strandline_base::SettingError::new("what = strands", found, expected).into());
         }
         let mut drawn = Drawn {
-            guides: guides.clone(),
+            drawn: all.clone(),
+            bound: bound.cloned(),
+            frames: Frames::default(),
+            places: Vec::new(),
             look: scene.look.clone(),
             level,
             curves: Curves::default(),
             strands: Strands::default(),
         };
         drawn.grow(guides.positions(), &Pose::IDENTITY);
-        let attributes = Attributes { widths: Some(drawn.strands.widths.clone()), ..Attributes::default() };
+        let grown = &drawn.strands;
+        // The strands of a clump share their colours.
+        let colors = grown.colors.chunks_exact(points).flat_map(|colors| {
+            std::iter::repeat_n(colors, level.strand_count()).flatten().map(|color| color.to_array())
+        });
+        let attributes = Attributes {
+            widths: Some(grown.widths.clone()),
+            colors: (!grown.colors.is_empty()).then(|| colors.collect()),
+            ..Attributes::default()
+        };
         Ok(Self {
             what: What::Strands,
             starts: starts(strands, points),
-            attributes,
+            attributes: attributes.with(tags.repeated(level.strand_count())),
             source: Source::Strands(drawn.into()),
         })
     }
@@ -172,9 +207,41 @@ impl Shape {
 
 impl Drawn {
     fn grow(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose) {
-        let Self { guides, look, level, curves, strands } = self;
-        tessellate(positions, guides, world_from_head, level, curves);
-        interpolate(curves, guides, world_from_head, look, level, strands);
+        let Self { drawn, bound, frames, places, look, level, curves, strands } = self;
+        let positions = match bound {
+            None => positions,
+            Some(bound) => {
+                bound.place(positions, world_from_head, frames, places);
+                places
+            }
+        };
+        tessellate(positions, drawn, world_from_head, level, curves);
+        interpolate(curves, drawn, world_from_head, look, level, strands);
+    }
+}
+
+impl Attributes {
+    fn with(self, tags: Tags) -> Self {
+        let Tags { root_uvs, groups, group_names, guides: _ } = tags;
+        Self { root_uvs, groups, group_names, ..self }
+    }
+}
+
+/// The strands that are not simulated, at rest, and the guides that carry each.
+fn carried(bound: &BoundStrands, tags: &Tags) -> Binding {
+    let (strands, binding) = (bound.strands(), bound.binding());
+    let points = strands.points_per_strand();
+    let is_guide =
+        |strand: &usize| tags.guides.as_ref().is_some_and(|guides| guides.binary_search(strand).is_ok());
+    let others: Vec<usize> = (0..strands.strand_count()).filter(|strand| !is_guide(strand)).collect();
+    let influences = || others.iter().flat_map(|strand| binding.influences()[*strand]);
+    let rest = others.iter().flat_map(|strand| (0..points).map(|point| strands.position(*strand, point)));
+    Binding {
+        guides_per_strand: MOST_INFLUENCES,
+        indices: influences().map(|one| one.guide).collect(),
+        weights: influences().map(|one| one.weight).collect(),
+        points: rest.collect(),
+        starts: starts(others.len(), points),
     }
 }
 

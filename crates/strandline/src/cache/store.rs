@@ -23,8 +23,9 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// Begins a cache for at most so many frames of the scene's film, of which `every`-th is written.
-    pub fn new(path: &Path, scene: &Scene, shape: &Shape, every: u32) -> Result<Self, Error> {
+    /// Begins a cache for at most so many frames of the scene's film, of which `every`-th is written, from the
+    /// `first` on.
+    pub fn new(path: &Path, scene: &Scene, shape: &Shape, [first, every]: [u32; 2]) -> Result<Self, Error> {
         let folder = std::path::absolute(&scene.folder).unwrap_or_default();
         let meta = Meta {
             layout: LAYOUT,
@@ -33,6 +34,7 @@ impl Store {
             up_axis: "y".to_owned(),
             what: shape.what,
             frames_per_second: scene.film.frames_per_second,
+            first,
             every,
             steps: 0,
             group_names: shape.attributes.group_names.clone(),
@@ -47,7 +49,7 @@ impl Store {
         ];
         let mut arrays = vec![Array::u32s("starts", &[shape.starts.len()], shape.starts.iter().copied())];
         arrays.extend(attributes(&shape.attributes));
-        let capacity = u64::from(scene.film.frames.div_ceil(every));
+        let capacity = u64::from(scene.film.frames.saturating_sub(first).div_ceil(every));
         let npz = GrowingNpz::create(path, &arrays, &growing, capacity, &[json(&meta)]);
         let npz = npz.map_err(|error| match error.kind() {
             ErrorKind::ResourceBusy => Error::BusyFile { path: path.to_owned() },

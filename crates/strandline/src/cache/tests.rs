@@ -3,14 +3,22 @@
 use std::time::Instant;
 
 use super::{
-    shape::{Attributes, Binding, Shape},
+    shape::{Attributes, Binding, Leaving, Shape},
     *,
 };
 use crate::{
     Scene,
     groom::{Groom, Guides},
     simulation::Moment,
+    tags::Tags,
 };
+
+/// No strand has a name, and all are simulated.
+static UNTAGGED: Tags = Tags { root_uvs: None, groups: None, group_names: Vec::new(), guides: None };
+
+fn leaving(guides: &Guides) -> Leaving<'_> {
+    Leaving { guides, bound: None, tags: &UNTAGGED }
+}
 
 fn guides(strands: usize, points: usize) -> Guides {
     let mut groom = Groom::empty(8e-5);
@@ -35,7 +43,7 @@ fn processor() -> f64 {
 fn write(settings: &OutSettings, guides: &Guides, frames: u32) -> (u64, f64, f64) {
     let mut scene = Scene::demo();
     scene.film.frames = frames;
-    let mut out = Out::new(settings, &scene, guides).unwrap();
+    let mut out = Out::new(settings, &scene, leaving(guides)).unwrap();
     let mut moment = Moment::default();
     moment.positions = guides.positions().to_vec();
     let state = Snapshot {
@@ -103,13 +111,13 @@ fn everything(shape: &mut Shape) {
 #[test]
 fn attributes_that_there_are_leave_with_the_strands() {
     let (folder, guides, scene) = (tempfile::tempdir().unwrap(), guides(3, 5), Scene::demo());
-    let mut shape = Shape::new(What::Guides, &scene, &guides).unwrap();
+    let mut shape = Shape::new(What::Guides, &scene, leaving(&guides)).unwrap();
     everything(&mut shape);
     let mut points = Vec::new();
     shape.place(guides.positions(), &Pose::IDENTITY, &mut points);
     let frame = Frame { number: 0, time: 0.0, points: &points, world_from_head: Pose::IDENTITY };
     let path = folder.path().join("a.npz");
-    let mut store = store::Store::new(&path, &scene, &shape, 1).unwrap();
+    let mut store = store::Store::new(&path, &scene, &shape, [0, 1]).unwrap();
     store.add(&frame, None).unwrap();
     store.finish(None).unwrap();
     let mut npz = strandline_base::npz::Npz::new(std::fs::File::open(&path).unwrap()).unwrap();

@@ -29,8 +29,8 @@ pub(super) struct Usd {
     space: Space,
     first: u32,
     widest: f32,
-    /// One frame.
-    text: String,
+    /// One frame, in pieces.
+    texts: Vec<String>,
     /// What is written behind the points: the box around them and the head, for each frame.
     boxes: Vec<(u32, [Vec3; 2])>,
     heads: Vec<(u32, Pose)>,
@@ -91,7 +91,7 @@ impl Usd {
             space: Space::of(target),
             first,
             widest: widths.fold(0.0, |widest, width| width.max(widest)),
-            text: String::new(),
+            texts: Vec::new(),
             boxes: Vec::new(),
             heads: Vec::new(),
         };
@@ -211,19 +211,12 @@ impl Usd {
     /// Adds a frame.
     pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
         let (code, space) = (frame.number + self.first, self.space);
-        let mut text = std::mem::take(&mut self.text);
-        text.clear();
-        let _ = write!(text, "            {code}: ");
-        put_points(&mut text, frame.points.iter().map(|point| space.point(*point)));
-        text.push_str(",\n");
-        self.put(&text)?;
-        self.text = text;
-        let outside_in = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (low, high) = frame
-            .points
-            .iter()
-            .map(|point| space.point(*point))
-            .fold(outside_in, |(low, high), point| (low.min(point), high.max(point)));
+        let mut texts = std::mem::take(&mut self.texts);
+        let [low, high] = put_points(&mut texts, frame.points, |point| space.point(point));
+        self.put(&format!("            {code}: ["))?;
+        texts.iter().try_for_each(|text| self.put(text))?;
+        self.put("],\n")?;
+        self.texts = texts;
         let half = Vec3::splat(0.5 * space.length(self.widest));
         self.boxes.push((code, [low - half, high + half]));
         self.heads.push((code, space.pose(&frame.world_from_head)));

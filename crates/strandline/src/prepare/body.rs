@@ -11,6 +11,7 @@ use crate::{
     scene::Model,
 };
 
+use super::parts::Meshes;
 use super::placing::{self, Placing};
 
 /// Air around a loaded body that its signed distance covers \[m\].
@@ -28,16 +29,17 @@ pub(super) fn mesh(scene: &Scene) -> Result<Option<Mesh>, Error> {
     Ok(scene.body.file.as_ref().map(|file| Mesh::load(&scene.path(file), 1.0)).transpose()?)
 }
 
-/// The body of a scene; `mesh` is that of its file, in head space.
+/// The body of a scene; `meshes` are those of its files, in head space.
 pub(super) fn body(
     scene: &Scene,
-    mesh: Option<Mesh>,
+    meshes: Option<Meshes>,
     placing: Placing,
     notes: &mut Vec<String>,
 ) -> Result<Body, Error> {
-    if let Some(mesh) = mesh {
-        let shape = if scene.body.solid { Some(solid(scene, &mesh, placing, notes)?) } else { None };
-        return Ok(Body { mesh: Some(mesh), shape, pivot: None });
+    if let Some(Meshes { drawn, solid: hit }) = meshes {
+        let hit = hit.as_ref().unwrap_or(&drawn);
+        let shape = if scene.body.solid { Some(solid(scene, hit, placing, notes)?) } else { None };
+        return Ok(Body { mesh: Some(drawn), shape, pivot: None });
     }
     let grown = scene.groom.file.is_none();
     Ok(match scene.body.model {

@@ -2,8 +2,11 @@
 
 mod body;
 mod fit;
+mod looks;
+mod parts;
 mod placing;
 mod strands;
+mod wrap;
 
 use glam::Vec3;
 
@@ -18,6 +21,7 @@ use crate::{
     groom::{Binding, Groom, Guides},
     hair_pose::HairPose,
     memory,
+    tags::Tags,
 };
 
 /// What a scene names, loaded or grown.
@@ -26,6 +30,8 @@ pub struct Prepared {
     pub guides: Guides,
     /// All strands, where some are not simulated.
     pub bound: Option<BoundStrands>,
+    /// What the groom says of its strands besides their points.
+    pub tags: Tags,
     /// The drawn body.
     pub mesh: Option<Mesh>,
     /// Everything that hair hits.
@@ -74,12 +80,13 @@ impl Prepared {
         let pose = pose.transpose()?;
         let colliders = colliders(scene, body.shape)?;
         notes.extend(strands::move_outside(&mut guides, &colliders, |_| 0.0));
+        let tags = Tags::new(&groom, chosen.as_deref());
         let bound = chosen.map(|chosen| bind(&groom, &chosen, all, &guides, &colliders)).transpose()?;
         let mesh = body.mesh.filter(|_| scene.body.visible);
         let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
         let pivot = scene.motion.pivot.or(body.pivot).unwrap_or_else(|| low_center(bounds));
         let head = HeadMotion::new(&scene.motion, pivot)?;
-        Ok(Self { guides, bound, mesh, colliders, head, pose, bounds, scene: scene.clone(), notes })
+        Ok(Self { guides, bound, tags, mesh, colliders, head, pose, bounds, scene: scene.clone(), notes })
     }
 }
 
@@ -91,22 +98,35 @@ struct Loaded {
 
 /// Loads or grows strands and body, brings them together, and fits the scene to what it names.
 fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
-    let (mut groom, mut mesh) = (strands::load(scene, notes)?, body::mesh(scene)?);
+    let (groom, mesh) = (strands::load(scene, notes)?, body::mesh(scene)?);
     let placings = placing::guess(scene, groom.as_ref(), mesh.as_ref());
     notes.extend(placings.note);
-    if let Some(mesh) = &mut mesh {
-        placing::place_mesh(mesh, placings.body, scene.body.rotation, scene.body.translation);
-    }
-    if let Some(groom) = &mut groom {
-        strands::place(groom, placings.groom, scene);
-        notes.extend(fit::fit(scene, groom, mesh.as_ref()));
-    }
+    let meshes = mesh.map(|mesh| parts::meshes(scene, mesh, placings.body)).transpose()?;
+    let drawn = meshes.as_ref().map(|meshes| &meshes.drawn);
     let groom = match groom {
-        Some(groom) => groom,
-        None => strands::grown(scene)?,
+        Some(mut groom) => {
+            let (turn, translation) = (scene.groom.rotation, scene.groom.translation);
+            strands::place(&mut groom, placings.groom, scene, turn, translation);
+            parts::add_grooms(scene, &mut groom, placings.groom, drawn, notes)?;
+            notes.extend(fit::fit(scene, &groom, drawn));
+            Some(groom)
+        }
+        None => None,
     };
-    notes.extend(mesh.as_ref().and_then(|mesh| placing::apart(&groom, mesh)));
-    let body = body::body(scene, mesh, placings.body, notes)?;
+    let has_file = meshes.is_some();
+    let body = body::body(scene, meshes, placings.body, notes)?;
+    let drawn = body.mesh.as_ref().filter(|_| has_file);
+    let mut groom = match groom {
+        Some(groom) => groom,
+        None => {
+            let mut grown = strands::grown(scene)?;
+            let fitted = drawn.map(|mesh| wrap::onto(&mut grown, mesh, body.shape.as_ref()));
+            notes.extend(fitted.flatten());
+            grown
+        }
+    };
+    looks::dress(scene, &mut groom)?;
+    notes.extend(drawn.and_then(|mesh| placing::apart(&groom, mesh)));
     Ok(Loaded { groom, body })
 }
 

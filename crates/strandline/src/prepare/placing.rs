@@ -12,6 +12,7 @@ use crate::{
         format::{Scale, Up},
     },
     head::rotation,
+    scene::GroomPart,
 };
 
 /// Metres that a unit of a file may be, likelier ones first.
@@ -33,6 +34,15 @@ const SURER: f32 = 0.3;
 /// Share of the head by which hair has to grow and lead to one side of it for that to be its back.
 const BEHIND: f32 = 0.08;
 
+/// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
+/// head that no unit brings there is given.
+const SCALPS: std::ops::RangeInclusive<f32> = 0.09..=0.3;
+const SCALP: f32 = 0.15;
+/// Hair is that of a head where roots lie as high on the body as this share of it, and lie around as much of what is
+/// there: not the fur of an animal, nor its mane.
+const ON_TOP: f32 = 0.3;
+const AROUND: f32 = 0.6;
+
 /// How a file's places become those of head space: scaled, then turned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placing {
@@ -48,7 +58,7 @@ pub(super) struct Placings {
 }
 
 /// What leads from a file with an axis that points up to y up.
-fn upright(up: Up) -> Quat {
+pub(super) fn upright(up: Up) -> Quat {
     match up {
         Up::Auto | Up::Y => Quat::IDENTITY,
         Up::Z => Quat::from_rotation_x(-FRAC_PI_2),
@@ -90,8 +100,47 @@ pub(super) fn guess(scene: &Scene, groom: Option<&Groom>, mesh: Option<&Mesh>) -
     let is_free = of_groom.rotation == Vec3::ZERO && of_body.rotation == Vec3::ZERO;
     let turn = if is_free { sample.to_front(&groom, &body) } else { Quat::IDENTITY };
     (groom.turn, body.turn) = (turn * groom.turn, turn * body.turn);
-    let note = noted(scene, groom, body, true, turn);
+    let is_open = of_groom.scale == Scale::Auto && of_body.scale == Scale::Auto;
+    let scalp = sample.scalp(&groom, &body).filter(|width| is_open && !SCALPS.contains(width));
+    if let Some(width) = scalp {
+        // As a person would write it.
+        let digit = 10_f32.powf((body.scale * SCALP / width).log10().floor() - 1.0);
+        let scale = (body.scale * SCALP / width / digit).round() * digit;
+        groom.scale *= scale / body.scale;
+        body.scale = scale;
+    }
+    let mut note = noted(scene, groom, body, true, turn);
+    if let (Some(width), Some(note)) = (scalp, &mut note) {
+        note.push_str(&format!(
+            " (in no usual unit is it the head of a person: the scalp would be {width:.2} m wide)"
+        ));
+    }
     Placings { groom, body, note }
+}
+
+/// The place of a further groom: given, or that of the first unless another unit or axis brings its roots to the
+/// body.
+pub(super) fn of_part(groom: &Groom, part: &GroomPart, first: Placing, mesh: Option<&Mesh>) -> Placing {
+    let given = |scale: f32| units(part.scale).unwrap_or(scale);
+    let turned = |up: Up| if part.up == Up::Auto { upright(up) } else { upright(part.up) };
+    let start = Placing {
+        scale: given(first.scale),
+        turn: if part.up == Up::Auto { first.turn } else { upright(part.up) },
+    };
+    let Some(mesh) = mesh else { return start };
+    let sample = Sample::new(groom, mesh);
+    let apart = |placing: &Placing| sample.apart(placing.scale, placing.turn, 1.0, Quat::IDENTITY);
+    let (mut best, mut least) = (start, apart(&start));
+    for unit in UNITS {
+        for turn in [start.turn, turned(Up::Y), turned(Up::Z)] {
+            let placing = Placing { scale: given(unit), turn };
+            let found = apart(&placing);
+            if found < NEARER * least && least > NEAR {
+                (best, least) = (placing, found);
+            }
+        }
+    }
+    best
 }
 
 /// The axes that point up: given, or those that agree with each other.
@@ -186,6 +235,29 @@ impl Sample {
         let ways = self.roots.iter().zip(&self.tips).map(|(root, tip)| (*root - *tip).normalize_or_zero());
         let hangs = ways.map(|way| way.dot(axis)).sum::<f32>() / count;
         [high.clamp(-1.0, 1.0), hangs]
+    }
+
+    /// Width \[m\] of the scalp, where hair is that of a head that looks along z.
+    fn scalp(&self, groom: &Placing, body: &Placing) -> Option<f32> {
+        let placed = |places: &[Vec3], placing: &Placing| -> Vec<Vec3> {
+            places.iter().map(|place| placing.turn * (placing.scale * *place)).collect()
+        };
+        let between = |mut values: Vec<f32>| {
+            values.sort_by(f32::total_cmp);
+            let at = |percent: usize| values.get(values.len() * percent / 100).copied();
+            at(5).zip(at(95))
+        };
+        let (roots, vertices) = (placed(&self.roots, groom), placed(&self.vertices, body));
+        let (lowest, highest) = between(roots.iter().map(|root| root.y).collect())?;
+        let ends = vertices.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), vertex| {
+            (low.min(vertex.y), high.max(vertex.y))
+        });
+        let (left, right) = between(roots.iter().map(|root| root.x).collect())?;
+        let beside = vertices.iter().filter(|vertex| (lowest..=highest).contains(&vertex.y));
+        let (skull_left, skull_right) = between(beside.map(|vertex| vertex.x).collect())?;
+        let is_on_top = lowest - ends.0 > ON_TOP * (ends.1 - ends.0);
+        let is_around = right - left > AROUND * (skull_right - skull_left);
+        (is_on_top && is_around && right > left).then_some(right - left)
     }
 
     /// The turn about y after which a head looks along +z, where hair lies to one side of it: at its back.

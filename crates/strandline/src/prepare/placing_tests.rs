@@ -90,6 +90,20 @@ fn units_axes_and_the_face_are_found_from_both() {
 }
 
 #[test]
+fn a_head_that_no_unit_makes_that_of_a_person_is_made_one() {
+    let (groom, mesh) = head();
+    let (large, body) = turned(&groom, &mesh, 360.0, Quat::IDENTITY);
+    let placings = guess(&scene(), Some(&large), Some(&body));
+    // Roots on a ball of 24 cm span 21 cm; 0.15 m are asked for, in two digits.
+    let scale = placings.groom.scale;
+    assert!((0.0018..=0.0022).contains(&scale) && placings.body.scale == scale, "{scale}");
+    assert!(placings.note.unwrap().contains("m wide"));
+    let mut given = scene();
+    given.body.scale = Scale::Factor(0.01);
+    assert_eq!(guess(&given, Some(&large), Some(&body)).groom.scale, 0.01);
+}
+
+#[test]
 fn fur_that_is_combed_backward_does_not_turn_the_animal() {
     let (_, mesh) = head();
     let mut fur = Groom::empty(8e-5);

@@ -1,5 +1,7 @@
 //! The strands of a scene: from a file, or grown; those that are simulated, and those that are bound to them.
 
+use std::path::Path;
+
 use glam::Vec3;
 
 use crate::{
@@ -23,25 +25,30 @@ const GUIDES: usize = 2000;
 /// The strands of a scene's file, in its units and axes.
 pub(super) fn load(scene: &Scene, notes: &mut Vec<String>) -> Result<Option<Groom>, Error> {
     let Some(file) = &scene.groom.file else { return Ok(None) };
-    let options = LoadOptions {
-        strict: false,
-        scale: Scale::Factor(1.0),
-        up: Up::Y,
-        per_strand: scene.groom.per_strand,
-    };
-    let loaded = format::load(&scene.path(file), &options)?;
-    notes.extend(loaded.report.problems.iter().map(|problem| format!("{}: {problem}", file.display())));
-    Ok(Some(loaded.groom))
+    read(scene, file, scene.groom.per_strand, notes).map(Some)
 }
 
-/// Places strands: scaled and turned as guessed, then turned and moved as a scene says.
-pub(super) fn place(groom: &mut Groom, placing: Placing, scene: &Scene) {
+/// The strands of a file, in its units and axes.
+pub(super) fn read(
+    scene: &Scene,
+    file: &Path,
+    per_strand: Option<u32>,
+    notes: &mut Vec<String>,
+) -> Result<Groom, Error> {
+    let options = LoadOptions { strict: false, scale: Scale::Factor(1.0), up: Up::Y, per_strand };
+    let loaded = format::load(&scene.path(file), &options)?;
+    notes.extend(loaded.report.problems.iter().map(|problem| format!("{}: {problem}", file.display())));
+    Ok(loaded.groom)
+}
+
+/// Places strands: scaled and turned as guessed, then turned (degrees) and moved \[m\] as a scene says.
+pub(super) fn place(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Vec3, translation: Vec3) {
     if !scene.groom.own_look {
         groom.colors = None;
     }
     let has_widths = scene.groom.own_look && Part::Widths.is_in(groom);
     groom.transform(placing.scale, placing.turn, Vec3::ZERO);
-    groom.transform(1.0, rotation(scene.groom.rotation), scene.groom.translation);
+    groom.transform(1.0, rotation(turn), translation);
     // The width of a hair is in metres already.
     if !has_widths {
         groom.widths = Widths::Constant(HAIR_WIDTH);

@@ -24,6 +24,27 @@ choices! {
 }
 
 settings! {
+    /// A further mesh of the body: eyes, teeth, a collar.
+    pub struct BodyPart {
+        /// An .obj, .gltf or .glb file.
+        file: PathBuf = PathBuf::new(), required true;
+        /// Metres per unit of the file; "auto" takes that of `body.file`.
+        scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
+        /// The file's axis that points up; "auto" takes that of `body.file`.
+        up: Up = Up::default();
+        /// Turns the mesh: pitch (about x), yaw (about y), roll (about z).
+        rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
+        /// Moves the mesh, head space.
+        translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// Whether it is drawn.
+        visible: bool = true;
+        /// Whether hair hits it; without this a closed mesh is hit, and one with an open rim, such as lashes, is
+        /// not.
+        solid: Option<bool> = None;
+    }
+}
+
+settings! {
     /// What hair grows on and hits.
     pub struct BodySection {
         /// The body when no file is named.
@@ -41,6 +62,8 @@ settings! {
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
         /// Moves the body of a file, head space.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// Further meshes of the same body, at most 64. They need a `file`.
+        parts: Vec<BodyPart> = Vec::new(), in [0, 64];
         /// Whether the body is drawn.
         visible: bool = true;
         /// Whether hair hits the body.

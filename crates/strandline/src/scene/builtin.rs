@@ -23,6 +23,7 @@ impl Scene {
     pub fn set_style(&mut self, style: Style) {
         let (seed, strand_count) = (self.style.seed, self.style.strand_count);
         self.groom.file = None;
+        self.groom.parts.clear();
         self.begin_at_rest();
         self.style = StyleSettings { seed, strand_count, ..StyleSettings::new(style) };
         let (points, segments) = match style {

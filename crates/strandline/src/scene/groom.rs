@@ -6,6 +6,27 @@ use strandline_base::settings;
 use crate::groom::format::{Scale, Up};
 
 settings! {
+    /// Strands of a further file: brows, a beard.
+    pub struct GroomPart {
+        /// A file as `groom.file`.
+        file: PathBuf = PathBuf::new(), required true;
+        /// Name of the group that its strands are, where the file has no groups of its own; without one that of
+        /// the file.
+        name: Option<String> = None;
+        /// Metres per unit of the file; "auto" takes that of `groom.file`, or what brings the roots to the body.
+        scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
+        /// The file's axis that points up; "auto" as for its units.
+        up: Up = Up::default();
+        /// Points of each strand, for files that do not say which points make a strand.
+        per_strand: Option<u32> = None, in [1, 4096];
+        /// Turns these strands: pitch (about x), yaw (about y), roll (about z).
+        rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
+        /// Moves these strands, head space.
+        translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+    }
+}
+
+settings! {
     /// Strands from a file, and how guides are made of strands.
     pub struct GroomSection {
         /// A file of any of the formats that `strandline convert --help` lists; without one the `[style]` is
@@ -27,6 +48,8 @@ settings! {
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
         /// Moves the strands of a file, head space.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// Further files with strands of the same hair, at most 64.
+        parts: Vec<GroomPart> = Vec::new(), in [0, 64];
         /// Strands that are simulated: so many, spread over the scalp and alike in shape to the others, which
         /// are bound to them. Without it they are those that a file marks as guides; without such marks all, or
         /// 2,000 of a file of more than 3,000. All strands are drawn.

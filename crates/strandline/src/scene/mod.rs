@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
-pub use body::{BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
+pub use body::{BodyPart, BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
 pub use film::{CameraSection, FilmSection, View};
-pub use groom::GroomSection;
+pub use groom::{GroomPart, GroomSection};
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 pub use surroundings::SurroundingsSection;
 
@@ -170,6 +170,15 @@ impl Scene {
             }
         }
         self.check_as("")?;
+        for (key, missing, whole) in [
+            ("groom.parts", self.groom.file.is_none() && !self.groom.parts.is_empty(), "groom.file"),
+            ("body.parts", self.body.file.is_none() && !self.body.parts.is_empty(), "body.file"),
+        ] {
+            if missing {
+                let found = "further files without a first one";
+                return Err(SettingError::new(key, found, format!("`{whole}` too")).into());
+            }
+        }
         self.picture.validate()?;
         self.motion.motion(Vec3::ZERO)?;
         if matches!(self.devices.simulation, Backend::Gpu(_)) {
@@ -181,6 +190,23 @@ impl Scene {
     /// Lets hair and motion begin at their beginning, not where a saved scene has them: for other hair.
     pub fn begin_at_rest(&mut self) {
         (self.groom.pose, self.film.start) = (None, 0.0);
+    }
+
+    /// Every path of the scene but that of the hair's pose.
+    pub fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
+        let Self { groom, body, look, .. } = self;
+        let named = [
+            &mut groom.file,
+            &mut groom.attributes,
+            &mut body.file,
+            &mut body.collider_file,
+            &mut look.color_map,
+            &mut look.width_map,
+        ];
+        let of_groups = look.group.iter_mut().flat_map(|group| [&mut group.color_map, &mut group.width_map]);
+        let parts = groom.parts.iter_mut().map(|part| &mut part.file);
+        let parts = parts.chain(body.parts.iter_mut().map(|part| &mut part.file));
+        named.into_iter().chain(of_groups).filter_map(Option::as_mut).chain(parts)
     }
 
     /// A path of the scene, from the scene's folder.

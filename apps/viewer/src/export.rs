@@ -1,0 +1,169 @@
+//! Moving hair as a file: a range of the film, simulated anew from its beginning on a thread of its own.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, OnceLock};
+use std::thread::JoinHandle;
+
+use eframe::egui;
+use strandline::{Error, OutSettings, Player, Scene, Target, What, Written};
+
+use crate::App;
+
+/// What is to be written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Time of the film at which it begins and ends \[s\].
+    pub from: f32,
+    pub to: f32,
+    pub what: What,
+    pub target: Target,
+}
+
+impl Default for Wanted {
+    fn default() -> Self {
+        Self { from: 0.0, to: 4.0, what: What::default(), target: Target::default() }
+    }
+}
+
+impl Wanted {
+    /// The first frame and the number of frames up to the last one.
+    fn frames(&self, frames_per_second: f32) -> [u32; 2] {
+        let frame = |seconds: f32| (seconds.max(0.0) * frames_per_second).round() as u32;
+        let first = frame(self.from);
+        [first, frame(self.to).max(first) + 1]
+    }
+}
+
+/// A file under way.
+pub struct Export {
+    path: PathBuf,
+    stop: Arc<AtomicBool>,
+    /// Frames that are done, of how many.
+    done: Arc<AtomicU32>,
+    frames: u32,
+    result: Receiver<Result<Option<Written>, String>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Export {
+    fn new(
+        mut scene: Scene,
+        wanted: &Wanted,
+        path: &Path,
+        context: Arc<OnceLock<egui::Context>>,
+    ) -> Result<Self, Error> {
+        let [first, frames] = wanted.frames(scene.film.frames_per_second);
+        scene.film.frames = frames;
+        let settings =
+            OutSettings { what: wanted.what, target: wanted.target, first, ..OutSettings::new(path) };
+        settings.check()?;
+        let (stop, done) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
+        let (tell, result) = channel();
+        let (stopped, counted) = (stop.clone(), done.clone());
+        let run = move || {
+            let wake = || context.get().into_iter().for_each(egui::Context::request_repaint);
+            let written = write(&scene, &settings, &stopped, &|frames| {
+                counted.store(frames, Ordering::Relaxed);
+                wake();
+            });
+            // The window may be gone.
+            let _ = tell.send(written.map_err(|error| error.to_string()));
+            wake();
+        };
+        let thread =
+            std::thread::Builder::new().name("exporting".to_owned()).spawn(run).map_err(Error::Thread)?;
+        Ok(Self { path: path.to_owned(), stop, done, frames, result, thread: Some(thread) })
+    }
+
+    /// Share of the frames that is done.
+    pub fn share(&self) -> f32 {
+        self.done.load(Ordering::Relaxed) as f32 / self.frames as f32
+    }
+}
+
+impl Drop for Export {
+    /// A window that is closed leaves the frames that are done.
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+fn write(
+    scene: &Scene,
+    settings: &OutSettings,
+    stop: &AtomicBool,
+    count: &dyn Fn(u32),
+) -> Result<Option<Written>, Error> {
+    let mut player = Player::new(scene, scene.devices, false)?;
+    player.set_out(settings)?;
+    let mut failed = None;
+    while !stop.load(Ordering::Relaxed)
+        && let Some(event) = player.next()
+    {
+        match event {
+            Ok(_) => count(player.frames_done()),
+            Err(error) => failed = Some(error),
+        }
+    }
+    // What was done stays.
+    let written = player.close_out()?;
+    failed.map_or(Ok(written), Err)
+}
+
+impl App {
+    /// Writes moving hair of the scene as it is now, or ends what is being written. The ending of the path says
+    /// what it is: .npz or .usda; without a path a free cache in the folder.
+    pub fn export(&mut self, path: Option<&Path>) {
+        if self.exporting.take().is_some() {
+            self.note("the export was stopped: what was done stays".to_owned());
+            return;
+        }
+        let ending = path.and_then(Path::extension).filter(|ending| ending.eq_ignore_ascii_case("usda"));
+        let ending = if ending.is_some() { "usda" } else { "npz" };
+        let Some(path) = self.path_or_free(path, "hair", ending) else { return };
+        let mut scene = self.seen();
+        // The hair begins where the film does, as in a run of the scene.
+        scene.begin_at_rest();
+        match Export::new(scene, &self.export_wanted, &path, self.context.clone()) {
+            Ok(export) => self.exporting = Some(export),
+            Err(error) => self.error = Some(error.to_string()),
+        }
+    }
+
+    /// Whether moving hair is being written.
+    pub fn is_exporting(&self) -> bool {
+        self.exporting.is_some()
+    }
+
+    /// Tells of moving hair that is written.
+    pub(crate) fn take_exported(&mut self) {
+        let Some(result) = self.exporting.as_ref().and_then(|export| export.result.try_recv().ok()) else {
+            return;
+        };
+        let path = self.exporting.take().map(|export| export.path.clone()).unwrap_or_default();
+        match result {
+            Ok(Some(Written { place, frames, strands, .. })) => {
+                self.note(format!("wrote {frames} frames of {strands} strands: {}", place.display()));
+            }
+            Ok(None) => {}
+            Err(error) => self.error = Some(format!("cannot export {}: {error}", path.display())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_of_seconds_is_one_of_frames() {
+        let wanted = |from, to| Wanted { from, to, ..Wanted::default() }.frames(30.0);
+        assert_eq!(wanted(0.0, 4.0), [0, 121]);
+        assert_eq!(wanted(1.0, 2.0), [30, 61]);
+        // Never less than one frame.
+        assert_eq!(wanted(2.0, 1.0), [60, 61]);
+    }
+}

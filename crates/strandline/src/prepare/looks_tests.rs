@@ -1,0 +1,66 @@
+use super::*;
+
+/// Four strands of three points, two of each of the groups 3 and 5, with roots at the corners of the scalp.
+fn groom() -> Groom {
+    let mut groom = Groom::empty(1e-4);
+    for strand in 0..4 {
+        let root = Vec3::X * strand as f32;
+        groom.push([root, root + Vec3::Y, root + Vec3::Y * 2.0]);
+    }
+    groom.groups = Some(vec![3, 3, 5, 5]);
+    groom.group_names.insert(3, "hair".to_owned());
+    groom.root_uvs = Some(vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE]);
+    groom
+}
+
+fn group(name: &str) -> GroupLook {
+    GroupLook { name: name.to_owned(), ..GroupLook::default() }
+}
+
+#[test]
+fn groups_have_colours_and_widths_of_their_own() {
+    let (mut scene, mut groom) = (Scene::default(), groom());
+    scene.look.variation = 0.0;
+    scene.look.group = vec![
+        GroupLook { root_color: Some(Vec3::X), tip_color: Some(Vec3::Y), ..group("5") },
+        GroupLook { width_scale: 2.0, ..group("hair") },
+    ];
+    dress(&scene, &mut groom).unwrap();
+    let colors = groom.colors.as_ref().unwrap();
+    let [root, tip] = [scene.look.root_color, scene.look.tip_color].map(|color| color.to_array());
+    assert_eq!((colors[0], colors[2]), (root, tip), "the look's");
+    assert_eq!(colors[6..9], [[0.99, 0.0, 0.0], [0.495, 0.495, 0.0], [0.0, 0.99, 0.0]]);
+    assert_eq!(groom.widths, Widths::PerStrand(vec![2e-4, 2e-4, 1e-4, 1e-4]));
+}
+
+#[test]
+fn a_group_that_is_not_there_is_refused_by_name() {
+    let (mut scene, mut groom) = (Scene::default(), groom());
+    scene.look.group = vec![group("hair"), group("beard")];
+    let error = dress(&scene, &mut groom).unwrap_err().to_string();
+    assert!(error.contains("look.group[1].name") && error.contains("`hair`, 5"), "{error}");
+    groom.groups = None;
+    assert!(dress(&scene, &mut groom).unwrap_err().to_string().contains("this one has none"));
+}
+
+#[test]
+fn maps_are_read_over_the_scalp() {
+    let folder = tempfile::tempdir().unwrap();
+    let (colors, shares) = (folder.path().join("colors.png"), folder.path().join("shares.png"));
+    // Red and green above, blue and white below.
+    let pixels = vec![255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255];
+    image::RgbImage::from_raw(2, 2, pixels).unwrap().save(&colors).unwrap();
+    image::GrayImage::from_raw(2, 1, vec![51, 255]).unwrap().save(&shares).unwrap();
+    let (mut scene, mut groom) = (Scene::default(), groom());
+    (scene.look.color_map, scene.look.width_map) = (Some(colors.clone()), Some(shares));
+    dress(&scene, &mut groom).unwrap();
+    let at = |strand: usize| groom.colors.as_ref().unwrap()[3 * strand];
+    assert_eq!([at(0), at(1), at(2), at(3)], [[0.0, 0.0, 1.0], [1.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    assert_eq!(groom.widths, Widths::PerStrand(vec![2e-5, 1e-4, 2e-5, 1e-4]));
+    let middle = Map::load(&colors).unwrap().color(Vec2::splat(0.5));
+    assert!((middle - Vec3::splat(0.5)).abs().max_element() < 1e-6, "{middle}");
+    groom.root_uvs = None;
+    assert!(dress(&scene, &mut groom).unwrap_err().to_string().contains("root coordinates"));
+    std::fs::write(&colors, b"GIF89a").unwrap();
+    assert!(dress(&scene, &mut self::groom()).unwrap_err().to_string().contains("expected a .png"));
+}

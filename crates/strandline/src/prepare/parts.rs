@@ -1,0 +1,186 @@
+//! Several files of strands and several meshes, brought together as one groom and one body.
+
+use std::path::Path;
+
+use strandline_base::SettingError;
+
+use crate::{
+    Error, Scene,
+    body::Mesh,
+    groom::{
+        Groom,
+        format::{MAX_POINTS, MAX_STRANDS, Part, Scale, Up},
+    },
+};
+
+use super::{
+    looks,
+    placing::{self, Placing},
+    strands,
+};
+
+/// Least guides of a file that marks none, where others mark some.
+const LEAST_GUIDES: usize = 16;
+
+/// The meshes of a body, head space.
+pub(super) struct Meshes {
+    /// What is drawn.
+    pub drawn: Mesh,
+    /// What hair hits, where that is something else.
+    pub solid: Option<Mesh>,
+}
+
+/// The mesh of a scene's body with its further ones; `mesh` is as its file has it.
+pub(super) fn meshes(scene: &Scene, mut mesh: Mesh, placing: Placing) -> Result<Meshes, Error> {
+    let body = &scene.body;
+    placing::place_mesh(&mut mesh, placing, body.rotation, body.translation);
+    let mut drawn = mesh;
+    let mut solid = (!body.parts.is_empty()).then(|| drawn.clone());
+    for part in &body.parts {
+        let mut mesh = Mesh::load(&scene.path(&part.file), 1.0)?;
+        let scale = match part.scale {
+            Scale::Auto => placing.scale,
+            Scale::Factor(factor) => factor,
+        };
+        let turn = if part.up == Up::Auto { placing.turn } else { placing::upright(part.up) };
+        placing::place_mesh(&mut mesh, Placing { scale, turn }, part.rotation, part.translation);
+        if part.visible {
+            drawn.append(&mesh)?;
+        }
+        if let Some(solid) = &mut solid
+            && part.solid.unwrap_or_else(|| mesh.is_closed())
+        {
+            solid.append(&mesh)?;
+        }
+    }
+    Ok(Meshes { drawn, solid })
+}
+
+/// Adds the strands of a scene's further files to those of the first, head space: each is a group.
+pub(super) fn add_grooms(
+    scene: &Scene,
+    groom: &mut Groom,
+    first: Placing,
+    mesh: Option<&Mesh>,
+    notes: &mut Vec<String>,
+) -> Result<(), Error> {
+    if scene.groom.parts.is_empty() {
+        return Ok(());
+    }
+    name_groups(groom, 0, stem(scene.groom.file.as_deref()));
+    for part in &scene.groom.parts {
+        let mut further = strands::read(scene, &part.file, part.per_strand, notes)?;
+        let placing = placing::of_part(&further, part, first, mesh);
+        if placing != first {
+            notes.push(format!("{}: a unit is {} m", part.file.display(), placing.scale));
+        }
+        strands::place(&mut further, placing, scene, part.rotation, part.translation);
+        let next = groom.groups.iter().flatten().max().map_or(0, |group| group.saturating_add(1));
+        name_groups(&mut further, next, part.name.clone().unwrap_or_else(|| stem(Some(&part.file))));
+        let strands = (groom.strand_count() + further.strand_count()) as u64;
+        let points = (groom.points.len() + further.points.len()) as u64;
+        if strands > MAX_STRANDS || points > MAX_POINTS {
+            let found = format!("{strands} strands of {points} points in all");
+            let expected = format!("{MAX_STRANDS} strands of {MAX_POINTS} points at most");
+            return Err(SettingError::new("groom.parts", found, expected).into());
+        }
+        alike(scene, groom, &mut further);
+        for lost in Part::ALL {
+            let is_own = matches!(lost, Part::Widths | Part::WidthsAlong | Part::GroupNames);
+            if !is_own && lost.is_in(groom) != lost.is_in(&further) {
+                notes.push(format!("only some of the files have {}: left out", lost.name()));
+            }
+        }
+        groom.append(further);
+    }
+    Ok(())
+}
+
+fn stem(file: Option<&Path>) -> String {
+    let stem = file.and_then(Path::file_stem);
+    stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// Makes a groom without groups one of a name and number; numbers of other groups count from there.
+fn name_groups(groom: &mut Groom, first: u32, name: String) {
+    match &mut groom.groups {
+        None => {
+            groom.groups = Some(vec![first; groom.strand_count()]);
+            groom.group_names = [(first, name)].into();
+        }
+        Some(groups) => {
+            groups.iter_mut().for_each(|group| *group = group.saturating_add(first));
+            let names = std::mem::take(&mut groom.group_names);
+            groom.group_names =
+                names.into_iter().map(|(group, name)| (group.saturating_add(first), name)).collect();
+        }
+    }
+}
+
+/// Gives each of two grooms what only the other has, where there is something that means the same.
+fn alike(scene: &Scene, one: &mut Groom, two: &mut Groom) {
+    if one.colors.is_some() != two.colors.is_some() {
+        for groom in [&mut *one, &mut *two] {
+            if groom.colors.is_none() {
+                groom.colors = Some(looks::gradient(&scene.look, groom));
+            }
+        }
+    }
+    let share = |groom: &Groom| {
+        groom.guide_flags.as_ref().map(|flags| {
+            flags.iter().filter(|flag| **flag).count() as f32 / groom.strand_count().max(1) as f32
+        })
+    };
+    let mark = |groom: &mut Groom, share: f32| {
+        let wanted = (share * groom.strand_count() as f32).ceil() as usize;
+        let mut flags = vec![false; groom.strand_count()];
+        groom.representatives(wanted.max(LEAST_GUIDES)).into_iter().for_each(|strand| flags[strand] = true);
+        groom.guide_flags = Some(flags);
+    };
+    match (share(one), share(two)) {
+        (Some(share), None) => mark(two, share),
+        (None, Some(share)) => mark(one, share),
+        (Some(_), Some(_)) | (None, None) => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+
+    fn groom(count: usize) -> Groom {
+        let mut groom = Groom::empty(8e-5);
+        for strand in 0..count {
+            let root = Vec3::X * strand as f32;
+            groom.push([root, root + Vec3::Y, root + Vec3::Y * 2.0]);
+        }
+        groom
+    }
+
+    #[test]
+    fn groups_of_several_files_do_not_meet() {
+        let mut hair = groom(2);
+        hair.groups = Some(vec![0, 4]);
+        hair.group_names = [(4, "tail".to_owned())].into();
+        name_groups(&mut hair, 3, "hair".to_owned());
+        assert_eq!(hair.groups.as_deref(), Some(&[3, 7][..]));
+        assert_eq!(hair.group_names[&7], "tail");
+        let mut brows = groom(2);
+        name_groups(&mut brows, 8, "brows".to_owned());
+        assert_eq!((brows.groups.as_deref(), &*brows.group_names[&8]), (Some(&[8, 8][..]), "brows"));
+    }
+
+    #[test]
+    fn what_one_file_has_the_other_gets() {
+        let (mut hair, mut brows) = (groom(100), groom(50));
+        hair.colors = Some(vec![[0.5; 3]; hair.points.len()]);
+        brows.guide_flags = Some((0..50).map(|strand| strand % 2 == 0).collect());
+        alike(&Scene::default(), &mut hair, &mut brows);
+        assert_eq!(brows.colors.as_ref().map(Vec::len), Some(150));
+        assert!(brows.colors.unwrap()[0] != [0.5; 3], "the look's");
+        let marked = hair.guide_flags.unwrap().iter().filter(|flag| **flag).count();
+        assert!((40..=50).contains(&marked), "{marked}");
+    }
+}

@@ -1,0 +1,163 @@
+//! A grown style on a body from a file: the built-in head's scalp is fitted to the head of the body.
+
+use glam::{Vec2, Vec3};
+
+use crate::{
+    body::{Mannequin, Mesh, Shape},
+    groom::Groom,
+};
+
+/// Depth below the crown over the width of the skull at which it is widest, above brows and ears.
+const WIDEST: f32 = 0.6;
+/// Width at which the search begins over the height of the body.
+const START: f32 = 0.12;
+/// Rounds in which the width is found, and what it changes by in the last one, as a share of it.
+const ROUNDS: usize = 64;
+const CONVERGED: f32 = 1e-3;
+/// Times that a root is led to the surface, and how far \[m\] a strand is led with it at most.
+const STEPS: usize = 4;
+const REACH: f32 = 0.05;
+
+/// The upper part of a head, where hair grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Skull {
+    /// Height of the crown \[m\].
+    top: f32,
+    /// From ear to ear and from front to back \[m\].
+    size: Vec2,
+    /// The middle, seen from above \[m\].
+    middle: Vec2,
+}
+
+impl Skull {
+    /// That of the highest part of a mesh, which stands upright and looks along z.
+    fn of(mesh: &Mesh) -> Option<Self> {
+        let bounds = mesh.bounds()?;
+        let top = bounds.max.y;
+        let above = |width: f32| {
+            let start = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+            let places = mesh.positions.iter().filter(|place| place.y >= top - WIDEST * width);
+            places
+                .map(|place| Vec2::new(place.x, place.z))
+                .fold(start, |(low, high), place| (low.min(place), high.max(place)))
+        };
+        // From above, so that no shoulder is taken for it.
+        let mut width = START * (top - bounds.min.y);
+        for _ in 0..ROUNDS {
+            let (low, high) = above(width);
+            let found = (high.x - low.x).max(width);
+            if found - width < CONVERGED * width {
+                let size = high - low;
+                return (size.min_element() > 0.0).then_some(Self { top, size, middle: 0.5 * (low + high) });
+            }
+            width = found;
+        }
+        None
+    }
+}
+
+/// Fits the strands of a grown style to a body, and leads their roots to its surface; what is to be said of it.
+pub(super) fn onto(groom: &mut Groom, mesh: &Mesh, shape: Option<&Shape>) -> Option<String> {
+    let (from, to) = (Skull::of(&Mannequin::new().mesh())?, Skull::of(mesh)?);
+    let ratio = to.size / from.size;
+    let scale = Vec3::new(ratio.x, ratio.x, ratio.y);
+    let place = |point: Vec3| {
+        let beside = point - Vec3::new(from.middle.x, from.top, from.middle.y);
+        beside * scale + Vec3::new(to.middle.x, to.top, to.middle.y)
+    };
+    groom.points.iter_mut().for_each(|point| *point = place(*point));
+    if let Some(shape) = shape {
+        for strand in 0..groom.strand_count() {
+            let range = groom.range(strand);
+            let root = groom.points[range.start];
+            let (skin, normal) = settled(shape, root);
+            let way = (skin - root).clamp_length_max(REACH);
+            groom.points[range].iter_mut().for_each(|point| *point += way);
+            if let Some(normals) = &mut groom.root_normals {
+                normals[strand] = normal;
+            }
+        }
+    }
+    let percent = |ratio: f32| 100.0 * ratio;
+    Some(format!(
+        "the style grows on the highest part of the body: {:.0} % as wide and {:.0} % as deep as the built-in head",
+        percent(ratio.x),
+        percent(ratio.y)
+    ))
+}
+
+/// The place of a surface near a point \[m\], and its unit normal there.
+fn settled(shape: &Shape, point: Vec3) -> (Vec3, Vec3) {
+    let mut place = point;
+    let mut normal = Vec3::Y;
+    for _ in 0..STEPS {
+        let (distance, gradient) = shape.distance_and_gradient(place);
+        (place, normal) = (place - gradient * distance, gradient);
+    }
+    (place, normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::groom::{Style, StyleSettings};
+
+    /// A ball of a head on a neck and shoulders: its radii \[m\], from ear to ear and from front to back, and its
+    /// middle \[m\].
+    fn bust(radii: Vec2, middle: Vec3) -> Mesh {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        let rings = 60;
+        for ring in 0..=rings {
+            for step in 0..48_u32 {
+                let (share, around) =
+                    (ring as f32 / rings as f32, step as f32 / 48.0 * std::f32::consts::TAU);
+                // Down the ball, then out over the shoulders.
+                let (flat, height) = if share < 0.75 {
+                    let polar = share / 0.75 * 2.7;
+                    (radii * polar.sin(), radii.x * polar.cos())
+                } else {
+                    let out = (share - 0.75) / 0.25;
+                    (radii * (0.43 + 2.0 * out), radii.x * (-0.9 - out))
+                };
+                let beside = Vec3::new(flat.x * around.cos(), height, flat.y * around.sin());
+                positions.push(middle + beside);
+                if ring < rings {
+                    let corner = |ring: u32, step: u32| 48 * ring + step % 48;
+                    triangles.push([corner(ring, step), corner(ring, step + 1), corner(ring + 1, step)]);
+                    triangles.push([
+                        corner(ring + 1, step),
+                        corner(ring, step + 1),
+                        corner(ring + 1, step + 1),
+                    ]);
+                }
+            }
+        }
+        Mesh::new(positions, triangles).unwrap()
+    }
+
+    #[test]
+    fn a_skull_is_found_above_shoulders() {
+        let skull = Skull::of(&bust(Vec2::new(0.1, 0.13), Vec3::new(0.3, 2.0, -0.4))).unwrap();
+        assert!((skull.top - 2.1).abs() < 1e-4, "{skull:?}");
+        // Rings of vertices 5 mm apart.
+        assert!((skull.size - Vec2::new(0.2, 0.26)).abs().max_element() < 0.006, "{skull:?}");
+        assert!((skull.middle - Vec2::new(0.3, -0.4)).abs().max_element() < 1e-3, "{skull:?}");
+    }
+
+    #[test]
+    fn roots_of_a_style_lie_on_a_foreign_head() {
+        let (radius, middle) = (0.14, Vec3::new(0.2, 1.7, 0.1));
+        let mut groom = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) }.grow().unwrap();
+        let lengths = groom.lengths();
+        let ball = Shape::sphere(middle, radius).unwrap();
+        let note = onto(&mut groom, &bust(Vec2::splat(radius), middle), Some(&ball)).unwrap();
+        for root in groom.roots() {
+            assert!((root.distance(middle) - radius).abs() < 1e-5, "{root}");
+            // Hair of a bob ends in the nape.
+            assert!(root.y > middle.y - 0.9 * radius, "{root}");
+        }
+        let highest = groom.roots().map(|root| root.y).fold(f32::NEG_INFINITY, f32::max);
+        assert!(highest > middle.y + 0.95 * radius, "{highest}");
+        assert!(groom.lengths()[0] > 1.2 * lengths[0] && note.contains("% as wide"), "{note}");
+    }
+}
