@@ -81,7 +81,9 @@ impl Both {
             world_from_head: self.pose,
             camera: &self.camera,
             look: &self.look,
-            body_look: const { &BodyLook { color: Vec3::splat(0.3), wrap: 0.2, specular: 0.03, roughness: 0.5, scalp: 0.7 } },
+            body_look: const {
+                &BodyLook { color: Vec3::splat(0.3), wrap: 0.2, specular: 0.03, roughness: 0.5, scalp: 0.7 }
+            },
             lights: &self.lights,
             level_of_detail: &self.detail,
         }

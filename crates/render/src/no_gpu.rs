@@ -1,8 +1,8 @@
 //! What stands for the renderer on a GPU in a build without GPUs: nothing of it can be made.
 
-use strandline_body::Mesh;
+use strandline_body::{Collider, Mesh};
 use strandline_gpu::{Buffer, Gpu};
-use strandline_groom::Guides;
+use strandline_groom::{Binding, Guides};
 
 use crate::{FrameInput, FrameReport, Picture, PictureSettings, RenderError};
 
@@ -33,6 +33,10 @@ impl GpuRenderer {
     }
 
     pub fn gpu(&self) -> &Gpu {
+        match *self {}
+    }
+
+    pub fn bind(&mut self, _: &Binding, _: &[(Collider, f32)]) -> Result<(), RenderError> {
         match *self {}
     }
 
