@@ -2,7 +2,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_base::{Group, Key, SettingError, settings};
+use strandline_base::{Key, SettingError, settings};
 
 use crate::Environment;
 use crate::fibre::Fibre;
