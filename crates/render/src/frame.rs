@@ -156,7 +156,7 @@ impl Renderer {
         self.resolve.resolve(&self.samples, &self.settings, picture);
         report.seconds.push(("resolve", start.elapsed().as_secs_f64()));
         if self.settings.layers {
-            let lights = at_samples(input.lights, input.look);
+            let lights = at_samples(input.lights, input.look.suns());
             report.layers = Some(Arc::new(self.channels(&FrameInput { lights: &lights, ..*input })));
         }
         Ok(report)
@@ -168,15 +168,14 @@ impl Renderer {
     /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
         input.validate()?;
-        let lights = at_samples(input.lights, input.look);
+        let lights = at_samples(input.lights, input.look.suns());
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
         let input = &FrameInput { lights: &lights, ..*input };
         let middle = input.world_from_head.point(self.middle);
         let distance = input.camera.position.distance(middle);
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
-        let (guides, pose) = (&self.guides, &input.world_from_head);
+        let (guides, pose, own_color) = (&self.guides, &input.world_from_head, self.own_color);
         input.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
-        let own_color = self.own_color;
         let Self { curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } = self;
         let mut clock = Clock::start();
 
@@ -221,12 +220,8 @@ impl Renderer {
         };
         draw.draw(&draw_input, &skin, samples);
         clock.lap("draw");
-        Ok(FrameReport {
-            strands: strands.strand_count,
-            segments: strands.segment_count(),
-            seconds: clock.seconds,
-            layers: None,
-        })
+        let (count, segments) = (strands.strand_count, strands.segment_count());
+        Ok(FrameReport { strands: count, segments, seconds: clock.seconds, layers: None })
     }
 
     /// Colours hair by the layer of a light's opacity map in which it lies instead of lighting it, from the

@@ -23,6 +23,7 @@ mod looks;
 pub mod memory;
 mod picture;
 mod picture_settings;
+mod preset;
 pub mod surroundings;
 
 pub use body_look::BodyLook;
@@ -33,6 +34,6 @@ pub use layers::Layers;
 pub use level_of_detail::{DetailLevel, LevelOfDetail};
 pub use lights::{Environment, Illumination, Light, LightKind};
 pub use look::{Clump, GroupLook, Highlight, Look, Shadow};
-pub use looks::Preset;
 pub use picture::Picture;
 pub use picture_settings::{Background, PictureSettings, ToneMap};
+pub use preset::Preset;

@@ -1,8 +1,8 @@
 use glam::Vec3;
 use strandline_base::{Group, Key, SettingError, choices, settings};
 
+use crate::RenderError;
 use crate::cpu::light_field::Field;
-use crate::{Look, RenderError};
 
 choices! {
     /// How a light's rays spread.
@@ -199,9 +199,8 @@ impl Light {
 
 /// The lights with those that have an area as the places that they shine from, in order; behind them the suns of the
 /// surroundings.
-pub(crate) fn at_samples(lights: &[Light], look: &Look) -> Vec<Light> {
-    let suns = look.surroundings.iter().flat_map(|surroundings| surroundings.suns());
-    lights.iter().flat_map(|light| light.at_samples()).chain(suns.copied()).collect()
+pub(crate) fn at_samples(lights: &[Light], suns: &[Light]) -> Vec<Light> {
+    lights.iter().flat_map(|light| light.at_samples()).chain(suns.iter().copied()).collect()
 }
 
 /// Number of the first place of a light among those of all lights.
@@ -242,7 +241,7 @@ mod tests {
     fn a_rectangle_shines_as_its_places_do() {
         let light = Light { kind: LightKind::Rectangle, position: Vec3::Y, samples: 4, ..Light::default() };
         let lights = [light, Light { kind: LightKind::Disc, ..light }, Light::default()];
-        let places = at_samples(&lights, &Look::default());
+        let places = at_samples(&lights, &[]);
         assert_eq!(places.len(), 33);
         assert_eq!(first_sample(&[light, light], 1), 16);
         // Over a square of 0.5 m at 1 m: the integral of cosine^4 / pi by finer places than these.

@@ -6,7 +6,7 @@ use strandline_base::{Key, SettingError, settings};
 
 use crate::Environment;
 use crate::fibre::Fibre;
-use crate::looks::Preset;
+use crate::preset::Preset;
 use crate::surroundings::Surroundings;
 
 settings! {

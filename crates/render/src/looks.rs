@@ -1,32 +1,18 @@
 //! Looks by name.
 
 use glam::Vec3;
-use strandline_base::{Group, Value, choices};
+use strandline_base::{Group, Value};
 
 use crate::cpu::light_field::{self, Field};
 use crate::fibre::{FibreModel, chiang::Pigment};
-use crate::{Environment, Light, Look, RenderError, Shadow};
-
-choices! {
-    /// A look by its name.
-    pub enum Preset as "look.preset" {
-        /// Brown hair.
-        Brown = "brown",
-        /// Black hair.
-        Black = "black",
-        /// Blonde hair, lighter toward the tips.
-        Blonde = "blonde",
-        /// Red hair.
-        Red = "red",
-        /// Grey hair: white strands among dark ones.
-        Grey = "grey",
-        /// Brown hair as [Chen2011] lights it: the fibre of [Scheuermann2004], brighter surroundings.
-        Thesis = "thesis",
-    }
-    default Brown
-}
+use crate::{Environment, Light, Look, Preset, RenderError, Shadow};
 
 impl Look {
+    /// Lights that shine from the surroundings.
+    pub(crate) fn suns(&self) -> &[Light] {
+        self.surroundings.as_ref().map_or(&[], |surroundings| surroundings.suns())
+    }
+
     /// Brown hair, the default.
     pub fn brown() -> Self {
         Self::default()

@@ -178,11 +178,10 @@ impl Hair {
         let Prepared { guides, bound, mesh, colliders, head, pose, .. } = prepared;
         let pair = devices.into().open()?;
         let mut hair = Self::placed(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
-        hair.lights = if scene.lights.is_empty() {
-            scene.look.lights(prepare::center(hair.studio.bounds))
-        } else {
-            scene.lights.clone()
-        };
+        hair.lights = scene.look.lights(prepare::center(hair.studio.bounds));
+        if !scene.lights.is_empty() {
+            hair.lights.clone_from(&scene.lights);
+        }
         hair.body_look = scene.body_look;
         hair.level_of_detail = scene.level_of_detail;
         hair.set_picture(&scene.picture)?;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::fast_math::exp;
 use super::lattice::{DIRECTIONS, Rays, directions};
 use super::light_field::{self, Field};
-use super::light_grid::{Cell, Scene};
+use super::light_scene::{Cell, Scene};
 use super::occlusion::GridBox;
 
 /// Mean cosine between random hairs and the plane across a direction.

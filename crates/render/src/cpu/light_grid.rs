@@ -8,38 +8,18 @@
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::lattice::{Lattice, Rays};
+use super::lattice::Rays;
 use super::light_carry::Carried;
 use super::light_field::{self, Field};
+use super::light_scene::{Cell, Scene};
 use super::light_sums::{HAIR_SUMS, SKIN_SUMS, UNITS, sum};
-use super::occlusion::{GridBox, Occlusion, toward};
-use super::{ShadowBody, Shadows, Strands};
-use crate::Light;
+use super::occlusion::{GridBox, toward};
 use crate::fibre::chiang::Pigments;
 
 /// Cosine of the angle between lights that are taken for one where straight light enters the grid.
 const ONE_BEAM: f32 = 0.985;
 /// Most by which hair shows more than the field says.
 const MOST_CORRECTION: f32 = 4.0;
-
-/// What lies in a cell.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cell {
-    /// Which cell of the grid it is.
-    pub(super) index: usize,
-    /// Area of its hair, full width times length, over that of a face.
-    pub(super) hair: f32,
-    /// Mean direction of the hair, of unit length.
-    pub(super) tangent: Vec3,
-    /// Share of the hair that has it; the rest lies every way.
-    pub(super) order: f32,
-    /// Area of skin over that of a face, times its normal.
-    pub(super) skin: Vec3,
-    /// Light that skin meets straight from lights, as radiance of a white surface.
-    pub(super) skin_light: Vec4,
-    /// The lattice's number of the tangent.
-    pub(super) nearest: usize,
-}
 
 /// Scattered light around and in the hair.
 #[derive(Clone, Debug, Default)]
@@ -52,33 +32,6 @@ pub struct LightGrid {
     /// All light but the straight one; what hair of each cell's tangent shows toward the eye of it, and what the field
     /// alone says of that.
     found: Vec<(Field, [Vec4; 2])>,
-}
-
-/// What light is scattered by.
-#[derive(Clone, Copy)]
-pub struct Scene<'a> {
-    /// All drawn hair.
-    pub strands: &'a Strands,
-    /// Share of each shadow light that reaches every point of it, shape `[light][point]`; empty for the others.
-    pub reached: &'a [Vec<f32>],
-    /// The body and the reflectance of its skin.
-    pub body: Option<(ShadowBody<'a>, Vec3)>,
-    /// Shadows of the same lights.
-    pub shadows: &'a Shadows,
-    /// How much of the surroundings hair hides; its grid is taken.
-    pub occlusion: &'a Occlusion,
-    /// The lights.
-    pub lights: &'a [Light],
-    /// Light from all around.
-    pub around: Field,
-    /// The fibre's scattering among directions.
-    pub lattice: &'a Lattice,
-    /// Where the camera stands \[m\], world space.
-    pub eye: Vec3,
-    /// Mean multiple of the pigment.
-    pub pigment: f32,
-    /// How many times light is scattered.
-    pub rounds: u32,
 }
 
 impl LightGrid {

@@ -6,7 +6,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::ShadowBody;
-use super::light_grid::Scene;
+use super::light_scene::Scene;
 use super::occlusion::GridBox;
 
 /// Parts that the strands are shared out to.

@@ -13,6 +13,7 @@ pub mod layer_colors;
 mod light_carry;
 pub mod light_field;
 pub mod light_grid;
+pub mod light_scene;
 mod light_sums;
 mod noise;
 pub mod occlusion;

@@ -240,7 +240,7 @@ impl GpuRenderer {
         own: Option<&Own>,
     ) -> Result<FrameReport, RenderError> {
         input.validate()?;
-        let (given, lights) = (input.lights, at_samples(input.lights, input.look));
+        let (given, lights) = (input.lights, at_samples(input.lights, input.look.suns()));
         let input = &FrameInput { lights: &lights, ..*input };
         self.check_points(input, points)?;
         let settings = self.settings;

@@ -8,7 +8,7 @@ use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers, RgbChannels};
 use glam::Vec3;
 
-use super::panorama::{Panorama, check_size};
+use super::size::{MAX_PIXELS, check_size};
 
 /// What such a file begins with.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -19,7 +19,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(usize, usize, Vec<Vec3>), String> {
     // Sizes are looked at before anything is taken for them.
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).map_err(told)?;
     let sizes = meta.headers.iter().map(|header| header.layer_size);
-    if let Some(size) = sizes.clone().find(|size| size.0.saturating_mul(size.1) > Panorama::MAX_PIXELS) {
+    if let Some(size) = sizes.clone().find(|size| size.0.saturating_mul(size.1) > MAX_PIXELS) {
         check_size(size.0, size.1)?;
     }
     let begin = |size: Vec2<usize>, _: &RgbChannels| (size.0, vec![Vec3::ZERO; size.0 * size.1]);

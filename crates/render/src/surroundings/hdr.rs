@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::panorama::check_size;
+use super::size::check_size;
 
 /// Longest line of a header \[bytes\], and lines at most.
 const LONGEST: usize = 2048;

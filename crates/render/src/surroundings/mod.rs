@@ -7,6 +7,7 @@
 mod exr;
 mod hdr;
 mod panorama;
+mod size;
 
 use std::f32::consts::{PI, TAU};
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use strandline_base::read_plain;
 
+use super::size::{MAX_PIXELS, check_size};
 use super::{exr, hdr};
 use crate::RenderError;
 
@@ -19,7 +20,7 @@ impl Panorama {
     /// Largest file that is read \[bytes\].
     pub const MAX_BYTES: u64 = 1 << 29;
     /// Most pixels that are read: 8,192 x 4,096.
-    pub const MAX_PIXELS: usize = 1 << 25;
+    pub const MAX_PIXELS: usize = MAX_PIXELS;
 
     /// A picture of pixels, shape `[row][column]`.
     ///
@@ -91,18 +92,4 @@ impl Panorama {
         }
         small
     }
-}
-
-/// Refuses sizes that no panorama has.
-pub(super) fn check_size(width: usize, height: usize) -> Result<(), String> {
-    let pixels = width.saturating_mul(height);
-    if pixels > Panorama::MAX_PIXELS {
-        return Err(format!("{width} x {height} pixels, at most 8192 x 4096 are read: make it smaller"));
-    }
-    if pixels == 0 || width != 2 * height {
-        return Err(format!(
-            "{width} x {height} pixels, expected a picture of all directions that is twice as wide as high"
-        ));
-    }
-    Ok(())
 }

@@ -1,0 +1,55 @@
+//! What scattered light is made of: what it comes from, and what lies in a cell of its grid.
+
+use glam::{Vec3, Vec4};
+
+use super::lattice::Lattice;
+use super::light_field::Field;
+use super::occlusion::Occlusion;
+use super::{ShadowBody, Shadows, Strands};
+use crate::Light;
+
+/// What light is scattered by.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// All drawn hair.
+    pub strands: &'a Strands,
+    /// Share of each shadow light that reaches every point of it, shape `[light][point]`; empty for the others.
+    pub reached: &'a [Vec<f32>],
+    /// The body and the reflectance of its skin.
+    pub body: Option<(ShadowBody<'a>, Vec3)>,
+    /// Shadows of the same lights.
+    pub shadows: &'a Shadows,
+    /// How much of the surroundings hair hides; its grid is taken.
+    pub occlusion: &'a Occlusion,
+    /// The lights.
+    pub lights: &'a [Light],
+    /// Light from all around.
+    pub around: Field,
+    /// The fibre's scattering among directions.
+    pub lattice: &'a Lattice,
+    /// Where the camera stands \[m\], world space.
+    pub eye: Vec3,
+    /// Mean multiple of the pigment.
+    pub pigment: f32,
+    /// How many times light is scattered.
+    pub rounds: u32,
+}
+
+/// What lies in a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cell {
+    /// Which cell of the grid it is.
+    pub(super) index: usize,
+    /// Area of its hair, full width times length, over that of a face.
+    pub(super) hair: f32,
+    /// Mean direction of the hair, of unit length.
+    pub(super) tangent: Vec3,
+    /// Share of the hair that has it; the rest lies every way.
+    pub(super) order: f32,
+    /// Area of skin over that of a face, times its normal.
+    pub(super) skin: Vec3,
+    /// Light that skin meets straight from lights, as radiance of a white surface.
+    pub(super) skin_light: Vec4,
+    /// The lattice's number of the tangent.
+    pub(super) nearest: usize,
+}
