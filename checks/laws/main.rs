@@ -9,6 +9,7 @@ mod free_strand;
 mod friction;
 mod grab;
 mod grid_contact;
+mod hair;
 mod length_scale;
 mod lengths;
 mod pendulum;

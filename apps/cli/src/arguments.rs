@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use strandline::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
-use strandline::{Backend, Style, Target, What, scene::MotionName};
+use strandline::{Backend, Style, Target, What, scene::MotionName, sim::rods::HairKind};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
@@ -80,6 +80,9 @@ pub struct Inputs {
     /// Load the body from this .obj, .gltf or .glb file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
+    /// What hair is made of: fine, medium, coarse, wet or sprayed.
+    #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
+    pub hair: Option<HairKind>,
     /// still, shake, nod, turn or keyframes.
     #[arg(long, value_name = "NAME", value_parser = MotionName::from_str)]
     pub motion: Option<MotionName>,

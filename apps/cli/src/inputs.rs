@@ -6,6 +6,7 @@ use std::str::FromStr;
 use strandline::{
     Cache, Scene,
     scene::{BodyPart, GroomPart},
+    sim::StrandMethod,
 };
 
 use crate::arguments::{Inputs, Usage};
@@ -46,6 +47,14 @@ impl Inputs {
             scene.body.file = Some(std::path::absolute(first)?);
             scene.body.parts = parts(further, |file| BodyPart { file, ..BodyPart::default() })?;
             scene.begin_at_rest();
+        }
+        if let Some(hair) = self.hair {
+            if scene.simulation.strands.method == StrandMethod::Constrain {
+                let mend = "--hair is for rods, and the scene's strands are not: simulation.strands.method is \
+                            \"constrain\", expected \"rods\"";
+                return Err(Usage(mend.to_owned()).into());
+            }
+            scene.simulation.strands.rods.set_hair(hair);
         }
         if let Some(name) = self.motion {
             scene.motion.name = name;

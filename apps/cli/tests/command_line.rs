@@ -112,6 +112,10 @@ fn sim_prints_one_object_and_the_same_physics_every_time() {
     assert_eq!(report, run());
     let other = works(folder.path(), &["sim", "--scene", "small.toml", "--json", "--frames", "6"]);
     assert!(!other.contains("\"steps\":10,"), "the comparison can fail");
+    let wet =
+        works(folder.path(), &["sim", "--scene", "small.toml", "--json", "--frames", "5", "--hair", "wet"]);
+    let wet: serde_json::Value = serde_json::from_str(&wet).unwrap();
+    assert_ne!(wet["drift"], report["drift"], "wet hair moves like dry hair");
 }
 
 #[test]
@@ -151,6 +155,13 @@ fn wrong_usage_ends_with_two() {
     fails(at, &["render", "--style", "mohawk"], 2, &["`mohawk`", "bob, long, wavy"]);
     fails(at, &["render", "--motion", "jump"], 2, &["`jump`", "still, shake, nod"]);
     fails(at, &["render", "--style", "bob", "--groom", "a.hair"], 2, &["cannot be used with"]);
+    fails(at, &["render", "--hair", "dry"], 2, &["`dry`", "fine, medium, coarse, wet, sprayed"]);
+    fails(
+        at,
+        &["sim", "--scene", "thesis", "--hair", "wet"],
+        2,
+        &["simulation.strands.method", "expected \"rods\""],
+    );
     fails(at, &["sim", "--backend", "gpus"], 2, &["`gpus`", "auto, cpu, gpu"]);
     fails(at, &["sim", "--scene", "nowhere"], 2, &["`nowhere`", "demo, thesis or the path of a .toml"]);
 }

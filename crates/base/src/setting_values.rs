@@ -108,7 +108,7 @@ macro_rules! free {
 free! {
     bool: Kind::Flag;
     PathBuf: Kind::Text("the path of a file");
-    String: Kind::Text("a text");
+    String: Kind::Text("a name");
 }
 
 impl<T: Value<Given = T> + DeserializeOwned> Value for Option<T> {

@@ -1,3 +1,5 @@
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::SettingError;
@@ -20,6 +22,8 @@ pub struct Guides {
     colors: Option<Vec<[f32; 3]>>,
     masses: Option<Vec<f32>>,
     velocities: Option<Vec<Vec3>>,
+    groups: Option<Vec<u32>>,
+    group_names: BTreeMap<u32, String>,
 }
 
 impl Guides {
@@ -76,6 +80,8 @@ impl Guides {
             colors,
             masses,
             velocities,
+            groups: groom.groups.clone(),
+            group_names: groom.group_names.clone(),
         })
     }
 
@@ -143,6 +149,16 @@ impl Guides {
     /// Velocities at the beginning \[m/s\], head space, shape `[strand][point]`, where the groom has some.
     pub fn velocities(&self) -> Option<&[Vec3]> {
         self.velocities.as_deref()
+    }
+
+    /// A group number for each strand, shape `[strand]`, where the groom has some.
+    pub fn groups(&self) -> Option<&[u32]> {
+        self.groups.as_deref()
+    }
+
+    /// Names of groups that have one.
+    pub fn group_names(&self) -> &BTreeMap<u32, String> {
+        &self.group_names
     }
 
     /// Sets the mass \[kg\] of every point, shape `[strand][point]`; with none the settings' mass per length

@@ -42,5 +42,6 @@ pub use strandline_gpu::Backend;
 
 /// Settings of rods.
 pub mod rods {
-    pub use crate::strands::rods::settings::{Rest, RodSettings};
+    pub use crate::strands::rods::presets::HairKind;
+    pub use crate::strands::rods::settings::{GroupSettings, Rest, RodSettings};
 }

@@ -14,8 +14,8 @@ pub(crate) struct Masses {
     pub share_lower: Vec<Lanes>,
     /// Share of a length correction that point i + 1 takes from segment i, i + 1.
     pub share_upper: Vec<Lanes>,
-    /// Mass of hair per length \[kg/m\] in the settings from which they follow.
-    pub mass_per_length: f32,
+    /// The solver's key of the masses from which they follow.
+    pub key: u64,
 }
 
 impl Masses {
@@ -47,6 +47,6 @@ impl Masses {
         };
         let share_lower = each(&|index, lane| share(index, lane, index));
         let share_upper = each(&|index, lane| share(index, lane, index + 1));
-        Self { mass, inverse_mass, share_lower, share_upper, mass_per_length: solver.settings.line_density() }
+        Self { mass, inverse_mass, share_lower, share_upper, key: solver.mass_key() }
     }
 }

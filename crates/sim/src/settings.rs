@@ -3,7 +3,7 @@ use strandline_base::{Group, SettingError, choices, gone, settings};
 use strandline_gpu::Backend;
 
 use crate::SimError;
-use crate::strands::rods::settings::RodSettings;
+use crate::strands::rods::settings::{GroupSettings, RodSettings};
 
 settings! {
     /// How hair moves.
@@ -36,6 +36,8 @@ settings! {
         length_pass: LengthPass = LengthPass::default();
         /// What moves a strand within a step.
         strands: StrandSettings = StrandSettings::default();
+        /// Groups of the groom whose hair, as rods, is made of something else, at most 1,024.
+        groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0];
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
         moved { backend: Backend => "devices.simulation" }

@@ -10,6 +10,7 @@ use crate::cpu::contacts::Contacts;
 use crate::grab::Grab;
 use crate::masses::Masses;
 use crate::state::Scratch;
+use crate::strands::rods::hairs::Hairs;
 use crate::strands::rods::model::Rods;
 use crate::{Drift, Drive, Settings, SimError, State, StepReport, StrandMethod};
 
@@ -35,6 +36,8 @@ pub struct Solver {
     compiled: Compiled,
     /// Whether the guides have masses of their own, which no setting changes.
     weighed: bool,
+    /// What each strand is made of.
+    hairs: Hairs,
     /// Velocities at the beginning \[m/s\], head space, shape `[block][point]` of lanes; empty at rest.
     velocities: Vec<Vec3Lanes>,
     /// None with another strand solver.
@@ -83,6 +86,7 @@ impl Solver {
         settings.check()?;
         memory::check(&settings.memory(guides.strand_count(), guides.points_per_strand()))?;
         check_rest(guides, &rest)?;
+        let hairs = Hairs::new(guides, settings)?;
         let points = guides.points_per_strand();
         let last = guides.strand_count() - 1;
         let inverse_mass = by_lane(rest.mass.len(), points, |index, block, point, lane| {
@@ -100,7 +104,7 @@ impl Solver {
             mass: rest.mass.clone(),
             inverse_mass: inverse_mass.clone(),
         };
-        Ok(Self {
+        let mut solver = Self {
             settings: settings.clone(),
             rest,
             colliders,
@@ -113,9 +117,41 @@ impl Solver {
             compiled,
             weighed: guides.masses().is_some(),
             velocities: velocities(guides, &rooted),
+            hairs,
             rods: None,
+        };
+        solver.weigh();
+        Ok(solver.with_rods())
+    }
+
+    /// Sets the masses of points from those that were compiled and the settings, unless the guides have their own.
+    fn weigh(&mut self) {
+        if self.weighed {
+            return;
         }
-        .with_rods())
+        let density = self.settings.line_density() / self.compiled.mass_per_length;
+        let (points, last, rods) = (self.points_per_strand, self.strand_count - 1, self.settings.has_rods());
+        let (hairs, stretch) = (&self.hairs, &self.rest.stretch);
+        let factors = by_lane(stretch.len(), points, |index, block, point, lane| {
+            let strand = (block * LANES + lane).min(last);
+            let lane = if strand == last { last % LANES } else { lane };
+            let lengths = |point: usize| stretch[index - index % points + point].0[lane];
+            density * if rods { hairs.weight(strand, point, points, lengths) } else { 1.0 }
+        });
+        let scaled = |from: &[Lanes], scale: &dyn Fn(f32, f32) -> f32| -> Vec<Lanes> {
+            let lanes = |(from, factor): (&Lanes, &Lanes)| {
+                Lanes(std::array::from_fn(|lane| scale(from.0[lane], factor.0[lane])))
+            };
+            from.iter().zip(&factors).map(lanes).collect()
+        };
+        let mass = scaled(&self.compiled.mass, &|mass, factor| mass * factor);
+        self.inverse_mass = scaled(&self.compiled.inverse_mass, &|inverse, factor| inverse / factor);
+        self.rest.mass = mass;
+    }
+
+    /// Tells masses apart: two solvers of the same key have the same.
+    pub(crate) fn mass_key(&self) -> u64 {
+        self.hairs.key(&self.settings)
     }
 
     /// Compiles the rods, where the settings ask for them.
@@ -123,9 +159,7 @@ impl Solver {
         let settings = &self.settings.strands;
         self.rods = match settings.method {
             StrandMethod::Constrain => None,
-            StrandMethod::Rods => {
-                Some(Rods::new(&self, &settings.rods.material().section(), settings.rods.rest))
-            }
+            StrandMethod::Rods => Some(Rods::new(&self, &self.hairs, settings.rods.rest)),
         };
         self
     }
@@ -148,18 +182,16 @@ impl Solver {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check()?;
         memory::check(&settings.memory(self.strand_count, self.points_per_strand))?;
-        if settings.line_density() != self.settings.line_density() && !self.weighed {
-            let factor = settings.line_density() / self.compiled.mass_per_length;
-            let scale = |into: &mut [Lanes], from: &[Lanes], factor: f32| {
-                for (into, from) in into.iter_mut().zip(from) {
-                    *into = Lanes(from.0.map(|value| value * factor));
-                }
-            };
-            scale(&mut self.rest.mass, &self.compiled.mass, factor);
-            scale(&mut self.inverse_mass, &self.compiled.inverse_mass, 1.0 / factor);
-        }
-        let same = self.settings.strands == settings.strands && self.settings.gravity == settings.gravity;
+        let hairs = self.hairs.changed(settings)?;
+        let same = self.settings.strands == settings.strands
+            && self.settings.groups == settings.groups
+            && self.settings.gravity == settings.gravity;
+        let weighs = settings.line_density() == self.settings.line_density();
         self.settings = settings.clone();
+        self.hairs = hairs;
+        if !(same && weighs) {
+            self.weigh();
+        }
         if !same {
             *self = self.clone().with_rods();
         }

@@ -25,7 +25,7 @@ pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepRep
         time_step: solver.settings.time_step,
     };
     state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
-    if state.scratch.masses.mass_per_length != solver.settings.line_density() {
+    if state.scratch.masses.key != solver.mass_key() {
         state.scratch.masses = Masses::new(solver, &state.scratch.lengths);
     }
     solver.give_sections(state);

@@ -6,7 +6,7 @@ use strandline::{
     base::Group,
     sim::{
         Angles, Drag, LengthPass, Settings, Spring, Springs, StrandMethod, StrandSettings, VolumeSettings,
-        rods::RodSettings,
+        rods::{HairKind, RodSettings},
     },
 };
 
@@ -47,9 +47,20 @@ fn strands(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
 
 fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {
     let rows = &RodSettings::ROWS;
+    let mut hair = rods.hair;
+    if choose(ui, (&mut hair, base.hair), &HairKind::ALL, &rows.hair, "hair") {
+        rods.set_hair(hair);
+    }
     slide(ui, (&mut rods.radius, base.radius), &rows.radius, "radius, um");
     slide(ui, (&mut rods.youngs_modulus, base.youngs_modulus), &rows.youngs_modulus, "stiffness, GPa");
     slide(ui, (&mut rods.density, base.density), &rows.density, "density, kg/m^3");
+    slide(ui, (&mut rods.load, base.load), &rows.load, "load");
+    slide(ui, (&mut rods.wisp_hairs, base.wisp_hairs), &rows.wisp_hairs, "hairs of a guide");
+    slide(ui, (&mut rods.cohesion, base.cohesion), &rows.cohesion, "cohesion");
+    slide(ui, (&mut rods.tip_radius, base.tip_radius), &rows.tip_radius, "tip's radius");
+    for (place, name) in ["stiffness at root", "in the middle", "at the tip"].into_iter().enumerate() {
+        slide(ui, (&mut rods.profile[place], base.profile[place]), &rows.profile, name);
+    }
     slide(ui, (&mut rods.damping, base.damping), &rows.damping, "bends' damping, s");
     slide(ui, (&mut rods.substeps, base.substeps), &rows.substeps, "parts of a step");
     slide(ui, (&mut rods.newton_steps, base.newton_steps), &rows.newton_steps, "Newton steps");

@@ -31,6 +31,7 @@ fn scene(key: &str, before: &str, value: &str) -> String {
             "shape = \"capsule\"\nstart = [0,0,0]\nend = [0,0,1]\nradius = 0.1\n"
         }
         ("colliders", _) => "shape = \"sphere\"\ncenter = [0,0,0]\nradius = 0.1\n",
+        ("simulation.groups", _) => "group = \"fringe\"\n",
         ("lights", "position") => "target = [0.5, 0.5, 0.5]\n",
         _ => "",
     };

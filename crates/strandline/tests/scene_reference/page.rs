@@ -8,6 +8,7 @@ use strandline::{
     base::{Group, Kind, Row, Table},
     render::Light,
     scene::{CapsuleSection, ColliderSection, KeyframeSection, SphereSection},
+    sim::rods::GroupSettings,
 };
 
 const HEAD: &str = r#"# Scene files
@@ -105,6 +106,7 @@ fn item(list: &str) -> Option<toml::Table> {
     let both = |one: toml::Table, other: toml::Table| one.into_iter().chain(other).collect();
     match list {
         "lights" => Some(toml::Table::try_from(Light::default()).unwrap()),
+        "groups" => Some(toml::Table::try_from(GroupSettings::default()).unwrap()),
         "keyframes" => Some(toml::Table::try_from(KeyframeSection::default()).unwrap()),
         "colliders" => {
             let sphere = ColliderSection::Sphere(SphereSection { center: Vec3::ZERO, ..Default::default() });

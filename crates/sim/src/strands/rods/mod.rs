@@ -5,10 +5,12 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod front;
+pub(crate) mod hairs;
 pub mod joint;
 pub mod lengths;
 pub mod material;
 pub mod model;
+pub mod presets;
 pub mod real;
 pub mod rest;
 pub mod rod;

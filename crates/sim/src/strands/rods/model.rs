@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
+use super::hairs::Hairs;
 use super::material::{Section, nodes};
 use super::real::{Real, Vector};
 use super::rest;
@@ -28,7 +29,7 @@ pub struct Rods {
 impl Rods {
     /// Compiles the rods of a solver: gravity is the load that its rest shape carries, unless it is to
     /// sag.
-    pub(crate) fn new(solver: &Solver, section: &Section, rest: Rest) -> Self {
+    pub(crate) fn new(solver: &Solver, hairs: &Hairs, rest: Rest) -> Self {
         let points = solver.points_per_strand;
         let gravity = solver.settings.gravity;
         let blocks: Vec<Block> = solver
@@ -39,6 +40,7 @@ impl Rods {
             .map(|(block, (positions, inverse_mass))| {
                 let live = solver.strand_count.saturating_sub(block * LANES).clamp(1, LANES);
                 let mass = &solver.rest.mass[block * points..(block + 1) * points];
+                let section = |lane: usize| hairs.section(block * LANES + lane);
                 Block::new(positions, inverse_mass, mass, live, section, rest, gravity)
             })
             .collect();
@@ -107,7 +109,7 @@ impl Block {
         inverse_mass: &[Lanes],
         mass: &[Lanes],
         live: usize,
-        section: &Section,
+        section: impl Fn(usize) -> Section,
         rest: Rest,
         gravity: Vec3,
     ) -> Self {
@@ -119,7 +121,7 @@ impl Block {
             // Lanes beyond the last strand move with it.
             let lane_of = lane.min(live - 1);
             let points: Vec<Vector<f64>> = positions.iter().map(|lanes| double(lanes.get(lane_of))).collect();
-            let mut rod = nodes(&points, section, |point| inverse_mass[point].0[lane_of] == 0.0);
+            let mut rod = nodes(&points, &section(lane_of), |point| inverse_mass[point].0[lane_of] == 0.0);
             for (node, mass) in rod.iter_mut().zip(mass) {
                 node.mass = f64::from(mass.0[lane_of]);
             }

@@ -1,15 +1,19 @@
 //! What a person may set of rods.
 
-use strandline_base::{choices, settings};
+use strandline_base::{Value, choices, settings};
 
-use super::material::Material;
+use super::material::{Along, Material};
+use super::presets::HairKind;
 
 settings! {
     /// Hair as rods: bending and twisting follow from what a hair is made of.
     ///
-    /// Stiffness goes with the fourth power of the radius, weight with its square.
+    /// Stiffness goes with the fourth power of the radius, weight with its square. `hair` sets the defaults of what
+    /// hair is made of, `radius` to `damping`.
     pub struct RodSettings: Copy {
-        /// Radius of a hair; fine hair has 25, coarse 60.
+        /// What hair it is.
+        hair: HairKind = HairKind::default();
+        /// Radius of a hair.
         radius: f32 = 40.0, in [1.0, 1000.0] "um", slider [15.0, 100.0],
             more "stiffer, heavier hair";
         /// Young's modulus.
@@ -17,12 +21,32 @@ settings! {
             more "hair that bends and twists less, at the same weight";
         /// Poisson's ratio: twisting stiffness over bending stiffness is 1 over 1 plus it.
         poisson_ratio: f32 = 0.35, in [0.0, 0.5], more "curls that unwind a little more easily";
+        /// Shear modulus; without it that of Young's modulus and Poisson's ratio.
+        shear_modulus: Option<f32> = None, in [1e-3, 1e5] "GPa", more "hair that twists less";
         /// Density.
         density: f32 = 1300.0, in [1.0, 20_000.0] "kg/m^3", slider [200.0, 4000.0],
             more "heavier hair that swings more slowly";
+        /// Mass of what hair carries, water or lacquer, over its own.
+        load: f32 = 0.0, in [0.0, 20.0], slider [0.0, 3.0], more "hair that gives way more easily";
+        /// Hairs that a guide stands for: they weigh and resist together.
+        wisp_hairs: u32 = 1, in [1, 10_000], slider [1, 200],
+            more "stiffer hair where `cohesion` is above 0, and no other motion where it is 0";
+        /// How far the hairs of a guide share load: 0 lets each bend by itself, so that n hairs are n times as stiff as
+        /// one; 1 glues them to one, n^2 times; between, n^(1 + cohesion).
+        cohesion: f32 = 0.0, in [0.0, 1.0], more "locks that bend as one";
         /// Relaxation time of bends and twists: what they lag behind their rest.
         damping: f32 = 0.002, in [0.0, 10.0] "s", slider [0.0, 0.1],
             more "bends that swing back more slowly and tremble less";
+        /// Second axis of the section over the first; 1 is round. The first axis, the radius, lies across the
+        /// root in the direction of the coordinate axis that the root is farthest from.
+        ellipticity: f32 = 1.0, in [0.1, 1.0], more "a rounder hair";
+        /// Radius at the tip over that at the root: it falls evenly from `taper_start` on.
+        tip_radius: f32 = 1.0, in [0.05, 1.0], more "tips that are as stiff and heavy as the rest";
+        /// Share of the length where hair begins to taper.
+        taper_start: f32 = 0.5, in [0.0, 0.99], more "a shorter taper";
+        /// Stiffness at the root, in the middle and at the tip over that of the material, evenly between.
+        profile: [f32; 3] = [1.0; 3], in [0.01, 100.0], slider [0.1, 10.0],
+            more "hair that bends less there";
         /// What the shape of the groom is.
         rest: Rest = Rest::default();
         /// Parts of a step that are solved one after the other.
@@ -31,6 +55,7 @@ settings! {
         newton_steps: u32 = 4, in [1, 64], slider [1, 16],
             more "violent motion that is followed more closely, at a higher cost where it is needed";
     }
+    prepare RodSettings::prepare;
 }
 
 choices! {
@@ -44,21 +69,79 @@ choices! {
     default SagFree
 }
 
+settings! {
+    /// Hair of a group of the groom that is made of something else than the rest. What it does not give is that of
+    /// `[simulation.strands.rods]`.
+    pub struct GroupSettings {
+        /// The group: its name in the groom, or its number.
+        group: String = String::new(), required true;
+        /// What hair it is: the default of what follows.
+        hair: Option<HairKind> = None;
+        /// Radius of a hair.
+        radius: Option<f32> = None, in [1.0, 1000.0] "um", more "stiffer, heavier hair";
+        /// Young's modulus; the shear modulus keeps its share of it.
+        youngs_modulus: Option<f32> = None, in [1e-3, 1e5] "GPa", more "hair that bends and twists less";
+        /// Density.
+        density: Option<f32> = None, in [1.0, 20_000.0] "kg/m^3", more "heavier hair";
+        /// Mass of what hair carries over its own.
+        load: Option<f32> = None, in [0.0, 20.0], more "hair that gives way more easily";
+        /// Hairs that a guide stands for.
+        wisp_hairs: Option<u32> = None, in [1, 10_000], more "stiffer hair where `cohesion` is above 0";
+        /// How far the hairs of a guide share load.
+        cohesion: Option<f32> = None, in [0.0, 1.0], more "locks that bend as one";
+    }
+}
+
 impl RodSettings {
+    /// A file that names a kind of hair begins with its numbers.
+    fn prepare(&mut self, given: &<Self as Value>::Given) {
+        if let Some(hair) = given.hair {
+            self.set_hair(hair);
+        }
+    }
+
     /// The material of a hair, in SI units.
     pub fn material(&self) -> Material {
         let youngs_modulus = f64::from(self.youngs_modulus) * 1e9;
         Material {
             radius: f64::from(self.radius) * 1e-6,
             youngs_modulus,
-            // Of an isotropic solid.
-            shear_modulus: youngs_modulus / (2.0 * (1.0 + f64::from(self.poisson_ratio))),
-            density: f64::from(self.density),
-            ellipticity: 1.0,
+            shear_modulus: match self.shear_modulus {
+                Some(modulus) => f64::from(modulus) * 1e9,
+                // Of an isotropic solid.
+                None => youngs_modulus / (2.0 * (1.0 + f64::from(self.poisson_ratio))),
+            },
+            density: f64::from(self.density) * (1.0 + f64::from(self.load)),
+            ellipticity: f64::from(self.ellipticity),
+            hairs: f64::from(self.wisp_hairs),
+            cohesion: f64::from(self.cohesion),
+            along: Along {
+                tip: f64::from(self.tip_radius),
+                start: f64::from(self.taper_start),
+                stiffness: self.profile.map(f64::from),
+            },
         }
     }
 
-    /// Mass of hair per length \[kg/m\].
+    /// The same with what a group has of its own; twist over bend stays as it is.
+    pub fn of_group(&self, group: &GroupSettings) -> Self {
+        let mut rods = *self;
+        if let Some(hair) = group.hair {
+            rods.set_hair(hair);
+        }
+        rods.radius = group.radius.unwrap_or(rods.radius);
+        rods.youngs_modulus = group.youngs_modulus.unwrap_or(rods.youngs_modulus);
+        rods.density = group.density.unwrap_or(rods.density);
+        rods.load = group.load.unwrap_or(rods.load);
+        rods.wisp_hairs = group.wisp_hairs.unwrap_or(rods.wisp_hairs);
+        rods.cohesion = group.cohesion.unwrap_or(rods.cohesion);
+        (rods.damping, rods.poisson_ratio) = (self.damping, self.poisson_ratio);
+        rods.shear_modulus =
+            self.shear_modulus.map(|shear| shear * rods.youngs_modulus / self.youngs_modulus);
+        rods
+    }
+
+    /// Mass per length at the root of what a guide stands for \[kg/m\].
     pub fn mass_per_length(&self) -> f32 {
         self.material().section().mass as f32
     }

@@ -1,7 +1,7 @@
 //! Rods against the mechanics of rods: equilibria, modes and thresholds that are known.
 
 use super::lengths::Lengths;
-use super::material::{Section, nodes};
+use super::material::{Along, Section, nodes};
 use super::real::{Real, Vector};
 use super::rest::{sag_free, segments, unstressed};
 use super::rod::{Node, StepSettings, Work};
@@ -138,7 +138,13 @@ fn section(gamma: f64, length: f64) -> Section {
     let mass = WEIGHT / GRAVITY;
     let bend = WEIGHT * length.powi(3) / gamma;
     // Poisson's ratio 0.5.
-    Section { bend: [bend; 2], twist: bend / 1.5, mass, inertia: mass * 40e-6 * 40e-6 / 2.0 }
+    Section {
+        bend: [bend; 2],
+        twist: bend / 1.5,
+        mass,
+        inertia: mass * 40e-6 * 40e-6 / 2.0,
+        along: Along::EVEN,
+    }
 }
 
 /// A straight rod of so many free segments after the held one.

@@ -1,0 +1,107 @@
+//! What the strands of a solver are made of: the material of the settings, or that of their group.
+
+use std::collections::BTreeMap;
+
+use strandline_base::SettingError;
+use strandline_groom::Guides;
+
+use super::material::Section;
+use crate::{Settings, SimError};
+
+/// The section of each strand.
+#[derive(Clone)]
+pub(crate) struct Hairs {
+    /// Group of each strand, shape `[strand]`; empty where the groom has none.
+    groups: Vec<u32>,
+    names: BTreeMap<u32, String>,
+    section: Section,
+    /// Sections of groups that have one of their own.
+    own: BTreeMap<u32, Section>,
+}
+
+impl Hairs {
+    /// The strands of guides.
+    ///
+    /// # Errors
+    /// Settings of a group that the guides do not have.
+    pub fn new(guides: &Guides, settings: &Settings) -> Result<Self, SimError> {
+        let section = settings.strands.rods.material().section();
+        let groups = guides.groups().map_or_else(Vec::new, <[u32]>::to_vec);
+        Self { groups, names: guides.group_names().clone(), section, own: BTreeMap::new() }.changed(settings)
+    }
+
+    /// The same strands under other settings.
+    ///
+    /// # Errors
+    /// As [`Hairs::new`].
+    pub fn changed(&self, settings: &Settings) -> Result<Self, SimError> {
+        let rods = &settings.strands.rods;
+        let mut own = BTreeMap::new();
+        for (index, group) in settings.groups.iter().enumerate() {
+            let number = self.number(&group.group).ok_or_else(|| {
+                let key = format!("simulation.groups[{index}].group");
+                SettingError::new(key, format!("`{}`", group.group), self.expected())
+            })?;
+            own.insert(number, rods.of_group(group).material().section());
+        }
+        Ok(Self { section: rods.material().section(), own, ..self.clone() })
+    }
+
+    /// The section of a strand.
+    pub fn section(&self, strand: usize) -> Section {
+        *self.groups.get(strand).and_then(|group| self.own.get(group)).unwrap_or(&self.section)
+    }
+
+    /// Mass of a point over that of the same lengths of even hair of the settings' own material. `length` gives
+    /// the length \[m\] behind each of the strand's points.
+    pub fn weight(&self, strand: usize, point: usize, points: usize, length: impl Fn(usize) -> f32) -> f32 {
+        let section = self.section(strand);
+        let of_group = section.mass / self.section.mass;
+        if section.along.tip == 1.0 {
+            return of_group as f32;
+        }
+        let length = |index: usize| f64::from(length(index));
+        let sum = |end: usize| (0..end).map(length).sum::<f64>();
+        let (passed, total) = (sum(point), sum(points - 1));
+        let (before, after) = (
+            if point > 0 { length(point - 1) } else { 0.0 },
+            if point + 1 < points { length(point) } else { 0.0 },
+        );
+        let weight = |from: f64, length: f64| length * section.along.weight((from + 0.5 * length) / total);
+        (of_group * (weight(passed - before, before) + weight(passed, after)) / (before + after)) as f32
+    }
+
+    /// A number that differs where the masses of the strands do.
+    pub fn key(&self, settings: &Settings) -> u64 {
+        let numbers =
+            |section: &Section| [section.mass, section.along.tip, section.along.start].map(f64::to_bits);
+        let own = self
+            .own
+            .iter()
+            .flat_map(|(group, section)| std::iter::once(u64::from(*group)).chain(numbers(section)));
+        let first = [u64::from(settings.line_density().to_bits()), u64::from(settings.has_rods())];
+        // Of Fowler, Noll and Vo, over whole numbers.
+        let mix = |key: u64, number: u64| (key ^ number).wrapping_mul(0x0100_0000_01b3);
+        first.into_iter().chain(numbers(&self.section)).chain(own).fold(0xcbf2_9ce4_8422_2325, mix)
+    }
+
+    /// The number of a group, by its name or as it is written.
+    fn number(&self, group: &str) -> Option<u32> {
+        let named = self.names.iter().find(|(_, name)| *name == group).map(|(number, _)| *number);
+        named.or_else(|| group.parse().ok()).filter(|number| self.groups.contains(number))
+    }
+
+    /// The groups that there are, for an error.
+    fn expected(&self) -> String {
+        let mut numbers = self.groups.clone();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let name = |number: &u32| self.names.get(number).cloned().unwrap_or_else(|| number.to_string());
+        let some: Vec<String> = numbers.iter().take(20).map(name).collect();
+        match some.len() {
+            0 => "no group: the groom has none".to_owned(),
+            _ if numbers.len() > some.len() => format!("a group of the groom, {} and more", some.join(", ")),
+            _ => format!("a group of the groom: {}", some.join(", ")),
+        }
+    }
+}

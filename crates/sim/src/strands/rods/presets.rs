@@ -1,0 +1,96 @@
+//! Kinds of hair: what they are made of.
+
+use strandline_base::choices;
+
+use super::settings::RodSettings;
+
+choices! {
+    /// What hair is made of. Radii, density and moduli in air and in water are rounded from \[Robbins2012 chapters 8
+    /// and 9\]; how much water hair carries and how lacquer joins hairs are judged, not measured.
+    pub enum HairKind as "simulation.strands.rods.hair" {
+        /// Fine hair: a radius of 25 um.
+        Fine = "fine",
+        /// Hair as most people have it: 40 um.
+        Medium = "medium",
+        /// Coarse hair: 60 um.
+        Coarse = "coarse",
+        /// Medium hair in water: swollen by a seventh, less than half as stiff, a fifth as stiff against twist, and
+        /// half its weight of water on it.
+        Wet = "wet",
+        /// Medium hair under lacquer: ten hairs in a wisp, glued here and there.
+        Sprayed = "sprayed",
+    }
+    default Medium
+}
+
+impl RodSettings {
+    /// Takes what a kind of hair is made of; the shape along a hair, its rest and how it is solved stay.
+    pub fn set_hair(&mut self, hair: HairKind) {
+        let medium = Self { hair, ..Self::default() };
+        let of = match hair {
+            HairKind::Medium => medium,
+            HairKind::Fine => Self { radius: 25.0, ..medium },
+            HairKind::Coarse => Self { radius: 60.0, ..medium },
+            HairKind::Wet => Self {
+                radius: 45.0,
+                youngs_modulus: 1.6,
+                shear_modulus: Some(0.25),
+                load: 0.5,
+                damping: 0.008,
+                ..medium
+            },
+            HairKind::Sprayed => Self { load: 0.1, wisp_hairs: 10, cohesion: 0.5, damping: 0.004, ..medium },
+        };
+        *self = Self {
+            ellipticity: self.ellipticity,
+            tip_radius: self.tip_radius,
+            taper_start: self.taper_start,
+            profile: self.profile,
+            rest: self.rest,
+            substeps: self.substeps,
+            newton_steps: self.newton_steps,
+            ..of
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Bending stiffness over weight per length \[m^2\].
+    fn firmness(rods: &RodSettings) -> f64 {
+        let section = rods.material().section();
+        section.bend[0] / section.mass
+    }
+
+    #[test]
+    fn medium_hair_is_the_default_and_kinds_leave_shape_and_solve() {
+        let own =
+            RodSettings { tip_radius: 0.5, profile: [2.0, 1.0, 1.0], substeps: 3, ..RodSettings::default() };
+        for hair in HairKind::ALL {
+            let mut rods = own;
+            rods.set_hair(hair);
+            assert_eq!(
+                (rods.hair, rods.tip_radius, rods.profile, rods.substeps),
+                (hair, 0.5, own.profile, 3)
+            );
+            rods.set_hair(HairKind::Medium);
+            assert_eq!(rods, own);
+        }
+    }
+
+    #[test]
+    fn kinds_are_as_firm_as_they_feel() {
+        let of = |hair| {
+            let mut rods = RodSettings::default();
+            rods.set_hair(hair);
+            firmness(&rods)
+        };
+        let [fine, medium, coarse, wet, sprayed] = HairKind::ALL.map(of);
+        // Stiffness over weight goes with the square of the radius.
+        assert!((fine / medium - (25.0_f64 / 40.0).powi(2)).abs() < 1e-6);
+        assert!((coarse / medium - 2.25).abs() < 1e-6);
+        assert!(wet < 0.5 * medium && sprayed > 2.0 * medium, "{wet}, {medium}, {sprayed}");
+    }
+}
