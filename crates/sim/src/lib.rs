@@ -14,6 +14,7 @@ pub mod gpu;
 #[path = "no_gpu.rs"]
 pub mod gpu;
 
+mod at_rest;
 mod checkpoint;
 mod clock;
 mod error;
@@ -42,6 +43,6 @@ pub use strandline_gpu::Backend;
 
 /// Settings of rods.
 pub mod rods {
-    pub use crate::strands::rods::presets::HairKind;
+    pub use crate::strands::rods::hair_kind::HairKind;
     pub use crate::strands::rods::settings::{GroupSettings, Rest, RodSettings};
 }

@@ -5,6 +5,7 @@
 #![allow(clippy::needless_range_loop)]
 
 pub mod front;
+pub mod hair_kind;
 pub(crate) mod hairs;
 pub mod joint;
 pub mod lengths;

@@ -1,27 +1,7 @@
 //! Kinds of hair: what they are made of.
 
-use strandline_base::choices;
-
+use super::hair_kind::HairKind;
 use super::settings::RodSettings;
-
-choices! {
-    /// What hair is made of. Radii, density and moduli in air and in water are rounded from \[Robbins2012 chapters 8
-    /// and 9\]; how much water hair carries and how lacquer joins hairs are judged, not measured.
-    pub enum HairKind as "simulation.strands.rods.hair" {
-        /// Fine hair: a radius of 25 um.
-        Fine = "fine",
-        /// Hair as most people have it: 40 um.
-        Medium = "medium",
-        /// Coarse hair: 60 um.
-        Coarse = "coarse",
-        /// Medium hair in water: swollen by a seventh, less than half as stiff, a fifth as stiff against twist, and
-        /// half its weight of water on it.
-        Wet = "wet",
-        /// Medium hair under lacquer: ten hairs in a wisp, glued here and there.
-        Sprayed = "sprayed",
-    }
-    default Medium
-}
 
 impl RodSettings {
     /// Takes what a kind of hair is made of; the shape along a hair, its rest and how it is solved stay.

@@ -2,8 +2,8 @@
 
 use strandline_base::{Value, choices, settings};
 
+use super::hair_kind::HairKind;
 use super::material::{Along, Material};
-use super::presets::HairKind;
 
 settings! {
     /// Hair as rods: bending and twisting follow from what a hair is made of.
