@@ -6,6 +6,7 @@ use strandline::{
         Groom,
         format::{Part, Scale},
     },
+    render::Preset,
     scene::{BodyPart, GroomPart, MotionName},
 };
 
@@ -19,6 +20,8 @@ fn scene() -> Scene {
     (scene.film.frames, scene.film.settle) = (3, 0.1);
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 8.0);
     (scene.picture.width, scene.picture.height) = (96, 96);
+    // Light that is scattered many times takes a software adapter long.
+    scene.look.dress(Preset::Thesis);
     scene
 }
 

@@ -7,6 +7,9 @@ use crate::fibre::chiang::MOMENTS;
 /// Numbers of a field, each of three channels.
 pub const COEFFICIENTS: usize = 9;
 
+/// Least share of what a fibre would show of even light that it shows of as much light from anywhere.
+const LEAST_SHOWN: f32 = 0.1;
+
 /// Radiance \[linear RGB\] from a unit direction w as `a + b.w + w.C.w` with a C without trace: a, b, and C's xx, yy,
 /// xy, xz and yz.
 pub type Field = [Vec4; COEFFICIENTS];
@@ -66,7 +69,8 @@ pub fn shown(field: &Field, moments: &[Vec4; MOMENTS], t: Vec3, u: Vec3) -> Vec4
         + moments[3] * product(t, t)
         + moments[4] * product(u, u)
         + moments[5] * product(t, u);
-    sum.max(Vec4::ZERO)
+    // The second order rings below 0 across strong light: no fibre is that dark where there is any.
+    sum.max(moments[0] * *a * LEAST_SHOWN)
 }
 
 /// Light that meets a matte surface of unit normal, as the radiance of a white one.
