@@ -81,8 +81,8 @@ mod tests {
 
     #[test]
     fn channels_say_what_a_strand_before_nothing_is() {
-        // One strand, 1 cm wide, straight up in the middle, half a metre before the eye.
-        let mut groom = Groom::empty(0.01);
+        // One strand, 5 cm wide, straight up in the middle, half a metre before the eye.
+        let mut groom = Groom::empty(0.05);
         groom.push((0..8).map(|point| Vec3::Y * (0.02 * point as f32 - 0.07)));
         let guides = Guides::resample(&groom, 8).unwrap();
         let settings = PictureSettings { layers: true, ..PictureSettings::sized(64, 64) };

@@ -148,8 +148,10 @@ mod tests {
         let found = Surroundings::new(&panorama(|_, _| Vec3::new(0.5, 1.0, 2.0)), 30.0, 2.0);
         assert!(found.suns.is_empty());
         assert!((found.mean() - Vec3::new(1.0, 2.0, 4.0)).abs().max_element() < 1e-3);
+        // Rows of 2.8 degrees stand for their middles: the mean square of the height is 1.3e-4 too small, times 7.5
+        // times the 4 of blue.
         for part in &found.field[1..] {
-            assert!(part.truncate().abs().max_element() < 2e-3, "{part}");
+            assert!(part.truncate().abs().max_element() < 5e-3, "{part}");
         }
     }
 
