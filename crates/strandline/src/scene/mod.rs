@@ -194,12 +194,13 @@ impl Scene {
 
     /// Every path of the scene but that of the hair's pose.
     pub fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
-        let Self { groom, body, look, .. } = self;
+        let Self { groom, body, look, surroundings, .. } = self;
         let named = [
             &mut groom.file,
             &mut groom.attributes,
             &mut body.file,
             &mut body.collider_file,
+            &mut surroundings.file,
             &mut look.color_map,
             &mut look.width_map,
         ];

@@ -23,10 +23,18 @@ fn numbers(table: &'static Table, path: &str, before: &str, found: &mut Vec<(Str
     }
 }
 
-/// A scene with one setting as given; a solid also has what it needs.
+/// A scene with one setting as given; a solid, a further file and the look of a group also have what they need.
 fn scene(key: &str, before: &str, value: &str) -> String {
     let name = key.rsplit('.').next().unwrap();
-    let rest = match (key.split('[').next().unwrap(), name) {
+    let list = key.split('[').next().unwrap();
+    let whole = match list {
+        "groom.parts" => "[groom]\nfile = \"a.hair\"\n",
+        "body.parts" => "[body]\nfile = \"a.obj\"\n",
+        _ => "",
+    };
+    let rest = match (list, name) {
+        ("groom.parts" | "body.parts", _) => "file = \"b.obj\"\n",
+        ("look.group", _) => "name = \"brows\"\n",
         ("colliders", "start" | "end") => {
             "shape = \"capsule\"\nstart = [0,0,0]\nend = [0,0,1]\nradius = 0.1\n"
         }
@@ -37,7 +45,11 @@ fn scene(key: &str, before: &str, value: &str) -> String {
     };
     let rest: String =
         rest.lines().filter(|line| !line.starts_with(name)).map(|line| format!("{line}\n")).collect();
-    if before.is_empty() { format!("{key} = {value}\n") } else { format!("{before}{rest}{name} = {value}\n") }
+    if before.is_empty() {
+        format!("{key} = {value}\n")
+    } else {
+        format!("{whole}{before}{rest}{name} = {value}\n")
+    }
 }
 
 /// A value in one component of what a row holds; the others are in the middle of the least and the most, or
