@@ -4,15 +4,16 @@ use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, RestShape};
-use strandline_sim::{Drive, Settings, Solver, StrandMethod, rods::Rest};
+use strandline_sim::{Drive, Settings, Solver, State, StrandMethod, rods::Rest};
 
 use crate::curl::curl;
 use crate::strands::{bare, first, line, one_strand};
 
-/// Rods of hair of 40 um in still air that takes nothing, without a volume.
+/// Rods of hair of 40 um in still air that takes nothing, that do not rub, without a volume.
 fn rods(time_step: f32) -> Settings {
     let mut settings = bare(time_step, 1);
     settings.strands.method = StrandMethod::Rods;
+    settings.strands.rods.rubbing = 0.0;
     settings
 }
 
@@ -26,11 +27,12 @@ fn solver(
     Solver::with_rest(guides, rest, |_, point| held(point), settings, solids).unwrap()
 }
 
-/// Droop over reach of a horizontal rod of so many segments with w L^3 / B = `gamma`, at rest.
-fn droop(on: &On, gamma: f32, count: usize, time_step: f32) -> f32 {
+/// Droop over reach of a horizontal rod of so many segments with w L^3 / B = `gamma`, when it is still.
+fn droop(on: &On, gamma: f32, count: usize, time_step: f32, newton_steps: u32) -> f32 {
     let (length, mut settings) = (0.1_f32, rods(time_step));
     let rod = &mut settings.strands.rods;
     rod.rest = Rest::Unstressed;
+    rod.newton_steps = newton_steps;
     // E I = w L^3 / gamma, with w = rho A g and I = A r^2 / 4.
     let radius = rod.radius * 1e-6;
     rod.youngs_modulus = 4.0 * rod.density * 9.81 * length.powi(3) / (gamma * radius * radius) * 1e-9;
@@ -38,7 +40,9 @@ fn droop(on: &On, gamma: f32, count: usize, time_step: f32) -> f32 {
     settings.damping = 20.0;
     let points = line(Vec3::NEG_X * (length / count as f32), Vec3::X * length, count + 1);
     let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
-    rig.steps(&vec![Drive::default(); (4.0 / time_step) as usize]);
+    let quarter = vec![Drive::default(); (0.25 / time_step) as usize];
+    let rests = (0..40).any(|_| rig.steps(&quarter).last().unwrap().rods.unwrap().resting == 1);
+    assert!(rests, "{gamma}, {count} segments, {time_step} s: not still after 10 s");
     let tip = first(rig.state())[count + 1];
     -tip.y / tip.x
 }
@@ -47,15 +51,22 @@ law! {
     fn a_cantilever_hangs_as_its_discrete_energy_says(on) {
         // Of the same energy in the angles of a plane chain, by Newton's method in double precision.
         let expected = [
-            (1.0, 16, 0.125_032), (10.0, 16, 1.065_81), (100.0, 16, 5.818_072),
-            (1.0, 32, 0.124_679), (10.0, 32, 1.066_346), (100.0, 32, 5.848_987),
+            (0.1, 16, 0.012_548_36), (1.0, 16, 0.125_031_6), (10.0, 16, 1.065_810), (100.0, 16, 5.818_072),
+            (1000.0, 16, 21.993_01),
+            (0.1, 32, 0.012_511_76), (1.0, 32, 0.124_678_8), (10.0, 32, 1.066_346), (100.0, 32, 5.848_987),
+            (1000.0, 32, 21.131_83),
+            (0.1, 64, 0.012_502_60), (1.0, 64, 0.124_591_0), (10.0, 64, 1.066_661), (100.0, 64, 5.874_466),
+            (1000.0, 64, 21.099_73),
         ];
-        for time_step in [1.0 / 30.0, 1.0 / 240.0].into_iter().take(on.either(2, 1)) {
-            for (gamma, count, droop_of_chain) in expected {
-                let found = droop(on, gamma, count, time_step) / droop_of_chain;
-                // What the stiff stretch leaves to the projection, and what a strand at rest may still have to go:
-                // up to 0.2 % were found at 1/240 s, 0.07 % at 1/30 s.
-                assert!((found - 1.0).abs() < 3e-3, "{gamma}, {count} segments, {time_step} s: {found}");
+        for (gamma, count, droop_of_chain) in expected.into_iter().take(on.either(15, 5)) {
+            for rate in [30.0, 60.0, 240.0].into_iter().take(on.either(3, 2)) {
+                for newton_steps in [4, 16].into_iter().take(on.either(2, 1)) {
+                    let found = droop(on, gamma, count, 1.0 / rate, newton_steps) / droop_of_chain - 1.0;
+                    // The bound of the law. At 1000 the reach is a twentieth of the length, so that what rounding hides
+                    // of slow creep, 11 um in steps of 1/240 s, is 0.25 % of it.
+                    let bound = if gamma > 500.0 { 4e-3 } else { 1e-3 };
+                    assert!(found.abs() < bound, "{gamma}, {count} segments, 1/{rate} s, {newton_steps}: {found}");
+                }
             }
         }
     }
@@ -65,7 +76,7 @@ law! {
     fn a_cantilever_nears_the_elastica(on) {
         // reference/cantilever_elastica.csv; the bounds are those of its README, for 32 segments.
         for (gamma, elastica, bound) in [(1.0, 0.124_561_8, 5e-3), (10.0, 1.066_802, 5e-3), (100.0, 5.888_105, 2e-2)] {
-            let found = droop(on, gamma, 32, 1.0 / 60.0) / elastica;
+            let found = droop(on, gamma, 32, 1.0 / 60.0, 4) / elastica;
             assert!((found - 1.0).abs() < bound, "{gamma}: {found}");
         }
     }
@@ -148,7 +159,7 @@ law! {
         assert!(reports.iter().all(|report| report.stretch_max < 1e-3), "it stretches");
         let missed = tip(&mut rig).distance(low);
         assert!(missed < 5e-3, "the curl wins by {missed} m");
-        rig.change(strandline_sim::State::release);
+        rig.change(State::release);
         rig.steps(&vec![Drive::default(); on.either(600, 400)]);
         let back = tip(&mut rig).distance(rest) / length;
         assert!(back < 0.01, "{back} lengths from where it was");
@@ -183,6 +194,125 @@ law! {
 
 /// Droop over reach for w L^3 / B = 1.25.
 const CUT: f32 = 0.155_546;
+
+/// Kinetic energy and that of gravity \[J\]: no more than both and the elastic one, which is 0 in a shape without
+/// moments.
+fn energy(solver: &Solver, state: &State) -> f64 {
+    let gravity = solver.settings().gravity;
+    let each = state.positions.iter().zip(&state.velocities).zip(&solver.rest().mass);
+    each.map(|((position, velocity), mass)| {
+        let speed = velocity.get(0);
+        f64::from(mass.0[0]) * f64::from(0.5 * speed.length_squared() - gravity.dot(position.get(0)))
+    })
+    .sum()
+}
+
+law! {
+    fn a_rod_that_swings_gains_no_energy(on) {
+        for time_step in [1.0 / 60.0, 1.0 / 240.0].into_iter().take(on.either(2, 1)) {
+            let mut settings = rods(time_step);
+            settings.strands.rods.rest = Rest::Unstressed;
+            settings.strands.rods.damping = 0.0;
+            let points = line(Vec3::NEG_X * 0.0125, Vec3::X * 0.2, 17);
+            let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+            let start = rig.state().clone();
+            let first_energy = energy(rig.solver(), &start);
+            // Its weight at its length.
+            let weight: f32 = rig.solver().rest().mass.iter().map(|mass| mass.0[0]).sum::<f32>() * 9.81;
+            let scale = f64::from(weight) * 0.2;
+            let mut lowest = f64::INFINITY;
+            for _ in 0..on.either(600, 20) {
+                rig.steps(&vec![Drive::default(); (0.1 / time_step).round() as usize]);
+                let state = rig.state().clone();
+                let gained = (energy(rig.solver(), &state) - first_energy) / scale;
+                assert!(gained < 1e-4, "{time_step} s: gained {gained} of its weight at its length");
+                lowest = lowest.min(gained);
+            }
+            assert!(lowest < -0.05, "it does not fall");
+        }
+    }
+}
+
+law! {
+    fn a_beam_swings_at_its_frequency(on) {
+        let length = 0.1_f32;
+        let mut settings = rods(1e-3);
+        settings.gravity = Vec3::ZERO;
+        settings.strands.rods.damping = 0.0;
+        settings.strands.rods.substeps = 1;
+        let material = settings.strands.rods;
+        // omega = 3.516015 sqrt(B / (rho A L^4)), with I = A r^2 / 4.
+        let stiffness = material.youngs_modulus * 1e9 * (material.radius * 1e-6).powi(2) / (4.0 * material.density);
+        let rate = 3.516_015 * (stiffness / length.powi(4)).sqrt();
+        settings.time_step = std::f32::consts::TAU / rate / 200.0;
+        let count = 32;
+        let points = line(Vec3::NEG_X * (length / count as f32), Vec3::X * length, count + 1);
+        let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+        rig.change(|state| {
+            for point in 2..count + 2 {
+                let along = (point as f32 - 1.0) / count as f32;
+                state.velocities[point].set(0, Vec3::Z * (0.02 * rate * length * along * along));
+            }
+        });
+        // The times at which the tip comes back through its rest, in steps.
+        let mut crossings = Vec::new();
+        let mut before = 0.0;
+        for step in 1..=on.either(1050, 450) {
+            rig.step(&Drive::default());
+            let now = first(rig.state())[count + 1].z;
+            if step > 1 && before < 0.0 && now >= 0.0 {
+                crossings.push(step as f32 - now / (now - before));
+            }
+            before = now;
+        }
+        let periods = (crossings.len() - 1) as f32;
+        let period = (crossings[crossings.len() - 1] - crossings[0]) / periods;
+        assert!((period / 200.0 - 1.0).abs() < 0.02, "{} of its period", period / 200.0);
+    }
+}
+
+/// How far \[m\] a hanging rod of a natural curvature k L leaves its plane after a small push.
+fn out_of_plane(on: &On, curvature: f32) -> f32 {
+    let (length, count) = (0.2_f32, 32);
+    let mut settings = rods(1.0 / 60.0);
+    settings.strands.rods.rest = Rest::Unstressed;
+    settings.damping = 4.0;
+    let rod = &mut settings.strands.rods;
+    (rod.poisson_ratio, rod.newton_steps) = (0.5, 8);
+    // w L^3 / B = 125.
+    let radius = rod.radius * 1e-6;
+    rod.youngs_modulus = 4.0 * rod.density * 9.81 * length.powi(3) / (125.0 * radius * radius) * 1e-9;
+    // A segment above the clamp, then an arc.
+    let (size, turn) = (length / count as f32, curvature / count as f32);
+    let (mut here, mut angle) = (Vec3::ZERO, 0.0_f32);
+    let mut points = vec![Vec3::Y * size, here];
+    for segment in 0..count {
+        angle += if segment == 0 { 0.5 * turn } else { turn };
+        here += size * vec3(angle.sin(), -angle.cos(), 0.0);
+        points.push(here);
+    }
+    let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+    rig.steps(&vec![Drive::default(); 600]);
+    rig.change(|state| {
+        for point in 2..count + 2 {
+            let velocity = state.velocities[point].get(0);
+            state.velocities[point].set(0, velocity + Vec3::Z * 1e-2);
+        }
+    });
+    rig.steps(&vec![Drive::default(); 1800]);
+    first(rig.state()).iter().fold(0.0, |most, point| most.max(point.z.abs()))
+}
+
+law! {
+    fn a_curved_rod_leaves_its_plane_at_the_known_curvature(on) {
+        // reference/bend_twist_threshold.csv: Poisson's ratio 0.5, L = 5 (B/w)^(1/3).
+        let critical = 8.104_014;
+        let below = out_of_plane(on, 0.95 * critical);
+        assert!(below < 1e-4, "{below} m out of its plane below the threshold");
+        let above = out_of_plane(on, 1.05 * critical);
+        assert!(above > 1e-2, "{above} m out of its plane above the threshold");
+    }
+}
 
 law! {
     fn a_rod_that_is_not_finite_goes_back_to_rest(on) {

@@ -156,7 +156,12 @@ pub fn heads() -> Vec<Head> {
 /// The same hair as rods.
 pub fn rods() -> Vec<Head> {
     let mut heads = heads();
-    heads.iter_mut().for_each(|head| head.settings.strands.method = StrandMethod::Rods);
+    for head in &mut heads {
+        head.settings.strands.method = StrandMethod::Rods;
+        // Solved to the end, so that no step more or less by rounding is seen.
+        head.settings.strands.rods.tolerance = 1e-5;
+        head.settings.strands.rods.newton_steps = 16;
+    }
     heads
 }
 

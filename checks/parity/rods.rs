@@ -42,12 +42,11 @@ fn both(
         // A strand more or less meets the tolerance by rounding.
         assert!(close(found.unsolved, report.unsolved), "{}: {found:?}, {report:?}", head.name);
         assert!(close(found.resting, report.resting), "{}: {found:?}, {report:?}", head.name);
-        let residual = found.residual / report.residual.max(1e-4);
-        assert!(
-            (0.5..2.0).contains(&residual) || found.residual < 1e-4,
-            "{}: {found:?}, {report:?}",
-            head.name
-        );
+        // Of the few that are not solved the residual may be anything above the tolerance.
+        let tolerance = head.settings.strands.rods.tolerance;
+        for report in [found, report] {
+            assert_eq!(report.residual > tolerance, report.unsolved > 0, "{}: {report:?}", head.name);
+        }
     }
 }
 

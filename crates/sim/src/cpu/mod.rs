@@ -22,6 +22,7 @@ pub(crate) mod angles;
 pub(crate) mod contacts;
 pub(crate) mod length_pass;
 pub(crate) mod lengths;
+mod rod_pulls;
 pub(crate) mod spans;
 pub(crate) mod vec3x8;
 pub(crate) mod way;

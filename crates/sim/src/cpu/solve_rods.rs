@@ -9,31 +9,29 @@ use wide::f32x8;
 use super::Obstacles;
 use super::advance::{Block, NonFinite, recover};
 use super::constrain::live_lanes;
-use super::contacts::{Care, Plane, Query, Solids};
+use super::contacts::{Plane, Solids};
 use super::integrate::Fall;
 use super::length_pass::Follow;
-use super::vec3x8::{self, Vec3x8};
 use crate::grab::Pinned;
-use crate::strands::rods::model::{all, load, store, with_lengths};
+use crate::strands::rods::model::with_lengths;
 use crate::strands::rods::real::{Real, Vector};
-use crate::strands::rods::rod::{Node, Pull, Solved, StepSettings};
+use crate::strands::rods::rod::{Node, Solved, StepSettings};
 use crate::strands::rods::settings::RodSettings;
 use crate::strands::rods::workspace::{Carry, Workspace};
 use crate::{RodReport, Solver, State};
 
-/// Stiffness of a contact or a pin over the mass of its point and the square of the step: what rests on a
-/// solid sinks in by a thousandth of its fall in a step.
-const STIFF: f64 = 1e3;
 /// Rounds of the projection onto lengths.
 const LENGTH_ROUNDS: u32 = 2;
-/// A strand is solved when a Newton step turns none of its segments farther \[rad\].
-const TOLERANCE: f64 = 1e-4;
-/// Most that a point of a strand at rest moves in a part of a step \[m\], squared: what two thousandths of gravity
-/// take it, but a few roundings of single precision a metre away. Below, the strand stays where it is to the bit.
-fn still(time_step: f64) -> f32 {
-    let way = (0.02 * time_step * time_step).clamp(1e-7, 5e-7);
-    (way * way) as f32
-}
+/// Most that a point of a strand at rest moves in a part of a step, over its square \[m/s^2\]: two thousandths of
+/// gravity. What friction holds creeps by half as much.
+const STILL: f64 = 0.02;
+/// Most of it \[m\] for what neither a solid nor other hair holds.
+const STILL_LOOSE: f64 = 1e-7;
+/// Most that its way differs from the one before, over the square of the part \[m/s^2\]: a strand at rest is not
+/// one that turns back.
+const STEADY: f64 = 2e-4;
+/// Rounding of a number in single precision, over its size.
+const ROUNDING: f64 = 1.2e-7;
 
 /// Forces, elasticity, lengths and solids: writes the predicted positions, the sections and the
 /// velocities. Returns the points that were not finite, whose strands are back at rest, and how the
@@ -102,12 +100,12 @@ pub fn solve_rods(
 }
 
 /// What all strands share in a step.
-struct Parts<'a> {
+pub(super) struct Parts<'a> {
     settings: &'a RodSettings,
-    count: u32,
-    time_step: f64,
+    pub(super) count: u32,
+    pub(super) time_step: f64,
     fall: Fall,
-    solids: Solids<'a>,
+    pub(super) solids: Solids<'a>,
     /// Pose of the head at the end of each part, and what carries the head there from the part before.
     poses: Vec<(Pose, Pose)>,
     moved: bool,
@@ -142,14 +140,14 @@ impl<'a> Parts<'a> {
 }
 
 /// One block of strands.
-struct Strands<'a> {
-    solver: &'a Solver,
-    parts: &'a Parts<'a>,
-    nodes: &'a [Node<f32x8>],
+pub(super) struct Strands<'a> {
+    pub(super) solver: &'a Solver,
+    pub(super) parts: &'a Parts<'a>,
+    pub(super) nodes: &'a [Node<f32x8>],
     lengths: &'a [Lanes],
     inverse_mass: &'a [Lanes],
     rest: &'a [Vec3Lanes],
-    clearance: &'a [Lanes],
+    pub(super) clearance: &'a [Lanes],
     rest_sections: &'a [Vec3Lanes],
     /// Lanes that hold strands.
     live: usize,
@@ -173,17 +171,22 @@ impl Strands<'_> {
     /// Where forces alone would take the points, and the shape that the head carries along.
     fn want(&self, space: &mut Workspace, world_from_head: &Carry, moved: &Pose) {
         let step = f32x8::of(self.parts.time_step);
+        let rubbing = step * step * f32x8::splat(self.parts.settings.rubbing);
         let carry = Carry::new(moved);
         let last = self.nodes.len() - 1;
         for point in 0..=last {
             let free = self.nodes[point].free;
-            let held = world_from_head.point(load(&self.rest[point]));
+            let held = world_from_head.point(Vector::load(&self.rest[point]));
             let here = space.points[point];
             let rides = if *moved == Pose::IDENTITY { here } else { carry.point(here) };
             space.carried[point] = Vector::choose(free, rides, held);
             let tangent = space.points[last.min(point + 1)] - space.points[point.saturating_sub(1)];
-            let fallen = self.parts.fall.weighted(pass(space.velocities[point]), pass(tangent));
-            let wanted = here + Vector::new(fallen.x, fallen.y, fallen.z) * step - space.carried[point];
+            let fallen = self.parts.fall.weighted(space.velocities[point], tangent);
+            let coast = here + space.velocities[point] * step - space.carried[point];
+            space.coast[point] = coast;
+            // Hairs that rub take a speed off what goes on, not more than there is.
+            let rubbed = (rubbing / coast.length()).or_less(f32x8::of(1.0));
+            let wanted = here + fallen * step - space.carried[point] - coast * rubbed;
             space.wanted[point] = wanted;
             let [x, y, z] = wanted.array();
             space.work.want(point, [x, y, z, space.spins[point] * step]);
@@ -191,82 +194,21 @@ impl Strands<'_> {
                 space.sections[point] = carry.direction(space.sections[point]);
             }
             let turns = self.nodes[point].free_angle;
-            let section = world_from_head.direction(load(&self.rest_sections[point]));
+            let section = world_from_head.direction(Vector::load(&self.rest_sections[point]));
             space.sections[point] =
                 Vector::choose(turns * sound(space.sections[point]), space.sections[point], section);
         }
+        self.guess(space, step);
     }
 
-    /// Planes near the points and what a hand holds, as stiff springs.
-    fn find_pulls(&self, space: &mut Workspace, planes: &mut [Plane], pinned: &[Pinned], part: u32) {
-        space.pulls.clear();
-        let stiff = f32x8::of(STIFF / (self.parts.time_step * self.parts.time_step));
-        let most = f32x8::splat(self.solver.settings.collision_margin);
-        for point in 0..self.nodes.len() {
-            let node = &self.nodes[point];
-            let margin = most.fast_min(f32x8::new(self.clearance[point].0)).fast_max(f32x8::ZERO);
-            space.margins[point] = margin;
-            let free = node.free.simd_gt(f32x8::ZERO);
-            if free.any() && !self.parts.solids.is_empty() {
-                let position = pass(space.carried[point] + space.wanted[point]);
-                let query = Query {
-                    position,
-                    start: Some(pass(space.points[point])),
-                    margin,
-                    free,
-                    care: Care::ROUGH,
-                };
-                if let Some(touch) = self.parts.solids.touch(planes, point, query) {
-                    let height = touch.height(pass(space.carried[point]));
-                    let near = height.simd_lt(f32x8::splat(1.0));
-                    // What the head carries has gone where it is already.
-                    let stays = touch.stuck.x.simd_eq(space.points[point].x)
-                        & touch.stuck.y.simd_eq(space.points[point].y)
-                        & touch.stuck.z.simd_eq(space.points[point].z);
-                    let stays = stays.bitselect(f32x8::of(1.0), f32x8::ZERO);
-                    let back = space.points[point] - space.carried[point];
-                    space.pulls.push(Pull {
-                        node: point,
-                        normal: Vector::new(touch.normal.x, touch.normal.y, touch.normal.z),
-                        reach: near.bitselect(-height, f32x8::splat(-1.0)),
-                        stiffness: (node.mass * stiff) & near,
-                        one_sided: true,
-                        friction: touch.friction,
-                        stuck: Vector::choose(stays, back, Vector::zero()),
-                    });
-                }
-            }
-            self.pull_pins(space, pinned, point, node.mass * stiff, part);
-        }
-    }
-
-    fn pull_pins(&self, space: &mut Workspace, pinned: &[Pinned], point: usize, stiffness: f32x8, part: u32) {
-        let mut goals = Vec3Lanes::default();
-        let mut held = [0.0; LANES];
-        for pin in pinned.iter().filter(|pin| pin.point == point) {
-            let mut here = Vec3Lanes::default();
-            store(space.points[point], &mut here);
-            let share = 1.0 / (self.parts.count - part) as f32;
-            goals.set(pin.lane, here.get(pin.lane).lerp(pin.goal, share));
-            held[pin.lane] = 1.0;
-        }
-        if held.iter().all(|held| *held == 0.0) {
-            return;
-        }
-        let stiffness = stiffness * f32x8::from(held);
-        let missing = (load(&goals) - space.carried[point]).array();
-        for (axis, reach) in missing.into_iter().enumerate() {
-            let normal = all([Vec3::X, Vec3::Y, Vec3::Z][axis]);
-            let (friction, stuck) = (f32x8::ZERO, Vector::zero());
-            space.pulls.push(Pull {
-                node: point,
-                normal,
-                reach,
-                stiffness,
-                one_sided: false,
-                friction,
-                stuck,
-            });
+    /// Newton's method begins with hair that goes on as it went beside its root.
+    fn guess(&self, space: &mut Workspace, step: f32x8) {
+        let (first, second) = (self.nodes[0].free, self.nodes[1].free);
+        let held = Vector::choose(second, space.coast[0], space.coast[1]);
+        let root = Vector::choose(first, Vector::zero(), held);
+        for (point, node) in self.nodes.iter().enumerate() {
+            let [x, y, z] = ((space.coast[point] - root) * node.free).array();
+            space.work.guess(point, [x, y, z, space.spins[point] * step * node.free_angle]);
         }
     }
 
@@ -276,7 +218,7 @@ impl Strands<'_> {
         let settings = StepSettings {
             time_step: self.parts.time_step,
             newton_steps: self.parts.settings.newton_steps,
-            tolerance: TOLERANCE,
+            tolerance: f64::from(self.parts.settings.tolerance),
             damping: f64::from(self.parts.settings.damping),
         };
         let solved = work.solve(self.nodes, &space.pulls, &settings);
@@ -292,7 +234,7 @@ impl Strands<'_> {
     /// Lengths to the last bit, from root to tip, outside the solids.
     fn place(&self, space: &mut Workspace, planes: &mut [Plane]) {
         for (placed, point) in space.placed.iter_mut().zip(&space.carried) {
-            store(*point, placed);
+            point.store(placed);
         }
         let mut last_rooted = [-1.0_f32; LANES];
         for (point, inverse_mass) in self.inverse_mass.iter().enumerate() {
@@ -310,7 +252,7 @@ impl Strands<'_> {
         };
         follow.place(&mut space.placed, planes, &mut space.corrections);
         for (placed, point) in space.placed.iter().zip(&mut space.carried) {
-            *point = load(placed);
+            *point = Vector::load(placed);
         }
     }
 
@@ -318,19 +260,31 @@ impl Strands<'_> {
     fn take(&self, space: &mut Workspace, solved: &Solved<f32x8>) {
         let last = self.nodes.len() - 1;
         let per_step = f32x8::of(1.0 / self.parts.time_step);
-        let (mut largest, mut nothing) = (f32x8::ZERO, f32x8::ZERO);
+        let step = f32x8::of(self.parts.time_step);
+        let (mut largest, mut change, mut nothing) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
+        let mut size = f32x8::ZERO;
         for point in 0..=last {
             let moved = space.carried[point] - space.points[point];
             let square = moved.dot(moved);
+            let other = moved - space.velocities[point] * step;
             largest = largest.fast_max(square);
+            change = change.fast_max(other.dot(other));
+            size = size.fast_max(space.points[point].dot(space.points[point]));
             // 0 for finite numbers, else not a number.
             nothing += (square + space.velocities[point].dot(space.velocities[point])) * f32x8::ZERO;
         }
         let bad = nothing.is_nan();
         space.bad |= bad;
         // 1 where the strand moves.
-        let limit = f32x8::splat(if self.parts.moved { -1.0 } else { still(self.parts.time_step) });
-        let moves = (largest.simd_gt(limit) | bad).bitselect(f32x8::of(1.0), f32x8::ZERO);
+        let square = self.parts.time_step * self.parts.time_step;
+        let rounding = size.root() * f32x8::of(ROUNDING);
+        let rubbing = f64::from(self.parts.settings.rubbing);
+        let loose = f32x8::of((STILL * square).min(STILL_LOOSE).max(rubbing * square));
+        let still = solved.pressed.choose(f32x8::of(STILL * square), loose).fast_max(rounding);
+        let steady = f32x8::of(STEADY.max(rubbing) * square).fast_max(rounding);
+        let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | bad;
+        let moves = moving.bitselect(f32x8::of(1.0), f32x8::ZERO);
+        let moves = if self.parts.moved { f32x8::of(1.0) } else { moves };
         for point in 0..=last {
             let moved = space.carried[point] - space.points[point];
             space.velocities[point] = Vector::choose(moves, moved * per_step, Vector::zero());
@@ -372,10 +326,4 @@ fn sound(vector: Vector<f32x8>) -> f32x8 {
     let size = vector.dot(vector);
     let unit = size.simd_gt(f32x8::of(0.5)) & size.simd_lt(f32x8::of(2.0));
     unit.bitselect(f32x8::of(1.0), f32x8::ZERO)
-}
-
-/// The same vector for the stages of the thesis.
-#[inline(always)]
-fn pass(vector: Vector<f32x8>) -> vec3x8::Vec3x8 {
-    Vec3x8 { x: vector.x, y: vector.y, z: vector.z }
 }

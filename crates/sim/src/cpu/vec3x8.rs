@@ -1,21 +1,13 @@
 //! Arithmetic on blocks: eight strands at a time.
 
-use std::ops::{Add, AddAssign, Mul, Sub, SubAssign};
-
 use glam::{Mat3, Vec3};
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
+use crate::strands::rods::real::Vector;
+
 /// One vector for each strand of a block, in registers.
-#[derive(Clone, Copy, Debug)]
-pub struct Vec3x8 {
-    /// First components.
-    pub x: f32x8,
-    /// Second components.
-    pub y: f32x8,
-    /// Third components.
-    pub z: f32x8,
-}
+pub type Vec3x8 = Vector<f32x8>;
 
 /// Loads one number for each strand.
 #[inline(always)]
@@ -53,28 +45,6 @@ impl Vec3x8 {
         lanes.z = self.z.to_array();
     }
 
-    /// Scalar product.
-    #[inline(always)]
-    pub fn dot(self, other: Self) -> f32x8 {
-        self.x * other.x + self.y * other.y + self.z * other.z
-    }
-
-    /// Vector product.
-    #[inline(always)]
-    pub fn cross(self, other: Self) -> Self {
-        Self {
-            x: self.y * other.z - self.z * other.y,
-            y: self.z * other.x - self.x * other.z,
-            z: self.x * other.y - self.y * other.x,
-        }
-    }
-
-    /// Length, never 0, so that it may divide.
-    #[inline(always)]
-    pub fn length(self) -> f32x8 {
-        (self.dot(self) + splat(1e-30)).sqrt()
-    }
-
     /// This where the mask is set, else `other`.
     #[inline(always)]
     pub fn or(self, mask: f32x8, other: Self) -> Self {
@@ -83,44 +53,6 @@ impl Vec3x8 {
             y: mask.bitselect(self.y, other.y),
             z: mask.bitselect(self.z, other.z),
         }
-    }
-}
-
-impl Add for Vec3x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
-    }
-}
-
-impl Sub for Vec3x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
-    }
-}
-
-impl Mul<f32x8> for Vec3x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, factor: f32x8) -> Self {
-        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
-    }
-}
-
-impl AddAssign for Vec3x8 {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl SubAssign for Vec3x8 {
-    #[inline(always)]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }
 

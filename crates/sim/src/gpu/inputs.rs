@@ -34,9 +34,11 @@ mirror! {
         /// Second bending stiffness over the first, twisting stiffness over the first.
         pub bend_ratio: f32,
         pub twist_ratio: f32,
+        /// What hairs that rub take off the way of a part \[m\].
+        pub rubbing: f32,
+        /// A strand is solved when a Newton step turns none of its segments farther \[rad\].
+        pub tolerance: f32,
         pub unused_a: u32,
-        pub unused_b: u32,
-        pub unused_c: u32,
     }
 }
 
@@ -118,6 +120,8 @@ impl RodStep {
             head_moves: u32::from(start != end),
             bend_ratio: (section.bend[1] / section.bend[0]) as f32,
             twist_ratio: (section.twist / section.bend[0]) as f32,
+            rubbing: rods.rubbing * part_time * part_time,
+            tolerance: rods.tolerance,
             ..Self::default()
         }
     }

@@ -1,7 +1,8 @@
 //! LDL^T of a strand's system, from root to tip without pivoting: the unknowns of a node touch those of
 //! the two nodes after it, so that a front of eleven rows moves along the strand.
 
-use super::real::Real;
+use super::joint::{Slope, Turning};
+use super::real::{Real, Vector};
 
 /// Unknowns of a node: a displacement and the angle of the segment above it.
 pub const UNKNOWNS: usize = 4;
@@ -11,17 +12,14 @@ const ENTRIES: usize = ROWS * (ROWS + 1) / 2;
 
 /// Calls a method once for each row, with the row as a constant, so that its loops unroll.
 macro_rules! for_rows {
-    ($front:ident.$method:ident $(::<$column:ident>)? ($($argument:expr),*)) => {
-        for_rows!(@ $front $method ($($column)?) ($($argument),*) 0 1 2 3 4 5 6 7 8 9 10)
+    ($front:ident.$method:ident($($argument:expr),*)) => {
+        for_rows!(@ $front $method ($($argument),*) 0 1 2 3 4 5 6 7 8 9 10)
     };
-    (@ $front:ident $method:ident () $arguments:tt $($row:literal)*) => {
+    (@ $front:ident $method:ident $arguments:tt $($row:literal)*) => {
         $(for_rows!(! $front.$method::<$row> $arguments);)*
     };
-    (@ $front:ident $method:ident ($column:ident) $arguments:tt $($row:literal)*) => {
-        $(for_rows!(! $front.$method::<$column, $row> $arguments);)*
-    };
-    (! $front:ident.$method:ident::<$($constant:tt),*> ($($argument:expr),*)) => {
-        $front.$method::<$($constant),*>($($argument),*)
+    (! $front:ident.$method:ident::<$row:literal> ($($argument:expr),*)) => {
+        $front.$method::<$row>($($argument),*)
     };
 }
 
@@ -29,6 +27,47 @@ macro_rules! for_rows {
 #[inline(always)]
 const fn entry(row: usize, column: usize) -> usize {
     row * (row + 1) / 2 + column
+}
+
+/// A spring on a strain of a joint.
+pub struct Spring<R> {
+    /// Derivative of the strain.
+    pub slope: Slope<R>,
+    /// The same times the stiffness.
+    pub scaled: Slope<R>,
+    /// Force on the strain: stiffness times what it lacks.
+    pub moment: R,
+}
+
+impl<R: Real> Spring<R> {
+    /// A spring of a stiffness whose strain lacks so much.
+    #[inline(always)]
+    pub fn new(slope: Slope<R>, stiffness: R, lacks: R) -> Self {
+        let scaled = Slope {
+            lower: slope.lower * stiffness,
+            upper: slope.upper * stiffness,
+            lower_angle: slope.lower_angle * stiffness,
+            upper_angle: slope.upper_angle * stiffness,
+        };
+        Self { slope, scaled, moment: stiffness * lacks }
+    }
+}
+
+/// What a joint and the edge above it add to a system.
+pub struct Bends<R> {
+    /// Springs on its two bends and its twist.
+    pub springs: [Spring<R>; 3],
+    /// How moments turn with the sections below and above.
+    pub turnings: [Turning<R>; 2],
+    /// Second derivative of the energy by the edge above \[N/m\], of what stretches it.
+    pub stretch: [[R; 3]; 3],
+    /// What pulls its ends together \[N\].
+    pub pull: Vector<R>,
+}
+
+#[inline(always)]
+fn sum<R: Real>(springs: &[Spring<R>; 3], term: impl Fn(&Spring<R>) -> R) -> R {
+    term(&springs[0]) + term(&springs[1]) + term(&springs[2])
 }
 
 /// What elimination leaves of a node, for the way back.
@@ -40,7 +79,7 @@ pub struct Factors<R> {
 }
 
 impl<R: Real> Factors<R> {
-    /// No factors.
+    /// No factors: unknowns that stay.
     pub fn zero() -> Self {
         Self { below: [[R::of(0.0); ROWS]; UNKNOWNS], solved: [R::of(0.0); UNKNOWNS] }
     }
@@ -86,58 +125,148 @@ impl<R: Real> Front<R> {
         }
     }
 
+    /// Adds a joint. The rows of the angle above and of the point beyond hold nothing before: what they held is
+    /// lost.
+    #[inline(always)]
+    pub fn set_joint(&mut self, bends: &Bends<R>) {
+        self.set_axis::<0>(bends);
+        self.set_axis::<1>(bends);
+        self.set_axis::<2>(bends);
+        let springs = &bends.springs;
+        let angles = |one: fn(&Slope<R>) -> R, other: fn(&Slope<R>) -> R| {
+            sum(springs, |spring| one(&spring.slope) * other(&spring.scaled))
+        };
+        let [lower, upper] = &bends.turnings;
+        self.entries[entry(3, 3)] +=
+            angles(|slope| slope.lower_angle, |slope| slope.lower_angle) + lower.angle;
+        self.entries[entry(7, 3)] = angles(|slope| slope.upper_angle, |slope| slope.lower_angle);
+        self.entries[entry(7, 7)] =
+            angles(|slope| slope.upper_angle, |slope| slope.upper_angle) + upper.angle;
+        self.right[3] += sum(springs, |spring| spring.slope.lower_angle * spring.moment);
+        self.right[7] = sum(springs, |spring| spring.slope.upper_angle * spring.moment);
+    }
+
+    /// The rows and columns of one axis: edges are differences of points.
+    #[inline(always)]
+    fn set_axis<const AXIS: usize>(&mut self, bends: &Bends<R>) {
+        let (springs, [turning, _]) = (&bends.springs, &bends.turnings);
+        let below = sum(springs, |spring| spring.scaled.lower.axis::<AXIS>() * spring.slope.lower_angle)
+            + turning.lower.axis::<AXIS>();
+        let above = sum(springs, |spring| spring.scaled.upper.axis::<AXIS>() * spring.slope.lower_angle)
+            + turning.upper.axis::<AXIS>();
+        self.entries[entry(3, AXIS)] += -below;
+        self.entries[entry(4 + AXIS, 3)] += below - above;
+        self.entries[entry(8 + AXIS, 3)] = above;
+        let [_, turning] = &bends.turnings;
+        let below = sum(springs, |spring| spring.scaled.lower.axis::<AXIS>() * spring.slope.upper_angle)
+            + turning.lower.axis::<AXIS>();
+        let above = sum(springs, |spring| spring.scaled.upper.axis::<AXIS>() * spring.slope.upper_angle)
+            + turning.upper.axis::<AXIS>();
+        self.entries[entry(7, AXIS)] = -below;
+        self.entries[entry(7, 4 + AXIS)] = below - above;
+        self.entries[entry(8 + AXIS, 7)] = above;
+        let below = sum(springs, |spring| spring.slope.lower.axis::<AXIS>() * spring.moment);
+        let above = sum(springs, |spring| spring.slope.upper.axis::<AXIS>() * spring.moment)
+            - bends.pull.axis::<AXIS>();
+        self.right[AXIS] += -below;
+        self.right[4 + AXIS] += below - above;
+        self.right[8 + AXIS] = above;
+        self.set_pair::<AXIS, 0>(bends);
+        self.set_pair::<AXIS, 1>(bends);
+        self.set_pair::<AXIS, 2>(bends);
+    }
+
+    #[inline(always)]
+    fn set_pair<const ROW: usize, const COLUMN: usize>(&mut self, bends: &Bends<R>) {
+        let springs = &bends.springs;
+        let lower =
+            sum(springs, |spring| spring.slope.lower.axis::<ROW>() * spring.scaled.lower.axis::<COLUMN>());
+        let mixed =
+            sum(springs, |spring| spring.slope.upper.axis::<ROW>() * spring.scaled.lower.axis::<COLUMN>());
+        let upper =
+            sum(springs, |spring| spring.slope.upper.axis::<ROW>() * spring.scaled.upper.axis::<COLUMN>())
+                + bends.stretch[ROW][COLUMN];
+        self.entries[entry(4 + ROW, COLUMN)] += mixed - lower;
+        self.entries[entry(8 + ROW, COLUMN)] = -mixed;
+        self.entries[entry(8 + ROW, 4 + COLUMN)] = mixed - upper;
+        if COLUMN <= ROW {
+            let turned = sum(springs, |spring| {
+                spring.slope.upper.axis::<COLUMN>() * spring.scaled.lower.axis::<ROW>()
+            });
+            self.entries[entry(ROW, COLUMN)] += lower;
+            self.entries[entry(4 + ROW, 4 + COLUMN)] += lower - mixed + (upper - turned);
+            self.entries[entry(8 + ROW, 8 + COLUMN)] = upper;
+        }
+    }
+
+    /// Empties the rows of an upper angle and of a point beyond, for a node without a joint above it.
+    #[inline(always)]
+    pub fn clear_above(&mut self) {
+        self.entries[entry(ROWS - UNKNOWNS, 0)..].fill(R::of(0.0));
+        self.right[ROWS - UNKNOWNS..].fill(R::of(0.0));
+    }
+
     /// Eliminates the first four rows and moves the others up. `free` is 1 for unknowns that move and
     /// 0 for those that stay. Returns the smallest pivot of the free unknowns: not positive where the
     /// system is not positive definite.
     #[inline(always)]
     pub fn eliminate(&mut self, factors: &mut Factors<R>, free: [R; UNKNOWNS]) -> R {
-        let mut smallest = R::of(f64::from(f32::MAX));
-        let mut columns = [[R::of(0.0); ROWS]; UNKNOWNS];
-        smallest = smallest.or_less(self.eliminate_column::<0>(factors, &mut columns[0], free[0]));
-        smallest = smallest.or_less(self.eliminate_column::<1>(factors, &mut columns[1], free[1]));
-        smallest = smallest.or_less(self.eliminate_column::<2>(factors, &mut columns[2], free[2]));
-        smallest = smallest.or_less(self.eliminate_column::<3>(factors, &mut columns[3], free[3]));
-        self.shift();
-        smallest
+        let mut whole = [[R::of(0.0); ROWS]; UNKNOWNS];
+        let pivots = [
+            self.eliminate_column::<0>(factors, &mut whole, free[0]),
+            self.eliminate_column::<1>(factors, &mut whole, free[1]),
+            self.eliminate_column::<2>(factors, &mut whole, free[2]),
+            self.eliminate_column::<3>(factors, &mut whole, free[3]),
+        ];
+        self.move_up(&factors.below, &whole);
+        pivots.into_iter().fold(R::of(f64::from(f32::MAX)), R::or_less)
     }
 
     #[inline(always)]
     fn eliminate_column<const COLUMN: usize>(
         &mut self,
         factors: &mut Factors<R>,
-        whole: &mut [R; ROWS],
+        whole: &mut [[R; ROWS]; UNKNOWNS],
         free: R,
     ) -> R {
         let pivot = free.choose(self.entries[entry(COLUMN, COLUMN)], R::of(1.0));
-        let inverse = R::of(1.0) / pivot;
-        let right = self.right[COLUMN] * free;
-        for row in COLUMN + 1..ROWS {
-            whole[row] = self.entries[entry(row, COLUMN)] * free;
-            factors.below[COLUMN][row] = whole[row] * inverse;
-            self.right[row] -= factors.below[COLUMN][row] * right;
-        }
+        let inverse = free / pivot;
+        let right = self.right[COLUMN];
         factors.solved[COLUMN] = right * inverse;
-        for_rows!(self.update_row::<COLUMN>(&factors.below[COLUMN], whole));
+        for row in COLUMN + 1..ROWS {
+            let value = self.entries[entry(row, COLUMN)];
+            let scaled = value * inverse;
+            whole[COLUMN][row] = value;
+            factors.below[COLUMN][row] = scaled;
+            self.right[row] -= scaled * right;
+        }
+        // Of the others that are eliminated here; the rest follows at once.
+        for other in COLUMN + 1..UNKNOWNS {
+            for row in other..ROWS {
+                self.entries[entry(row, other)] -= factors.below[COLUMN][row] * whole[COLUMN][other];
+            }
+        }
         free.choose(pivot, R::of(f64::from(f32::MAX)))
     }
 
+    /// What is left of the rows that are not eliminated, four rows up.
     #[inline(always)]
-    fn update_row<const COLUMN: usize, const ROW: usize>(&mut self, scaled: &[R; ROWS], whole: &[R; ROWS]) {
-        for other in COLUMN + 1..=ROW {
-            self.entries[entry(ROW, other)] -= scaled[ROW] * whole[other];
-        }
+    fn move_up(&mut self, scaled: &[[R; ROWS]; UNKNOWNS], whole: &[[R; ROWS]; UNKNOWNS]) {
+        for_rows!(self.move_row(scaled, whole));
     }
 
     #[inline(always)]
-    fn shift(&mut self) {
-        let kept = ROWS - UNKNOWNS;
-        for row in 0..kept {
-            let from = entry(row + UNKNOWNS, UNKNOWNS);
-            self.entries.copy_within(from..=from + row, entry(row, 0));
+    fn move_row<const ROW: usize>(&mut self, scaled: &[[R; ROWS]; UNKNOWNS], whole: &[[R; ROWS]; UNKNOWNS]) {
+        if ROW < UNKNOWNS {
+            return;
         }
-        self.entries[entry(kept, 0)..].fill(R::of(0.0));
-        self.right.copy_within(UNKNOWNS.., 0);
-        self.right[kept..].fill(R::of(0.0));
+        let [a, b, c, d] = [scaled[0][ROW], scaled[1][ROW], scaled[2][ROW], scaled[3][ROW]];
+        for column in UNKNOWNS..=ROW {
+            let taken =
+                a * whole[0][column] + b * whole[1][column] + c * whole[2][column] + d * whole[3][column];
+            self.entries[entry(ROW - UNKNOWNS, column - UNKNOWNS)] = self.entries[entry(ROW, column)] - taken;
+        }
+        self.right[ROW - UNKNOWNS] = self.right[ROW];
     }
 }
 
@@ -218,6 +347,7 @@ mod tests {
             }
             factors.push(Factors::zero());
             front.eliminate(&mut factors[node], [1.0; UNKNOWNS]);
+            front.clear_above();
         }
         let mut found = vec![[0.0; UNKNOWNS]; nodes];
         substitute(&factors, &mut found);

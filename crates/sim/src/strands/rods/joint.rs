@@ -71,6 +71,18 @@ pub struct Slope<R> {
     pub upper_angle: R,
 }
 
+/// What an angle of a joint has in the second derivative of its energy beside the squares of the slopes: by the two
+/// edges \[N\] and by the angle itself \[N m\].
+#[derive(Clone, Copy, Debug)]
+pub struct Turning<R> {
+    /// By the lower edge.
+    pub lower: Vector<R>,
+    /// By the upper edge.
+    pub upper: Vector<R>,
+    /// By the angle itself.
+    pub angle: R,
+}
+
 /// A joint with what its strains and their derivatives share.
 pub struct Joint<R> {
     /// Its strains.
@@ -131,6 +143,29 @@ impl<R: Real> Joint<R> {
             },
         ]
     }
+
+    /// How the bending moments \[N m\] of a joint turn with its two sections: they are carried along, which the
+    /// squares of the slopes leave out. Without it Newton's method gains a digit in three steps where moments are
+    /// as large as those of a style's weight.
+    #[inline(always)]
+    pub fn turnings(&self, lower: &Segment<R>, upper: &Segment<R>, moments: [R; 2]) -> [Turning<R>; 2] {
+        let half = R::of(0.5);
+        let mean_tangent = (lower.tangent + upper.tangent) * self.inverse_sum;
+        let (per_lower, per_upper) = (R::of(1.0) / lower.length, R::of(1.0) / upper.length);
+        let turning = |section: &Segment<R>| {
+            let (across, second) = (section.across, section.second());
+            let moment = across * moments[0] + second * moments[1];
+            let other = second * moments[0] - across * moments[1];
+            let along = mean_tangent * (moment.dot(self.binormal) * half);
+            let moment = moment * self.inverse_sum;
+            Turning {
+                lower: (along - upper.tangent.cross(moment)) * per_lower,
+                upper: (along + lower.tangent.cross(moment)) * per_upper,
+                angle: -(other.dot(self.binormal) * half),
+            }
+        };
+        [turning(lower), turning(upper)]
+    }
 }
 
 #[cfg(test)]
@@ -165,6 +200,43 @@ mod tests {
                 let found = (after[strain] - before[strain]) / (2.0 * step);
                 // A central difference with this step is good to some 1e-10.
                 assert!((found - expected).abs() < 1e-8, "strain {strain}, axis {axis}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn turnings_are_the_derivatives_of_the_moments_about_the_sections() {
+        let [lower, upper] = bent();
+        let moments = [0.7, -0.4];
+        let turnings = Joint::new(&lower, &upper).turnings(&lower, &upper, moments);
+        let step = 1e-6;
+        // The moment about each section, of the two bends.
+        let about = |lower: &Segment<f64>, upper: &Segment<f64>| {
+            let [first, second, _] = Joint::new(lower, upper).slopes(lower, upper);
+            let sum =
+                |angle: fn(&Slope<f64>) -> f64| moments[0] * angle(&first) + moments[1] * angle(&second);
+            [sum(|slope| slope.lower_angle), sum(|slope| slope.upper_angle)]
+        };
+        for axis in 0..8 {
+            let moved = |sign: f64| {
+                let nudge = |k: usize| if axis == k { sign * step } else { 0.0 };
+                let edge = |segment: &Segment<f64>, first: usize| {
+                    segment.tangent * segment.length
+                        + Vector::new(nudge(first), nudge(first + 1), nudge(first + 2))
+                };
+                about(&lower.moved(edge(&lower, 0), nudge(6)), &upper.moved(edge(&upper, 3), nudge(7)))
+            };
+            let (before, after) = (moved(-1.0), moved(1.0));
+            for (section, turning) in turnings.iter().enumerate() {
+                let [a, b, c] = turning.lower.array();
+                let [d, e, f] = turning.upper.array();
+                let angles = if section == 0 { [turning.angle, 0.0] } else { [0.0, turning.angle] };
+                let expected = [a, b, c, d, e, f, angles[0], angles[1]][axis];
+                let found = (after[section] - before[section]) / (2.0 * step);
+                assert!(
+                    (found - expected).abs() < 1e-8,
+                    "section {section}, axis {axis}: {found} {expected}"
+                );
             }
         }
     }

@@ -4,6 +4,7 @@
 // Rows and columns of small matrices are numbers, several of them in one loop.
 #![allow(clippy::needless_range_loop)]
 
+mod assemble;
 pub mod front;
 pub mod hair_kind;
 pub(crate) mod hairs;

@@ -179,23 +179,3 @@ fn gathered(strands: &[Vec<Node<f64>>], point: usize) -> Node<f32x8> {
         rest: std::array::from_fn(|axis| lanes(&|node| node.rest[axis])),
     }
 }
-
-/// A vector for each strand, as the solver computes with it.
-#[inline(always)]
-pub(crate) fn load(lanes: &Vec3Lanes) -> Vector<f32x8> {
-    Vector::new(f32x8::new(lanes.x), f32x8::new(lanes.y), f32x8::new(lanes.z))
-}
-
-/// Stores a vector for each strand.
-#[inline(always)]
-pub(crate) fn store(vector: Vector<f32x8>, lanes: &mut Vec3Lanes) {
-    lanes.x = vector.x.to_array();
-    lanes.y = vector.y.to_array();
-    lanes.z = vector.z.to_array();
-}
-
-/// A vector, the same for every strand.
-#[inline(always)]
-pub(crate) fn all(vector: Vec3) -> Vector<f32x8> {
-    Vector::new(f32x8::of(vector.x.into()), f32x8::of(vector.y.into()), f32x8::of(vector.z.into()))
-}

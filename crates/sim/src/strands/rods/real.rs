@@ -139,6 +139,16 @@ impl<R: Real> Vector<R> {
         Self { x: mask.choose(yes.x, no.x), y: mask.choose(yes.y, no.y), z: mask.choose(yes.z, no.z) }
     }
 
+    /// Component along an axis, 0 to 2.
+    #[inline(always)]
+    pub fn axis<const AXIS: usize>(self) -> R {
+        match AXIS {
+            0 => self.x,
+            1 => self.y,
+            _ => self.z,
+        }
+    }
+
     /// Components in order.
     #[inline(always)]
     pub fn array(self) -> [R; 3] {
@@ -175,5 +185,19 @@ impl<R: Real> Neg for Vector<R> {
     #[inline(always)]
     fn neg(self) -> Self {
         Self { x: -self.x, y: -self.y, z: -self.z }
+    }
+}
+
+impl<R: Real> AddAssign for Vector<R> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<R: Real> SubAssign for Vector<R> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
     }
 }

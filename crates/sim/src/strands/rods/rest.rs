@@ -42,8 +42,9 @@ pub fn unstressed(rod: &mut [Node<f64>], segments: &[Segment<f64>]) {
 /// stretches is taken off the rest strains and lengths, from tip to root, in closed form.
 ///
 /// The moment that a joint carries is that of all forces beyond it; three strains give any moment.
-/// An equilibrium that would not be stable is made so by bends and twists that are stiffer; returns
-/// how many times, 1 where nothing was changed.
+/// An equilibrium that would not be stable is made so by bends and twists that are stiffer, each joint in proportion
+/// to the moment that it carries, so that what hangs stays as supple as it is; returns how many times at most, 1 where
+/// nothing was changed.
 pub fn sag_free(
     rod: &mut [Node<f64>],
     points: &[Vector<f64>],
@@ -51,7 +52,7 @@ pub fn sag_free(
     forces: &[Vector<f64>],
 ) -> f64 {
     unstressed(rod, segments);
-    let mut loads = vec![[0.0; 3]; rod.len()];
+    let (mut loads, mut moments) = (vec![[0.0; 3]; rod.len()], vec![0.0; rod.len()]);
     let mut force = Vector::zero();
     // Moment of the forces beyond about the origin.
     let mut moment = Vector::zero();
@@ -67,17 +68,33 @@ pub fn sag_free(
         }
         let about = moment - points[index].cross(force);
         loads[index] = strains_under(&segments[index - 1], segment, about);
+        moments[index] = about.length();
     }
-    let stiffer = stiffening(rod, segments, &loads);
-    for (node, load) in rod.iter_mut().zip(loads) {
+    let length: f64 = segments.iter().map(|segment| segment.length).sum();
+    let shares = shares(&moments, EVEN * force.length() * length);
+    let stiffer = stiffening(rod, segments, &loads, &shares);
+    for ((node, load), share) in rod.iter_mut().zip(loads).zip(shares) {
         for axis in 0..3 {
-            node.stiffness[axis] *= stiffer;
+            node.stiffness[axis] *= 1.0 + (stiffer - 1.0) * share;
             if node.stiffness[axis] > 0.0 {
                 node.rest[axis] -= load[axis] / node.stiffness[axis];
             }
         }
     }
     stiffer
+}
+
+/// Moment that each joint is taken to carry besides its own, over that of the whole load at the length of the strand:
+/// a strand that stands upright carries none, and is stiffened evenly.
+const EVEN: f64 = 0.01;
+
+/// Share of each joint in what a strand is stiffened by, 1 where the moment \[N m\] is largest.
+fn shares(moments: &[f64], even: f64) -> Vec<f64> {
+    let most = moments.iter().fold(0.0_f64, |most, moment| most.max(*moment));
+    moments
+        .iter()
+        .map(|moment| if most + even > 0.0 { (moment + even) / (most + even) } else { 1.0 })
+        .collect()
 }
 
 /// Generalised forces of the three strains of a joint \[N m\] that carry a moment \[N m\].

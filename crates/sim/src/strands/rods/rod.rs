@@ -1,7 +1,7 @@
 //! What a strand is made of, and one implicit step of it.
 
-use super::front::{Factors, Front, ROWS, UNKNOWNS, substitute};
-use super::joint::{Joint, Segment, Slope};
+use super::front::{Factors, UNKNOWNS, substitute};
+use super::joint::{Joint, Segment};
 use super::real::{Real, Vector};
 
 /// A node of a rod: a point, the segment from it to the next, and the joint at it.
@@ -82,11 +82,11 @@ pub struct Work<R> {
     pub moved: Vec<[R; UNKNOWNS]>,
     /// Segments as they are now; the last is unused.
     pub segments: Vec<Segment<R>>,
-    edges: Vec<Vector<R>>,
-    wanted: Vec<[R; UNKNOWNS]>,
-    rest: Vec<[R; 3]>,
-    factors: Vec<Factors<R>>,
-    step: Vec<[R; UNKNOWNS]>,
+    pub(super) edges: Vec<Vector<R>>,
+    pub(super) wanted: Vec<[R; UNKNOWNS]>,
+    pub(super) rest: Vec<[R; 3]>,
+    pub(super) factors: Vec<Factors<R>>,
+    pub(super) step: Vec<[R; UNKNOWNS]>,
 }
 
 impl<R: Real> Work<R> {
@@ -119,12 +119,19 @@ impl<R: Real> Work<R> {
             self.segments[index] = Segment { length, tangent, across };
         }
         self.moved.fill([R::of(0.0); UNKNOWNS]);
+        self.step.fill([R::of(0.0); UNKNOWNS]);
     }
 
     /// Sets where each node would be without elastic forces: displacement \[m\] and angle \[rad\].
     #[inline(always)]
     pub fn want(&mut self, node: usize, unknowns: [R; UNKNOWNS]) {
         self.wanted[node] = unknowns;
+    }
+
+    /// Sets where Newton's method begins: displacement \[m\] and angle \[rad\] of a node, 0 for what is held.
+    #[inline(always)]
+    pub fn guess(&mut self, node: usize, unknowns: [R; UNKNOWNS]) {
+        self.step[node] = unknowns;
     }
 
     /// An implicit Euler step: minimises inertia and elastic energy over all displacements and angles
@@ -141,10 +148,17 @@ impl<R: Real> Work<R> {
         }
         let stiffer = R::of(1.0) + viscous;
         let mut unsolved = R::of(1.0);
-        let mut residual = R::of(0.0);
+        self.take_guess(rod);
+        let (mut residual, mut touched) = (R::of(0.0), R::of(0.0));
         let mut steps = 0;
         while steps < settings.newton_steps && unsolved.any_positive() {
-            let pressed = self.factorise(rod, pulls, stiffer, settings.time_step, steps == 0);
+            let (pressed, pivot) =
+                self.factorise(rod, pulls, stiffer, settings.time_step, steps == 0, R::of(1.0));
+            if unsolved.choose(pivot.choose(R::of(0.0), R::of(1.0)), R::of(0.0)).any_positive() {
+                let turns = pivot.choose(R::of(1.0), R::of(0.0));
+                self.factorise(rod, pulls, stiffer, settings.time_step, steps == 0, turns);
+            }
+            touched = unsolved.choose(pressed, touched);
             substitute(&self.factors, &mut self.step);
             let turn = self.take_step(unsolved);
             residual = unsolved.choose(turn, residual);
@@ -157,152 +171,51 @@ impl<R: Real> Work<R> {
             unsolved = unsolved.choose(open, R::of(0.0));
             steps += 1;
         }
-        Solved { steps, unsolved, residual }
+        Solved { steps, unsolved, residual, pressed: touched }
     }
 
-    /// Assembles the gradient and the positive part of the Hessian, and eliminates from root to tip. Above 0 for
-    /// strands that a solid presses.
-    fn factorise(
-        &mut self,
-        rod: &[Node<R>],
-        pulls: &[Pull<R>],
-        stiffer: R,
-        time_step: f64,
-        first: bool,
-    ) -> R {
-        let mut pressed = R::of(0.0);
-        let per_square = R::of(1.0 / (time_step * time_step));
-        let mut front = Front::default();
-        let mut pulls = pulls.iter().peekable();
-        let last = rod.len() - 1;
-        for index in 0..=last {
-            let node = &rod[index];
-            self.add_inertia(&mut front, index, node, per_square);
-            while let Some(pull) = pulls.next_if(|pull| pull.node == index) {
-                let force = self.add_pull(&mut front, pull, node.mass * per_square, first);
-                pressed = pressed.or_more(force);
-            }
-            if index < last {
-                self.add_stretch(&mut front, index, node);
-            }
-            if index + 1 < last {
-                self.add_joint(&mut front, index + 1, &rod[index + 1], stiffer);
-            }
-            let free = [node.free, node.free, node.free, node.free_angle];
-            front.eliminate(&mut self.factors[index], free);
+    /// Turns the segments to where the guess takes them, each as long as it was: their tensions stay those of the
+    /// shape that the head carried, which is what the first Newton step needs of them.
+    fn take_guess(&mut self, rod: &[Node<R>]) {
+        let share = (R::of(FARTHEST_GUESS) - self.turn()).choose(R::of(1.0), R::of(0.0));
+        let [x, y, z, _] = self.step[0];
+        let mut here = Vector::new(x, y, z) * (share * rod[0].free);
+        [self.moved[0][0], self.moved[0][1], self.moved[0][2]] = here.array();
+        for index in 0..self.moved.len() - 1 {
+            let ([x, y, z, angle], [u, v, w, _]) = (self.step[index], self.step[index + 1]);
+            let angle = angle * share;
+            let segment = &self.segments[index];
+            let old = self.edges[index];
+            let turned = old + Vector::new(u - x, v - y, w - z) * share;
+            let turned = turned * (segment.length / turned.length());
+            let free = rod[index + 1].free;
+            let there = Vector::choose(free, here + (turned - old), Vector::zero());
+            self.edges[index] = old + (there - here);
+            self.segments[index] = segment.moved(self.edges[index], angle);
+            self.moved[index][3] = angle;
+            [self.moved[index + 1][0], self.moved[index + 1][1], self.moved[index + 1][2]] = there.array();
+            here = there;
         }
-        pressed
     }
 
+    /// How far the step turns a segment at most \[rad\].
     #[inline(always)]
-    fn add_inertia(&self, front: &mut Front<R>, index: usize, node: &Node<R>, per_square: R) {
-        let mass = node.mass * per_square;
-        let inertia = node.inertia * per_square;
-        for row in 0..UNKNOWNS {
-            let weight = if row < 3 { mass } else { inertia };
-            front.add(row, row, weight);
-            front.add_right(row, weight * (self.wanted[index][row] - self.moved[index][row]));
+    fn turn(&self) -> R {
+        let mut largest = R::of(0.0);
+        for index in 0..self.moved.len() - 1 {
+            let [x, y, z, _] = self.step[index];
+            let [u, v, w, _] = self.step[index + 1];
+            let change = Vector::new(u - x, v - y, w - z).length() / self.segments[index].length;
+            largest = largest.or_more(change);
         }
-    }
-
-    /// A solid presses with the force that its spring has, at `first` with the one that would stop the inertia
-    /// of its point. Across the normal it holds with a spring too, as weak as Coulomb's limit asks for the
-    /// slip that there was: it never pushes a point farther back than it came from. Returns the force of
-    /// a solid \[N\].
-    #[inline(always)]
-    fn add_pull(&self, front: &mut Front<R>, pull: &Pull<R>, inertia: R, first: bool) -> R {
-        let vector = |[x, y, z, _]: [R; UNKNOWNS]| Vector::new(x, y, z);
-        let (here, normal, none) = (vector(self.moved[pull.node]), pull.normal, R::of(0.0));
-        let missing = pull.reach - normal.dot(here);
-        let (mut acts, mut holds, mut solid) = (pull.stiffness, none, none);
-        let mut slip = Vector::zero();
-        if pull.one_sided {
-            let along = |place: Vector<R>| {
-                let slip = place - pull.stuck;
-                slip - normal * normal.dot(slip)
-            };
-            slip = along(here);
-            solid = missing * pull.stiffness;
-            let (mut size, mut rate) = (slip.length(), pull.stiffness);
-            if first {
-                let wanted = vector(self.wanted[pull.node]);
-                rate = pull.stiffness.choose(inertia, none);
-                solid = solid.or_more((pull.reach - normal.dot(wanted)) * rate);
-                size = along(wanted).length();
-            }
-            solid = solid.or_more(none);
-            acts = solid.choose(pull.stiffness, none);
-            let limit = pull.friction * solid;
-            holds = (limit - rate * size).choose(pull.stiffness, limit / size);
-        }
-        let (push, normal, slip) = (acts * missing, normal.array(), slip.array());
-        for row in 0..3 {
-            front.add_right(row, normal[row] * push - holds * slip[row]);
-            for column in 0..=row {
-                let mut value = normal[row] * (acts - holds) * normal[column];
-                if row == column {
-                    value += holds;
-                }
-                front.add(row, column, value);
-            }
-        }
-        solid
-    }
-
-    /// Tension, and the positive part of its derivative: along the segment, and across it where it pulls.
-    #[inline(always)]
-    fn add_stretch(&self, front: &mut Front<R>, index: usize, node: &Node<R>) {
-        let segment = &self.segments[index];
-        let stiffness = node.stretch / node.length;
-        let tension = stiffness * (segment.length - node.length);
-        let across = (tension / segment.length).or_more(R::of(0.0));
-        let along = stiffness - across;
-        let tangent = segment.tangent.array();
-        for row in 0..3 {
-            front.add_right(row, tension * tangent[row]);
-            front.add_right(row + UNKNOWNS, -(tension * tangent[row]));
-            let weight = along * tangent[row];
-            for column in 0..3 {
-                let mut value = weight * tangent[column];
-                if row == column {
-                    value += across;
-                }
-                if column <= row {
-                    front.add(row, column, value);
-                    front.add(row + UNKNOWNS, column + UNKNOWNS, value);
-                }
-                front.add(row + UNKNOWNS, column, -value);
-            }
-        }
-    }
-
-    /// Moments of bends and twist with the Gauss-Newton part of their derivative.
-    #[inline(always)]
-    fn add_joint(&self, front: &mut Front<R>, index: usize, node: &Node<R>, stiffer: R) {
-        let (lower, upper) = (&self.segments[index - 1], &self.segments[index]);
-        let joint = Joint::new(lower, upper);
-        let slopes = joint.slopes(lower, upper);
-        let rows = [row(&slopes[0]), row(&slopes[1]), row(&slopes[2])];
-        let stiffness = node.stiffness.map(|stiffness| stiffness * stiffer);
-        front.add_squares(&rows, stiffness);
-        let [a, b, c] =
-            std::array::from_fn(|axis| stiffness[axis] * (self.rest[index][axis] - joint.strains[axis]));
-        for place in 0..ROWS {
-            front.add_right(place, a * rows[0][place] + b * rows[1][place] + c * rows[2][place]);
-        }
+        largest
     }
 
     /// Moves the strands that are not solved by the Newton step, shortened where a segment would turn too
     /// far. Returns how far one turns at most \[rad\].
     fn take_step(&mut self, unsolved: R) -> R {
         let last = self.moved.len() - 1;
-        let mut largest = R::of(0.0);
-        for index in 0..last {
-            let [x, y, z, _] = self.step[index];
-            let [u, v, w, _] = self.step[index + 1];
-            let change = Vector::new(u - x, v - y, w - z).length() / self.segments[index].length;
-            largest = largest.or_more(change);
-        }
+        let largest = self.turn();
         let share = R::of(1.0).or_less(R::of(LONGEST_TURN) / (largest + R::of(1e-30)));
         let share = unsolved.choose(share, R::of(0.0));
         for index in 0..=last {
@@ -331,17 +244,14 @@ pub struct Solved<R> {
     pub unsolved: R,
     /// How far a segment turned at most in the last Newton step of its strand \[rad\].
     pub residual: R,
+    /// Force \[N\] with which a solid presses a strand at most.
+    pub pressed: R,
 }
 
 /// Most that an end of a segment moves beside the other in a Newton step, over the segment's length, and most
 /// that a section turns \[rad\]: beyond, the linearised bends say nothing.
 const LONGEST_TURN: f64 = 1.0;
 
-/// The derivative of a strain by the eleven unknowns of a joint: displacement and angle of the point
-/// before, of the joint, and displacement of the point after.
-#[inline(always)]
-pub(super) fn row<R: Real>(slope: &Slope<R>) -> [R; ROWS] {
-    let [a, b, c] = slope.lower.array();
-    let [d, e, f] = slope.upper.array();
-    [-a, -b, -c, slope.lower_angle, a - d, b - e, c - f, slope.upper_angle, d, e, f]
-}
+/// Where the guess turns a segment farther \[rad\], a strand begins at the shape that the head carried: what goes so
+/// fast does not go on as it went.
+const FARTHEST_GUESS: f64 = 0.5;

@@ -47,6 +47,10 @@ settings! {
         /// Stiffness at the root, in the middle and at the tip over that of the material, evenly between.
         profile: [f32; 3] = [1.0; 3], in [0.01, 100.0], slider [0.1, 10.0],
             more "hair that bends less there";
+        /// Deceleration of slow hair by hairs that rub against each other, relative to the head. A shape at rest may be
+        /// off by what this much gravity bends it.
+        rubbing: f32 = 0.01, in [0.0, 100.0] "m/s^2", slider [0.0, 0.1],
+            more "hair that comes to rest sooner after its last small swings";
         /// What the shape of the groom is.
         rest: Rest = Rest::default();
         /// Parts of a step that are solved one after the other.
@@ -54,6 +58,10 @@ settings! {
         /// Most Newton steps of each part; strands that move gently need one or two.
         newton_steps: u32 = 4, in [1, 64], slider [1, 16],
             more "violent motion that is followed more closely, at a higher cost where it is needed";
+        /// A strand is solved when a Newton step turns none of its segments farther. What is left is a tenth to a
+        /// hundredth of it; the shape at rest does not depend on it.
+        tolerance: f32 = 0.01, in [1e-5, 1.0] "rad", slider [1e-4, 0.05],
+            more "fewer Newton steps, motion that is followed less closely";
     }
     prepare RodSettings::prepare;
 }

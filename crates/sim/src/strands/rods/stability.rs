@@ -1,9 +1,10 @@
 //! Whether a loaded rest shape is stable, and how much stiffer a strand has to be for it.
 
+use super::assemble::row;
 use super::front::{Factors, Front, ROWS, UNKNOWNS};
 use super::joint::{Joint, Segment};
 use super::real::Vector;
-use super::rod::{Node, row};
+use super::rod::Node;
 
 /// Stiffness that a stable shape has to spare: it is still stable with a tenth less.
 const MARGIN: f64 = 1.1;
@@ -12,10 +13,11 @@ const MOST: f64 = 1e4;
 
 /// How many times stiffer a sag-free strand has to bend and twist for its shape to be a stable
 /// equilibrium, with a margin: 1 where it is stable as it is. `loads` are the generalised forces of
-/// each joint's strains under the load, which the stiffness does not change.
+/// each joint's strains under the load, which the stiffness does not change; a joint takes its part of `shares` of
+/// what the strand is stiffened by.
 ///
 /// The pivots of the second derivative of the energy are positive exactly where it is.
-pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3]]) -> f64 {
+pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3]], shares: &[f64]) -> f64 {
     let curvatures: Vec<_> = (0..segments.len())
         .map(|joint| {
             if joint == 0 {
@@ -25,7 +27,10 @@ pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3
             }
         })
         .collect();
-    let stable = |factor: f64| smallest_pivot(rod, segments, &curvatures, factor / MARGIN) > 0.0;
+    let stable = |factor: f64| {
+        let factors = |joint: usize| (1.0 + (factor - 1.0) * shares[joint]) / MARGIN;
+        smallest_pivot(rod, segments, &curvatures, factors) > 0.0
+    };
     if stable(1.0) {
         return 1.0;
     }
@@ -43,9 +48,14 @@ pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3
     above
 }
 
-/// Smallest pivot of the second derivative of the energy with bends and twists so many times
+/// Smallest pivot of the second derivative of the energy with the bends and twists of each joint so many times
 /// stiffer under the same load.
-fn smallest_pivot(rod: &[Node<f64>], segments: &[Segment<f64>], bent: &[[[f64; 8]; 8]], factor: f64) -> f64 {
+fn smallest_pivot(
+    rod: &[Node<f64>],
+    segments: &[Segment<f64>],
+    bent: &[[[f64; 8]; 8]],
+    factor: impl Fn(usize) -> f64,
+) -> f64 {
     let mut front = Front::default();
     let mut factors = Factors::zero();
     let mut smallest = f64::INFINITY;
@@ -57,11 +67,12 @@ fn smallest_pivot(rod: &[Node<f64>], segments: &[Segment<f64>], bent: &[[[f64; 8
             let (lower, upper) = (&segments[index], &segments[index + 1]);
             let slopes = Joint::new(lower, upper).slopes(lower, upper);
             let rows = [row(&slopes[0]), row(&slopes[1]), row(&slopes[2])];
-            front.add_squares(&rows, rod[index + 1].stiffness.map(|stiffness| stiffness * factor));
+            front.add_squares(&rows, rod[index + 1].stiffness.map(|stiffness| stiffness * factor(index + 1)));
             add_bent(&mut front, &bent[index + 1]);
         }
         let free = [node.free, node.free, node.free, node.free_angle];
         let pivot = front.eliminate(&mut factors, free);
+        front.clear_above();
         // Factors of an indefinite system mean nothing any more.
         if !(pivot > 0.0) {
             return pivot;

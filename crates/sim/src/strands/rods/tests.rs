@@ -7,6 +7,8 @@ use super::rest::{sag_free, segments, unstressed};
 use super::rod::{Node, StepSettings, Work};
 use wide::f32x8;
 
+mod thresholds;
+
 type Point = Vector<f64>;
 
 const GRAVITY: f64 = 9.81;

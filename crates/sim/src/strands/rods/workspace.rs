@@ -6,11 +6,9 @@ use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::lengths::Lengths;
-use super::model::{all, load, store};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Work};
 use crate::RodReport;
-use crate::cpu::vec3x8::Vec3x8;
 
 /// Rigid motion of all lanes.
 pub(crate) struct Carry {
@@ -20,8 +18,8 @@ pub(crate) struct Carry {
 
 impl Carry {
     pub fn new(pose: &Pose) -> Self {
-        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| all(pose.direction(axis)));
-        Self { columns, translation: all(pose.translation) }
+        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| Vector::splat(pose.direction(axis)));
+        Self { columns, translation: Vector::splat(pose.translation) }
     }
 
     #[inline(always)]
@@ -45,10 +43,12 @@ pub(crate) struct Workspace {
     pub carried: Vec<Vector<f32x8>>,
     /// How far forces alone would take the points from there.
     pub wanted: Vec<Vector<f32x8>>,
+    /// How far they would go on from there as they went.
+    pub coast: Vec<Vector<f32x8>>,
     pub pulls: Vec<Pull<f32x8>>,
     pub margins: Vec<f32x8>,
     pub placed: Vec<Vec3Lanes>,
-    pub corrections: Vec<Vec3x8>,
+    pub corrections: Vec<Vector<f32x8>>,
     pub inverse_mass: Vec<f32x8>,
     pub length: Vec<f32x8>,
     /// Nodes of strands of another length than at rest.
@@ -70,10 +70,11 @@ impl Workspace {
             spins: vec![none; points],
             carried: vec![zero; points],
             wanted: vec![zero; points],
+            coast: vec![zero; points],
             pulls: Vec::with_capacity(4 * points),
             margins: vec![none; points],
             placed: vec![Vec3Lanes::default(); points],
-            corrections: vec![Vec3x8::ZERO; points + 1],
+            corrections: vec![zero; points + 1],
             inverse_mass: vec![none; points],
             length: vec![none; points],
             nodes: Vec::with_capacity(points),
@@ -92,9 +93,9 @@ impl Workspace {
         spins: &[Lanes],
     ) {
         for point in 0..start.len() {
-            self.points[point] = load(&start[point]);
-            self.velocities[point] = load(&velocities[point]);
-            self.sections[point] = load(&sections[point]);
+            self.points[point] = Vector::load(&start[point]);
+            self.velocities[point] = Vector::load(&velocities[point]);
+            self.sections[point] = Vector::load(&sections[point]);
             self.spins[point] = f32x8::new(spins[point].0);
         }
     }
@@ -107,9 +108,9 @@ impl Workspace {
         spins: &mut [Lanes],
     ) {
         for point in 0..predicted.len() {
-            store(self.points[point], &mut predicted[point]);
-            store(self.velocities[point], &mut velocities[point]);
-            store(self.sections[point], &mut sections[point]);
+            self.points[point].store(&mut predicted[point]);
+            self.velocities[point].store(&mut velocities[point]);
+            self.sections[point].store(&mut sections[point]);
             spins[point] = Lanes(self.spins[point].to_array());
         }
     }

@@ -1,0 +1,92 @@
+//! What pulls at rods: solids near them and the hand, as stiff springs of the Newton step.
+
+use glam::Vec3;
+use strandline_groom::{LANES, Vec3Lanes};
+use wide::f32x8;
+
+use super::contacts::{Care, Plane, Query};
+use super::solve_rods::Strands;
+use crate::grab::Pinned;
+use crate::strands::rods::real::{Real, Vector};
+use crate::strands::rods::rod::Pull;
+use crate::strands::rods::workspace::Workspace;
+
+/// Stiffness of a contact or a pin over the mass of its point and the square of the step: what rests on a
+/// solid sinks in by a thousandth of its fall in a step.
+const STIFF: f64 = 1e3;
+
+impl Strands<'_> {
+    /// Planes near the points and what a hand holds, as stiff springs.
+    pub(super) fn find_pulls(
+        &self,
+        space: &mut Workspace,
+        planes: &mut [Plane],
+        pinned: &[Pinned],
+        part: u32,
+    ) {
+        space.pulls.clear();
+        let stiff = f32x8::of(STIFF / (self.parts.time_step * self.parts.time_step));
+        let most = f32x8::splat(self.solver.settings.collision_margin);
+        for point in 0..self.nodes.len() {
+            let node = &self.nodes[point];
+            let margin = most.fast_min(f32x8::new(self.clearance[point].0)).fast_max(f32x8::ZERO);
+            space.margins[point] = margin;
+            let free = node.free.simd_gt(f32x8::ZERO);
+            if free.any() && !self.parts.solids.is_empty() {
+                let position = space.carried[point] + space.wanted[point];
+                let query =
+                    Query { position, start: Some(space.points[point]), margin, free, care: Care::ROUGH };
+                if let Some(touch) = self.parts.solids.touch(planes, point, query) {
+                    let height = touch.height(space.carried[point]);
+                    let near = height.simd_lt(f32x8::splat(1.0));
+                    // What the head carries has gone where it is already.
+                    let stays = touch.stuck.x.simd_eq(space.points[point].x)
+                        & touch.stuck.y.simd_eq(space.points[point].y)
+                        & touch.stuck.z.simd_eq(space.points[point].z);
+                    let stays = stays.bitselect(f32x8::of(1.0), f32x8::ZERO);
+                    let back = space.points[point] - space.carried[point];
+                    space.pulls.push(Pull {
+                        node: point,
+                        normal: touch.normal,
+                        reach: near.bitselect(-height, f32x8::splat(-1.0)),
+                        stiffness: (node.mass * stiff) & near,
+                        one_sided: true,
+                        friction: touch.friction,
+                        stuck: Vector::choose(stays, back, Vector::zero()),
+                    });
+                }
+            }
+            self.pull_pins(space, pinned, point, node.mass * stiff, part);
+        }
+    }
+
+    fn pull_pins(&self, space: &mut Workspace, pinned: &[Pinned], point: usize, stiffness: f32x8, part: u32) {
+        let mut goals = Vec3Lanes::default();
+        let mut held = [0.0; LANES];
+        for pin in pinned.iter().filter(|pin| pin.point == point) {
+            let mut here = Vec3Lanes::default();
+            space.points[point].store(&mut here);
+            let share = 1.0 / (self.parts.count - part) as f32;
+            goals.set(pin.lane, here.get(pin.lane).lerp(pin.goal, share));
+            held[pin.lane] = 1.0;
+        }
+        if held.iter().all(|held| *held == 0.0) {
+            return;
+        }
+        let stiffness = stiffness * f32x8::from(held);
+        let missing = (Vector::load(&goals) - space.carried[point]).array();
+        for (axis, reach) in missing.into_iter().enumerate() {
+            let normal = Vector::splat([Vec3::X, Vec3::Y, Vec3::Z][axis]);
+            let (friction, stuck) = (f32x8::ZERO, Vector::zero());
+            space.pulls.push(Pull {
+                node: point,
+                normal,
+                reach,
+                stiffness,
+                one_sided: false,
+                friction,
+                stuck,
+            });
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Forces on a strand and their derivatives: the system of a Newton step.
+
+use super::front::{Bends, Front, ROWS, Spring, UNKNOWNS};
+use super::joint::{Joint, Slope};
+use super::real::{Real, Vector};
+use super::rod::{Node, Pull, Work};
+
+impl<R: Real> Work<R> {
+    /// Assembles the gradient and the Hessian, and eliminates from root to tip; with `turns` 0 only the Hessian's
+    /// positive part. Tells the force \[N\] with which a solid presses each strand at most, and the smallest pivot.
+    pub(super) fn factorise(
+        &mut self,
+        rod: &[Node<R>],
+        pulls: &[Pull<R>],
+        stiffer: R,
+        time_step: f64,
+        first: bool,
+        turns: R,
+    ) -> (R, R) {
+        let mut pressed = R::of(0.0);
+        let mut smallest = R::of(f64::from(f32::MAX));
+        let per_square = R::of(1.0 / (time_step * time_step));
+        let mut front = Front::default();
+        let mut pulls = pulls.iter().peekable();
+        let last = rod.len() - 1;
+        for index in 0..=last {
+            let node = &rod[index];
+            self.add_inertia(&mut front, index, node, per_square);
+            while let Some(pull) = pulls.next_if(|pull| pull.node == index) {
+                let force = self.add_pull(&mut front, pull, node.mass * per_square, first);
+                pressed = pressed.or_more(force);
+            }
+            if index + 1 < last {
+                self.add_joint(&mut front, index + 1, &rod[index + 1], stiffer, turns);
+            } else {
+                front.clear_above();
+            }
+            if index == 0 {
+                self.add_stretch(&mut front, 0, node);
+            }
+            let free = [node.free, node.free, node.free, node.free_angle];
+            smallest = smallest.or_less(front.eliminate(&mut self.factors[index], free));
+        }
+        (pressed, smallest)
+    }
+
+    #[inline(always)]
+    fn add_inertia(&self, front: &mut Front<R>, index: usize, node: &Node<R>, per_square: R) {
+        let mass = node.mass * per_square;
+        let inertia = node.inertia * per_square;
+        for row in 0..UNKNOWNS {
+            let weight = if row < 3 { mass } else { inertia };
+            front.add(row, row, weight);
+            front.add_right(row, weight * (self.wanted[index][row] - self.moved[index][row]));
+        }
+    }
+
+    /// A solid presses with the force that its spring has, at `first` with the one that would stop the inertia
+    /// of its point. Across the normal it holds with a spring too, as weak as Coulomb's limit asks for the
+    /// slip that there was: it never pushes a point farther back than it came from. Returns the force of
+    /// a solid \[N\].
+    #[inline(always)]
+    fn add_pull(&self, front: &mut Front<R>, pull: &Pull<R>, inertia: R, first: bool) -> R {
+        let vector = |[x, y, z, _]: [R; UNKNOWNS]| Vector::new(x, y, z);
+        let (here, normal, none) = (vector(self.moved[pull.node]), pull.normal, R::of(0.0));
+        let missing = pull.reach - normal.dot(here);
+        let (mut acts, mut holds, mut solid) = (pull.stiffness, none, none);
+        let mut slip = Vector::zero();
+        if pull.one_sided {
+            let along = |place: Vector<R>| {
+                let slip = place - pull.stuck;
+                slip - normal * normal.dot(slip)
+            };
+            slip = along(here);
+            solid = missing * pull.stiffness;
+            let (mut size, mut rate) = (slip.length(), pull.stiffness);
+            if first {
+                let wanted = vector(self.wanted[pull.node]);
+                rate = pull.stiffness.choose(inertia, none);
+                solid = solid.or_more((pull.reach - normal.dot(wanted)) * rate);
+                size = along(wanted).length();
+            }
+            solid = solid.or_more(none);
+            acts = solid.choose(pull.stiffness, none);
+            let limit = pull.friction * solid;
+            holds = (limit - rate * size).choose(pull.stiffness, limit / size);
+        }
+        let (push, normal, slip) = (acts * missing, normal.array(), slip.array());
+        for row in 0..3 {
+            front.add_right(row, normal[row] * push - holds * slip[row]);
+            for column in 0..=row {
+                let mut value = normal[row] * (acts - holds) * normal[column];
+                if row == column {
+                    value += holds;
+                }
+                front.add(row, column, value);
+            }
+        }
+        solid
+    }
+
+    /// Tension of a segment, and the positive part of its derivative: along the segment, and across it where it
+    /// pulls.
+    #[inline(always)]
+    fn tension(&self, index: usize, node: &Node<R>) -> (Vector<R>, [[R; 3]; 3]) {
+        let segment = &self.segments[index];
+        let stiffness = node.stretch / node.length;
+        let tension = stiffness * (segment.length - node.length);
+        let across = (tension / segment.length).or_more(R::of(0.0));
+        let tangent = segment.tangent;
+        let [x, y, z] = (tangent * (stiffness - across)).array();
+        let row = |part: R| [tangent.x * part, tangent.y * part, tangent.z * part];
+        let mut square = [row(x), row(y), row(z)];
+        (0..3).for_each(|axis| square[axis][axis] += across);
+        (tangent * tension, square)
+    }
+
+    /// The segment that has no joint below it.
+    #[inline(always)]
+    fn add_stretch(&self, front: &mut Front<R>, index: usize, node: &Node<R>) {
+        let (pull, square) = self.tension(index, node);
+        let pull = pull.array();
+        for row in 0..3 {
+            front.add_right(row, pull[row]);
+            front.add_right(row + UNKNOWNS, -pull[row]);
+            for column in 0..3 {
+                if column <= row {
+                    front.add(row, column, square[row][column]);
+                    front.add(row + UNKNOWNS, column + UNKNOWNS, square[row][column]);
+                }
+                front.add(row + UNKNOWNS, column, -square[row][column]);
+            }
+        }
+    }
+
+    /// Moments of bends and twist with the part of their derivative that is positive or turns with the sections, and
+    /// the segment above the joint.
+    #[inline(always)]
+    fn add_joint(&self, front: &mut Front<R>, index: usize, node: &Node<R>, stiffer: R, turns: R) {
+        let (lower, upper) = (&self.segments[index - 1], &self.segments[index]);
+        let joint = Joint::new(lower, upper);
+        let [first, second, twist] = joint.slopes(lower, upper);
+        let spring = |axis: usize, slope: Slope<R>| {
+            Spring::new(slope, node.stiffness[axis] * stiffer, self.rest[index][axis] - joint.strains[axis])
+        };
+        let springs = [spring(0, first), spring(1, second), spring(2, twist)];
+        let turns = -turns;
+        let turnings = joint.turnings(lower, upper, [springs[0].moment * turns, springs[1].moment * turns]);
+        let (pull, stretch) = self.tension(index, node);
+        front.set_joint(&Bends { springs, turnings, stretch, pull });
+    }
+}
+
+/// The derivative of a strain by the eleven unknowns of a joint: displacement and angle of the point
+/// before, of the joint, and displacement of the point after.
+#[inline(always)]
+pub(super) fn row<R: Real>(slope: &Slope<R>) -> [R; ROWS] {
+    let [a, b, c] = slope.lower.array();
+    let [d, e, f] = slope.upper.array();
+    [-a, -b, -c, slope.lower_angle, a - d, b - e, c - f, slope.upper_angle, d, e, f]
+}
