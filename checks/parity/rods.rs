@@ -8,9 +8,9 @@ use strandline_sim::{Settings, Solver, State, StrandMethod};
 
 use crate::heads::{Head, apart, drive, mean_apart, obstacles, rods};
 
-/// Rounding of positions of some decimetres \[m\], over the operations of a few Newton steps: they
-/// start from the same shape, and what they solve for is how far points move.
-const PLACE: f32 = 1e-6;
+/// Rounding of positions of some decimetres \[m\], over the operations of up to sixteen Newton steps: they
+/// start from the same shape, and what they solve for is how far points move. 1.3e-6 were found on 64 points.
+const PLACE: f32 = 2e-6;
 
 /// One step of rods on both, from the same state. `change` is done to it before, `others` to the settings of the
 /// kernels.
@@ -64,7 +64,7 @@ fn solve_rods_agrees() {
                 let limit = if head.colliders.len() > 1 { 1e-3 } else { PLACE };
                 assert!(distance < limit, "{}: {distance}", head.name);
                 let mean = mean_apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
-                assert!(mean < 5.0 * PLACE, "{}: {mean}", head.name);
+                assert!(mean < 2.5 * PLACE, "{}: {mean}", head.name);
                 // Over the length of one of the two parts of a step.
                 let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);
                 assert!(speed < 2.0 * limit / head.settings.time_step, "{}: {speed}", head.name);
@@ -96,7 +96,7 @@ fn solve_rods_agrees_on_hair_in_a_hand_and_of_other_lengths() {
                 let distance = apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
                 // Segments of a twentieth of their length are sixteen times as stiff beside their inertia: 26 um were found
                 // on 64 points, 5 um on the others.
-                assert!(distance < 50.0 * PLACE, "{}: {distance}", head.name);
+                assert!(distance < 25.0 * PLACE, "{}: {distance}", head.name);
             },
         );
     }
@@ -114,7 +114,7 @@ fn solve_rods_sees_another_material() {
     for change in changes {
         both(head, nothing, change, |state, probe| {
             let mean = mean_apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
-            assert!(mean > 10.0 * PLACE, "{mean}");
+            assert!(mean > 5.0 * PLACE, "{mean}");
         });
     }
 }
