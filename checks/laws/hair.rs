@@ -36,6 +36,9 @@ fn droops(on: &On, guides: &Guides, settings: &Settings, seconds: f32) -> [f32; 
     [0, 1].map(|lane| -tip.get(lane).y)
 }
 
+/// A change of settings.
+type Change = fn(&mut Settings);
+
 fn group(group: &str, hair: HairKind) -> GroupSettings {
     GroupSettings { group: group.to_owned(), hair: Some(hair), ..GroupSettings::default() }
 }
@@ -60,7 +63,7 @@ law! {
 law! {
     fn wisps_loads_and_profiles_are_stiffness_over_weight(on) {
         let guides = guides(0.06, 12);
-        let droop = |change: fn(&mut Settings)| {
+        let droop = |change: Change| {
             let mut settings = sagging();
             change(&mut settings);
             droops(on, &guides, &settings, 0.5)[0]
@@ -69,7 +72,7 @@ law! {
         let softer = droop(|settings| settings.strands.rods.density *= 2.0);
         let stiffer = droop(|settings| settings.strands.rods.youngs_modulus *= 4.0);
         assert!(softer > 1.2 * alone && stiffer < 0.7 * alone, "{softer}, {alone}, {stiffer}");
-        let pairs: [(f32, fn(&mut Settings)); 4] = [
+        let pairs: [(f32, Change); 4] = [
             (alone, |settings| settings.strands.rods.wisp_hairs = 16),
             (stiffer, |settings| {
                 (settings.strands.rods.wisp_hairs, settings.strands.rods.cohesion) = (16, 0.5);
@@ -107,7 +110,7 @@ law! {
     fn tapered_hair_droops_as_a_tapered_beam(on) {
         let (length, points) = (0.05, on.either(48, 24));
         let guides = guides(length, points);
-        let shapes: [fn(&mut Settings); 3] = [
+        let shapes: [Change; 3] = [
             |_| (),
             |settings| (settings.strands.rods.tip_radius, settings.strands.rods.taper_start) = (0.4, 0.0),
             |settings| settings.strands.rods.profile = [2.0, 1.0, 0.25],

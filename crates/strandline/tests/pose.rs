@@ -3,6 +3,7 @@
 use strandline::{
     Backend, Error, Event, Hair, Picture, Player, Pose, Prepared, Scene,
     groom::{LANES, Vec3Lanes},
+    sim::{State, StrandMethod},
 };
 
 const STRANDS: usize = 60;
@@ -43,10 +44,12 @@ fn first_picture(scene: &Scene) -> Picture {
     player.find_map(drawn).unwrap()
 }
 
-fn goes_on(backend: Backend) {
+fn goes_on(backend: Backend, method: StrandMethod) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("swing.safetensors");
-    let mut left = match hair(&scene(backend)) {
+    let mut begun = scene(backend);
+    begun.simulation.strands.method = method;
+    let mut left = match hair(&begun) {
         Ok(hair) => hair,
         Err(error) => {
             assert!(backend != Backend::Cpu && !required(), "{error}");
@@ -60,7 +63,7 @@ fn goes_on(backend: Backend) {
     }
     // Just a step each: what is shown is the state before the last.
     left.save_pose(&file).unwrap();
-    let mut posed = scene(backend);
+    let mut posed = begun;
     posed.groom.pose = Some(file.clone());
     posed.motion.pivot = Some(glam::Vec3::ZERO);
     posed.motion.rotation.y = 0.4_f32.to_degrees();
@@ -71,9 +74,19 @@ fn goes_on(backend: Backend) {
     // Velocities are those of the last state.
     let (there, here) = (&left.state().velocities, &again.state().velocities);
     assert_eq!(apart(there, here), 0.0);
-    let (added, kept) = (&left.state().corrections, &again.state().corrections);
-    assert_eq!(apart(added, kept), 0.0);
-    assert!(apart(added, &vec![Vec3Lanes::default(); added.len()]) > 1e-3, "nothing was corrected");
+    // What a length pass gave back, or how rods are turned.
+    let kept_by = |state: &State| match method {
+        StrandMethod::Constrain => state.corrections.clone(),
+        StrandMethod::Rods => state.sections.clone(),
+    };
+    let (added, kept) = (kept_by(left.state()), kept_by(again.state()));
+    assert_eq!(apart(&added, &kept), 0.0);
+    assert!(apart(&added, &vec![Vec3Lanes::default(); added.len()]) > 1e-3, "nothing was kept");
+    if method == StrandMethod::Rods {
+        let spins = |state: &State| state.spins.iter().map(|lanes| lanes.0[0]).collect::<Vec<f32>>();
+        assert_eq!(spins(left.state()), spins(again.state()));
+        assert!(spins(left.state()).iter().any(|spin| spin.abs() > 1e-3), "nothing spun");
+    }
     let fast = apart(there, &vec![Vec3Lanes::default(); there.len()]);
     assert!(fast > 0.1, "nothing moved: {fast} m/s");
     assert_eq!(again.state().length_scale(7), 0.8);
@@ -98,12 +111,16 @@ fn required() -> bool {
 
 #[test]
 fn hair_goes_on_where_it_was_left_on_the_cpu() {
-    goes_on(Backend::Cpu);
+    for method in StrandMethod::ALL {
+        goes_on(Backend::Cpu, method);
+    }
 }
 
 #[test]
 fn hair_goes_on_where_it_was_left_on_a_gpu() {
-    goes_on(Backend::Gpu(None));
+    for method in StrandMethod::ALL {
+        goes_on(Backend::Gpu(None), method);
+    }
 }
 
 #[test]
