@@ -1,23 +1,24 @@
-//! Our version of each picture of [Chen2011], the pictures of docs/gallery/figures.
+//! Our version of each picture of [Chen2011] and sheets of hair in motion, the pictures of docs/gallery/figures.
 //! `cargo run --release -p strandline --example figures [auto|cpu|gpu|gpu:N] [NAME...]`
 #![allow(clippy::print_stdout)]
 
 mod geometry;
 mod motion;
+mod motions;
 mod shading;
 mod strip;
 mod studio;
 
 use std::time::Instant;
 
-use strandline::Backend;
+use strandline::{Backend, Style};
 use studio::{Figure, Studio};
 
 /// Draws a figure.
 type Draw = fn(&Studio) -> Figure;
 
-/// Every figure by the name of its file, with its number in the thesis.
-const FIGURES: [(&str, &str, Draw); 14] = [
+/// Every figure by the name of its file, with its number in the thesis where it has one.
+const FIGURES: [(&str, &str, Draw); 20] = [
     ("layers", "8", shading::layers),
     ("opacity_map", "9", shading::opacity_map),
     ("head_shake", "34", motion::head_shake),
@@ -32,6 +33,12 @@ const FIGURES: [(&str, &str, Draw); 14] = [
     ("lengths", "45", motion::lengths),
     ("front", "46", motion::front),
     ("back", "47", motion::back),
+    ("motion_bob", "", |studio| motions::sheet(studio, Style::Bob)),
+    ("motion_long", "", |studio| motions::sheet(studio, Style::Long)),
+    ("motion_wavy", "", |studio| motions::sheet(studio, Style::Wavy)),
+    ("motion_curly", "", |studio| motions::sheet(studio, Style::Curly)),
+    ("motion_pixie", "", |studio| motions::sheet(studio, Style::Pixie)),
+    ("motion_ponytail", "", |studio| motions::sheet(studio, Style::Ponytail)),
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -48,7 +55,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let start = Instant::now();
         draw(&studio)?.save(folder.join(format!("{name}.png")))?;
-        println!("{name:<18} [Chen2011 fig. {number}] {:>6.1} s", start.elapsed().as_secs_f64());
+        let of = if number.is_empty() { String::new() } else { format!("[Chen2011 fig. {number}]") };
+        println!("{name:<18} {of:<19} {:>6.1} s", start.elapsed().as_secs_f64());
     }
     Ok(())
 }

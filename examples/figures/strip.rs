@@ -26,6 +26,15 @@ pub fn joined(pictures: &[Picture]) -> Picture {
     strip
 }
 
+/// Pictures of one width below each other.
+pub fn stacked(pictures: &[Picture]) -> Picture {
+    let width = pictures.iter().map(|picture| picture.width).max().unwrap_or(0);
+    let between = PAPER.repeat((width * GAP) as usize);
+    let rows: Vec<&[u8]> = pictures.iter().map(|picture| picture.pixels.as_slice()).collect();
+    let height = pictures.iter().map(|picture| picture.height + GAP).sum::<u32>().saturating_sub(GAP);
+    Picture { width, height, pixels: rows.join(between.as_slice()), alpha: None }
+}
+
 /// A part of a picture, `[left, top, width, height]` as shares of its size, every pixel shown as
 /// `times` x `times`.
 pub fn magnified(picture: &Picture, part: [f32; 4], times: u32) -> Picture {

@@ -2,15 +2,17 @@
 
 use glam::Vec3;
 use strandline::{
-    Backend, Camera, Hair, HeadMotion, Picture, Pose, Prepared, Scene, Style, render::PictureSettings,
-    scene::MotionName,
+    Backend, Camera, Hair, HeadMotion, Picture, Pose, Prepared, Scene, Style,
+    render::PictureSettings,
+    scene::{FilmSection, MotionName},
+    sim::StrandMethod,
 };
 
 /// A finished figure, or why there is none.
 pub type Figure = Result<Picture, Box<dyn std::error::Error>>;
 
 /// Seconds between two moves of the head.
-const FRAME: f64 = 1.0 / 60.0;
+pub const FRAME: f64 = 1.0 / 60.0;
 
 /// Where figures are made.
 pub struct Studio {
@@ -29,7 +31,8 @@ impl Studio {
         scene
     }
 
-    /// Hair of a scene after it hung on the resting head, with pictures of a size \[pixel\].
+    /// Hair of a scene that rests on the head, with pictures of a size \[pixel\]: rods begin so, other strands
+    /// come to hang first.
     pub fn settled(&self, scene: &Scene, width: u32, height: u32) -> Result<Moving, strandline::Error> {
         let mut scene = scene.clone();
         (scene.picture.width, scene.picture.height) = self.size(width, height);
@@ -39,13 +42,13 @@ impl Studio {
         let prepared = Prepared::new(&scene)?;
         let head = prepared.head.clone();
         let mut hair = Hair::from_scene(&scene, prepared, self.backend)?;
-        for _ in 0..if self.quick { 1 } else { 60 } {
-            hair.step(FRAME, &Pose::IDENTITY)?;
+        if scene.simulation.strands.method == StrandMethod::Constrain && !self.quick {
+            hair.step(FilmSection::SETTLE.into(), &Pose::IDENTITY)?;
         }
-        Ok(Moving { hair, head, picture: scene.picture, time: 0.0 })
+        Ok(Moving { hair, head, picture: scene.picture, time: 0.0, held: None })
     }
 
-    /// A style that hangs on the resting head, with pictures of a size \[pixel\].
+    /// A style that rests on the head, with pictures of a size \[pixel\].
     pub fn resting(&self, style: Style, width: u32, height: u32) -> Result<Hair, strandline::Error> {
         Ok(self.settled(&self.scene(style, MotionName::Still), width, height)?.hair)
     }
@@ -62,16 +65,24 @@ pub struct Moving {
     pub hair: Hair,
     /// Size and finish of its pictures.
     pub picture: PictureSettings,
+    /// Time that passed \[s\].
+    pub time: f64,
+    /// Where a hand took hair \[m\], as long as it holds it.
+    pub held: Option<Vec3>,
     head: HeadMotion,
-    time: f64,
 }
 
 impl Moving {
     /// Lets the head move on to a time \[s\].
     pub fn play_to(&mut self, time: f64) -> Result<(), strandline::Error> {
+        self.play_to_and_rest(time, f64::INFINITY)
+    }
+
+    /// The same, but the head stays where it is from a time \[s\] on.
+    pub fn play_to_and_rest(&mut self, time: f64, rest: f64) -> Result<(), strandline::Error> {
         while self.time < time - 0.5 * FRAME {
             let (begin, head) = (self.time, &self.head);
-            self.hair.step_along(FRAME, |share| head.pose(begin + FRAME * f64::from(share)))?;
+            self.hair.step_along(FRAME, |share| head.pose((begin + FRAME * f64::from(share)).min(rest)))?;
             self.time += FRAME;
         }
         Ok(())
