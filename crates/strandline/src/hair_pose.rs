@@ -266,7 +266,7 @@ mod tests {
         let mut groom = Groom::empty(8e-5);
         (0..SHAPE[0]).for_each(|_| groom.push([Vec3::ZERO, Vec3::NEG_Y]));
         let guides = Guides::resample(&groom, SHAPE[1]).unwrap();
-        let solver = Solver::new(&guides, &Settings::default(), Vec::new()).unwrap();
+        let solver = Solver::new(&guides, &Settings::constrained(), Vec::new()).unwrap();
         let mut state = solver.rest_state(Pose::IDENTITY);
         pose.place(&mut state);
         // The last lanes have no strand of their own.

@@ -40,7 +40,7 @@ impl GpuRenderer {
     /// # Errors
     /// The device was lost.
     pub fn places(&self) -> Result<Vec<Vec3Lanes>, RenderError> {
-        Ok(Self::first(&self.groom.places.viewed_as::<Vec3Lanes>(), self.guides.positions().len())?)
+        Self::first(&self.groom.places.viewed_as::<Vec3Lanes>(), self.guides.positions().len())
     }
 
     /// The curves of the last frame: positions \[m\], tangents and normals, shape `[guide][point]`.

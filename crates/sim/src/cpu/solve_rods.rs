@@ -224,7 +224,7 @@ impl Strands<'_> {
         let solved = work.solve(self.nodes, &space.pulls, &settings);
         for (point, carried) in space.carried.iter_mut().enumerate() {
             let [x, y, z, _] = space.work.moved[point];
-            *carried = *carried + Vector::new(x, y, z);
+            *carried += Vector::new(x, y, z);
         }
         space.project.project(&mut space.carried, &space.inverse_mass, &space.length, LENGTH_ROUNDS);
         self.place(space, planes);

@@ -161,7 +161,7 @@ fn attributes_that_there_are_leave_with_the_strands() {
     let mut files = files::Files::new(&files, &shape).unwrap();
     files.add(&frame).unwrap();
     let (place, left_out) = files.finish();
-    assert_eq!(left_out, ["root coordinates", "groups"]);
+    assert_eq!(left_out, ["root coordinates", "groups", "names of groups"]);
     let groom = Groom::load(place.join("0.hair")).unwrap();
     assert_eq!(groom.colors.unwrap()[14], [0.25, 0.5, 1.0]);
     assert_eq!(groom.widths.at(2, 14), 1e-5 * 14.0);

@@ -72,9 +72,9 @@ impl<R: Real> Lengths<R> {
                     pull = self.tangents[index] * self.tension[index];
                 }
                 if index > 0 {
-                    pull = pull - self.tangents[index - 1] * self.tension[index - 1];
+                    pull -= self.tangents[index - 1] * self.tension[index - 1];
                 }
-                points[index] = points[index] + pull * inverse_mass[index];
+                points[index] += pull * inverse_mass[index];
             }
         }
     }

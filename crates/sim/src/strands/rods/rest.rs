@@ -57,8 +57,8 @@ pub fn sag_free(
     // Moment of the forces beyond about the origin.
     let mut moment = Vector::zero();
     for index in (0..segments.len()).rev() {
-        force = force + forces[index + 1];
-        moment = moment + points[index + 1].cross(forces[index + 1]);
+        force += forces[index + 1];
+        moment += points[index + 1].cross(forces[index + 1]);
         let segment = &segments[index];
         let tension = force.dot(segment.tangent);
         // tension = stretch (length / rest - 1)

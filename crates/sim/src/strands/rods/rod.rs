@@ -227,7 +227,7 @@ impl<R: Real> Work<R> {
         for index in 0..last {
             let [x, y, z, angle] = self.step[index];
             let [u, v, w, _] = self.step[index + 1];
-            self.edges[index] = self.edges[index] + Vector::new(u - x, v - y, w - z);
+            self.edges[index] += Vector::new(u - x, v - y, w - z);
             let angle = angle.or_less(R::of(LONGEST_TURN)).or_more(R::of(-LONGEST_TURN));
             self.segments[index] = self.segments[index].moved(self.edges[index], angle);
         }

@@ -370,7 +370,7 @@ fn out_of_plane(curvature: f64, gamma: f64) -> f64 {
     strand.settle(1.0 / 60.0, 8, 10.0, 4.0);
     let still = (0..count + 2).map(|k| strand.point(k).dot(plane).abs()).fold(0.0, f64::max);
     assert!(still < 1e-9, "{still} m out of its plane before the push");
-    strand.velocities.iter_mut().skip(2).for_each(|velocity| *velocity = *velocity + plane * 1e-3);
+    strand.velocities.iter_mut().skip(2).for_each(|velocity| *velocity += plane * 1e-3);
     strand.settle(1.0 / 60.0, 8, 20.0, 2.0);
     (0..count + 2).map(|k| strand.point(k).dot(plane).abs()).fold(0.0, f64::max)
 }
