@@ -1,30 +1,15 @@
 //! Bound strands against the same strands simulated, on a groom and a head as artists make them.
 
-use std::path::{Path, PathBuf};
-
 use glam::Vec3;
-use strandline::{BoundStrands, Prepared, Scene};
+use strandline::{BoundStrands, Prepared};
 use strandline_body::{Mesh, Pose};
 use strandline_checks::{On, Rig};
 use strandline_groom::{LANES, Vec3Lanes};
 use strandline_sim::{Drive, Settings, Solver};
 
-/// Sintel's hair on her head; none without the grooms folder.
-#[allow(clippy::print_stderr)] // it tells what is not tested
+/// Her hair with so many guides, to which the other strands are bound.
 fn sintel(guides: Option<u32>) -> Option<Prepared> {
-    let folder = std::env::var_os("STRANDLINE_GROOMS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/grooms"), PathBuf::from);
-    let hair = folder.join("sintel/SintelHairOriginal-sintel_hair.16points.tfx");
-    let head = folder.join("sintel/sintel.obj");
-    if !hair.is_file() || !head.is_file() {
-        eprintln!("not tested on Sintel: no grooms folder");
-        return None;
-    }
-    let mut scene = Scene::default();
-    scene.groom.file = Some(hair);
-    scene.groom.guides = guides;
-    scene.body.file = Some(head);
-    Some(Prepared::new(&scene).unwrap())
+    strandline_checks::sintel(|scene| scene.groom.guides = guides)
 }
 
 /// Where the simulated strands are \[m\] after two seconds of shake.

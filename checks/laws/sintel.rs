@@ -1,30 +1,16 @@
 //! A groom and a head as artists make them: hair that rests in the skin, shaken.
 
 use std::f32::consts::PI;
-use std::path::{Path, PathBuf};
 
 use glam::Vec3;
-use strandline::{Prepared, Scene};
+use strandline::Prepared;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_sim::{Drive, Settings, Solver};
 
-/// The groom and its head, every eighth strand; none without the grooms folder.
-#[allow(clippy::print_stderr)] // it tells what is not tested
+/// Every eighth strand of her.
 fn sintel() -> Option<Prepared> {
-    let folder = std::env::var_os("STRANDLINE_GROOMS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/grooms"), PathBuf::from);
-    let hair = folder.join("sintel/SintelHairOriginal-sintel_hair.16points.tfx");
-    let head = folder.join("sintel/sintel.obj");
-    if !hair.is_file() || !head.is_file() {
-        eprintln!("not tested on Sintel: no grooms folder");
-        return None;
-    }
-    let mut scene = Scene::default();
-    scene.groom.file = Some(hair);
-    scene.groom.guide_every = 8;
-    scene.body.file = Some(head);
-    Some(Prepared::new(&scene).unwrap())
+    strandline_checks::sintel(|scene| scene.groom.guide_every = 8)
 }
 
 /// Deepest free point \[m\] in the head while it moves, as the report says; it is checked against the head

@@ -1,6 +1,7 @@
 //! Every stage of the GPU backend against its twin in plain Rust.
 
 mod chiang;
+mod draw;
 mod heads;
 mod host;
 mod picture;

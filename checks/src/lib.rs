@@ -3,10 +3,12 @@
 #![forbid(unsafe_code)]
 
 pub mod flip;
+mod grooms;
 mod rig;
 
 use std::sync::OnceLock;
 
+pub use grooms::sintel;
 pub use rig::{On, Rig};
 use strandline_gpu::Gpu;
 

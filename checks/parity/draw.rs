@@ -1,0 +1,132 @@
+//! Whole pictures on both backends.
+
+use glam::Vec3;
+use strandline_checks::flip::compare;
+use strandline_checks::gpu;
+use strandline_groom::Style;
+use strandline_render::gpu::GpuRenderer;
+use strandline_render::{Camera, Look, Picture, PictureSettings, Renderer, ToneMap};
+
+use crate::picture::Both;
+
+/// Both backends' pictures.
+fn pictures(both: &Both, body: bool) -> Option<[Picture; 2]> {
+    let (positions, mesh) = (both.positions(), body.then_some(&both.mesh));
+    let input = both.input(&positions);
+    let mut on_gpu = GpuRenderer::new(&gpu()?, &both.guides, mesh, &both.settings).unwrap();
+    let mut on_cpu = Renderer::new(&both.guides, mesh, &both.settings).unwrap();
+    Some([on_cpu.draw(&input).unwrap().0, on_gpu.draw(&input).unwrap().0])
+}
+
+/// What the two backends may differ by: skin is lit once a pixel on the CPU and once a sample on a GPU,
+/// blending rounds to half floats.
+const MEAN: f32 = 0.01;
+const ONE_IN_A_HUNDRED: f32 = 0.1;
+
+fn check_pictures(name: &str, both: &Both, body: bool) {
+    let Some([on_cpu, on_gpu]) = pictures(both, body) else { return };
+    compare(&on_gpu, &on_cpu, MEAN, ONE_IN_A_HUNDRED).unwrap_or_else(|message| panic!("{name}: {message}"));
+}
+
+#[test]
+fn draw_agrees_with_and_without_a_body() {
+    check_pictures("long hair on a head", &Both::new(Style::Long, 12), true);
+    check_pictures("curls alone", &Both::new(Style::Curly, 24), false);
+}
+
+#[test]
+fn draw_agrees_where_the_near_plane_cuts() {
+    let mut both = Both::new(Style::Pixie, 12);
+    both.camera.near = 1.0;
+    check_pictures("short hair cut open", &both, true);
+}
+
+#[test]
+fn draw_agrees_on_wide_ribbons_that_turn() {
+    let mut both = Both::new(Style::Curly, 24);
+    both.look = Look { width_scale: 12.0, hair_count: 0, follow_strands: 1, ..both.look };
+    check_pictures("wide curls", &both, false);
+}
+
+#[test]
+fn draw_agrees_on_an_open_body_in_blinding_light() {
+    let mut both = Both::new(Style::Pixie, 12);
+    // The back of the head is cut away, so that its inside shows.
+    let half = both
+        .mesh
+        .triangles
+        .iter()
+        .filter(|corners| corners.iter().all(|&corner| both.mesh.positions[corner as usize].z > -0.03));
+    both.mesh.triangles = half.copied().collect();
+    assert!(!both.mesh.is_closed());
+    for light in &mut both.lights {
+        light.intensity *= 1e5;
+    }
+    // One sample a pixel: both light the skin at the same points.
+    both.settings.supersampling = 1;
+    both.settings.exposure = -14.0;
+    both.camera = Camera::back();
+    check_pictures("an open head in blinding light", &both, true);
+    both.settings.exposure = 0.0;
+    check_pictures("all white", &both, true);
+}
+
+#[test]
+fn draw_agrees_on_hair_before_the_lens() {
+    let mut both = Both::new(Style::Wavy, 12);
+    // Hair from the near plane on: places in the order must not be spent on the first millimetres.
+    both.camera = Camera { position: Vec3::new(0.02, 0.0, 0.14), near: 1e-4, ..both.camera };
+    both.look.hair_count = 0;
+    check_pictures("hair before the lens", &both, false);
+}
+
+#[test]
+fn draw_agrees_far_away() {
+    let mut both = Both::new(Style::Wavy, 12);
+    both.camera.position *= 8.0;
+    both.camera.field_of_view = 5.0;
+    check_pictures("wavy hair from afar", &both, false);
+}
+
+#[test]
+fn draw_notices_another_width_and_a_missing_light() {
+    let both = Both::new(Style::Wavy, 12);
+    let Some([on_cpu, _]) = pictures(&both, true) else { return };
+    let mut thicker = Both::new(Style::Wavy, 12);
+    thicker.look.width_scale = 1.3;
+    let mut darker = Both::new(Style::Wavy, 12);
+    darker.lights.truncate(1);
+    for wrong in [thicker, darker] {
+        let Some([_, on_gpu]) = pictures(&wrong, true) else { return };
+        assert!(compare(&on_gpu, &on_cpu, MEAN, ONE_IN_A_HUNDRED).is_err());
+    }
+}
+
+#[test]
+fn resolve_agrees_at_every_setting() {
+    for (supersampling, transparent, exposure, tone_map) in [
+        (1, false, 0.0, ToneMap::Filmic),
+        (2, true, 0.0, ToneMap::Filmic),
+        (2, false, 1.5, ToneMap::Filmic),
+        (2, false, 0.7, ToneMap::Off),
+        (1, false, 0.5, ToneMap::Aces),
+    ] {
+        let mut both = Both::new(Style::Bob, 8);
+        // An odd size: rows of pictures on the device are longer than those of the picture.
+        both.settings = PictureSettings {
+            supersampling,
+            transparent,
+            exposure,
+            tone_map,
+            ..PictureSettings::sized(131, 77)
+        };
+        let Some([on_cpu, on_gpu]) = pictures(&both, false) else { return };
+        compare(&on_gpu, &on_cpu, MEAN, ONE_IN_A_HUNDRED).unwrap();
+        assert_eq!(on_gpu.alpha.is_some(), transparent);
+        if let (Some(one), Some(other)) = (&on_cpu.alpha, &on_gpu.alpha) {
+            let off: u32 = one.iter().zip(other).map(|(one, other)| u32::from(one.abs_diff(*other))).sum();
+            // Half floats hold opacity to a quarter of a step of 255.
+            assert!(off as usize <= one.len() / 4, "{off} steps of {} pixels", one.len());
+        }
+    }
+}
