@@ -11,7 +11,9 @@ pub fn list() -> anyhow::Result<()> {
     for adapter in &adapters {
         print_line!("{adapter}");
     }
-    if adapters.is_empty() {
+    if cfg!(not(feature = "gpu")) {
+        print_line!("this build is without GPUs: everything runs on the CPU");
+    } else if adapters.is_empty() {
         print_line!("no GPU: a Vulkan, Metal or Direct3D 12 driver is needed; everything runs on the CPU");
     } else if adapters.iter().all(|adapter| adapter.software) {
         print_line!("software only: `--backend auto` takes the CPU, which is many times faster");
