@@ -10,55 +10,17 @@
 mod absent;
 mod adapter;
 mod backend;
+#[cfg(feature = "wgpu")]
+mod device;
 mod error;
-
-#[cfg(feature = "wgpu")]
-mod bandwidth;
-#[cfg(feature = "wgpu")]
-mod buffer;
-#[cfg(feature = "wgpu")]
-mod check;
-#[cfg(feature = "wgpu")]
-mod drawing;
-#[cfg(feature = "wgpu")]
-mod gpu;
-#[cfg(feature = "wgpu")]
-mod kernel;
-#[cfg(feature = "wgpu")]
-mod layout;
-#[cfg(feature = "wgpu")]
-mod linked;
-#[cfg(feature = "wgpu")]
-mod readback;
-#[cfg(feature = "wgpu")]
-mod recorder;
-#[cfg(feature = "wgpu")]
-mod scan;
-#[cfg(feature = "wgpu")]
-mod texture;
-#[cfg(feature = "wgpu")]
-mod timer;
-
-pub use adapter::{Adapter, Crossed};
-pub use backend::{Backend, UnknownBackend};
-pub use error::GpuError;
 
 #[cfg(not(feature = "wgpu"))]
 pub use absent::{Buffer, Gpu};
+pub use adapter::{Adapter, Crossed};
+pub use backend::{Backend, UnknownBackend};
 #[cfg(feature = "wgpu")]
-pub use {
-    buffer::Buffer,
-    check::check,
-    drawing::{BoundDrawing, Drawing, Output},
-    gpu::Gpu,
-    kernel::{Access, Binding, Bindings, Bound, Declaration, Dispatches, Kernel, Resource, groups},
-    layout::{Field, Layout, Mirror},
-    readback::{Copied, Download, Part, Readback},
-    recorder::{Amount, Recorder, Targets},
-    scan::Scan,
-    texture::Texture,
-    timer::Timer,
-};
+pub use device::*;
+pub use error::GpuError;
 
 /// The crate that the host's device and queue come from.
 #[cfg(feature = "wgpu")]

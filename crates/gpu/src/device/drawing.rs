@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use crate::kernel::{as_shader_error, bind_group, layouts, shader_module};
+use super::kernel::{as_shader_error, bind_group, layouts, shader_module};
 use crate::{Bindings, Declaration, Gpu, GpuError};
 
 /// Declares a drawing: a struct of the buffers and textures that it is bound to.

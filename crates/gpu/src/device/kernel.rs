@@ -3,7 +3,7 @@
 
 use std::marker::PhantomData;
 
-use crate::gpu::Compiled;
+use super::gpu::Compiled;
 use crate::{Gpu, GpuError, Layout};
 
 /// How a kernel uses a buffer.

@@ -1,0 +1,27 @@
+//! A device and what is made on it.
+
+mod bandwidth;
+mod buffer;
+mod check;
+mod drawing;
+mod gpu;
+mod kernel;
+mod layout;
+mod linked;
+mod readback;
+mod recorder;
+mod scan;
+mod texture;
+mod timer;
+
+pub use buffer::Buffer;
+pub use check::check;
+pub use drawing::{BoundDrawing, Drawing, Output};
+pub use gpu::Gpu;
+pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Dispatches, Kernel, Resource, groups};
+pub use layout::{Field, Layout, Mirror};
+pub use readback::{Copied, Download, Part, Readback};
+pub use recorder::{Amount, Recorder, Targets};
+pub use scan::Scan;
+pub use texture::Texture;
+pub use timer::Timer;
