@@ -38,14 +38,17 @@ pub fn back(studio: &Studio) -> Figure {
     long_hair(studio, Vec3::new(0.0, 0.14, -1.0))
 }
 
-/// Hair that is cut twice while the head shakes.
+/// Hair whose length is changed while the head shakes: one side shorter, the other longer than it was.
 pub fn lengths(studio: &Studio) -> Figure {
     let mut moving = studio.settled(&studio.scene(Style::Long, MotionName::Shake), 304, 304)?;
-    let strand_count = moving.hair.guides().strand_count();
-    let camera = bust(Vec3::new(0.62, 0.14, 0.78));
+    let guides = moving.hair.guides();
+    let sides: Vec<f32> =
+        (0..guides.strand_count()).map(|strand| guides.position(strand, 0).x.signum()).collect();
+    let camera = bust(Vec3::new(0.0, 0.1, 1.0));
     let mut pictures = Vec::new();
-    for (time, scale) in [(0.42, 1.0), (1.25, 0.7), (2.08, 0.45)] {
-        moving.hair.set_length_scale(&vec![scale; strand_count])?;
+    for (time, change) in [(0.0, 0.0), (0.83, 0.25), (1.67, 0.5)] {
+        let scales: Vec<f32> = sides.iter().map(|side| 1.0 + side * change).collect();
+        moving.hair.set_length_scale(&scales)?;
         moving.play_to(time)?;
         pictures.push(moving.hair.picture(&camera, &Look::brown())?);
     }
