@@ -29,7 +29,7 @@ fn blown(guides: &Guides) -> Vec<Vec3Lanes> {
         for lane in 0..LANES {
             let strand = (index / POINTS * LANES + lane).min(guides.strand_count() - 1);
             let (root, here) = (guides.position(strand, 0), lanes.get(lane));
-            let here = if strand % 5 == 0 { root.lerp(here, 0.5) } else { here };
+            let here = if strand.is_multiple_of(5) { root.lerp(here, 0.5) } else { here };
             let drop = (root.y - here.y).max(0.0);
             lanes.set(lane, pose().point(here + Vec3::new(2.0 * drop * drop, 0.3 * drop, -0.5 * drop)));
         }

@@ -177,7 +177,7 @@ fn several_files_are_one_groom_and_one_body() {
     let mut weeds = Groom::load(&path).unwrap();
     (weeds.colors, weeds.guide_flags) = (None, None);
     weeds.transform(100.0, glam::Quat::IDENTITY, glam::Vec3::ZERO);
-    weeds.save(&folder.path().join("weeds.npz")).unwrap();
+    weeds.save(folder.path().join("weeds.npz")).unwrap();
     let mut scene = Scene::default();
     for name in ["ground.obj", "stone.obj"] {
         std::fs::write(folder.path().join(name), GROUND).unwrap();
