@@ -33,6 +33,8 @@ fn droop(on: &On, gamma: f32, count: usize, time_step: f32, newton_steps: u32) -
     let rod = &mut settings.strands.rods;
     rod.rest = Rest::Unstressed;
     rod.newton_steps = newton_steps;
+    // As loose as it is by default, a thread as soft as 1000 that does not rub swings on by 0.1 mm on a GPU.
+    rod.tolerance = 1e-3;
     // E I = w L^3 / gamma, with w = rho A g and I = A r^2 / 4.
     let radius = rod.radius * 1e-6;
     rod.youngs_modulus = 4.0 * rod.density * 9.81 * length.powi(3) / (gamma * radius * radius) * 1e-9;
@@ -49,14 +51,15 @@ fn droop(on: &On, gamma: f32, count: usize, time_step: f32, newton_steps: u32) -
 
 law! {
     fn a_cantilever_hangs_as_its_discrete_energy_says(on) {
-        // Of the same energy in the angles of a plane chain, by Newton's method in double precision.
+        // Of the same energy in the angles of a plane chain, by Newton's method in double precision: twice the stiffness
+        // where the chain is held, as half a segment bends there. 62 segments are 64 points, one of them to hold it.
         let expected = [
             (0.1, 16, 0.012_548_36), (1.0, 16, 0.125_031_6), (10.0, 16, 1.065_81), (100.0, 16, 5.818_072),
             (1000.0, 16, 21.993_01),
             (0.1, 32, 0.012_511_76), (1.0, 32, 0.124_678_8), (10.0, 32, 1.066_346), (100.0, 32, 5.848_987),
             (1000.0, 32, 21.131_83),
-            (0.1, 64, 0.012_502_6), (1.0, 64, 0.124_591), (10.0, 64, 1.066_661), (100.0, 64, 5.874_466),
-            (1000.0, 64, 21.099_73),
+            (0.1, 62, 0.012_502_8), (1.0, 62, 0.124_592_9), (10.0, 62, 1.066_652), (100.0, 62, 5.873_714),
+            (1000.0, 62, 21.094_14),
         ];
         for (gamma, count, droop_of_chain) in expected.into_iter().take(on.either(15, 5)) {
             for rate in [30.0, 60.0, 240.0].into_iter().take(on.either(3, 2)) {

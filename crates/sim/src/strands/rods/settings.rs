@@ -59,7 +59,7 @@ settings! {
         newton_steps: u32 = 4, in [1, 64], slider [1, 16],
             more "violent motion that is followed more closely, at a higher cost where it is needed";
         /// A strand is solved when a Newton step turns none of its segments farther. What is left is a tenth to a
-        /// hundredth of it; the shape at rest does not depend on it.
+        /// hundredth of it; hair that rubs comes to the same rest.
         tolerance: f32 = 0.01, in [1e-5, 1.0] "rad", slider [1e-4, 0.05],
             more "fewer Newton steps, motion that is followed less closely";
     }
