@@ -38,9 +38,9 @@ pub fn back(studio: &Studio) -> Figure {
     long_hair(studio, Vec3::new(0.0, 0.14, -1.0))
 }
 
-/// Hair whose length is changed while the head shakes: one side shorter, the other longer than it was.
+/// Hair whose length is changed while it hangs: one side shorter, the other longer than it was.
 pub fn lengths(studio: &Studio) -> Figure {
-    let mut moving = studio.settled(&studio.scene(Style::Long, MotionName::Shake), 304, 304)?;
+    let mut moving = studio.settled(&studio.scene(Style::Long, MotionName::Still), 304, 304)?;
     let guides = moving.hair.guides();
     let sides: Vec<f32> =
         (0..guides.strand_count()).map(|strand| guides.position(strand, 0).x.signum()).collect();

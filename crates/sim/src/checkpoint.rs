@@ -188,10 +188,10 @@ mod tests {
     use strandline_groom::{Groom, Guides};
 
     use super::*;
-    use crate::{Drive, Settings, VolumeSettings};
+    use crate::{Drive, Settings, StrandMethod, VolumeSettings};
 
-    /// Hair on a ball, its settings and a head that turns.
-    fn hair() -> (Solver, State) {
+    /// Hair on a ball and its settings.
+    fn hair(method: StrandMethod) -> (Solver, State) {
         let mut groom = Groom::empty(8e-5);
         for strand in 0..11 {
             let root = Quat::from_rotation_y(strand as f32) * Vec3::new(0.08, 0.06, 0.0);
@@ -201,7 +201,9 @@ mod tests {
         let volume = VolumeSettings { cells: [8; 3], ..VolumeSettings::default() };
         let ball = Shape::Sphere { center: Vec3::ZERO, radius: 0.1 };
         let solids = vec![Collider::new(ball, Carrier::Head, 0.3).unwrap()];
-        let solver = Solver::new(&guides, &Settings { volume, ..Settings::default() }, solids).unwrap();
+        let mut settings = Settings { volume, ..Settings::default() };
+        settings.strands.method = method;
+        let solver = Solver::new(&guides, &settings, solids).unwrap();
         let mut state = solver.rest_state(Pose::IDENTITY);
         let scales: Vec<f32> = (0..11).map(|strand| 0.8 + 0.03 * strand as f32).collect();
         state.set_length_scale(&solver, &scales).unwrap();
@@ -218,7 +220,15 @@ mod tests {
 
     #[test]
     fn a_restored_state_makes_the_same_bits_and_none_of_its_parts_is_idle() {
-        let (solver, mut state) = hair();
+        // Rods alone have sections and spins, and need no corrections of lengths.
+        needs(StrandMethod::Constrain, 7, &[VELOCITIES, CORRECTIONS, CONTACTS, VOLUME, LENGTH_SCALE]);
+        needs(StrandMethod::Rods, 9, &[VELOCITIES, SECTIONS, SPINS, CONTACTS, VOLUME, LENGTH_SCALE]);
+    }
+
+    /// Saves hair in its swing, with so many parts, and goes on from what was saved, whole and with each of these
+    /// parts changed.
+    fn needs(method: StrandMethod, count: usize, parts: &[&str]) {
+        let (solver, mut state) = hair(method);
         run(&solver, &mut state, 0..9);
         // A box that larger hair left: it is kept while the hair needs most of it.
         let volume = state.scratch.volume.as_mut().unwrap();
@@ -226,7 +236,7 @@ mod tests {
         volume.grid.set_place([x, y, z, 1.1 * spacing]);
         let saved = state.checkpoint();
         let names: Vec<_> = saved.parts.iter().map(|part| part.name).collect();
-        assert_eq!(names.len(), Checkpoint::NAMES.len() - 2, "rods alone have sections and spins: {names:?}");
+        assert_eq!(names.len(), count, "{names:?}");
         run(&solver, &mut state, 9..14);
         let wanted = state.checkpoint();
         let again = |from: &Checkpoint| {
@@ -237,17 +247,17 @@ mod tests {
             (found, state.checkpoint())
         };
         assert!(again(&saved) == (saved.clone(), wanted.clone()));
-        for name in [VELOCITIES, CORRECTIONS, CONTACTS, VOLUME, LENGTH_SCALE] {
+        for &name in parts {
             let mut changed = saved.clone();
             let part = changed.parts.iter_mut().find(|part| part.name == name).unwrap();
             part.numbers.iter_mut().for_each(|number| *number *= 0.9);
-            assert!(again(&changed).1 != wanted, "{name} changes nothing");
+            assert!(again(&changed).1 != wanted, "{method:?}: {name} changes nothing");
         }
     }
 
     #[test]
     fn states_of_other_hair_are_refused_and_change_nothing() {
-        let (solver, state) = hair();
+        let (solver, state) = hair(StrandMethod::Constrain);
         let saved = state.checkpoint();
         let mut kept = state.clone();
         let mut refused = |change: &dyn Fn(&mut Part)| {

@@ -41,6 +41,7 @@ fn scene() -> Scene {
     scene.devices.pictures = strandline::Backend::Cpu;
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
     (scene.picture.width, scene.picture.height) = (64, 48);
+    scene.look.shadow.map_size = 128;
     scene
 }
 

@@ -139,8 +139,18 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
 
 /// Stops a film after some frames; returns what it says.
 fn stop(folder: &Path, signal: &str, code: i32) -> String {
-    let render = ["render", "--scene", "small.toml", "--out", "out", "--frames", "400"];
-    let child = strandline(folder, &render).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    // With a terminal that may be closed, even where the tests run under `nohup`.
+    let heeding: &[&str] = if cfg!(target_os = "linux") { &["--default-signal=HUP"] } else { &[] };
+    let child = Command::new("env")
+        .args(heeding)
+        .arg(env!("CARGO_BIN_EXE_strandline"))
+        .args(["render", "--scene", "small.toml", "--out", "out", "--frames", "400"])
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     wait_until("three frames", || {
         let frames = names(&folder.join("out"));
         frames.contains(&"frame_0002.png".to_owned()) && frames.contains(&".strandline-lock".to_owned())

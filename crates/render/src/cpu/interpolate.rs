@@ -225,7 +225,10 @@ impl Strand {
 
     fn widen(&self, shared: &Shared, guide: &Guide, guide_index: usize, index: usize, widths: &mut [f32]) {
         let root = guide.width * shared.level.width_scale(index);
-        let (tip, bare) = (shared.look.tip_width, shared.look.root_width);
+        let tip = shared.look.tip_width;
+        // What a first segment longer than the taper would take away is spread over it.
+        let first = guide.length * shared.curves.parameters[1];
+        let bare = 1.0 - (1.0 - shared.look.root_width) * (ROOT_TAPER / first).min(1.0);
         let own = shared.guides.profiles().map(|all| of_guide(shared.guides, all, guide_index));
         for (width, parameter) in widths.iter_mut().zip(&shared.curves.parameters) {
             // Even for most of the length, then thinning ever faster toward the tip.

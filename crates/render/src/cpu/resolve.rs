@@ -261,7 +261,8 @@ mod tests {
         let color = Vec4::new(0.25, 0.25, 0.25, 0.5);
         let mut picture = Picture::default();
         let resolve = Resolve::default();
-        let settings = PictureSettings { transparent: true, ..PictureSettings::sized(19, 11) };
+        let sized = PictureSettings { tone_map: ToneMap::Off, ..PictureSettings::sized(19, 11) };
+        let settings = PictureSettings { transparent: true, ..sized };
         resolve.resolve(&constant(color, &settings), &settings, &mut picture);
         assert!(picture.alpha.as_ref().unwrap().iter().all(|&alpha| alpha == 128));
         // 0.5 linear is 188 in sRGB.
