@@ -35,7 +35,7 @@ static ALLOCATOR: Counted = Counted;
 fn scene() -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = 60;
-    scene.body.spacing = 0.01;
+    scene.body.spacing = 0.02;
     scene.simulation.volume.cells = [12; 3];
     scene.devices.simulation = strandline::Backend::Cpu;
     scene.devices.pictures = strandline::Backend::Cpu;
@@ -82,8 +82,8 @@ fn play(live: &Live, pictures: u32) -> isize {
 fn play_holds_no_more_than_at_its_beginning() {
     let live = Live::new(scene(), || ()).unwrap();
     // Lists that follow the hair have grown to their sizes after as many pictures again.
-    let first = play(&live, 120).max(play(&live, 120));
-    let last = (0..4).map(|_| play(&live, 120)).last().unwrap();
+    let first = play(&live, 60).max(play(&live, 60));
+    let last = (0..4).map(|_| play(&live, 60)).last().unwrap();
     // 2 % is promised over ten minutes: `strandline bench window` plays them.
     assert!(last as f64 <= 1.02 * first as f64, "{first} bytes, then {last}");
     // What is kept is seen: a tenth of the room.
