@@ -23,7 +23,7 @@ fn style(style: Style, settings: &Settings) -> Solver {
 }
 
 /// Mean and largest distance of points from where they rest on the head, over their strands' lengths.
-fn drift(solver: &Solver, state: &State) -> (f32, f32) {
+pub fn drift(solver: &Solver, state: &State) -> (f32, f32) {
     let points = solver.points_per_strand();
     let rest = solver.rest_state(state.world_from_head);
     let (mut sum, mut most) = (0.0, 0.0_f32);

@@ -33,7 +33,9 @@ impl Strands<'_> {
             space.margins[point] = margin;
             let free = node.free.simd_gt(f32x8::ZERO);
             if free.any() && !self.parts.solids.is_empty() {
-                let position = space.carried[point] + space.wanted[point];
+                // Where it goes on as it went: where it would fall alone, millimetres deeper, a crease of the skin
+                // has another plane, which would throw hair at rest.
+                let position = space.carried[point] + space.coast[point];
                 let query =
                     Query { position, start: Some(space.points[point]), margin, free, care: Care::ROUGH };
                 if let Some(touch) = self.parts.solids.touch(planes, point, query) {
