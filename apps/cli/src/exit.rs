@@ -23,8 +23,8 @@ mod tests {
         for code in [SUCCESS, FAILURE, USAGE, NOT_FINITE, NO_VIDEO] {
             assert!(text.contains(&format!("\n| {code} | ")), "{code}");
         }
-        let [int, term] =
-            [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM].map(|signal| SIGNAL + signal);
-        assert!(text.contains(&format!("\n| {int}, {term} | ")));
+        use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+        let [hup, int, term] = [SIGHUP, SIGINT, SIGTERM].map(|signal| SIGNAL + signal);
+        assert!(text.contains(&format!("\n| {hup}, {int}, {term} | ")));
     }
 }

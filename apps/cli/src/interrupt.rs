@@ -1,4 +1,4 @@
-//! Ctrl-C, and the request of a system that shuts down.
+//! Ctrl-C, a terminal that is closed, and the request of a system that shuts down.
 //!
 //! Where pictures or steps follow each other the program stops between two of them, closes what it writes and
 //! ends; a second request, or one at any other time, ends it at once, with its half-written files removed.
@@ -6,7 +6,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 use std::time::Duration;
 
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::{flag, low_level};
 use strandline::base::abandon_parts;
 
@@ -26,12 +26,29 @@ static LOOKING: AtomicUsize = AtomicUsize::new(0);
 /// Begins to listen. Where the system has no signals or no thread to give, its own way of ending stays.
 pub fn listen() {
     let watched = std::thread::Builder::new().name("signals".to_owned()).spawn(watch).is_ok();
-    for signal in [SIGINT, SIGTERM] {
-        if watched && let Ok(value) = usize::try_from(signal) {
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        let heeded = signal != SIGHUP || heeds_hangup();
+        if watched
+            && heeded
+            && let Ok(value) = usize::try_from(signal) {
             // What cannot be registered keeps the system's way.
             let _ = flag::register_usize(signal, &CAME, value);
         }
     }
+}
+
+/// Whether a closed terminal is to end the program: it began with that signal ignored where `nohup` or a shell's
+/// `trap '' HUP` came before it. Only Linux says so without a call that is not safe; elsewhere the signal keeps
+/// the system's way.
+fn heeds_hangup() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    ignored_signals(&status).is_some_and(|ignored| ignored & (1 << (SIGHUP - 1)) == 0)
+}
+
+/// The mask of ignored signals in what Linux tells of a process; signal 1 is its lowest bit.
+fn ignored_signals(status: &str) -> Option<u64> {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
+    u64::from_str_radix(mask.trim(), 16).ok()
 }
 
 fn watch() {
@@ -87,4 +104,17 @@ pub struct Stopped {
     done: u64,
     of: u64,
     what: &'static str,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mask_of_ignored_signals_is_read() {
+        let status = "Name:\tx\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\nSigCgt:\t0000000000000000\n";
+        assert_eq!(ignored_signals(status), Some(0x1001));
+        assert_eq!(ignored_signals("Name:\tx\n"), None);
+        assert_eq!(ignored_signals("SigIgn:\tx\n"), None);
+    }
 }

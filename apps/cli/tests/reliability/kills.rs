@@ -3,11 +3,11 @@
 use super::*;
 
 /// Times that each command is ended.
-const KILLS: usize = 51;
+const KILLS: usize = 52;
 /// How many runs are ended before one may finish and clear up.
 const BETWEEN: usize = 8;
 /// Names and numbers of the signals, in turn.
-const SIGNALS: [(&str, i32); 3] = [("INT", 2), ("TERM", 15), ("KILL", 9)];
+const SIGNALS: [(&str, i32); 4] = [("INT", 2), ("TERM", 15), ("KILL", 9), ("HUP", 1)];
 
 /// Ends a command at random times of its run. Files are whole after each; after a run that finishes the folder
 /// holds what it should and nothing else.
@@ -151,11 +151,19 @@ fn stop(folder: &Path, signal: &str, code: i32) -> String {
     error(&output)
 }
 
+/// Signals that let a film be closed, and the codes that it then ends with.
+const STOPS: [(&str, i32); if cfg!(target_os = "linux") { 3 } else { 2 }] = [
+    ("INT", 130),
+    ("TERM", 143),
+    #[cfg(target_os = "linux")]
+    ("HUP", 129),
+];
+
 #[test]
 fn a_film_that_is_stopped_is_closed_and_says_how_far_it_came() {
     let folder = folder();
     let out = folder.path().join("out");
-    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+    for (signal, code) in STOPS {
         let error = stop(folder.path(), signal, code);
         for words in ["stopping after this frame", "of 400 frames", "frames already written are whole"] {
             assert!(error.contains(words), "`{words}` is missing: {error}");
@@ -170,4 +178,26 @@ fn a_film_that_is_stopped_is_closed_and_says_how_far_it_came() {
     let former = std::fs::read(moving(&out).unwrap()).unwrap();
     stop(folder.path(), "INT", 130);
     assert_eq!(std::fs::read(moving(&out).unwrap()).unwrap(), former);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_that_ignores_a_closed_terminal_from_its_beginning_goes_on() {
+    let folder = folder();
+    let out = folder.path().join("out");
+    let child = Command::new("sh")
+        .args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_strandline")])
+        .args(["render", "--scene", "small.toml", "--out", "out", "--frames", "6"])
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_until("a frame", || out.join("frame_0000.png").exists());
+    send("HUP", child.id());
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{:?}: {}", output.status, error(&output));
+    assert!(!error(&output).contains("stopping"), "{}", error(&output));
+    assert!(out.join("frame_0005.png").exists());
+    check_whole(&out);
 }
