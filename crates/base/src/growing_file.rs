@@ -168,13 +168,7 @@ fn refuse_busy(path: &Path) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).unwrap();
-        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
+    use crate::parts::names;
 
     #[test]
     fn it_has_its_name_before_it_is_finished_and_keeps_it_when_the_run_ends() {

@@ -169,6 +169,15 @@ fn is_part(name: &OsStr, writer: Writer) -> bool {
         .is_some_and(|(process, number)| is_number(process) && is_number(number))
 }
 
+/// The names in a folder, in order.
+#[cfg(test)]
+pub(crate) fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -160,13 +160,7 @@ fn no_file(found: &str) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).unwrap();
-        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
+    use crate::parts::names;
 
     #[test]
     fn a_file_that_is_not_kept_leaves_what_was_there() {
