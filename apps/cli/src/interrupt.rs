@@ -30,7 +30,8 @@ pub fn listen() {
         let heeded = signal != SIGHUP || heeds_hangup();
         if watched
             && heeded
-            && let Ok(value) = usize::try_from(signal) {
+            && let Ok(value) = usize::try_from(signal)
+        {
             // What cannot be registered keeps the system's way.
             let _ = flag::register_usize(signal, &CAME, value);
         }
@@ -112,7 +113,8 @@ mod tests {
 
     #[test]
     fn the_mask_of_ignored_signals_is_read() {
-        let status = "Name:\tx\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\nSigCgt:\t0000000000000000\n";
+        let status =
+            "Name:\tx\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\nSigCgt:\t0000000000000000\n";
         assert_eq!(ignored_signals(status), Some(0x1001));
         assert_eq!(ignored_signals("Name:\tx\n"), None);
         assert_eq!(ignored_signals("SigIgn:\tx\n"), None);

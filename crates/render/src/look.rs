@@ -1,4 +1,5 @@
 use glam::Vec3;
+use strandline_base::math;
 use strandline_base::{Group, Key, SettingError, settings};
 
 use crate::fibre::{Fibre, FibreModel};
@@ -111,7 +112,7 @@ settings! {
 impl Shadow {
     /// Logarithm of the share of light that one hair lets through.
     pub(crate) fn log_transmission(&self) -> f32 {
-        if self.solid { -1.0 } else { (1.0 - self.opacity).ln() }
+        if self.solid { -1.0 } else { math::ln(1.0 - self.opacity) }
     }
 
     fn rising(&self, key: &Key) -> Result<(), SettingError> {

@@ -4,6 +4,7 @@
 //! [`State`] is all that changes with time.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
 pub mod cpu;
 pub mod gpu;

@@ -6,6 +6,7 @@
 //! carries keeps every bend of a curl in its plane.
 
 use glam::Quat;
+use strandline_base::math;
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
@@ -43,7 +44,10 @@ impl BendShares {
         let turn = (angles.stiffness * time_step).powi(2);
         let left = 1.0 / (1.0 + turn);
         let passes = iterations.div_ceil(ROUNDS_PER_PASS);
-        Self { share: 1.0 - left.powf(1.0 / passes as f32), hold: 1.0 - (-angles.hold * time_step).exp() }
+        Self {
+            share: 1.0 - math::powf(left, 1.0 / passes as f32),
+            hold: 1.0 - math::exp(-angles.hold * time_step),
+        }
     }
 }
 
@@ -63,8 +67,8 @@ impl Bends {
         }
         let BendShares { share, hold } = BendShares::new(angles, time_step, iterations);
         Some(Self {
-            cos_limit: splat(angles.limit.cos()),
-            sin_limit: splat(angles.limit.sin()),
+            cos_limit: splat(math::cos(angles.limit)),
+            sin_limit: splat(math::sin(angles.limit)),
             share: splat(share),
             hold: splat(hold),
             head,

@@ -3,6 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Quat, Vec3};
+use strandline_base::math;
 
 use crate::{
     Scene,
@@ -11,7 +12,6 @@ use crate::{
         Groom,
         format::{Scale, Up},
     },
-    head::rotation,
 };
 
 /// Metres that a unit of a file may be, likelier ones first.
@@ -51,7 +51,7 @@ pub(super) struct Placings {
 fn upright(up: Up) -> Quat {
     match up {
         Up::Auto | Up::Y => Quat::IDENTITY,
-        Up::Z => Quat::from_rotation_x(-FRAC_PI_2),
+        Up::Z => math::rotation(Vec3::X, -FRAC_PI_2),
     }
 }
 
@@ -210,10 +210,10 @@ impl Sample {
         // Hair grows at the back, and is combed there.
         let back = (center - 0.5 * (min + max) + combed) / size;
         if back.z.abs() >= back.x.abs() {
-            if back.z > BEHIND { Quat::from_rotation_y(PI) } else { Quat::IDENTITY }
+            if back.z > BEHIND { math::rotation(Vec3::Y, PI) } else { Quat::IDENTITY }
         } else if back.x.abs() > BEHIND {
             // What is at +x comes to -z, or what is at -x.
-            Quat::from_rotation_y(FRAC_PI_2.copysign(back.x))
+            math::rotation(Vec3::Y, FRAC_PI_2.copysign(back.x))
         } else {
             Quat::IDENTITY
         }
@@ -240,7 +240,7 @@ fn noted(scene: &Scene, groom: Placing, body: Placing, has_body: bool, turn: Qua
     if turn != Quat::IDENTITY {
         let front = turn * Vec3::Z;
         // Half a turn has no sign.
-        let degrees = if front.z < -0.999 { 180.0 } else { front.x.atan2(front.z).to_degrees() };
+        let degrees = if front.z < -0.999 { 180.0 } else { math::atan2(front.x, front.z).to_degrees() };
         words.push(format!("both are turned by {degrees:.0} degrees to look along +z"));
     }
     let keys = "`scale`, `up`, `rotation` and `translation` of [groom] and [body] say otherwise";
@@ -270,7 +270,7 @@ pub(super) fn apart(groom: &Groom, mesh: &Mesh) -> Option<String> {
 
 /// Places a mesh: scaled and turned as guessed, then turned and moved as a scene says.
 pub(super) fn place_mesh(mesh: &mut Mesh, placing: Placing, turn: Vec3, translation: Vec3) {
-    let turn = rotation(turn) * placing.turn;
+    let turn = math::pitch_yaw_roll(turn) * placing.turn;
     for position in &mut mesh.positions {
         *position = turn * (placing.scale * *position) + translation;
     }

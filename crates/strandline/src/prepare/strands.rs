@@ -1,6 +1,7 @@
 //! The strands of a scene: from a file, or grown; those that are simulated, and those that are bound to them.
 
 use glam::Vec3;
+use strandline_base::math;
 
 use crate::{
     Error, Scene,
@@ -9,7 +10,6 @@ use crate::{
         Groom, Guides, Outside, Widths,
         format::{self, HAIR_WIDTH, LoadOptions, Part, Scale, Up},
     },
-    head::rotation,
 };
 
 use super::placing::Placing;
@@ -41,7 +41,7 @@ pub(super) fn place(groom: &mut Groom, placing: Placing, scene: &Scene) {
     }
     let has_widths = scene.groom.own_look && Part::Widths.is_in(groom);
     groom.transform(placing.scale, placing.turn, Vec3::ZERO);
-    groom.transform(1.0, rotation(scene.groom.rotation), scene.groom.translation);
+    groom.transform(1.0, math::pitch_yaw_roll(scene.groom.rotation), scene.groom.translation);
     // The width of a hair is in metres already.
     if !has_widths {
         groom.widths = Widths::Constant(HAIR_WIDTH);

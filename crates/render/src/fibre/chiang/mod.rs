@@ -6,6 +6,7 @@ mod moments;
 mod table;
 
 use glam::{DVec3, Vec3};
+use strandline_base::math;
 use strandline_base::{choices, settings};
 
 pub use lobes::{LOBES, Lobes};
@@ -72,7 +73,7 @@ impl Chiang {
                 let b = f64::from(self.roughness_around);
                 // [Chiang2016 §4.2]
                 let scale = 5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))));
-                color.to_array().map(|c| (f64::from(c).clamp(1e-4, 1.0).ln() / scale).powi(2))
+                color.to_array().map(|c| (math::ln(f64::from(c).clamp(1e-4, 1.0)) / scale).powi(2))
             }
         }
     }
