@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
+use strandline::base::math;
 use strandline::render::surroundings::{Panorama, Surroundings};
 use strandline::render::{Light, LightKind, Picture, PictureSettings, Preset};
 use strandline::{Backend, Camera, Hair, Look, Prepared, Scene, Style};
@@ -65,8 +66,8 @@ fn surroundings(light: fn(Vec3) -> Vec3) -> Result<Arc<Surroundings>, String> {
     let (width, height) = (256, 128);
     let pixel = |index: usize| {
         let turn = std::f32::consts::TAU * ((index % width) as f32 / width as f32 - 0.5);
-        let (flat, y) = (std::f32::consts::PI * ((index / width) as f32 + 0.5) / height as f32).sin_cos();
-        light(Vec3::new(-turn.sin() * flat, y, turn.cos() * flat))
+        let (flat, y) = math::sin_cos(std::f32::consts::PI * ((index / width) as f32 + 0.5) / height as f32);
+        light(Vec3::new(-math::sin(turn) * flat, y, math::cos(turn) * flat))
     };
     let panorama = Panorama::new(width, height, (0..width * height).map(pixel).collect())?;
     Ok(Arc::new(Surroundings::new(&panorama, 0.0, 1.0)))

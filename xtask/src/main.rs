@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults`.
+//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | deny | licences`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
@@ -7,6 +7,7 @@ mod adapter;
 mod bare;
 mod faults;
 mod house;
+mod licences;
 mod names;
 mod run;
 
@@ -28,7 +29,10 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            the tests that have to see each. Results are kept: a run that was broken off goes on,
            and a fault with a result for the tree as it is is not run again unless it is named.
            [NAME..] these only, --cpu without the tests on a GPU, --list names and meanings,
-           --table the page docs/faults.md";
+           --table the page docs/faults.md
+  deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
+           faults where their list can be had; `test` does the first three where it is installed
+  licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";
 
 /// What to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,6 +43,8 @@ enum Chore {
     Names,
     House,
     Faults(faults::Wish),
+    Deny,
+    Licences(Option<String>),
     Help,
 }
 
@@ -52,6 +58,8 @@ fn main() -> ExitCode {
         Some(Chore::Names) => names::check(),
         Some(Chore::House) => house::check(),
         Some(Chore::Faults(wish)) => faults::faults(&wish),
+        Some(Chore::Deny) => licences::deny(),
+        Some(Chore::Licences(texts)) => licences::write(texts.as_deref()),
         Some(Chore::Help) => {
             println!("{USAGE}");
             true
@@ -77,6 +85,9 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["names"] => Some(Chore::Names),
         ["house"] => Some(Chore::House),
         ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
+        ["deny"] => Some(Chore::Deny),
+        ["licences"] => Some(Chore::Licences(None)),
+        ["licences", file] => Some(Chore::Licences(Some((*file).to_owned()))),
         _ => None,
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use crate::{adapter, bare, house, names};
+use crate::{adapter, bare, house, licences, names};
 
 /// Sums over every `test result:` line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,6 +59,9 @@ pub fn test(setup: bool) -> bool {
     step("format", cargo(&["fmt", "--all", "--check"], &[], &mut tally));
     step("names", names::check());
     step("house", house::check());
+    step("licences", licences::check());
+    let denied = licences::deny_if_installed();
+    step("deny", denied.unwrap_or(true));
     let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
     step("lints", cargo(&lints, &[], &mut tally));
     let bare: Vec<&str> =
@@ -79,6 +82,9 @@ pub fn test(setup: bool) -> bool {
     }
     if !there.display {
         println!("NOT TESTED: {}", adapter::NO_WINDOW);
+    }
+    if denied.is_none() {
+        println!("NOT TESTED: {}", licences::NOT_INSTALLED);
     }
     for name in &broken {
         println!("FAILED: {name}");

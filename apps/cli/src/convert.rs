@@ -1,7 +1,8 @@
 //! `strandline convert`: a groom in another format, and with other strands.
 
 use anyhow::Context;
-use glam::{EulerRot, Quat, Vec3};
+use glam::Vec3;
+use strandline::base::math;
 use strandline::body::{DistanceGrid, Mesh, SignedDistance};
 use strandline::groom::{Groom, format};
 
@@ -31,8 +32,7 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     if let Some(points) = options.points {
         groom = groom.resampled(points as usize)?;
     }
-    let [pitch, yaw, roll] = options.turn.unwrap_or_default().to_array().map(f32::to_radians);
-    let rotation = Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll);
+    let rotation = math::pitch_yaw_roll(options.turn.unwrap_or_default());
     groom.transform(1.0, rotation, options.translation.unwrap_or_default());
     if let Some(file) = &options.outside {
         push_out(&mut groom, &Mesh::load(file, options.mesh_scale)?)?;

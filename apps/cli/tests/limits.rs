@@ -140,3 +140,56 @@ fn a_variable_that_is_no_number_is_refused() {
         .unwrap();
     refused(&output, &["STRANDLINE_MEMORY is `8G`, expected a number of MiB"]);
 }
+
+#[test]
+fn bound_strands_rods_and_scattered_light_at_their_most() {
+    let few_bound = "style.strand_count = 30\ngroom.bound = 3000\nlook.follow_strands = 1\n";
+    runs(&render(few_bound));
+    let most = "style.strand_count = 30\ngroom.bound = 8000000\nlook.follow_strands = 1\n";
+    refused(&render(most), &["look.follow_strands = 1 on each of 8000000 guides"]);
+    refused(&render(most), &TOO_MUCH);
+    let rods = |keys: &str| render(&format!("simulation.strands.method = \"rods\"\n{keys}"));
+    runs(&rods("style.strand_count = 30\ngroom.points_per_strand = 64\n"));
+    refused(&rods("style.strand_count = 8000000\n"), &TOO_MUCH);
+    // A light with an area has samples of its own for each place of its shadow.
+    let area = "[[lights]]\nkind = \"rectangle\"\nwidth = 1.0\nheight = 1.0\nsamples = 4\n".repeat(8);
+    let scattered =
+        render(&format!("{FEW}look.fibre.model = \"chiang\"\nlook.shadow.map_size = 4096\n{area}"));
+    refused(&scattered, &["look.shadow.map_size = 4096 for each of 128 lights with shadow"]);
+    refused(&scattered, &TOO_MUCH);
+}
+
+#[test]
+fn colliders_at_their_most() {
+    let ball = "[[colliders]]\nshape = \"sphere\"\ncenter = [0.0, 3.0, 0.0]\nradius = 0.01\n";
+    runs(&render(&format!("{FEW}{}", ball.repeat(1024))));
+    refused(&render(&format!("{FEW}{}", ball.repeat(1025))), &["colliders is 1025, expected 1024 at most"]);
+}
+
+/// Files of one byte more than may be read, which take no room on the disk: refused by their length.
+#[test]
+fn files_of_more_than_they_may_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), format!("{FEW}film = {{ frames = 1, settle = 0.0 }}"))
+        .unwrap();
+    for (name, most) in [
+        ("a.hair", 4096),
+        ("a.tfx", 4096),
+        ("a.npz", 4096),
+        ("a.ply", 4096),
+        ("a.obj", 256),
+        ("a.gltf", 256),
+        ("a.glb", 256),
+        ("a.toml", 8),
+    ] {
+        let file = std::fs::File::create(folder.path().join(name)).unwrap();
+        file.set_len((most << 20) + 1).unwrap();
+        let body = ["sim", "--scene", "s.toml", "--body", name];
+        let output = match most {
+            8 => limited(folder.path(), &["scene", name]),
+            256 => limited(folder.path(), &body),
+            _ => limited(folder.path(), &["info", name]),
+        };
+        refused(&output, &[&format!("{} bytes, expected {most} MiB at most", (most << 20) + 1)]);
+    }
+}

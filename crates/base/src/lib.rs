@@ -3,10 +3,12 @@
 //! settings table. No hair, no GPU, nothing of ours below it.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
 pub mod cache;
 mod folder_lock;
 mod growing_file;
+pub mod math;
 pub mod memory;
 pub mod npz;
 mod parts;

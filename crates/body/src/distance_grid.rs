@@ -204,7 +204,7 @@ fn beyond(near: f32, outside: Vec3) -> f32 {
     if outside == Vec3::ZERO {
         return near;
     }
-    near.max(0.0).hypot(outside.length())
+    (near.max(0.0).powi(2) + outside.length_squared()).sqrt()
 }
 
 /// Difference of the neighbours on either side, for each axis, by two cells;

@@ -4,7 +4,7 @@ use std::path::{Component, Path};
 
 use ::gltf::Document;
 use ::gltf::accessor::{Accessor, DataType, Dimensions};
-use ::gltf::buffer::{Data, Source};
+use ::gltf::buffer::Source;
 use glam::Vec3;
 
 use crate::gltf::Refusal;
@@ -25,7 +25,7 @@ pub(crate) fn load_buffers(
         let bytes = match buffer.source() {
             Source::Bin => blob.take(),
             Source::Uri(uri) if uri.starts_with("data:") => {
-                Data::from_source(buffer.source(), None).ok().map(|data| data.0)
+                uri.split_once(";base64,").and_then(|(_, text)| from_base64(text))
             }
             Source::Uri(uri) => {
                 let (folder, name) = folder.zip(file_name(uri)).ok_or_else(|| {
@@ -66,6 +66,34 @@ fn file_name(uri: &str) -> Option<String> {
             |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
         !name.is_empty() && !name.contains(['\0', ':', '\\']) && is_below(name)
     })
+}
+
+/// The bytes of text in base 64 \[RFC4648 §4\], with or without `=` at its end.
+fn from_base64(text: &str) -> Option<Vec<u8>> {
+    let text = text.trim_end_matches('=').as_bytes();
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 2);
+    for four in text.chunks(4) {
+        let mut bits = 0_u32;
+        for digit in four {
+            let value = match digit {
+                b'A'..=b'Z' => digit - b'A',
+                b'a'..=b'z' => digit - b'a' + 26,
+                b'0'..=b'9' => digit - b'0' + 52,
+                b'+' => 62,
+                b'/' => 63,
+                _ => return None,
+            };
+            bits = bits << 6 | u32::from(value);
+        }
+        // Six bits a digit: one digit alone is no byte.
+        let count = four.len() * 6 / 8;
+        if count == 0 {
+            return None;
+        }
+        bits <<= 32 - 6 * four.len() as u32;
+        bytes.extend(&bits.to_be_bytes()[..count]);
+    }
+    Some(bytes)
 }
 
 impl Buffers {
@@ -126,5 +154,29 @@ impl Buffers {
             return Err(refused("beyond its buffer"));
         }
         Ok((0..count).map(move |element| &part[element * stride..element * stride + size]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_in_base_64_is_read() {
+        // [RFC4648 §10]
+        for (text, bytes) in [
+            ("", ""),
+            ("Zg==", "f"),
+            ("Zm8=", "fo"),
+            ("Zm9v", "foo"),
+            ("Zm9vYg", "foob"),
+            ("Zm9vYmFy", "foobar"),
+        ] {
+            assert_eq!(from_base64(text).as_deref(), Some(bytes.as_bytes()), "{text}");
+        }
+        assert_eq!(from_base64("+/+/"), Some(vec![0xfb, 0xff, 0xbf]));
+        for text in ["Zm9vY", "Zm 9v", "Zm-_", "Zg=v"] {
+            assert_eq!(from_base64(text), None, "{text}");
+        }
     }
 }

@@ -2,6 +2,7 @@
 //! with the tangents of Catmull and Rom for uneven times.
 
 use glam::{DQuat, DVec3, Vec3};
+use strandline_base::math;
 
 use crate::{BodyError, Keyframe, Pose};
 
@@ -99,7 +100,7 @@ fn rotation_between(start: &Knot, end: &Knot, span: f64, share: f64) -> DQuat {
     let whole = logarithm(start.rotation.conjugate() * end.rotation);
     let leave = start.angular_velocity * span;
     let arrive = vector_rate(whole, end.angular_velocity * span);
-    start.rotation * DQuat::from_scaled_axis(hermite([DVec3::ZERO, leave, whole, arrive], share))
+    start.rotation * math::rotation_by(hermite([DVec3::ZERO, leave, whole, arrive], share))
 }
 
 /// The cubic with given values and slopes (value, slope, value, slope) at 0 and 1.
@@ -115,7 +116,7 @@ fn hermite([start, leave, end, arrive]: [DVec3; 4], share: f64) -> DVec3 {
 /// The rotation vector \[rad\] of the shorter of the two ways.
 fn logarithm(rotation: DQuat) -> DVec3 {
     let rotation = if rotation.w < 0.0 { -rotation } else { rotation };
-    rotation.to_scaled_axis()
+    math::rotation_vector(rotation)
 }
 
 /// How fast a rotation vector changes when its rotation turns with an angular velocity given in the
@@ -125,8 +126,11 @@ fn vector_rate(vector: DVec3, angular_velocity: DVec3) -> DVec3 {
     let once = vector.cross(angular_velocity);
     let twice = vector.cross(once);
     // (1 - a/2 cot a/2) / a^2, and its limit where that is 0 / 0.
-    let share =
-        if angle < 1e-4 { 1.0 / 12.0 } else { (1.0 - 0.5 * angle / (0.5 * angle).tan()) / (angle * angle) };
+    let share = if angle < 1e-4 {
+        1.0 / 12.0
+    } else {
+        (1.0 - 0.5 * angle / math::tan(0.5 * angle)) / (angle * angle)
+    };
     angular_velocity + once * 0.5 + twice * share
 }
 

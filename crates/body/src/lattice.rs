@@ -1,6 +1,7 @@
 //! Where the nodes of a distance grid lie.
 
 use glam::{DVec3, U64Vec3, UVec3, Vec3};
+use strandline_base::math;
 
 use crate::{Aabb, BodyError};
 
@@ -109,7 +110,7 @@ fn excess(cells: U64Vec3) -> Option<f64> {
     let nodes = cells.saturating_add(U64Vec3::ONE);
     let total = nodes.x.saturating_mul(nodes.y).saturating_mul(nodes.z);
     let side = cells.max_element();
-    let excess = (side as f64 / SIDE_LIMIT as f64).max((total as f64 / Lattice::NODE_LIMIT as f64).cbrt());
+    let excess = (side as f64 / SIDE_LIMIT as f64).max(math::cbrt(total as f64 / Lattice::NODE_LIMIT as f64));
     (side > SIDE_LIMIT || total > Lattice::NODE_LIMIT).then_some(excess)
 }
 

@@ -5,6 +5,7 @@
 //! and a groom are at rest; [`Pose`] carries it into the world.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
 mod buried;
 mod closing;

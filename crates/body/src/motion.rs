@@ -1,8 +1,9 @@
 use std::f64::consts::TAU;
 use std::str::FromStr;
 
-use glam::{DVec3, Quat, Vec3};
+use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+use strandline_base::math;
 
 use crate::{BodyError, Pose, keyframes};
 
@@ -76,7 +77,7 @@ impl Motion {
             Self::Nod => (DVec3::X, NOD_DEGREES * swing(time, NOD_FREQUENCY)),
             Self::Turn => (DVec3::Y, TURN_DEGREES * look(time)),
         };
-        let rotation = Quat::from_axis_angle(axis.as_vec3(), degrees.to_radians() as f32);
+        let rotation = math::rotation(axis.as_vec3(), degrees.to_radians() as f32);
         Pose::rotation_about(pivot, rotation)
     }
 }
@@ -102,7 +103,7 @@ impl FromStr for Motion {
 /// An oscillation of amplitude 1 that grows from rest, -1..1.
 fn swing(time: f64, frequency: f64) -> f64 {
     let time = since_start(time);
-    rise(time / RAMP) * (TAU * (time * frequency).fract()).sin()
+    rise(time / RAMP) * math::sin(TAU * (time * frequency).fract())
 }
 
 /// A look to the left (1) and to the right (-1) with rests, from and to 0, once in a period.

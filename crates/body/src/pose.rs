@@ -1,5 +1,6 @@
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
+use strandline_base::math;
 
 /// A rigid transform. Name a value by its two spaces: `world_from_head`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,7 +43,7 @@ impl Pose {
             return *self;
         }
         Self {
-            rotation: self.rotation.slerp(end.rotation, share),
+            rotation: math::slerp(self.rotation, end.rotation, share),
             translation: self.translation.lerp(end.translation, share),
         }
     }

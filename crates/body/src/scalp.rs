@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use strandline_base::math;
 
 use crate::{Mannequin, Random, SignedDistance};
 
@@ -82,7 +83,7 @@ impl Scalp {
 
     /// Height \[m\] of a place on the skin above the hairline there, negative on bare skin.
     pub fn height_above_hairline(&self, position: Vec3) -> f32 {
-        position.y - hairline::height(position.x.abs().atan2(position.z))
+        position.y - hairline::height(math::atan2(position.x.abs(), position.z))
     }
 
     /// Area \[m^2\], to a few parts in a hundred.
@@ -160,8 +161,8 @@ impl Scalp {
 
 /// Direction of a place in the table.
 fn direction(polar: f32, azimuth: f32) -> Vec3 {
-    let (sine, cosine) = (polar * LOWEST / POLARS as f32).sin_cos();
-    let (across, along) = (azimuth * TAU / AZIMUTHS as f32).sin_cos();
+    let (sine, cosine) = math::sin_cos(polar * LOWEST / POLARS as f32);
+    let (across, along) = math::sin_cos(azimuth * TAU / AZIMUTHS as f32);
     Vec3::new(sine * across, cosine, sine * along)
 }
 
@@ -182,7 +183,7 @@ fn uv(position: Vec3) -> Vec2 {
     let arm = (position - CENTER).normalize();
     let back = Vec3::X.cross(CROWN);
     let around = Vec2::new(arm.x, -arm.dot(back)).normalize_or(Vec2::Y);
-    let share = arm.dot(CROWN).clamp(-1.0, 1.0).acos() / WIDEST;
+    let share = math::acos(arm.dot(CROWN).clamp(-1.0, 1.0)) / WIDEST;
     (around * (0.5 * share) + 0.5).clamp(Vec2::ZERO, Vec2::ONE)
 }
 

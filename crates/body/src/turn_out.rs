@@ -1,4 +1,5 @@
 use glam::Vec3;
+use strandline_base::math;
 
 /// Halvings of a turn: to a few degrees.
 const HALVINGS: usize = 6;
@@ -12,7 +13,7 @@ pub fn turned_out(before: Vec3, end: Vec3, normal: Vec3, is_out: impl Fn(Vec3) -
     let length = across.length();
     let aside = across.reject_from_normalized(normal);
     let aside = aside.try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector());
-    let turned = |angle: f32| before + (normal * angle.cos() + aside * angle.sin()) * length;
+    let turned = |angle: f32| before + (normal * math::cos(angle) + aside * math::sin(angle)) * length;
     // From the normal: the largest angle that is out, the least that is inside.
     let (mut out, mut inside) = (0.0, normal.angle_between(across));
     if !is_out(turned(out)) {

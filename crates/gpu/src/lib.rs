@@ -5,6 +5,7 @@
 //! kit knows the names of backends and that there is no GPU.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
 #[cfg(not(feature = "wgpu"))]
 mod absent;

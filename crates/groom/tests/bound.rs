@@ -1,4 +1,5 @@
 //! Bound strands of real grooms, and what a hundred thousand of them cost.
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use std::time::Instant;
 

@@ -1,6 +1,7 @@
-use glam::{Affine3A, Mat4, Quat, Vec3, Vec4};
+use glam::{Affine3A, Mat4, Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 use strandline_base::SettingError;
+use strandline_base::math;
 use strandline_body::Aabb;
 
 use crate::RenderError;
@@ -57,7 +58,7 @@ impl Camera {
         camera.position = target + direction;
         let world_from_view = camera.view_from_world().inverse();
         let (right, up) = (Vec3::from(world_from_view.x_axis), Vec3::from(world_from_view.y_axis));
-        let slope_up = (0.5 * camera.field_of_view.to_radians()).tan();
+        let slope_up = math::tan(0.5 * camera.field_of_view.to_radians());
         let slope_right = slope_up * aspect.max(1e-3);
         let distance = (0..8).fold(0.0_f32, |distance, corner| {
             let pick =
@@ -76,12 +77,12 @@ impl Camera {
     /// `pitch` upward \[radians\].
     pub fn orbit(&self, yaw: f32, pitch: f32) -> Self {
         let up = self.up.normalize_or(Vec3::Y);
-        let offset = Quat::from_axis_angle(up, yaw) * (self.position - self.target);
+        let offset = math::rotation(up, yaw) * (self.position - self.target);
         let right = up.cross(offset).normalize_or(Vec3::X);
         // The poles are kept off: there, up has no direction in the picture.
-        let elevation = (offset.normalize_or(Vec3::Z).dot(up)).clamp(-1.0, 1.0).asin();
+        let elevation = math::asin((offset.normalize_or(Vec3::Z).dot(up)).clamp(-1.0, 1.0));
         let pitch = (elevation + pitch).clamp(-1.5, 1.5) - elevation;
-        Self { position: self.target + Quat::from_axis_angle(right, -pitch) * offset, ..*self }
+        Self { position: self.target + math::rotation(right, -pitch) * offset, ..*self }
     }
 
     /// Carries world space to view space: x right, y up, the camera at the origin looking along -z.
@@ -114,7 +115,7 @@ impl Camera {
 
     /// Focal length in half picture heights.
     pub fn focal(&self) -> f32 {
-        1.0 / (0.5 * self.field_of_view.to_radians()).tan()
+        1.0 / math::tan(0.5 * self.field_of_view.to_radians())
     }
 
     /// Checks every field.

@@ -1,4 +1,5 @@
 use glam::Vec3;
+use strandline_base::math;
 use strandline_base::{Group, Key, SettingError, choices, settings};
 
 use crate::RenderError;
@@ -175,7 +176,7 @@ impl Light {
         if self.kind == LightKind::Disc {
             // Even over the disc by the golden turn.
             let distance = 0.5 * self.width * ((index as f32 + 0.5) / (side * side) as f32).sqrt();
-            let (y, x) = (index as f32 * 2.399_963_2).sin_cos();
+            let (y, x) = math::sin_cos(index as f32 * 2.399_963_2);
             return [distance * x, distance * y];
         }
         let middle = |at: usize| (at as f32 + 0.5) / side as f32 - 0.5;
@@ -193,7 +194,7 @@ impl Light {
     pub(crate) fn cone_cosines(&self) -> [f32; 2] {
         let rim = self.cone_angle.to_radians();
         let full = rim * (1.0 - self.cone_softness.clamp(1e-3, 1.0));
-        [rim.cos(), full.cos()]
+        [math::cos(rim), math::cos(full)]
     }
 }
 

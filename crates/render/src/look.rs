@@ -2,6 +2,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::Vec3;
+use strandline_base::math;
 use strandline_base::{Key, SettingError, settings};
 
 use crate::Environment;
@@ -152,7 +153,7 @@ settings! {
 impl Shadow {
     /// Logarithm of the share of light that one hair lets through.
     pub(crate) fn log_transmission(&self) -> f32 {
-        if self.solid { -1.0 } else { (1.0 - self.opacity).ln() }
+        if self.solid { -1.0 } else { math::ln(1.0 - self.opacity) }
     }
 
     fn rising(&self, key: &Key) -> Result<(), SettingError> {

@@ -1,4 +1,5 @@
-use glam::{EulerRot, Quat, Vec3};
+use glam::{Quat, Vec3};
+use strandline_base::math;
 
 use crate::{
     Error,
@@ -20,7 +21,7 @@ impl HeadMotion {
     /// # Errors
     /// Keyframes that are missing, not finite or not in the order of their times.
     pub fn new(section: &MotionSection, pivot: Vec3) -> Result<Self, Error> {
-        let turn = rotation(section.rotation);
+        let turn = math::pitch_yaw_roll(section.rotation);
         Ok(Self { motion: section.motion(pivot)?, pivot, turn })
     }
 
@@ -35,12 +36,6 @@ impl HeadMotion {
     pub fn pivot(&self) -> Vec3 {
         self.pivot
     }
-}
-
-/// A rotation from pitch (about x), yaw (about y) and roll (about z) \[degrees\].
-pub(crate) fn rotation(degrees: Vec3) -> Quat {
-    let [pitch, yaw, roll] = degrees.to_array().map(f32::to_radians);
-    Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll)
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
 //! Hair on a GPU as the façade has it: the same motion, and what happens when the GPU goes away.
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use strandline::{
     Backend, Devices, Event, Film, Hair, Picture, Player, Pose, Scene,

@@ -1,4 +1,5 @@
 //! Hair that begins where other hair was left.
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use strandline::{
     Backend, Error, Event, Hair, Picture, Player, Pose, Prepared, Scene,

@@ -1,4 +1,5 @@
 use glam::{Mat3, Vec2, Vec3};
+use strandline_base::math;
 
 use super::field::{Ellipsoid, Field, Swelling};
 
@@ -19,8 +20,8 @@ impl Arc {
     /// `center` and `radius` \[m\] of the circle, `tube` \[m\] of the tube around it; there `from` and
     /// `to` \[degrees\] from the first axis toward the second.
     pub(super) fn new(center: Vec3, radius: f32, from: f32, to: f32, tube: f32) -> Self {
-        let middle = Vec2::from_angle((0.5 * (from + to)).to_radians());
-        let end = Vec2::from_angle((0.5 * (to - from)).to_radians());
+        let middle = math::unit_at((0.5 * (from + to)).to_radians());
+        let end = math::unit_at((0.5 * (to - from)).to_radians());
         Self { center, radius, tube, middle, end }
     }
 
@@ -94,8 +95,8 @@ impl Ear {
     /// The axes of an ear whose back edge stands off the head by `flare` \[rad\] and whose upper end
     /// leans back by `lean` \[rad\].
     pub(super) fn frame(flare: f32, lean: f32) -> Mat3 {
-        let (flare_sine, flare_cosine) = flare.sin_cos();
-        let (lean_sine, lean_cosine) = lean.sin_cos();
+        let (flare_sine, flare_cosine) = math::sin_cos(flare);
+        let (lean_sine, lean_cosine) = math::sin_cos(lean);
         let back = Vec3::new(flare_sine, 0.0, -flare_cosine);
         let out = Vec3::new(flare_cosine, 0.0, flare_sine);
         Mat3::from_cols(

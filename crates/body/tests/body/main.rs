@@ -1,4 +1,5 @@
 //! The body from outside: files, holes, distance grids.
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 mod closing;
 mod distance_grid;

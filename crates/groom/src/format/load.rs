@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
+use strandline_base::math;
 use strandline_base::{Key, Kind, Row, SettingError, Value, WholeFile, choices, read_plain};
 
 use super::report::Report;
@@ -221,7 +222,7 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
     }
     let rotation = match options.up {
         Up::Auto | Up::Y => Quat::IDENTITY,
-        Up::Z => Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2),
+        Up::Z => math::rotation(Vec3::X, -std::f32::consts::FRAC_PI_2),
     };
     groom.transform(scale, rotation, Vec3::ZERO);
     if groom.widths == Widths::Constant(0.0) {

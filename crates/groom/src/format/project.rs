@@ -2,6 +2,8 @@
 
 use std::path::{Component, Path};
 
+use strandline_base::math;
+
 use super::bytes::Source;
 use crate::GroomError;
 
@@ -66,5 +68,5 @@ fn is_strands(file: &str) -> bool {
 
 /// A part of a colour of the screen \[IEC 61966-2-1\] as light.
 fn linear(part: f32) -> f32 {
-    if part <= 0.040_45 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    if part <= 0.040_45 { part / 12.92 } else { math::powf((part + 0.055) / 1.055, 2.4) }
 }

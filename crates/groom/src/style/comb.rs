@@ -1,6 +1,7 @@
 //! Where a comb leads the hair: a direction for every place on and around the head.
 
-use glam::{Quat, Vec2, Vec3};
+use glam::{Vec2, Vec3};
+use strandline_base::math;
 use strandline_body::Root;
 
 use super::{Style, StyleSettings};
@@ -93,7 +94,7 @@ impl Combed {
 
     /// Outward from the whorl, turned by the swirl; over the forehead to the side.
     fn off_whorl(&self, settings: &StyleSettings, place: Place) -> Vec3 {
-        let turn = Quat::from_axis_angle(WHORL.normalize(), settings.swirl);
+        let turn = math::rotation(WHORL.normalize(), settings.swirl);
         let away = place.along(turn * (self.root.position - WHORL));
         let ahead = smooth(0.02, 0.07, self.root.position.z) * smooth(-0.02, 0.05, self.root.position.y);
         let fringe = place.along(Vec3::new(-0.7 * settings.parting.signum(), -0.15, 0.5));

@@ -4,6 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use strandline_base::math;
 use strandline_body::{Mannequin, Random};
 
 use super::StyleSettings;
@@ -111,7 +112,8 @@ impl Bends {
         let sense = if shared.unit() < 0.5 { -1.0 } else { 1.0 };
         // Waves of neighbouring clumps run side by side; curls do not.
         let place = strand.root.position;
-        let together = 2.5 * (31.0 * place.z + 1.3).sin() + 2.0 * (23.0 * place.y + 17.0 * place.x).sin();
+        let together =
+            2.5 * math::sin(31.0 * place.z + 1.3) + 2.0 * math::sin(23.0 * place.y + 17.0 * place.x);
         Self {
             wave_phase: together + 1.1 * (shared.unit() - 0.5) + 0.5 * (own.unit() - 0.5),
             curl_phase: TAU * shared.unit() + 0.9 * (own.unit() - 0.5),
@@ -127,13 +129,14 @@ impl Bends {
         let wave = settings.wave_amplitude * smooth(0.02, 0.16, along);
         let wave_rate = 1.0 + 0.5 * (self.rate - 1.0);
         let angle = self.wave_phase + TAU * wave_rate * along / settings.wave_length;
-        let waved = wave * (angle.sin() * side + 0.4 * angle.cos() * up);
+        let waved = wave * (math::sin(angle) * side + 0.4 * math::cos(angle) * up);
         let curl = settings.curl_radius * smooth(0.005, 0.08, along);
         let angle = self.curl_phase + TAU * self.rate * along / settings.curl_length;
-        let curled = curl * (self.curl * angle.cos() * side + self.curl.abs() * angle.sin() * up);
+        let curled = curl * (self.curl * math::cos(angle) * side + self.curl.abs() * math::sin(angle) * up);
         let [a, b] = [self.swing[0] + 25.0 * along, self.swing[1] + 41.0 * along];
         let disorder = settings.noise * share;
-        let loose = (a.sin() + 0.5 * (self.swing[2] + b).sin()) * side + (self.swing[3] + a).sin() * up;
+        let loose =
+            (math::sin(a) + 0.5 * math::sin(self.swing[2] + b)) * side + math::sin(self.swing[3] + a) * up;
         waved + curled + disorder * loose
     }
 }
@@ -143,7 +146,7 @@ fn clumped(settings: &StyleSettings, strand: &Strand, center: &Strand, point: us
     let here = strand.points[point];
     // Strands that parted ways, at the neck for example, do not meet again.
     let apart = here.distance(center.points[point]);
-    let pull = settings.clump_share * share.powf(1.3) * smooth(0.05, 0.02, apart);
+    let pull = settings.clump_share * math::powf(share, 1.3) * smooth(0.05, 0.02, apart);
     here.lerp(center.points[point], pull)
 }
 

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::math;
 use strandline_base::memory::{self, Need};
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
@@ -92,7 +93,7 @@ fn beside_parting(settings: &StyleSettings, mannequin: &Mannequin, root: Root) -
 fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, root: Root) -> Strand {
     let mut random = Random::new(settings.seed, 1000 + index as u64);
     let [chance, variation, depth, cut] = std::array::from_fn(|_| random.unit());
-    let place = Vec2::from_angle(std::f32::consts::TAU * random.unit()) * random.unit().sqrt();
+    let place = math::unit_at(std::f32::consts::TAU * random.unit()) * random.unit().sqrt();
     let mut combed = Combed::new(root, settings, place, chance);
     let length =
         settings.length * (1.0 - settings.length_variation * variation) * style_length(settings, &root);

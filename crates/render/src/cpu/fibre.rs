@@ -6,6 +6,7 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
+use strandline_base::math;
 use wide::f32x8;
 
 use super::fast_math::exp_lanes;
@@ -29,9 +30,9 @@ pub(crate) struct Lobe {
 impl Lobe {
     pub(crate) fn new(highlight: &Highlight) -> Self {
         // Both directions turn, so a sum of sines is twice as wide as the highlight.
-        let deviation = 2.0 * highlight.width.to_radians().sin();
+        let deviation = 2.0 * math::sin(highlight.width.to_radians());
         Self {
-            shift: f32x8::splat(2.0 * highlight.shift.to_radians().sin()),
+            shift: f32x8::splat(2.0 * math::sin(highlight.shift.to_radians())),
             sharpness: f32x8::splat(-0.5 / (deviation * deviation)),
             peak: f32x8::splat(highlight.strength * PI / (deviation * (2.0 * PI).sqrt())),
         }

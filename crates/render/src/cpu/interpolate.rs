@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use strandline_base::math;
 use strandline_body::Pose;
 use strandline_groom::Guides;
 
@@ -74,8 +75,9 @@ struct Shared<'a> {
 
 /// Clump radius \[m\] at each parameter, 0 to 1.
 pub(crate) fn tapers(parameters: &[f32], clump: &Clump) -> Vec<f32> {
-    let radius =
-        |share: &f32| clump.root_radius + (clump.tip_radius - clump.root_radius) * share.powf(clump.taper);
+    let radius = |share: &f32| {
+        clump.root_radius + (clump.tip_radius - clump.root_radius) * math::powf(*share, clump.taper)
+    };
     parameters.iter().map(radius).collect()
 }
 
@@ -295,7 +297,7 @@ fn disc_offset(seed: u32, index: usize) -> Vec2 {
     let index = index as f32;
     let first = (unit(hash_pair(seed, 0x51)) + STEPS[0] * index).fract();
     let second = (unit(hash_pair(seed, 0x52)) + STEPS[1] * index).fract();
-    first.sqrt() * Vec2::from_angle(second * std::f32::consts::TAU)
+    first.sqrt() * math::unit_at(second * std::f32::consts::TAU)
 }
 
 /// Moves an offset out of the skin: where the guide lies along it (`outward` is a unit vector), the disc is

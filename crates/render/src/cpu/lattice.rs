@@ -5,6 +5,7 @@
 
 use glam::{IVec3, Vec3, Vec4};
 use rayon::prelude::*;
+use strandline_base::math;
 
 use super::light_field;
 use crate::fibre::chiang::{Lobes, Pigments, Table};
@@ -155,7 +156,7 @@ fn tangent(index: usize) -> Vec3 {
     let height = 1.0 - (index as f32 + 0.5) / TANGENTS as f32;
     let flat = (1.0 - height * height).sqrt();
     let turn = index as f32 * 2.399_963_2;
-    Vec3::new(flat * turn.cos(), height, flat * turn.sin())
+    Vec3::new(flat * math::cos(turn), height, flat * math::sin(turn))
 }
 
 #[cfg(test)]

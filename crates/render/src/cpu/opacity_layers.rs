@@ -2,6 +2,7 @@
 
 use glam::Vec4;
 use rayon::prelude::*;
+use strandline_base::math;
 
 use super::Strands;
 use super::shadow::{ShadowMap, Shadows};
@@ -49,7 +50,7 @@ fn sum_parts(map: &mut ShadowMap, strands: &Strands) {
 /// this says 1.07, 1.10, 1.16 and 1.40.
 fn hiding(width: f32) -> f32 {
     let share = (0.5 * width).clamp(0.01, 0.9);
-    -(1.0 - share).ln() / share
+    -math::ln(1.0 - share) / share
 }
 
 fn merge(map: &mut ShadowMap) {

@@ -7,6 +7,7 @@
 
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
+use strandline_base::math;
 
 use super::samples::Samples;
 use crate::{Picture, PictureSettings, ToneMap};
@@ -62,7 +63,7 @@ impl Resolve {
         mut alpha: Option<&mut [u8]>,
     ) {
         let width = settings.width as usize;
-        let gain = settings.exposure.exp2();
+        let gain = math::exp2(settings.exposure);
         let mut filter = Filter::new(samples, settings);
         for (row, pixels) in pixels.chunks_exact_mut(width * 3).enumerate() {
             let colors = filter.row(first + row);
@@ -192,12 +193,12 @@ impl ToneMap {
 
 /// The identity up to the knee, then an exponential approach to 1 that starts with slope 1.
 fn shoulder(light: f32) -> f32 {
-    if light <= KNEE { light } else { 1.0 - (1.0 - KNEE) * (-(light - KNEE) / (1.0 - KNEE)).exp() }
+    if light <= KNEE { light } else { 1.0 - (1.0 - KNEE) * math::exp(-(light - KNEE) / (1.0 - KNEE)) }
 }
 
 /// Linear light of 0..1 as sRGB [IEC61966-2-1].
 fn srgb(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * math::powf(linear, 1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]

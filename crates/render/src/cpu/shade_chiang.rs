@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::math;
 
 use super::fast_math::exp;
 use super::lattice::Lattice;
@@ -165,7 +166,7 @@ impl<'a> Strand<'a> {
         let clump = unit(seed) - 0.5;
         let mut random = Random::new(hash_pair(seed, index));
         let apart = random.unit() - 0.5;
-        let darker = (-look.variation * (clump + apart)).exp2();
+        let darker = math::exp2(-look.variation * (clump + apart));
         let darker = if random.unit() < look.grey { WHITE } else { darker };
         let noise = 2.0 * look.highlight_noise.to_radians();
         let whole = 2.0 * random.unit() - 1.0;

@@ -1,6 +1,7 @@
 //! Deep opacity maps \[Yuksel2008\]: what a light sees of hair and body, and how much of it reaches a point.
 
 use glam::{Vec2, Vec3, Vec4};
+use strandline_base::math;
 
 use super::fast_math::exp;
 use crate::{Light, LightKind, Shadow};
@@ -31,7 +32,7 @@ impl LightView {
         let (right, up) = across(forward);
         let reach = match light.kind {
             LightKind::Directional => f32::INFINITY,
-            LightKind::Spot => light.cone_angle.to_radians().tan(),
+            LightKind::Spot => math::tan(light.cone_angle.to_radians()),
             LightKind::Point | LightKind::Rectangle | LightKind::Disc => 10.0,
         };
         let parallel = light.kind == LightKind::Directional;

@@ -1,6 +1,7 @@
 //! The settings of a frame as the kernels read them.
 
 use glam::{Affine3A, Mat3, Vec3};
+use strandline_base::math;
 use strandline_body::Pose;
 use strandline_gpu::mirror;
 
@@ -241,7 +242,7 @@ impl Frame {
             body_stride: super::opacity_depth::stride(shadow.map_size),
             vertex_count: scene.vertex_count as u32,
             triangle_count: scene.triangle_count as u32,
-            gain: settings.exposure.exp2(),
+            gain: math::exp2(settings.exposure),
             supersampling: settings.supersampling,
             tone_map: match settings.tone_map {
                 ToneMap::Off => 0,
@@ -259,9 +260,9 @@ impl Frame {
 
 fn lobe(highlight: &Highlight) -> [f32; 3] {
     use std::f32::consts::PI;
-    let deviation = 2.0 * highlight.width.to_radians().sin();
+    let deviation = 2.0 * math::sin(highlight.width.to_radians());
     [
-        2.0 * highlight.shift.to_radians().sin(),
+        2.0 * math::sin(highlight.shift.to_radians()),
         -0.5 / (deviation * deviation),
         highlight.strength * PI / (deviation * (2.0 * PI).sqrt()),
     ]

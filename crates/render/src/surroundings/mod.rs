@@ -12,6 +12,7 @@ mod size;
 use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
+use strandline_base::math;
 
 pub use panorama::Panorama;
 
@@ -73,11 +74,11 @@ fn rays(panorama: &Panorama, turn: f32, strength: f32) -> Vec<Ray> {
     let ray = |index: usize| {
         let (column, row) = (index % width, index / width);
         // Heights of a row's borders give its part of the sphere exactly.
-        let border = |row: usize| (PI * row as f32 / height as f32).cos();
+        let border = |row: usize| math::cos(PI * row as f32 / height as f32);
         let (upper, lower) = (border(row), border(row + 1));
         let y = 0.5 * (upper + lower);
         let flat = (1.0 - y * y).max(0.0).sqrt();
-        let (sine, cosine) = (TAU * ((column as f32 + 0.5) / width as f32 - 0.5) - turn).sin_cos();
+        let (sine, cosine) = math::sin_cos(TAU * ((column as f32 + 0.5) / width as f32 - 0.5) - turn);
         Ray {
             way: Vec3::new(-sine * flat, y, cosine * flat),
             light: panorama.pixels()[index] * strength,

@@ -6,6 +6,7 @@
 //! carries keeps every bend of a curl in its plane.
 
 use glam::Quat;
+use strandline_base::math;
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
@@ -33,7 +34,7 @@ pub(crate) fn bend_share(angles: &Angles, time_step: f32, iterations: u32) -> f3
     let turn = (angles.stiffness * time_step).powi(2);
     let left = 1.0 / (1.0 + turn);
     let passes = iterations.div_ceil(ROUNDS_PER_PASS);
-    1.0 - left.powf(1.0 / passes as f32)
+    1.0 - math::powf(left, 1.0 / passes as f32)
 }
 
 /// One block of strands as bends see it.
@@ -51,8 +52,8 @@ impl Bends {
             return None;
         }
         Some(Self {
-            cos_limit: splat(angles.limit.cos()),
-            sin_limit: splat(angles.limit.sin()),
+            cos_limit: splat(math::cos(angles.limit)),
+            sin_limit: splat(math::sin(angles.limit)),
             share: splat(bend_share(angles, time_step, iterations)),
             head,
         })

@@ -1,6 +1,7 @@
 //! The box of cubic cells that follows the hair.
 
 use glam::Vec3;
+use strandline_base::math;
 
 /// Points further than this from the origin \[m\], or not finite, are left out of the volume: one
 /// stray point would stretch the cells until the hair sat in a single one.
@@ -160,14 +161,14 @@ impl Grid {
 pub(crate) fn ladder() -> Vec<f32> {
     let mut rungs = vec![rung_above(MIN_SPACING)];
     while let Some(&last) = rungs.last().filter(|last| **last < 2.0 * REACH) {
-        rungs.push(rung_above(last * (0.5 / RUNGS_PER_DOUBLING).exp2()));
+        rungs.push(rung_above(last * math::exp2(0.5 / RUNGS_PER_DOUBLING)));
     }
     rungs
 }
 
 /// The smallest spacing of the ladder that is not below `needed`.
 fn rung_above(needed: f32) -> f32 {
-    let rung = ((needed.log2() * RUNGS_PER_DOUBLING).ceil() / RUNGS_PER_DOUBLING).exp2();
+    let rung = math::exp2((math::log2(needed) * RUNGS_PER_DOUBLING).ceil() / RUNGS_PER_DOUBLING);
     // The logarithm may round a rung to just below what is needed.
     rung.max(needed)
 }

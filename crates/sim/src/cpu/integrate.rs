@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::math;
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
@@ -101,7 +102,7 @@ impl Fall {
     /// For a time \[s\] that is a part of a step.
     pub(crate) fn for_time(solver: &Solver, time_step: f32, wind: Vec3) -> Self {
         let settings = &solver.settings;
-        let taken = |rate: f32| -(-rate * time_step).exp_m1();
+        let taken = |rate: f32| -math::exp_m1(-rate * time_step);
         Self {
             time_step: splat(time_step),
             gravity: Vec3x8::splat(settings.gravity * time_step),

@@ -1,6 +1,7 @@
 //! The settings of a step as the kernels read them.
 
 use glam::{Mat3, Vec3};
+use strandline_base::math;
 use strandline_body::Pose;
 use strandline_gpu::mirror;
 
@@ -135,7 +136,7 @@ impl Step {
         // What acts on all points alike acts in each part of a step of rods.
         let parts = if settings.has_rods() { settings.strands.rods.substeps } else { 1 };
         let part_time = settings.time_step / parts as f32;
-        let taken = |rate: f32| -(-rate * part_time).exp_m1();
+        let taken = |rate: f32| -math::exp_m1(-rate * part_time);
         let from_start = |a: &Pose, b: Pose| Pose {
             rotation: a.rotation * b.rotation,
             translation: a.point(b.translation),
@@ -158,8 +159,8 @@ impl Step {
             drag_along: taken(settings.drag.along),
             kept: 1.0 - taken(settings.damping),
             near: care.near,
-            cos_limit: settings.angles.limit.cos(),
-            sin_limit: settings.angles.limit.sin(),
+            cos_limit: math::cos(settings.angles.limit),
+            sin_limit: math::sin(settings.angles.limit),
             bend_share: bend_share(&settings.angles, settings.time_step, settings.iterations),
             bends: u32::from(!settings.angles.is_off()),
             length_pass: u32::from(settings.length_pass.enabled),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, ImageFormat, ImageReader};
-use strandline_base::{SettingError, read_plain};
+use strandline_base::{SettingError, math, read_plain};
 
 use crate::{
     Error, Scene,
@@ -217,7 +217,7 @@ impl Map {
 
 /// A part of a colour of the screen \[IEC 61966-2-1\] as light.
 fn linear(part: f32) -> f32 {
-    if part <= 0.040_45 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    if part <= 0.040_45 { part / 12.92 } else { math::powf((part + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Quat, Vec3};
+use strandline_base::math;
 
 use crate::{
     Scene,
@@ -11,7 +12,6 @@ use crate::{
         Groom,
         format::{Scale, Up},
     },
-    head::rotation,
     scene::GroomPart,
 };
 
@@ -61,7 +61,7 @@ pub(super) struct Placings {
 pub(super) fn upright(up: Up) -> Quat {
     match up {
         Up::Auto | Up::Y => Quat::IDENTITY,
-        Up::Z => Quat::from_rotation_x(-FRAC_PI_2),
+        Up::Z => math::rotation(Vec3::X, -FRAC_PI_2),
     }
 }
 
@@ -104,7 +104,7 @@ pub(super) fn guess(scene: &Scene, groom: Option<&Groom>, mesh: Option<&Mesh>) -
     let scalp = sample.scalp(&groom, &body).filter(|width| is_open && !SCALPS.contains(width));
     if let Some(width) = scalp {
         // As a person would write it.
-        let digit = 10_f32.powf((body.scale * SCALP / width).log10().floor() - 1.0);
+        let digit = math::powf(10.0, math::log10(body.scale * SCALP / width).floor() - 1.0);
         let scale = (body.scale * SCALP / width / digit).round() * digit;
         groom.scale *= scale / body.scale;
         body.scale = scale;
@@ -282,10 +282,10 @@ impl Sample {
         // Hair grows at the back, and is combed there.
         let back = (center - 0.5 * (min + max) + combed) / size;
         if back.z.abs() >= back.x.abs() {
-            if back.z > BEHIND { Quat::from_rotation_y(PI) } else { Quat::IDENTITY }
+            if back.z > BEHIND { math::rotation(Vec3::Y, PI) } else { Quat::IDENTITY }
         } else if back.x.abs() > BEHIND {
             // What is at +x comes to -z, or what is at -x.
-            Quat::from_rotation_y(FRAC_PI_2.copysign(back.x))
+            math::rotation(Vec3::Y, FRAC_PI_2.copysign(back.x))
         } else {
             Quat::IDENTITY
         }
@@ -312,7 +312,7 @@ fn noted(scene: &Scene, groom: Placing, body: Placing, has_body: bool, turn: Qua
     if turn != Quat::IDENTITY {
         let front = turn * Vec3::Z;
         // Half a turn has no sign.
-        let degrees = if front.z < -0.999 { 180.0 } else { front.x.atan2(front.z).to_degrees() };
+        let degrees = if front.z < -0.999 { 180.0 } else { math::atan2(front.x, front.z).to_degrees() };
         words.push(format!("both are turned by {degrees:.0} degrees to look along +z"));
     }
     let keys = "`scale`, `up`, `rotation` and `translation` of [groom] and [body] say otherwise";
@@ -342,7 +342,7 @@ pub(super) fn apart(groom: &Groom, mesh: &Mesh) -> Option<String> {
 
 /// Places a mesh: scaled and turned as guessed, then turned and moved as a scene says.
 pub(super) fn place_mesh(mesh: &mut Mesh, placing: Placing, turn: Vec3, translation: Vec3) {
-    let turn = rotation(turn) * placing.turn;
+    let turn = math::pitch_yaw_roll(turn) * placing.turn;
     for position in &mut mesh.positions {
         *position = turn * (placing.scale * *position) + translation;
     }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use glam::Vec3;
+use strandline_base::math;
 
 use crate::{
     Error, Scene,
@@ -11,7 +12,6 @@ use crate::{
         Groom, Guides, Outside, Widths,
         format::{self, HAIR_WIDTH, LoadOptions, Part, Scale, Up},
     },
-    head::rotation,
 };
 
 use super::placing::Placing;
@@ -48,7 +48,7 @@ pub(super) fn place(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Ve
     }
     let has_widths = scene.groom.own_look && Part::Widths.is_in(groom);
     groom.transform(placing.scale, placing.turn, Vec3::ZERO);
-    groom.transform(1.0, rotation(turn), translation);
+    groom.transform(1.0, math::pitch_yaw_roll(turn), translation);
     // The width of a hair is in metres already.
     if !has_widths {
         groom.widths = Widths::Constant(HAIR_WIDTH);

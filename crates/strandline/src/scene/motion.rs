@@ -1,10 +1,10 @@
 use glam::Vec3;
+use strandline_base::math;
 use strandline_base::{choices, settings};
 
 use crate::{
     Error,
     body::{Keyframe, Motion, Pose},
-    head::rotation,
 };
 
 choices! {
@@ -72,7 +72,7 @@ impl MotionSection {
 
 impl KeyframeSection {
     fn keyframe(&self, pivot: Vec3) -> Keyframe {
-        let mut world_from_head = Pose::rotation_about(pivot, rotation(self.rotation));
+        let mut world_from_head = Pose::rotation_about(pivot, math::pitch_yaw_roll(self.rotation));
         world_from_head.translation += self.translation;
         Keyframe { time: self.time, world_from_head }
     }
@@ -94,7 +94,7 @@ impl WindSection {
     /// Velocity of the air \[m/s\] at a time \[s\]: two swings whose periods have no common multiple.
     pub fn at(&self, time: f64) -> Vec3 {
         let phase = std::f64::consts::TAU * time / f64::from(self.gust_period);
-        let swing = 0.7 * phase.sin() + 0.3 * (2.618 * phase).sin();
+        let swing = 0.7 * math::sin(phase) + 0.3 * math::sin(2.618 * phase);
         self.velocity * (1.0 + self.gust * swing as f32)
     }
 }

@@ -6,6 +6,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use strandline_base::math;
+
 /// Kinds of paths: R, TT, TRT and the rest.
 pub const LOBES: usize = 4;
 
@@ -49,13 +51,13 @@ impl Lobes {
     /// Share of light that goes each way, for the eye's inclination \[rad\] and offset `h`; absorption of each
     /// channel is per fibre radius.
     pub fn shares<const N: usize>(&self, eye: f64, h: f64, absorption: [f64; N]) -> [[f64; N]; LOBES] {
-        let (sine, cosine) = (eye.sin(), eye.cos().max(1e-6));
+        let (sine, cosine) = (math::sin(eye), math::cos(eye).max(1e-6));
         let reflected = fresnel(cosine * (1.0 - h * h).max(0.0).sqrt(), self.index);
         let inside = (1.0 - (sine / self.index).powi(2)).max(1e-12).sqrt();
         let across = (1.0 - (h / self.bent_index(eye)).powi(2)).max(0.0).sqrt();
         let mut shares = [[0.0; N]; LOBES];
         for channel in 0..N {
-            let through = (-absorption[channel] * 2.0 * across / inside).exp();
+            let through = math::exp(-absorption[channel] * 2.0 * across / inside);
             let first = (1.0 - reflected) * (1.0 - reflected) * through;
             let second = first * through * reflected;
             let rest = second * reflected * through / (1.0 - through * reflected).max(1e-12);
@@ -67,14 +69,14 @@ impl Lobes {
 
     /// The index that the cross section shows to an inclined ray \[Marschner2003 appendix B\].
     fn bent_index(&self, eye: f64) -> f64 {
-        let (sine, cosine) = (eye.sin(), eye.cos().max(1e-6));
+        let (sine, cosine) = (math::sin(eye), math::cos(eye).max(1e-6));
         (self.index * self.index - sine * sine).sqrt() / cosine
     }
 
     /// Density of the turn \[1/rad\] between eye and light of each kind of path.
     pub fn turns(&self, eye: f64, h: f64, turn: f64) -> [f64; LOBES] {
-        let outside = h.clamp(-1.0, 1.0).asin();
-        let inside = (h / self.bent_index(eye)).clamp(-1.0, 1.0).asin();
+        let outside = math::asin(h.clamp(-1.0, 1.0));
+        let inside = math::asin((h / self.bent_index(eye)).clamp(-1.0, 1.0));
         let mut found = [1.0 / TAU; LOBES];
         for (lobe, density) in found.iter_mut().take(3).enumerate() {
             let straight = 2.0 * lobe as f64 * inside - 2.0 * outside + lobe as f64 * PI;
@@ -86,8 +88,8 @@ impl Lobes {
     /// The trimmed logistic distribution on one turn.
     fn logistic(&self, angle: f64) -> f64 {
         let angle = angle - TAU * (angle / TAU).round();
-        let power = (-angle.abs() / self.scale).exp();
-        let cumulated = |x: f64| 1.0 / (1.0 + (-x / self.scale).exp());
+        let power = math::exp(-angle.abs() / self.scale);
+        let cumulated = |x: f64| 1.0 / (1.0 + math::exp(-x / self.scale));
         let whole = cumulated(PI) - cumulated(-PI);
         power / (self.scale * (1.0 + power).powi(2)) / whole
     }
@@ -124,11 +126,12 @@ impl Lobes {
 
 /// [d'Eon2011 eq. 7], in a form that holds for small variances; |eye| may pass a right angle.
 fn longitudinal(eye: f64, light: f64, variance: f64) -> f64 {
-    let (a, b) = (eye.cos().abs() * light.cos() / variance, eye.sin() * light.sin() / variance);
+    let (a, b) =
+        (math::cos(eye).abs() * math::cos(light) / variance, math::sin(eye) * math::sin(light) / variance);
     if variance <= 0.1 {
-        (log_bessel(a) - b - 1.0 / variance + (1.0 / variance).ln()).exp()
+        math::exp(log_bessel(a) - b - 1.0 / variance + math::ln(1.0 / variance))
     } else {
-        bessel(a) * (-b).exp() / ((1.0 / variance).sinh() * 2.0 * variance)
+        bessel(a) * math::exp(-b) / (math::sinh(1.0 / variance) * 2.0 * variance)
     }
 }
 
@@ -150,11 +153,11 @@ fn bessel(x: f64) -> f64 {
 /// ln I0.
 fn log_bessel(x: f64) -> f64 {
     if x <= 30.0 {
-        return bessel(x).ln();
+        return math::ln(bessel(x));
     }
     let inverse = 1.0 / x;
     let series = 1.0 + inverse * (1.0 / 8.0 + inverse * (9.0 / 128.0 + inverse * (225.0 / 3072.0)));
-    x - 0.5 * (TAU * x).ln() + series.ln()
+    x - 0.5 * math::ln(TAU * x) + math::ln(series)
 }
 
 /// Reflectance of a smooth dielectric for unpolarised light that meets it from outside.

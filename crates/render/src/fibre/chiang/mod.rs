@@ -6,6 +6,7 @@ mod moments;
 mod table;
 
 use glam::{DVec3, Vec3};
+use strandline_base::math;
 use strandline_base::{choices, settings};
 
 pub use lobes::{LOBES, Lobes};
@@ -80,7 +81,9 @@ impl Chiang {
 
     /// Absorption per fibre radius of the three channels of hair a mass of which has a reflectance.
     pub fn absorption_of_color(&self, color: Vec3) -> [f64; 3] {
-        color.to_array().map(|c| (f64::from(c.clamp(LEAST_COLOR, 1.0)).ln() / self.color_scale()).powi(2))
+        color
+            .to_array()
+            .map(|c| (math::ln(f64::from(c.clamp(LEAST_COLOR, 1.0))) / self.color_scale()).powi(2))
     }
 
     /// What the logarithm of such a reflectance is divided by [Chiang2016 §4.2].
@@ -91,14 +94,14 @@ impl Chiang {
 
     /// Reflectance of a mass of hair of this pigment.
     pub(crate) fn color(&self, of_look: Vec3) -> Vec3 {
-        let reflectance = |sigma: f64| (-self.color_scale() * sigma.sqrt()).exp() as f32;
+        let reflectance = |sigma: f64| math::exp(-self.color_scale() * sigma.sqrt()) as f32;
         Vec3::from(self.absorption(of_look).map(reflectance))
     }
 
     /// Multiples of [`INK`] of such hair.
     pub(crate) fn inks(&self, color: Vec3) -> Vec3 {
         let inverse = (1.0 / self.color_scale()) as f32;
-        let roots = color.clamp(Vec3::splat(LEAST_COLOR), Vec3::ONE).map(|c| c.ln() * inverse);
+        let roots = color.clamp(Vec3::splat(LEAST_COLOR), Vec3::ONE).map(|c| math::ln(c) * inverse);
         roots * roots * (1.0 / INK as f32)
     }
 }

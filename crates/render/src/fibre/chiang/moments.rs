@@ -6,6 +6,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use strandline_base::math;
+
 use super::lobes::{LOBES, Lobes};
 use super::table::{Ring, turn_sums};
 
@@ -22,7 +24,7 @@ pub(super) fn powers(lobes: &Lobes, eye: f64) -> Powers {
     let mut along = [[0.0; LOBES]; MOMENTS];
     for index in 0..INCLINATIONS {
         let light = FRAC_PI_2 * (2.0 * (index as f64 + 0.5) / INCLINATIONS as f64 - 1.0);
-        let (s, c) = light.sin_cos();
+        let (s, c) = math::sin_cos(light);
         let densities = lobes.inclinations(eye, light);
         for (lobe, density) in densities.into_iter().enumerate() {
             for (sum, power) in along.iter_mut().zip([1.0, s, c, s * s, c * c, s * c]) {
@@ -39,7 +41,7 @@ pub(super) fn powers(lobes: &Lobes, eye: f64) -> Powers {
 
 /// The moments of the three channels for an inclination of the eye with its ring.
 pub(super) fn moments(along: &Powers, ring: &Ring) -> [[f64; 3]; MOMENTS] {
-    let around = [0.0, 1.0, 2.0].map(|order| turn_sums(ring, |turn| (order * turn).cos()));
+    let around = [0.0, 1.0, 2.0].map(|order| turn_sums(ring, |turn| math::cos(order * turn)));
     let mut found = [[0.0; 3]; MOMENTS];
     let [one, s, c, ss, cc, sc] = *along;
     for lobe in 0..LOBES {

@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
+use strandline_base::math;
 
 use super::lobes::{LOBES, Lobes};
 use super::moments::{MOMENTS, moments, powers};
@@ -67,9 +68,9 @@ impl Table {
             for difference in 0..DIFFERENCES {
                 let [sum, difference] = [node(sum, SUMS, PI), node(difference, DIFFERENCES, PI)];
                 let [eye, light] = [0.5 * (sum - difference), 0.5 * (sum + difference)];
-                let [r, tt, trt, _] = lobes
-                    .inclinations(eye, light)
-                    .map(|density| density * f64::from(evened((eye.cos() * light.cos()) as f32, floor)));
+                let [r, tt, trt, _] = lobes.inclinations(eye, light).map(|density| {
+                    density * f64::from(evened((math::cos(eye) * math::cos(light)) as f32, floor))
+                });
                 entries.push(Vec4::new(r as f32, tt as f32, trt as f32, 0.0));
             }
         }
@@ -258,7 +259,7 @@ fn rings(lobes: &Lobes, eye: f64, absorption: [f64; 3]) -> [Ring; LEVELS.len()] 
     for offset in 0..OFFSETS {
         // Even steps of the angle at which the ray meets the surface; both sides are the same but for the turn's sign.
         let angle = FRAC_PI_2 * (offset as f64 + 0.5) / OFFSETS as f64;
-        let (h, weight) = (angle.sin(), angle.cos() * FRAC_PI_2 / OFFSETS as f64);
+        let (h, weight) = (math::sin(angle), math::cos(angle) * FRAC_PI_2 / OFFSETS as f64);
         let shares = absorptions.map(|absorption| lobes.shares(eye, h, absorption));
         for index in 0..TURNS {
             let turn = PI * index as f64 / (TURNS - 1) as f64;
@@ -282,8 +283,8 @@ fn balance(ring: &mut Ring, lobes: &Lobes, eye: f64, absorption: [f64; 3]) {
     let mut shares = [[0.0; 3]; LOBES];
     for offset in 0..4 * OFFSETS {
         let angle = FRAC_PI_2 * (offset as f64 + 0.5) / (4 * OFFSETS) as f64;
-        let weight = angle.cos() * FRAC_PI_2 / (4 * OFFSETS) as f64;
-        let found = lobes.shares(eye, angle.sin(), absorption);
+        let weight = math::cos(angle) * FRAC_PI_2 / (4 * OFFSETS) as f64;
+        let found = lobes.shares(eye, math::sin(angle), absorption);
         for lobe in 0..LOBES {
             (0..3).for_each(|channel| shares[lobe][channel] += weight * found[lobe][channel]);
         }

@@ -1,5 +1,7 @@
 //! What hair is made of, and what that makes of the nodes of a strand.
 
+use strandline_base::math;
+
 use super::real::Vector;
 use super::rod::Node;
 
@@ -97,7 +99,7 @@ impl Material {
         let (along, over) = (area * a * a / 4.0, area * b * b / 4.0);
         // Saint-Venant's torsion of an ellipse.
         let torsion = std::f64::consts::PI * (a * b).powi(3) / (a * a + b * b);
-        let resisting = self.hairs.powf(1.0 + self.cohesion);
+        let resisting = math::powf(self.hairs, 1.0 + self.cohesion);
         Section {
             bend: [along, over].map(|moment| resisting * self.youngs_modulus * moment),
             twist: resisting * self.shear_modulus * torsion,
