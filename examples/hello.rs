@@ -7,13 +7,13 @@ fn hello() -> Result<(), Error> {
     let mut scene = Scene::demo(); // or Scene::load("scene.toml".as_ref())?
     scene.set_style(Style::Wavy); // or scene.groom.file = Some("own.hair".into())
     let prepared = Prepared::new(&scene)?;
-    let head = prepared.head.clone();
+    let (head, look) = (prepared.head.clone(), prepared.scene.look.clone());
     let mut hair = Hair::from_scene(&scene, prepared, Backend::auto())?;
     for frame in 1..=60 {
         let seconds = 1.0 / 60.0;
         hair.step(seconds, &head.pose(seconds * f64::from(frame)))?;
     }
-    hair.picture(&Camera::three_quarter(), &scene.look)?.save("wavy.png")?;
+    hair.picture(&Camera::three_quarter(), &look)?.save("wavy.png")?;
     Ok(())
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use strandline::{Backend, Cache, Event, Film, Player, Scene};
 
-use crate::arguments::RenderOptions;
+use crate::arguments::{RenderOptions, Usage};
 use crate::interrupt::{Stoppable, Stopped};
 use crate::non_finite::NonFinite;
 use crate::output::{self, print_line};
@@ -51,6 +51,12 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
         (scene.picture.width, scene.picture.height) = (width, height);
     }
     if let Some(path) = options.out.as_deref().filter(|path| is_exr(path)) {
+        if matches!(scene.devices.pictures, Backend::Gpu(_)) {
+            return Err(Usage(
+                ".exr files are drawn on the CPU: leave the GPU out, or name --sim-device".into(),
+            )
+            .into());
+        }
         scene.picture.layers = true;
         scene.devices.pictures = Backend::Cpu;
         return channels(&scene, cache, path, options.inputs.json);
@@ -76,10 +82,14 @@ fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> any
     let mut progress = Progress::new(u64::from(frames), "frames", json);
     let stoppable = Stoppable::begin();
     let mut files = Vec::new();
+    let mut non_finite = NonFinite::default();
     while let Some(event) = player.next() {
         match event? {
             Event::Note(note) => progress.note(&note),
-            Event::Stepped(_) => {}
+            Event::Stepped(report) => {
+                let note = non_finite.add(&report, player.frames_done());
+                note.into_iter().for_each(|note| progress.note(&note));
+            }
             Event::Drawn { frame, report, .. } => {
                 let name = path.file_stem().unwrap_or_default().to_string_lossy();
                 let file = if frames == 1 {
@@ -104,9 +114,10 @@ fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> any
         output::program(&format!("{}\n", serde_json::json!({ "frames": files.len(), "files": files })));
     } else {
         let last = files.last().map_or(path, PathBuf::as_path);
-        print_line!("wrote {} files: look at {}", files.len(), last.display());
+        let count = if files.len() == 1 { "a file".to_owned() } else { format!("{} files", files.len()) };
+        print_line!("wrote {count}: look at {}", last.display());
     }
-    Ok(())
+    Ok(non_finite.outcome()?)
 }
 
 fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyhow::Result<()> {

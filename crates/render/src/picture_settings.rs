@@ -59,6 +59,8 @@ impl PictureSettings {
     pub const MAX_MEMORY: u64 = 4096;
     /// Colour and opacity, depth and triangle of a sample, and its share of the finished pixel \[byte\].
     const SAMPLE_BYTES: u64 = 16 + 4 + 4 + 4;
+    /// Channels of a pixel as they are gathered, as they are named, and as they are packed for the file \[byte\].
+    const LAYERS_BYTES: u64 = 60 + 40 + 40;
 
     /// Default settings at a size \[pixel\].
     pub fn sized(width: u32, height: u32) -> Self {
@@ -83,7 +85,8 @@ impl PictureSettings {
     /// What the samples take \[byte\].
     pub(crate) fn memory(&self) -> u64 {
         let samples = u64::from(self.width) * u64::from(self.height);
-        samples * u64::from(self.supersampling).pow(2) * Self::SAMPLE_BYTES
+        let layers = if self.layers { samples * Self::LAYERS_BYTES } else { 0 };
+        samples * u64::from(self.supersampling).pow(2) * Self::SAMPLE_BYTES + layers
     }
 
     /// Width over height.

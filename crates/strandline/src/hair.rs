@@ -175,10 +175,13 @@ impl Hair {
     pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
         // What only pictures need is refused now too, not when the first one is drawn.
         scene.check()?;
-        let Prepared { guides, bound, mesh, colliders, head, pose, .. } = prepared;
+        let Prepared { guides, bound, mesh, colliders, head, pose, scene: chosen, .. } = prepared;
         let pair = devices.into().open()?;
         let mut hair = Self::placed(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
-        hair.lights = scene.look.lights(prepare::center(hair.studio.bounds));
+        // The picture of the surroundings was loaded when the scene was prepared.
+        let look = if scene.look.surroundings.is_some() { &scene.look } else { &chosen.look };
+        let look = Look { surroundings: look.surroundings.clone(), ..scene.look.clone() };
+        hair.lights = look.lights(prepare::center(hair.studio.bounds));
         if !scene.lights.is_empty() {
             hair.lights.clone_from(&scene.lights);
         }

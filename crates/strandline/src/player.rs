@@ -119,6 +119,10 @@ impl Player {
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
     pub fn set_out(&mut self, settings: &OutSettings) -> Result<(), Error> {
+        if settings.first >= self.frames {
+            let message = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
+            return Err(Error::Cache { path: settings.path.clone(), message });
+        }
         let Studio { guides, painter, .. } = &self.studio;
         let leaving = Leaving { guides, bound: painter.bound(), tags: &self.tags };
         self.out = Some(Out::new(settings, &self.scene, leaving)?);

@@ -12,14 +12,12 @@ use super::light_scene::Scene;
 use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, toward};
 use super::{ShadowBody, Shadows, Strands};
-use crate::fibre::chiang::{INK, Pigments, Table};
+use crate::fibre::chiang::{INK, Pigments, Table, WHITE};
 use crate::fibre::{Chiang, Pigment};
 use crate::{Light, Look};
 
 /// Noise nodes along a strand.
 const NODES: usize = 8;
-/// Pigment of white hair, as a multiple of that of the others.
-const WHITE: f32 = 0.02;
 
 /// What the tables of a look are made from.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,6 +10,8 @@ use glam::Vec3;
 
 use super::size::{MAX_PIXELS, check_size};
 
+/// Most bytes of a block of rows or of a tile with all its channels: it is unpacked as a whole.
+const MAX_BLOCK: usize = 1 << 27;
 /// What such a file begins with.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
@@ -18,9 +20,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<(usize, usize, Vec<Vec3>), String> {
     let told = |error: exr::error::Error| strandline_base::printable(&error.to_string()).into_owned();
     // Sizes are looked at before anything is taken for them.
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).map_err(told)?;
-    let sizes = meta.headers.iter().map(|header| header.layer_size);
-    if let Some(size) = sizes.clone().find(|size| size.0.saturating_mul(size.1) > MAX_PIXELS) {
-        check_size(size.0, size.1)?;
+    for header in &meta.headers {
+        let size = header.layer_size;
+        if size.0.saturating_mul(size.1) > MAX_PIXELS {
+            check_size(size.0, size.1)?;
+        }
+        let block = header.max_block_pixel_size();
+        let bytes = block.0.saturating_mul(block.1).saturating_mul(header.channels.bytes_per_pixel);
+        if bytes > MAX_BLOCK {
+            return Err(format!(
+                "blocks of {bytes} bytes with {} channels, at most {MAX_BLOCK} are read: leave channels out",
+                header.channels.list.len()
+            ));
+        }
     }
     let begin = |size: Vec2<usize>, _: &RgbChannels| (size.0, vec![Vec3::ZERO; size.0 * size.1]);
     let put =
@@ -64,6 +76,14 @@ mod tests {
         let (width, height, pixels) = read(&written(8, 4)).unwrap();
         assert_eq!((width, height), (8, 4));
         assert_eq!(pixels[9], Vec3::new(9.25, 9.5, 9.75));
+    }
+
+    /// A small file can say that a block unpacks to more than there is memory for.
+    #[test]
+    fn blocks_of_very_many_channels_are_refused() {
+        let many = (0..600).map(|index| (format!("c{index:03}"), vec![0.0_f32; 8192])).collect();
+        let wide = Layers { width: 8192, height: 1, channels: many }.encode().unwrap();
+        assert!(read(&wide).unwrap_err().contains("600 channels"));
     }
 
     #[test]

@@ -21,21 +21,25 @@ impl Panorama {
     pub const MAX_BYTES: u64 = 1 << 29;
     /// Most pixels that are read: 8,192 x 4,096.
     pub const MAX_PIXELS: usize = MAX_PIXELS;
+    /// Brightest pixel: the sun at noon has some 1e5 beside a sky of 1. Sums of brighter ones may overflow.
+    pub const MAX_LIGHT: f32 = 1e9;
 
     /// A picture of pixels, shape `[row][column]`.
     ///
     /// # Errors
-    /// Another shape; a number that is not finite or below 0.
+    /// Another shape; a number below 0 or above [`Panorama::MAX_LIGHT`].
     pub fn new(width: usize, height: usize, pixels: Vec<Vec3>) -> Result<Self, String> {
         check_size(width, height)?;
         if pixels.len() != width * height {
             return Err(format!("it has {} pixels, expected {width} x {height}", pixels.len()));
         }
-        let sound = |pixel: &Vec3| pixel.is_finite() && pixel.min_element() >= 0.0;
+        let sound = |pixel: &Vec3| {
+            pixel.is_finite() && pixel.min_element() >= 0.0 && pixel.max_element() <= Self::MAX_LIGHT
+        };
         match pixels.iter().position(|pixel| !sound(pixel)) {
             None => Ok(Self { width, pixels }),
             Some(at) => Err(format!(
-                "the pixel in column {} of row {} is {}, expected finite light of 0 or more",
+                "the pixel in column {} of row {} is {}, expected light of 0 to 1e9",
                 at % width,
                 at / width,
                 pixels[at]
@@ -80,16 +84,25 @@ impl Panorama {
 
     /// Means of blocks, of at most so many rows where they can be divided.
     pub(super) fn reduced(&self, rows: usize) -> Self {
-        let mut small = self.clone();
-        while small.size()[1] > rows && small.size()[1].is_multiple_of(2) {
-            let [width, height] = small.size().map(|side| side / 2);
-            let mean = |index: usize| {
-                let (column, row) = (index % width, index / width);
-                let pixel = |x, y| small.pixels[(2 * row + y) * 2 * width + 2 * column + x];
-                0.25 * (pixel(0, 0) + pixel(1, 0) + pixel(0, 1) + pixel(1, 1))
-            };
-            small = Self { width, pixels: (0..width * height).map(mean).collect() };
+        let can = |of: &Self| of.size()[1] > rows && of.size()[1].is_multiple_of(2);
+        if !can(self) {
+            return self.clone();
+        }
+        let mut small = self.halved();
+        while can(&small) {
+            small = small.halved();
         }
         small
+    }
+
+    /// Means of blocks of two by two pixels.
+    fn halved(&self) -> Self {
+        let [width, height] = self.size().map(|side| side / 2);
+        let mean = |index: usize| {
+            let (column, row) = (index % width, index / width);
+            let pixel = |x, y| self.pixels[(2 * row + y) * 2 * width + 2 * column + x];
+            0.25 * (pixel(0, 0) + pixel(1, 0) + pixel(0, 1) + pixel(1, 1))
+        };
+        Self { width, pixels: (0..width * height).map(mean).collect() }
     }
 }

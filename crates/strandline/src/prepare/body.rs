@@ -77,6 +77,11 @@ fn solid(scene: &Scene, drawn: &Mesh, placing: Placing, notes: &mut Vec<String>)
         Some(file) => {
             let mut mesh = Mesh::load(&scene.path(file), 1.0)?;
             placing::place_mesh(&mut mesh, placing, scene.body.rotation, scene.body.translation);
+            if scene.body.parts.iter().any(|part| part.solid == Some(true)) {
+                notes.push(
+                    "body.collider_file is all that hair hits: solid body.parts are only drawn".to_owned(),
+                );
+            }
             kept_grid(&mesh, spacing)?
         }
         None => kept_grid(drawn, spacing)?,

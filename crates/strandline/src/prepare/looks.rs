@@ -1,7 +1,9 @@
 //! Looks of groups and values of maps, as colours and widths of strands.
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, ImageFormat, ImageReader};
@@ -11,12 +13,20 @@ use crate::{
     Error, Scene,
     body::Random,
     groom::{Groom, Widths},
-    render::{GroupLook, Look},
+    render::{
+        GroupLook, Look,
+        fibre::{
+            FibreModel,
+            chiang::{Pigment, WHITE},
+        },
+    },
 };
 
 /// Largest file of a map \[byte\], and its longest side \[pixel\].
 const MAX_BYTES: u64 = 256 << 20;
 const MAX_SIDE: u32 = 8192;
+/// Most pixels of all maps of a scene: four of the largest.
+const MAX_PIXELS: u64 = 4 * (MAX_SIDE as u64).pow(2);
 /// Greatest reflectance.
 const MOST: f32 = 0.99;
 
@@ -27,9 +37,12 @@ const MOST: f32 = 0.99;
 pub(super) fn dress(scene: &Scene, groom: &mut Groom) -> Result<(), Error> {
     let look = &scene.look;
     let groups = groups(look, groom)?;
-    let map = |file: &Option<PathBuf>| file.as_ref().map(|file| Map::load(&scene.path(file))).transpose();
-    let of_all = [map(&look.color_map)?, map(&look.width_map)?];
-    let of_groups = look.group.iter().map(|group| Ok([map(&group.color_map)?, map(&group.width_map)?]));
+    let mut maps = Maps::default();
+    let mut both = |color: &Option<PathBuf>, width: &Option<PathBuf>| {
+        Ok::<_, Error>([maps.load(scene, color.as_deref())?, maps.load(scene, width.as_deref())?])
+    };
+    let of_all = both(&look.color_map, &look.width_map)?;
+    let of_groups = look.group.iter().map(|group| both(&group.color_map, &group.width_map));
     let of_groups = of_groups.collect::<Result<Vec<_>, Error>>()?;
     let has = |which: usize| of_all[which].is_some() || of_groups.iter().any(|maps| maps[which].is_some());
     if (has(0) || has(1)) && groom.root_uvs.is_none() {
@@ -99,10 +112,21 @@ fn widths<'a>(groom: &Groom, dressed: impl Fn(usize) -> Dressed<'a>) -> Widths {
 pub(super) fn gradient(look: &Look, groom: &Groom) -> Vec<[f32; 3]> {
     let mut colors = vec![[0.0; 3]; groom.points.len()];
     for strand in 0..groom.strand_count() {
-        let ends = varied(look, strand, [look.root_color, look.tip_color]);
-        fill(&mut colors[groom.range(strand)], ends);
+        fill(&mut colors[groom.range(strand)], of_look(look, strand));
     }
     colors
+}
+
+/// Colours at root and tip of a strand that nothing gives a colour but the look: its pigment, its white hair.
+fn of_look(look: &Look, strand: usize) -> [Vec3; 2] {
+    let fibre = &look.fibre.chiang;
+    if look.fibre.model == FibreModel::Scheuermann || fibre.pigment == Pigment::Color {
+        return varied(look, strand, [look.root_color, look.tip_color]);
+    }
+    let mut random = Random::new(u64::from(look.seed), strand as u64);
+    let darker = math::exp2(-look.variation * (random.unit() + random.unit() - 1.0));
+    let pigment = if random.unit() < look.grey { WHITE } else { darker };
+    fibre.reflectances(pigment).map(|color| color.min(Vec3::splat(MOST)))
 }
 
 /// Colours at root and tip of a strand that is brighter or darker than others, as the look has it.
@@ -156,6 +180,31 @@ fn known(groom: &Groom) -> String {
     let names: Vec<String> = numbers.iter().take(20).map(name).collect();
     let more = if numbers.len() > 20 { " ..." } else { "" };
     format!("a group of the groom: {}{more}", names.join(", "))
+}
+
+/// The maps of a scene, each read once.
+#[derive(Default)]
+struct Maps {
+    read: BTreeMap<PathBuf, Arc<Map>>,
+    pixels: u64,
+}
+
+impl Maps {
+    fn load(&mut self, scene: &Scene, file: Option<&Path>) -> Result<Option<Arc<Map>>, Error> {
+        let Some(path) = file.map(|file| scene.path(file)) else { return Ok(None) };
+        if let Some(map) = self.read.get(&path) {
+            return Ok(Some(map.clone()));
+        }
+        let map = Arc::new(Map::load(&path)?);
+        self.pixels += u64::from(map.picture.width()) * u64::from(map.picture.height());
+        if self.pixels > MAX_PIXELS {
+            let message =
+                format!("with it the maps have {} pixels, expected {MAX_PIXELS} in all", self.pixels);
+            return Err(Error::Map { path, message });
+        }
+        self.read.insert(path, map.clone());
+        Ok(Some(map))
+    }
 }
 
 /// A picture over the scalp.

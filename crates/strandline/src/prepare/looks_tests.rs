@@ -27,10 +27,30 @@ fn groups_have_colours_and_widths_of_their_own() {
     ];
     dress(&scene, &mut groom).unwrap();
     let colors = groom.colors.as_ref().unwrap();
-    let [root, tip] = [scene.look.root_color, scene.look.tip_color].map(|color| color.to_array());
-    assert_eq!((colors[0], colors[2]), (root, tip), "the look's");
+    let melanin = scene.look.fibre.chiang;
+    assert_eq!([colors[0], colors[2]], melanin.reflectances(1.0).map(|color| color.to_array()), "the look's");
+    for (own, of_color) in
+        melanin.absorption(Vec3::ONE).iter().zip(melanin.absorption_of_color(colors[0].into()))
+    {
+        // Rounding of the reflectance in single precision.
+        assert!((of_color / own - 1.0).abs() < 1e-5, "{of_color} for {own}");
+    }
     assert_eq!(colors[6..9], [[0.99, 0.0, 0.0], [0.495, 0.495, 0.0], [0.0, 0.99, 0.0]]);
     assert_eq!(groom.widths, Widths::PerStrand(vec![2e-4, 2e-4, 1e-4, 1e-4]));
+}
+
+#[test]
+fn white_strands_stay_white_beside_a_group_with_a_colour() {
+    let mut scene = Scene::default();
+    let mut groom = Groom::empty(1e-4);
+    (0..200).for_each(|strand| groom.push([Vec3::X * strand as f32, Vec3::Y]));
+    groom.groups = Some((0..200).map(|strand| u32::from(strand == 0)).collect());
+    (scene.look.grey, scene.look.variation) = (0.5, 0.0);
+    scene.look.group = vec![GroupLook { root_color: Some(Vec3::X), ..group("1") }];
+    dress(&scene, &mut groom).unwrap();
+    let white = groom.colors.unwrap().iter().step_by(2).filter(|color| color[2] > 0.5).count();
+    // Five standard deviations of 200 throws of a coin.
+    assert!((65..136).contains(&white), "{white} of 200");
 }
 
 #[test]

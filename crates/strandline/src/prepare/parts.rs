@@ -89,6 +89,9 @@ pub(super) fn add_grooms(
             let is_own = matches!(lost, Part::Widths | Part::WidthsAlong | Part::GroupNames);
             if !is_own && lost.is_in(groom) != lost.is_in(&further) {
                 notes.push(format!("only some of the files have {}: left out", lost.name()));
+            } else if lost == Part::Influences && lost.is_in(groom) {
+                // Each counts its own guides from 0.
+                notes.push(format!("{} of files that are brought together are left out", lost.name()));
             }
         }
         groom.append(further);

@@ -60,7 +60,21 @@ choices! {
     default Melanin
 }
 
+/// Pigment of white hair, as a multiple of that of the others.
+pub const WHITE: f32 = 0.02;
+
 impl Chiang {
+    /// Reflectances at root and tip of a mass of hair with so many times the melanin.
+    pub fn reflectances(&self, multiple: f32) -> [Vec3; 2] {
+        let melanin = Self { pigment: Pigment::Melanin, ..*self };
+        let sigma = melanin.absorption(Vec3::ONE);
+        let of = |share: f32| {
+            let root = |sigma: f64| (sigma * f64::from(multiple * share)).sqrt();
+            Vec3::from(sigma.map(|sigma| math::exp(-self.color_scale() * root(sigma)) as f32))
+        };
+        [of(1.0), of(self.tip_pigment)]
+    }
+
     /// The fibre's lobes.
     pub fn lobes(&self) -> Lobes {
         let [along, around] = [self.roughness_along, self.roughness_around].map(f64::from);

@@ -38,11 +38,14 @@ impl Hairs {
         let rods = &settings.strands.rods;
         let mut own = BTreeMap::new();
         for (index, group) in settings.groups.iter().enumerate() {
-            let number = self.number(&group.group).ok_or_else(|| {
+            let numbers = self.numbers(&group.group);
+            if numbers.is_empty() {
                 let key = format!("simulation.groups[{index}].group");
-                SettingError::new(key, format!("`{}`", group.group), self.expected())
-            })?;
-            own.insert(number, rods.of_group(group).material().section());
+                return Err(SettingError::new(key, format!("`{}`", group.group), self.expected()).into());
+            }
+            let section = rods.of_group(group).material().section();
+            // Of two that name one group the first holds, as of looks.
+            numbers.into_iter().for_each(|number| _ = own.entry(number).or_insert(section));
         }
         Ok(Self { section: rods.material().section(), own, ..self.clone() })
     }
@@ -85,10 +88,15 @@ impl Hairs {
         first.into_iter().chain(numbers(&self.section)).chain(own).fold(0xcbf2_9ce4_8422_2325, mix)
     }
 
-    /// The number of a group, by its name or as it is written.
-    fn number(&self, group: &str) -> Option<u32> {
-        let named = self.names.iter().find(|(_, name)| *name == group).map(|(number, _)| *number);
-        named.or_else(|| group.parse().ok()).filter(|number| self.groups.contains(number))
+    /// The numbers of the groups of a name, or the one that it is as it is written.
+    fn numbers(&self, group: &str) -> Vec<u32> {
+        let named = self.names.iter().filter(|(_, name)| *name == group).map(|(number, _)| *number);
+        let mut numbers: Vec<u32> = named.collect();
+        if numbers.is_empty() {
+            numbers.extend(group.parse::<u32>());
+        }
+        numbers.retain(|number| self.groups.contains(number));
+        numbers
     }
 
     /// The groups that there are, for an error.

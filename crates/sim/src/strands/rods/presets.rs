@@ -29,6 +29,8 @@ impl RodSettings {
             rest: self.rest,
             substeps: self.substeps,
             newton_steps: self.newton_steps,
+            tolerance: self.tolerance,
+            rubbing: self.rubbing,
             ..of
         };
     }
@@ -46,14 +48,20 @@ mod tests {
 
     #[test]
     fn medium_hair_is_the_default_and_kinds_leave_shape_and_solve() {
-        let own =
-            RodSettings { tip_radius: 0.5, profile: [2.0, 1.0, 1.0], substeps: 3, ..RodSettings::default() };
+        let own = RodSettings {
+            tip_radius: 0.5,
+            profile: [2.0, 1.0, 1.0],
+            substeps: 3,
+            tolerance: 1e-4,
+            rubbing: 0.0,
+            ..RodSettings::default()
+        };
         for hair in HairKind::ALL {
             let mut rods = own;
             rods.set_hair(hair);
             assert_eq!(
-                (rods.hair, rods.tip_radius, rods.profile, rods.substeps),
-                (hair, 0.5, own.profile, 3)
+                (rods.hair, rods.tip_radius, rods.profile, rods.substeps, rods.tolerance, rods.rubbing),
+                (hair, 0.5, own.profile, 3, 1e-4, 0.0)
             );
             rods.set_hair(HairKind::Medium);
             assert_eq!(rods, own);
