@@ -6,7 +6,11 @@ cd "$(dirname "$0")/.."
 seconds=${1:?usage: in_process.sh SECONDS [TARGET...]}
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(hair tfx project data bin ply npz npy lines obj gltf scene pose cache grid)
+if [ ${#targets[@]} -eq 0 ]; then
+    for file in fuzz/fuzz_targets/*.rs; do
+        targets+=("$(basename "$file" .rs)")
+    done
+fi
 for target in "${targets[@]}"; do
     STRANDLINE_FUZZ_SECONDS=$seconds STRANDLINE_FUZZ_TARGET=$target STRANDLINE_FUZZ_SEED=${SEED:-$(date +%s)} \
         cargo test --quiet --workspace --test corpora -- --nocapture

@@ -5,7 +5,11 @@ cd "$(dirname "$0")"
 seconds=${1:?usage: sanitized.sh SECONDS [TARGET...]}
 shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(hair tfx project data bin ply npz npy lines obj gltf scene pose cache grid)
+if [ ${#targets[@]} -eq 0 ]; then
+    for file in fuzz_targets/*.rs; do
+        targets+=("$(basename "$file" .rs)")
+    done
+fi
 # The flags are for the targets alone: a target triple keeps them away from build scripts.
 triple=$(rustc -vV | sed -n 's/^host: //p')
 export RUSTC_BOOTSTRAP=1

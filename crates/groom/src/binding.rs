@@ -90,7 +90,7 @@ impl Binding {
     /// Binds the strands of a groom to some of them, its guides by their indices in rising order.
     ///
     /// A strand that is a guide follows itself alone. Others follow the guides that the groom names, where it
-    /// names some, and else the four that are nearest to them in place and shape, those of the same group first.
+    /// names some, and else the three that are nearest to them in place and shape, those of the same group first.
     /// `strands` and `guides` are the groom and its guides, resampled to the same number of points.
     ///
     /// # Errors

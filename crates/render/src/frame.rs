@@ -168,14 +168,15 @@ impl Renderer {
     /// A setting outside its range; more memory than may be taken.
     pub fn draw_samples(&mut self, input: &FrameInput) -> Result<FrameReport, RenderError> {
         input.validate()?;
-        let lights = at_samples(input.lights, input.look.suns());
+        let (given, lights) = (input, at_samples(input.lights, input.look.suns()));
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
         let input = &FrameInput { lights: &lights, ..*input };
         let middle = input.world_from_head.point(self.middle);
         let distance = input.camera.position.distance(middle);
         let level = input.level_of_detail.level(distance, input.look.follow_strands);
         let (guides, pose, own_color) = (&self.guides, &input.world_from_head, self.own_color);
-        input.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
+        // It counts the places of the lights itself.
+        given.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
         let Self { curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } = self;
         let mut clock = Clock::start();
 
@@ -290,6 +291,30 @@ mod tests {
     use strandline_groom::Groom;
 
     use super::*;
+    use crate::{LightKind, surroundings::Surroundings};
+
+    #[test]
+    fn places_of_lights_and_suns_are_counted_once() {
+        let mut groom = Groom::empty(8e-5);
+        groom.push([Vec3::ZERO, Vec3::Y]);
+        let guides = Guides::resample(&groom, 4).unwrap();
+        let mut renderer = Renderer::new(&guides, None, &PictureSettings::sized(16, 16)).unwrap();
+        let surroundings = Surroundings { field: Default::default(), suns: vec![Light::default(); 2] };
+        let mut look = Look { surroundings: Some(Arc::new(surroundings)), ..Look::brown() };
+        look.shadow.map_size = 4096;
+        let soft = Light { kind: LightKind::Rectangle, samples: 4, ..Light::default() };
+        let input = FrameInput {
+            positions: guides.positions(),
+            world_from_head: Pose::IDENTITY,
+            camera: &Camera::front(),
+            look: &look,
+            body_look: &BodyLook::default(),
+            lights: &[soft; 3],
+            level_of_detail: &LevelOfDetail::default(),
+        };
+        let error = renderer.draw(&input).unwrap_err().to_string();
+        assert!(error.contains("4096 for each of 50 lights with shadow"), "{error}");
+    }
 
     #[test]
     fn only_lights_with_shadow_have_maps_and_only_after_a_picture() {

@@ -35,7 +35,7 @@ pub struct Drawn<'a> {
     pub points_per_strand: usize,
     /// The hair's look.
     pub look: &'a Look,
-    /// The lights.
+    /// The lights as they are given, without their places and without those of the surroundings.
     pub lights: &'a [Light],
     /// Size of the picture.
     pub picture: &'a PictureSettings,
@@ -57,7 +57,7 @@ impl Drawn<'_> {
         let follow_strands = self.look.follow_strands;
         let drawn = format!("look.follow_strands = {follow_strands} on each of {} guides", self.guide_count);
         let casting = self.lights.iter().filter(|light| light.shadow);
-        let suns = self.look.surroundings.as_ref().map_or(0, |surroundings| surroundings.suns().len() as u64);
+        let suns = self.look.suns().len() as u64;
         let shadows: u64 = casting.map(|light| light.sample_count() as u64).sum::<u64>() + suns;
         let size = u64::from(self.look.shadow.map_size);
         let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");

@@ -29,7 +29,7 @@ pub struct Hair {
     moment: Moment,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
-    /// The lights; three to begin with.
+    /// The lights; two to begin with.
     pub lights: Vec<Light>,
     /// Colour of the body.
     pub body_look: BodyLook,

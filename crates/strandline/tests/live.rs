@@ -307,6 +307,8 @@ fn hair_is_pulled_by_a_hand() {
     live.tell(Command::Drag(ray(-1.0, 0.2)));
     let pulled = wait(|| live.take_shown().filter(|shown| shown.frame > held.frame + 20));
     assert_eq!(pulled.grabbed, held.grabbed);
+    // Still hair in still light makes the same picture to the bit, so that every difference is hair that moved; dark
+    // brown hair changes a pixel by little, so that 15 of 255 is much.
     let differ = pulled.picture.pixels.iter().zip(&held.picture.pixels).filter(|(a, b)| a.abs_diff(**b) > 15);
     let differ = differ.count();
     assert!(differ > 60, "the hair does not follow the hand: {differ}, {} held", held.grabbed);

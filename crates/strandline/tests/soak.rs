@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
-use strandline::render::{BodyLook, LevelOfDetail, PictureSettings};
+use strandline::render::{BodyLook, LevelOfDetail, PictureSettings, fibre::FibreModel};
 use strandline::scene::{Model, MotionName, MotionSection, WindSection};
 use strandline::{
     Backend, Camera, Command, Event, Light, Live, Look, News, Picture, Ray, Scene, Shown, body,
@@ -25,6 +25,8 @@ fn scene() -> Scene {
     (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 60.0);
     scene.look.shadow.map_size = 32;
+    // The grid that carries scattered light takes as long for twenty strands as for many.
+    scene.look.fibre.model = FibreModel::Scheuermann;
     scene.lights = Light::three_point(Vec3::ZERO).to_vec();
     let camera = Camera::front();
     (scene.camera.position, scene.camera.target) = (Some(camera.position), Some(camera.target));

@@ -108,7 +108,7 @@ fn errors_say_what_to_do() {
     fails(at, &["sim", "--every", "2"], 2, &["--out"]);
     fails(at, &["sim", "--resume", "a.npz"], 1, &["made 8 frames", "--frames", "a.npz"]);
     let every = ["sim", "--resume", "a.npz", "--frames", "9", "--every", "2"];
-    fails(at, &every, 1, &["every 1. frame", "--what guides --every 1"]);
+    fails(at, &every, 1, &["every frame from 0 on", "something else", "--what guides --every 1 --from 0"]);
     fails(at, &["render", "--cache", "none.npz"], 1, &["cannot read the cache", "none.npz"]);
     fails(
         at,

@@ -160,11 +160,15 @@ impl Out {
         let (steps, report) = cache.report();
         if (cache.what(), cache.first(), cache.every()) != (self.shape.what, self.first, self.every) {
             let (what, first, every) = (cache.what().name(), cache.first(), cache.every());
+            let frames = match every {
+                1 => format!("every frame from {first} on"),
+                _ => format!("frames {first}, {} and so on", first.saturating_add(every)),
+            };
             return Err(Error::Cache {
                 path: cache.path().to_owned(),
                 message: format!(
-                    "it holds {what}, every {every}. frame from {first} on, expected what is written: go on with \
-                     --what {what} --every {every} --from {first}"
+                    "it holds {what}, {frames}, and the run would write something else: go on with --what {what} \
+                     --every {every} --from {first}"
                 ),
             });
         }

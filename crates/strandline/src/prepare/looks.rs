@@ -22,11 +22,8 @@ use crate::{
     },
 };
 
-/// Largest file of a map \[byte\], and its longest side \[pixel\].
-const MAX_BYTES: u64 = 256 << 20;
-const MAX_SIDE: u32 = 8192;
 /// Most pixels of all maps of a scene: four of the largest.
-const MAX_PIXELS: u64 = 4 * (MAX_SIDE as u64).pow(2);
+const MAX_PIXELS: u64 = 4 * (Scene::MAX_MAP_SIDE as u64).pow(2);
 /// Greatest reflectance.
 const MOST: f32 = 0.99;
 
@@ -215,12 +212,12 @@ struct Map {
 impl Map {
     fn load(path: &Path) -> Result<Self, Error> {
         let refuse = |message: String| Error::Map { path: path.to_owned(), message };
-        let bytes = read_plain(path, MAX_BYTES).map_err(|error| refuse(error.to_string()))?;
+        let bytes = read_plain(path, Scene::MAX_MAP_BYTES).map_err(|error| refuse(error.to_string()))?;
         let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
-        let mut limits = image::Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIDE), Some(MAX_SIDE));
+        let (mut limits, side) = (image::Limits::default(), Scene::MAX_MAP_SIDE);
+        (limits.max_image_width, limits.max_image_height) = (Some(side), Some(side));
         reader.limits(limits);
-        let expected = format!("expected a .png of at most {MAX_SIDE} x {MAX_SIDE} pixels");
+        let expected = format!("expected a .png of at most {side} x {side} pixels");
         let picture = reader.decode().map_err(|error| refuse(format!("{error}, {expected}")))?;
         Ok(Self {
             picture: if picture.color().has_color() {

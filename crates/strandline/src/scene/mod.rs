@@ -84,6 +84,10 @@ settings! {
 impl Scene {
     /// Most solids beside the body: each point of the hair asks every one of them.
     pub const MAX_COLLIDERS: usize = 1024;
+    /// Largest .png that gives strands colours or widths \[bytes\].
+    pub const MAX_MAP_BYTES: u64 = 256 << 20;
+    /// Its longest side \[pixels\].
+    pub const MAX_MAP_SIDE: u32 = 8192;
 
     /// What a file does not give depends on what it gives: strands of a style bring what the style needs.
     /// Files of before `[devices]` name the devices elsewhere.

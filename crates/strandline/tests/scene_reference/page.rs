@@ -6,8 +6,8 @@ use glam::Vec3;
 use strandline::{
     Scene, Style,
     base::{Group, Kind, Row, Table},
-    render::Light,
-    scene::{CapsuleSection, ColliderSection, KeyframeSection, SphereSection},
+    render::{GroupLook, Light},
+    scene::{BodyPart, CapsuleSection, ColliderSection, GroomPart, KeyframeSection, SphereSection},
     sim::rods::GroupSettings,
 };
 
@@ -89,32 +89,37 @@ fn section(page: &mut String, table: &Table, path: &str, defaults: &toml::Table,
     }
     for row in table.rows.iter().filter(|row| inner(row)) {
         let path = if path.is_empty() { row.name.to_owned() } else { format!("{path}.{}", row.name) };
-        let (table, heading) = match row.kind {
-            Kind::Group(table) => (table, format!("[{path}]")),
-            Kind::List(table) => (table, format!("[[{path}]]")),
+        let (table, heading, own) = match row.kind {
+            Kind::Group(table) => {
+                let own = defaults.get(row.name).and_then(|own| own.as_table().cloned());
+                (table, format!("[{path}]"), own.unwrap_or_default())
+            }
+            Kind::List(table) => (table, format!("[[{path}]]"), item(&path)),
             _ => unreachable!("only sections are left"),
         };
         writeln!(page, "\n{} `{heading}`\n\n{}", "#".repeat(depth), row.sentence()).unwrap();
-        let empty = toml::Table::new();
-        let own = item(row.name).or_else(|| defaults.get(row.name)?.as_table().cloned()).unwrap_or(empty);
         section(page, table, &path, &own, depth + 1);
     }
 }
 
-/// The defaults of an item of a list.
-fn item(list: &str) -> Option<toml::Table> {
-    let both = |one: toml::Table, other: toml::Table| one.into_iter().chain(other).collect();
-    match list {
-        "lights" => Some(toml::Table::try_from(Light::default()).unwrap()),
-        "groups" => Some(toml::Table::try_from(GroupSettings::default()).unwrap()),
-        "keyframes" => Some(toml::Table::try_from(KeyframeSection::default()).unwrap()),
+/// The defaults of an item of a list, by the whole key of the list.
+fn item(list: &str) -> toml::Table {
+    let defaults = match list {
+        "groom.parts" => toml::Table::try_from(GroomPart::default()),
+        "body.parts" => toml::Table::try_from(BodyPart::default()),
+        "motion.keyframes" => toml::Table::try_from(KeyframeSection::default()),
         "colliders" => {
             let sphere = ColliderSection::Sphere(SphereSection { center: Vec3::ZERO, ..Default::default() });
             let capsule = ColliderSection::Capsule(CapsuleSection::default());
-            Some(both(toml::Table::try_from(sphere).unwrap(), toml::Table::try_from(capsule).unwrap()))
+            let both = [sphere, capsule].map(|solid| toml::Table::try_from(solid).unwrap());
+            return both.into_iter().flatten().collect();
         }
-        _ => None,
-    }
+        "simulation.groups" => toml::Table::try_from(GroupSettings::default()),
+        "look.group" => toml::Table::try_from(GroupLook::default()),
+        "lights" => toml::Table::try_from(Light::default()),
+        _ => panic!("{list}: nothing says what an item of this list is when a file says nothing"),
+    };
+    defaults.unwrap()
 }
 
 /// A default as a file has it, with no more digits than tell it from its neighbours.

@@ -12,7 +12,7 @@ choices! {
         Medium = "medium",
         /// Coarse hair: 60 um.
         Coarse = "coarse",
-        /// Medium hair in water: swollen by a seventh, less than half as stiff, a fifth as stiff against twist, and
+        /// Medium hair in water: swollen by an eighth, less than half as stiff, a fifth as stiff against twist, and
         /// half its weight of water on it.
         Wet = "wet",
         /// Medium hair under lacquer: ten hairs in a wisp, glued here and there.
