@@ -178,11 +178,9 @@ impl Hair {
         let Prepared { guides, bound, mesh, colliders, head, pose, scene: chosen, .. } = prepared;
         let pair = devices.into().open()?;
         let mut hair = Self::placed(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
-        // The picture of the surroundings was loaded when the scene was prepared.
-        let look = if scene.look.surroundings.is_some() { &scene.look } else { &chosen.look };
-        let look = Look { surroundings: look.surroundings.clone(), ..scene.look.clone() };
-        hair.lights = look.lights(prepare::center(hair.studio.bounds));
-        if !scene.lights.is_empty() {
+        hair.lights = scene.look.lights(prepare::center(hair.studio.bounds));
+        // A picture of surroundings, which was loaded when the scene was prepared, lights it alone.
+        if !scene.lights.is_empty() || chosen.look.surroundings.is_some() {
             hair.lights.clone_from(&scene.lights);
         }
         hair.body_look = scene.body_look;
