@@ -173,8 +173,7 @@ impl Hair {
     /// # Errors
     /// A setting of the scene outside its range.
     pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
-        // What only pictures need is refused now too, not when the first one is drawn.
-        scene.check()?;
+        scene.check()?; // what only pictures need too, before the first one is drawn
         let Prepared { guides, bound, mesh, colliders, head, pose, scene: chosen, .. } = prepared;
         let pair = devices.into().open()?;
         let mut hair = Self::placed(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
