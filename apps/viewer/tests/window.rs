@@ -35,7 +35,12 @@ fn scene() -> Scene {
     scene.simulation.volume.cells = [12; 3];
     scene.devices.simulation = strandline::Backend::Cpu;
     scene.devices.pictures = strandline::Backend::Cpu;
-    (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    scene.look = strandline::Look {
+        follow_strands: 1,
+        hair_count: 0,
+        width_scale: 10.0,
+        ..strandline::Look::thesis()
+    };
     scene
 }
 

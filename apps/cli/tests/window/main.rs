@@ -21,7 +21,7 @@ motion.name = "still"
 groom.points_per_strand = 10
 style = { style = "long", strand_count = 400 }
 body.spacing = 0.008
-look = { follow_strands = 4, hair_count = 20000 }
+look = { preset = "thesis", follow_strands = 4, hair_count = 20000 }
 simulation = { backend = "cpu", damping = 2.0, volume.cells = [12, 12, 12] }
 picture.backend = "cpu"
 film = { frames = 1, settle = 0.0, frames_per_second = 1000.0 }
@@ -31,8 +31,8 @@ film = { frames = 1, settle = 0.0, frames_per_second = 1000.0 }
 const STAGE: [usize; 4] = [320, 60, 1150, 560];
 /// Where messages are.
 const MESSAGES: [usize; 4] = [305, 560, 1150, 765];
-/// Where the track of the slider of the strands' length begins and ends, as the panel is laid out.
-const LENGTH: [[i16; 2]; 2] = [[119, 380], [40, 380]];
+/// The slider of the strands' length where they are as groomed and where they are short, as the panel is laid out.
+const LENGTH: [[i16; 2]; 2] = [[76, 380], [40, 380]];
 
 fn folder() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
@@ -61,14 +61,15 @@ fn open(display: &Display, folder: &Path) -> Person {
     person
 }
 
-/// Waits until next to nothing moves any more.
+/// Waits until next to nothing moves any more, for longer than a picture takes on a busy machine.
 fn rest(person: &mut Person) -> Screen {
-    let mut last = person.screen();
+    let (mut last, mut quiet) = (person.screen(), 0);
     person.wait("rest", |person| {
-        std::thread::sleep(std::time::Duration::from_millis(700));
+        std::thread::sleep(std::time::Duration::from_millis(500));
         let now = person.screen();
-        let before = std::mem::replace(&mut last, now.clone());
-        (now.changed(&before, STAGE) < 400).then_some(now)
+        quiet = if now.changed(&last, STAGE) < 400 { quiet + 1 } else { 0 };
+        last = now.clone();
+        (quiet == 4).then_some(now)
     })
 }
 

@@ -49,7 +49,7 @@ settings! {
             more "hair that bends less there";
         /// Deceleration of slow hair by hairs that rub against each other, relative to the head. A shape at rest may be
         /// off by what this much gravity bends it.
-        rubbing: f32 = 0.01, in [0.0, 100.0] "m/s^2", slider [0.0, 0.1],
+        rubbing: f32 = 0.2, in [0.0, 100.0] "m/s^2", slider [0.0, 1.0],
             more "hair that comes to rest sooner after its last small swings";
         /// What the shape of the groom is.
         rest: Rest = Rest::default();
