@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::run::{cargo_command, root};
+use crate::run::{example, root};
 
 /// What the tests ask of the machine: a missing adapter is a failure.
 pub const REQUIRED: &str = "STRANDLINE_REQUIRE_GPU";
@@ -114,10 +114,10 @@ fn has_display() -> bool {
 /// Asks the kit for the adapters, and prints them; why it cannot be asked.
 fn is_there() -> Result<bool, String> {
     println!("\n== adapters");
-    let list = ["run", "--quiet", "--package", "strandline-gpu", "--example", "adapters"];
-    match cargo_command(&list).status().map(|status| status.code()) {
-        Ok(Some(0)) => Ok(true),
-        Ok(Some(1)) => Ok(false),
+    let list = example("adapters").and_then(|mut list| list.status().ok());
+    match list.map(|status| status.code()) {
+        Some(Some(0)) => Ok(true),
+        Some(Some(1)) => Ok(false),
         _ => Err("the list of adapters does not build or run".to_owned()),
     }
 }

@@ -38,12 +38,11 @@ impl Target {
     }
 
     fn arguments(&self) -> Vec<&str> {
-        let mut arguments = vec!["test", "--no-fail-fast", "--package", &self.package];
+        // A package by itself would have other features of its dependencies, and all of them built once more.
         match self.name.as_str() {
-            "lib" => arguments.push("--lib"),
-            name => arguments.extend(["--test", name]),
+            "lib" => vec!["test", "--no-fail-fast", "--package", &self.package, "--lib"],
+            name => vec!["test", "--no-fail-fast", "--workspace", "--test", name],
         }
-        arguments
     }
 }
 
