@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Backend, Cache, Event, Film, Player, Scene};
+use strandline::{Backend, Cache, Event, Film, LayerFilm, Player, Scene};
 
 use crate::arguments::{RenderOptions, Usage};
 use crate::interrupt::{Stoppable, Stopped};
@@ -78,38 +78,14 @@ fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> any
         player.show(cache)?;
     }
     player.notes().iter().for_each(|note| output::note(note));
-    let frames = player.frames();
-    let mut progress = Progress::new(u64::from(frames), "frames", json);
-    let stoppable = Stoppable::begin();
-    let mut files = Vec::new();
-    let mut non_finite = NonFinite::default();
-    while let Some(event) = player.next() {
-        match event? {
-            Event::Note(note) => progress.note(&note),
-            Event::Stepped(report) => {
-                let note = non_finite.add(&report, player.frames_done());
-                note.into_iter().for_each(|note| progress.note(&note));
-            }
-            Event::Drawn { frame, report, .. } => {
-                let name = path.file_stem().unwrap_or_default().to_string_lossy();
-                let file = if frames == 1 {
-                    path.to_owned()
-                } else {
-                    path.with_file_name(format!("{name}_{frame:04}.exr"))
-                };
-                if let Some(layers) = &report.layers {
-                    layers.save(&file)?;
-                    files.push(file);
-                }
-            }
-        }
-        let done = u64::from(player.frames_done());
-        progress.reached(done);
-        if done < u64::from(frames) {
-            stoppable.check(done, u64::from(frames), "frames")?;
-        }
+    let mut film = LayerFilm::new(path, player.frames())?;
+    let non_finite = play_channels(&mut player, &mut film, json);
+    if non_finite.is_err() && !film.is_empty() {
+        output::note(&format!("the {} files already written are whole: {}", film.len(), path.display()));
     }
-    drop(progress);
+    let (files, notes) = film.finish();
+    let non_finite = non_finite?;
+    notes.iter().for_each(|note| output::note(note));
     if json {
         output::program(&format!("{}\n", serde_json::json!({ "frames": files.len(), "files": files })));
     } else {
@@ -118,6 +94,31 @@ fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> any
         print_line!("wrote {count}: look at {}", last.display());
     }
     Ok(non_finite.outcome()?)
+}
+
+fn play_channels(player: &mut Player, film: &mut LayerFilm, quiet: bool) -> anyhow::Result<NonFinite> {
+    let frames = u64::from(player.frames());
+    let mut progress = Progress::new(frames, "frames", quiet);
+    let stoppable = Stoppable::begin();
+    let mut non_finite = NonFinite::default();
+    while let Some(event) = player.next() {
+        match event? {
+            Event::Note(note) => progress.note(&note),
+            Event::Stepped(report) => {
+                let note = non_finite.add(&report, player.frames_done());
+                note.into_iter().for_each(|note| progress.note(&note));
+            }
+            Event::Drawn { report, .. } => {
+                report.layers.iter().try_for_each(|layers| film.add(layers))?;
+            }
+        }
+        let done = u64::from(player.frames_done());
+        progress.reached(done);
+        if done < frames {
+            stoppable.check(done, frames, "frames")?;
+        }
+    }
+    Ok(non_finite)
 }
 
 fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyhow::Result<()> {

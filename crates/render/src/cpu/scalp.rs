@@ -3,17 +3,18 @@
 use std::collections::HashMap;
 
 use glam::{IVec3, Vec3};
+use rayon::prelude::*;
 use strandline_groom::Guides;
 
-/// Share of the surface of the box around all roots on which they lie.
+/// Share of the surface of the box around the roots on which they lie.
 const COVERED: f32 = 0.4;
+/// One of so many roots at either end of an axis may lie anywhere: a strand that strayed is no part of the scalp.
+const STRAYS: usize = 50;
 
 /// Density of roots about every vertex over their mean density, 0 to 1; head space.
 pub(crate) fn root_densities(vertices: &[Vec3], guides: &Guides) -> Vec<f32> {
     let roots: Vec<Vec3> = (0..guides.strand_count()).map(|strand| guides.position(strand, 0)).collect();
-    let (min, max) =
-        roots.iter().fold((Vec3::MAX, Vec3::MIN), |(min, max), root| (min.min(*root), max.max(*root)));
-    let Vec3 { x, y, z } = max - min;
+    let [x, y, z] = [0, 1, 2].map(|axis| extent(roots.iter().map(|root| root[axis]).collect()));
     let surface = 2.0 * (x * y + y * z + z * x);
     // Twice the distance of neighbours.
     let reach = 2.0 * (COVERED * surface / roots.len().max(1) as f32).sqrt();
@@ -32,7 +33,16 @@ pub(crate) fn root_densities(vertices: &[Vec3], guides: &Guides) -> Vec<f32> {
         let weight = |root: &Vec3| (1.0 - root.distance_squared(*vertex) / (reach * reach)).max(0.0).powi(2);
         (near.map(weight).sum::<f32>() / whole).min(1.0)
     };
-    vertices.iter().map(density).collect()
+    vertices.par_iter().map(density).collect()
+}
+
+/// How far numbers reach, were they spread as evenly at both ends as between.
+fn extent(mut numbers: Vec<f32>) -> f32 {
+    numbers.sort_unstable_by(f32::total_cmp);
+    let (count, strays) = (numbers.len(), numbers.len() / STRAYS);
+    let within = &numbers[strays..count - strays];
+    let [Some(first), Some(last)] = [within.first(), within.last()] else { return 0.0 };
+    (last - first) * count as f32 / within.len() as f32
 }
 
 #[cfg(test)]
@@ -53,5 +63,9 @@ mod tests {
         let found = root_densities(&places, &guides);
         // Flat: the box has two sides, on one of which all roots lie.
         assert!(found[0] > 0.6 && found[1] == 0.0 && found[2] == 0.0, "{found:?}");
+        // One that strayed changes nothing, and does not make all others its neighbours.
+        groom.push((0..4).map(|point| Vec3::new(1e3, 0.02 * point as f32, 1e3)));
+        let strayed = root_densities(&places, &Guides::resample(&groom, 4).unwrap());
+        assert!((strayed[0] - found[0]).abs() < 0.01 && strayed[1..] == found[1..], "{strayed:?}");
     }
 }

@@ -40,11 +40,7 @@ impl Files {
         let pattern = pattern(&name)
             .ok_or_else(|| Error::OutName { found: name.into_owned(), path: path.to_owned() })?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        std::fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
-        let lock = FolderLock::take(folder).map_err(|error| match error.kind() {
-            std::io::ErrorKind::ResourceBusy => Error::Busy { path: folder.to_owned() },
-            _ => Error::write("into the output folder", folder)(error),
-        })?;
+        let lock = crate::film::claim(folder)?;
         let mut groom = Groom::empty(0.0);
         groom.starts.clone_from(&shape.starts);
         let attributes = &shape.attributes;

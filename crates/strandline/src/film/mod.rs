@@ -1,6 +1,7 @@
 //! Writes a film as it is drawn: frames, a contact sheet, and a video or an animated image.
 
 mod animation;
+mod layers;
 mod sheet;
 mod video;
 
@@ -13,6 +14,7 @@ use strandline_base::{FolderLock, WholeFile};
 
 use crate::{Error, render::Picture};
 use animation::Animation;
+pub use layers::LayerFilm;
 use video::Video;
 
 /// Names of the files beside the frames.
@@ -74,17 +76,7 @@ impl Film {
     }
 
     fn open(folder: &Path, frames: Option<u32>, frames_per_second: f32) -> Result<Self, Error> {
-        fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
-        let lock = FolderLock::take(folder).map_err(|error| match error.kind() {
-            ErrorKind::ResourceBusy => Error::Busy { path: folder.to_owned() },
-            _ => Error::write("into the output folder", folder)(error),
-        })?;
-        let mut notes = Vec::new();
-        if !lock.is_held() {
-            notes.push(
-                "the file system has no locks: nothing keeps a second run out of the folder".to_owned(),
-            );
-        }
+        let lock = claim(folder)?;
         Ok(Self {
             folder: folder.to_owned(),
             frames,
@@ -92,7 +84,7 @@ impl Film {
             files: Vec::new(),
             thumbnails: Vec::new(),
             moving: Moving::NotBegun,
-            notes,
+            notes: unlocked(&lock).into_iter().collect(),
             _lock: lock,
         })
     }
@@ -222,6 +214,21 @@ impl Film {
     }
 }
 
+/// Makes a folder where it is not there, and keeps other runs out of it.
+pub(crate) fn claim(folder: &Path) -> Result<FolderLock, Error> {
+    fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
+    FolderLock::take(folder).map_err(|error| match error.kind() {
+        ErrorKind::ResourceBusy => Error::Busy { path: folder.to_owned() },
+        _ => Error::write("into the output folder", folder)(error),
+    })
+}
+
+/// A note where nothing keeps others out.
+fn unlocked(lock: &FolderLock) -> Option<String> {
+    let note = "the file system has no locks: nothing keeps a second run out of the folder";
+    (!lock.is_held()).then(|| note.to_owned())
+}
+
 /// Why there is no moving picture.
 enum Unmade {
     /// ffmpeg could not.
@@ -242,7 +249,12 @@ fn leftovers(folder: &Path, frames: usize, files: &[PathBuf]) -> Option<String> 
     let mut old: Vec<String> =
         entries.filter_map(|entry| entry.file_name().into_string().ok()).filter(is_old).collect();
     old.sort_by_key(|name| (number(name), name.clone()));
-    let named = match old.as_slice() {
+    still_there(&old)
+}
+
+/// A note on files of an earlier film, in order.
+fn still_there(old: &[String]) -> Option<String> {
+    let named = match old {
         [] => return None,
         [one] => one.clone(),
         [first, second] => format!("{first} and {second}"),

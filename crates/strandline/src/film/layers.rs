@@ -1,0 +1,117 @@
+//! Writes the frames of a film as .exr files.
+
+use std::path::{Path, PathBuf};
+
+use strandline_base::FolderLock;
+
+use super::{claim, still_there, unlocked};
+use crate::{Error, render::Layers};
+
+/// Receives the layers of a film's pictures in order, and writes a file for each.
+///
+/// A film of one picture is the file that is named; of more, each has its number before the ending:
+/// `hair_0000.exr`. Every file is whole once it has its name. One film at a time is written into a folder.
+pub struct LayerFilm {
+    path: PathBuf,
+    frames: u32,
+    files: Vec<PathBuf>,
+    lock: FolderLock,
+}
+
+impl LayerFilm {
+    /// A film of `frames` pictures; the folder of the file is made when it is not there.
+    ///
+    /// # Errors
+    /// The folder cannot be made or written, or another film is being written there.
+    pub fn new(path: &Path, frames: u32) -> Result<Self, Error> {
+        let lock = claim(folder(path))?;
+        Ok(Self { path: path.to_owned(), frames, files: Vec::new(), lock })
+    }
+
+    /// Number of files so far.
+    pub fn len(&self) -> usize {
+        self.files.len()
+    }
+
+    /// Whether there is no file yet.
+    pub fn is_empty(&self) -> bool {
+        self.files.is_empty()
+    }
+
+    /// Writes the next picture's layers.
+    ///
+    /// # Errors
+    /// The file cannot be written; earlier ones stay.
+    pub fn add(&mut self, layers: &Layers) -> Result<(), Error> {
+        let file = if self.frames == 1 {
+            self.path.clone()
+        } else {
+            self.path.with_file_name(format!("{}_{:04}.exr", self.stem(), self.files.len()))
+        };
+        layers.save(&file)?;
+        self.files.push(file);
+        Ok(())
+    }
+
+    /// The files, in order, and notes for a person: of locks that the file system has not, and of files that an
+    /// earlier, longer film left.
+    pub fn finish(self) -> (Vec<PathBuf>, Vec<String>) {
+        let notes = unlocked(&self.lock).into_iter().chain(self.leftovers()).collect();
+        (self.files, notes)
+    }
+
+    fn stem(&self) -> String {
+        self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    fn leftovers(&self) -> Option<String> {
+        let stem = format!("{}_", self.stem());
+        let number = |name: &String| {
+            let digits = name.strip_prefix(&stem)?.strip_suffix(".exr")?;
+            let is_ours = digits.len() >= 4 && digits.bytes().all(|byte| byte.is_ascii_digit());
+            digits.parse::<usize>().ok().filter(|_| is_ours)
+        };
+        let written = if self.frames == 1 { 0 } else { self.files.len() };
+        let entries = std::fs::read_dir(folder(&self.path)).into_iter().flatten().flatten();
+        let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+        let mut old: Vec<String> =
+            names.filter(|name| number(name).is_some_and(|number| number >= written)).collect();
+        old.sort_by_key(number);
+        still_there(&old)
+    }
+}
+
+/// The folder that a file lies in.
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_is_made_and_held_and_older_frames_are_noted() {
+        let home = tempfile::tempdir().unwrap();
+        let path = home.path().join("new/hair.exr");
+        let film = LayerFilm::new(&path, 3).unwrap();
+        let busy = LayerFilm::new(&path, 3).err().expect("a folder that is taken").to_string();
+        assert!(busy.contains("new"), "{busy}");
+        for name in ["hair_0000.exr", "hair_0002.exr", "hair_00x2.exr", "other_0009.exr", "hair_0001.png"] {
+            std::fs::write(path.with_file_name(name), b"old").unwrap();
+        }
+        let (files, notes) = film.finish();
+        assert!(files.is_empty());
+        assert_eq!(
+            notes,
+            ["of an earlier film there are still hair_0000.exr and hair_0002.exr in the folder"]
+        );
+        assert!(LayerFilm::new(&path, 1).is_ok(), "it is free again");
+    }
+
+    #[test]
+    fn a_file_without_a_folder_lies_here() {
+        assert_eq!(folder(Path::new("hair.exr")), Path::new("."));
+        assert_eq!(folder(Path::new("a/hair.exr")), Path::new("a"));
+    }
+}
