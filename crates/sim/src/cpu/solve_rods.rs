@@ -22,12 +22,9 @@ use crate::{RodReport, Solver, State};
 
 /// Rounds of the projection onto lengths.
 const LENGTH_ROUNDS: u32 = 2;
-/// What takes the speed off a strand that is pressed at rest \[m/s^2\], two thousandths of gravity: what friction
-/// holds creeps by half as much.
+/// Most that a point of a strand at rest moves in a part of a step, over its square \[m/s^2\]: two thousandths of
+/// gravity. What friction holds creeps by half as much.
 const STILL: f64 = 0.02;
-/// Time in which what takes speed off brings a strand to rest \[s\]: one step of the usual length. A shorter step
-/// does not ask for a slower hair; a longer one takes the time that it is.
-const REST_TIME: f64 = 1.0 / 60.0;
 /// Most of it \[m\] for what neither a solid nor other hair holds.
 const STILL_LOOSE: f64 = 1e-7;
 /// Most that its way differs from the one before, over the square of the part \[m/s^2\]: a strand at rest is not
@@ -282,10 +279,8 @@ impl Strands<'_> {
         let square = self.parts.time_step * self.parts.time_step;
         let rounding = size.root() * f32x8::of(ROUNDING);
         let rubbing = f64::from(self.parts.settings.rubbing);
-        // What a step takes off comes to rest within a time that is none of the step's.
-        let way = self.parts.time_step * self.parts.time_step.max(REST_TIME);
-        let loose = f32x8::of((STILL * square).min(STILL_LOOSE).max(rubbing * way));
-        let still = solved.pressed.choose(f32x8::of(STILL * way), loose).fast_max(rounding);
+        let loose = f32x8::of((STILL * square).min(STILL_LOOSE).max(rubbing * square));
+        let still = solved.pressed.choose(f32x8::of(STILL * square), loose).fast_max(rounding);
         let steady = f32x8::of(STEADY.max(rubbing) * square).fast_max(rounding);
         let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | bad;
         let moves = moving.bitselect(f32x8::of(1.0), f32x8::ZERO);
