@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use strandline_body::{Mesh, Pose};
-use strandline_checks::gpu;
+use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::resolve_linear;
@@ -118,6 +118,13 @@ impl Scene {
         Linear { width: picture.width as usize, height: picture.height as usize, pixels }
     }
 
+    fn drawn_by(&self, on: &On) -> Linear {
+        match on {
+            On::Cpu => self.drawn(),
+            On::Gpu(gpu) => self.drawn_on(gpu, GAIN),
+        }
+    }
+
     fn input(&self) -> FrameInput<'_> {
         FrameInput {
             positions: self.guides.positions(),
@@ -178,36 +185,32 @@ fn sun() -> Light {
 
 const GAIN: f32 = 8.12;
 
-#[test]
-fn brown_hair_in_the_sun_is_lit_as_path_tracing_lights_it() {
-    let expected = reference("brown_directional", 64);
-    let mask: Vec<bool> = expected.pixels.iter().map(|pixel| pixel.max_element() > 0.003).collect();
-    let scene = sphere(Some(sun()), 0.0);
-    let drawn = scene.drawn();
-    let found = measures(&drawn.boxed(), &expected, &mask, GAIN);
-    let row = highlight_row(&drawn);
-    println!("{found:?}, highlight in row {row}");
-    assert!(found.sound(0.15, 0.1), "{found:?}");
-    assert!(found.regions <= 0.15, "{found:?}");
-    assert!(row.abs_diff(105) <= 3, "{row}");
-    if let Some(gpu) = gpu() {
-        let on_gpu = scene.drawn_on(&gpu, GAIN).boxed();
-        let found = measures(&on_gpu, &expected, &mask, GAIN);
-        println!("on a GPU {found:?}");
-        assert!(found.sound(0.15, 0.1), "on a GPU {found:?}");
-        let apart = measures(&on_gpu, &drawn.boxed(), &mask, GAIN);
-        // Highlights of single pixels are cut off by the 8 bits of one of them.
-        assert!(apart.sound(0.02, 0.02), "{apart:?}");
+law! {
+    fn brown_hair_in_the_sun_is_lit_as_path_tracing_lights_it(on) {
+        let expected = reference("brown_directional", 64);
+        let mask: Vec<bool> = expected.pixels.iter().map(|pixel| pixel.max_element() > 0.003).collect();
+        let mut scene = sphere(Some(sun()), 0.0);
+        let drawn = scene.drawn_by(on);
+        let found = measures(&drawn.boxed(), &expected, &mask, GAIN);
+        let row = highlight_row(&drawn);
+        println!("{found:?}, highlight in row {row}");
+        assert!(found.sound(0.15, 0.1), "{found:?}");
+        assert!(found.regions <= 0.15, "{found:?}");
+        assert!(row.abs_diff(105) <= 3, "{row}");
+        drawn.save("directional", GAIN);
+        drawn.boxed().save("directional_boxed", GAIN);
+        expected.save("directional_expected", GAIN);
+        if matches!(on, On::Gpu(_)) {
+            let apart = measures(&drawn.boxed(), &scene.drawn_by(&On::Cpu).boxed(), &mask, GAIN);
+            // Highlights of single pixels are cut off by the 8 bits of one of them.
+            assert!(apart.sound(0.02, 0.02), "{apart:?}");
+        }
+        // Hair that scatters light only once is noticed.
+        scene.look.fibre.chiang.scatterings = 0;
+        scene.look.fibre.chiang.eumelanin = 0.9;
+        let wrong = measures(&scene.drawn_by(on).boxed(), &expected, &mask, GAIN);
+        assert!(!wrong.sound(0.15, 0.1), "{wrong:?}");
     }
-    // Hair that scatters light only once is noticed.
-    let mut once = scene;
-    once.look.fibre.chiang.scatterings = 0;
-    once.look.fibre.chiang.eumelanin = 0.9;
-    let wrong = measures(&once.drawn().boxed(), &expected, &mask, GAIN);
-    assert!(!wrong.sound(0.15, 0.1), "{wrong:?}");
-    drawn.save("directional", GAIN);
-    drawn.boxed().save("directional_boxed", GAIN);
-    expected.save("directional_expected", GAIN);
 }
 
 #[test]

@@ -60,9 +60,9 @@ impl Outcome {
     }
 }
 
-/// Whether a test runs on a GPU: those of laws end so, parity is nothing else.
+/// Whether a test runs on a GPU: those of laws end so, parity is nothing else, others say it.
 fn on_gpu(test: &str) -> bool {
-    test.ends_with("::gpu") || test.starts_with("parity ")
+    test.ends_with("::gpu") || test.starts_with("parity ") || test.contains("_on_a_gpu_")
 }
 
 /// Whether a fault was seen on every backend that it spoils and that was tried.

@@ -16,6 +16,9 @@ use crate::run::root;
 /// A build and its tests may take so long; a fault may make a test run for ever.
 const LONGEST: Duration = Duration::from_secs(1800);
 
+/// Names the folder of grooms that are no part of the project.
+const GROOMS: &str = "STRANDLINE_GROOMS";
+
 /// Everything of planted faults that is kept from run to run.
 pub fn kept() -> PathBuf {
     root().join("target/faults")
@@ -201,6 +204,10 @@ fn run(tree: &Tree, target: &Target, filters: &[String], wish: &Wish) -> Result<
         command.args(["--skip", "::gpu"]);
     }
     command.current_dir(&tree.folder).env("CARGO_TARGET_DIR", kept().join("build"));
+    // What lies beside the tree does not lie beside its copy.
+    if std::env::var_os(GROOMS).is_none() {
+        command.env(GROOMS, root().join("../shared/grooms"));
+    }
     command.env("RUST_BACKTRACE", "0").stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().context("cannot run cargo")?;
     let output = child.stdout.take().context("stdout is piped")?;
