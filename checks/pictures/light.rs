@@ -193,7 +193,6 @@ law! {
         let drawn = scene.drawn_by(on);
         let found = measures(&drawn.boxed(), &expected, &mask, GAIN);
         let row = highlight_row(&drawn);
-        println!("{found:?}, highlight in row {row}");
         assert!(found.sound(0.15, 0.1), "{found:?}");
         assert!(found.regions <= 0.15, "{found:?}");
         assert!(row.abs_diff(105) <= 3, "{row}");
