@@ -80,7 +80,7 @@ const HEAD: &str = "\
 A law that nothing can break proves nothing. Each fault below is a small change of the code, in Rust and in the
 kernel alike, so that comparing one backend with the other shows nothing. [checks/faults](../checks/faults) lists
 them; `cargo xtask faults` plants each in a copy of the tree, runs the tests that have to see it, and prints this
-page with `--table`. It takes some minutes a fault and is no part of `cargo xtask test`, which only checks that
+page with `--table`. All take half an hour; it is no part of `cargo xtask test`, which only checks that
 every fault still applies. A fault that goes unseen is a missing law.
 
 ";
