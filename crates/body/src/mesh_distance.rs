@@ -1,5 +1,7 @@
 //! Signed distance from a closed mesh to the nodes of a lattice.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -12,11 +14,11 @@ use crate::layers::{Corners, Layers};
 use crate::near_surface::{REACH, paint};
 use crate::triangle_tree::{Nearest, TriangleTree};
 
-/// Triangles that are looked at for all nodes together, and for each node, on the average: far more than
-/// meshes of bodies need. Where triangles overlap so much that it does not suffice, as thousands of thin
-/// ones that meet in one vertex, what is found beyond [`REACH`] of the surface may be further than the nearest.
+/// Triangles that are looked at for all nodes together, and for each node, on the average: more than meshes of bodies
+/// need. Where triangles overlap so much that it does not suffice, as thousands of thin ones that meet in one vertex,
+/// [`spread`] finds what is nearest beyond [`REACH`] of the surface, to a small part of a cell.
 const LOOKS: u64 = 100_000_000;
-const LOOKS_OF_A_NODE: u64 = 32;
+const LOOKS_OF_A_NODE: std::ops::RangeInclusive<u64> = 32..=128;
 
 /// Signed distance \[m\] at each node, in the order of storage.
 ///
@@ -37,35 +39,49 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
     }
     let tree = TriangleTree::new(&triangles, skin.clone());
     let layers = Layers::new(&triangles, skin);
-    let far = FarNodes::new(&tree, lattice, LOOKS / lattice.len() as u64 * LOOKS_OF_A_NODE);
-    let mut distances = vec![0.0; lattice.len()];
-    distances.par_chunks_mut(lattice.layer_len() * SLAB).enumerate().for_each(|(slab, distances)| {
-        let nearest = nearest_in_slab(&tree, &layers, far.as_ref(), lattice, slab * SLAB, distances.len());
-        for (distance, nearest) in distances.iter_mut().zip(nearest) {
-            *distance = (nearest.squared.sqrt() * f64::from(lattice.spacing)) as f32;
+    let far = FarNodes::new(&tree, lattice, LOOKS / lattice.len() as u64 * LOOKS_OF_A_NODE.start());
+    let mut found = vec![Found::default(); lattice.len()];
+    let sufficed = AtomicBool::new(true);
+    found.par_chunks_mut(lattice.layer_len() * SLAB).enumerate().for_each(|(slab, found)| {
+        if !nearest_in_slab(&tree, &layers, far.as_ref(), lattice, slab * SLAB, found) {
+            sufficed.store(false, Ordering::Relaxed);
         }
     });
+    if !sufficed.into_inner() {
+        spread(&tree, lattice, &mut found);
+    }
+    let mut distances: Vec<f32> = found.iter().map(|found| found.distance * lattice.spacing).collect();
     distances.par_iter_mut().zip(inside).for_each(|(distance, inside)| {
         *distance = if inside { -*distance } else { *distance };
     });
     distances
 }
 
-/// The nearest triangle of each node of some layers.
+/// What is kept of the nearest triangle of a node.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    /// \[cells\].
+    distance: f32,
+    triangle: u32,
+}
+
+/// The nearest triangle of each node of some layers, and whether there were looks enough to be sure of it.
 fn nearest_in_slab(
     tree: &TriangleTree,
     layers: &Layers,
     far: Option<&FarNodes>,
     lattice: &Lattice,
     first_layer: usize,
-    count: usize,
-) -> Vec<Nearest> {
+    found: &mut [Found],
+) -> bool {
     let layer_len = lattice.layer_len();
     let strides = [1, lattice.node_count.x as usize, layer_len];
-    let mut nearest = vec![Nearest::NONE; count];
+    let mut nearest = vec![Nearest::NONE; found.len()];
     paint(layers, lattice, first_layer, &mut nearest);
-    let mut looks = count as u64 * (LOOKS / lattice.len() as u64).max(LOOKS_OF_A_NODE);
-    for index in 0..count {
+    let (least, most) = LOOKS_OF_A_NODE.into_inner();
+    let mut looks = found.len() as u64 * (LOOKS / lattice.len() as u64).clamp(least, most);
+    let mut sufficed = true;
+    for index in 0..found.len() {
         if nearest[index].squared <= REACH * REACH {
             continue;
         }
@@ -77,18 +93,52 @@ fn nearest_in_slab(
         let point = node.as_dvec3();
         let place = [node.x as usize, node.y as usize, node.z as usize - first_layer];
         // What is nearest to a neighbour is nearly the nearest here: the search only has to make sure.
-        let mut found = nearest[index];
+        let mut here = nearest[index];
         for (place, stride) in place.into_iter().zip(strides) {
-            if place > 0 && nearest[index - stride].triangle != found.triangle {
-                tree.offer(nearest[index - stride].triangle, point, &mut found);
+            if place > 0 && nearest[index - stride].triangle != here.triangle {
+                tree.offer(nearest[index - stride].triangle, point, &mut here);
             }
         }
         // None takes so much that nothing is left to the others.
-        let seen = tree.search(point, (looks / 128).max(LOOKS_OF_A_NODE), &mut found);
+        let budget = (looks / 128).max(least);
+        let seen = tree.search(point, budget, &mut here);
+        sufficed &= seen < budget;
         looks = looks.saturating_sub(seen);
-        nearest[index] = found;
+        nearest[index] = here;
     }
-    nearest
+    for (found, nearest) in found.iter_mut().zip(nearest) {
+        *found = Found { distance: nearest.squared.sqrt() as f32, triangle: nearest.triangle };
+    }
+    sufficed
+}
+
+/// Offers every node the triangles that are nearest to its neighbours, through the lattice and back: from what is
+/// near the surface, which is exact, the nearest spreads to all others \[Danielsson1980\].
+fn spread(tree: &TriangleTree, lattice: &Lattice, found: &mut [Found]) {
+    let strides = [1, lattice.node_count.x as usize, lattice.layer_len()];
+    let last = (lattice.node_count - 1).to_array();
+    let mut offer = |index: usize, back: bool| {
+        let node = lattice.node(index);
+        let mut here = found[index];
+        for ((place, last), stride) in node.to_array().into_iter().zip(last).zip(strides) {
+            let beside = match back {
+                false if place > 0 => found[index - stride],
+                true if place < last => found[index + stride],
+                _ => continue,
+            };
+            if beside.triangle != here.triangle {
+                let mut nearest =
+                    Nearest { squared: f64::from(here.distance).powi(2), triangle: here.triangle };
+                tree.offer(beside.triangle, node.as_dvec3(), &mut nearest);
+                here = Found { distance: nearest.squared.sqrt() as f32, triangle: nearest.triangle };
+            }
+        }
+        found[index] = here;
+    };
+    for _ in 0..2 {
+        (0..lattice.len()).for_each(|index| offer(index, false));
+        (0..lattice.len()).rev().for_each(|index| offer(index, true));
+    }
 }
 
 /// How much work the extent of triangles is at a spacing \[m\], in nodes that look at one: long and large

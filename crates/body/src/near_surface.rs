@@ -29,12 +29,14 @@ pub(crate) fn paint(layers: &Layers, lattice: &Lattice, first_layer: usize, near
                 pieces.extend(halves);
                 continue;
             }
+            let [least, most] = corners_of_box(&piece);
             for_each_node(first, last, |node| {
                 let point = node.as_dvec3();
-                if is_beyond_plane(corners, point, REACH) {
+                let known = &mut nearest[lattice.index(node) - first_layer * layer_len];
+                let beside = (point - point.clamp(least, most)).length_squared();
+                if beside >= known.squared.min(REACH * REACH) || is_beyond_plane(corners, point, REACH) {
                     return;
                 }
-                let known = &mut nearest[lattice.index(node) - first_layer * layer_len];
                 let squared = distance_squared(corners, point);
                 if squared < known.squared {
                     *known = Nearest { squared, triangle };
@@ -46,10 +48,14 @@ pub(crate) fn paint(layers: &Layers, lattice: &Lattice, first_layer: usize, near
 
 /// The nodes between two corners that may be within reach of a piece.
 fn nodes_around(piece: &Corners, low: DVec3, high: DVec3) -> Option<[UVec3; 2]> {
-    let [a, b, c] = *piece;
-    let first = (a.min(b).min(c) - REACH).ceil().max(low);
-    let last = (a.max(b).max(c) + REACH).floor().min(high);
+    let [least, most] = corners_of_box(piece);
+    let first = (least - REACH).ceil().max(low);
+    let last = (most + REACH).floor().min(high);
     first.cmple(last).all().then(|| [first.as_uvec3(), last.as_uvec3()])
+}
+
+fn corners_of_box([a, b, c]: &Corners) -> [DVec3; 2] {
+    [a.min(*b).min(*c), a.max(*b).max(*c)]
 }
 
 /// A piece divided at the middle of its longest edge, unless it is small.

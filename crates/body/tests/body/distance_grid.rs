@@ -394,7 +394,8 @@ fn thousands_of_thin_triangles_around_a_vertex_are_exact_near_the_surface() {
         }
         // Single precision over the box.
         assert!(worst[0] < 1e-6, "{count}: {worst:?}");
-        // Where thousands overlap, the search far from the surface ends before it has made sure.
-        assert!(count > 1000 || worst[1] < 1e-6, "{count}: {worst:?}");
+        // Where thousands overlap, neighbours offer what is nearest to them: two cells away at most a quarter too far.
+        let most = if count > 1000 { 0.25 * f64::from(SPACING) } else { 1e-6 };
+        assert!(worst[1] < most, "{count}: {worst:?}");
     }
 }

@@ -99,6 +99,7 @@ pub fn supplied(name: &str) -> Option<PathBuf> {
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/grooms"), PathBuf::from);
     let path = folder.join(name);
     if !path.is_file() {
+        assert!(std::env::var_os("STRANDLINE_REQUIRE_GROOMS").is_none(), "no grooms folder");
         println!("skipped: no grooms folder");
         return None;
     }
