@@ -170,6 +170,20 @@ pub fn apart(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> f32 {
     distances(a, b, guides).into_iter().fold(0.0, f32::max)
 }
 
+/// The largest distance of each strand, the farthest last.
+pub fn strands_apart(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> Vec<f32> {
+    let points = guides.points_per_strand();
+    let strand = |strand: usize| {
+        let of = |all: &[Vec3Lanes], point: usize| all[strand / LANES * points + point].get(strand % LANES);
+        let apart = (0..points).map(|point| of(a, point).distance(of(b, point)));
+        // What is no number counts as farthest.
+        apart.fold(0.0, |most, one| if one <= most { most } else { one })
+    };
+    let mut apart: Vec<f32> = (0..guides.strand_count()).map(strand).collect();
+    apart.sort_by(f32::total_cmp);
+    apart
+}
+
 /// Their mean distance.
 pub fn mean_apart(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> f32 {
     let distances = distances(a, b, guides);

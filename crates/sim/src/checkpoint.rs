@@ -110,8 +110,8 @@ impl State {
             grab: _,
             scratch,
         } = self;
-        // Lengths and masses follow from the length scales; predictions are made anew in every step.
-        let Scratch { predicted: _, contacts, lengths: _, masses: _, volume, place } = scratch;
+        // Lengths, masses and rods follow from the length scales; predictions are made anew in every step.
+        let Scratch { predicted: _, contacts, lengths: _, masses: _, rods: _, volume, place } = scratch;
         let blocks = length_scale.len();
         let points = positions.len() / blocks.max(1);
         let mut parts = Vec::new();

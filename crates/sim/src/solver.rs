@@ -256,6 +256,7 @@ impl Solver {
                 contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),
                 masses: Masses::new(self, &self.rest),
                 lengths: self.rest.clone(),
+                rods: None,
                 volume: None,
                 place: None,
             },

@@ -10,6 +10,7 @@ use crate::cpu::vec3x8::{Vec3x8, splat};
 use crate::grab::Grab;
 use crate::length_scale;
 use crate::masses::Masses;
+use crate::strands::rods::other_lengths::OtherLengths;
 use crate::{SimError, Solver};
 
 /// What the world does to the hair during one step.
@@ -76,6 +77,8 @@ pub(crate) struct Scratch {
     pub lengths: RestShape,
     /// Masses of points, which follow those lengths.
     pub masses: Masses,
+    /// Rods with those lengths, made by the first step after a change; none while all are those at rest.
+    pub rods: Option<OtherLengths>,
     /// The fluid volume; none while it is off.
     pub volume: Option<Volume>,
     /// Where the box of the volume is, lower corner with the ring \[m\] and spacing \[m\], while there is none
@@ -134,7 +137,9 @@ impl State {
     /// Sets the length of every strand, shape `[strand]`: 0.05 to 2 of its rest length
     /// [Chen2011 fig. 45]. Segments near the tip shrink, to no less than a twentieth, or grow, to no more
     /// than three times their own; the others keep their length. The mass of points follows the length of
-    /// their segments; so do stiffness and rest strains of rods, whose curvature per length stays. Points slide along their strand at once and keep their velocity.
+    /// their segments; so does the stiffness of rods, whose
+    /// curvature per length stays; their rest shape carries the weight that is left. Points slide along their strand at
+    /// once and keep their velocity.
     ///
     /// # Errors
     /// Another number of scales than strands, a scale outside [`State::LENGTH_SCALES`]; then nothing changes.
@@ -162,6 +167,7 @@ impl State {
             length_scale::slide(&mut self.previous_positions[range], lengths);
         }
         self.scratch.masses = Masses::new(solver, &self.scratch.lengths);
+        self.scratch.rods = None;
         Ok(())
     }
 }

@@ -1,5 +1,7 @@
 //! The stage: rods of all strands through a step, in parts, then outside the solids at exact lengths.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_body::Pose;
@@ -13,7 +15,8 @@ use super::contacts::{Plane, Solids};
 use super::integrate::Fall;
 use super::length_pass::Follow;
 use crate::grab::Pinned;
-use crate::strands::rods::model::with_lengths;
+use crate::strands::rods::model::Rods;
+use crate::strands::rods::other_lengths::OtherLengths;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::{Node, Solved, StepSettings};
 use crate::strands::rods::settings::RodSettings;
@@ -45,7 +48,9 @@ pub fn solve_rods(
     let Some(rods) = &solver.rods else { return Default::default() };
     let points = solver.points_per_strand;
     let parts = Parts::new(solver, &solver.settings.strands.rods, obstacles, wind);
+    refresh(solver, rods, state);
     let (scratch, grab) = (&mut state.scratch, &state.grab);
+    let nodes = scratch.rods.as_ref().map_or(&rods.nodes, |other| &other.nodes);
     let (lengths, masses) = (&scratch.lengths.stretch, &scratch.masses);
     scratch
         .predicted
@@ -56,29 +61,17 @@ pub fn solve_rods(
         .zip(state.sections.par_chunks_mut(points))
         .zip(state.spins.par_chunks_mut(points))
         .zip(state.corrections.par_chunks_mut(points))
-        .zip(&state.length_scale)
         .enumerate()
         .with_min_len(8)
         .map_init(
             || Workspace::new(points),
-            |work,
-             (
-                block,
-                (((((((predicted, velocities), start), planes), sections), spins), corrections), scale),
-            )| {
+            |work, (block, ((((((predicted, velocities), start), planes), sections), spins), corrections))| {
                 let range = block * points..(block + 1) * points;
                 work.load(start, velocities, sections, spins);
-                let mut nodes = std::mem::take(&mut work.nodes);
-                let is_scaled = scale.0.iter().any(|scale| *scale != 1.0);
-                if is_scaled {
-                    let rest = &solver.rest.stretch[range.clone()];
-                    let (lengths, mass) = (&lengths[range.clone()], &masses.mass[range.clone()]);
-                    with_lengths(&rods.nodes[range.clone()], rest, lengths, mass, &mut nodes);
-                }
                 let strands = Strands {
                     solver,
                     parts: &parts,
-                    nodes: if is_scaled { &nodes } else { &rods.nodes[range.clone()] },
+                    nodes: &nodes[range.clone()],
                     lengths: &lengths[range.clone()],
                     inverse_mass: &masses.inverse_mass[range.clone()],
                     rest: &solver.positions[range.clone()],
@@ -89,7 +82,6 @@ pub fn solve_rods(
                 let pinned: Vec<Pinned> =
                     grab.pinned(block, predicted, strands.lengths, strands.inverse_mass).collect();
                 strands.solve(work, planes, &pinned);
-                work.nodes = nodes;
                 work.store(predicted, velocities, sections, spins);
                 corrections.fill(Vec3Lanes::default());
                 let hair = Block { positions: predicted, previous: start, velocities, corrections };
@@ -97,6 +89,17 @@ pub fn solve_rods(
             },
         )
         .reduce(Default::default, |one, other| (one.0.with(other.0), one.1.with(other.1)))
+}
+
+/// Makes the nodes of strands of other lengths anew where lengths or rods have changed; none where all lengths are
+/// those at rest.
+fn refresh(solver: &Solver, rods: &Rods, state: &mut State) {
+    let kept = state.scratch.rods.as_ref().is_some_and(|kept| Arc::ptr_eq(&kept.of, &rods.key));
+    if kept || state.length_scale.iter().all(|scale| scale.0.iter().all(|scale| *scale == 1.0)) {
+        return;
+    }
+    let nodes = rods.with_lengths(solver, &state.scratch.lengths, &state.scratch.masses);
+    state.scratch.rods = Some(OtherLengths { nodes, of: rods.key.clone() });
 }
 
 /// What all strands share in a step.
@@ -284,10 +287,13 @@ impl Strands<'_> {
         let steady = f32x8::of(STEADY.max(rubbing) * square).fast_max(rounding);
         let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | bad;
         let moves = moving.bitselect(f32x8::of(1.0), f32x8::ZERO);
+        let none = bad.bitselect(f32x8::splat(f32::NAN), f32x8::ZERO);
         let moves = if self.parts.moved { f32x8::of(1.0) } else { moves };
         for point in 0..=last {
             let moved = space.carried[point] - space.points[point];
-            space.velocities[point] = Vector::choose(moves, moved * per_step, Vector::zero());
+            let velocity = Vector::choose(moves, moved * per_step, Vector::zero());
+            // Of a strand that began with what is no number nothing is kept: it goes back to rest, and is counted.
+            space.velocities[point] = velocity + Vector::new(none, none, none);
             space.points[point] = Vector::choose(moves, space.carried[point], space.points[point]);
             let [.., angle] = space.work.moved[point];
             space.spins[point] = moves.choose(angle * per_step, f32x8::ZERO);

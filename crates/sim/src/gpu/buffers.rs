@@ -11,7 +11,6 @@ use super::volume::Volume;
 use super::{THREADS, solids};
 use crate::grab::{Grab, Grip, NO_POINT};
 use crate::masses::Masses;
-use crate::strands::rods::model::with_lengths;
 use crate::{SimError, Solver, State};
 
 /// Steps whose reports the device keeps until they are read.
@@ -142,19 +141,12 @@ impl Buffers {
     /// Writes the nodes of rods with lengths of their strands.
     fn write_rods(&self, solver: &Solver, lengths: &RestShape, masses: &Masses) -> Result<(), SimError> {
         let (Some(buffers), Some(rods)) = (&self.rods, &solver.rods) else { return Ok(()) };
-        let points = solver.points_per_strand;
-        let mut nodes = Vec::with_capacity(points);
         let mut numbers = Vec::with_capacity(buffers.nodes.len());
-        for first in (0..solver.positions.len()).step_by(points) {
-            let range = first..first + points;
-            let (rest, now) = (&solver.rest.stretch[range.clone()], &lengths.stretch[range.clone()]);
-            with_lengths(&rods.nodes[range.clone()], rest, now, &masses.mass[range.clone()], &mut nodes);
-            for (position, node) in solver.positions[range].iter().zip(&nodes) {
-                numbers.extend_from_slice(floats(std::slice::from_ref(position)));
-                let [one, two, three] = node.rest;
-                for lanes in [node.length, node.stretch, node.stiffness[0], one, two, three, node.inertia] {
-                    numbers.extend(lanes.to_array());
-                }
+        for (position, node) in solver.positions.iter().zip(&rods.with_lengths(solver, lengths, masses)) {
+            numbers.extend_from_slice(floats(std::slice::from_ref(position)));
+            let [one, two, three] = node.rest;
+            for lanes in [node.length, node.stretch, node.stiffness[0], one, two, three, node.inertia] {
+                numbers.extend(lanes.to_array());
             }
         }
         Ok(buffers.nodes.write(&numbers)?)

@@ -7,7 +7,8 @@ use super::rod::{Node, Pull, Work};
 
 impl<R: Real> Work<R> {
     /// Assembles the gradient and the Hessian, and eliminates from root to tip; with `turns` 0 only the Hessian's
-    /// positive part. Tells the force \[N\] with which a solid presses each strand at most, and the smallest pivot.
+    /// positive part. Tells the force \[N\] with which a solid presses each strand at most, and 1 where what was
+    /// eliminated is positive definite, else 0.
     pub(super) fn factorise(
         &mut self,
         rod: &[Node<R>],
@@ -18,7 +19,7 @@ impl<R: Real> Work<R> {
         turns: R,
     ) -> (R, R) {
         let mut pressed = R::of(0.0);
-        let mut smallest = R::of(f64::from(f32::MAX));
+        let mut sound = R::of(1.0);
         let per_square = R::of(1.0 / (time_step * time_step));
         let mut front = Front::default();
         let mut pulls = pulls.iter().peekable();
@@ -39,9 +40,9 @@ impl<R: Real> Work<R> {
                 self.add_stretch(&mut front, 0, node);
             }
             let free = [node.free, node.free, node.free, node.free_angle];
-            smallest = smallest.or_less(front.eliminate(&mut self.factors[index], free));
+            sound = sound * front.eliminate(&mut self.factors[index], free);
         }
-        (pressed, smallest)
+        (pressed, sound)
     }
 
     #[inline(always)]

@@ -207,8 +207,8 @@ impl<R: Real> Front<R> {
     }
 
     /// Eliminates the first four rows and moves the others up. `free` is 1 for unknowns that move and
-    /// 0 for those that stay. Returns the smallest pivot of the free unknowns: not positive where the
-    /// system is not positive definite.
+    /// 0 for those that stay. Returns 1 where the pivots of all free unknowns are positive, as those of a positive
+    /// definite system, else 0; a pivot that is no number is none.
     #[inline(always)]
     pub fn eliminate(&mut self, factors: &mut Factors<R>, free: [R; UNKNOWNS]) -> R {
         let mut whole = [[R::of(0.0); ROWS]; UNKNOWNS];
@@ -219,7 +219,7 @@ impl<R: Real> Front<R> {
             self.eliminate_column::<3>(factors, &mut whole, free[3]),
         ];
         self.move_up(&factors.below, &whole);
-        pivots.into_iter().fold(R::of(f64::from(f32::MAX)), R::or_less)
+        pivots.into_iter().fold(R::of(1.0), |sound, pivot| pivot.choose(sound, R::of(0.0)))
     }
 
     #[inline(always)]
@@ -246,7 +246,7 @@ impl<R: Real> Front<R> {
                 self.entries[entry(row, other)] -= factors.below[COLUMN][row] * whole[COLUMN][other];
             }
         }
-        free.choose(pivot, R::of(f64::from(f32::MAX)))
+        free.choose(pivot, R::of(1.0))
     }
 
     /// What is left of the rows that are not eliminated, four rows up.

@@ -12,6 +12,7 @@ pub mod joint;
 pub mod lengths;
 pub mod material;
 pub mod model;
+pub(crate) mod other_lengths;
 pub mod presets;
 pub mod real;
 pub mod rest;

@@ -1,17 +1,21 @@
 //! Rods of a whole groom, compiled for blocks of eight strands.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use rayon::prelude::*;
-use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use super::hairs::Hairs;
 use super::material::{Section, nodes};
-use super::real::{Real, Vector};
+use super::other_lengths::Lengthened;
+use super::real::Vector;
 use super::rest;
 use super::rod::Node;
 use super::settings::Rest;
 use crate::Solver;
+use crate::masses::Masses;
 
 /// The rods of a solver: it does not change while time passes.
 #[derive(Clone)]
@@ -24,6 +28,8 @@ pub struct Rods {
     pub stiffened: usize,
     /// How many times stiffer the stiffest of them is; 1 with none.
     pub stiffest: f32,
+    /// Tells these rods from others that were compiled.
+    pub(crate) key: Arc<()>,
 }
 
 impl Rods {
@@ -48,50 +54,34 @@ impl Rods {
         Self {
             stiffened: stiffening().count(),
             stiffest: stiffening().fold(1.0, f64::max) as f32,
+            key: Arc::default(),
             nodes: blocks.iter().flat_map(|block| block.nodes.iter().copied()).collect(),
             sections: blocks.iter().flat_map(|block| block.sections.iter().copied()).collect(),
         }
     }
 }
 
-/// Most that bending may pull harder at a point beside its inertia where segments are shorter than at rest: with
-/// the length of a segment it goes as its fourth power, and single precision carries no 160,000 times. Only what is
-/// left of the segments of a cut end, which are a twentieth as long, is softer than it should be.
-const STIFFEST: f64 = 16.0;
-
-/// The nodes of eight strands whose segments have other lengths \[m\] than at rest: curvatures and twists per
-/// length stay, masses \[kg\] and stiffness follow.
-pub(crate) fn with_lengths(
-    nodes: &[Node<f32x8>],
-    rest: &[Lanes],
-    lengths: &[Lanes],
-    mass: &[Lanes],
-    scaled: &mut Vec<Node<f32x8>>,
-) {
-    scaled.clear();
-    let zero = f32x8::ZERO;
-    let last = nodes.len() - 1;
-    // What a segment gives to the cells of the joints beside it; rigid ones give nothing.
-    let turning =
-        |lanes: &[Lanes], index: usize| nodes[index].free_angle.choose(f32x8::new(lanes[index].0), zero);
-    for (index, node) in nodes.iter().enumerate() {
-        let mut node = *node;
-        node.mass = f32x8::new(mass[index].0);
-        if index < last {
-            let ratio = f32x8::new(lengths[index].0) / f32x8::new(rest[index].0);
-            node.length *= ratio;
-            node.inertia *= ratio;
-            node.stretch *= ratio.or_less(f32x8::of(1.0));
-        }
-        if index > 0 && index < last {
-            let cell = turning(rest, index - 1) + turning(rest, index);
-            let now = turning(lengths, index - 1) + turning(lengths, index);
-            let factor = cell.choose(now / cell, f32x8::of(1.0));
-            let stiffer = (f32x8::of(1.0) / factor).or_less(f32x8::of(STIFFEST) * factor * factor * factor);
-            node.stiffness = node.stiffness.map(|stiffness| stiffness * stiffer);
-            node.rest = node.rest.map(|strain| strain * factor);
-        }
-        scaled.push(node);
+impl Rods {
+    /// The nodes of strands with other lengths \[m\] and masses \[kg\].
+    pub(crate) fn with_lengths(
+        &self,
+        solver: &Solver,
+        lengths: &RestShape,
+        masses: &Masses,
+    ) -> Vec<Node<f32x8>> {
+        let settings = &solver.settings;
+        let carries = settings.strands.rods.rest == Rest::SagFree;
+        let strands = Lengthened {
+            points_per_strand: solver.points_per_strand,
+            positions: &solver.positions,
+            rest: &solver.rest.stretch,
+            now: &lengths.stretch,
+            mass: &masses.mass,
+            gravity: carries.then_some(settings.gravity),
+        };
+        let mut nodes = self.nodes.clone();
+        strands.change(&mut nodes);
+        nodes
     }
 }
 
@@ -120,16 +110,16 @@ impl Block {
         for lane in 0..LANES {
             // Lanes beyond the last strand move with it.
             let lane_of = lane.min(live - 1);
-            let points: Vec<Vector<f64>> = positions.iter().map(|lanes| double(lanes.get(lane_of))).collect();
+            let points: Vec<Vector<f64>> = positions.iter().map(|lanes| lanes.get(lane_of).into()).collect();
             let mut rod = nodes(&points, &section(lane_of), |point| inverse_mass[point].0[lane_of] == 0.0);
             for (node, mass) in rod.iter_mut().zip(mass) {
                 node.mass = f64::from(mass.0[lane_of]);
             }
-            let segments = rest::segments(&points, across(&points));
+            let segments = rest::segments(&points, rest::across(&points));
             match rest {
                 Rest::Unstressed => rest::unstressed(&mut rod, &segments),
                 Rest::SagFree => {
-                    let forces: Vec<_> = rod.iter().map(|node| double(gravity) * node.mass).collect();
+                    let forces: Vec<_> = rod.iter().map(|node| Vector::from(gravity) * node.mass).collect();
                     let times = rest::sag_free(&mut rod, &points, &segments, &forces);
                     if lane < live {
                         stiffening[lane] = times;
@@ -144,22 +134,6 @@ impl Block {
         }
         let nodes = (0..count).map(|point| gathered(&strands, point)).collect();
         Self { nodes, sections, stiffening }
-    }
-}
-
-fn double(vector: Vec3) -> Vector<f64> {
-    Vector::new(f64::from(vector.x), f64::from(vector.y), f64::from(vector.z))
-}
-
-/// A direction across the first segment, the same for strands that begin alike.
-fn across(points: &[Vector<f64>]) -> Vector<f64> {
-    let [x, y, z] = (points[1] - points[0]).array().map(f64::abs);
-    if x <= y && x <= z {
-        Vector::new(1.0, 0.0, 0.0)
-    } else if y <= z {
-        Vector::new(0.0, 1.0, 0.0)
-    } else {
-        Vector::new(0.0, 0.0, 1.0)
     }
 }
 

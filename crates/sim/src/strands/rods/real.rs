@@ -2,6 +2,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+use glam::Vec3;
 use wide::f32x8;
 
 /// A number, or one number for each strand of a block.
@@ -96,6 +97,13 @@ pub struct Vector<R> {
     pub y: R,
     /// Third component.
     pub z: R,
+}
+
+impl From<Vec3> for Vector<f64> {
+    fn from(vector: Vec3) -> Self {
+        let [x, y, z] = vector.to_array().map(f64::from);
+        Self { x, y, z }
+    }
 }
 
 impl<R: Real> Vector<R> {

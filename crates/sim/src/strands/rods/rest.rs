@@ -28,6 +28,18 @@ pub fn segments(points: &[Vector<f64>], across: Vector<f64>) -> Vec<Segment<f64>
     segments
 }
 
+/// A direction across the first segment, the same for strands that begin alike.
+pub fn across(points: &[Vector<f64>]) -> Vector<f64> {
+    let [x, y, z] = (points[1] - points[0]).array().map(f64::abs);
+    if x <= y && x <= z {
+        Vector::new(1.0, 0.0, 0.0)
+    } else if y <= z {
+        Vector::new(0.0, 1.0, 0.0)
+    } else {
+        Vector::new(0.0, 0.0, 1.0)
+    }
+}
+
 /// Makes a shape the one without moments: rest strains are those of the shape.
 pub fn unstressed(rod: &mut [Node<f64>], segments: &[Segment<f64>]) {
     for (node, segment) in rod.iter_mut().zip(segments) {

@@ -29,7 +29,7 @@ pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3
         .collect();
     let stable = |factor: f64| {
         let factors = |joint: usize| (1.0 + (factor - 1.0) * shares[joint]) / MARGIN;
-        smallest_pivot(rod, segments, &curvatures, factors) > 0.0
+        is_positive(rod, segments, &curvatures, factors)
     };
     if stable(1.0) {
         return 1.0;
@@ -48,17 +48,16 @@ pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3
     above
 }
 
-/// Smallest pivot of the second derivative of the energy with the bends and twists of each joint so many times
+/// Whether the pivots of the second derivative of the energy are positive with the bends and twists of each joint so many times
 /// stiffer under the same load.
-fn smallest_pivot(
+fn is_positive(
     rod: &[Node<f64>],
     segments: &[Segment<f64>],
     bent: &[[[f64; 8]; 8]],
     factor: impl Fn(usize) -> f64,
-) -> f64 {
+) -> bool {
     let mut front = Front::default();
     let mut factors = Factors::zero();
-    let mut smallest = f64::INFINITY;
     for (index, node) in rod.iter().enumerate() {
         if let Some(segment) = segments.get(index) {
             add_stretch(&mut front, node, segment);
@@ -71,15 +70,13 @@ fn smallest_pivot(
             add_bent(&mut front, &bent[index + 1]);
         }
         let free = [node.free, node.free, node.free, node.free_angle];
-        let pivot = front.eliminate(&mut factors, free);
-        front.clear_above();
         // Factors of an indefinite system mean nothing any more.
-        if !(pivot > 0.0) {
-            return pivot;
+        if front.eliminate(&mut factors, free) == 0.0 {
+            return false;
         }
-        smallest = smallest.min(pivot);
+        front.clear_above();
     }
-    smallest
+    true
 }
 
 /// Second derivative of the stretching energy, compression among it.

@@ -7,7 +7,7 @@ use wide::f32x8;
 
 use super::lengths::Lengths;
 use super::real::{Real, Vector};
-use super::rod::{Node, Pull, Work};
+use super::rod::{Pull, Work};
 use crate::RodReport;
 
 /// Rigid motion of all lanes.
@@ -51,8 +51,6 @@ pub(crate) struct Workspace {
     pub corrections: Vec<Vector<f32x8>>,
     pub inverse_mass: Vec<f32x8>,
     pub length: Vec<f32x8>,
-    /// Nodes of strands of another length than at rest.
-    pub nodes: Vec<Node<f32x8>>,
     /// Lanes of which a number is not finite.
     pub bad: f32x8,
     pub report: RodReport,
@@ -77,7 +75,6 @@ impl Workspace {
             corrections: vec![zero; points + 1],
             inverse_mass: vec![none; points],
             length: vec![none; points],
-            nodes: Vec::with_capacity(points),
             bad: none,
             report: RodReport::default(),
             work: Work::new(points),

@@ -1,0 +1,151 @@
+//! Rods of other lengths than at rest: what is left keeps its shape.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+use rayon::prelude::*;
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use wide::f32x8;
+
+use super::joint::{Joint, Segment};
+use super::real::{Real, Vector};
+use super::rest::{across, sag_free, segments};
+use super::rod::Node;
+
+/// Nodes of strands of which some have another length than at rest, kept from step to step.
+#[derive(Clone, Debug)]
+pub(crate) struct OtherLengths {
+    /// Shape `[block][point]`.
+    pub nodes: Vec<Node<f32x8>>,
+    /// Tells the rods that they were made from.
+    pub of: Arc<()>,
+}
+
+/// Strands as they are at rest and what became of them, shapes `[block][point]` of lanes.
+pub(crate) struct Lengthened<'a> {
+    pub points_per_strand: usize,
+    /// Places at rest \[m\].
+    pub positions: &'a [Vec3Lanes],
+    /// Lengths of segments at rest, and now \[m\].
+    pub rest: &'a [Lanes],
+    pub now: &'a [Lanes],
+    /// Masses of points now \[kg\].
+    pub mass: &'a [Lanes],
+    /// What the rest shape carries \[m/s^2\]; none where it is without moments.
+    pub gravity: Option<Vec3>,
+}
+
+impl Lengthened<'_> {
+    /// Changes nodes: stiffness follows the lengths, curvatures and twists per length stay, and the shape that this
+    /// makes of the rest shape carries the weight that is there now, so that hair which loses its tips does not
+    /// spring up.
+    pub fn change(&self, nodes: &mut [Node<f32x8>]) {
+        let points = self.points_per_strand;
+        nodes.par_chunks_mut(points).enumerate().for_each(|(block, nodes)| {
+            let range = block * points..(block + 1) * points;
+            let (rest, now) = (&self.rest[range.clone()], &self.now[range.clone()]);
+            if rest == now {
+                return;
+            }
+            let factors = follow_lengths(nodes, rest, now, &self.mass[range.clone()]);
+            let Some(gravity) = self.gravity else { return };
+            for lane in (0..LANES).filter(|lane| (0..points).any(|k| rest[k].0[*lane] != now[k].0[*lane])) {
+                carry_weight(gravity, &self.positions[range.clone()], now, &factors, lane, nodes);
+            }
+        });
+    }
+}
+
+/// Most that bending may pull harder at a point beside its inertia where segments are shorter than at rest: with
+/// the length of a segment it goes as its fourth power, and single precision carries no 160,000 times. Only what is
+/// left of the segments of a cut end, which are a twentieth as long, is softer than it should be.
+const STIFFEST: f64 = 16.0;
+
+/// Gives eight strands segments of other lengths \[m\] than at rest: curvatures and twists per length stay, masses
+/// \[kg\] and stiffness follow. Returns how many times its strains each joint has.
+fn follow_lengths(
+    nodes: &mut [Node<f32x8>],
+    rest: &[Lanes],
+    lengths: &[Lanes],
+    mass: &[Lanes],
+) -> Vec<f32x8> {
+    let (zero, one) = (f32x8::ZERO, f32x8::of(1.0));
+    let last = nodes.len() - 1;
+    // What a segment gives to the cells of the joints beside it; rigid ones give nothing.
+    let free: Vec<_> = nodes.iter().map(|node| node.free_angle).collect();
+    let turning = |lanes: &[Lanes], index: usize| free[index].choose(f32x8::new(lanes[index].0), zero);
+    let mut factors = vec![one; nodes.len()];
+    for (index, node) in nodes.iter_mut().enumerate() {
+        node.mass = f32x8::new(mass[index].0);
+        if index < last {
+            let ratio = f32x8::new(lengths[index].0) / f32x8::new(rest[index].0);
+            node.length *= ratio;
+            node.inertia *= ratio;
+            node.stretch *= ratio.or_less(one);
+        }
+        if index > 0 && index < last {
+            let cell = turning(rest, index - 1) + turning(rest, index);
+            let now = turning(lengths, index - 1) + turning(lengths, index);
+            let factor = cell.choose(now / cell, one);
+            let stiffer = (one / factor).or_less(f32x8::of(STIFFEST) * factor * factor * factor);
+            node.stiffness = node.stiffness.map(|stiffness| stiffness * stiffer);
+            node.rest = node.rest.map(|strain| strain * factor);
+            factors[index] = factor;
+        }
+    }
+    factors
+}
+
+/// Makes the shape of a strand the equilibrium under the weight that it has now.
+fn carry_weight(
+    gravity: Vec3,
+    positions: &[Vec3Lanes],
+    lengths: &[Lanes],
+    factors: &[f32x8],
+    lane: usize,
+    nodes: &mut [Node<f32x8>],
+) {
+    let points: Vec<Vector<f64>> = positions.iter().map(|lanes| lanes.get(lane).into()).collect();
+    let at_rest = segments(&points, across(&points));
+    let number = |lanes: f32x8| f64::from(lanes.to_array()[lane]);
+    let (points, segments) =
+        shape(points[0], &at_rest, |index| f64::from(lengths[index].0[lane]), |joint| number(factors[joint]));
+    let mut rod: Vec<Node<f64>> = nodes.iter().map(|node| node.map(number)).collect();
+    let forces: Vec<_> = rod.iter().map(|node| Vector::from(gravity) * node.mass).collect();
+    sag_free(&mut rod, &points, &segments, &forces);
+    for (node, one) in nodes.iter_mut().zip(&rod) {
+        let set = |lanes: &mut f32x8, number: f64| lanes.as_mut_array()[lane] = number as f32;
+        set(&mut node.length, one.length);
+        for axis in 0..3 {
+            set(&mut node.stiffness[axis], one.stiffness[axis]);
+            set(&mut node.rest[axis], one.rest[axis]);
+        }
+    }
+}
+
+/// Points and segments of a strand of which each segment has a length \[m\] and each joint so many times the strains
+/// that it has in `segments`.
+fn shape(
+    root: Vector<f64>,
+    segments: &[Segment<f64>],
+    length: impl Fn(usize) -> f64,
+    factor: impl Fn(usize) -> f64,
+) -> (Vec<Vector<f64>>, Vec<Segment<f64>>) {
+    let mut shape = vec![Segment { length: length(0), ..segments[0] }];
+    for joint in 1..segments.len() {
+        let (lower, upper, now) = (&segments[joint - 1], &segments[joint], shape[joint - 1]);
+        // Half of the curvature binormal in the section of the segment before: a rotation by its half-angle form.
+        let sum = (1.0 + lower.tangent.dot(upper.tangent)).max(1e-3);
+        let half = lower.tangent.cross(upper.tangent) * (factor(joint) / sum);
+        let half = now.across * half.dot(lower.across) + now.second() * half.dot(lower.second());
+        let aside = half.cross(now.tangent);
+        let tangent = now.tangent + (aside + half.cross(aside)) * (2.0 / (1.0 + half.dot(half)));
+        let [_, _, twist] = Joint::new(lower, upper).strains;
+        shape.push(now.moved(tangent * length(joint), twist * factor(joint)));
+    }
+    let mut points = vec![root];
+    for (index, segment) in shape.iter().enumerate() {
+        points.push(points[index] + segment.tangent * segment.length);
+    }
+    (points, shape)
+}
