@@ -10,6 +10,7 @@ mod friction;
 mod grab;
 mod grid_contact;
 mod hair;
+mod layers;
 mod length_scale;
 mod lengths;
 mod pendulum;

@@ -1,4 +1,4 @@
-//! A few guides drawn on either backend, up to the light that each point sends to the eye.
+//! A few guides drawn on either backend: the light that each point sends to the eye, and whole pictures.
 
 use glam::Vec3;
 use strandline_body::Pose;
@@ -8,7 +8,9 @@ use strandline_render::cpu::{
     Curves, Occlusion, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade, tessellate,
 };
 use strandline_render::gpu::GpuRenderer;
-use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
+use strandline_render::{
+    BodyLook, Camera, DetailLevel, FrameInput, LevelOfDetail, Light, Look, Picture, PictureSettings, Renderer,
+};
 
 /// What is drawn.
 pub struct Drawn {
@@ -43,7 +45,7 @@ impl Drawn {
     pub fn curves(&self, on: &On) -> [Vec<Vec3>; 3] {
         match on {
             On::Cpu => {
-                let curves = self.curves_on_cpu();
+                let curves = self.curves_on_cpu(&self.guides);
                 let all = (0..curves.guide_count)
                     .flat_map(|guide| (0..curves.points_per_curve).map(move |point| (guide, point)));
                 [0, 1, 2].map(|which| {
@@ -54,42 +56,73 @@ impl Drawn {
         }
     }
 
-    fn curves_on_cpu(&self) -> Curves {
+    fn curves_on_cpu(&self, moved: &Guides) -> Curves {
         let mut curves = Curves::default();
-        let level = self.detail.level(self.eye.distance(self.middle()), self.look.follow_strands);
-        tessellate(self.guides.positions(), &self.guides, &Pose::IDENTITY, &level, &mut curves);
+        tessellate(moved.positions(), &self.guides, &Pose::IDENTITY, &self.level(), &mut curves);
         curves
+    }
+
+    fn level(&self) -> DetailLevel {
+        self.detail.level(self.eye.distance(self.middle()), self.look.follow_strands)
     }
 
     /// The drawn strands with their radiances.
     pub fn strands(&self, on: &On) -> Strands {
-        let On::Cpu = on else { return self.on_gpu(on).strands().unwrap() };
-        let curves = self.curves_on_cpu();
-        let level = self.detail.level(self.eye.distance(self.middle()), self.look.follow_strands);
+        self.frames(on, std::slice::from_ref(&self.guides)).remove(0)
+    }
+
+    /// As [`Drawn::strands`], picture by picture: each frame has the guides' points where they have moved to.
+    pub fn frames(&self, on: &On, frames: &[Guides]) -> Vec<Strands> {
+        let On::Gpu(gpu) = on else { return frames.iter().map(|moved| self.frame_on_cpu(moved)).collect() };
+        let mut renderer =
+            GpuRenderer::new(gpu, &self.guides, None, &PictureSettings::sized(16, 16)).unwrap();
+        let mut frame = |moved| {
+            self.input(moved, |input| renderer.draw(input).unwrap());
+            renderer.strands().unwrap()
+        };
+        frames.iter().map(&mut frame).collect()
+    }
+
+    fn frame_on_cpu(&self, moved: &Guides) -> Strands {
+        let curves = self.curves_on_cpu(moved);
         let (mut strands, mut shadows) = (Strands::default(), Shadows::default());
-        interpolate(&curves, &self.guides, &Pose::IDENTITY, &self.look, &level, &mut strands);
-        opacity_depth(&strands, None, &self.lights, self.middle(), &self.look.shadow, &mut shadows);
+        let (middle, look) = (self.middle(), &self.look);
+        interpolate(&curves, &self.guides, &Pose::IDENTITY, look, &self.level(), &mut strands);
+        opacity_depth(&strands, None, &self.lights, middle, &look.shadow, &mut shadows);
         opacity_layers(&strands, &mut shadows);
-        shade(&mut strands, &shadows, &self.lights, &self.look, self.eye, &mut Occlusion::default());
+        let mut occlusion = Occlusion::default();
+        occlusion.set_middle(middle);
+        shade(&mut strands, &shadows, &self.lights, look, self.eye, &mut occlusion);
         strands
+    }
+
+    /// The whole picture.
+    pub fn picture(&self, on: &On, settings: &PictureSettings) -> Picture {
+        self.input(&self.guides, |input| match on {
+            On::Cpu => Renderer::new(&self.guides, None, settings).unwrap().draw(input).unwrap().0,
+            On::Gpu(gpu) => {
+                GpuRenderer::new(gpu, &self.guides, None, settings).unwrap().draw(input).unwrap().0
+            }
+        })
     }
 
     fn on_gpu(&self, on: &On) -> GpuRenderer {
         let On::Gpu(gpu) = on else { unreachable!("asked for on a GPU") };
         let settings = PictureSettings::sized(16, 16);
         let mut renderer = GpuRenderer::new(gpu, &self.guides, None, &settings).unwrap();
-        let camera = Camera { position: self.eye, target: Vec3::ZERO, ..Camera::front() };
+        self.input(&self.guides, |input| renderer.draw(input).unwrap());
         renderer
-            .draw(&FrameInput {
-                positions: self.guides.positions(),
-                world_from_head: Pose::IDENTITY,
-                camera: &camera,
-                look: &self.look,
-                body_look: &BodyLook::default(),
-                lights: &self.lights,
-                level_of_detail: &self.detail,
-            })
-            .unwrap();
-        renderer
+    }
+
+    fn input<T>(&self, moved: &Guides, draw: impl FnOnce(&FrameInput) -> T) -> T {
+        draw(&FrameInput {
+            positions: moved.positions(),
+            world_from_head: Pose::IDENTITY,
+            camera: &Camera { position: self.eye, target: Vec3::ZERO, ..Camera::front() },
+            look: &self.look,
+            body_look: &BodyLook::default(),
+            lights: &self.lights,
+            level_of_detail: &self.detail,
+        })
     }
 }

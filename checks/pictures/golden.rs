@@ -2,14 +2,14 @@
 
 use glam::Vec3;
 use strandline_body::{Carrier, Collider, Mannequin, Mesh, Motion, Pose, Shape};
-use strandline_checks::gpu;
+use strandline_checks::flip::{assert_flip, compare, golden};
+use strandline_checks::{On, Rig, gpu, law};
+use strandline_gpu::Gpu;
 use strandline_groom::{Guides, Style, StyleSettings, Vec3Lanes};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, Picture, PictureSettings, Renderer,
 };
-
-use strandline_checks::flip::{assert_flip, compare};
 use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
 
 /// A style of few guides, each with 16 follow strands, and what is needed to draw it.
@@ -47,21 +47,22 @@ impl Sitting {
         self
     }
 
-    /// The hair after some steps of the whole simulation on a head that shakes, on the CPU.
-    fn shaken(mut self, steps: u32) -> Self {
+    /// The hair after some steps of the whole simulation, on a backend, on a head that shakes.
+    fn shaken(mut self, on: &On, steps: u32) -> Self {
         let shape = Shape::Mannequin(Mannequin::new());
         let solid = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
         let volume = VolumeSettings { cells: [24; 3], ..VolumeSettings::default() };
         let settings = Settings { volume, ..Settings::default() };
-        let solver = Solver::new(&self.guides, &settings, vec![solid]).unwrap();
-        let mut state = solver.rest_state(Pose::IDENTITY);
-        for step in 1..=steps {
+        let mut rig = Rig::new(on, Solver::new(&self.guides, &settings, vec![solid]).unwrap());
+        let drive = |step: u32| {
             let time = f64::from(step) * f64::from(settings.time_step);
-            let world_from_head = Motion::Shake.pose(time, Vec3::NEG_Y * 0.1);
-            let report = solver.step(&mut state, &Drive { world_from_head, ..Drive::default() });
-            assert_eq!(report.non_finite, 0);
-        }
-        (self.positions, self.world_from_head) = (state.positions, state.world_from_head);
+            Drive { world_from_head: Motion::Shake.pose(time, Vec3::NEG_Y * 0.1), ..Drive::default() }
+        };
+        let reports = rig.steps(&(1..=steps).map(drive).collect::<Vec<_>>());
+        assert!(reports.iter().all(|report| report.non_finite == 0));
+        let state = rig.state();
+        self.positions.clone_from(&state.positions);
+        self.world_from_head = state.world_from_head;
         self
     }
 
@@ -82,9 +83,15 @@ impl Sitting {
         self.draw(|input| renderer.draw(input).unwrap().0)
     }
 
-    fn on_gpu(&self, settings: &PictureSettings) -> Option<Picture> {
-        let mut renderer = GpuRenderer::new(&gpu()?, &self.guides, Some(&self.mesh), settings).unwrap();
-        Some(self.draw(|input| renderer.draw(input).unwrap().0))
+    fn on_gpu(&self, gpu: &Gpu, settings: &PictureSettings) -> Picture {
+        let mut renderer = GpuRenderer::new(gpu, &self.guides, Some(&self.mesh), settings).unwrap();
+        self.draw(|input| renderer.draw(input).unwrap().0)
+    }
+
+    /// Checks what is promised of the pictures of two backends.
+    fn check_on_gpu(self, gpu: &Gpu) {
+        let sitting = self.of_thesis();
+        compare(&sitting.on_gpu(gpu, &sized()), &sitting.on_cpu(&sized()), 0.01, 0.1).unwrap();
     }
 }
 
@@ -97,18 +104,20 @@ fn draw(style: Style, points_per_strand: usize, camera: Camera, settings: Pictur
 /// exceeds them (tested below).
 const MEAN: f32 = 0.01;
 const ONE_IN_A_HUNDRED: f32 = 0.15;
+/// Two simulations part by what they round, which contacts make more of in 30 steps: strands that lie a little aside
+/// move single pixels. Found 0.011 and 0.18; one step less makes 0.055 and 0.53 (tested below).
+const SIMULATED_MEAN: f32 = 0.02;
+const SIMULATED_ONE_IN_A_HUNDRED: f32 = 0.3;
 
-fn check(name: &str, style: Style, points_per_strand: usize, camera: Camera) {
-    check_sitting(name, Sitting::new(style, points_per_strand, camera));
+fn sized() -> PictureSettings {
+    PictureSettings::sized(256, 256)
 }
 
-fn check_sitting(name: &str, sitting: Sitting) {
-    let settings = PictureSettings::sized(256, 256);
-    assert_flip(&sitting.on_cpu(&settings), name, MEAN, ONE_IN_A_HUNDRED);
-    let sitting = sitting.of_thesis();
-    if let Some(picture) = sitting.on_gpu(&settings) {
-        // What is promised of the two backends.
-        compare(&picture, &sitting.on_cpu(&settings), 0.01, 0.1).unwrap();
+fn check(name: &str, style: Style, points_per_strand: usize, camera: Camera) {
+    let sitting = Sitting::new(style, points_per_strand, camera);
+    assert_flip(&sitting.on_cpu(&sized()), name, MEAN, ONE_IN_A_HUNDRED);
+    if let Some(gpu) = gpu() {
+        sitting.check_on_gpu(&gpu);
     }
 }
 
@@ -132,10 +141,25 @@ fn short_hair_from_behind() {
     check("pixie_back", Style::Pixie, 10, Camera::back());
 }
 
-#[test]
-fn long_hair_in_a_shake() {
-    // Half a second: the head has turned and comes back, and the hair swings out.
-    check_sitting("long_shaken", Sitting::new(Style::Long, 16, Camera::three_quarter()).shaken(30));
+law! {
+    /// Simulated on each backend, against one golden picture. Both states are drawn on the CPU: the golden's look
+    /// takes a software adapter minutes. What a GPU draws of its own state is held against what the CPU draws of it.
+    fn long_hair_in_a_shake(on) {
+        // Half a second: the head has turned and comes back, and the hair swings out.
+        let shaken = |steps| Sitting::new(Style::Long, 16, Camera::three_quarter()).shaken(on, steps);
+        let sitting = shaken(30);
+        let On::Gpu(gpu) = on else {
+            assert_flip(&sitting.on_cpu(&sized()), "long_shaken", MEAN, ONE_IN_A_HUNDRED);
+            // Hair that is simulated for a step less is noticed within the wider bounds too.
+            let early = shaken(29).on_cpu(&sized());
+            let golden = golden("long_shaken");
+            assert!(compare(&early, &golden, SIMULATED_MEAN, SIMULATED_ONE_IN_A_HUNDRED).is_err());
+            return;
+        };
+        let golden = golden("long_shaken");
+        compare(&sitting.on_cpu(&sized()), &golden, SIMULATED_MEAN, SIMULATED_ONE_IN_A_HUNDRED).unwrap();
+        sitting.check_on_gpu(gpu);
+    }
 }
 
 #[test]
@@ -148,7 +172,8 @@ fn the_bounds_notice_a_shift_by_a_pixel_and_a_change_of_light() {
     let brighter = draw(Style::Bob, 12, Camera::side(), PictureSettings { exposure: 0.2, ..settings });
     assert!(compare(&brighter, &picture, MEAN, ONE_IN_A_HUNDRED).is_err());
     // Hair that is simulated for two steps more.
-    let shaken = |steps| Sitting::new(Style::Bob, 12, Camera::side()).shaken(steps).on_cpu(&settings);
+    let shaken =
+        |steps| Sitting::new(Style::Bob, 12, Camera::side()).shaken(&On::Cpu, steps).on_cpu(&settings);
     assert!(compare(&shaken(14), &shaken(12), MEAN, ONE_IN_A_HUNDRED).is_err());
 }
 

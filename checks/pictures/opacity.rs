@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
 use strandline_body::Pose;
-use strandline_checks::gpu;
+use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, Style, StyleSettings};
 use strandline_render::cpu::{ShadowBody, Shadows, Strands, opacity_depth, opacity_layers};
@@ -39,9 +39,14 @@ fn shadows(strands: &Strands, light: &Light, settings: &Shadow) -> Shadows {
     shadows
 }
 
-/// As [`shadows`] with the usual settings, on a GPU.
-fn shadows_on(gpu: &Gpu, strands: &Strands, light: &Light) -> Shadows {
-    shadows_in(&mut renderer(gpu), strands, light, &Look { follow_strands: 1, ..Look::thesis() })
+/// As [`shadows`] with the usual settings, on a backend.
+fn shadows_on(on: &On, strands: &Strands, light: &Light) -> Shadows {
+    match on {
+        On::Cpu => shadows(strands, light, &Shadow::default()),
+        On::Gpu(gpu) => {
+            shadows_in(&mut renderer(gpu), strands, light, &Look { follow_strands: 1, ..Look::thesis() })
+        }
+    }
 }
 
 /// A renderer of any guides: strands take their place.
@@ -138,32 +143,26 @@ pub fn spline(controls: &[Vec3]) -> Vec<Vec3> {
     line
 }
 
-#[test]
-fn maps_tell_the_crossings_of_the_reference_groom() {
-    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures/reference");
-    let groom = Groom::load(folder.join("shadow_groom.hair")).unwrap();
-    let lines: Vec<_> = (0..groom.strand_count()).map(|strand| spline(groom.strand(strand))).collect();
-    let strands = strands(&lines, groom.widths.at(0, 0));
-    let table = std::fs::read_to_string(folder.join("shadow_queries.csv")).unwrap();
-    let (mut points, mut crossings) = (Vec::new(), Vec::new());
-    for line in table.lines().skip(1) {
-        let numbers: Vec<f32> = line.split(',').map(|number| number.parse().unwrap()).collect();
-        points.push(Vec3::new(numbers[0], numbers[1], numbers[2]));
-        crossings.push(numbers[3] as u32);
+law! {
+    fn maps_tell_the_crossings_of_the_reference_groom(on) {
+        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures/reference");
+        let groom = Groom::load(folder.join("shadow_groom.hair")).unwrap();
+        let lines: Vec<_> = (0..groom.strand_count()).map(|strand| spline(groom.strand(strand))).collect();
+        let strands = strands(&lines, groom.widths.at(0, 0));
+        let table = std::fs::read_to_string(folder.join("shadow_queries.csv")).unwrap();
+        let (mut points, mut crossings) = (Vec::new(), Vec::new());
+        for line in table.lines().skip(1) {
+            let numbers: Vec<f32> = line.split(',').map(|number| number.parse().unwrap()).collect();
+            points.push(Vec3::new(numbers[0], numbers[1], numbers[2]));
+            crossings.push(numbers[3] as u32);
+        }
+        assert_eq!((lines.len(), points.len()), (4000, 3000));
+        let told = |travels| accuracy(&shadows_on(on, &strands, &sun(travels)), &points, &crossings);
+        let found = told(TRAVELS);
+        assert!(found.sound(), "{found:?}");
+        let wrong = told(-TRAVELS);
+        assert!(!wrong.sound(), "light from the wrong side must be seen: {wrong:?}");
     }
-    assert_eq!((lines.len(), points.len()), (4000, 3000));
-    let found = accuracy(&shadows(&strands, &sun(TRAVELS), &Shadow::default()), &points, &crossings);
-    println!("{found:?}");
-    assert!(found.sound(), "{found:?}");
-    if let Some(gpu) = gpu() {
-        let on_gpu = accuracy(&shadows_on(&gpu, &strands, &sun(TRAVELS)), &points, &crossings);
-        println!("on a GPU {on_gpu:?}");
-        assert!(on_gpu.sound(), "on a GPU {on_gpu:?}");
-        let wrong = accuracy(&shadows_on(&gpu, &strands, &sun(-TRAVELS)), &points, &crossings);
-        assert!(!wrong.sound(), "light from the wrong side must be seen on a GPU: {wrong:?}");
-    }
-    let wrong = accuracy(&shadows(&strands, &sun(-TRAVELS), &Shadow::default()), &points, &crossings);
-    assert!(!wrong.sound(), "light from the wrong side must be seen: {wrong:?}");
 }
 
 /// Strands that hang about a ball of 9 cm, each 0.4 mm thick.

@@ -15,7 +15,7 @@ const DARK: Environment = Environment { sky: Vec3::ZERO, ground: Vec3::ZERO };
 const HALF: f32 = 1e-3;
 
 /// A look without any noise, surroundings or shadow, all of whose light is diffuse.
-fn plain(color: Vec3) -> Look {
+pub fn plain(color: Vec3) -> Look {
     let none = Highlight { shift: 0.0, width: 5.0, strength: 0.0 };
     Look {
         follow_strands: 1,

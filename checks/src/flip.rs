@@ -12,24 +12,34 @@ use strandline_render::Picture;
 /// # Panics
 /// The pictures differ by more, or there is no golden one.
 pub fn assert_flip(picture: &Picture, name: &str, mean: f32, p99: f32) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures/golden").join(format!("{name}.png"));
     if std::env::var_os("STRANDLINE_BLESS").is_some_and(|bless| bless == "1") {
-        picture.save(&path).unwrap();
+        picture.save(path(name)).unwrap();
         return;
     }
+    if let Err(message) = compare(picture, &golden(name), mean, p99) {
+        let drawn = std::env::temp_dir().join(format!("{name}.png"));
+        picture.save(&drawn).unwrap();
+        panic!("{name}: {message}; drawn: {}", drawn.display());
+    }
+}
+
+fn path(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("pictures/golden").join(format!("{name}.png"))
+}
+
+/// The golden picture of a name.
+///
+/// # Panics
+/// There is none.
+pub fn golden(name: &str) -> Picture {
+    let path = path(name);
     let golden = match image::open(&path) {
         Ok(golden) => golden.into_rgb8(),
         Err(error) => {
             panic!("no golden picture ({error}): draw it with STRANDLINE_BLESS=1: {}", path.display())
         }
     };
-    let golden =
-        Picture { width: golden.width(), height: golden.height(), pixels: golden.into_raw(), alpha: None };
-    if let Err(message) = compare(picture, &golden, mean, p99) {
-        let drawn = std::env::temp_dir().join(format!("{name}.png"));
-        picture.save(&drawn).unwrap();
-        panic!("{name}: {message}; drawn: {}", drawn.display());
-    }
+    Picture { width: golden.width(), height: golden.height(), pixels: golden.into_raw(), alpha: None }
 }
 
 /// Compares two pictures; the message says what exceeds its bound.

@@ -1,5 +1,6 @@
-//! Grooms and heads as artists make them, which are not part of the project.
+//! Data that is too large, or not ours, to be part of the project.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use strandline::{Prepared, Scene};
@@ -8,20 +9,59 @@ use strandline::{Prepared, Scene};
 /// (`STRANDLINE_GROOMS`) is not.
 ///
 /// # Panics
-/// The files are there and are not read.
-#[allow(clippy::print_stderr)] // it tells what is not tested
+/// The files are there and are not read, or they are missing and required.
 pub fn sintel(change: impl FnOnce(&mut Scene)) -> Option<Prepared> {
-    let folder = std::env::var_os("STRANDLINE_GROOMS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/grooms"), PathBuf::from);
-    let hair = folder.join("sintel/SintelHairOriginal-sintel_hair.16points.tfx");
-    let head = folder.join("sintel/sintel.obj");
-    if !hair.is_file() || !head.is_file() {
-        eprintln!("not tested on Sintel: no grooms folder");
-        return None;
-    }
+    let files = ["sintel/SintelHairOriginal-sintel_hair.16points.tfx", "sintel/sintel.obj"];
+    let folder = folder("STRANDLINE_GROOMS", "grooms", &files)?;
+    let [hair, head] = files.map(|file| Some(folder.join(file)));
     let mut scene = Scene::default();
-    scene.groom.file = Some(hair);
-    scene.body.file = Some(head);
+    (scene.groom.file, scene.body.file) = (hair, head);
     change(&mut scene);
     Some(Prepared::new(&scene).unwrap())
+}
+
+/// The folder of references (`STRANDLINE_REFERENCE`) that holds some files; none, with a word, where it does not.
+///
+/// # Panics
+/// It does not, and files are required.
+pub fn reference(files: &[&str]) -> Option<PathBuf> {
+    folder("STRANDLINE_REFERENCE", "reference", files)
+}
+
+/// The folder that a variable of the environment names, else the one of a name in `shared` beside the project.
+fn folder(variable: &str, name: &str, files: &[&str]) -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared").join(name);
+    let folder = std::env::var_os(variable).map_or_else(beside, PathBuf::from);
+    let missing = files.iter().find(|file| !folder.join(file).is_file());
+    let Some(missing) = missing else { return Some(folder) };
+    let found = format!("no {missing} in the folder that {variable} names: {}", folder.display());
+    not_tested(&found, std::env::var_os(REQUIRED).as_deref());
+    None
+}
+
+/// Where this variable of the environment is set, nothing may go untested for want of data.
+const REQUIRED: &str = "STRANDLINE_REQUIRE_GROOMS";
+
+/// Says in one line on stderr that the running test checks nothing, and why. The line is written past the capture of
+/// the test runner, which would hide what a test that passes prints.
+///
+/// # Panics
+/// Data is required.
+fn not_tested(why: &str, required: Option<&OsStr>) {
+    let thread = std::thread::current();
+    let line = format!("NOT TESTED: {}: {why}\n", thread.name().unwrap_or("a test"));
+    assert!(required.is_none(), "{REQUIRED} is set, but {line}");
+    // Where nobody reads stderr there is nobody to tell.
+    std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).ok();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[should_panic(expected = "STRANDLINE_REQUIRE_GROOMS is set, but NOT TESTED: ")]
+    fn missing_data_fails_where_it_is_required() {
+        not_tested("no such file", Some(OsStr::new("1")));
+    }
 }
