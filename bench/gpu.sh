@@ -11,6 +11,8 @@
 #   workers   every pair of devices, two GPUs among them where there are two
 #   window    a minute of play
 #   scaling   cost against strands and cells until the device refuses
+# Not measured, since they are not built: opacity blended into floats, a scatter of whole numbers in place of the
+# gather (docs/decisions/0002, 0003).
 # STRANDLINE_PROGRAM names a program that is built already; SECONDS_LEFT how long all of it may take, 570.
 set -eu
 cd "$(dirname "$0")/.."

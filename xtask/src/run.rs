@@ -89,11 +89,23 @@ pub fn test(setup: bool) -> bool {
     if denied.is_none() {
         println!("NOT TESTED: {}", licences::NOT_INSTALLED);
     }
+    if !grooms_are_there() {
+        println!("NOT TESTED: {NO_GROOMS}");
+    }
     for name in &broken {
         println!("FAILED: {name}");
     }
     println!("tests: {} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.ignored);
     broken.is_empty() && tally.failed == 0 && tally.passed > 0
+}
+
+/// What is left out where nobody has put the grooms.
+const NO_GROOMS: &str = "grooms and heads that are not part of the project (STRANDLINE_GROOMS names their folder; with STRANDLINE_REQUIRE_GROOMS their tests fail without it)";
+
+/// Whether the folder of grooms that are not part of the project is where tests look for it.
+fn grooms_are_there() -> bool {
+    let beside = || root().join("../shared/grooms");
+    std::env::var_os("STRANDLINE_GROOMS").map_or_else(beside, PathBuf::from).join("sintel").is_dir()
 }
 
 /// Records the golden pictures anew.

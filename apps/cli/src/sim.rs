@@ -81,6 +81,8 @@ pub struct Pcg {
     pub iterations_mean: f64,
     /// Until the same number would have been met as an absolute residual.
     pub iterations_absolute_mean: f64,
+    /// Steps that stopped before that: they count with the iterations that they had.
+    pub absolute_unmet: usize,
     pub residual_max: f32,
 }
 
@@ -93,6 +95,8 @@ pub struct Steps {
     iterations_absolute: f64,
     fluid_cells: f64,
     residual_max: f32,
+    /// Of each step \[m/s\].
+    absolute_residuals: Vec<f32>,
     stretch_max: f32,
     penetration_max: f32,
     /// Mean and largest speed of each step.
@@ -112,6 +116,8 @@ pub struct Ended {
     pub stiffened: usize,
     /// \[s\].
     pub time_step: f32,
+    /// Of the pressure solve.
+    pub tolerance: f32,
 }
 
 impl Ended {
@@ -125,6 +131,7 @@ impl Ended {
             drift: player.drift(),
             stiffened: player.stiffened().0,
             time_step: scene.simulation.time_step,
+            tolerance: scene.simulation.volume.tolerance,
         }
     }
 }
@@ -138,6 +145,7 @@ impl Steps {
         self.iterations_absolute += report.pressure.iterations_absolute as f64;
         self.fluid_cells += report.pressure.fluid_cells as f64;
         self.residual_max = self.residual_max.max(report.pressure.relative_residual);
+        self.absolute_residuals.push(report.pressure.absolute_residual);
         self.stretch_max = larger(self.stretch_max, report.stretch_max);
         self.penetration_max = self.penetration_max.max(report.penetration_max);
         self.speeds.push((report.speed_mean, report.speed_max));
@@ -176,6 +184,11 @@ impl Steps {
             pcg: Pcg {
                 iterations_mean: mean(self.iterations),
                 iterations_absolute_mean: mean(self.iterations_absolute),
+                absolute_unmet: self
+                    .absolute_residuals
+                    .iter()
+                    .filter(|found| **found > end.tolerance)
+                    .count(),
                 residual_max: self.residual_max,
             },
             fluid_cells_mean: mean(self.fluid_cells),

@@ -220,6 +220,7 @@ fn real_grooms_load() {
         .map(std::path::PathBuf::from)
         .unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/grooms").into());
     if !folder.is_dir() {
+        assert!(std::env::var_os("STRANDLINE_REQUIRE_GROOMS").is_none(), "no grooms folder");
         println!("skipped: no grooms folder");
         return;
     }

@@ -168,7 +168,7 @@ impl Hair {
         self.studio.level_of_detail = self.level_of_detail;
     }
 
-    /// All that a scene names.
+    /// Everything of a scene but its film and its devices: these are given, `scene.devices` for those of the file.
     ///
     /// # Errors
     /// A setting of the scene outside its range.

@@ -78,7 +78,8 @@ const HEAD: &str = "\
 # Planted faults
 
 A law that nothing can break proves nothing. Each fault below is a small change of the code, in Rust and in the
-kernel alike, so that comparing one backend with the other shows nothing. [checks/faults](../checks/faults) lists
+kernel alike, so that comparing one backend with the other shows nothing; where only one of them has what is spoiled,
+the other one's column says `as it was`. [checks/faults](../checks/faults) lists
 them; `cargo xtask faults` plants each in a copy of the tree, runs the tests that have to see it, and prints this
 page with `--table`. All take half an hour; it is no part of `cargo xtask test`, which only checks that
 every fault still applies. A fault that goes unseen is a missing law.

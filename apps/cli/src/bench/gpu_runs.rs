@@ -72,6 +72,7 @@ impl Device {
             drift: plain.drift(&solver.download(&state)?),
             stiffened: plain.rods().map_or(0, |rods| rods.stiffened),
             time_step: scene.simulation.time_step,
+            tolerance: scene.simulation.volume.tolerance,
         });
         let costs = state.costs();
         let solve = steps.ms_per_step.stages.sum(&["solve_pressure"]);

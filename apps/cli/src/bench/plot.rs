@@ -22,6 +22,9 @@ struct Measured {
     bench: String,
     machine: Machine,
     quick: bool,
+    /// Absent in files of before it was said.
+    release: Option<bool>,
+    gpu: Option<Gpu>,
     results: serde_json::Value,
 }
 
@@ -29,6 +32,27 @@ struct Measured {
 struct Machine {
     cpu: String,
     threads: usize,
+}
+
+/// The GPU that was measured.
+#[derive(Deserialize)]
+struct Gpu {
+    name: String,
+    software: bool,
+}
+
+impl Measured {
+    /// What the figures were measured on, and why they may mean little.
+    fn note(&self) -> String {
+        let Machine { cpu, threads } = &self.machine;
+        let mut note = format!("{cpu}, {threads} threads");
+        if let Some(gpu) = &self.gpu {
+            note += &format!("; GPU: {}", gpu.name);
+            note += if gpu.software { ", which is software" } else { "" };
+        }
+        note += if self.release == Some(false) { "; no release build" } else { "" };
+        note + if self.quick { "; a quick run whose figures mean little" } else { "" }
+    }
 }
 
 /// Largest file of measurements \[byte\]: they have some thousand.
@@ -104,9 +128,7 @@ fn wrong(path: &Path, error: &anyhow::Error) -> anyhow::Error {
 
 fn charts(text: &str) -> anyhow::Result<String> {
     let measured: Measured = serde_json::from_str(text)?;
-    let Measured { machine: Machine { cpu, threads }, quick, .. } = &measured;
-    let quick = if *quick { ", a quick run whose figures mean little" } else { "" };
-    let note = format!("{cpu}, {threads} threads{quick}");
+    let note = measured.note();
     Ok(match measured.bench.as_str() {
         "thesis" => svg(&[by_grid(serde_json::from_value(measured.results)?, note)]),
         "view" => {
@@ -216,6 +238,15 @@ mod tests {
         let drawn = charts(&text).unwrap();
         assert_eq!(drawn.matches("<polyline").count(), 4);
         assert!(drawn.contains("thesis, 1024x600"));
+    }
+
+    #[test]
+    fn what_was_measured_on_is_said() {
+        let text = r#"{"bench": "view", "machine": {"cpu": "X", "threads": 2}, "quick": true, "release": false,
+            "gpu": {"name": "llvmpipe", "software": true, "timestamps": true}, "results": null}"#;
+        let note = serde_json::from_str::<Measured>(text).unwrap().note();
+        let expected = "X, 2 threads; GPU: llvmpipe, which is software; no release build; a quick run whose figures mean little";
+        assert_eq!(note, expected);
     }
 
     #[test]

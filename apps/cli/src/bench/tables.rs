@@ -106,6 +106,8 @@ impl Tables<'_> {
         row("fluid cells, mean", self.all(|grid| grid.mic0.fluid_cells_mean), 0);
         row("MIC(0), CPU, ours", self.all(|grid| grid.mic0.pcg.iterations_mean), 1);
         row("MIC(0), CPU, as printed", self.all(|grid| grid.mic0.pcg.iterations_absolute_mean), 1);
+        let unmet = self.all(|grid| grid.mic0.pcg.absolute_unmet as f64 / grid.mic0.steps.max(1) as f64);
+        row("  steps that stopped before [%]", unmet.iter().map(|share| 100.0 * share).collect(), 1);
         row("thesis, MIC, CPU", THESIS_ITERATIONS[0].to_vec(), 2);
         row("Jacobi, CPU, ours", self.all(|grid| grid.jacobi.pcg.iterations_mean), 1);
         row("Jacobi, CPU, as printed", self.all(|grid| grid.jacobi.pcg.iterations_absolute_mean), 1);

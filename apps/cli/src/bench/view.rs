@@ -176,6 +176,9 @@ fn print(measured: &OnBackend) {
     print_part!("{:<24}", "segments drawn");
     first.for_each(|row| print_part!("{:>9}", row.segments));
     print_line!();
+    print_line!(
+        "detail falls from 0.2 m on (LevelOfDetail::thesis), by segments and by follow strands; the thesis's by segments"
+    );
 }
 
 fn row(name: &str, values: impl Iterator<Item = f64>) {

@@ -88,7 +88,7 @@ settings! {
         radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
         /// What it moves with.
         carrier: Carrier = Carrier::default();
-        /// Coulomb friction coefficient.
+        /// Coulomb friction coefficient of hair on it; it acts once a step, whatever the number of rounds.
         friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
     }
 }
@@ -104,7 +104,7 @@ settings! {
         radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
         /// What it moves with.
         carrier: Carrier = Carrier::default();
-        /// Coulomb friction coefficient.
+        /// Coulomb friction coefficient of hair on it; it acts once a step, whatever the number of rounds.
         friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
     }
 }
