@@ -104,7 +104,7 @@ law! {
             rig.steps(&[Drive::default(); 240]);
             let after = first(rig.state());
             // The segments of the first half keep their lengths. In single precision the weight of what is left
-            // is carried to 1e-4 of the length; with that of what is gone the half's end rises by a tenth of it.
+            // is carried to 1e-4 of the length; with that of what is gone the half's end moves by 0.22 of it.
             let apart = before[16].distance(after[16]) / length;
             assert!(apart < 2e-3, "{apart} lengths from where it was at {scale} times its length");
         }
