@@ -16,7 +16,7 @@ use crate::triangle_tree::{Nearest, TriangleTree};
 
 /// Triangles that are looked at for all nodes together, and for each node, on the average: more than meshes of bodies
 /// need. Where triangles overlap so much that it does not suffice, as thousands of thin ones that meet in one vertex,
-/// [`spread`] finds what is nearest beyond [`REACH`] of the surface, to a small part of a cell.
+/// [`spread`] finds what is nearest beyond [`REACH`] of the surface, to about a quarter of a cell.
 const LOOKS: u64 = 100_000_000;
 const LOOKS_OF_A_NODE: std::ops::RangeInclusive<u64> = 32..=128;
 

@@ -137,9 +137,8 @@ impl State {
     /// Sets the length of every strand, shape `[strand]`: 0.05 to 2 of its rest length
     /// [Chen2011 fig. 45]. Segments near the tip shrink, to no less than a twentieth, or grow, to no more
     /// than three times their own; the others keep their length. The mass of points follows the length of
-    /// their segments; so does the stiffness of rods, whose
-    /// curvature per length stays; their rest shape carries the weight that is left. Points slide along their strand at
-    /// once and keep their velocity.
+    /// their segments; so does the stiffness of rods, whose curvature per length stays and whose rest shape carries the
+    /// weight that is left. Points slide along their strand at once and keep their velocity.
     ///
     /// # Errors
     /// Another number of scales than strands, a scale outside [`State::LENGTH_SCALES`]; then nothing changes.

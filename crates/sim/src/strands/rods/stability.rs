@@ -48,8 +48,8 @@ pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3
     above
 }
 
-/// Whether the pivots of the second derivative of the energy are positive with the bends and twists of each joint so many times
-/// stiffer under the same load.
+/// Whether the pivots of the second derivative of the energy are positive with the bends and twists of each joint so
+/// many times stiffer under the same load.
 fn is_positive(
     rod: &[Node<f64>],
     segments: &[Segment<f64>],
