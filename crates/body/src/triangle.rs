@@ -4,13 +4,19 @@ use glam::DVec3;
 
 use crate::layers::Corners;
 
-/// The squared distance of a point from a triangle.
+/// The squared distance of a point from a triangle, where it is less than what is known.
 ///
 /// Double precision: in single precision the distance to a triangle that is small and far comes out
 /// wrong by its whole size.
-pub(crate) fn distance_squared(corners: &Corners, point: DVec3) -> f64 {
+pub(crate) fn nearer(corners: &Corners, point: DVec3, known: f64) -> Option<f64> {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);
+    // The distance from its plane is no more, and soon told.
+    let height = (point - a).dot(normal);
+    let area = normal.length_squared();
+    if height * height > known * area {
+        return None;
+    }
     let mut nearest = f64::INFINITY;
     for [start, end] in [[a, b], [b, c], [c, a]] {
         // The nearest place lies on an edge that has the point on its outer side, or within all of them.
@@ -19,18 +25,9 @@ pub(crate) fn distance_squared(corners: &Corners, point: DVec3) -> f64 {
         }
     }
     if nearest == f64::INFINITY {
-        let height = (point - a).dot(normal);
-        return height * height / normal.length_squared();
+        nearest = height * height / area;
     }
-    nearest
-}
-
-/// Whether a point is further than `reach` from the plane of a triangle; never for one without an area.
-pub(crate) fn is_beyond_plane(corners: &Corners, point: DVec3, reach: f64) -> bool {
-    let [a, b, c] = *corners;
-    let normal = (b - a).cross(c - a);
-    let height = (point - a).dot(normal);
-    height * height > reach * reach * normal.length_squared()
+    (nearest < known).then_some(nearest)
 }
 
 /// Whether a point is not on the inner side of an edge; always for a triangle without an area.

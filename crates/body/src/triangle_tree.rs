@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::layers::Corners;
-use crate::triangle::distance_squared;
+use crate::triangle::nearer;
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
@@ -93,8 +93,7 @@ impl<'a> TriangleTree<'a> {
 
     /// Takes a triangle for the nearest where it is nearer.
     pub fn offer(&self, triangle: u32, point: DVec3, nearest: &mut Nearest) {
-        let squared = distance_squared(&self.triangles[triangle as usize], point);
-        if squared < nearest.squared {
+        if let Some(squared) = nearer(&self.triangles[triangle as usize], point, nearest.squared) {
             *nearest = Nearest { squared, triangle };
         }
     }
