@@ -6,9 +6,9 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// CPU seconds of a run, of all threads together, start of the program included. Fans of 18,000 triangles took
-/// 12 in the build of the tests, all else less than 8: the aim of 2 s is not met by fans.
-const SECONDS: u32 = 30;
+/// CPU seconds of a run, of all threads together, start of the program included. The aim is 2 s at the clock of a
+/// quiet machine (docs/reliability.md); the largest found here, in the build of the tests, was 3.6 beside other work.
+const SECONDS: u32 = 10;
 /// Most memory that is resident at once \[MiB\].
 const MEMORY: u64 = 500;
 /// Largest file that is given \[byte\].
@@ -177,7 +177,8 @@ fn strips_of_bytes_and_meshes_that_are_repeated() {
     let mut indices = |count: usize| (0..count).map(|_| (next() * 256.0) as u8).collect::<Vec<_>>();
     give("strip.glb", &glb(&indices(900_000), 1));
     give("repeated.glb", &glb(&indices(400_000), 12_000));
-    give("many.glb", &glb(&indices(1000), 1000));
+    // Just below what a small file may repeat.
+    give("many.glb", &glb(&indices(1000), 130));
 }
 
 #[test]

@@ -7,6 +7,8 @@ use super::Feature;
 /// Strands of a cell, about, and most cells of a side.
 const PER_CELL: f32 = 4.0;
 const MOST: f32 = 96.0;
+/// Cells for each strand, the empty ones with them: roots that fill their box have no more, and larger ones.
+const CELLS: f32 = 4.0;
 
 /// A grid over roots.
 pub struct Roots {
@@ -28,8 +30,14 @@ impl Roots {
         // Roots lie on a surface, whose area is about that of the largest side of their box.
         let side = extent.max_element();
         let rows = (features.len() as f32 / PER_CELL).sqrt().clamp(1.0, MOST);
-        let cell = (side / rows).max(1e-9);
-        let size = (extent / cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(MOST as i32)) + 1;
+        let mut cell = (side / rows).max(1e-9);
+        let size_at =
+            |cell: f32| (extent / cell).as_ivec3().clamp(IVec3::ZERO, IVec3::splat(MOST as i32)) + 1;
+        let mut size = size_at(cell);
+        while size.as_vec3().element_product() > CELLS * features.len() as f32 + 8.0 {
+            cell *= 1.1;
+            size = size_at(cell);
+        }
         let mut roots = Self { origin: low, cell, size, starts: Vec::new(), members: Vec::new() };
         let cells: Vec<usize> =
             features.iter().map(|feature| roots.index(roots.cell_of(feature.root))).collect();
