@@ -1,4 +1,7 @@
-//! The codes that the program ends with; docs/limits.md lists them.
+//! The end of the program, and the codes that it ends with; docs/limits.md lists them.
+
+use signal_hook::low_level;
+use strandline::base::abandon_parts;
 
 /// Everything was done.
 pub const SUCCESS: i32 = 0;
@@ -12,6 +15,13 @@ pub const NOT_FINITE: i32 = 3;
 pub const NO_VIDEO: i32 = 4;
 /// A signal of this number ended it: added to it, as shells do.
 pub const SIGNAL: i32 = 128;
+
+/// Ends the program at once: files that are not finished are removed.
+pub fn end_now(code: i32) -> ! {
+    let _abandoned = abandon_parts();
+    // Nothing else of the program runs any more, such as a driver's own farewell beside its threads.
+    low_level::exit(code)
+}
 
 #[cfg(test)]
 mod tests {

@@ -7,8 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
 use std::time::Duration;
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-use signal_hook::{flag, low_level};
-use strandline::base::abandon_parts;
+use signal_hook::flag;
 
 use crate::{exit, output};
 
@@ -60,17 +59,10 @@ fn watch() {
             continue;
         }
         if LOOKING.load(SeqCst) == 0 || ASKED.swap(signal, SeqCst) != 0 {
-            end_now(exit::SIGNAL + signal as i32);
+            exit::end_now(exit::SIGNAL + signal as i32);
         }
         output::note("stopping after this frame; once more stops at once");
     }
-}
-
-/// Ends the program at once: files that are not finished are removed.
-pub fn end_now(code: i32) -> ! {
-    let _abandoned = abandon_parts();
-    // Nothing else of the program runs any more, such as a driver's own farewell beside its threads.
-    low_level::exit(code)
 }
 
 /// Somebody who looks for the signal between frames, as long as it lives.

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Result, Write, stderr, stdout};
 
 use strandline::base::printable;
 
-use crate::{exit, interrupt};
+use crate::exit;
 
 /// Prints a line for a person to standard output.
 macro_rules! print_line {
@@ -40,10 +40,10 @@ pub fn finish() {
 pub fn written(outcome: Result<()>) {
     match outcome {
         Ok(()) => {}
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => interrupt::end_now(exit::SUCCESS),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => exit::end_now(exit::SUCCESS),
         Err(error) => {
             complain(&format!("cannot write to the standard output: {error}"));
-            interrupt::end_now(exit::FAILURE)
+            exit::end_now(exit::FAILURE)
         }
     }
 }

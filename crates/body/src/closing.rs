@@ -1,18 +1,57 @@
 //! Finding and closing the holes of a mesh.
 
-use std::collections::HashMap;
+use std::borrow::Cow;
+use std::collections::HashSet;
 
 use glam::{DVec3, Vec3};
 
 use crate::Mesh;
+use crate::welding::welded_vertices;
 
 /// An edge of a triangle, in the triangle's direction, between welded vertices.
 type Edge = [u32; 2];
 
+impl Mesh {
+    /// Whether the surface has an inside: every edge of a triangle is met by one of a neighbour in the
+    /// opposite direction, where vertices at the same position count as one.
+    pub fn is_closed(&self) -> bool {
+        self.open_edge_count() == 0
+    }
+
+    /// How many edges of triangles are met by none in the opposite direction.
+    ///
+    /// # Panics
+    /// As [`Self::is_closed`] and [`Self::closed`], when an index is out of range; loaded meshes have none such.
+    pub fn open_edge_count(&self) -> usize {
+        open_edges(self).len()
+    }
+
+    /// The mesh without triangles that are there before, between the same places and wound the same way: they
+    /// add nothing but work.
+    pub(crate) fn without_repeats(&self) -> Cow<'_, Self> {
+        let welded = welded_vertices(&self.positions);
+        let mut known = HashSet::with_capacity(self.triangles.len());
+        let is_new = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|corner| welded[corner as usize]);
+            known.insert([[a, b, c], [b, c, a], [c, a, b]].into_iter().min())
+        };
+        let triangles: Vec<_> = self.triangles.iter().copied().filter(is_new).collect();
+        if triangles.len() == self.triangles.len() {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { positions: self.positions.clone(), normals: self.normals.clone(), triangles })
+    }
+
+    /// The mesh with every hole closed by a fan of triangles from the middle of its rim.
+    pub fn closed(&self) -> Self {
+        close(self)
+    }
+}
+
 /// The edges that no triangle shares in the opposite direction, sorted.
 ///
 /// They form closed rims: every vertex is left by as many as arrive.
-pub(crate) fn open_edges(mesh: &Mesh) -> Vec<Edge> {
+fn open_edges(mesh: &Mesh) -> Vec<Edge> {
     let welded = welded_vertices(&mesh.positions);
     let mut edges: Vec<(Edge, bool)> = Vec::with_capacity(mesh.triangles.len() * 3);
     for triangle in &mesh.triangles {
@@ -37,7 +76,7 @@ pub(crate) fn open_edges(mesh: &Mesh) -> Vec<Edge> {
 }
 
 /// The mesh with a fan of triangles over every hole.
-pub(crate) fn close(mesh: &Mesh) -> Mesh {
+fn close(mesh: &Mesh) -> Mesh {
     let mut closed = mesh.clone();
     for rim in rims(&open_edges(mesh)) {
         let middle = rim_middle(&mesh.positions, &rim);
@@ -52,18 +91,6 @@ pub(crate) fn close(mesh: &Mesh) -> Mesh {
         closed.normals.push(normal.normalize_or(Vec3::Y));
     }
     closed
-}
-
-/// For each vertex the first one at its exact position. The map is only looked up, never walked, so its
-/// order does not matter.
-pub(crate) fn welded_vertices(positions: &[Vec3]) -> Vec<u32> {
-    let mut first_at = HashMap::with_capacity(positions.len());
-    let welded = positions.iter().enumerate().map(|(index, position)| {
-        // Adding zero makes -0 equal to 0 in bits too.
-        let bits = (*position + 0.0).to_array().map(f32::to_bits);
-        *first_at.entry(bits).or_insert(index as u32)
-    });
-    welded.collect()
 }
 
 /// Joins edges, sorted by their start, to closed rims.

@@ -7,7 +7,7 @@ use ::gltf::mesh::{Mode, Primitive};
 use glam::{Mat3, Mat4, Vec3};
 
 use crate::gltf_buffers::{Buffers, load_buffers};
-use crate::mesh::{read_file, unit_normal};
+use crate::parsing::{Refusal, read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
 /// The most vertices and the most triangles of one body, and those of a small file.
@@ -15,9 +15,6 @@ const COUNT_LIMIT: usize = 16 << 20;
 const LEAST_COUNT_LIMIT: usize = 1 << 17;
 /// The deepest nesting of nodes.
 const DEPTH_LIMIT: usize = 64;
-
-/// Why a file is refused: what was found and what was expected.
-pub(crate) type Refusal = (String, &'static str);
 
 /// Reads a mesh in the units of the file, all nodes in place; vertices without a normal get a zero one.
 pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {

@@ -7,8 +7,7 @@ use ::gltf::accessor::{Accessor, DataType, Dimensions};
 use ::gltf::buffer::Source;
 use glam::Vec3;
 
-use crate::gltf::Refusal;
-use crate::mesh::read_file;
+use crate::parsing::{Refusal, read_file};
 
 /// The bytes of each buffer.
 pub(crate) struct Buffers(Vec<Vec<u8>>);

@@ -2,9 +2,19 @@
 //! with the tangents of Catmull and Rom for uneven times.
 
 use glam::{DQuat, DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 use strandline_base::math;
 
-use crate::{BodyError, Keyframe, Pose};
+use crate::{BodyError, Pose};
+
+/// A pose at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Keyframe {
+    /// Time \[s\].
+    pub time: f64,
+    /// The head's pose then.
+    pub world_from_head: Pose,
+}
 
 /// How far a rotation may be from a unit quaternion; more is a mistake and not rounding.
 const UNIT_TOLERANCE: f32 = 1e-3;

@@ -2,10 +2,10 @@ use std::f64::consts::TAU;
 use std::str::FromStr;
 
 use glam::{DVec3, Vec3};
-use serde::{Deserialize, Serialize};
 use strandline_base::math;
 
-use crate::{BodyError, Pose, keyframes};
+use crate::keyframes::{self, Keyframe};
+use crate::{BodyError, Pose};
 
 /// Largest angle of the shake to either side.
 const SHAKE_DEGREES: f64 = 35.0;
@@ -21,15 +21,6 @@ const RAMP: f64 = 0.4;
 const TURN_DEGREES: f64 = 60.0;
 /// Length of one look to both sides \[s\].
 const TURN_PERIOD: f64 = 4.0;
-
-/// A pose at a time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Keyframe {
-    /// Time \[s\].
-    pub time: f64,
-    /// The head's pose then.
-    pub world_from_head: Pose,
-}
 
 /// How the head moves: a pose for every time, smooth in velocity, at rest at time 0.
 ///

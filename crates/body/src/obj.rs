@@ -5,8 +5,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use crate::gltf::Refusal;
-use crate::mesh::{read_file, unit_normal};
+use crate::parsing::{Refusal, read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
 /// Reads a mesh in the units of the file; vertices without a normal get a zero one.

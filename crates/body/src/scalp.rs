@@ -50,8 +50,15 @@ const CANDIDATES: usize = 4;
 /// Up to this count roots are chosen by elimination; above it one in each stretch of a space-filling curve.
 const ELIMINATED: usize = 60_000;
 
+impl Mannequin {
+    /// The part of the skin on which hair grows.
+    pub fn scalp(&self) -> Scalp {
+        Scalp::new(self.clone())
+    }
+}
+
 impl Scalp {
-    pub(crate) fn new(mannequin: Mannequin) -> Self {
+    fn new(mannequin: Mannequin) -> Self {
         let corner_count = (POLARS + 1) * AZIMUTHS;
         let radii: Vec<f32> = (0..corner_count)
             .into_par_iter()

@@ -3,7 +3,8 @@
 use glam::Vec3;
 use strandline_base::SettingError;
 
-use crate::{Groom, GroomError, Guides};
+use crate::arcs::equal_places;
+use crate::{Groom, GroomError};
 
 /// Checks that masses and velocities fit the points.
 pub(crate) fn check(groom: &Groom) -> Result<(), GroomError> {
@@ -54,7 +55,7 @@ pub(crate) fn along<T: Copy>(
     let mixed = strands.flat_map(|strand| {
         let own = &values[groom.range(strand)];
         let mix = &mix;
-        Guides::equal_places(groom.strand(strand), count).map(move |(segment, share)| match share {
+        equal_places(groom.strand(strand), count).map(move |(segment, share)| match share {
             1.0 => own[segment + 1],
             _ => mix(own[segment], own[segment + 1], share),
         })
@@ -99,6 +100,7 @@ pub(crate) fn masses(groom: &Groom, strand: usize, count: usize) -> Option<Vec<f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Guides;
 
     fn strand(points: usize) -> Groom {
         let mut groom = Groom::empty(8e-5);

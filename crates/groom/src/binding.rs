@@ -5,7 +5,7 @@
 //! their weighted mean has it: linear blend skinning [Magnenat1988]. Then segments get their rest lengths back
 //! from root to tip. At rest all frames are the head's, so that a groom at rest is exactly the groom.
 
-use glam::{Mat3, Quat, Vec3, Vec4};
+use glam::{Quat, Vec3};
 use rayon::prelude::*;
 use strandline_base::SettingError;
 use strandline_body::Pose;
@@ -18,60 +18,21 @@ use crate::{
 /// The signed distance \[m\] of a body at a point \[m\], world space, negative inside, and its unit gradient.
 pub type Surface<'a> = dyn Fn(Vec3) -> (f32, Vec3) + Sync + 'a;
 
+mod frames;
+mod influence;
 mod place;
 #[cfg(test)]
 mod tests;
 mod weights;
 
-/// Guides that a strand is bound to at most.
-pub const MOST_INFLUENCES: usize = 3;
+pub use frames::Frames;
+pub use influence::{Influence, MOST_INFLUENCES};
+
+use frames::Frame;
+use influence::{Followed, blocks};
+
 /// Lengths within this share of those at rest are those at rest.
 const UNSCALED: f32 = 0.01;
-
-/// A frame of a guide's point as a map from rest to now.
-#[repr(C, align(64))]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Frame {
-    /// Where the map has the three axes, and the translation \[m\], world space; the map is of places at rest \[m\],
-    /// head space.
-    columns: [Vec4; 4],
-}
-
-impl Frame {
-    fn new(rotation: Quat, rest: Vec3, now: Vec3) -> Self {
-        let matrix = Mat3::from_quat(rotation);
-        let translation = now - matrix * rest;
-        let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis, translation];
-        Self { columns: columns.map(|column| column.extend(0.0)) }
-    }
-}
-
-/// Where guides are, as the strands that are bound to them see it; used again from picture to picture.
-#[derive(Clone, Debug, Default)]
-pub struct Frames {
-    /// Shape `[guide][point]`.
-    points: Vec<Frame>,
-    scales: Vec<f32>,
-}
-
-impl Frames {
-    /// Length of each guide over its length at rest, shape `[guide]`: other than 1 where it was cut or grew.
-    pub fn scales(&self) -> &[f32] {
-        &self.scales
-    }
-}
-
-/// One guide that a bound strand follows.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-pub struct Influence {
-    /// The guide, by its place among the guides.
-    pub guide: u32,
-    /// How much it is followed; those of a strand sum to 1.
-    pub weight: f32,
-    /// Points of the guide that a point of the strand is along: the strand's length over the guide's.
-    pub pace: f32,
-}
 
 /// The strands of a groom and the guides among them: which guides each strand follows, and where it is at rest.
 #[derive(Clone, Debug)]
@@ -83,7 +44,7 @@ pub struct Binding {
     /// Shape `[strand][MOST_INFLUENCES]`; weights of 0 stand for none.
     influences: Vec<[Influence; MOST_INFLUENCES]>,
     /// The same, one lane a strand, shape `[block][MOST_INFLUENCES]`.
-    blocks: Vec<[place::Followed; MOST_INFLUENCES]>,
+    blocks: Vec<[Followed; MOST_INFLUENCES]>,
 }
 
 impl Binding {
@@ -136,7 +97,7 @@ impl Binding {
             influences
         });
         let influences: Vec<_> = influences.collect();
-        let blocks = place::blocks(&influences);
+        let blocks = blocks(&influences);
         Ok(Self { strands, guides, influences, blocks })
     }
 

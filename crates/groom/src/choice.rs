@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 pub(crate) use roots::Roots;
 
-use crate::{Groom, Guides};
+use crate::Groom;
+use crate::arcs::equal_arcs;
 
 /// Places along a strand at which shapes are compared, as shares of its length.
 const PLACES: usize = 3;
@@ -56,7 +57,7 @@ impl Feature {
 pub(crate) fn features(groom: &Groom) -> Vec<Feature> {
     let feature = |strand: usize| {
         let points = groom.strand(strand);
-        let mut places = Guides::equal_arcs(points, PLACES + 1).skip(1);
+        let mut places = equal_arcs(points, PLACES + 1).skip(1);
         Feature {
             root: points[0],
             shape: std::array::from_fn(|_| places.next().unwrap_or(points[0]) - points[0]),

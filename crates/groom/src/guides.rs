@@ -4,6 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::SettingError;
 
+use crate::arcs::equal_arcs;
 use crate::{Groom, GroomError, LANES, Vec3Lanes, Widths, attributes, block_count};
 
 /// The simulated strands at rest: each resampled to the same number of points at equal arc
@@ -52,7 +53,7 @@ impl Guides {
         positions.par_chunks_mut(points_per_strand).enumerate().for_each(|(block, chunk)| {
             for lane in 0..LANES {
                 let strand = groom.strand((block * LANES + lane).min(strand_count - 1));
-                for (slot, point) in chunk.iter_mut().zip(Self::equal_arcs(strand, points_per_strand)) {
+                for (slot, point) in chunk.iter_mut().zip(equal_arcs(strand, points_per_strand)) {
                     slot.set(lane, point);
                 }
             }
@@ -181,37 +182,6 @@ impl Guides {
         attributes::check_velocities(velocities.as_deref(), self.strand_count * self.points_per_strand)?;
         self.velocities = velocities;
         Ok(())
-    }
-
-    /// Points at equal distances along a polyline, both ends included.
-    pub(crate) fn equal_arcs(points: &[Vec3], count: usize) -> impl Iterator<Item = Vec3> + '_ {
-        Self::equal_places(points, count).map(|(segment, share)| match share {
-            1.0 => points[segment + 1],
-            _ => points[segment].lerp(points[segment + 1], share),
-        })
-    }
-
-    /// Places at equal distances along a polyline, both ends included: a segment, and the share of it before
-    /// the place.
-    pub(crate) fn equal_places(points: &[Vec3], count: usize) -> impl Iterator<Item = (usize, f32)> + '_ {
-        let total: f32 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        let mut segment = 0;
-        let mut passed = 0.0;
-        (0..count).map(move |index| {
-            if index + 1 == count {
-                return (points.len() - 2, 1.0);
-            }
-            let wanted = total * index as f32 / (count - 1) as f32;
-            loop {
-                let length = points[segment].distance(points[segment + 1]);
-                if passed + length >= wanted || segment + 2 == points.len() {
-                    let share = if length > 0.0 { ((wanted - passed) / length).clamp(0.0, 1.0) } else { 0.0 };
-                    return (segment, share);
-                }
-                passed += length;
-                segment += 1;
-            }
-        })
     }
 }
 

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
+mod arcs;
 mod attributes;
 mod binding;
 mod choice;

@@ -5,7 +5,8 @@ use strandline_base::{
     memory::{self, Need},
 };
 
-use crate::{Groom, GroomError, Guides, Widths, attributes, format};
+use crate::arcs::equal_arcs;
+use crate::{Groom, GroomError, Widths, attributes, format};
 
 impl Groom {
     /// Every strand resampled to `count` points at equal arc length. Widths, colours, transparencies and
@@ -24,7 +25,7 @@ impl Groom {
         let mut groom = Self::empty(0.0);
         groom.points.reserve_exact(self.strand_count() * count);
         for strand in strands.clone() {
-            groom.push(Guides::equal_arcs(self.strand(strand), count));
+            groom.push(equal_arcs(self.strand(strand), count));
         }
         groom.widths = match &self.widths {
             Widths::PerPoint(widths) => Widths::PerPoint(attributes::along(self, widths, count, mix)),

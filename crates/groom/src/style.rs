@@ -4,6 +4,7 @@ mod comb;
 mod finish;
 mod grow;
 mod settings;
+mod strand;
 
 use strandline_base::choices;
 

@@ -1,11 +1,14 @@
 mod channels;
+mod input;
+
+pub use input::FrameInput;
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
-use strandline_body::{Mesh, Pose};
-use strandline_groom::{Guides, Vec3Lanes};
+use strandline_body::Mesh;
+use strandline_groom::Guides;
 
 use crate::cpu::scalp::root_densities;
 use crate::cpu::skin::Skin;
@@ -15,41 +18,7 @@ use crate::cpu::{
 };
 use crate::fibre::FibreModel;
 use crate::lights::{at_samples, first_sample};
-use crate::memory::check_lights;
-use crate::{BodyLook, Camera, Layers, LevelOfDetail, Light, Look, Picture, PictureSettings, RenderError};
-
-/// What one picture is made from.
-#[derive(Clone, Copy)]
-pub struct FrameInput<'a> {
-    /// Guide points \[m\], world space, shape `[block][point]` of lanes.
-    pub positions: &'a [Vec3Lanes],
-    /// Pose of the head.
-    pub world_from_head: Pose,
-    /// The camera.
-    pub camera: &'a Camera,
-    /// The hair's look.
-    pub look: &'a Look,
-    /// The body's look.
-    pub body_look: &'a BodyLook,
-    /// The lights.
-    pub lights: &'a [Light],
-    /// Level of detail.
-    pub level_of_detail: &'a LevelOfDetail,
-}
-
-impl FrameInput<'_> {
-    /// Checks everything but the points.
-    ///
-    /// # Errors
-    /// A setting outside its range.
-    pub(crate) fn validate(&self) -> Result<(), RenderError> {
-        self.camera.validate()?;
-        self.look.validate()?;
-        self.body_look.validate()?;
-        self.level_of_detail.validate()?;
-        check_lights(self.lights)
-    }
-}
+use crate::{Layers, Picture, PictureSettings, RenderError};
 
 /// What a picture cost.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -290,8 +259,11 @@ impl Clock {
 mod tests {
     use strandline_groom::Groom;
 
+    use strandline_body::Pose;
+
     use super::*;
-    use crate::{LightKind, surroundings::Surroundings};
+    use crate::surroundings::Surroundings;
+    use crate::{BodyLook, Camera, LevelOfDetail, Light, LightKind, Look};
 
     #[test]
     fn places_of_lights_and_suns_are_counted_once() {

@@ -7,7 +7,7 @@ use strandline_base::{
 
 use crate::cpu::ribbons::Segment;
 use crate::fibre::FibreModel;
-use crate::{DetailLevel, FrameInput, LevelOfDetail, Light, Look, PictureSettings, RenderError};
+use crate::{DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
 /// Most lights of a picture: each point that is drawn asks every one of them.
 pub const MAX_LIGHTS: usize = 64;
@@ -99,20 +99,6 @@ pub fn check_lights(lights: &[Light]) -> Result<(), RenderError> {
         return Err(SettingError::new("lights", lights.len(), "64 at most").into());
     }
     lights.iter().try_for_each(Light::validate)
-}
-
-impl FrameInput<'_> {
-    /// Refuses more than can be drawn, before anything is allocated for it.
-    pub(crate) fn check_memory(
-        &self,
-        guide_count: usize,
-        points_per_strand: usize,
-        level: &DetailLevel,
-        picture: &PictureSettings,
-    ) -> Result<(), RenderError> {
-        let Self { look, lights, .. } = *self;
-        Drawn { guide_count, points_per_strand, look, lights, picture }.check(level)
-    }
 }
 
 #[cfg(test)]

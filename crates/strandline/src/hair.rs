@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::{
     BoundStrands, Devices, Error, Ray, Scene,
     body::{Aabb, Collider, Mesh, Pose},
-    devices::{Opened, Pair},
+    devices::{Opened, Pair, place},
     engine::Engine,
     gpu::Gpu,
     groom::{Groom, Guides},
@@ -385,11 +385,6 @@ impl Hair {
     pub fn bounds(&self) -> Aabb {
         self.studio.bounds
     }
-}
-
-/// Where something runs, for a person to read.
-pub(crate) fn place(gpu: Option<&Gpu>) -> String {
-    gpu.map_or_else(|| "cpu".to_owned(), |gpu| gpu.adapter().to_string())
 }
 
 /// The points of the simulation, where the pictures are drawn on the device that they lie on.

@@ -7,9 +7,8 @@ use strandline_gpu::Gpu;
 use crate::{
     BoundStrands,
     body::Mesh,
-    devices::Opened,
+    devices::{Opened, place},
     groom::{Frames, Guides, Vec3Lanes},
-    hair::place,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
         gpu::{DevicePoints, GpuRenderer},

@@ -252,7 +252,7 @@ impl Player {
 
     /// Where the hair is simulated: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
-        crate::hair::place(self.worker.work().engine.gpu())
+        crate::devices::place(self.worker.work().engine.gpu())
     }
 
     /// Where pictures are drawn, likewise.

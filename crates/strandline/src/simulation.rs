@@ -9,6 +9,7 @@ use strandline_gpu::{Buffer, Gpu, GpuError};
 use crate::{
     body::Pose,
     cache::Snapshot,
+    devices::place,
     engine::Engine,
     groom::Vec3Lanes,
     hair_pose::HairPose,
@@ -112,7 +113,7 @@ impl Work for Simulation {
             None => run(),
         };
         self.threads = threads;
-        let place = crate::hair::place(self.engine.gpu());
+        let place = place(self.engine.gpu());
         let grabbed = self.engine.state().grabbed();
         let seconds = self.passed - before;
         let notes = self.engine.take_notes();

@@ -7,12 +7,14 @@ mod gpu;
 #[cfg(feature = "gpu")]
 mod gpu_runs;
 mod machine;
+mod measure;
 #[cfg(not(feature = "gpu"))]
 mod no_gpu_runs;
 mod plot;
 mod scaling;
 mod tables;
 mod thesis;
+mod thesis_results;
 mod view;
 mod window;
 mod workers;
@@ -22,13 +24,10 @@ pub use plot::plot;
 use std::path::Path;
 
 use serde::Serialize;
-use strandline::{Backend, Error, Event, Player, Scene, base::WholeFile};
+use strandline::{Error, base::WholeFile};
 
 use crate::arguments::{Bench, BenchOptions};
 use crate::output::print_line;
-use crate::progress::Progress;
-use crate::sim::{Ended, SimReport, Steps};
-use crate::statistics::{Collector, Times};
 use gpu::{Adapter, Device};
 use machine::Machine;
 
@@ -89,28 +88,4 @@ fn save(path: &Path, text: &str) -> Result<(), Error> {
         path: path.to_owned(),
         source,
     })
-}
-
-/// Plays a scene on the CPU and measures its steps, and its pictures when `draw`.
-fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimReport, Times, usize), Error> {
-    let mut player = Player::new(scene, Backend::Cpu, draw)?;
-    let (mut steps, mut pictures) = (Steps::default(), Collector::default());
-    let mut segments = 0;
-    let mut progress = Progress::new(u64::from(player.frames()), what, false);
-    while let Some(event) = player.next() {
-        match event? {
-            Event::Note(note) => progress.note(&note),
-            Event::Stepped(report) => {
-                let note = steps.add(&report, player.frames_done());
-                note.into_iter().for_each(|note| progress.note(&note));
-            }
-            Event::Drawn { report, .. } => {
-                pictures.add(&report.seconds);
-                segments = report.segments;
-            }
-        }
-        progress.reached(u64::from(player.frames_done()));
-    }
-    let report = steps.report(Ended { backend: "cpu".to_owned(), ..Ended::of(&player, scene) });
-    Ok((report, pictures.times(), segments))
 }

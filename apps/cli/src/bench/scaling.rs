@@ -4,7 +4,7 @@ use serde::Serialize;
 use strandline::{Error, Scene, gpu::GpuError, sim::SimError};
 
 use super::gpu::{Device, GpuRun};
-use super::measure;
+use super::measure::measure;
 use crate::output::print_line;
 
 /// Strands of 16 points: from 10,000 to 320,000 points.

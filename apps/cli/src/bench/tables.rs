@@ -1,7 +1,7 @@
 //! The thesis's tables 1 to 4 as they are printed, with ours beside them.
 
 use super::gpu::{GpuRun, GradientTimes};
-use super::thesis::{GpuGrid, Grid, Pictures, Results};
+use super::thesis_results::{GpuGrid, Grid, Pictures, Results};
 use crate::output::{print_line, print_part};
 use crate::sim::SimReport;
 

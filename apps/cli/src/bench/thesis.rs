@@ -1,12 +1,12 @@
 //! The thesis's tables 1 to 4 beside ours [Chen2011 §4.2.3, §6].
 
-use serde::Serialize;
 use strandline::{Backend, Devices, Event, Player, Scene, sim::Preconditioner};
 
-use super::gpu::{Device, Forms, GpuRun};
-use super::{measure, tables, workers};
+use super::gpu::Device;
+use super::measure::measure;
+use super::thesis_results::{GpuGrid, Grid, Pictures, Results, Whole};
+use super::{tables, workers};
 use crate::progress::Progress;
-use crate::sim::SimReport;
 use crate::statistics::{Collector, Times, median};
 
 /// Cells along each side of the thesis's three grids.
@@ -18,59 +18,6 @@ const THESIS_FPS: [[f64; 2]; 3] = [[21.8, 96.2], [13.3, 86.5], [3.19, 37.7]];
 /// that a GPU draws. In a short run.
 const FRAMES: [u32; 2] = [120, 8];
 const WITH_PICTURES: [[u32; 3]; 2] = [[15, 5, 120], [2, 2, 4]];
-
-#[derive(Debug, Serialize)]
-pub struct Results {
-    pub grids: Vec<Grid>,
-    pub pictures_on_cpu: Pictures,
-    pub segments: usize,
-    pub shares_percent: Vec<(&'static str, f64)>,
-    pub gpu_shares_percent: Vec<(&'static str, f64)>,
-    /// Empty when no GPU was measured.
-    pub lengths_alone: Vec<Forms>,
-}
-
-#[derive(Debug, Serialize)]
-pub struct Grid {
-    pub cells: u32,
-    pub mic0: SimReport,
-    pub jacobi: SimReport,
-    /// Simulated and drawn on the CPU.
-    pub whole_on_cpu: Whole,
-    /// None when no GPU was measured.
-    pub gpu: Option<GpuGrid>,
-    /// Simulated on the CPU and on a GPU.
-    pub thesis_frames_per_second: [f64; 2],
-}
-
-#[derive(Debug, Serialize)]
-pub struct GpuGrid {
-    pub chebyshev: GpuRun,
-    pub jacobi: GpuRun,
-    /// Simulated on the CPU, drawn on the GPU: what the thesis calls CPU.
-    pub whole_simulated_on_cpu: Whole,
-    /// Simulated and drawn on the GPU.
-    pub whole: Whole,
-}
-
-/// The whole system: a frame is simulated while the one before is drawn, by the host's clock.
-#[derive(Debug, Serialize)]
-pub struct Whole {
-    pub simulated_on: String,
-    pub drawn_on: String,
-    pub frames: u32,
-    pub ms_per_frame: f64,
-    pub frames_per_second: f64,
-}
-
-/// What a picture takes on the CPU.
-#[derive(Debug, Serialize)]
-pub struct Pictures {
-    /// While the next frame is simulated.
-    pub ms_beside_simulation: Times,
-    /// With nothing else to do.
-    pub ms_alone: Times,
-}
 
 pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let pictures = WITH_PICTURES[usize::from(quick)];

@@ -3,7 +3,7 @@ use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use glam::{UVec3, Vec3};
 use rayon::prelude::*;
 
-use super::Mannequin;
+use super::model::Mannequin;
 use crate::{Mesh, SignedDistance};
 
 /// Spacing of the samples \[m\].
@@ -13,8 +13,20 @@ const NEWTON_STEPS: usize = 4;
 /// No step is longer \[m\], so that a vertex in a crease stays there.
 const LONGEST_STEP: f32 = 0.004;
 
+impl Mannequin {
+    /// The surface as triangles: closed, refined onto the skin, with normals from the gradient.
+    pub fn mesh(&self) -> Mesh {
+        mesh(self)
+    }
+
+    /// Carries a place near the skin \[m\] onto it: the place on the skin and its unit normal.
+    pub fn nearest_skin(&self, point: Vec3) -> (Vec3, Vec3) {
+        settle(self, point)
+    }
+}
+
 /// Meshes the skin.
-pub(super) fn mesh(mannequin: &Mannequin) -> Mesh {
+fn mesh(mannequin: &Mannequin) -> Mesh {
     let bounds = mannequin.bounds();
     let origin = bounds.min - Vec3::splat(2.0 * SPACING);
     let size = ((bounds.max - origin) / SPACING).as_uvec3() + UVec3::splat(4);
@@ -100,7 +112,7 @@ impl Slab<'_> {
 }
 
 /// Carries a point near the skin onto it; the point and the normal there.
-pub(super) fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
+fn settle(mannequin: &Mannequin, mut point: Vec3) -> (Vec3, Vec3) {
     for _ in 0..NEWTON_STEPS {
         let field = mannequin.shape.at(point);
         let step = field.gradient * (field.value / field.gradient.length_squared().max(1e-2));

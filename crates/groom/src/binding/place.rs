@@ -5,30 +5,10 @@ use rayon::prelude::*;
 use strandline_body::Pose;
 use wide::f32x8;
 
-use super::{Binding, Frame, Frames, Influence, MOST_INFLUENCES, Surface};
-use crate::{LANES, Vec3Lanes, block_count, outside::placed_outside};
-
-/// A guide that each strand of a block follows: see [`Influence`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Followed {
-    guides: [u32; LANES],
-    weights: [f32; LANES],
-    paces: [f32; LANES],
-}
-
-/// Influences as lanes; lanes beyond the last strand repeat it.
-pub(super) fn blocks(influences: &[[Influence; MOST_INFLUENCES]]) -> Vec<[Followed; MOST_INFLUENCES]> {
-    let followed = |block: usize, slot: usize| {
-        let of = |lane: usize| influences[(block * LANES + lane).min(influences.len() - 1)][slot];
-        Followed {
-            guides: std::array::from_fn(|lane| of(lane).guide),
-            weights: std::array::from_fn(|lane| of(lane).weight),
-            paces: std::array::from_fn(|lane| of(lane).pace),
-        }
-    };
-    let blocks = 0..block_count(influences.len());
-    blocks.map(|block| std::array::from_fn(|slot| followed(block, slot))).collect()
-}
+use super::frames::{Frame, Frames};
+use super::influence::{Followed, MOST_INFLUENCES};
+use super::{Binding, Surface};
+use crate::{LANES, Vec3Lanes, outside::placed_outside};
 
 /// Vectors of eight strands: x, y and z.
 type Vectors = [f32x8; 3];

@@ -1,6 +1,6 @@
 //! Which guides a strand follows, and how much it follows each.
 
-use super::MOST_INFLUENCES;
+use super::influence::MOST_INFLUENCES;
 use crate::{
     Groom,
     choice::{Feature, Roots},

@@ -9,8 +9,8 @@ use strandline_body::{Mannequin, Random};
 
 use super::StyleSettings;
 use super::comb::smooth;
-use super::grow::{CLEARANCE, Strand, outside};
-use crate::Guides;
+use super::strand::{CLEARANCE, Strand, outside};
+use crate::arcs::equal_arcs;
 
 /// Shapes the strands; also tells the clump of each.
 pub fn finish(
@@ -87,7 +87,7 @@ fn shape(
     for point in &mut points[1..] {
         *point = outside(mannequin, *point, CLEARANCE);
     }
-    let mut even: Vec<Vec3> = Guides::equal_arcs(&points, points.len()).collect();
+    let mut even: Vec<Vec3> = equal_arcs(&points, points.len()).collect();
     for point in &mut even[1..] {
         *point = outside(mannequin, *point, 0.7 * CLEARANCE);
     }

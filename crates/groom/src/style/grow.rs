@@ -9,15 +9,15 @@ use strandline_base::memory::{self, Need};
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
 use super::comb::{Combed, Place, TIE_RADIUS, smooth};
+use super::strand::{CLEARANCE, Strand, outside};
 use super::{Style, StyleSettings, finish};
-use crate::{Groom, GroomError, Guides, Widths};
+use crate::arcs::equal_arcs;
+use crate::{Groom, GroomError, Widths};
 
 /// Length of a step \[m\].
 const STEP: f32 = 0.004;
 /// Share of the old direction kept in each step: hair is stiff.
 const STIFFNESS: f32 = 0.72;
-/// Distance \[m\] from the skin that all hair keeps once it has left the root.
-pub const CLEARANCE: f32 = 0.0015;
 /// Diameter of a hair \[m\].
 const WIDTH: f32 = 8e-5;
 /// Way \[m\] over which hair rises from its root to the full thickness of the hair.
@@ -30,14 +30,6 @@ const PARTING_REACH: f32 = 0.014;
 const EAR_DOME: (Vec3, Vec3) = (Vec3::new(0.062, -0.026, -0.012), Vec3::new(0.033, 0.056, 0.050));
 /// Blend of the dome and the skin \[m\].
 const DOME_REACH: f32 = 0.016;
-
-/// What shaping needs to know of every strand.
-pub struct Strand {
-    /// Its root.
-    pub root: Root,
-    /// Its points \[m\], evenly spaced.
-    pub points: Vec<Vec3>,
-}
 
 impl StyleSettings {
     /// Grows the style on the built-in mannequin.
@@ -132,7 +124,7 @@ fn march(settings: &StyleSettings, mannequin: &Arc<Mannequin>, index: usize, roo
         }
     }
     smooth_out(&mut points, mannequin);
-    let points = Guides::equal_arcs(&points, settings.points()).collect();
+    let points = equal_arcs(&points, settings.points()).collect();
     Strand { root, points }
 }
 
@@ -176,18 +168,6 @@ fn covered(settings: &StyleSettings, mannequin: &Mannequin, point: Vec3) -> (f32
     let share = if dome < distance { 1.0 - 0.5 * overlap * overlap } else { 0.5 * overlap * overlap };
     let joined = distance.min(dome) - DOME_REACH * overlap * overlap * overlap / 6.0;
     (joined, out.lerp(slope.normalize(), share).normalize_or(out))
-}
-
-/// Moves a point out of the body until it is `clearance` \[m\] from the skin.
-pub fn outside(mannequin: &Mannequin, mut point: Vec3, clearance: f32) -> Vec3 {
-    for _ in 0..8 {
-        let (distance, out) = mannequin.distance_and_gradient(point);
-        if distance >= clearance {
-            break;
-        }
-        point += out * (clearance - distance);
-    }
-    point
 }
 
 /// Moves a point out of the body and of the domes over the ears.

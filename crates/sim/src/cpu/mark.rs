@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use super::cell_kind::Kind;
 use super::obstacles::Obstacles;
-use super::volume::{Kind, Volume};
+use super::volume::Volume;
 
 /// Marks the cells, and gives the faces of solid cells the velocity of the solid
 /// [Chen2011 fig. 21, McAdams2009, Bridson2008].

@@ -1,6 +1,7 @@
 //! The stages in plain Rust, public so that checks can run each alone.
 
 pub mod advance;
+mod cell_kind;
 mod cell_set;
 pub mod cell_sort;
 pub mod constrain;
@@ -27,5 +28,6 @@ pub(crate) mod spans;
 pub(crate) mod vec3x8;
 pub(crate) mod way;
 
+pub use cell_kind::Kind;
 pub use obstacles::Obstacles;
-pub use volume::{Kind, Volume};
+pub use volume::Volume;

@@ -1,7 +1,8 @@
 //! `solve_pressure`: the pressure that takes the divergence out of the hair's velocity.
 
+use super::cell_kind::Kind;
 use super::pcg::PcgSettings;
-use super::volume::{Kind, Volume};
+use super::volume::Volume;
 use crate::PressureReport;
 
 /// Solves for the pressure of the fluid cells and subtracts its gradient, one component at a time

@@ -2,6 +2,7 @@
 
 use strandline_groom::LANES;
 
+use super::cell_kind::Kind;
 use super::cell_set::CellSet;
 use super::cell_sort::CellSort;
 use super::faces::Faces;
@@ -9,18 +10,6 @@ use super::grid::Grid;
 use super::pcg::{Pcg, Solution};
 use super::poisson::Poisson;
 use crate::VolumeSettings;
-
-/// What a cell is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Kind {
-    /// Holds no hair: the pressure is 0.
-    #[default]
-    Air,
-    /// Holds hair: the pressure is unknown.
-    Fluid,
-    /// Inside a solid: nothing flows through its faces but what the solid carries along.
-    Solid,
-}
 
 /// The fluid volume [Chen2011 §4.2, McAdams2009]. Its memory is kept from step to step; what a step
 /// costs follows the cells that hold hair, not the size of the box.

@@ -7,9 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use super::messages::{Command, FRAME, News, Out, Shown};
 use super::recorder::Recorder;
 use super::stage::Stage;
-use super::{Command, FRAME, News, Out, Shown};
 use crate::{Error, FilmFiles, Scene, render::PictureSettings, sim::StepReport, worker::Gone};
 
 /// What the drawing thread is told.

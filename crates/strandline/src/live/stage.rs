@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use strandline_base::{Group, WholeFile};
 
-use super::{Command, FRAME, MOST_STEPS};
+use super::messages::{Command, FRAME, MOST_STEPS};
 use crate::{
     Error, Hair, HeadMotion, Ray, Scene,
     body::Aabb,
-    hair::{Studio, place},
+    devices::place,
+    hair::Studio,
     prepare::Prepared,
     render::{
         Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings, memory::check_lights,

@@ -38,28 +38,6 @@ const LOOKED_AT: usize = 400;
 /// Diameter of a hair over the distance of hairs on a head of a hundred thousand.
 const DENSITY: f32 = 0.095;
 
-/// Which settings a scene file gives that a groom would else choose. Scenes are the same whether a file gave what
-/// they say or not.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Given {
-    pub follow_strands: bool,
-    pub hair_count: bool,
-    pub width_scale: bool,
-    pub root_radius: bool,
-    pub tip_radius: bool,
-    pub wave_amplitude: bool,
-    pub points_per_strand: bool,
-    pub segments_per_span: bool,
-    pub spacing: bool,
-    pub full_distance: bool,
-}
-
-impl PartialEq for Given {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
 /// Fills in what a scene leaves open, and says what was chosen.
 ///
 /// A setting is open where no file gives it and it still has its default: that of the demo or of a groom file.
@@ -177,6 +155,7 @@ fn spacing(groom: &Groom) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Given;
 
     /// Strands on a square at distances of 2 mm that hang or curl.
     fn groom(turns: f32) -> Groom {

@@ -10,8 +10,6 @@ mod wrap;
 
 use glam::Vec3;
 
-pub use fit::Given;
-
 use body::Body;
 
 use crate::{

@@ -3,6 +3,7 @@
 mod body;
 mod builtin;
 mod film;
+mod given;
 mod groom;
 mod motion;
 mod surroundings;
@@ -14,6 +15,7 @@ use strandline_base::{Group, SettingError, Value, printable, read_plain, setting
 
 pub use body::{BodyPart, BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
 pub use film::{CameraSection, FilmSection, View};
+pub(crate) use given::Given;
 pub use groom::{GroomPart, GroomSection};
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 pub use surroundings::SurroundingsSection;
@@ -21,7 +23,6 @@ pub use surroundings::SurroundingsSection;
 use crate::{
     Backend, Devices, Error,
     groom::StyleSettings,
-    prepare::Given,
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, Preset, memory::MAX_LIGHTS},
     sim::{Settings, StrandMethod},
 };

@@ -3,6 +3,7 @@
 
 mod lobes;
 mod moments;
+mod ring;
 mod table;
 
 use glam::{DVec3, Vec3};

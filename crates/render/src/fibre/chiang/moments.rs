@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use strandline_base::math;
 
 use super::lobes::{LOBES, Lobes};
-use super::table::{Ring, turn_sums};
+use super::ring::{Ring, turn_sums};
 
 /// Moments of each channel.
 pub const MOMENTS: usize = 6;

@@ -12,6 +12,8 @@ use strandline_base::math;
 
 use super::lobes::{LOBES, Lobes};
 use super::moments::{MOMENTS, moments, powers};
+pub use super::ring::TURNS;
+use super::ring::{Ring, turn_sums};
 
 /// Nodes of the sum of both inclinations, -pi to pi.
 pub const SUMS: usize = 257;
@@ -19,8 +21,6 @@ pub const SUMS: usize = 257;
 pub const DIFFERENCES: usize = 49;
 /// Nodes of the eye's inclination, 0 to pi / 2.
 pub const EYES: usize = 17;
-/// Nodes of the turn between light and eye, 0 to pi.
-pub const TURNS: usize = 49;
 /// Nodes of the eye's inclination of the moments, -pi / 2 to pi / 2.
 pub const MOMENT_EYES: usize = 2 * EYES - 1;
 /// Multiples of the pigment at the root for which there are entries; the first is white hair.
@@ -54,9 +54,6 @@ pub enum Pigments {
     /// One for each channel.
     Channels(Vec3),
 }
-
-/// Terms around the fibre of one inclination of the eye, `[turn][lobe][channel]`.
-pub(super) type Ring = Vec<[[f64; 3]; LOBES]>;
 
 impl Table {
     /// The tables of a fibre; absorption per fibre radius at the root.
@@ -297,19 +294,4 @@ fn balance(ring: &mut Ring, lobes: &Lobes, eye: f64, absorption: [f64; 3]) {
             }
         }
     }
-}
-
-/// Sums a ring over the whole turn, weighted, with straight lines between its nodes.
-pub(super) fn turn_sums(ring: &Ring, weight: impl Fn(f64) -> f64) -> [[f64; 3]; LOBES] {
-    let mut sums = [[0.0; 3]; LOBES];
-    let step = PI / (TURNS - 1) as f64;
-    for (index, found) in ring.iter().enumerate() {
-        let half = if index == 0 || index == TURNS - 1 { 0.5 } else { 1.0 };
-        // Both sides of the eye.
-        let share = 2.0 * step * half * weight(step * index as f64);
-        for lobe in 0..LOBES {
-            (0..3).for_each(|channel| sums[lobe][channel] += share * found[lobe][channel]);
-        }
-    }
-    sums
 }
