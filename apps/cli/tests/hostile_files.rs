@@ -51,6 +51,9 @@ fn give(name: &str, bytes: &[u8]) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(name), bytes).unwrap();
     std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    if name.ends_with("png") {
+        write_mapped(folder.path(), name);
+    }
     let scene = ["sim", "--scene", "scene.toml"];
     let arguments = match name.rsplit_once('.').unwrap().1 {
         "toml" => vec!["sim", "--scene", name],
@@ -58,6 +61,7 @@ fn give(name: &str, bytes: &[u8]) {
         // With the scene that it names, and with this one.
         "npz" if name.starts_with("own") => vec!["render", "--cache", name, "--out", "out"],
         "npz" => vec!["render", "--cache", name, "--scene", "scene.toml", "--out", "out"],
+        "png" => vec!["render", "--scene", "mapped.toml", "--out", "out"],
         _ => [&scene[..], &["--body", name]].concat(),
     };
     let (code, peak, error) = run(folder.path(), &arguments);
@@ -286,4 +290,36 @@ fn caches_that_unpack_to_much() {
     let mut giant = bomb;
     giant[4] = ("meta.npy", &most, &zeros, 700_000_000 >> 16);
     give("own.npz", &cache(&giant));
+}
+
+/// A scene whose groom takes its colours from a picture.
+fn write_mapped(folder: &Path, name: &str) {
+    let mut groom = strandline::Groom::empty(8e-5);
+    for x in 0..8 {
+        groom.push((0..4).map(|point| glam::Vec3::new(0.01 * x as f32, -0.02 * point as f32, 0.1)));
+    }
+    groom.root_uvs = Some(vec![glam::Vec2::splat(0.5); 8]);
+    strandline::groom::format::save(&groom, &folder.join("mapped.npz")).unwrap();
+    let scene = format!(
+        "film = {{ frames = 1, settle = 0.0 }}\npicture = {{ width = 16, height = 16 }}\nlook.color_map = \"{name}\"\n\
+         groom.file = \"mapped.npz\"\n[devices]\nsimulation = \"cpu\"\npictures = \"cpu\"\n"
+    );
+    std::fs::write(folder.join("mapped.toml"), scene).unwrap();
+}
+
+#[test]
+fn pictures_that_unpack_to_much() {
+    use image::DynamicImage;
+    use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+    let side = 8192;
+    for (name, picture) in [
+        ("flat16.png", DynamicImage::new_rgba16(side, side)),
+        ("flat8.png", DynamicImage::new_rgb8(side, side)),
+        ("grey.png", DynamicImage::new_luma16(side, side)),
+    ] {
+        let mut file = Vec::new();
+        let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::NoFilter);
+        picture.write_with_encoder(encoder).unwrap();
+        give(name, &file);
+    }
 }

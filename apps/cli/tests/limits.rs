@@ -193,3 +193,24 @@ fn files_of_more_than_they_may_hold() {
         refused(&output, &[&format!("{} bytes, expected {most} MiB at most", (most << 20) + 1)]);
     }
 }
+
+/// Memory is asked for what a file holds before it is read: this one is sparse, and takes no room on the disk.
+#[test]
+fn files_that_would_take_more_than_is_allowed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (strands, points) = (8_000_000_u32, 128_000_000_u32);
+    let mut header = b"HAIR".to_vec();
+    [strands, points, 2, 15].iter().for_each(|number| header.extend(number.to_le_bytes()));
+    header.resize(128, 0);
+    let hair = folder.path().join("large.hair");
+    std::fs::write(&hair, header).unwrap();
+    std::fs::File::options().write(true).open(&hair).unwrap().set_len(128 + 12 * u64::from(points)).unwrap();
+    let output = limited(folder.path(), &["info", "large.hair"]);
+    refused(&output, &["the groom of large.hair would take 2930 MiB"]);
+    refused(&output, &TOO_MUCH);
+    let mesh = folder.path().join("large.obj");
+    std::fs::File::create(mesh).unwrap().set_len(200 << 20).unwrap();
+    let output = limited(folder.path(), &["sim", "--body", "large.obj"]);
+    refused(&output, &["the body of ", "large.obj would take 6000 MiB"]);
+    refused(&output, &TOO_MUCH);
+}

@@ -1,9 +1,14 @@
 use std::path::PathBuf;
 
+use strandline_base::memory::MemoryError;
+
 /// Why a body could not be loaded or used.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BodyError {
+    /// More memory than may be taken.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// The file could not be opened or read.
     #[error("cannot read the body: {source}: {}", path.display())]
     Read {

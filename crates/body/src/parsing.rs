@@ -3,17 +3,24 @@
 use std::path::Path;
 
 use glam::Vec3;
+use strandline_base::memory::{self, Need};
 use strandline_base::read_plain;
 
 use crate::BodyError;
 
-/// Largest file that is read \[bytes\]: the parsers need up to 30 times as much memory.
+/// Largest file that is read \[bytes\].
 const FILE_LIMIT: u64 = 256 << 20;
+/// Memory that the parsers need at most for each byte of a file \[byte\].
+const TAKEN: u64 = 30;
 /// Why a file is refused: what was found and what was expected.
 pub(crate) type Refusal = (String, &'static str);
 
-/// The bytes of a plain file, unless it is too large.
+/// The bytes of a plain file, unless it is too large or would take more memory than may be taken.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, BodyError> {
+    let length = std::fs::metadata(path).map_or(0, |found| found.len());
+    if length <= FILE_LIMIT {
+        memory::check(&[Need::new(format!("the body of {}", path.display()), length, TAKEN)])?;
+    }
     read_plain(path, FILE_LIMIT).map_err(|source| BodyError::Read { path: path.into(), source })
 }
 

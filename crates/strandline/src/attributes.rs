@@ -1,11 +1,11 @@
 //! Masses and velocities of the simulated points, as a file.
 
-use std::fs::File;
-use std::io::Read;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use glam::Vec3;
 use safetensors::{SafeTensors, tensor::Dtype};
+use strandline_base::read_plain;
 
 use crate::{Error, groom::Guides};
 
@@ -57,13 +57,12 @@ fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Option<
 fn read(path: &Path, guides: &Guides) -> Result<Vec<u8>, String> {
     let [strands, points] = [guides.strand_count(), guides.points_per_strand()];
     let most = HEADER + 4 * NUMBERS * (strands * points) as u64;
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    file.take(most + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    if bytes.len() as u64 > most {
-        return Err(format!("larger than {strands} strands of {points} points can be ({most} bytes)"));
-    }
-    Ok(bytes)
+    read_plain(path, most).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => {
+            format!("larger than {strands} strands of {points} points can be ({most} bytes)")
+        }
+        _ => error.to_string(),
+    })
 }
 
 #[cfg(test)]

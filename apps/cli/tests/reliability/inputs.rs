@@ -20,14 +20,24 @@ fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
 fn what_is_no_file_is_refused_at_once() {
     let folder = folder();
     let at = folder.path();
-    for name in ["pipe.hair", "pipe.toml", "pipe.obj", "pipe.safetensors"] {
+    for ending in ["hair", "toml", "obj", "safetensors", "hdr", "npz", "png"] {
+        let name = format!("pipe.{ending}");
         assert!(Command::new("mkfifo").arg(at.join(name)).status().unwrap().success());
     }
     for name in ["zero.hair", "zero.toml", "zero.obj"] {
         std::os::unix::fs::symlink("/dev/zero", at.join(name)).unwrap();
     }
     let scene = std::fs::read_to_string(at.join("small.toml")).unwrap();
-    std::fs::write(at.join("posed.toml"), format!("{scene}[groom]\npose = \"pipe.safetensors\"\n")).unwrap();
+    for (name, keys) in [
+        ("posed.toml", "groom.pose = \"pipe.safetensors\""),
+        ("attributes.toml", "groom.attributes = \"pipe.safetensors\""),
+        ("surroundings.toml", "surroundings.file = \"pipe.hdr\""),
+    ] {
+        std::fs::write(at.join(name), format!("{keys}\n{scene}")).unwrap();
+    }
+    works(at, &["groom", "--style", "bob", "--strands", "3", "--out", "few.hair"]);
+    let mapped = scene.replace("[look]", "[groom]\nfile = \"few.hair\"\n[look]\ncolor_map = \"pipe.png\"");
+    std::fs::write(at.join("mapped.toml"), mapped).unwrap();
     let plain = "expected a plain file";
     for arguments in [
         &["info", "pipe.hair"][..],
@@ -36,6 +46,11 @@ fn what_is_no_file_is_refused_at_once() {
         &["scene", "pipe.toml"],
         &["sim", "--scene", "zero.toml"],
         &["sim", "--scene", "posed.toml"],
+        &["sim", "--scene", "attributes.toml"],
+        &["render", "--scene", "surroundings.toml"],
+        &["render", "--scene", "mapped.toml"],
+        &["render", "--cache", "pipe.npz", "--out", "film"],
+        &["sim", "--scene", "small.toml", "--resume", "pipe.npz", "--out", "more.npz"],
         &["sim", "--scene", "small.toml", "--body", "pipe.obj"],
         &["sim", "--scene", "small.toml", "--body", "zero.obj"],
         &["sim", "--scene", "small.toml", "--groom", "pipe.hair"],

@@ -7,6 +7,7 @@ mod cache;
 mod ffmpeg;
 mod inputs;
 mod kills;
+mod not_finite;
 mod pipes;
 mod rivals;
 mod small_disk;

@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use strandline_base::math;
+use strandline_base::memory::{self, Need};
 use strandline_base::{Key, Kind, Row, SettingError, Value, WholeFile, choices, read_plain};
 
 use super::report::Report;
@@ -11,6 +12,9 @@ use super::{
     sieve::sieve,
 };
 use crate::{Groom, GroomError, Widths};
+
+/// Memory for each byte of a file \[byte\]: itself, and what it holds.
+const TAKEN: u64 = 2;
 
 /// Metres for each unit of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -149,6 +153,10 @@ pub fn load_all(paths: &[PathBuf], options: &LoadOptions) -> Result<Loaded, Groo
 fn parse(path: &Path, options: &LoadOptions) -> Result<Parsed, GroomError> {
     let format = Format::of(path)?;
     let file = |source| GroomError::File { action: "read", path: path.to_owned(), source };
+    let length = std::fs::metadata(path).map_or(0, |found| found.len());
+    if length <= MAX_FILE_BYTES {
+        memory::check(&[Need::new(format!("the groom of {}", path.display()), length, TAKEN)])?;
+    }
     let bytes = read_plain(path, MAX_FILE_BYTES).map_err(file)?;
     match format.read {
         Reader::Bytes(read) => read(&bytes, options.per_strand).map_err(|error| error.of(path)),

@@ -12,6 +12,9 @@ use super::size::{MAX_PIXELS, check_size};
 
 /// Most bytes of a block of rows or of a tile with all its channels: it is unpacked as a whole.
 const MAX_BLOCK: usize = 1 << 27;
+/// What a file may unpack to \[byte\], and besides for each of its bytes.
+const UNPACKED: usize = 256 << 20;
+const TIMES: usize = 64;
 /// What such a file begins with.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
@@ -24,6 +27,16 @@ pub(super) fn read(bytes: &[u8]) -> Result<(usize, usize, Vec<Vec3>), String> {
         let size = header.layer_size;
         if size.0.saturating_mul(size.1) > MAX_PIXELS {
             check_size(size.0, size.1)?;
+        }
+        let unpacked = size.0.saturating_mul(size.1).saturating_mul(size_of::<Vec3>());
+        if unpacked > UNPACKED + TIMES * bytes.len() {
+            return Err(format!(
+                "{} x {} pixels in {} bytes, expected no more than {} MiB of them or {TIMES} times the file",
+                size.0,
+                size.1,
+                bytes.len(),
+                UNPACKED >> 20
+            ));
         }
         let block = header.max_block_pixel_size();
         let bytes = block.0.saturating_mul(block.1).saturating_mul(header.channels.bytes_per_pixel);
@@ -84,6 +97,18 @@ mod tests {
         let many = (0..600).map(|index| (format!("c{index:03}"), vec![0.0_f32; 8192])).collect();
         let wide = Layers { width: 8192, height: 1, channels: many }.encode().unwrap();
         assert!(read(&wide).unwrap_err().contains("600 channels"));
+    }
+
+    /// A flat picture packs so well that a file of 200 kB would take 400 MB.
+    #[test]
+    fn small_files_do_not_unpack_to_much() {
+        use exr::prelude::{Encoding, Image, SpecificChannels, WritableImage};
+        let flat = SpecificChannels::rgb(|_: Vec2<usize>| (0.0_f32, 0.0_f32, 0.0_f32));
+        let mut file = Cursor::new(Vec::new());
+        let picture = Image::from_encoded_channels((8192, 4096), Encoding::SMALL_LOSSLESS, flat);
+        picture.write().non_parallel().to_buffered(&mut file).unwrap();
+        let error = read(&file.into_inner()).unwrap_err();
+        assert!(error.contains("8192 x 4096 pixels in"), "{error}");
     }
 
     #[test]
