@@ -1,4 +1,4 @@
-//! What a [`Live`](super::Live) is told, and what it has to tell.
+//! What a [`Live`](crate::Live) is told, and what it has to tell.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -16,8 +16,8 @@ pub(super) const FRAME: f64 = 1.0 / 60.0;
 /// Steps of a frame at most, so that a window stays awake: with steps shorter than that time slows down.
 pub(super) const MOST_STEPS: f64 = 16.0;
 
-/// What a [`Live`] may be told. What changes the picture shows in the next one that is begun, what changes
-/// the motion in the one after it.
+/// What a [`Live`](crate::Live) may be told. What changes the picture shows in the next one that is begun, what
+/// changes the motion in the one after it.
 pub enum Command {
     /// Loads a scene; what plays goes on until it is there, and stays when it cannot be loaded.
     Load(Box<Scene>),
@@ -68,14 +68,14 @@ pub enum Command {
     StopRecording,
 }
 
-/// What a [`Live`] shows.
+/// What a [`Live`](crate::Live) shows.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
     /// The picture.
     pub picture: Picture,
     /// Pictures drawn so far.
     pub frame: u64,
-    /// Commands that were heard before it was drawn: see [`Live::tell`].
+    /// Commands that were heard before it was drawn: see [`Live::tell`](crate::Live::tell).
     pub heard: u64,
     /// Those of them that the step it shows had heard: a picture behind, since the next step is made while
     /// one is drawn.
@@ -94,7 +94,7 @@ pub struct Shown {
     pub places: [String; 2],
 }
 
-/// What a [`Live`] has to tell, in its order.
+/// What a [`Live`](crate::Live) has to tell, in its order.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
     /// The scene of the command with this number is there: with what it left open chosen to fit its groom, its
