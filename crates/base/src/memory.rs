@@ -1,5 +1,7 @@
 //! How much memory may be taken: asked before anything that a setting scales.
 
+use std::path::Path;
+
 /// Memory that may be taken when nothing else is said \[MiB\].
 pub const DEFAULT: u64 = 8192;
 /// The environment's variable that allows more or less \[MiB\].
@@ -54,6 +56,25 @@ pub enum MemoryError {
 /// See [`MemoryError`].
 pub fn check(needs: &[Need]) -> Result<(), MemoryError> {
     check_within(needs, allowed(std::env::var_os(VARIABLE))?)
+}
+
+/// Refuses a file whose reader would take more than may be taken: `taken` bytes for each of its own. One longer than
+/// `limit` \[byte\] is left to what reads it.
+///
+/// # Errors
+/// See [`MemoryError`].
+pub fn check_file(what: &str, path: &Path, limit: u64, taken: u64) -> Result<(), MemoryError> {
+    match std::fs::metadata(path).map_or(0, |found| found.len()) {
+        length if length <= limit => {
+            check(&[Need::new(format!("{what} of {}", path.display()), length, taken)])
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What a packed file may unpack to \[byte\]: a flat picture packs so well that a small file would take all memory.
+pub const fn most_unpacked(file_length: u64) -> u64 {
+    (256 << 20) + 64 * file_length
 }
 
 /// What may be taken \[MiB\], by the value of the variable.

@@ -12,7 +12,7 @@ use crate::{BodyError, Mesh};
 
 /// The most vertices and the most triangles of one body, and those of a small file.
 const COUNT_LIMIT: usize = 16 << 20;
-const LEAST_COUNT_LIMIT: usize = 1 << 17;
+const LEAST_COUNT_LIMIT: usize = 1 << 16;
 /// The deepest nesting of nodes.
 const DEPTH_LIMIT: usize = 64;
 

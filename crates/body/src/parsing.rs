@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use glam::Vec3;
-use strandline_base::memory::{self, Need};
-use strandline_base::read_plain;
+use strandline_base::{memory, read_plain};
 
 use crate::BodyError;
 
@@ -17,10 +16,7 @@ pub(crate) type Refusal = (String, &'static str);
 
 /// The bytes of a plain file, unless it is too large or would take more memory than may be taken.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, BodyError> {
-    let length = std::fs::metadata(path).map_or(0, |found| found.len());
-    if length <= FILE_LIMIT {
-        memory::check(&[Need::new(format!("the body of {}", path.display()), length, TAKEN)])?;
-    }
+    memory::check_file("the body", path, FILE_LIMIT, TAKEN)?;
     read_plain(path, FILE_LIMIT).map_err(|source| BodyError::Read { path: path.into(), source })
 }
 

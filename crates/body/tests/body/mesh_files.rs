@@ -269,6 +269,25 @@ fn check_sound(mesh: &Mesh) {
     assert!(mesh.closed().is_closed());
 }
 
+/// A mesh that many nodes place again makes much of a small file.
+#[test]
+fn what_a_small_gltf_repeats_is_limited() {
+    let repeated = |nodes: usize| {
+        let roots = (0..nodes).map(|node| node.to_string()).collect::<Vec<_>>().join(",");
+        let json = cube_json("{}", None)
+            .replace(r#""nodes": [0]"#, &format!(r#""nodes": [{roots}]"#))
+            .replace(r#"{"children": [1]}, {"mesh": 0, "skin": 0}"#, &vec![r#"{"mesh":0}"#; nodes].join(","))
+            .replace(r#""skins": [{"joints": [0]}],"#, "");
+        files::glb(&json, &files::cube_bin())
+    };
+    // Twelve triangles and 36 corners each: 65,536 are the most for so small a file.
+    let mesh = Mesh::from_gltf(&repeated(1000)).unwrap();
+    assert_eq!(mesh.triangles.len(), 12_000);
+    assert!(Mesh::from_gltf(&repeated(3000)).is_ok());
+    let error = Mesh::from_gltf(&repeated(5500)).unwrap_err().to_string();
+    assert!(error.contains("more than 65536 vertices or triangles"), "{error}");
+}
+
 /// Damage to a file: bytes replaced, taken out and put in, and an early end.
 fn damage() -> impl Strategy<Value = Vec<(u8, prop::sample::Index, u8)>> {
     // Digits, signs and separators find more than arbitrary bytes do.

@@ -112,3 +112,22 @@ impl Roots {
         ((cell.z * self.size.y + cell.y) * self.size.x + cell.x) as usize
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Roots that fill a box, not a surface: cells as for a surface would be 96 x 96 x 96.
+    #[test]
+    fn roots_in_a_box_have_few_cells_for_each() {
+        let features: Vec<_> = (0..40_000_i32)
+            .map(|root| {
+                let place = IVec3::new(root % 34, root / 34 % 34, root / 34 / 34);
+                Feature { root: place.as_vec3(), shape: [Vec3::ZERO; 3], group: 0 }
+            })
+            .collect();
+        let roots = Roots::new(&features);
+        assert!(roots.cell_count() <= 4 * features.len() + 8, "{} cells", roots.cell_count());
+        assert_eq!(roots.occupied().iter().map(|cell| roots.members(*cell).len()).sum::<usize>(), 40_000);
+    }
+}

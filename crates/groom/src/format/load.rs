@@ -2,9 +2,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use strandline_base::math;
-use strandline_base::memory::{self, Need};
-use strandline_base::{Key, Kind, Row, SettingError, Value, WholeFile, choices, read_plain};
+use strandline_base::{Key, Kind, Row, SettingError, Value, WholeFile, choices, math, memory, read_plain};
 
 use super::report::Report;
 use super::{
@@ -153,10 +151,7 @@ pub fn load_all(paths: &[PathBuf], options: &LoadOptions) -> Result<Loaded, Groo
 fn parse(path: &Path, options: &LoadOptions) -> Result<Parsed, GroomError> {
     let format = Format::of(path)?;
     let file = |source| GroomError::File { action: "read", path: path.to_owned(), source };
-    let length = std::fs::metadata(path).map_or(0, |found| found.len());
-    if length <= MAX_FILE_BYTES {
-        memory::check(&[Need::new(format!("the groom of {}", path.display()), length, TAKEN)])?;
-    }
+    memory::check_file("the groom", path, MAX_FILE_BYTES, TAKEN)?;
     let bytes = read_plain(path, MAX_FILE_BYTES).map_err(file)?;
     match format.read {
         Reader::Bytes(read) => read(&bytes, options.per_strand).map_err(|error| error.of(path)),

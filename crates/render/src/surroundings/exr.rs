@@ -7,14 +7,12 @@ use exr::math::Vec2;
 use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers, RgbChannels};
 use glam::Vec3;
+use strandline_base::memory;
 
 use super::size::{MAX_PIXELS, check_size};
 
 /// Most bytes of a block of rows or of a tile with all its channels: it is unpacked as a whole.
 const MAX_BLOCK: usize = 1 << 27;
-/// What a file may unpack to \[byte\], and besides for each of its bytes.
-const UNPACKED: usize = 256 << 20;
-const TIMES: usize = 64;
 /// What such a file begins with.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
@@ -29,13 +27,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<(usize, usize, Vec<Vec3>), String> {
             check_size(size.0, size.1)?;
         }
         let unpacked = size.0.saturating_mul(size.1).saturating_mul(size_of::<Vec3>());
-        if unpacked > UNPACKED + TIMES * bytes.len() {
+        let most = memory::most_unpacked(bytes.len() as u64);
+        if unpacked as u64 > most {
+            let (width, height, unpacked) = (size.0, size.1, unpacked >> 20);
             return Err(format!(
-                "{} x {} pixels in {} bytes, expected no more than {} MiB of them or {TIMES} times the file",
-                size.0,
-                size.1,
-                bytes.len(),
-                UNPACKED >> 20
+                "{width} x {height} pixels, which unpack to {unpacked} MiB, expected {} at most",
+                most >> 20
             ));
         }
         let block = header.max_block_pixel_size();
@@ -108,7 +105,7 @@ mod tests {
         let picture = Image::from_encoded_channels((8192, 4096), Encoding::SMALL_LOSSLESS, flat);
         picture.write().non_parallel().to_buffered(&mut file).unwrap();
         let error = read(&file.into_inner()).unwrap_err();
-        assert!(error.contains("8192 x 4096 pixels in"), "{error}");
+        assert!(error.contains("8192 x 4096 pixels, which unpack to 384 MiB"), "{error}");
     }
 
     #[test]

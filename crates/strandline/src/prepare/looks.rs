@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use image::{DynamicImage, ImageFormat, ImageReader};
-use strandline_base::{SettingError, math, read_plain};
+use strandline_base::{SettingError, math, memory, read_plain};
 
 use crate::{
     Error, Scene,
@@ -204,10 +204,6 @@ impl Maps {
     }
 }
 
-/// What a map may unpack to \[byte\], and besides for each byte of its file.
-const UNPACKED: u64 = 256 << 20;
-const TIMES: u64 = 64;
-
 /// A picture over the scalp.
 struct Map {
     picture: DynamicImage,
@@ -217,15 +213,15 @@ impl Map {
     fn load(path: &Path) -> Result<Self, Error> {
         let refuse = |message: String| Error::Map { path: path.to_owned(), message };
         let bytes = read_plain(path, Scene::MAX_MAP_BYTES).map_err(|error| refuse(error.to_string()))?;
-        let most = UNPACKED + TIMES * bytes.len() as u64;
+        let most = memory::most_unpacked(bytes.len() as u64);
         let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
         let (mut limits, side) = (image::Limits::default(), Scene::MAX_MAP_SIDE);
         (limits.max_image_width, limits.max_image_height) = (Some(side), Some(side));
         limits.max_alloc = Some(most);
         reader.limits(limits);
         let expected = format!(
-            "expected a .png of at most {side} x {side} pixels and {} MiB of them, or {TIMES} times the file",
-            UNPACKED >> 20
+            "expected a .png of at most {side} x {side} pixels that unpack to {} MiB at most",
+            most >> 20
         );
         let picture = reader.decode().map_err(|error| refuse(format!("{error}, {expected}")))?;
         Ok(Self {
