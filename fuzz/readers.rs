@@ -12,7 +12,7 @@ use strandline::render::surroundings::{Panorama, Surroundings};
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 16] = [
+pub const TARGETS: [(&str, Target); 19] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
     ("project", project_file),
@@ -24,11 +24,14 @@ pub const TARGETS: [(&str, Target); 16] = [
     ("lines", lines),
     ("obj", obj),
     ("gltf", gltf),
+    ("beside", beside),
     ("scene", scene),
     ("pose", pose),
+    ("attributes", attributes),
     ("cache", cache),
     ("grid", grid),
     ("surroundings", surroundings),
+    ("map", map),
 ];
 
 /// Strands and points that a pose is read for.
@@ -106,6 +109,27 @@ pub fn gltf(bytes: &[u8]) -> bool {
     Mesh::from_gltf(bytes).is_ok_and(|mesh| solid(&mesh))
 }
 
+/// A glTF file in a folder, with files beside it, below it and outside: none from outside is read.
+pub fn beside(bytes: &[u8]) -> bool {
+    const OUTSIDE: f32 = 12_345.0;
+    static FOLDER: std::sync::OnceLock<std::path::PathBuf> = std::sync::OnceLock::new();
+    let folder = FOLDER.get_or_init(|| {
+        let outer = std::env::temp_dir().join(format!("strandline-beside-{}", std::process::id()));
+        std::fs::create_dir_all(outer.join("inner/below")).expect("a folder");
+        let triangle = |at: f32| [at, 0.0, 0.0, at, 1.0, 0.0, at, 0.0, 1.0].map(f32::to_le_bytes).concat();
+        for (name, at) in [("a.bin", OUTSIDE), ("inner/a.bin", 1.0), ("inner/below/a.bin", 2.0)] {
+            std::fs::write(outer.join(name), triangle(at)).expect("a file");
+        }
+        outer.join("inner")
+    });
+    let path = folder.join("a.gltf");
+    std::fs::write(&path, bytes).expect("a file");
+    Mesh::load(&path, 1.0).is_ok_and(|mesh| {
+        assert!(mesh.positions.iter().all(|position| position.x != OUTSIDE), "a file from outside was read");
+        solid(&mesh)
+    })
+}
+
 fn solid(mesh: &Mesh) -> bool {
     assert_eq!(mesh.normals.len(), mesh.positions.len());
     assert!(mesh.positions.iter().all(|position| position.is_finite()));
@@ -166,6 +190,27 @@ pub fn scene(bytes: &[u8]) -> bool {
 /// The pose of hair is read or refused.
 pub fn pose(bytes: &[u8]) -> bool {
     strandline::check_pose(bytes, POSE).is_ok()
+}
+
+/// Masses and velocities of hair are read or refused.
+pub fn attributes(bytes: &[u8]) -> bool {
+    let mut groom = Groom::empty(8e-5);
+    (0..POSE[0]).for_each(|_| groom.push([[0.0; 3], [0.0, -1.0, 0.0]].map(Into::into)));
+    let mut guides = Guides::resample(&groom, POSE[1]).expect("a groom with a strand");
+    let is_read = strandline::check_attributes(bytes, &mut guides).is_ok();
+    assert!(guides.masses().into_iter().flatten().all(|mass| mass.is_finite() && *mass > 0.0));
+    assert!(guides.velocities().into_iter().flatten().all(|velocity| velocity.is_finite()));
+    is_read
+}
+
+/// A map over the scalp is read or refused; what was read is light at every place.
+pub fn map(bytes: &[u8]) -> bool {
+    [[0.0, 0.0], [1.0, 1.0], [0.3, 0.7], [-1e30, 1e30]].into_iter().all(|uv| {
+        strandline::read_map(bytes, uv.into()).is_ok_and(|(color, share)| {
+            assert!(color.is_finite() && (0.0..=1.0).contains(&share), "{color} {share} at {uv:?}");
+            true
+        })
+    })
 }
 
 /// A moving cache is read, every frame of it, or refused.

@@ -35,12 +35,12 @@ pub fn finish() {
     written(stdout().flush());
 }
 
-/// Ends the program when nobody reads on, as the system would: quietly, since whoever read has seen enough
-/// (`| head`). On a full disk with an error. No file is half written while something is printed.
+/// When nobody reads on, who read has seen enough (`| head`): that is no error, and the run goes on to its end and its
+/// code, with nobody to print to. A full disk ends the program with an error.
 pub fn written(outcome: Result<()>) {
     match outcome {
         Ok(()) => {}
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => exit::end_now(exit::SUCCESS),
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
         Err(error) => {
             complain(&format!("cannot write to the standard output: {error}"));
             exit::end_now(exit::FAILURE)

@@ -178,4 +178,32 @@ mod tests {
             }
         }
     }
+
+    /// Thin triangles that meet in a vertex, and those that meet in an edge: twice as many take twice as long.
+    #[test]
+    fn work_grows_as_triangles_do() {
+        let middle = DVec3::splat(30.0);
+        let visits = |count: u32, at_edge: bool| {
+            let rim = |index: u32| {
+                let (sine, cosine) = (std::f64::consts::TAU * f64::from(index) / f64::from(count)).sin_cos();
+                middle + 28.0 * DVec3::new(sine, 0.0, cosine)
+            };
+            let mut visits = 0_u64;
+            for index in 0..count {
+                let corners = if at_edge {
+                    [middle + 28.0 * DVec3::Y, middle - 28.0 * DVec3::Y, rim(index)]
+                } else {
+                    [middle + 28.0 * DVec3::Y, rim(index), rim(index + 1)]
+                };
+                Seen::new(&corners).for_each_node_beside(DVec3::ZERO, DVec3::splat(60.0), |_| visits += 1);
+            }
+            visits as f64
+        };
+        for at_edge in [false, true] {
+            for count in [1000, 2000, 4000] {
+                let growth = visits(2 * count, at_edge) / visits(count, at_edge);
+                assert!(growth < 2.02, "{growth} from {count} on");
+            }
+        }
+    }
 }

@@ -39,6 +39,15 @@ fn give(bytes: &[u8], guides: &mut Guides) -> Result<(), String> {
     guides.set_velocities(velocities).map_err(|error| error.to_string())
 }
 
+/// Whether the bytes of a file hold masses or velocities for guides.
+///
+/// # Errors
+/// What they are instead.
+#[doc(hidden)]
+pub fn check_attributes(bytes: &[u8], guides: &mut Guides) -> Result<(), String> {
+    give(bytes, guides)
+}
+
 /// The numbers of a tensor, where there is one of its name.
 fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Option<Vec<f32>>, String> {
     let Ok(tensor) = tensors.tensor(name) else { return Ok(None) };

@@ -55,6 +55,7 @@ pub use strandline_groom as groom;
 pub use strandline_render as render;
 pub use strandline_sim as sim;
 
+pub use attributes::check_attributes;
 pub use body::{Motion, Pose};
 pub use bound::BoundStrands;
 pub use cache::{Cache, OutSettings, Target, What, Written, check_cache};
@@ -68,7 +69,7 @@ pub use head::HeadMotion;
 pub use live::{Command, Live, News, Shown};
 pub use pick::Ray;
 pub use player::{Event, Player};
-pub use prepare::Prepared;
+pub use prepare::{Prepared, read_map};
 pub use render::{Camera, Light, Look, Picture};
 pub use scene::Scene;
 pub use sim::{Backend, Settings};

@@ -28,6 +28,10 @@ fn a_run_says_where_goes_on_and_ends_with_3() {
         assert_eq!(output.status.code(), Some(3), "{arguments:?}: {error}");
         assert!(error.contains("frame 0, strand 0"), "{arguments:?}: {error}");
     }
+    // Whether anybody reads what is printed or not.
+    let mut unread = strandline(at, &sim).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    drop(unread.stdout.take());
+    assert_eq!(unread.wait().unwrap().code(), Some(3));
     let names = names(&at.join("film"));
     assert_eq!(names.iter().filter(|name| name.starts_with("frame_")).count(), 4, "{names:?}");
     let output = run(at, &sim);

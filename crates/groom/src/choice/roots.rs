@@ -130,4 +130,31 @@ mod tests {
         assert!(roots.cell_count() <= 4 * features.len() + 8, "{} cells", roots.cell_count());
         assert_eq!(roots.occupied().iter().map(|cell| roots.members(*cell).len()).sum::<usize>(), 40_000);
     }
+
+    /// What is nearest to each is found among about as many, however many there are, on a surface and in a box.
+    #[test]
+    fn looks_for_each_do_not_grow_with_all() {
+        let looks = |place: fn(i32) -> IVec3, count: i32| {
+            let feature = |root| Feature { root: place(root).as_vec3(), shape: [Vec3::ZERO; 3], group: 0 };
+            let features: Vec<_> = (0..count).map(feature).collect();
+            let roots = Roots::new(&features);
+            let mut looks = 0.0;
+            for feature in &features {
+                let mut nearest = [f32::INFINITY; 4];
+                roots.outward(feature.root, |other| {
+                    looks += 1.0;
+                    nearest[3] = nearest[3].min(features[other].root.distance(feature.root));
+                    nearest.sort_by(f32::total_cmp);
+                    nearest[3]
+                });
+            }
+            looks / f64::from(count)
+        };
+        let surface = |root| IVec3::new(root % 100, 0, root / 100);
+        let full = |root| IVec3::new(root % 20, root / 20 % 20, root / 400);
+        for (place, count) in [(surface as fn(i32) -> IVec3, 5000), (full, 4000)] {
+            let (few, many) = (looks(place, count), looks(place, 4 * count));
+            assert!(many < 1.3 * few, "{few} looks become {many}");
+        }
+    }
 }

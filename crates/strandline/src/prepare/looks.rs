@@ -204,6 +204,16 @@ impl Maps {
     }
 }
 
+/// The linear colour and the share of white that a map over the scalp, the bytes of its file, has at a place.
+///
+/// # Errors
+/// The bytes are no map.
+#[doc(hidden)]
+pub fn read_map(bytes: &[u8], uv: Vec2) -> Result<(Vec3, f32), String> {
+    let map = Map::parse(bytes.to_vec())?;
+    Ok((map.color(uv), map.share(uv)))
+}
+
 /// A picture over the scalp.
 struct Map {
     picture: DynamicImage,
@@ -213,6 +223,10 @@ impl Map {
     fn load(path: &Path) -> Result<Self, Error> {
         let refuse = |message: String| Error::Map { path: path.to_owned(), message };
         let bytes = read_plain(path, Scene::MAX_MAP_BYTES).map_err(|error| refuse(error.to_string()))?;
+        Self::parse(bytes).map_err(refuse)
+    }
+
+    fn parse(bytes: Vec<u8>) -> Result<Self, String> {
         let most = memory::most_unpacked(bytes.len() as u64);
         let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
         let (mut limits, side) = (image::Limits::default(), Scene::MAX_MAP_SIDE);
@@ -223,7 +237,7 @@ impl Map {
             "expected a .png of at most {side} x {side} pixels that unpack to {} MiB at most",
             most >> 20
         );
-        let picture = reader.decode().map_err(|error| refuse(format!("{error}, {expected}")))?;
+        let picture = reader.decode().map_err(|error| format!("{error}, {expected}"))?;
         Ok(Self {
             picture: if picture.color().has_color() {
                 picture.into_rgb8().into()

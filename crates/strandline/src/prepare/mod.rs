@@ -8,6 +8,8 @@ mod placing;
 mod strands;
 mod wrap;
 
+pub use looks::read_map;
+
 use glam::Vec3;
 
 use body::Body;

@@ -1,6 +1,9 @@
 //! Small files made to take much: each is read or refused in seconds and within half a gigabyte.
 #![cfg(target_os = "linux")]
 
+mod grooms;
+mod pictures;
+
 use std::fmt::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -51,13 +54,22 @@ fn give(name: &str, bytes: &[u8]) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(name), bytes).unwrap();
     std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+    if name.ends_with("hdr") || name.ends_with("exr") {
+        let lit = format!("surroundings.file = \"{name}\"\n{SCENE}picture = {{ width = 16, height = 16 }}\n");
+        std::fs::write(folder.path().join("lit.toml"), lit).unwrap();
+    }
     if name.ends_with("png") {
-        write_mapped(folder.path(), name);
+        pictures::write_mapped(folder.path(), name);
     }
     let scene = ["sim", "--scene", "scene.toml"];
     let arguments = match name.rsplit_once('.').unwrap().1 {
         "toml" => vec!["sim", "--scene", name],
-        "hair" | "tfx" => [&scene[..], &["--groom", name]].concat(),
+        "hdr" | "exr" => vec!["render", "--scene", "lit.toml", "--backend", "cpu", "--out", "out"],
+        "npz" if name.starts_with("groom") => [&scene[..], &["--groom", name]].concat(),
+        "obj" if name.starts_with("lines") => [&scene[..], &["--groom", name]].concat(),
+        "hair" | "tfx" | "data" | "bin" | "ply" | "npy" | "tfxproj" => {
+            [&scene[..], &["--groom", name]].concat()
+        }
         // With the scene that it names, and with this one.
         "npz" if name.starts_with("own") => vec!["render", "--cache", name, "--out", "out"],
         "npz" => vec!["render", "--cache", name, "--scene", "scene.toml", "--out", "out"],
@@ -186,22 +198,6 @@ fn strips_of_bytes_and_meshes_that_are_repeated() {
 }
 
 #[test]
-fn grooms_that_claim_much_or_hold_many() {
-    let header = |strands: u32, points: u32, flags: u32, segments: u32| {
-        let mut bytes = b"HAIR".to_vec();
-        [strands, points, flags, segments].iter().for_each(|number| bytes.extend(number.to_le_bytes()));
-        bytes.resize(128, 0);
-        bytes
-    };
-    give("claims.hair", &header(8_000_000, 16_000_000, 2, 1));
-    let mut many = header(43_000, 86_000, 2, 1);
-    let mut next = numbers();
-    (0..86_000 * 3).for_each(|_| many.extend((next() as f32).to_le_bytes()));
-    give("many.hair", &many);
-    give("zeros.tfx", &[0; LARGEST]);
-}
-
-#[test]
 fn scenes_of_many_sections() {
     for section in [
         "[[lights]]\n",
@@ -290,36 +286,4 @@ fn caches_that_unpack_to_much() {
     let mut giant = bomb;
     giant[4] = ("meta.npy", &most, &zeros, 700_000_000 >> 16);
     give("own.npz", &cache(&giant));
-}
-
-/// A scene whose groom takes its colours from a picture.
-fn write_mapped(folder: &Path, name: &str) {
-    let mut groom = strandline::Groom::empty(8e-5);
-    for x in 0..8 {
-        groom.push((0..4).map(|point| glam::Vec3::new(0.01 * x as f32, -0.02 * point as f32, 0.1)));
-    }
-    groom.root_uvs = Some(vec![glam::Vec2::splat(0.5); 8]);
-    strandline::groom::format::save(&groom, &folder.join("mapped.npz")).unwrap();
-    let scene = format!(
-        "film = {{ frames = 1, settle = 0.0 }}\npicture = {{ width = 16, height = 16 }}\nlook.color_map = \"{name}\"\n\
-         groom.file = \"mapped.npz\"\n[devices]\nsimulation = \"cpu\"\npictures = \"cpu\"\n"
-    );
-    std::fs::write(folder.join("mapped.toml"), scene).unwrap();
-}
-
-#[test]
-fn pictures_that_unpack_to_much() {
-    use image::DynamicImage;
-    use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-    let side = 8192;
-    for (name, picture) in [
-        ("flat16.png", DynamicImage::new_rgba16(side, side)),
-        ("flat8.png", DynamicImage::new_rgb8(side, side)),
-        ("grey.png", DynamicImage::new_luma16(side, side)),
-    ] {
-        let mut file = Vec::new();
-        let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::NoFilter);
-        picture.write_with_encoder(encoder).unwrap();
-        give(name, &file);
-    }
 }
