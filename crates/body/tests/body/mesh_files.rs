@@ -274,18 +274,20 @@ fn check_sound(mesh: &Mesh) {
 fn what_a_small_gltf_repeats_is_limited() {
     let repeated = |nodes: usize| {
         let roots = (0..nodes).map(|node| node.to_string()).collect::<Vec<_>>().join(",");
+        let part = r#"{"attributes": {"POSITION": 0}, "indices": 1}"#;
         let json = cube_json("{}", None)
             .replace(r#""nodes": [0]"#, &format!(r#""nodes": [{roots}]"#))
-            .replace(r#"{"children": [1]}, {"mesh": 0, "skin": 0}"#, &vec![r#"{"mesh":0}"#; nodes].join(","))
-            .replace(r#""skins": [{"joints": [0]}],"#, "");
+            .replace(r#"{"children": [1]}, {"mesh": 0, "skin": 0}"#, &vec![r#"{"mesh": 0}"#; nodes].join(","))
+            .replace(r#""skins": [{"joints": [0]}],"#, "")
+            .replace(part, &vec![part; 50].join(","));
         files::glb(&json, &files::cube_bin())
     };
-    // Twelve triangles and 36 corners each: 65,536 are the most for so small a file.
-    let mesh = Mesh::from_gltf(&repeated(1000)).unwrap();
-    assert_eq!(mesh.triangles.len(), 12_000);
-    assert!(Mesh::from_gltf(&repeated(3000)).is_ok());
-    let error = Mesh::from_gltf(&repeated(5500)).unwrap_err().to_string();
-    assert!(error.contains("more than 65536 vertices or triangles"), "{error}");
+    // 600 triangles for each node: 65,536 are the most for so small a file.
+    for nodes in [20, 109] {
+        assert_eq!(Mesh::from_gltf(&repeated(nodes)).unwrap().triangles.len(), 600 * nodes);
+    }
+    let refused = Mesh::from_gltf(&repeated(110)).map(|mesh| mesh.triangles.len());
+    assert!(refused.unwrap_err().to_string().contains("more than 65536 vertices or triangles"));
 }
 
 /// Damage to a file: bytes replaced, taken out and put in, and an early end.
