@@ -3,7 +3,8 @@
 //! [`Settings`] are plain data in SI units, a [`Solver`] is compiled once and never changes, a
 //! [`State`] is all that changes with time.
 
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
+// but for instructions of eight lanes: strands/rods/avx.rs
 // Some of what is here is asked for by the kernels alone.
 #![cfg_attr(not(feature = "gpu"), allow(dead_code))]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded

@@ -224,7 +224,7 @@ impl Strands<'_> {
             tolerance: f64::from(self.parts.settings.tolerance),
             damping: f64::from(self.parts.settings.damping),
         };
-        let solved = work.solve(self.nodes, &space.pulls, &settings);
+        let solved = space.solve(self.nodes, &settings);
         for (point, carried) in space.carried.iter_mut().enumerate() {
             let [x, y, z, _] = space.work.moved[point];
             *carried += Vector::new(x, y, z);

@@ -9,6 +9,7 @@ impl<R: Real> Work<R> {
     /// Assembles the gradient and the Hessian, and eliminates from root to tip; with `turns` 0 only the Hessian's
     /// positive part. Tells the force \[N\] with which a solid presses each strand at most, and 1 where what was
     /// eliminated is positive definite, else 0.
+    #[inline(always)]
     pub(super) fn factorise(
         &mut self,
         rod: &[Node<R>],
@@ -68,18 +69,14 @@ impl<R: Real> Work<R> {
         let (mut acts, mut holds, mut solid) = (pull.stiffness, none, none);
         let mut slip = Vector::zero();
         if pull.one_sided {
-            let along = |place: Vector<R>| {
-                let slip = place - pull.stuck;
-                slip - normal * normal.dot(slip)
-            };
-            slip = along(here);
+            slip = pull.slip(here);
             solid = missing * pull.stiffness;
             let (mut size, mut rate) = (slip.length(), pull.stiffness);
             if first {
                 let wanted = vector(self.wanted[pull.node]);
                 rate = pull.stiffness.choose(inertia, none);
                 solid = solid.or_more((pull.reach - normal.dot(wanted)) * rate);
-                size = along(wanted).length();
+                size = pull.slip(wanted).length();
             }
             solid = solid.or_more(none);
             acts = solid.choose(pull.stiffness, none);
@@ -141,10 +138,12 @@ impl<R: Real> Work<R> {
         let (lower, upper) = (&self.segments[index - 1], &self.segments[index]);
         let joint = Joint::new(lower, upper);
         let [first, second, twist] = joint.slopes(lower, upper);
-        let spring = |axis: usize, slope: Slope<R>| {
-            Spring::new(slope, node.stiffness[axis] * stiffer, self.rest[index][axis] - joint.strains[axis])
-        };
-        let springs = [spring(0, first), spring(1, second), spring(2, twist)];
+        let (stiffness, rest, strains) = (&node.stiffness, &self.rest[index], &joint.strains);
+        let springs = [
+            Spring::new(first, stiffness[0] * stiffer, rest[0] - strains[0]),
+            Spring::new(second, stiffness[1] * stiffer, rest[1] - strains[1]),
+            Spring::new(twist, stiffness[2] * stiffer, rest[2] - strains[2]),
+        ];
         let turns = -turns;
         let turnings = joint.turnings(lower, upper, [springs[0].moment * turns, springs[1].moment * turns]);
         let (pull, stretch) = self.tension(index, node);

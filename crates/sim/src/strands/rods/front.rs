@@ -80,6 +80,7 @@ pub struct Factors<R> {
 
 impl<R: Real> Factors<R> {
     /// No factors: unknowns that stay.
+    #[inline(always)]
     pub fn zero() -> Self {
         Self { below: [[R::of(0.0); ROWS]; UNKNOWNS], solved: [R::of(0.0); UNKNOWNS] }
     }
@@ -92,6 +93,7 @@ pub struct Front<R> {
 }
 
 impl<R: Real> Default for Front<R> {
+    #[inline(always)]
     fn default() -> Self {
         Self { entries: [R::of(0.0); ENTRIES], right: [R::of(0.0); ROWS] }
     }

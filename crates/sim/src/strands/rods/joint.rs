@@ -149,22 +149,31 @@ impl<R: Real> Joint<R> {
     /// as large as those of a style's weight.
     #[inline(always)]
     pub fn turnings(&self, lower: &Segment<R>, upper: &Segment<R>, moments: [R; 2]) -> [Turning<R>; 2] {
+        [self.turning(lower, lower, upper, moments), self.turning(upper, lower, upper, moments)]
+    }
+
+    // Not a closure: of one that is not compiled into its caller every operation would be a call.
+    #[inline(always)]
+    fn turning(
+        &self,
+        section: &Segment<R>,
+        lower: &Segment<R>,
+        upper: &Segment<R>,
+        moments: [R; 2],
+    ) -> Turning<R> {
         let half = R::of(0.5);
         let mean_tangent = (lower.tangent + upper.tangent) * self.inverse_sum;
         let (per_lower, per_upper) = (R::of(1.0) / lower.length, R::of(1.0) / upper.length);
-        let turning = |section: &Segment<R>| {
-            let (across, second) = (section.across, section.second());
-            let moment = across * moments[0] + second * moments[1];
-            let other = second * moments[0] - across * moments[1];
-            let along = mean_tangent * (moment.dot(self.binormal) * half);
-            let moment = moment * self.inverse_sum;
-            Turning {
-                lower: (along - upper.tangent.cross(moment)) * per_lower,
-                upper: (along + lower.tangent.cross(moment)) * per_upper,
-                angle: -(other.dot(self.binormal) * half),
-            }
-        };
-        [turning(lower), turning(upper)]
+        let (across, second) = (section.across, section.second());
+        let moment = across * moments[0] + second * moments[1];
+        let other = second * moments[0] - across * moments[1];
+        let along = mean_tangent * (moment.dot(self.binormal) * half);
+        let moment = moment * self.inverse_sum;
+        Turning {
+            lower: (along - upper.tangent.cross(moment)) * per_lower,
+            upper: (along + lower.tangent.cross(moment)) * per_upper,
+            angle: -(other.dot(self.binormal) * half),
+        }
     }
 }
 

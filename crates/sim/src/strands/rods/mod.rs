@@ -5,6 +5,11 @@
 #![allow(clippy::needless_range_loop)]
 
 mod assemble;
+#[cfg(target_arch = "x86_64")]
+mod avx;
+#[cfg(not(target_arch = "x86_64"))]
+#[path = "no_avx.rs"]
+mod avx;
 pub mod front;
 pub mod hair_kind;
 pub(crate) mod hairs;

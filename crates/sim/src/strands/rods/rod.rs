@@ -44,6 +44,7 @@ impl<R: Real> Node<R> {
     }
 
     /// The node with each of its numbers taken for another.
+    #[inline(always)]
     pub fn map<S: Real>(&self, to: impl Fn(R) -> S) -> Node<S> {
         Node {
             mass: to(self.mass),
@@ -77,6 +78,15 @@ pub struct Pull<R> {
     pub stuck: Vector<R>,
 }
 
+impl<R: Real> Pull<R> {
+    /// How far a displacement \[m\] is from where the node sticks, across the direction.
+    #[inline(always)]
+    pub(super) fn slip(&self, displacement: Vector<R>) -> Vector<R> {
+        let slip = displacement - self.stuck;
+        slip - self.normal * self.normal.dot(slip)
+    }
+}
+
 /// How a step is made.
 #[derive(Clone, Copy, Debug)]
 pub struct StepSettings {
@@ -91,6 +101,7 @@ pub struct StepSettings {
 }
 
 /// What a step works in.
+#[derive(Clone)]
 pub struct Work<R> {
     /// Displacement of each point \[m\] and angle of each segment \[rad\] since the start.
     pub moved: Vec<[R; UNKNOWNS]>,
@@ -151,6 +162,7 @@ impl<R: Real> Work<R> {
     /// An implicit Euler step: minimises inertia and elastic energy over all displacements and angles
     /// of the strand by Newton's method. A strand that is solved
     /// stays, whatever the others of its block need.
+    #[inline(always)]
     pub fn solve(&mut self, rod: &[Node<R>], pulls: &[Pull<R>], settings: &StepSettings) -> Solved<R> {
         let viscous = R::of(settings.damping / settings.time_step);
         let share = R::of(1.0) / (R::of(1.0) + viscous);
@@ -189,6 +201,7 @@ impl<R: Real> Work<R> {
 
     /// Turns the segments to where the guess takes them, each as long as it was: their tensions stay those of the
     /// shape that the head carried, which is what the first Newton step needs of them.
+    #[inline(always)]
     fn take_guess(&mut self, rod: &[Node<R>]) {
         let share = (R::of(FARTHEST_GUESS) - self.turn()).choose(R::of(1.0), R::of(0.0));
         let [x, y, z, _] = self.step[0];
@@ -227,6 +240,7 @@ impl<R: Real> Work<R> {
     /// Moves the strands that are not solved by the Newton step, shortened where a segment would turn too
     /// far. One that comes from a system that is not `sound` (0), or is no number, is none: the strand stays unsolved.
     /// Returns how far one turns at most \[rad\].
+    #[inline(always)]
     fn take_step(&mut self, unsolved: R, sound: R) -> R {
         let last = self.moved.len() - 1;
         // 0 for finite numbers, else not a number.
