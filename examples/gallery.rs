@@ -18,6 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         for event in Player::new(&scene, Backend::auto(), true)? {
             if let Event::Drawn { picture, .. } = event? {
+                assert!(!picture.is_blank(), "{style:?} shows nothing");
                 picture.save(folder.join(format!("{}.png", style.name())))?;
             }
         }

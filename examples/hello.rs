@@ -20,5 +20,8 @@ fn hello() -> Result<(), Error> {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     std::fs::create_dir_all("out/examples")?;
     std::env::set_current_dir("out/examples")?;
-    Ok(hello()?)
+    hello()?;
+    // Some 5 kB would be an empty picture.
+    assert!(std::fs::metadata("wavy.png")?.len() > 50_000, "no hair in wavy.png");
+    Ok(())
 }

@@ -45,6 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         rows.push(row);
     }
+    assert!(rows.iter().flatten().all(|picture| !picture.is_blank()), "a picture shows nothing");
     joined(&rows).save(folder.join("lights.png"))?;
     Ok(())
 }

@@ -54,7 +54,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             continue;
         }
         let start = Instant::now();
-        draw(&studio)?.save(folder.join(format!("{name}.png")))?;
+        let picture = draw(&studio)?;
+        assert!(!picture.is_blank(), "{name} shows nothing");
+        picture.save(folder.join(format!("{name}.png")))?;
         let of = if number.is_empty() { String::new() } else { format!("[Chen2011 fig. {number}]") };
         println!("{name:<18} {of:<19} {:>6.1} s", start.elapsed().as_secs_f64());
     }

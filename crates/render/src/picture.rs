@@ -22,6 +22,11 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Whether all pixels are alike: a picture of nothing.
+    pub fn is_blank(&self) -> bool {
+        self.pixels.chunks_exact(3).all(|pixel| *pixel == self.pixels[..3])
+    }
+
     /// Writes the picture as PNG. The file appears under its name only once it is complete.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ pub(crate) struct Engine {
     state: State,
     /// Whether the run goes on on the CPU when the GPU fails.
     pub fall_back: bool,
-    /// What happened on the way, for a person to read.
+    /// What happened on the way, human-readable.
     pub notes: Vec<String>,
 }
 
@@ -219,13 +219,14 @@ impl Engine {
         self.recover(failure)
     }
 
-    /// Goes on on the CPU from the last state, if that is wanted.
+    /// Falls back to the CPU, resuming from the last state, if allowed.
     fn recover(&mut self, failure: SimError) -> Result<(), SimError> {
         if !self.fall_back {
             return Err(failure);
         }
         self.place = Place::Cpu(self.solver().clone().into());
-        self.notes.push(format!("going on on the CPU from {:.3} s: {failure}", self.state.time));
+        self.notes
+            .push(format!("falling back to the CPU, resuming from {:.3} s: {failure}", self.state.time));
         Ok(())
     }
 }

@@ -273,7 +273,7 @@ impl Hair {
         self.studio.painter.drawn_on()
     }
 
-    /// What happened to the backend since the last call, for a person to read.
+    /// What happened to the backend since the last call, human-readable.
     pub fn take_notes(&mut self) -> Vec<String> {
         let mut notes = self.simulation.engine.take_notes();
         notes.append(&mut self.studio.painter.notes);

@@ -33,7 +33,7 @@ pub(crate) struct Painter {
     pub layers_of: Option<usize>,
     /// Whether pictures are drawn on the CPU when the GPU fails.
     pub fall_back: bool,
-    /// What happened on the way, for a person to read.
+    /// What happened on the way, human-readable.
     pub notes: Vec<String>,
 }
 
@@ -83,7 +83,7 @@ impl Painter {
         })
     }
 
-    /// Where the last picture was drawn, for a person to read.
+    /// Where the last picture was drawn, human-readable.
     pub fn drawn_on(&self) -> String {
         if self.stands_in { place(None) } else { place(self.gpu()) }
     }

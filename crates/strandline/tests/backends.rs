@@ -150,7 +150,10 @@ fn a_run_that_may_fall_back_goes_on_from_the_last_state() {
     assert_eq!(reports.len(), 1);
     assert_eq!(hair.simulated_on(), "cpu");
     let notes = hair.take_notes();
-    assert!(notes.len() == 1 && notes[0].contains("going on on the CPU from 0.100 s"), "{notes:?}");
+    assert!(
+        notes.len() == 1 && notes[0].contains("falling back to the CPU, resuming from 0.100 s"),
+        "{notes:?}"
+    );
     assert!(notes[0].contains(&gpu.adapter().name), "{notes:?}");
     assert_eq!(hair.state().previous_positions, before.positions, "no step is lost or repeated");
     let moved = apart(&hair.state().positions, &before.positions);

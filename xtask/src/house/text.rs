@@ -94,11 +94,13 @@ pub fn braced(text: &str) -> Option<usize> {
 
 /// Blanked code without what only tests compile, and the names of the modules of tests in files of their own.
 pub fn without_tests(code: &str) -> (String, Vec<String>) {
-    const MARK: &str = "#[cfg(test)]";
+    /// A test build alone, or one of some systems.
+    const MARKS: [&str; 2] = ["#[cfg(test)]", "#[cfg(all(test,"];
     let (mut out, mut modules, mut left) = (String::new(), Vec::new(), code);
-    while let Some(at) = left.find(MARK) {
+    while let Some(at) = MARKS.iter().filter_map(|mark| left.find(mark)).min() {
         out.push_str(&left[..at]);
-        let item = &left[at + MARK.len()..];
+        let marked = &left[at..];
+        let item = marked.find(']').map_or("", |end| &marked[end + 1..]);
         let end_of_line = item.find(';').map_or(item.len(), |at| at + 1);
         let end = match braced(item) {
             Some(end) if item[..end].find('{').is_some_and(|open| open < end_of_line) => end,
@@ -134,5 +136,8 @@ mod tests {
         let (code, modules) = without_tests("#[cfg(test)]\nmod tests;\nmod d { }");
         assert!(code.contains("mod d"));
         assert_eq!(modules, ["tests"]);
+        let (code, _) =
+            without_tests("fn a() {}\n#[cfg(all(test, unix))]\nmod tests { fn b() {} }\nfn c() {}");
+        assert!(code.contains("fn a") && code.contains("fn c") && !code.contains("fn b"));
     }
 }

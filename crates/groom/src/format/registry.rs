@@ -25,7 +25,7 @@ pub enum Reader {
 pub struct Format {
     /// The ending of its files, without the dot, in lower case.
     pub ending: &'static str,
-    /// What it is, for a person to read.
+    /// What it is, human-readable.
     pub about: &'static str,
     /// How it is read.
     pub read: Reader,

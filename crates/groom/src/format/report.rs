@@ -26,7 +26,7 @@ pub struct Report {
     pub attributes: Vec<&'static str>,
     /// Its groups by their numbers: names, where they have some, and strands.
     pub groups: BTreeMap<u32, GroupOf>,
-    /// What was odd or left out, for a person to read.
+    /// What was odd or left out, human-readable.
     pub problems: Vec<String>,
 }
 

@@ -85,7 +85,7 @@ impl Volume {
         self.kinds[cell]
     }
 
-    /// Makes a cell something else than [`mark`](super::mark::mark) found, for rooms that hair seldom makes.
+    /// Overrides the kind of a cell, so that tests can build closed cavities.
     pub fn set_kind(&mut self, cell: usize, kind: Kind) {
         let number = cell as u32;
         self.kinds[cell] = kind;

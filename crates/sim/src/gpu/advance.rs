@@ -1,4 +1,4 @@
-//! What the step was worth.
+//! Measures the step: stretch, penetration, non-finite points.
 
 use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel, mirror};
 

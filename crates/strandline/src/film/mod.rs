@@ -52,7 +52,7 @@ enum Moving {
 pub struct FilmFiles {
     /// Every file, in the order of writing.
     pub files: Vec<PathBuf>,
-    /// What could not be made and why, and what lies in the folder besides; for a person to read.
+    /// What could not be made and why, and what lies in the folder besides; human-readable.
     pub notes: Vec<String>,
     /// Whether ffmpeg began a video and there is none.
     pub video_failed: bool,

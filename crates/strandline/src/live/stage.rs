@@ -282,30 +282,32 @@ impl Stage {
             }
             Command::Grab(ray, radius) => self.grab(ray, radius).map_err(gone)?,
             Command::Release => self.release().map_err(gone)?,
-            simulated => self.change_simulation(simulated).map_err(gone)?,
+            Command::Settings(settings) => self
+                .act(Box::new(move |simulation| simulation.set_settings(&settings).map(|()| Vec::new())))
+                .map_err(gone)?,
+            Command::Length(scale) => self.set_length(scale).map_err(gone)?,
+            Command::Reset => self.reset().map_err(gone)?,
+            // What the desk does itself.
+            Command::Load(_)
+            | Command::Play(_)
+            | Command::Step
+            | Command::Save(..)
+            | Command::Adapt(_)
+            | Command::Record(_)
+            | Command::StopRecording => {}
         }
         Ok(())
     }
 
-    /// Does what a command says to the simulation, behind what it does now.
-    fn change_simulation(&mut self, command: Command) -> Result<(), Gone> {
-        match command {
-            Command::Settings(settings) => {
-                self.act(Box::new(move |simulation| simulation.set_settings(&settings).map(|()| Vec::new())))
-            }
-            Command::Length(scale) => {
-                let scales = vec![scale; self.studio.guides.strand_count()];
-                self.act(Box::new(move |simulation| {
-                    simulation.engine.set_length_scale(&scales).map(|()| Vec::new())
-                }))
-            }
-            Command::Reset => {
-                (self.hand, self.begun, self.time, self.counts) = (None, 0.0, 0.0, false);
-                let pose = self.head.pose(0.0);
-                self.act(Box::new(move |simulation| simulation.reset(pose).map(|()| Vec::new())))
-            }
-            _ => Ok(()),
-        }
+    fn set_length(&mut self, scale: f32) -> Result<(), Gone> {
+        let scales = vec![scale; self.studio.guides.strand_count()];
+        self.act(Box::new(move |simulation| simulation.engine.set_length_scale(&scales).map(|()| Vec::new())))
+    }
+
+    fn reset(&mut self) -> Result<(), Gone> {
+        (self.hand, self.begun, self.time, self.counts) = (None, 0.0, 0.0, false);
+        let pose = self.head.pose(0.0);
+        self.act(Box::new(move |simulation| simulation.reset(pose).map(|()| Vec::new())))
     }
 }
 

@@ -163,7 +163,7 @@ fn groups(look: &Look, groom: &Groom) -> Result<Vec<Option<usize>>, Error> {
     Ok(found)
 }
 
-/// The groups that a groom has, for a person to read.
+/// The groups that a groom has, human-readable.
 fn known(groom: &Groom) -> String {
     let mut numbers = groom.groups.clone().unwrap_or_default();
     numbers.sort_unstable();

@@ -44,7 +44,7 @@ pub struct Prepared {
     pub bounds: Aabb,
     /// The scene with what it leaves open chosen to fit its groom.
     pub scene: Scene,
-    /// What was mended or left out while loading, for a person to read.
+    /// What was mended or left out while loading, human-readable.
     pub notes: Vec<String>,
 }
 
