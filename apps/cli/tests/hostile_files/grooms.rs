@@ -90,3 +90,28 @@ fn projects_that_name_a_file_often() {
         assert!(peak <= MEMORY, "{lines} lines: {peak} MiB");
     }
 }
+
+/// What is asked for before a file is read is what reading takes, for the shortest numbers too.
+#[test]
+fn a_groom_takes_no_more_than_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let count = 4_000_000;
+    let head = format!(
+        "ply\nformat ascii 1.0\nelement vertex {count}\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+    );
+    let files = [
+        ("points.ply", head + &"0 0 0\n".repeat(count)),
+        ("lines.obj", "v 0 0 0\nv 1 0 0\nl -1 -2\n".repeat(count / 4)),
+    ];
+    // The program itself takes some 20 MiB.
+    let itself = 30;
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), &text).unwrap();
+        let format = strandline::groom::format::Format::of(Path::new(name)).unwrap();
+        let (code, peak, error) = run(folder.path(), &["convert", name, "out.hair", "--per-strand", "2"]);
+        assert!(matches!(code, Some(0 | 1)), "{name}: {error}");
+        let length = (text.len() >> 20) as u64;
+        assert!(peak < itself + format.taken * length, "{name}: {peak} MiB for {length}: {error}");
+        assert!(peak > format.taken * length / 2, "{name}: {peak} MiB for {length} show nothing");
+    }
+}

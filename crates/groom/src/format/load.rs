@@ -11,9 +11,6 @@ use super::{
 };
 use crate::{Groom, GroomError, Widths};
 
-/// Memory for each byte of a file \[byte\]: itself, and what it holds.
-const TAKEN: u64 = 2;
-
 /// Metres for each unit of a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ScaleText", into = "ScaleText")]
@@ -151,7 +148,7 @@ pub fn load_all(paths: &[PathBuf], options: &LoadOptions) -> Result<Loaded, Groo
 fn parse(path: &Path, options: &LoadOptions) -> Result<Parsed, GroomError> {
     let format = Format::of(path)?;
     let file = |source| GroomError::File { action: "read", path: path.to_owned(), source };
-    memory::check_file("the groom", path, MAX_FILE_BYTES, TAKEN)?;
+    memory::check_file("the groom", path, MAX_FILE_BYTES, format.taken)?;
     let bytes = read_plain(path, MAX_FILE_BYTES).map_err(file)?;
     match format.read {
         Reader::Bytes(read) => read(&bytes, options.per_strand).map_err(|error| error.of(path)),

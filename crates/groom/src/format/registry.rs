@@ -33,6 +33,9 @@ pub struct Format {
     pub write: Option<Write>,
     /// What it holds beside points.
     pub holds: &'static [Part],
+    /// Memory that reading takes at most for each byte of a file \[byte\]: the file, and what it holds. Text is shorter
+    /// than its numbers.
+    pub taken: u64,
 }
 
 /// All formats.
@@ -43,6 +46,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(|bytes, _| hair::read(bytes)),
         write: Some(hair::write),
         holds: &[Widths, WidthsAlong, Colors, Transparencies],
+        taken: 2,
     },
     Format {
         ending: "tfx",
@@ -50,6 +54,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(|bytes, _| tfx::read(bytes)),
         write: Some(tfx::write),
         holds: &[Widths, Colors, RootUvs],
+        taken: 2,
     },
     Format {
         ending: "tfxproj",
@@ -57,6 +62,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Project,
         write: None,
         holds: &[],
+        taken: 2,
     },
     Format {
         ending: "data",
@@ -64,6 +70,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(|bytes, _| data::read(bytes)),
         write: Some(data::write),
         holds: &[],
+        taken: 2,
     },
     Format {
         ending: "bin",
@@ -71,6 +78,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(|bytes, _| bin::read(bytes)),
         write: Some(bin::write),
         holds: &[],
+        taken: 2,
     },
     Format {
         ending: "ply",
@@ -78,6 +86,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(ply::read),
         write: Some(ply::write),
         holds: &Part::ALL,
+        taken: 8,
     },
     Format {
         ending: "npz",
@@ -85,6 +94,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(npz::read),
         write: Some(npz::write),
         holds: &Part::ALL,
+        taken: 2,
     },
     Format {
         ending: "npy",
@@ -92,6 +102,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(npy::read),
         write: Some(npy::write),
         holds: &[],
+        taken: 2,
     },
     Format {
         ending: "obj",
@@ -99,6 +110,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(|bytes, _| obj::read(bytes)),
         write: Some(obj::write),
         holds: &[Colors, Groups, GroupNames],
+        taken: 4,
     },
 ];
 
