@@ -333,6 +333,10 @@ law! {
             assert!(speed.distance(Vec3::X * 0.15) < 2.5e-3, "1/{rate} s: {speed}");
             let report = rig.steps(&second[second.len() / 2..]).pop().unwrap();
             assert_eq!(report.rods.unwrap().resting, 1, "1/{rate} s");
+            // Rest is rest, to the bit.
+            let still = rig.state().positions.clone();
+            rig.steps(&second[..20]);
+            assert_eq!(rig.state().positions, still, "1/{rate} s");
             // 0.4^2 / (2 * 0.5) m; steps are not the integral.
             let way = rig.state().positions[3].get(0).x;
             assert!((way - 0.16).abs() < 0.004, "1/{rate} s: {way} m");

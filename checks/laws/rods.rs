@@ -76,11 +76,12 @@ law! {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
                 settings.volume.enabled = volume;
                 let solver = style(name, &settings);
-                let state = stepped(on, &solver, on.either(1.5, 0.5), |_| Pose::IDENTITY);
+                let state = stepped(on, &solver, on.either(10.0, 0.5), |_| Pose::IDENTITY);
                 let (mean, most) = drift(&solver, &state);
                 // Of 2,000 strands of each style nothing moved by a bit in 5 s on the CPU, but for some two curls that
-                // lie so near the body that they are pushed: by 1.1 %, 0.001 % on average.
-                let (bound, largest) = if name == Style::Curly { (1e-3, 0.03) } else { (1e-5, 1e-3) };
+                // lie so near the body that they are pushed: by 1.1 %, 0.001 % on average; of these 120 by 0.26 %.
+                let largest = if volume { 1e-2 } else { 1e-3 };
+                let (bound, largest) = if name == Style::Curly { (1e-4, 1e-2) } else { (1e-5, largest) };
                 assert!(mean < bound && most < largest, "{name:?}, volume {volume}: {mean}, at most {most}");
             }
         }

@@ -27,7 +27,9 @@ pub struct SimReport {
     pub penetration_max_m: f32,
     pub drift: Spread,
     pub speed: Spread,
+    /// Strands of rods that had to be stiffer, and how many times stiffer the stiffest of them is.
     pub stiffened: usize,
+    pub stiffest: f32,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rods: Option<Rods>,
     #[serde(flatten)]
@@ -112,8 +114,8 @@ pub struct Ended {
     pub strands: usize,
     pub points_per_strand: usize,
     pub drift: Drift,
-    /// Strands of rods that had to be stiffer.
-    pub stiffened: usize,
+    /// Strands of rods that had to be stiffer, and how many times stiffer the stiffest of them is.
+    pub stiffened: (usize, f32),
     /// \[s\].
     pub time_step: f32,
     /// Of the pressure solve.
@@ -129,7 +131,7 @@ impl Ended {
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
             drift: player.drift(),
-            stiffened: player.stiffened().0,
+            stiffened: player.stiffened(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         }
@@ -178,7 +180,8 @@ impl Steps {
             penetration_max_m: self.penetration_max,
             drift: Spread { mean: drift.mean, max: drift.max },
             speed: self.speed((1.0 / end.time_step).round() as usize),
-            stiffened: end.stiffened,
+            stiffened: end.stiffened.0,
+            stiffest: end.stiffened.1,
             rods: self.rods,
             non_finite: self.non_finite.clone(),
             pcg: Pcg {
@@ -313,8 +316,9 @@ fn print(report: &SimReport) {
     print_line!("in the last second: mean {:.4} m/s, largest {:.3} m/s", report.speed.mean, report.speed.max);
     if let Some(rods) = &report.rods {
         print_line!(
-            "rods: {} stiffened, {} at rest, at most {} in a step not solved, residual {:.1e} rad",
+            "rods: {} stiffened, up to {:.1} times, {} at rest, at most {} in a step not solved, residual {:.1e} rad",
             report.stiffened,
+            report.stiffest,
             rods.resting,
             rods.unsolved_max,
             rods.residual_max_rad

@@ -106,7 +106,7 @@ fn sim_prints_one_object_and_the_same_physics_every_time() {
     assert_eq!(report["steps"], 10);
     let all =
         ["backend", "strands", "points_per_strand", "steps", "stretch", "penetration_max_m", "non_finite"];
-    for key in all.into_iter().chain(["pcg", "fluid_cells_mean", "drift", "speed", "stiffened"]) {
+    for key in all.into_iter().chain(["pcg", "fluid_cells_mean", "drift", "speed", "stiffened", "stiffest"]) {
         assert!(keys(&report).contains(&key), "{key}");
     }
     assert_eq!(report, run());
