@@ -6,6 +6,8 @@ use glam::Vec4;
 pub const TILE: usize = 32;
 /// Samples in a tile.
 pub const TILE_SAMPLES: usize = TILE * TILE;
+/// How many times the memory of a picture may be what the picture before it took.
+const SPARE: usize = 4;
 /// The triangle of a sample that shows no body.
 pub const NO_TRIANGLE: u32 = u32::MAX;
 
@@ -26,8 +28,12 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Takes a new size \[sample\]; keeps its memory when that suffices.
+    /// Takes a new size \[sample\]; keeps its memory when that suffices, unless it is [`SPARE`] times as much: a window
+    /// that was large once has hundreds of MB.
     pub fn resize(&mut self, width: usize, height: usize) {
+        if self.colors.capacity() > SPARE * width.div_ceil(TILE) * height.div_ceil(TILE) * TILE_SAMPLES {
+            *self = Self::default();
+        }
         self.width = width;
         self.height = height;
         self.columns = width.div_ceil(TILE);
@@ -81,5 +87,22 @@ impl Samples {
             let length = TILE.min(self.width - column * TILE);
             &self.colors[start + column * TILE_SAMPLES..][..length]
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_memory_of_a_picture_that_was_far_larger_is_given_back() {
+        let mut samples = Samples::default();
+        samples.resize(2000, 2000);
+        let large = samples.colors.capacity();
+        samples.resize(1500, 1500);
+        assert_eq!(samples.colors.capacity(), large);
+        samples.resize(640, 400);
+        assert!(samples.colors.capacity() < large / 8 && samples.colors.len() == 20 * 13 * TILE_SAMPLES);
+        assert!(samples.triangles.capacity() < large / 8 && samples.inverse_depths.capacity() < large / 8);
     }
 }
