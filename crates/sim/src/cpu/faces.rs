@@ -1,5 +1,6 @@
 //! The staggered velocities: u, v and w on the faces between cells \[McAdams2009\].
 
+use glam::Vec3;
 use wide::f32x4;
 
 use super::grid::Place;
@@ -46,6 +47,17 @@ impl Faces {
         let change = velocity - self.velocity(axis, cell);
         self.change_by(axis, cell, change);
     }
+}
+
+/// What a point brings to the faces.
+#[derive(Clone, Copy, Debug)]
+pub struct Carried {
+    /// Where it is.
+    pub place: Place,
+    /// Mass \[kg\].
+    pub mass: f32,
+    /// Velocity \[m/s\].
+    pub velocity: Vec3,
 }
 
 /// The trilinear weights of one component around a point: two faces along x in each of four rows.

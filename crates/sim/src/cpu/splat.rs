@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use super::cell_sort::NO_CELL;
-use super::faces::Stencil;
-use super::grid::{Grid, REACH};
+use super::faces::{Carried, Stencil};
+use super::grid::REACH;
 use super::volume::Volume;
 
 /// Sorts the points by cell [Chen2011 fig. 26-30] and gives every face that they reach their mean
@@ -21,15 +21,16 @@ pub fn splat(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lan
     volume.sort.sort(&volume.cell_of_point);
     clear(volume);
     touch(volume);
-    let Volume { grid, sort, faces, touched, .. } = volume;
-    let (grid, order) = (&*grid, sort.order());
+    carry(volume, positions, velocities, mass);
+    let Volume { grid, carried, faces, touched, .. } = volume;
+    let strides = grid.strides();
     let [u, v, w] = &mut faces.components;
     rayon::join(
-        || component::<0>(grid, order, positions, velocities, mass, touched, u),
+        || component::<0>(strides, carried, touched, u),
         || {
             rayon::join(
-                || component::<1>(grid, order, positions, velocities, mass, touched, v),
-                || component::<2>(grid, order, positions, velocities, mass, touched, w),
+                || component::<1>(strides, carried, touched, v),
+                || component::<2>(strides, carried, touched, w),
             )
         },
     );
@@ -112,22 +113,25 @@ fn touch(volume: &mut Volume) {
     touched_set.list_into(touched);
 }
 
+/// Gathers what the points bring in the order of their cells: the components read it three times in a row.
+fn carry(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lanes], mass: &[Lanes]) {
+    let Volume { grid, sort, carried, .. } = volume;
+    let bring = |&point: &u32| {
+        let (index, lane) = (point as usize / LANES, point as usize % LANES);
+        let place = grid.place(positions[index].get(lane)).expect("a point that is sorted has a cell");
+        Carried { place, mass: mass[index].0[lane], velocity: velocities[index].get(lane) }
+    };
+    sort.order().par_iter().with_min_len(1024).map(bring).collect_into_vec(carried);
+}
+
 fn component<const AXIS: usize>(
-    grid: &Grid,
-    order: &[u32],
-    positions: &[Vec3Lanes],
-    velocities: &[Vec3Lanes],
-    mass: &[Lanes],
+    strides: [usize; 3],
+    carried: &[Carried],
     touched: &[u32],
     component: &mut [f32],
 ) {
-    let strides = grid.strides();
-    for &point in order {
-        let (index, lane) = (point as usize / LANES, point as usize % LANES);
-        if let Some(place) = grid.place(positions[index].get(lane)) {
-            let velocity = velocities[index].get(lane)[AXIS];
-            Stencil::new::<AXIS>(&place, strides).add(component, strides, mass[index].0[lane], velocity);
-        }
+    for Carried { place, mass, velocity } in carried {
+        Stencil::new::<AXIS>(place, strides).add(component, strides, *mass, velocity[AXIS]);
     }
     for &cell in touched {
         let pair = &mut component[2 * cell as usize..][..2];

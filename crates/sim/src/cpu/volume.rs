@@ -5,7 +5,7 @@ use strandline_groom::LANES;
 use super::cell_kind::Kind;
 use super::cell_set::CellSet;
 use super::cell_sort::CellSort;
-use super::faces::Faces;
+use super::faces::{Carried, Faces};
 use super::grid::Grid;
 use super::pcg::{Pcg, Solution};
 use super::poisson::Poisson;
@@ -25,6 +25,8 @@ pub struct Volume {
     /// Velocities on the faces.
     pub faces: Faces,
     pub(super) cell_of_point: Vec<u32>,
+    /// The points in the order of their cells.
+    pub(super) carried: Vec<Carried>,
     /// Cells whose lower faces points may reach, ascending.
     pub(super) touched: Vec<u32>,
     pub(super) touched_set: CellSet,
@@ -53,6 +55,7 @@ impl Volume {
             sort: CellSort::new(count),
             faces: Faces::new(count),
             cell_of_point: Vec::new(),
+            carried: Vec::new(),
             touched: Vec::new(),
             touched_set: CellSet::new(count),
             spare_set: CellSet::new(count),

@@ -313,7 +313,7 @@ mod tests {
     fn it_is_the_faster_way() {
         let Some(mut avx) = Avx::new(POINTS) else { return };
         let (rod, pulls, begun) = rods(4, false);
-        let mut run = |solve: &mut dyn FnMut(&mut Work<f32x8>) -> Solved<f32x8>| {
+        let run = |solve: &mut dyn FnMut(&mut Work<f32x8>) -> Solved<f32x8>| {
             let mut best = Duration::MAX;
             for _ in 0..200 {
                 let mut work = begun.clone();
