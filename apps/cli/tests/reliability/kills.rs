@@ -28,7 +28,7 @@ fn end_often(arguments: &[&str], prepare: &[&[&str]], wanted: &[&str], in_folder
     let mut ended = [0; SIGNALS.len()];
     for kill in 0..kills {
         let (name, number) = SIGNALS[kill % SIGNALS.len()];
-        let mut command = strandline(folder.path(), arguments);
+        let mut command = heeding(folder.path(), arguments);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(whole.mul_f32(random.unit()));
         send(name, child.id());
@@ -45,11 +45,10 @@ fn end_often(arguments: &[&str], prepare: &[&[&str]], wanted: &[&str], in_folder
         }
     }
     // A test that ends nothing finds nothing; how many are late depends on how busy the machine is.
-    let least = kills / SIGNALS.len() / 5;
-    assert!(
-        ended.iter().all(|ended| *ended > least),
-        "{arguments:?}: {SIGNALS:?} ended {ended:?} of {kills} runs"
-    );
+    // One that may be heeded later may find the run over, so that the others are counted together.
+    let [.., killed, _] = ended;
+    let enough = ended.iter().sum::<usize>() > kills / 5 && killed > kills / SIGNALS.len() / 5;
+    assert!(enough, "{arguments:?}: {SIGNALS:?} ended {ended:?} of {kills} runs");
 }
 
 #[test]
@@ -107,7 +106,7 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
     let (mut short, mut frames) = (0, Vec::new());
     for turn in 0..9 {
         let (name, number) = SIGNALS[turn % SIGNALS.len()];
-        let mut child = strandline(folder.path(), &sim("part.npz"))
+        let mut child = heeding(folder.path(), &sim("part.npz"))
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
@@ -144,14 +143,7 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
 
 /// Stops a film after some frames; returns what it says.
 fn stop(folder: &Path, signal: &str, code: i32) -> String {
-    // With a terminal that may be closed, even where the tests run under `nohup`.
-    let heeding: &[&str] = if cfg!(target_os = "linux") { &["--default-signal=HUP"] } else { &[] };
-    let child = Command::new("env")
-        .args(heeding)
-        .arg(env!("CARGO_BIN_EXE_strandline"))
-        .args(["render", "--scene", "small.toml", "--out", "out", "--frames", "400"])
-        .current_dir(folder)
-        .stdin(Stdio::null())
+    let child = heeding(folder, &["render", "--scene", "small.toml", "--out", "out", "--frames", "400"])
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()

@@ -35,6 +35,15 @@ fn strandline(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// The same with a terminal that may be closed, even where the tests run under `nohup`.
+fn heeding(folder: &Path, arguments: &[&str]) -> Command {
+    let default: &[&str] = if cfg!(target_os = "linux") { &["--default-signal=HUP"] } else { &[] };
+    let mut command = Command::new("env");
+    command.args(default).arg(env!("CARGO_BIN_EXE_strandline")).args(arguments);
+    command.current_dir(folder).stdin(Stdio::null());
+    command
+}
+
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     strandline(folder, arguments).output().unwrap()
 }

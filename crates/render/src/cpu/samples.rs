@@ -28,7 +28,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Takes a new size \[sample\]; keeps its memory when that suffices, unless it is [`SPARE`] times as much: a window
+    /// Takes a new size \[sample\]; keeps its memory when that suffices, unless it is four times as much: a window
     /// that was large once has hundreds of MB.
     pub fn resize(&mut self, width: usize, height: usize) {
         if self.colors.capacity() > SPARE * width.div_ceil(TILE) * height.div_ceil(TILE) * TILE_SAMPLES {
