@@ -91,7 +91,7 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
 fn aims(frames: u32, quick: bool) -> anyhow::Result<Vec<Aim>> {
     let (demo, mut guides) =
         (Scene { film: scene(1, 16, 32, frames).film, ..Scene::demo() }, Scene::thesis());
-    guides.simulation = Settings { volume: guides.simulation.volume.clone(), ..Scene::demo().simulation };
+    guides.simulation = Settings { volume: guides.simulation.volume, ..Scene::demo().simulation };
     guides.film.frames = frames;
     let scenes = [
         ("demo", 9.0, demo),
