@@ -7,7 +7,7 @@ pub const TILE: usize = 32;
 /// Samples in a tile.
 pub const TILE_SAMPLES: usize = TILE * TILE;
 /// How many times the memory of a picture may be what the picture before it took.
-const SPARE: usize = 4;
+const SPARE: usize = 2;
 /// The triangle of a sample that shows no body.
 pub const NO_TRIANGLE: u32 = u32::MAX;
 
@@ -28,7 +28,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Takes a new size \[sample\]; keeps its memory when that suffices, unless it is four times as much: a window
+    /// Takes a new size \[sample\]; keeps its memory when that suffices, unless it is more than twice as much: a window
     /// that was large once has hundreds of MB.
     pub fn resize(&mut self, width: usize, height: usize) {
         if self.colors.capacity() > SPARE * width.div_ceil(TILE) * height.div_ceil(TILE) * TILE_SAMPLES {
