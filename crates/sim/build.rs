@@ -5,12 +5,13 @@ fn main() {}
 
 /// Modules with entry points; the others are imported by them.
 #[cfg(feature = "gpu")]
-const MODULES: [&str; 12] = [
+const MODULES: [&str; 13] = [
     "pose_roots",
     "integrate",
     "constrain",
     "solve_rods",
     "splat",
+    "order",
     "mark",
     "solve_pressure",
     "gather",

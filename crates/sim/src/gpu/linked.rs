@@ -6,6 +6,7 @@ strandline_gpu::linked! {
     CONSTRAIN = "constrain",
     SOLVE_RODS = "solve_rods",
     SPLAT = "splat",
+    ORDER = "order",
     MARK = "mark",
     PCG = "pcg",
     ROOMS = "rooms",

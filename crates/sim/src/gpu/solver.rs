@@ -161,6 +161,8 @@ pub fn declarations() -> Vec<Declaration> {
         splat::Bounds::declaration(),
         splat::Follow::declaration(),
         splat::FindCells::declaration(),
+        splat::ListPoints::declaration(),
+        splat::RankPoints::declaration(),
         splat::SortPoints::declaration(),
         splat::SumFaces::declaration(),
         mark::Mark::declaration(),

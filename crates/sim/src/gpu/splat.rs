@@ -39,6 +39,26 @@ kernel! {
 }
 
 kernel! {
+    /// The points of each cell as they were counted; one thread is one point.
+    pub(super) struct ListPoints in "order" (super::linked::ORDER), entry "list_points" {
+        0 step: Read Step,
+        1 cell_ranks: ReadWrite [u32; 2],
+        2 start_index: Read u32,
+        3 counted: ReadWrite u32,
+    }
+}
+
+kernel! {
+    /// Ranks in the order of the points' numbers; one thread is one point.
+    pub(super) struct RankPoints in "order" (super::linked::ORDER), entry "rank_points" {
+        0 step: Read Step,
+        1 cell_ranks: ReadWrite [u32; 2],
+        2 start_index: Read u32,
+        3 counted: ReadWrite u32,
+    }
+}
+
+kernel! {
     /// The order; one thread is one point.
     pub(super) struct SortPoints in "splat" (super::linked::SPLAT), entry "sort_points" {
         0 step: Read Step,
@@ -66,6 +86,8 @@ pub(super) struct Stage {
     bounds: Kernel<Bounds<'static>>,
     follow: Kernel<Follow<'static>>,
     find_cells: Kernel<FindCells<'static>>,
+    list_points: Kernel<ListPoints<'static>>,
+    rank_points: Kernel<RankPoints<'static>>,
     sort_points: Kernel<SortPoints<'static>>,
     sum_faces: Kernel<SumFaces<'static>>,
 }
@@ -76,6 +98,8 @@ impl Stage {
             bounds: Kernel::new(gpu, &[])?,
             follow: Kernel::new(gpu, &[])?,
             find_cells: Kernel::new(gpu, &[])?,
+            list_points: Kernel::new(gpu, &[])?,
+            rank_points: Kernel::new(gpu, &[])?,
             sort_points: Kernel::new(gpu, &[])?,
             sum_faces: Kernel::new(gpu, &[])?,
         })
@@ -95,12 +119,16 @@ impl Stage {
         let (grid, boxes, ladder) = (&volume.grid, &buffers.boxes, &volume.ladder);
         let (counts, start_index) = (&volume.start_index, &volume.start_index);
         let (cell_ranks, faces) = (&volume.cell_ranks, &volume.faces);
-        let sorted_points = &volume.sorted_points;
+        let (sorted_points, counted) = (&volume.sorted_points, &volume.counted);
         let by_point = groups(buffers.point_count(), THREADS);
         let bounds = self.bounds.bind(gpu, &Bounds { step, predicted, mass, boxes })?;
         let follow = self.follow.bind(gpu, &Follow { grid, boxes, ladder })?;
         let find_cells =
             self.find_cells.bind(gpu, &FindCells { step, grid, predicted, mass, counts, cell_ranks })?;
+        let list_points =
+            self.list_points.bind(gpu, &ListPoints { step, cell_ranks, start_index, counted })?;
+        let rank_points =
+            self.rank_points.bind(gpu, &RankPoints { step, cell_ranks, start_index, counted })?;
         let sort_points = self.sort_points.bind(
             gpu,
             &SortPoints { step, grid, predicted, velocities, mass, cell_ranks, start_index, sorted_points },
@@ -109,7 +137,7 @@ impl Stage {
         let mut dispatches =
             vec![(bounds, groups(buffers.strand_count, THREADS)), (follow, [1; 3]), (find_cells, by_point)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);
-        dispatches.push((sort_points, by_point));
+        dispatches.extend([(list_points, by_point), (rank_points, by_point), (sort_points, by_point)]);
         dispatches.push((sum_faces, groups(volume.cell_count, THREADS)));
         Ok(dispatches)
     }

@@ -51,6 +51,8 @@ pub(super) struct Volume {
     pub start_index: Buffer<u32>,
     pub totals: Buffer<u32>,
     pub cell_ranks: Buffer<[u32; 2]>,
+    /// Numbers of the points of each cell as they were counted.
+    pub counted: Buffer<u32>,
     pub sorted_points: Buffer<SortedPoint>,
     /// Velocity and change, shape `[component][cell]`.
     pub faces: Buffer<[f32; 2]>,
@@ -88,6 +90,7 @@ impl Volume {
             start_index: Buffer::new(gpu, "start_index", cell_count + 1)?,
             totals: Scan::totals(gpu, cell_count + 1)?,
             cell_ranks: Buffer::new(gpu, "cells of points", point_count)?,
+            counted: Buffer::new(gpu, "points as they were counted", point_count)?,
             sorted_points: Buffer::new(gpu, "sorted points", point_count)?,
             faces: Buffer::new(gpu, "faces", 3 * cell_count)?,
             kinds: Buffer::new(gpu, "kinds of cells", cell_count)?,
