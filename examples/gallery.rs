@@ -17,8 +17,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             scene.film.settle = 0.0;
         }
         for event in Player::new(&scene, Backend::auto(), true)? {
-            if let Event::Drawn { picture, .. } = event? {
-                assert!(!picture.is_blank(), "{style:?} shows nothing");
+            if let Event::Drawn { picture, report, .. } = event? {
+                assert!(report.segments > 0 && !picture.is_blank(), "{style:?} shows nothing");
                 picture.save(folder.join(format!("{}.png", style.name())))?;
             }
         }

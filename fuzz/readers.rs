@@ -112,17 +112,20 @@ pub fn gltf(bytes: &[u8]) -> bool {
 /// A glTF file in a folder, with files beside it, below it and outside: none from outside is read.
 pub fn beside(bytes: &[u8]) -> bool {
     const OUTSIDE: f32 = 12_345.0;
-    static FOLDER: std::sync::OnceLock<std::path::PathBuf> = std::sync::OnceLock::new();
-    let folder = FOLDER.get_or_init(|| {
-        let outer = std::env::temp_dir().join(format!("strandline-beside-{}", std::process::id()));
-        std::fs::create_dir_all(outer.join("inner/below")).expect("a folder");
-        let triangle = |at: f32| [at, 0.0, 0.0, at, 1.0, 0.0, at, 0.0, 1.0].map(f32::to_le_bytes).concat();
-        for (name, at) in [("a.bin", OUTSIDE), ("inner/a.bin", 1.0), ("inner/below/a.bin", 2.0)] {
-            std::fs::write(outer.join(name), triangle(at)).expect("a file");
+    /// A folder that goes when it is dropped.
+    struct Folder(std::path::PathBuf);
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_dir_all(&self.0);
         }
-        outer.join("inner")
-    });
-    let path = folder.join("a.gltf");
+    }
+    let outer = Folder(std::env::temp_dir().join(format!("strandline-beside-{}", std::process::id())));
+    std::fs::create_dir_all(outer.0.join("inner/below")).expect("a folder");
+    let triangle = |at: f32| [at, 0.0, 0.0, at, 1.0, 0.0, at, 0.0, 1.0].map(f32::to_le_bytes).concat();
+    for (name, at) in [("a.bin", OUTSIDE), ("inner/a.bin", 1.0), ("inner/below/a.bin", 2.0)] {
+        std::fs::write(outer.0.join(name), triangle(at)).expect("a file");
+    }
+    let path = outer.0.join("inner/a.gltf");
     std::fs::write(&path, bytes).expect("a file");
     Mesh::load(&path, 1.0).is_ok_and(|mesh| {
         assert!(mesh.positions.iter().all(|position| position.x != OUTSIDE), "a file from outside was read");

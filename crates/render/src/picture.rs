@@ -22,9 +22,10 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Whether all pixels are alike: a picture of nothing.
+    /// Whether every row has one colour: a picture of nothing, or of the background, which changes from top to bottom.
     pub fn is_blank(&self) -> bool {
-        self.pixels.chunks_exact(3).all(|pixel| *pixel == self.pixels[..3])
+        let mut rows = self.pixels.chunks_exact(3 * self.width.max(1) as usize);
+        rows.all(|row| row.chunks_exact(3).all(|pixel| *pixel == row[..3]))
     }
 
     /// Writes the picture as PNG. The file appears under its name only once it is complete.
@@ -85,6 +86,15 @@ mod tests {
         let pixels = (0..5 * 3 * 3).map(|byte| byte as u8 * 5).collect();
         let alpha = alpha.then(|| (0..15).map(|pixel| pixel * 17).collect());
         Picture { width: 5, height: 3, pixels, alpha }
+    }
+
+    #[test]
+    fn a_background_alone_is_blank_and_one_pixel_more_is_not() {
+        let pixels = (0..5 * 3 * 3).map(|byte| byte as u8 / 15).collect();
+        let mut picture = Picture { width: 5, height: 3, pixels, alpha: None };
+        assert!(picture.is_blank());
+        picture.pixels[20] += 1;
+        assert!(!picture.is_blank());
     }
 
     #[test]

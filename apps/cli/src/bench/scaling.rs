@@ -89,10 +89,9 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
 
 /// The demo, the thesis's guides as rods, and as many strands as the hair of Sintel has.
 fn aims(frames: u32, quick: bool) -> anyhow::Result<Vec<Aim>> {
-    let (demo, mut guides) =
-        (Scene { film: scene(1, 16, 32, frames).film, ..Scene::demo() }, Scene::thesis());
+    let (mut demo, mut guides) = (Scene::demo(), Scene::thesis());
     guides.simulation = Settings { volume: guides.simulation.volume, ..Scene::demo().simulation };
-    guides.film.frames = frames;
+    (demo.film.frames, guides.film.frames) = (frames, frames);
     let scenes = [
         ("demo", 9.0, demo),
         ("1,750 guides of 6 points", 2.2, guides),
