@@ -26,8 +26,13 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     let mut groom = loaded.groom;
     if let Some(count) = options.thin {
         let waiting = Waiting::begin("choosing strands");
-        groom = groom.select(&groom.representatives(count as usize));
+        let chosen = groom.representatives(count as usize);
+        let torn = groom.influences.as_ref().map_or(0, |influences| influences.torn_by(&chosen));
+        groom = groom.select(&chosen);
         drop(waiting);
+        if torn > 0 {
+            output::note(&format!("{torn} strands have lost guides that they follow: these were not kept"));
+        }
     }
     if let Some(points) = options.points {
         groom = groom.resampled(points as usize)?;

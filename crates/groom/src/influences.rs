@@ -91,6 +91,34 @@ impl Influences {
         selected
     }
 
+    /// Adds those of another groom, whose strands stand behind the first `strands`.
+    pub(crate) fn append(&mut self, other: Self, strands: usize) {
+        let each = self.per_strand.max(other.per_strand);
+        let wider = |rows: &Self, first: usize| {
+            let count = rows.guides.len() / rows.per_strand;
+            let row = |strand: usize| {
+                let own = rows.of(strand).map(|(guide, weight)| ((first + guide) as u32, weight));
+                own.chain(std::iter::repeat_n((first as u32, 0.0), each - rows.per_strand))
+                    .collect::<Vec<_>>()
+            };
+            (0..count).flat_map(row).unzip::<_, _, Vec<_>, Vec<_>>()
+        };
+        if each != self.per_strand {
+            (self.guides, self.weights) = wider(self, 0);
+            self.per_strand = each;
+        }
+        let (guides, weights) = wider(&other, strands);
+        self.guides.extend(guides);
+        self.weights.extend(weights);
+    }
+
+    /// How many of some strands, in rising order, follow a guide that is not among them.
+    pub fn torn_by(&self, strands: &[usize]) -> usize {
+        let is_gone = |guide: usize| strands.binary_search(&guide).is_err();
+        let is_torn = |strand: usize| self.of(strand).any(|(guide, weight)| weight > 0.0 && is_gone(guide));
+        strands.iter().filter(|strand| is_torn(**strand)).count()
+    }
+
     fn normalize(&mut self) {
         for weights in self.weights.chunks_exact_mut(self.per_strand) {
             let sum: f64 = weights.iter().map(|weight| f64::from(*weight)).sum();
@@ -115,6 +143,16 @@ mod tests {
         // Strand 1 is gone, and what was strand 2 is now strand 0.
         assert_eq!(selected.of(1).collect::<Vec<_>>(), [(0, 0.0), (0, 1.0)]);
         assert_eq!(selected.of(0).map(|(_, weight)| weight).sum::<f32>(), 0.0);
+    }
+
+    #[test]
+    fn those_of_two_grooms_keep_their_own_guides() {
+        let mut one = Influences::new(1, vec![1, 1], vec![1.0, 0.0], 2).unwrap();
+        one.append(Influences::new(2, vec![0, 0, 0, 1], vec![1.0, 0.0, 0.25, 0.75], 2).unwrap(), 2);
+        let of = |strand| one.of(strand).filter(|(_, weight)| *weight > 0.0).collect::<Vec<_>>();
+        assert_eq!((of(0), of(1)), (vec![(1, 1.0)], vec![]));
+        assert_eq!((of(2), of(3)), (vec![(2, 1.0)], vec![(2, 0.25), (3, 0.75)]));
+        assert_eq!((one.torn_by(&[0, 1, 2, 3]), one.torn_by(&[0, 1, 2]), one.torn_by(&[0, 2, 3])), (0, 0, 1));
     }
 
     #[test]

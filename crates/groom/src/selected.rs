@@ -41,6 +41,7 @@ impl Groom {
     /// names of groups.
     pub fn append(&mut self, other: Self) {
         self.widths = self.joined_widths(&other);
+        let strands = self.strand_count();
         let first = self.points.len() as u32;
         self.starts.extend(other.starts[1..].iter().map(|start| first + start));
         self.points.extend(other.points);
@@ -49,7 +50,10 @@ impl Groom {
         join(&mut self.groups, other.groups);
         self.group_names.extend(other.group_names);
         join(&mut self.guide_flags, other.guide_flags);
-        self.influences = None;
+        self.influences = self.influences.take().zip(other.influences).map(|(mut one, two)| {
+            one.append(two, strands);
+            one
+        });
         join(&mut self.colors, other.colors);
         join(&mut self.transparencies, other.transparencies);
         join(&mut self.masses, other.masses);

@@ -120,6 +120,18 @@ fn files_of_parts_become_groups_of_one_groom() {
     assert!(color[0] == 1.0 && (color[1] - 0.214_04).abs() < 1e-4 && color[2] == 0.0, "{color:?}");
     let both = load_all(&paths, &as_it_is()).unwrap().groom;
     assert_eq!(both.points, whole.points);
+    // Files with groups and guides of their own keep them.
+    let parts = ["all", "more"].map(|name| folder.path().join(format!("{name}.npz")));
+    parts.iter().for_each(|path| drop(everything().save(path).unwrap()));
+    let both = load_all(&[&parts[..], &paths[..1]].concat(), &as_it_is()).unwrap().groom;
+    assert_eq!(both.groups.as_deref(), Some(&[2, 2, 1, 0, 1, 5, 5, 4, 3, 4, 6][..]));
+    let names: Vec<_> = both.group_names.values().map(String::as_str).collect();
+    assert_eq!(names, ["all 0", "tail", "left fringe", "more 0", "tail", "left fringe", "back"]);
+    let both = load_all(&parts, &as_it_is()).unwrap().groom;
+    let of = |strand| both.influences.as_ref().unwrap().of(strand).collect::<Vec<_>>();
+    assert!((0..5).all(|strand| {
+        of(strand + 5).iter().zip(of(strand)).all(|(two, one)| *two == (one.0 + 5, one.1))
+    }));
     std::fs::write(&project, "../back.tfx\n").unwrap();
     refused(load(&project, &as_it_is()), &["`../back.tfx` in line 1", "folder of the project"]);
     std::fs::write(&project, "version 3.0\n").unwrap();

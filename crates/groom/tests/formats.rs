@@ -50,7 +50,8 @@ fn hair_strands_without_segments_count_one_point_or_none() {
         floats(&mut bytes, &(0..3 * points).map(|n| n as f32 / 64.0).collect::<Vec<_>>());
         let parsed = hair::read(&bytes).unwrap();
         assert_eq!(parsed.groom.starts, starts);
-        assert_eq!(parsed.problems, ["1 strands have no segment"]);
+        let colour = "the header's one colour for all strands, linear (1, 0.5, 0.25), is not taken";
+        assert_eq!(parsed.problems, ["1 strands have no segment", colour]);
         let lenient = LoadOptions { strict: false, ..LoadOptions::default() };
         assert_eq!(prepare(parsed, &lenient).unwrap().groom.strand_count(), 1);
     }
@@ -114,6 +115,26 @@ fn bad_tfx_files_are_refused_with_what_was_found_and_expected() {
     refused(changed(12, 156), &["positions at byte 156", "behind the header of 160 bytes"]);
     refused(changed(16, 4), &["strand uv at byte 4", "0 for none"]);
     refused(changed(24, 156), &["thickness at byte 156", "0 for none"]);
+}
+
+#[test]
+fn what_is_not_taken_from_a_tfx_file_is_said() {
+    let mut groom = two_strands();
+    groom.colors = Some(vec![[0.5; 3]; groom.points.len()]);
+    let good = tfx::write(&groom).unwrap();
+    let parsed = tfx::read(&good).unwrap();
+    // Coordinates of zeros stand for none.
+    assert!(parsed.problems.is_empty() && parsed.groom.root_uvs.is_none());
+    let mut bytes = good.clone();
+    let alpha = bytes.len() - 4;
+    bytes[alpha..].copy_from_slice(&0.5_f32.to_le_bytes());
+    bytes[20..24].copy_from_slice(&160_u32.to_le_bytes());
+    let problems = tfx::read(&bytes).unwrap().problems;
+    let words = [
+        "transparency in the fourth part of colours is not read",
+        "uv of points are not read, those of roots are",
+    ];
+    assert_eq!(problems, words);
 }
 
 #[test]

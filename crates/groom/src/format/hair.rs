@@ -19,7 +19,11 @@ struct Header {
     segments: u32,
     thickness: f32,
     transparency: f32,
+    color: [f32; 3],
 }
+
+/// Colours of the header that say nothing: what writers put there that have none.
+const NO_COLORS: [[f32; 3]; 2] = [[0.0; 3], [1.0; 3]];
 
 /// Reads a `.hair` file; thickness is taken as the diameter.
 ///
@@ -61,6 +65,11 @@ pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
     } else {
         (header.transparency != 0.0).then(|| vec![header.transparency; header.points as usize])
     };
+    if !has(COLORS) && !NO_COLORS.contains(&header.color) {
+        let [r, g, b] = header.color;
+        problems
+            .push(format!("the header's one colour for all strands, linear ({r}, {g}, {b}), is not taken"));
+    }
     let colors =
         if has(COLORS) { Some(source.groups::<3, 3>("colors", colors_at, header.points)?) } else { None };
     let groom = Groom {
@@ -88,6 +97,7 @@ fn header(source: &Source) -> Result<Header, GroomError> {
         segments: source.u32("segments", 16)?,
         thickness: source.f32("thickness", 20)?,
         transparency: source.f32("transparency", 24)?,
+        color: [source.f32("color", 28)?, source.f32("color", 32)?, source.f32("color", 36)?],
     };
     if header.arrays & !KNOWN != 0 {
         return Err(source.error(format!("array bits {:#x} at byte 12", header.arrays), "bits 0 to 4 only"));

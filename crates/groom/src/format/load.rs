@@ -127,8 +127,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, GroomError> {
     prepare(parsed, options).map_err(|error| error.of(path))
 }
 
-/// Loads several files as one groom: each is a group of the name of its file, unless the files have groups of
-/// their own. Their units are the same.
+/// Loads several files as one groom: each is a group of the name of its file, or has groups of its own, which are
+/// numbered anew and keep their names. Their units are the same.
 ///
 /// # Errors
 /// As [`load`]; no file.
@@ -166,17 +166,16 @@ fn parse(path: &Path, options: &LoadOptions) -> Result<Parsed, GroomError> {
     }
 }
 
-/// The strands of several files, each a group of a name.
+/// The strands of several files, each a group of a name unless it has groups of its own.
 fn joined(
     parts: impl Iterator<Item = (PathBuf, String)>,
     options: &LoadOptions,
 ) -> Result<Parsed, GroomError> {
     let mut whole: Option<Parsed> = None;
-    for (number, (path, name)) in parts.enumerate() {
+    let mut taken = 0;
+    for (path, name) in parts {
         let mut part = parse(&path, options)?;
-        let number = number as u32;
-        part.groom.groups = Some(vec![number; part.groom.strand_count()]);
-        part.groom.group_names = [(number, name.clone())].into();
+        taken = regroup(&mut part.groom, &name, taken);
         part.problems.iter_mut().for_each(|problem| *problem = format!("{name}: {problem}"));
         let Some(whole) = &mut whole else {
             whole = Some(part);
@@ -201,6 +200,24 @@ fn joined(
         whole.problems.append(&mut part.problems);
     }
     whole.ok_or(GroomError::Empty)
+}
+
+/// Gives the groups of a file numbers from `first` on, those of several files each their own; strands without a group
+/// become one. A group without a name has that of its file. Returns the number behind the last.
+fn regroup(groom: &mut Groom, name: &str, first: u32) -> u32 {
+    let groups = groom.groups.get_or_insert_with(|| vec![0; groom.starts.len() - 1]);
+    let mut own = groups.clone();
+    own.sort_unstable();
+    own.dedup();
+    let place = |group: u32| first + own.partition_point(|known| *known < group) as u32;
+    groups.iter_mut().for_each(|group| *group = place(*group));
+    let named = |group: &u32| match groom.group_names.get(group) {
+        Some(known) => known.clone(),
+        None if own.len() == 1 => name.to_owned(),
+        None => format!("{name} {group}"),
+    };
+    groom.group_names = own.iter().map(|group| (place(*group), named(group))).collect();
+    first + own.len() as u32
 }
 
 /// Sieves, scales and turns what a reader found.

@@ -74,7 +74,8 @@ pub const FORMATS: [Format; 9] = [
     },
     Format {
         ending: "bin",
-        about: "CT2Hair: points; normals and labels are not read, and written as 0",
+        about: "CT2Hair: points, written in metres (its own files are in millimetres); normals and labels are not read, \
+                and written as 0",
         read: Reader::Bytes(|bytes, _| bin::read(bytes)),
         write: Some(bin::write),
         holds: &[],

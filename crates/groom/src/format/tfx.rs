@@ -19,6 +19,8 @@ struct Layout {
     strand_uvs: u64,
     thickness: u64,
     colors: u64,
+    point_uvs: u64,
+    followed: u64,
 }
 
 /// Reads a `.tfx` file of version 3 or 4; thickness is taken as the diameter.
@@ -48,17 +50,29 @@ pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
         Some(offset) => Widths::PerStrand(source.f32s("thickness", offset, layout.strands)?),
         None => Widths::Constant(DEFAULT_WIDTH),
     };
-    let colors =
-        optional(layout.colors).map(|offset| source.groups::<4, 3>("colors", offset, count)).transpose()?;
+    let rgba =
+        optional(layout.colors).map(|offset| source.groups::<4, 4>("colors", offset, count)).transpose()?;
+    let mut problems = Vec::new();
+    if rgba.as_ref().is_some_and(|all| all.iter().any(|[.., alpha]| *alpha != 1.0)) {
+        problems.push("transparency in the fourth part of colours is not read".to_owned());
+    }
+    if layout.point_uvs != 0 {
+        problems.push("uv of points are not read, those of roots are".to_owned());
+    }
+    if layout.followed != 0 {
+        problems.push("which guides the strands follow is not read".to_owned());
+    }
+    // Files without coordinates have zeros: AMD's runtime reads them in any case.
+    let root_uvs = root_uvs.filter(|uvs| uvs.iter().any(|uv| *uv != [0.0; 2]));
     let groom = Groom {
         starts: (0..=layout.strands).map(|strand| (strand * layout.each) as u32).collect(),
         points: points.into_iter().map(vec3).collect(),
         widths,
         root_uvs: root_uvs.map(|uvs| uvs.into_iter().map(vec2).collect()),
-        colors,
+        colors: rgba.map(|all| all.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()),
         ..Groom::empty(0.0)
     };
-    Ok(Parsed { format, groom, problems: Vec::new() })
+    Ok(Parsed { format, groom, problems })
 }
 
 fn layout_3(source: &Source) -> Result<Layout, GroomError> {
@@ -73,6 +87,8 @@ fn layout_3(source: &Source) -> Result<Layout, GroomError> {
         thickness: offset(1)?,
         strand_uvs: offset(2)?,
         colors: offset(3)?,
+        followed: offset(4)?,
+        point_uvs: offset(5)?,
     })
 }
 
@@ -88,6 +104,8 @@ fn layout_4(source: &Source) -> Result<Layout, GroomError> {
         strand_uvs: offset(1)?,
         thickness: offset(3)?,
         colors: offset(4)?,
+        point_uvs: offset(2)?,
+        followed: 0,
     })
 }
 
