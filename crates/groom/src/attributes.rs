@@ -21,13 +21,19 @@ pub(crate) fn check_masses(masses: Option<&[f32]>, points: usize) -> Result<(), 
     }
 }
 
+/// Fastest part of a velocity that hair may begin with \[m/s\]: more than any head moves.
+const MOST_SPEED: f32 = 1000.0;
+
 pub(crate) fn check_velocities(velocities: Option<&[Vec3]>, points: usize) -> Result<(), GroomError> {
     let Some(velocities) = velocities else { return Ok(()) };
     check_count("velocities", velocities.len(), points)?;
-    match velocities.iter().position(|velocity| !velocity.is_finite()) {
-        Some(index) => {
-            refuse("velocities", format!("{} at point {index}", velocities[index]), "finite numbers")
-        }
+    let is_slow = |velocity: &Vec3| velocity.to_array().iter().all(|part| part.abs() <= MOST_SPEED);
+    match velocities.iter().position(|velocity| !is_slow(velocity)) {
+        Some(index) => refuse(
+            "velocities",
+            format!("{} at point {index}", velocities[index]),
+            "numbers from -1000 to 1000 m/s",
+        ),
         None => Ok(()),
     }
 }

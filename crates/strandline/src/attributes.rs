@@ -115,7 +115,9 @@ mod tests {
         assert!(refused(&[("velocities", &[3, 5])], 1.0).contains("expected [3, 5, 3]"));
         assert!(refused(&[("mass", &[3, 5])], 1.0).contains("expected masses or velocities"));
         assert!(refused(&[("masses", &[3, 5])], 0.0).contains("0 kg at point 0"));
-        assert!(refused(&[("velocities", &[3, 5, 3])], f32::NAN).contains("finite"));
+        assert!(refused(&[("velocities", &[3, 5, 3])], f32::NAN).contains("-1000 to 1000"));
+        assert!(refused(&[("velocities", &[3, 5, 3])], 1001.0).contains("1001, 1001, 1001] at point 0"));
+        assert!(give(&file(&[("velocities", &[3, 5, 3])], -1000.0), &mut guides()).is_ok());
         let good = file(&[("masses", &[3, 5])], 1.0);
         for cut in 0..good.len() {
             assert!(give(&good[..cut], &mut guides()).is_err());
