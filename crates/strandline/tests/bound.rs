@@ -146,7 +146,10 @@ fn strands_that_guides_carry_leave_with_what_the_groom_says_of_them() {
     let points = rows(all, "colors");
     assert_eq!([rows(all, "starts"), rows(all, "root_uv"), rows(all, "groups")], [201, 200, 200]);
     assert_eq!(rows(all, "widths"), points);
-    assert_eq!(rows(all, "guide_indices"), 0);
+    assert_eq!(
+        [rows(all, "guide_indices"), rows(all, "guide_flags"), rows(all, "bound_starts")],
+        [200, 200, 0]
+    );
     let guides = &mut written(&scene, &folder.path().join("guides.npz"), What::Guides);
     assert_eq!([rows(guides, "starts"), rows(guides, "root_uv"), rows(guides, "groups")], [51, 50, 50]);
     // Those that are carried: by which guides, and where they rest.
@@ -166,6 +169,60 @@ fn strands_that_guides_carry_leave_with_what_the_groom_says_of_them() {
     let whole = Cache::open(&whole).unwrap();
     assert!(whole.times().len() == 5 && whole.times().is_sorted_by(|one, next| one < next));
     assert_eq!(cache.times(), [whole.times()[2], whole.times()[4]]);
+}
+
+/// Asserts that a quarter of the strands, each the first of a clump, are guides, and that all follow guides alone.
+fn follows(groom: &Groom, clump: usize) {
+    let (flags, influences) = (groom.guide_flags.as_ref().unwrap(), groom.influences.as_ref().unwrap());
+    let guides: Vec<usize> = (0..groom.strand_count()).filter(|strand| flags[*strand]).collect();
+    assert_eq!((groom.strand_count(), guides.len()), (200 * clump, 50));
+    assert!(guides.iter().all(|guide| guide % clump == 0));
+    for strand in 0..groom.strand_count() {
+        let of = |strand| influences.of(strand).filter(|(_, weight)| *weight > 0.0).collect::<Vec<_>>();
+        let sum: f32 = of(strand).iter().map(|(_, weight)| weight).sum();
+        assert!((sum - 1.0).abs() < 1e-6 && of(strand).iter().all(|(guide, _)| flags[*guide]), "{strand}");
+        assert_eq!(of(strand), of(strand / clump * clump), "one clump follows the same");
+        assert!(!flags[strand] || of(strand) == [(strand, 1.0)], "a guide follows itself: {strand}");
+    }
+}
+
+#[test]
+fn all_strands_leave_with_the_guides_that_they_follow() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = film(&folder.path().join("lawn.npz"));
+    for clump in [1, 3] {
+        scene.look.follow_strands = clump;
+        let at = folder.path().join(format!("all{clump}.npz"));
+        written(&scene, &at, What::Strands);
+        let groom = Groom::load(&at).unwrap();
+        follows(&groom, clump as usize);
+        let files = folder.path().join(format!("{clump}.%d.ply"));
+        let mut player = Player::new(&scene, scene.devices, false).unwrap();
+        player.set_out(&OutSettings { what: What::Strands, ..OutSettings::new(&files) }).unwrap();
+        player.by_ref().for_each(|event| drop(event.unwrap()));
+        player.close_out().unwrap();
+        let one = Groom::load(folder.path().join(format!("{clump}.0.ply"))).unwrap();
+        assert_eq!((&one.guide_flags, &one.influences), (&groom.guide_flags, &groom.influences));
+    }
+    let at = folder.path().join("all.usda");
+    let settings =
+        OutSettings { what: What::Strands, target: strandline::Target::Unreal, ..OutSettings::new(&at) };
+    let mut player = Player::new(&scene, scene.devices, false).unwrap();
+    player.set_out(&settings).unwrap();
+    player.by_ref().for_each(|event| drop(event.unwrap()));
+    player.close_out().unwrap();
+    let text = std::fs::read_to_string(&at).unwrap();
+    let line = |name: &str| {
+        let found =
+            text.lines().find(|line| line.contains(name)).unwrap_or_else(|| panic!("{name} is missing"));
+        found
+            .split_once('[')
+            .map(|(_, values)| values.split_once('[').map_or(values, |(_, values)| values).to_owned())
+            .unwrap()
+    };
+    assert_eq!(line("groom_guide =").matches('1').count(), 50);
+    assert_eq!(line("groom_closest_guides").matches("), (").count(), 599);
+    assert_eq!(line("groom_guide_weights").matches("), (").count(), 599);
 }
 
 /// A square of 40 cm in the plane of the lawn, y up.

@@ -7,7 +7,7 @@ use strandline_base::FolderLock;
 use super::{Frame, shape::Shape};
 use crate::{
     Error,
-    groom::{Groom, Widths},
+    groom::{Groom, Influences, Widths},
 };
 
 /// Frames as files of a folder.
@@ -51,6 +51,13 @@ impl Files {
         groom.root_uvs = attributes.root_uvs.as_ref().map(|uvs| uvs.iter().map(|uv| (*uv).into()).collect());
         groom.groups =
             attributes.groups.as_ref().map(|groups| groups.iter().map(|group| u32::from(*group)).collect());
+        groom.guide_flags.clone_from(&attributes.guide_flags);
+        if let (Some(_), Some(binding)) = (&attributes.guide_flags, &attributes.binding) {
+            let (each, strands) = (binding.guides_per_strand, groom.strand_count());
+            let influences =
+                Influences::new(each, binding.indices.clone(), binding.weights.clone(), strands)?;
+            groom.influences = Some(influences);
+        }
         let names = (0..).zip(&attributes.group_names).filter(|(_, name)| !name.is_empty());
         groom.group_names = names.map(|(group, name)| (group, name.clone())).collect();
         Ok(Self { folder: folder.to_owned(), pattern, groom, left_out: Vec::new(), _lock: lock })

@@ -51,11 +51,14 @@ pub(crate) struct Attributes {
     /// The group of each strand, shape `[strand]`, and the groups' names.
     pub groups: Option<Vec<u16>>,
     pub group_names: Vec<String>,
+    /// Which strands are guides, shape `[strand]`, where others hang on them.
+    pub guide_flags: Option<Vec<bool>>,
     /// The strands that guides carry.
     pub binding: Option<Binding>,
 }
 
-/// How strands that are no guides hang on guides.
+/// How strands hang on guides: in a file of guides those that are not in it, in a file of all strands each of them.
+/// Guides are strands of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Binding {
     /// Guides of a strand.
@@ -63,7 +66,7 @@ pub(crate) struct Binding {
     /// Shape `[bound strand][guide]`.
     pub indices: Vec<u32>,
     pub weights: Vec<f32>,
-    /// The bound strands at rest \[m\], head space, and the first point of each.
+    /// The bound strands at rest \[m\], head space, and the first point of each; none in a file of all strands.
     pub points: Vec<Vec3>,
     pub starts: Vec<u32>,
 }
@@ -166,7 +169,7 @@ impl Shape {
         let attributes = Attributes {
             widths: Some(grown.widths.clone()),
             colors: (!grown.colors.is_empty()).then(|| colors.collect()),
-            ..Attributes::default()
+            ..hanging(bound, tags, level.strand_count())
         };
         Ok(Self {
             what: What::Strands,
@@ -224,6 +227,25 @@ impl Attributes {
     fn with(self, tags: Tags) -> Self {
         let Tags { root_uvs, groups, group_names, guides: _ } = tags;
         Self { root_uvs, groups, group_names, ..self }
+    }
+}
+
+/// Guides and weights of all strands, of which each stands for `clump` of the file, itself the first.
+fn hanging(bound: Option<&BoundStrands>, tags: &Tags, clump: usize) -> Attributes {
+    let Some((bound, guides)) = bound.zip(tags.guides.as_ref()) else { return Attributes::default() };
+    let influences = bound.binding().influences();
+    let each = || influences.iter().flat_map(|one| std::iter::repeat_n(one, clump)).flatten();
+    let mut flags = vec![false; influences.len() * clump];
+    guides.iter().for_each(|guide| flags[guide * clump] = true);
+    Attributes {
+        guide_flags: Some(flags),
+        binding: Some(Binding {
+            guides_per_strand: MOST_INFLUENCES,
+            indices: each().map(|one| (guides[one.guide as usize] * clump) as u32).collect(),
+            weights: each().map(|one| one.weight).collect(),
+            ..Binding::default()
+        }),
+        ..Attributes::default()
     }
 }
 

@@ -128,7 +128,7 @@ fn tail<'a>(meta: &Meta, names: &'a [(String, &'static str)], state: Option<&'a 
 
 /// The attributes that there are, under the names that FORMATS promises.
 fn attributes(attributes: &Attributes) -> Vec<Array<'static>> {
-    let Attributes { widths, colors, root_uvs, groups, group_names: _, binding } = attributes;
+    let Attributes { widths, colors, root_uvs, groups, group_names: _, guide_flags, binding } = attributes;
     let mut arrays = Vec::new();
     if let Some(widths) = widths {
         arrays.push(Array::f32s("widths", &[widths.len()], widths.iter().copied()));
@@ -143,13 +143,23 @@ fn attributes(attributes: &Attributes) -> Vec<Array<'static>> {
         let bytes = groups.iter().flat_map(|group| group.to_le_bytes()).collect();
         arrays.push(Array::of("groups", Kind::U16, &[groups.len()], bytes));
     }
+    if let Some(flags) = guide_flags {
+        arrays.push(Array::of(
+            "guide_flags",
+            Kind::U8,
+            &[flags.len()],
+            flags.iter().map(|flag| u8::from(*flag)).collect(),
+        ));
+    }
     if let Some(binding) = binding {
-        let shape = [binding.starts.len().saturating_sub(1), binding.guides_per_strand];
+        let shape = [binding.indices.len() / binding.guides_per_strand, binding.guides_per_strand];
         arrays.push(Array::u32s("guide_indices", &shape, binding.indices.iter().copied()));
         arrays.push(Array::f32s("guide_weights", &shape, binding.weights.iter().copied()));
-        let points = binding.points.iter().flat_map(glam::Vec3::to_array);
-        arrays.push(Array::f32s("bound_points", &[binding.points.len(), 3], points));
-        arrays.push(Array::u32s("bound_starts", &[binding.starts.len()], binding.starts.iter().copied()));
+        if !binding.starts.is_empty() {
+            let points = binding.points.iter().flat_map(glam::Vec3::to_array);
+            arrays.push(Array::f32s("bound_points", &[binding.points.len(), 3], points));
+            arrays.push(Array::u32s("bound_starts", &[binding.starts.len()], binding.starts.iter().copied()));
+        }
     }
     arrays
 }

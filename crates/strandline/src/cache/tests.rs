@@ -98,6 +98,7 @@ fn everything(shape: &mut Shape) {
         root_uvs: Some((0..strands).map(|strand| [0.5, strand as f32]).collect()),
         groups: Some((0..strands).map(|strand| (strand % 2) as u16).collect()),
         group_names: vec!["scalp".to_owned(), "brow \"left\"".to_owned()],
+        guide_flags: None,
         binding: Some(Binding {
             guides_per_strand: 3,
             indices: vec![0, 1, 2],

@@ -152,7 +152,8 @@ impl Usd {
 
     /// The attributes that there are.
     fn primvars(&self, shape: &Shape, target: Target) -> Vec<Primvar> {
-        let Attributes { widths, colors, root_uvs, groups, group_names, binding } = &shape.attributes;
+        let Attributes { widths, colors, root_uvs, groups, group_names, guide_flags, binding } =
+            &shape.attributes;
         let unreal = target == Target::Unreal;
         let mut all = Vec::new();
         let mut add = |of, name, values, interpolation| all.push(Primvar { of, name, values, interpolation });
@@ -187,8 +188,16 @@ impl Usd {
             }
         }
         if unreal {
-            let guide = i32::from(shape.what == What::Guides);
-            add("int", "groom_guide", format!("[{guide}]"), "constant");
+            match guide_flags {
+                Some(flags) => {
+                    let values = list(flags, |text, flag| text.push(if *flag { '1' } else { '0' }));
+                    add("int", "groom_guide", values, "uniform");
+                }
+                None => {
+                    let guide = i32::from(shape.what == What::Guides);
+                    add("int", "groom_guide", format!("[{guide}]"), "constant");
+                }
+            }
             let values = list(0..shape.strand_count(), |text, strand| text.push_str(&strand.to_string()));
             add("int", "groom_id", values, "uniform");
             // A file of guides has no strands that hang on them; Unreal reads three guides of each.
