@@ -9,6 +9,7 @@ mod faults;
 mod house;
 mod licences;
 mod names;
+mod python;
 mod run;
 
 use std::process::ExitCode;
@@ -19,7 +20,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            Tests of the GPU backend run on any adapter, and say so where there is none.
            --setup installs Debian's software Vulkan where there is no adapter, and Xvfb where
            there is none to open windows on; what is still missing then fails the tests, as
-           with STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1
+           with STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1. It also puts numpy
+           and usd-core into target/python where python3 has none, and says so where it cannot
   ci       test --setup
   bless    record the golden pictures anew; look at each before you commit it
   docs     write docs/scene.md from the settings table

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-use crate::{adapter, bare, house, licences, names};
+use crate::{adapter, bare, house, licences, names, python};
 
 /// Sums over every `test result:` line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,8 +46,12 @@ pub fn test(setup: bool) -> bool {
             return false;
         }
     };
-    let required = [(adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")];
-    let required = if setup { &required[..] } else { &[] };
+    let python = python::prepare(setup);
+    let mut wanted = Vec::new();
+    if setup {
+        wanted.extend([(adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")]);
+    }
+    wanted.extend(python.as_deref().map(|python| (python::NAMED, python)));
     let begin = Instant::now();
     let mut tally = Tally::default();
     let mut broken: Vec<String> = Vec::new();
@@ -68,7 +72,7 @@ pub fn test(setup: bool) -> bool {
         ["clippy", "--quiet"].into_iter().chain(bare::CHOICE).chain(["--", "-D", "warnings"]).collect();
     step("without GPUs and window", bare::check() && cargo(&bare, &[], &mut tally));
     let tests = ["test", "--workspace", "--all-targets", "--no-fail-fast"];
-    step("tests", cargo(&tests, required, &mut tally));
+    step("tests", cargo(&tests, &wanted, &mut tally));
     step("doc tests", cargo(&["test", "--workspace", "--doc", "--no-fail-fast"], &[], &mut tally));
     let docs = ["doc", "--workspace", "--no-deps", "--quiet"];
     step("documentation", cargo(&docs, &[("RUSTDOCFLAGS", "-D warnings")], &mut tally));
@@ -85,6 +89,9 @@ pub fn test(setup: bool) -> bool {
     }
     if !there.display {
         println!("NOT TESTED: {}", adapter::NO_WINDOW);
+    }
+    if python.is_none() {
+        println!("NOT TESTED: {}", python::NONE);
     }
     if denied.is_none() {
         println!("NOT TESTED: {}", licences::NOT_INSTALLED);

@@ -152,8 +152,7 @@ impl Usd {
 
     /// The attributes that there are.
     fn primvars(&self, shape: &Shape, target: Target) -> Vec<Primvar> {
-        let Attributes { widths, colors, root_uvs, groups, group_names, guide_flags, binding } =
-            &shape.attributes;
+        let Attributes { widths, colors, root_uvs, groups, group_names, .. } = &shape.attributes;
         let unreal = target == Target::Unreal;
         let mut all = Vec::new();
         let mut add = |of, name, values, interpolation| all.push(Primvar { of, name, values, interpolation });
@@ -188,31 +187,7 @@ impl Usd {
             }
         }
         if unreal {
-            match guide_flags {
-                Some(flags) => {
-                    let values = list(flags, |text, flag| text.push(if *flag { '1' } else { '0' }));
-                    add("int", "groom_guide", values, "uniform");
-                }
-                None => {
-                    let guide = i32::from(shape.what == What::Guides);
-                    add("int", "groom_guide", format!("[{guide}]"), "constant");
-                }
-            }
-            let values = list(0..shape.strand_count(), |text, strand| text.push_str(&strand.to_string()));
-            add("int", "groom_id", values, "uniform");
-            // A file of guides has no strands that hang on them; Unreal reads three guides of each.
-            if let (What::Strands, Some(binding)) = (shape.what, binding)
-                && binding.guides_per_strand >= 3
-            {
-                let indices = binding.indices.chunks_exact(binding.guides_per_strand);
-                let three = |text: &mut String, three: &[u32]| {
-                    let _ = write!(text, "({}, {}, {})", three[0], three[1], three[2]);
-                };
-                add("int3", "groom_closest_guides", list(indices, three), "uniform");
-                let weights = binding.weights.chunks_exact(binding.guides_per_strand);
-                let values = list(weights, |text, weights| put_tuple(text, &weights[..3]));
-                add("float3", "groom_guide_weights", values, "uniform");
-            }
+            all.extend(of_unreal(shape));
         }
         all
     }
@@ -263,6 +238,39 @@ impl Usd {
             ended.and_then(|()| if whole { file.finish().map(|()| path.clone()) } else { file.leave() });
         place.map_err(Error::write("the USD file", &path))
     }
+}
+
+/// What Unreal asks besides: which strands are guides, numbers, and three guides and weights of each.
+fn of_unreal(shape: &Shape) -> Vec<Primvar> {
+    let Attributes { guide_flags, binding, .. } = &shape.attributes;
+    let mut all = Vec::new();
+    let mut add = |of, name, values, interpolation| all.push(Primvar { of, name, values, interpolation });
+    match guide_flags {
+        Some(flags) => {
+            let values = list(flags, |text, flag| text.push(if *flag { '1' } else { '0' }));
+            add("int", "groom_guide", values, "uniform");
+        }
+        None => {
+            let guide = i32::from(shape.what == What::Guides);
+            add("int", "groom_guide", format!("[{guide}]"), "constant");
+        }
+    }
+    let values = list(0..shape.strand_count(), |text, strand| text.push_str(&strand.to_string()));
+    add("int", "groom_id", values, "uniform");
+    // A file of guides has no strands that hang on them; Unreal reads three guides of each.
+    if let (What::Strands, Some(binding)) = (shape.what, binding)
+        && binding.guides_per_strand >= 3
+    {
+        let indices = binding.indices.chunks_exact(binding.guides_per_strand);
+        let three = |text: &mut String, three: &[u32]| {
+            let _ = write!(text, "({}, {}, {})", three[0], three[1], three[2]);
+        };
+        add("int3", "groom_closest_guides", list(indices, three), "uniform");
+        let weights = binding.weights.chunks_exact(binding.guides_per_strand);
+        let values = list(weights, |text, weights| put_tuple(text, &weights[..3]));
+        add("float3", "groom_guide_weights", values, "uniform");
+    }
+    all
 }
 
 /// An attribute of the curves.

@@ -1,0 +1,42 @@
+//! A Python with numpy and usd-core, which read what the program writes.
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use crate::run::root;
+
+/// What names it to the tests.
+pub const NAMED: &str = "STRANDLINE_PYTHON";
+
+/// What is left out without one.
+pub const NONE: &str = "no Python with numpy and usd-core: nobody else read moving caches and USD \
+                        (STRANDLINE_PYTHON names one; with STRANDLINE_REQUIRE_PYTHON the test fails without it)";
+
+/// The Python of the tests, where it has what they need. `setup` makes one in `target` where there is none and
+/// packages can be had.
+pub fn prepare(setup: bool) -> Option<String> {
+    let named = std::env::var(NAMED).unwrap_or_else(|_| "python3".to_owned());
+    let own = folder().join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let own = own.to_string_lossy().into_owned();
+    if let Some(python) = [&named, &own].into_iter().find(|python| is_whole(python)) {
+        return Some(python.clone());
+    }
+    let made = setup
+        && run("python3", &["-m", "venv", &folder().to_string_lossy()])
+        && run(&own, &["-m", "pip", "install", "--quiet", "numpy", "usd-core"]);
+    (made && is_whole(&own)).then_some(own)
+}
+
+fn folder() -> PathBuf {
+    root().join("target/python")
+}
+
+fn is_whole(python: &str) -> bool {
+    run(python, &["-c", "import numpy, pxr"])
+}
+
+fn run(program: &str, arguments: &[&str]) -> bool {
+    let mut command = Command::new(program);
+    command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.status().is_ok_and(|status| status.success())
+}
