@@ -251,8 +251,8 @@ pub struct ShaderOptions {
 #[derive(Args, Debug)]
 pub struct BenchOptions {
     /// The thesis's tables 1 to 4 beside ours; how cost grows with strands and cells; the thesis's
-    /// table 5, frames per second by viewing distance and picture size; what two workers gain; or how the
-    /// window fares over ten minutes.
+    /// table 5, frames per second by viewing distance and picture size; what two workers gain; how the window
+    /// fares over ten minutes; or grooms as artists bring them.
     #[arg(value_enum, default_value = "thesis")]
     pub what: Bench,
     /// Which GPU is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,
@@ -262,6 +262,12 @@ pub struct BenchOptions {
     /// A short run that shows that everything works; its figures mean little.
     #[arg(long)]
     pub quick: bool,
+    /// A groom whose first picture `groom` waits for besides.
+    #[arg(long, value_name = "FILE")]
+    pub groom: Option<PathBuf>,
+    /// The body that goes with it.
+    #[arg(long, value_name = "FILE", requires = "groom")]
+    pub body: Option<PathBuf>,
     /// Seconds of play of `window` [default: 600; 6 of a quick run].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=86_400))]
     pub seconds: Option<u64>,
@@ -293,6 +299,9 @@ pub enum Bench {
     /// Ten minutes of play as in the window: time to the first picture, pictures a second, how soon a move
     /// shows, and whether memory grows.
     Window,
+    /// Grooms as artists bring them: how soon the first picture is there, what bound strands cost, and how fast
+    /// moving hair is written.
+    Groom,
 }
 
 /// A wrong use of the command line that clap does not see; ends with code 2.

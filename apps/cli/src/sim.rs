@@ -48,6 +48,9 @@ pub struct OutReport {
     pub frames: usize,
     pub strands: usize,
     pub points: usize,
+    pub bytes: u64,
+    /// Of writing alone.
+    pub seconds: f64,
 }
 
 /// Length over rest length - 1: the mean over all steps and segments, and the largest.
@@ -215,11 +218,13 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let played = play(&mut player, &mut steps, inputs.json);
     let written = close(&mut player, played)?;
     let mut report = steps.report(Ended::of(&player, &scene));
-    report.out = written.map(|Written { place: path, frames, strands, points, .. }| OutReport {
-        path,
-        frames,
-        strands,
-        points,
+    report.out = written.map(|written| OutReport {
+        path: written.place,
+        frames: written.frames,
+        strands: written.strands,
+        points: written.points,
+        bytes: written.bytes,
+        seconds: written.time.as_secs_f64(),
     });
     if inputs.json {
         output::program(&format!("{}\n", serde_json::to_string(&report)?));
@@ -331,7 +336,11 @@ fn print(report: &SimReport) {
         report.fluid_cells_mean,
         pcg.residual_max
     );
-    if let Some(OutReport { path, frames, strands, points }) = &report.out {
-        print_line!("wrote {frames} frames of {strands} strands, {points} points to {}", path.display());
+    if let Some(OutReport { path, frames, strands, points, bytes, .. }) = &report.out {
+        let megabytes = 1e-6 * *bytes as f64;
+        print_line!(
+            "wrote {frames} frames of {strands} strands, {points} points, {megabytes:.1} MB to {}",
+            path.display()
+        );
     }
 }

@@ -67,7 +67,12 @@ impl Machine {
 
 /// Largest memory that this process held \[MB\], where the system tells it.
 pub fn peak_memory_mb() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    peak_memory_mb_of("self")
+}
+
+/// The same of a process by its number.
+pub fn peak_memory_mb_of(process: &str) -> Option<f64> {
+    let text = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let kilobytes = field(&text, "VmHWM")?.split_whitespace().next()?.parse::<f64>().ok()?;
     Some(kilobytes * 1024e-6)
 }

@@ -6,6 +6,7 @@ mod forms;
 mod gpu;
 #[cfg(feature = "gpu")]
 mod gpu_runs;
+mod grooms;
 mod machine;
 mod measure;
 #[cfg(not(feature = "gpu"))]
@@ -56,6 +57,7 @@ pub fn bench(options: &BenchOptions) -> anyhow::Result<()> {
         Bench::View => write(options, machine, device, "view", view::run(device, options.quick)?),
         Bench::Workers => write(options, machine, device, "workers", workers::run(device, options.quick)?),
         Bench::Window => write(options, machine, device, "window", window::run(device, options)?),
+        Bench::Groom => write(options, machine, device, "groom", grooms::run(device, options)?),
         Bench::Scaling => write(options, machine, device, "scaling", scaling::run(device, options.quick)?),
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use strandline_base::FolderLock;
 
-use super::{Frame, shape::Shape};
+use super::{Frame, out::size, shape::Shape};
 use crate::{
     Error,
     groom::{Groom, Influences, Widths},
@@ -17,6 +17,7 @@ pub(super) struct Files {
     pattern: (String, usize, String),
     groom: Groom,
     left_out: Vec<String>,
+    bytes: u64,
     _lock: FolderLock,
 }
 
@@ -60,7 +61,7 @@ impl Files {
         }
         let names = (0..).zip(&attributes.group_names).filter(|(_, name)| !name.is_empty());
         groom.group_names = names.map(|(group, name)| (group, name.clone())).collect();
-        Ok(Self { folder: folder.to_owned(), pattern, groom, left_out: Vec::new(), _lock: lock })
+        Ok(Self { folder: folder.to_owned(), pattern, groom, left_out: Vec::new(), bytes: 0, _lock: lock })
     }
 
     /// Writes the file of a frame.
@@ -75,12 +76,13 @@ impl Files {
                 self.left_out.push(part);
             }
         }
+        self.bytes += size(&path);
         Ok(())
     }
 
-    /// The folder, and what the format could not hold.
-    pub fn finish(self) -> (PathBuf, Vec<String>) {
-        (self.folder, self.left_out)
+    /// Bytes of all files, the folder, and what the format could not hold.
+    pub fn finish(self) -> (u64, PathBuf, Vec<String>) {
+        (self.bytes, self.folder, self.left_out)
     }
 }
 

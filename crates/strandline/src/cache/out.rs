@@ -1,6 +1,9 @@
 //! What a run writes as it goes.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
 
 use glam::Vec3;
 
@@ -39,6 +42,10 @@ pub struct Written {
     pub strands: usize,
     /// Points of all strands.
     pub points: usize,
+    /// Size of the file, or of all of them \[byte\].
+    pub bytes: u64,
+    /// Time that writing took by the clock, without the simulation.
+    pub time: Duration,
     /// Parts of the hair that the format cannot hold.
     pub left_out: Vec<String>,
 }
@@ -51,6 +58,7 @@ pub struct Out {
     writer: Writer,
     points: Vec<Vec3>,
     frames: usize,
+    time: Duration,
 }
 
 enum Writer {
@@ -75,6 +83,11 @@ fn format(path: &Path) -> Result<Format, Error> {
         "usda" => Ok(Format::Usda),
         _ => Err(Error::OutName { found: ending, path: path.to_owned() }),
     }
+}
+
+/// The size of a file \[byte\].
+pub(super) fn size(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |file| file.len())
 }
 
 impl OutSettings {
@@ -106,7 +119,7 @@ impl Out {
             Format::Usda => Writer::Usd(Usd::new(path, scene, &shape, settings.target)?.into()),
             Format::Sequence => Writer::Files(Files::new(path, &shape)?.into()),
         };
-        Ok(Self { shape, first, every, writer, points: Vec::new(), frames: 0 })
+        Ok(Self { shape, first, every, writer, points: Vec::new(), frames: 0, time: Duration::ZERO })
     }
 
     /// Whether a frame is one of those that are written.
@@ -137,11 +150,13 @@ impl Out {
         if !self.takes(number) {
             return Ok(());
         }
+        let begin = Instant::now();
         self.shape.place(&moment.positions, &moment.world_from_head, &mut self.points);
         let points = std::mem::take(&mut self.points);
         let frame = Frame { number, time, points: &points, world_from_head: moment.world_from_head };
         let added = self.write(&frame, state);
         self.points = points;
+        self.time += begin.elapsed();
         added
     }
 
@@ -196,12 +211,15 @@ impl Out {
     /// Ends the file of a whole film, or of one that was broken off.
     pub(crate) fn close(self, whole: bool, state: Option<&Snapshot>) -> Result<Written, Error> {
         let (strands, points) = (self.shape.strand_count(), self.shape.point_count());
-        let (place, left_out) = match self.writer {
-            Writer::Store(store) if whole => (store.finish(state)?, Vec::new()),
-            Writer::Store(store) => (store.leave(state)?, Vec::new()),
-            Writer::Usd(usd) => (usd.finish(whole)?, Vec::new()),
+        let begin = Instant::now();
+        let one = |path: PathBuf| (size(&path), path, Vec::new());
+        let (bytes, place, left_out) = match self.writer {
+            Writer::Store(store) if whole => one(store.finish(state)?),
+            Writer::Store(store) => one(store.leave(state)?),
+            Writer::Usd(usd) => one(usd.finish(whole)?),
             Writer::Files(files) => files.finish(),
         };
-        Ok(Written { place, frames: self.frames, strands, points, left_out })
+        let time = self.time + begin.elapsed();
+        Ok(Written { place, frames: self.frames, strands, points, bytes, time, left_out })
     }
 }
