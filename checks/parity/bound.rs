@@ -64,7 +64,8 @@ fn nearest(solids: &[(Collider, f32)], point: Vec3) -> (f32, Vec3) {
 
 fn on_cpu(binding: &Binding, solids: &[(Collider, f32)]) -> Vec<Vec3Lanes> {
     let surface = |point: Vec3| nearest(solids, point);
-    let surface = (!solids.is_empty()).then_some(&surface as &Surface);
+    let surface = Surface::of(&surface);
+    let surface = (!solids.is_empty()).then_some(&surface);
     let (mut frames, mut places) = (Frames::default(), Vec::new());
     binding.follow(&blown(binding.guides()), &pose(), &mut frames);
     binding.place(&frames, &pose(), surface, &mut places);

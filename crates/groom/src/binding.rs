@@ -15,8 +15,27 @@ use crate::{
     choice::{self, Feature, Roots},
 };
 
-/// The signed distance \[m\] of a body at a point \[m\], world space, negative inside, and its unit gradient.
-pub type Surface<'a> = dyn Fn(Vec3) -> (f32, Vec3) + Sync + 'a;
+/// A body that strands stay out of, world space.
+#[derive(Clone, Copy)]
+pub struct Surface<'a> {
+    /// The signed distance \[m\] at a point \[m\], negative inside, and its unit gradient.
+    pub at: &'a (dyn Fn(Vec3) -> (f32, Vec3) + Sync),
+    /// How far \[m\] it is at least, 0 where that is not known without asking for the distance.
+    pub at_least: &'a (dyn Fn(Vec3) -> f32 + Sync),
+}
+
+impl<'a> Surface<'a> {
+    /// A body of which nothing is known but its distance.
+    pub fn of(at: &'a (dyn Fn(Vec3) -> (f32, Vec3) + Sync)) -> Self {
+        Self { at, at_least: &|_| 0.0 }
+    }
+}
+
+impl std::fmt::Debug for Surface<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+        formatter.write_str("Surface")
+    }
+}
 
 mod frames;
 mod influence;

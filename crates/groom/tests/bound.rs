@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use glam::Vec3;
 use strandline_body::Pose;
-use strandline_groom::{Binding, Frames, Groom, Guides, LANES};
+use strandline_groom::{Binding, Frames, Groom, Guides, LANES, Surface};
 
 fn bound(groom: &Groom, count: usize, points: usize) -> Binding {
     let chosen = groom.representatives(count);
@@ -78,7 +78,7 @@ fn a_hundred_thousand_strands_are_placed() {
         let (begin, before) = (Instant::now(), processor_ms());
         for _ in 0..RUNS {
             binding.follow(&positions, &Pose::IDENTITY, &mut frames);
-            binding.place(&frames, &Pose::IDENTITY, body.then_some(&surface), &mut places);
+            binding.place(&frames, &Pose::IDENTITY, body.then_some(&Surface::of(&surface)), &mut places);
         }
         let wall = begin.elapsed().as_secs_f64() * 1e3 / f64::from(RUNS);
         let used = processor_ms().zip(before).map(|(after, before)| (after - before) / f64::from(RUNS));

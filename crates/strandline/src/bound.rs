@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::{
     body::{Carrier, Collider, Pose, Shape},
-    groom::{Binding, Frames, Guides, Vec3Lanes},
+    groom::{Binding, Frames, Guides, Surface, Vec3Lanes},
 };
 
 /// Share of the distance between samples of a solid that strands stay away from it, and how far at most \[m\]: samples
@@ -69,7 +69,16 @@ impl BoundStrands {
                 if carrier == Carrier::Head { world_from_head.direction(gradient) } else { gradient };
             (distance, turned)
         };
-        let surface = (!self.solids.is_empty()).then_some(&surface as &crate::groom::Surface);
+        let at_least = |point: Vec3| {
+            let in_head = head_from_world.point(point);
+            let least = self.solids.iter().map(|solid| {
+                let place = if solid.carrier == Carrier::Head { in_head } else { point };
+                solid.shape.distance_at_least(place) - clearance(&solid.shape)
+            });
+            least.fold(f32::INFINITY, f32::min)
+        };
+        let surface = Surface { at: &surface, at_least: &at_least };
+        let surface = (!self.solids.is_empty()).then_some(&surface);
         self.binding.follow(guides, world_from_head, frames);
         self.binding.place(frames, world_from_head, surface, out);
     }

@@ -182,7 +182,8 @@ fn first(groom: &Path, body: Option<&Path>, folder: &Path) -> anyhow::Result<Fir
 /// Plays grown hair most of which is bound, drawn small: placing does not ask how large a picture is.
 fn place(pictures: Backend, [strands, guides]: [u32; 2], frames: u32) -> anyhow::Result<Bound> {
     let mut scene = Scene::demo();
-    (scene.style.strand_count, scene.groom.bound, scene.groom.points_per_strand) = (guides as usize, strands, 16);
+    (scene.style.strand_count, scene.groom.bound, scene.groom.points_per_strand) =
+        (guides as usize, strands, 16);
     (scene.film.frames, scene.film.settle) = (frames + 1, 0.0);
     (scene.look.follow_strands, scene.picture.width, scene.picture.height) = (1, 64, 64);
     scene.look.dress(strandline::render::Preset::Thesis);

@@ -43,6 +43,24 @@ fn nodes(grid: &DistanceGrid) -> impl Iterator<Item = Vec3> + '_ {
     })
 }
 
+#[test]
+fn what_a_grid_is_away_at_least_is_no_more_than_its_distance_and_not_much_less() {
+    let grids = [
+        DistanceGrid::from_field(&Ball, SPACING, PADDING).unwrap(),
+        DistanceGrid::from_mesh(&ball(CENTER, RADIUS, 4), SPACING, PADDING).unwrap(),
+    ];
+    for grid in grids {
+        let bounds = Aabb { min: grid.bounds().min - 0.1, max: grid.bounds().max + 0.1 };
+        for point in points(bounds, 20_000).chain(nodes(&grid)) {
+            let (least, distance) = (grid.distance_at_least(point), grid.distance(point));
+            assert!(least >= 0.0 && least <= distance.max(0.0), "{point}: {least} of {distance}");
+            // A cell's diagonal, and a step of the table.
+            assert!(least > distance - SPACING * (3.0_f32.sqrt() + 0.26), "{point}: {least} of {distance}");
+        }
+        assert!(grid.distance_at_least(Vec3::NAN).is_nan() || grid.distance_at_least(Vec3::NAN) == 0.0);
+    }
+}
+
 /// Checks a grid against the exact ball, whose samples are `inexact` \[m\] wrong.
 fn check_ball(grid: &DistanceGrid, inexact: f32) {
     // Where the field is smooth. Trilinear error: spacing^2 / 8 times the sum of the

@@ -165,9 +165,14 @@ fn outside(
     let (before, mut placed) = (store(before), store(placed));
     let (length, mut clear) = (length.to_array(), clear.to_array());
     for lane in (0..LANES).filter(|lane| close >> lane & 1 == 1) {
-        clear[lane] = surface(placed.get(lane)).0;
+        let point = placed.get(lane);
+        clear[lane] = (surface.at_least)(point);
+        if clear[lane] > 0.0 {
+            continue;
+        }
+        clear[lane] = (surface.at)(point).0;
         if clear[lane] < 0.0 {
-            let moved = placed_outside(before.get(lane), placed.get(lane), length[lane], &surface);
+            let moved = placed_outside(before.get(lane), point, length[lane], &surface.at);
             placed.set(lane, moved.0);
             clear[lane] = 0.0;
         }

@@ -127,7 +127,9 @@ fn points_come_out_of_the_body() {
             .filter(|(strand, point)| surface(place(*strand, *point)).0 < -1e-5)
             .count()
     };
-    assert_eq!(deep(Some(&surface)), 0);
+    assert_eq!(deep(Some(&Surface::of(&surface))), 0);
+    let at_least = |point: Vec3| (0.5 * surface(point).0).max(0.0);
+    assert_eq!(deep(Some(&Surface { at: &surface, at_least: &at_least })), 0);
     assert!(deep(None) > 1000, "the comparison can fail: {}", deep(None));
 }
 

@@ -196,7 +196,10 @@ impl<'a> Solids<'a> {
             let mut local = Vec3Lanes::default();
             group.carrier_from_world.points(position).store(&mut local);
             for point in (0..LANES).filter(|lane| counted(*lane)).map(|lane| local.get(lane)) {
-                let distances = group.colliders.iter().map(|collider| collider.shape.distance(point));
+                // Most points are known to be outside without asking where the surface is.
+                let near =
+                    group.colliders.iter().filter(|collider| collider.shape.distance_at_least(point) <= 0.0);
+                let distances = near.map(|collider| collider.shape.distance(point));
                 deepest = distances.fold(deepest, |deepest, distance| deepest.max(-distance));
             }
         }

@@ -32,9 +32,14 @@ pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
 }
 
 fn classify(volume: &mut Volume, obstacles: &Obstacles) {
-    let look_up =
-        |cell: usize| obstacles.nearest(volume.grid.center(cell)).map_or(f32::INFINITY, |near| near.0);
     let depth = volume.grid.spacing();
+    let head_from_world = obstacles.end.inverse();
+    // What is farther than a cell need not be known to the bit.
+    let look_up = |cell: usize| {
+        let center = volume.grid.center(cell);
+        let least = obstacles.at_least(center, &head_from_world);
+        if least > depth { least } else { obstacles.nearest(center).map_or(f32::INFINITY, |near| near.0) }
+    };
     let occupied: Vec<f32> =
         volume.sort.cells().par_iter().with_min_len(256).map(|&cell| look_up(cell as usize)).collect();
     for (&cell, &distance) in volume.sort.cells().iter().zip(&occupied) {

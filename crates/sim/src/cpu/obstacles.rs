@@ -38,6 +38,16 @@ impl Obstacles<'_> {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// How far \[m\] all solids are from a point at the end of the step at least, 0 where it may be inside one; quicker
+    /// than [`Self::nearest`]. World space.
+    pub fn at_least(&self, point: Vec3, head_from_world: &Pose) -> f32 {
+        let least = self.colliders.iter().map(|collider| match collider.carrier {
+            Carrier::World => collider.shape.distance_at_least(point),
+            Carrier::Head => collider.shape.distance_at_least(head_from_world.point(point)),
+        });
+        least.fold(f32::INFINITY, f32::min)
+    }
+
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
     pub fn velocity(&self, collider: usize, point: Vec3) -> Vec3 {
         match self.colliders[collider].carrier {
