@@ -2,6 +2,7 @@
 
 mod body;
 mod fit;
+mod foreign;
 mod looks;
 mod parts;
 mod placing;
@@ -99,7 +100,11 @@ struct Loaded {
 /// Loads or grows strands and body, brings them together, and fits the scene to what it names.
 fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
     let (groom, mesh) = (strands::load(scene, notes)?, body::mesh(scene)?);
-    let placings = placing::guess(scene, groom.as_ref(), mesh.as_ref());
+    let mut placings = placing::guess(scene, groom.as_ref(), mesh.as_ref());
+    let pair = groom.as_ref().zip(mesh.as_ref());
+    let foreign = pair.and_then(|(groom, mesh)| foreign::placings(scene, groom, mesh, &placings));
+    let is_foreign = foreign.is_some();
+    placings = foreign.unwrap_or(placings);
     notes.extend(placings.note);
     let meshes = mesh.map(|mesh| parts::meshes(scene, mesh, placings.body)).transpose()?;
     let drawn = meshes.as_ref().map(|meshes| &meshes.drawn);
@@ -107,6 +112,9 @@ fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
         Some(mut groom) => {
             let (turn, translation) = (scene.groom.rotation, scene.groom.translation);
             strands::place(&mut groom, placings.groom, scene, turn, translation);
+            if let Some(mesh) = drawn.filter(|_| is_foreign) {
+                notes.extend(foreign::fit(&mut groom, mesh));
+            }
             parts::add_grooms(scene, &mut groom, placings.groom, drawn, notes)?;
             notes.extend(fit::fit(scene, &groom, drawn));
             Some(groom)
@@ -117,7 +125,10 @@ fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
     let body = body::body(scene, meshes, placings.body, notes)?;
     let drawn = body.mesh.as_ref().filter(|_| has_file);
     let mut groom = match groom {
-        Some(groom) => groom,
+        Some(mut groom) => {
+            foreign::lead(&mut groom, body.shape.as_ref().filter(|_| is_foreign));
+            groom
+        }
         None => {
             let mut grown = strands::grown(scene)?;
             let fitted = drawn.map(|mesh| wrap::onto(&mut grown, mesh, body.shape.as_ref()));

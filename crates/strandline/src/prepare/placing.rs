@@ -319,6 +319,11 @@ fn noted(scene: &Scene, groom: Placing, body: Placing, has_body: bool, turn: Qua
     (!words.is_empty()).then(|| format!("taken from the files: {}; {keys}", words.join(", ")))
 }
 
+/// Middle distance of roots from a body, both placed, as a share of the body's size.
+pub(super) fn roots_apart(groom: &Groom, mesh: &Mesh, of_groom: &Placing, of_body: &Placing) -> f32 {
+    Sample::new(groom, mesh).apart(of_groom.scale, of_groom.turn, of_body.scale, of_body.turn)
+}
+
 /// What is wrong with where a groom and a body are \[m\], head space, when they do not meet.
 pub(super) fn apart(groom: &Groom, mesh: &Mesh) -> Option<String> {
     let (of_groom, of_body) = (groom.bounds(), mesh.bounds()?);

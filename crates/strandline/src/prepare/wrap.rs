@@ -20,29 +20,32 @@ const REACH: f32 = 0.1;
 
 /// The upper part of a head, where hair grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Skull {
+pub(super) struct Skull {
     /// Height of the crown \[m\].
-    top: f32,
+    pub top: f32,
     /// From ear to ear and from front to back \[m\].
-    size: Vec2,
+    pub size: Vec2,
     /// The middle, seen from above \[m\].
-    middle: Vec2,
+    pub middle: Vec2,
 }
 
 impl Skull {
-    /// That of the highest part of a mesh, which stands upright and looks along z.
-    fn of(mesh: &Mesh) -> Option<Self> {
-        let bounds = mesh.bounds()?;
-        let top = bounds.max.y;
+    /// That of the highest part of a body, given its vertices, or of a head, given the roots of its hair \[m\]. It stands
+    /// upright and looks along z.
+    pub fn of(places: &[Vec3]) -> Option<Self> {
+        let heights = places.iter().map(|place| place.y);
+        let (low, top) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, top), height| {
+            (low.min(height), top.max(height))
+        });
         let above = |width: f32| {
             let start = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-            let places = mesh.positions.iter().filter(|place| place.y >= top - WIDEST * width);
-            places
+            let upper = places.iter().filter(|place| place.y >= top - WIDEST * width);
+            upper
                 .map(|place| Vec2::new(place.x, place.z))
                 .fold(start, |(low, high), place| (low.min(place), high.max(place)))
         };
         // From above, so that no shoulder is taken for it.
-        let mut width = START * (top - bounds.min.y);
+        let mut width = START * (top - low);
         for _ in 0..ROUNDS {
             let (low, high) = above(width);
             let found = (high.x - low.x).max(width);
@@ -58,7 +61,7 @@ impl Skull {
 
 /// Fits the strands of a grown style to a body, and leads their roots to its surface; what is to be said of it.
 pub(super) fn onto(groom: &mut Groom, mesh: &Mesh, shape: Option<&Shape>) -> Option<String> {
-    let (from, to) = (Skull::of(&Mannequin::new().mesh())?, Skull::of(mesh)?);
+    let (from, to) = (Skull::of(&Mannequin::new().mesh().positions)?, Skull::of(&mesh.positions)?);
     let ratio = to.size / from.size;
     let scale = Vec3::new(ratio.x, ratio.x, ratio.y);
     let place = |point: Vec3| {
@@ -67,16 +70,7 @@ pub(super) fn onto(groom: &mut Groom, mesh: &Mesh, shape: Option<&Shape>) -> Opt
     };
     groom.points.iter_mut().for_each(|point| *point = place(*point));
     if let Some(shape) = shape {
-        for strand in 0..groom.strand_count() {
-            let range = groom.range(strand);
-            let root = groom.points[range.start];
-            let (skin, normal) = settled(shape, root);
-            let way = (skin - root).clamp_length_max(REACH);
-            groom.points[range].iter_mut().for_each(|point| *point += way);
-            if let Some(normals) = &mut groom.root_normals {
-                normals[strand] = normal;
-            }
-        }
+        lead(groom, shape);
     }
     let percent = |ratio: f32| 100.0 * ratio;
     Some(format!(
@@ -84,6 +78,20 @@ pub(super) fn onto(groom: &mut Groom, mesh: &Mesh, shape: Option<&Shape>) -> Opt
         percent(ratio.x),
         percent(ratio.y)
     ))
+}
+
+/// Leads the roots of strands to a surface, and each strand with its root.
+pub(super) fn lead(groom: &mut Groom, shape: &Shape) {
+    for strand in 0..groom.strand_count() {
+        let range = groom.range(strand);
+        let root = groom.points[range.start];
+        let (skin, normal) = settled(shape, root);
+        let way = (skin - root).clamp_length_max(REACH);
+        groom.points[range].iter_mut().for_each(|point| *point += way);
+        if let Some(normals) = &mut groom.root_normals {
+            normals[strand] = normal;
+        }
+    }
 }
 
 /// The place of a surface near a point \[m\], and its unit normal there.
@@ -137,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_skull_is_found_above_shoulders() {
-        let skull = Skull::of(&bust(Vec2::new(0.1, 0.13), Vec3::new(0.3, 2.0, -0.4))).unwrap();
+        let skull = Skull::of(&bust(Vec2::new(0.1, 0.13), Vec3::new(0.3, 2.0, -0.4)).positions).unwrap();
         assert!((skull.top - 2.1).abs() < 1e-4, "{skull:?}");
         // Rings of vertices 5 mm apart.
         assert!((skull.size - Vec2::new(0.2, 0.26)).abs().max_element() < 0.006, "{skull:?}");

@@ -1,0 +1,137 @@
+//! A groom that was made for another head: its scalp is fitted to the head of the body.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use glam::{Quat, Vec3};
+use strandline_base::math;
+
+use super::placing::{self, Placing, Placings};
+use super::wrap::{self, Skull};
+use crate::{
+    Scene,
+    body::{Mesh, Shape},
+    groom::{
+        Groom,
+        format::{Scale, Up},
+    },
+};
+
+/// Middle distance of roots from a body that is not theirs, as a share of the body's size.
+const APART: f32 = 0.1;
+/// Width of a scalp over that of the skull below or above which the two have other units.
+const WIDTHS: std::ops::RangeInclusive<f32> = 0.1..=3.0;
+/// Depth and height over the width of what may be a scalp: no fur, no brow and no beard.
+const DEPTHS: std::ops::RangeInclusive<f32> = 0.7..=1.8;
+const HEIGHTS: std::ops::RangeInclusive<f32> = 0.4..=1.6;
+/// Share of the head by which a face reaches out, or hair is combed, to one side.
+const ASIDE: f32 = 0.04;
+/// Width, height and depth of the roots on a head over those of its skull.
+const OF_SKULL: Vec3 = Vec3::new(1.0, 0.97, 0.94);
+/// Heights below the crown, over the width of the skull, between which the face is.
+const FACE: [f32; 2] = [0.8, 1.6];
+
+/// The places of a groom and a body that do not belong together, where a scene leaves both open; none where they do,
+/// or the groom is not the hair of a head.
+pub(super) fn placings(scene: &Scene, groom: &Groom, mesh: &Mesh, as_one: &Placings) -> Option<Placings> {
+    if !is_open(scene) {
+        return None;
+    }
+    let roots = placed(groom.roots(), &as_one.groom);
+    let vertices = placed(mesh.positions.iter().copied(), &as_one.body);
+    let (scalp, skull) = (Skull::of(&roots)?, Skull::of(&vertices)?);
+    let apart = placing::roots_apart(groom, mesh, &as_one.groom, &as_one.body);
+    if apart <= APART && WIDTHS.contains(&(scalp.size.x / skull.size.x)) {
+        return None;
+    }
+    let alone = placing::guess(scene, Some(groom), None).groom;
+    let body = placing::guess(scene, None, Some(mesh)).body;
+    let (roots, vertices) = (placed(groom.roots(), &alone), placed(mesh.positions.iter().copied(), &body));
+    let tips = (0..groom.strand_count()).map(|strand| groom.strand(strand)[groom.strand(strand).len() - 1]);
+    let (turn_hair, turn_body) = (front_of_hair(&roots, &placed(tips, &alone))?, front_of_head(&vertices)?);
+    let turned = |placing: Placing, turn: Quat| Placing { turn: turn * placing.turn, ..placing };
+    let (groom, body) = (turned(alone, turn_hair), turned(body, turn_body));
+    Some(Placings { groom, body, note: None })
+}
+
+/// Whether a scene says nothing of where groom and body are.
+fn is_open(scene: &Scene) -> bool {
+    let (groom, body) = (&scene.groom, &scene.body);
+    let still = [groom.rotation, groom.translation, body.rotation, body.translation];
+    groom.scale == Scale::Auto
+        && body.scale == Scale::Auto
+        && groom.up == Up::Auto
+        && body.up == Up::Auto
+        && still.iter().all(|part| *part == Vec3::ZERO)
+}
+
+fn placed(places: impl Iterator<Item = Vec3>, placing: &Placing) -> Vec<Vec3> {
+    places.map(|place| placing.turn * (placing.scale * place)).collect()
+}
+
+/// The turn about y after which a head looks along +z, given what reaches out to its front \[share of the head\]. A head is
+/// longer from front to back than from ear to ear.
+fn turned_to_z(skull: &Skull, front: Vec3) -> Quat {
+    let is_long = skull.size.y >= skull.size.x;
+    match [is_long, front.x < 0.0, front.z < -ASIDE] {
+        [true, _, true] => math::rotation(Vec3::Y, PI),
+        [true, _, false] => Quat::IDENTITY,
+        [false, is_left, _] => math::rotation(Vec3::Y, if is_left { FRAC_PI_2 } else { -FRAC_PI_2 }),
+    }
+}
+
+/// Turns hair so that it is combed to the back, -z; none where roots do not lie as those on a head.
+fn front_of_hair(roots: &[Vec3], tips: &[Vec3]) -> Option<Quat> {
+    let scalp = Skull::of(roots)?;
+    let lowest = roots.iter().map(|root| root.y).fold(f32::INFINITY, f32::min);
+    let width = scalp.size.x.min(scalp.size.y);
+    let deep = scalp.size.max_element() / width;
+    if !(DEPTHS.contains(&deep) && HEIGHTS.contains(&((scalp.top - lowest) / width))) {
+        return None;
+    }
+    let combed = tips.iter().zip(roots).map(|(tip, root)| *tip - *root).sum::<Vec3>();
+    let combed = combed / (roots.len() as f32 * scalp.size.max_element());
+    Some(turned_to_z(&scalp, -combed))
+}
+
+/// Turns a head so that its face, where it reaches out and has most vertices, looks along +z.
+fn front_of_head(vertices: &[Vec3]) -> Option<Quat> {
+    let skull = Skull::of(vertices)?;
+    let [high, low] = FACE.map(|below| skull.top - below * skull.size.x);
+    let face = vertices.iter().filter(|vertex| (low..=high).contains(&vertex.y));
+    let reach = 0.75 * skull.size.max_element();
+    let beside = face.map(|vertex| *vertex - Vec3::new(skull.middle.x, vertex.y, skull.middle.y));
+    let near: Vec<Vec3> = beside.filter(|beside| beside.length() < reach).collect();
+    let middle = near.iter().sum::<Vec3>() / near.len().max(1) as f32 / skull.size.max_element();
+    Some(turned_to_z(&skull, middle))
+}
+
+/// Fits hair that is placed by [`placings`] to the head of a mesh, head space: crown on crown and back on back.
+/// What is to be said of it.
+pub(super) fn fit(groom: &mut Groom, mesh: &Mesh) -> Option<String> {
+    let roots: Vec<Vec3> = groom.roots().collect();
+    let (from, to) = (Skull::of(&roots)?, Skull::of(&mesh.positions)?);
+    // Roots lie around as much of a skull on all heads that were looked at: all of its width, and 0.93 to 0.97 of its
+    // depth.
+    let ratio = to.size / from.size;
+    let scale = Vec3::new(ratio.x, 0.5 * (ratio.x + ratio.y), ratio.y) * OF_SKULL;
+    let anchor = |skull: &Skull| Vec3::new(skull.middle.x, skull.top, skull.middle.y - 0.5 * skull.size.y);
+    let (from, to) = (anchor(&from), anchor(&to));
+    groom.points.iter_mut().for_each(|point| *point = to + scale * (*point - from));
+    Some(format!(
+        "the groom was made for another head: it is fitted to the highest part of this body, {:.0} % as wide and \
+         {:.0} % as deep; `scale`, `up`, `rotation` and `translation` of [groom] and [body] place both otherwise",
+        100.0 * scale.x,
+        100.0 * scale.z
+    ))
+}
+
+/// Leads the roots of fitted hair to the surface.
+pub(super) fn lead(groom: &mut Groom, shape: Option<&Shape>) {
+    if let Some(shape) = shape {
+        wrap::lead(groom, shape);
+    }
+}
+
+#[cfg(test)]
+#[path = "foreign_tests.rs"]
+mod tests;
