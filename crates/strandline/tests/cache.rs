@@ -207,6 +207,13 @@ fn usd_has_every_frame_in_the_units_of_its_reader() {
         assert!(text.starts_with("#usda 1.0\n") && text.contains(head), "{}", &text[..700]);
         assert!(text.contains(&format!("endTimeCode = {}", 12 + first)), "{}", &text[..700]);
         assert_eq!(numbers(&text, "curveVertexCounts = "), [16.0; 60]);
+        // Diameters, in the units of points.
+        let units = if target == Target::Unreal { 100.0 } else { 1.0 };
+        let guides = player(&scene, &OutSettings::new(folder.path().join("b.npz"))).guides().clone();
+        let widths = numbers(&text, "float[] widths = ");
+        assert_eq!(widths.len(), 60 * 16);
+        let root = guides.widths()[0] * guides.profiles().map_or(1.0, |profiles| profiles[0]);
+        assert!((widths[0] - units * root).abs() < 1e-6 * widths[0] && root > 1e-5, "{} m", widths[0]);
         assert_eq!(text.contains("GroomAPI") && text.contains("groom_guide"), target == Target::Unreal);
         let samples = &text[text.find("points.timeSamples").unwrap()..];
         for frame in [0, 4, 8, 12] {

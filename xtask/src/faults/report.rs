@@ -53,7 +53,13 @@ impl Outcome {
 
     /// In a line.
     pub fn summary(&self, fault: &Fault) -> String {
-        let word = if seen(fault, self) { "seen" } else { "UNSEEN" };
+        let only = self.note.is_empty() && !self.failed.is_empty();
+        let word = match [seen(fault, self), only, self.seen_on(true).is_empty()] {
+            [true, ..] => "seen",
+            [_, true, true] => "UNSEEN on a GPU, seen",
+            [_, true, false] => "UNSEEN on the CPU, seen",
+            _ => "UNSEEN",
+        };
         let by = if self.failed.is_empty() { "no test".to_owned() } else { self.failed.join(", ") };
         let note = if self.note.is_empty() { String::new() } else { format!(" ({})", self.note) };
         format!("{word} by {by}{note}, {} s", self.seconds)
