@@ -192,7 +192,7 @@ fn place(pictures: Backend, [strands, guides]: [u32; 2], frames: u32) -> anyhow:
     // Both at once would share the processor.
     player.set_overlap(false);
     let mut times = Vec::new();
-    while let Some(event) = player.next() {
+    for event in player.by_ref() {
         if let Event::Drawn { report, .. } = event? {
             let own = report.seconds.iter().filter(|(stage, _)| *stage == "bind").map(|(_, seconds)| seconds);
             times.push(1e3 * own.sum::<f64>());

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use strandline_base::FolderLock;
 
-use super::{Frame, out::size, shape::Shape};
+use super::{Frame, shape::Shape};
 use crate::{
     Error,
     groom::{Groom, Influences, Widths},
@@ -27,6 +27,11 @@ fn pattern(name: &str) -> Option<(String, usize, String)> {
     let (digits, after) = rest.split_once('d')?;
     let count = if digits.is_empty() { 1 } else { digits.strip_prefix('0')?.parse().ok()? };
     (1..=9).contains(&count).then(|| (before.to_owned(), count, after.to_owned()))
+}
+
+/// The size of a file \[byte\].
+pub(super) fn size(path: &Path) -> u64 {
+    std::fs::metadata(path).map_or(0, |file| file.len())
 }
 
 /// Whether a path names a file for every frame.

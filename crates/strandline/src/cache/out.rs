@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use super::{
     Cache, Frame, Snapshot, Target, What,
-    files::Files,
+    files::{Files, size},
     shape::{Leaving, Shape},
     store::Store,
     usd::Usd,
@@ -83,11 +83,6 @@ fn format(path: &Path) -> Result<Format, Error> {
         "usda" => Ok(Format::Usda),
         _ => Err(Error::OutName { found: ending, path: path.to_owned() }),
     }
-}
-
-/// The size of a file \[byte\].
-pub(super) fn size(path: &Path) -> u64 {
-    std::fs::metadata(path).map_or(0, |file| file.len())
 }
 
 impl OutSettings {
