@@ -162,7 +162,6 @@ fn outside(
             }
         }
     }
-    println!("{deep} of {looked} points inside, the deepest {:.2} mm", 1e3 * deepest);
-    assert!(deep as f32 <= 0.001 * looked as f32, "{deep} of {looked}");
-    assert!(deepest <= most, "{deepest} m");
+    let found = format!("{deep} of {looked} points inside, the deepest {:.2} mm", 1e3 * deepest);
+    assert!(deep as f32 <= 0.001 * looked as f32 && deepest <= most, "{found}");
 }
