@@ -1,4 +1,4 @@
-mod channels;
+pub(crate) mod channels;
 mod input;
 
 pub use input::FrameInput;

@@ -22,7 +22,7 @@ settings! {
         /// Whether the background is left out and opacity written instead.
         transparent: bool = false;
         /// Whether linear light, depth, the hair's coverage, its directions and strands are kept too, as for an .exr
-        /// file; on the CPU alone.
+        /// file.
         layers: bool = false;
         moved { backend: Backend => "devices.pictures" }
     }

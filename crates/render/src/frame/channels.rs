@@ -8,17 +8,28 @@ use crate::cpu::skin::Skin;
 use crate::cpu::{DrawInput, Strands, resolve_linear};
 use crate::{BodyLook, Environment, FrameInput, Layers, PictureSettings};
 
-impl Renderer {
-    /// The picture that was drawn last, from the same input, as channels: see [`Layers`]. The strands' light is lost.
-    pub(super) fn channels(&mut self, input: &FrameInput) -> Layers {
-        let settings = self.settings;
-        let light = resolve_linear(&self.samples, &settings);
-        let scale = settings.supersampling as usize;
-        let strands = nearest_strands(&self.strands, input.camera, &self.samples, scale);
-        let bodies = body_depths(&self.samples, scale);
-        let depths = depths(&self.strands, input.camera, &self.samples);
-        let covered = self.with_numbers(input, |_, point| Vec3::new(1.0, depths[point], 0.0));
-        let directions = self.with_numbers(input, |strands, point| strands.tangents[point]);
+/// What is known of every pixel, on either backend; shape `[row][column]`.
+pub(crate) struct Known {
+    /// Radiance times opacity, and opacity.
+    pub light: Vec<Vec4>,
+    /// Share of the pixel that hair covers, and times that its depth along the view \[m\].
+    pub covered: Vec<Vec4>,
+    /// Tangent of the hair times the share that it covers.
+    pub directions: Vec<Vec4>,
+    /// Depth along the view \[m\] of the body, 0 where there is none.
+    pub bodies: Vec<f32>,
+    /// Number of the nearest strand, from 1, 0 where there is none.
+    pub strands: Vec<f32>,
+}
+
+/// What is drawn to know it: a skin that is black, with no light from anywhere.
+pub(crate) const BLACK: BodyLook =
+    BodyLook { color: Vec3::ZERO, wrap: 0.0, specular: 0.0, roughness: 0.5, scalp: 0.0 };
+
+impl Known {
+    /// The channels of a picture.
+    pub fn layers(self, settings: &PictureSettings) -> Layers {
+        let Self { light, covered, directions, bodies, strands } = self;
         let depth = |(hair, body): (&Vec4, &f32)| {
             if hair.x >= 0.5 || (*body == 0.0 && hair.x > 0.0) { hair.y / hair.x } else { *body }
         };
@@ -44,6 +55,23 @@ impl Renderer {
             channels: channels.map(|(name, values)| (name.to_owned(), values)).into(),
         }
     }
+}
+
+impl Renderer {
+    /// The picture that was drawn last, from the same input, as channels: see [`Layers`]. The strands' light is lost.
+    pub(super) fn channels(&mut self, input: &FrameInput) -> Layers {
+        let settings = self.settings;
+        let scale = settings.supersampling as usize;
+        let depths = depths(&self.strands, input.camera, &self.samples);
+        let known = Known {
+            light: resolve_linear(&self.samples, &settings),
+            strands: nearest_strands(&self.strands, input.camera, &self.samples, scale),
+            bodies: body_depths(&self.samples, scale),
+            covered: self.with_numbers(input, |_, point| Vec3::new(1.0, depths[point], 0.0)),
+            directions: self.with_numbers(input, |strands, point| strands.tangents[point]),
+        };
+        known.layers(&settings)
+    }
 
     /// Hair drawn over nothing, with numbers in the place of its light, before a black body.
     fn with_numbers(&mut self, input: &FrameInput, number: impl Fn(&Strands, usize) -> Vec3) -> Vec<Vec4> {
@@ -56,7 +84,7 @@ impl Renderer {
             supersampling: self.settings.supersampling,
         };
         let skin = Skin {
-            look: &BodyLook { color: Vec3::ZERO, specular: 0.0, ..BodyLook::default() },
+            look: &BLACK,
             lights: &[],
             shadows: &self.shadows,
             occlusion: &self.occlusion,

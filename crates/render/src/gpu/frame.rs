@@ -41,7 +41,7 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     recorder.clear(&groom.areas);
     recorder.stage("shade", &one(&stages.sum_areas, segments));
     recorder.stage("shade", &[(stages.sweep.clone(), [6, 1, 1])]);
-    match &scattering(scene, bounds) {
+    match &scattering(scene, bounds.renderer) {
         Some((grid, light)) => {
             recorder.clear(grid.sums());
             recorder.stage("shade", &light_stages(scene, light, segments));
@@ -56,15 +56,17 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     recorder.stage("draw", &one(&stages.list_segments, strands));
     recorder.stage("draw", &stages.scan);
     recorder.stage("draw", &one(&stages.order_segments, segments));
-    samples(recorder, scene, bounds, segments);
+    samples(recorder, scene, bounds.renderer, stages);
     let target =
         Targets { color: Some((bounds.target, wgpu::LoadOp::Clear(wgpu::Color::BLACK))), depth: None };
     recorder.draw("resolve", &target, &[(bounds.resolve, Amount::Vertices { count: 3, instance: 0 })]);
 }
 
 /// Scattered light, where the look has it.
-fn scattering<'a>(scene: &Scene, bounds: &Bounds<'a>) -> Option<(&'a LightGrid, &'a light_grid::Bounds)> {
-    let renderer = bounds.renderer;
+fn scattering<'a>(
+    scene: &Scene,
+    renderer: &'a GpuRenderer,
+) -> Option<(&'a LightGrid, &'a light_grid::Bounds)> {
     let scatters = scene.input.look.fibre.model == FibreModel::Chiang;
     if scatters { renderer.light_grid.as_ref().zip(renderer.light_bounds.as_ref()) } else { None }
 }
@@ -147,19 +149,19 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
 }
 
 /// Background, body and hair, in this order.
-fn samples(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds, segments: usize) {
-    let renderer = bounds.renderer;
+pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, renderer: &GpuRenderer, stages: &Stages) {
+    let segments = scene.strand_count() * (scene.curve_points() - 1);
     let instances = segments.div_ceil(draw::BATCH) as u32;
     let mut list = Vec::new();
     if !scene.settings.transparent {
-        list.push((&bounds.stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
+        list.push((&stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
     }
     if scene.triangle_count > 0 {
         let count = 3 * scene.triangle_count as u32;
-        let body = scattering(scene, bounds).map_or(&bounds.stages.body, |(_, light)| &light.body);
+        let body = scattering(scene, renderer).map_or(&stages.body, |(_, light)| &light.body);
         list.push((body, Amount::Vertices { count, instance: 0 }));
     }
-    list.push((&bounds.stages.hair, Amount::Instanced { indices: &renderer.indices, instances }));
+    list.push((&stages.hair, Amount::Instanced { indices: &renderer.indices, instances }));
     let targets = Targets {
         color: Some((renderer.targets.samples.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))),
         depth: Some((renderer.targets.depth.view(), wgpu::LoadOp::Clear(0.0))),

@@ -9,6 +9,7 @@ mod body;
 mod bound;
 mod bound_solids;
 mod buffers;
+mod channels;
 mod draw;
 mod fit;
 mod frame;

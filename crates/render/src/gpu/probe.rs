@@ -11,7 +11,7 @@ use crate::cpu::shadow::{LightView, ShadowMap, Shadows, Window};
 use crate::{DetailLevel, FrameInput, Light, Picture, RenderError, Shadow, cpu};
 
 /// Half floats as they are stored.
-fn from_half(bits: u32) -> f32 {
+pub(super) fn from_half(bits: u32) -> f32 {
     let (sign, exponent, fraction) = (bits >> 15 & 1, bits >> 10 & 31, bits & 1023);
     let value = match exponent {
         0 => fraction as f32 * 2.0_f32.powi(-24),

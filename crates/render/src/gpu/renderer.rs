@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use glam::Vec3;
 use strandline_base::SettingError;
 use strandline_body::Mesh;
@@ -11,7 +13,7 @@ use super::frame::{Bounds, record};
 use super::inputs::{Frame, LightSource};
 use super::light_grid::{self, LightGrid};
 use super::points::DevicePoints;
-use super::resolve::{Own, PICTURE, ToFormat, check_picture};
+use super::resolve::{Own, PICTURE, ToFormat};
 use super::shade::LayerColors;
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
@@ -26,7 +28,7 @@ pub struct GpuRenderer {
     pub(super) gpu: Gpu,
     pub(super) guides: Guides,
     /// Middle of the guides at rest \[m\], head space.
-    middle: Vec3,
+    pub(super) middle: Vec3,
     /// A ball around the body: middle \[m\], head space, and radius \[m\].
     body_ball: (Vec3, f32),
     vertex_count: usize,
@@ -115,7 +117,7 @@ impl GpuRenderer {
         body: Option<&Mesh>,
         settings: &PictureSettings,
     ) -> Result<Self, RenderError> {
-        check_picture(settings)?;
+        settings.validate()?;
         Ok(Self {
             middle: middle(guides),
             body_ball: ball(body),
@@ -162,7 +164,7 @@ impl GpuRenderer {
     /// # Errors
     /// As for [`GpuRenderer::new`]; the settings then stay as they were.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), RenderError> {
-        check_picture(settings)?;
+        settings.validate()?;
         let size = |settings: &PictureSettings| (settings.width, settings.height, settings.supersampling);
         if size(settings) != size(&self.settings) {
             let targets = Targets::new(&self.gpu, settings)?;
@@ -207,7 +209,8 @@ impl GpuRenderer {
         let own = self.own.insert(own);
         let report = drawn?;
         let seconds = own.read(self.timer.as_ref(), self.settings.transparent, picture)?;
-        Ok(FrameReport { seconds, ..report })
+        let layers = if self.settings.layers { Some(Arc::new(self.channels(input)?)) } else { None };
+        Ok(FrameReport { seconds, layers, ..report })
     }
 
     /// Draws into a texture of the host's, of the picture's size and seen in a format, and does not wait for

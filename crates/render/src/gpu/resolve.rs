@@ -1,11 +1,10 @@
 //! `resolve`: from samples to pixels, in linear light; then exposure, tone map, sRGB.
 
-use strandline_base::SettingError;
 use strandline_gpu::{BoundDrawing, Download, Drawing, Gpu, GpuError, Output, Texture, Timer, drawing, wgpu};
 
 use super::buffers::{Groom, Targets};
 use super::inputs::Frame;
-use crate::{Picture, PictureSettings, RenderError};
+use crate::{Picture, PictureSettings};
 
 drawing! {
     /// One triangle over the whole picture.
@@ -112,14 +111,4 @@ impl Own {
             timer.map(|timer| timer.seconds(&marks)).unwrap_or_default()
         })
     }
-}
-
-/// Refuses what is not drawn on a GPU.
-pub(super) fn check_picture(settings: &PictureSettings) -> Result<(), RenderError> {
-    settings.validate()?;
-    if settings.layers {
-        let expected = "false where a GPU draws: draw on the CPU (devices.pictures = \"cpu\")";
-        return Err(SettingError::new("picture.layers", "true", expected).into());
-    }
-    Ok(())
 }

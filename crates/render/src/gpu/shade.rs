@@ -21,6 +21,15 @@ kernel! {
 }
 
 kernel! {
+    /// Numbers of points in the place of their light; one thread is one point.
+    pub(super) struct Numbers in "shade" (super::linked::SHADE), entry "numbers" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        7 radiances: ReadWrite [u32; 2],
+    }
+}
+
+kernel! {
     /// One thread is one point.
     pub(super) struct Shade in "shade" (super::linked::SHADE), entry "shade" {
         0 frame: Read Frame,

@@ -153,6 +153,7 @@ pub fn declarations() -> Vec<Declaration> {
         occlude::Sweep::declaration(),
         shade::Shade::declaration(),
         shade::LayerColors::declaration(),
+        shade::Numbers::declaration(),
         light_grid::SumHair::declaration(),
         light_grid::SumSkin::declaration(),
         light_grid::Prepare::declaration(),

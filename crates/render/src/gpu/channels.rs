@@ -1,0 +1,128 @@
+//! A picture as channels: the twin of frame/channels.rs.
+
+use glam::Vec4;
+use strandline_gpu::{Download, Gpu, GpuError, Kernel, Recorder, Texture, groups, wgpu};
+
+use super::frame::samples;
+use super::inputs::Frame;
+use super::probe::from_half;
+use super::shade::Numbers;
+use super::{GpuRenderer, THREADS};
+use crate::cpu::Samples;
+use crate::cpu::known::{body_depths, nearest_strands};
+use crate::cpu::resolve_linear;
+use crate::frame::channels::{BLACK, Known};
+use crate::{FrameInput, Layers, PictureSettings, RenderError};
+
+/// Kinds of numbers, as in shade.wesl.
+const COVERAGE_AND_DEPTH: f64 = 0.0;
+const TANGENT: f64 = 1.0;
+
+impl GpuRenderer {
+    /// The picture that was drawn last, from the same input, as channels: see [`Layers`]. The strands' light is lost.
+    ///
+    /// The device draws light, coverage, depths and directions; strands are numbered on the host, from the points and
+    /// the body's depths that are on the device.
+    pub(super) fn channels(&self, input: &FrameInput) -> Result<Layers, RenderError> {
+        let settings = self.settings;
+        let scale = settings.supersampling as usize;
+        let mut found = Samples::default();
+        found.resize(
+            (settings.width * settings.supersampling) as usize,
+            (settings.height * settings.supersampling) as usize,
+        );
+        self.read_light(&mut found)?;
+        let light = resolve_linear(&found, &settings);
+        self.read_depths(input.camera.near, &mut found)?;
+        let bodies = body_depths(&found, scale);
+        let strands = nearest_strands(&self.strands()?, input.camera, &found, scale);
+        let mut covered = self.with_numbers(input, COVERAGE_AND_DEPTH, &mut found)?;
+        let middle = input.world_from_head.point(self.middle);
+        let depth = -input.camera.view_from_world().transform_point3(middle).z;
+        covered.iter_mut().for_each(|hair| hair.y += depth * hair.x);
+        let directions = self.with_numbers(input, TANGENT, &mut found)?;
+        Ok(Known { light, covered, directions, bodies, strands }.layers(&settings))
+    }
+
+    /// Hair drawn over nothing, with numbers in the place of its light, before a black body.
+    fn with_numbers(
+        &self,
+        input: &FrameInput,
+        kind: f64,
+        found: &mut Samples,
+    ) -> Result<Vec<Vec4>, RenderError> {
+        let (Some(strands), Some(stages)) = (&self.strands, &self.stages) else {
+            unreachable!("drawn before")
+        };
+        let settings = PictureSettings { transparent: true, ..self.settings };
+        let input = FrameInput { body_look: &BLACK, lights: &[], ..*input };
+        let scene = self.scene(&input, &settings, 1.0);
+        let frame = &self.groom.frame;
+        frame.write(&[Frame::new(&scene)])?;
+        let kernel: Kernel<Numbers> = Kernel::new(&self.gpu, &[("NUMBERS", kind)])?;
+        let numbers = kernel
+            .bind(&self.gpu, &Numbers { frame, points: &strands.points, radiances: &strands.radiances })?;
+        let threads = groups(scene.strand_count() * scene.curve_points(), THREADS);
+        self.gpu.guarded("channels", || {
+            let mut recorder = Recorder::new(&self.gpu, None);
+            recorder.stage("shade", &[(numbers, threads)]);
+            samples(&mut recorder, &scene, self, stages);
+            self.gpu.queue().submit([recorder.finish(|_| ())]);
+        })?;
+        self.read_light(found)?;
+        Ok(resolve_linear(found, &settings))
+    }
+
+    /// Colours of the samples that were drawn last.
+    fn read_light(&self, found: &mut Samples) -> Result<(), RenderError> {
+        let texels: Vec<[u32; 2]> = texels(&self.gpu, &self.targets.samples, wgpu::TextureAspect::All)?;
+        let width = found.width();
+        for (at, &[xy, zw]) in texels.iter().enumerate() {
+            let index = found.index(at % width, at / width);
+            found.colors[index] = Vec4::from([xy, xy >> 16, zw, zw >> 16].map(from_half));
+        }
+        Ok(())
+    }
+
+    /// Depths of the body in the samples that were drawn last.
+    fn read_depths(&self, near: f32, found: &mut Samples) -> Result<(), RenderError> {
+        let texels: Vec<f32> = texels(&self.gpu, &self.targets.depth, wgpu::TextureAspect::DepthOnly)?;
+        let width = found.width();
+        for (at, depth) in texels.iter().enumerate() {
+            let index = found.index(at % width, at / width);
+            found.inverse_depths[index] = depth / near;
+        }
+        Ok(())
+    }
+}
+
+/// What a texture holds, shape `[row][column]`.
+fn texels<T: bytemuck::Pod>(
+    gpu: &Gpu,
+    texture: &Texture,
+    aspect: wgpu::TextureAspect,
+) -> Result<Vec<T>, GpuError> {
+    let [width, height] = texture.size();
+    let own_bytes = width as usize * size_of::<T>();
+    let row_bytes = own_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let download = Download::new(gpu, row_bytes as u64 * u64::from(height))?;
+    gpu.guarded("channels", || {
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(row_bytes as u32),
+            rows_per_image: None,
+        };
+        let commands = Recorder::new(gpu, None).finish(|encoder| {
+            encoder.copy_texture_to_buffer(
+                wgpu::TexelCopyTextureInfo { aspect, ..texture.raw().as_image_copy() },
+                wgpu::TexelCopyBufferInfo { buffer: download.raw(), layout },
+                texture.raw().size(),
+            );
+        });
+        gpu.queue().submit([commands]);
+    })?;
+    download.read(|bytes| {
+        let rows = bytes.chunks_exact(row_bytes);
+        rows.flat_map(|row| bytemuck::pod_collect_to_vec::<u8, T>(&row[..own_bytes])).collect()
+    })
+}
