@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
+use strandline_render::Layers;
 
 /// A linear picture, rows from the top.
 pub struct Linear {
@@ -11,7 +12,24 @@ pub struct Linear {
     pub pixels: Vec<Vec3>,
 }
 
+/// The values of a channel, rows from the top.
+pub fn channel<'a>(layers: &'a Layers, name: &str) -> &'a [f32] {
+    let found = layers.channels.iter().find(|(own, _)| own == name);
+    &found.unwrap_or_else(|| panic!("no channel {name}")).1
+}
+
 impl Linear {
+    /// The light of channels.
+    pub fn of(layers: &Layers) -> Self {
+        let [red, green, blue] = ["R", "G", "B"].map(|name| channel(layers, name));
+        let pixel = |at: usize| Vec3::new(red[at], green[at], blue[at]);
+        Self {
+            width: layers.width as usize,
+            height: layers.height as usize,
+            pixels: (0..red.len()).map(pixel).collect(),
+        }
+    }
+
     /// Means of boxes of 4 x 4 pixels.
     pub fn boxed(&self) -> Self {
         let (width, height) = (self.width / 4, self.height / 4);
