@@ -2,6 +2,7 @@
 
 mod clump;
 mod coverage;
+mod crown;
 mod drawn;
 mod fibre;
 mod golden;
