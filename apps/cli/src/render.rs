@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 use strandline::{Backend, Cache, Event, Film, LayerFilm, Player, Scene};
 
-use crate::arguments::{RenderOptions, Usage};
+use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};
 use crate::non_finite::NonFinite;
 use crate::output::{self, print_line};
@@ -51,14 +51,14 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
         (scene.picture.width, scene.picture.height) = (width, height);
     }
     if let Some(path) = options.out.as_deref().filter(|path| is_exr(path)) {
-        if matches!(scene.devices.pictures, Backend::Gpu(_)) {
-            return Err(Usage(
-                ".exr files are drawn on the CPU: leave the GPU out, or name --sim-device".into(),
-            )
-            .into());
-        }
         scene.picture.layers = true;
-        scene.devices.pictures = Backend::Cpu;
+        if matches!(scene.devices.pictures, Backend::Gpu(_)) {
+            output::note(
+                "a GPU keeps light as half floats and depth to 0.1 mm; without its name the CPU draws",
+            );
+        } else {
+            scene.devices.pictures = Backend::Cpu;
+        }
         return channels(&scene, cache, path, options.inputs.json);
     }
     let name = options.cache.as_deref().and_then(Path::file_stem).map(Path::new);

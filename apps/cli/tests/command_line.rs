@@ -334,3 +334,41 @@ fn shader_modules_are_written_to_be_read() {
     std::fs::write(folder.path().join("file"), "").unwrap();
     fails(folder.path(), &["shaders", "file/linked"], 1, &["cannot write the shader modules", "file/linked"]);
 }
+
+/// The names and sums of an .exr file's channels.
+fn channels(path: &Path) -> Vec<(String, f32)> {
+    let image = exr::prelude::read_all_data_from_file(path).unwrap();
+    let channels = &image.layer_data[0].channel_data.list;
+    let sum = |channel: &exr::prelude::AnyChannel<exr::prelude::FlatSamples>| {
+        channel.sample_data.values_as_f32().filter(|value| value.is_finite() && value.abs() < 1e6).sum()
+    };
+    channels.iter().map(|channel| (channel.name.to_string(), sum(channel))).collect()
+}
+
+#[test]
+#[allow(clippy::print_stderr)] // it tells what is not tested
+fn linear_light_and_channels_are_written_by_either_device() {
+    let folder = tempfile::tempdir().unwrap();
+    small(folder.path());
+    let draw = |device: &str, out: &str| {
+        let arguments =
+            ["render", "--scene", "small.toml", "--frames", "1", "--render-device", device, "--out", out];
+        strandline(folder.path(), &arguments)
+    };
+    assert!(draw("cpu", "cpu.exr").status.success());
+    let drawn = draw("gpu", "gpu.exr");
+    let said = text(&drawn.stderr);
+    if !drawn.status.success() {
+        let required = std::env::var_os("STRANDLINE_REQUIRE_GPU").is_some_and(|value| value == "1");
+        assert!(!required && said.contains("GPU"), "{said}");
+        return eprintln!("not tested on a GPU: {said}");
+    }
+    assert!(said.contains("half floats"), "{said}");
+    let [one, two] = ["cpu.exr", "gpu.exr"].map(|name| channels(&folder.path().join(name)));
+    assert!(one.len() > 6, "{one:?}");
+    for ((name, one), (same, two)) in one.iter().zip(&two) {
+        // Numbers of strands are of single samples; the rest are means over pixels: found within 1 %.
+        let apart = (one - two).abs() / one.abs().max(1.0);
+        assert!(name == same && apart < 0.03, "{name}: {one}, {same}: {two}");
+    }
+}
