@@ -139,8 +139,7 @@ fn shown(on: &On, preset: Preset) -> [f32; 2] {
         Linear::of(layers).save(&format!("crown_{preset:?}_{name}"), 1.0);
     }
     let [crown, rim] = [luminances(&front, &crown), luminances(&back, &rim)];
-    let found = [quantile(&rim, 0.5), quantile(&crown, 0.99)].map(|light| light / quantile(&crown, 0.5));
-    found
+    [quantile(&rim, 0.5), quantile(&crown, 0.99)].map(|light| light / quantile(&crown, 0.5))
 }
 
 law! {
