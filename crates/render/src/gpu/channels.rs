@@ -15,15 +15,15 @@ use crate::frame::channels::{BLACK, Known};
 use crate::{FrameInput, Layers, PictureSettings, RenderError};
 
 /// Kinds of numbers, as in shade.wesl.
-const COVERAGE_AND_DEPTH: f64 = 0.0;
-const TANGENT: f64 = 1.0;
+const COVERAGE_AND_DEPTH: usize = 0;
+const TANGENT: usize = 1;
 
 impl GpuRenderer {
     /// The picture that was drawn last, from the same input, as channels: see [`Layers`]. The strands' light is lost.
     ///
     /// The device draws light, coverage, depths and directions; strands are numbered on the host, from the points and
     /// the body's depths that are on the device.
-    pub(super) fn channels(&self, input: &FrameInput) -> Result<Layers, RenderError> {
+    pub(super) fn channels(&mut self, input: &FrameInput) -> Result<Layers, RenderError> {
         let settings = self.settings;
         let scale = settings.supersampling as usize;
         let mut found = Samples::default();
@@ -46,22 +46,26 @@ impl GpuRenderer {
 
     /// Hair drawn over nothing, with numbers in the place of its light, before a black body.
     fn with_numbers(
-        &self,
+        &mut self,
         input: &FrameInput,
-        kind: f64,
+        kind: usize,
         found: &mut Samples,
     ) -> Result<Vec<Vec4>, RenderError> {
-        let (Some(strands), Some(stages)) = (&self.strands, &self.stages) else {
-            unreachable!("drawn before")
+        if self.numbers.is_none() {
+            let compiled = |kind: usize| Kernel::new(&self.gpu, &[("NUMBERS", kind as f64)]);
+            self.numbers = Some([compiled(COVERAGE_AND_DEPTH)?, compiled(TANGENT)?]);
+        }
+        let (Some(kernels), Some(strands), Some(stages)) = (&self.numbers, &self.strands, &self.stages)
+        else {
+            unreachable!("drawn before");
         };
         let settings = PictureSettings { transparent: true, ..self.settings };
         let input = FrameInput { body_look: &BLACK, lights: &[], ..*input };
         let scene = self.scene(&input, &settings, 1.0);
         let frame = &self.groom.frame;
         frame.write(&[Frame::new(&scene)])?;
-        let kernel: Kernel<Numbers> = Kernel::new(&self.gpu, &[("NUMBERS", kind)])?;
-        let numbers = kernel
-            .bind(&self.gpu, &Numbers { frame, points: &strands.points, radiances: &strands.radiances })?;
+        let buffers = Numbers { frame, points: &strands.points, radiances: &strands.radiances };
+        let numbers = kernels[kind].bind(&self.gpu, &buffers)?;
         let threads = groups(scene.strand_count() * scene.curve_points(), THREADS);
         self.gpu.guarded("channels", || {
             let mut recorder = Recorder::new(&self.gpu, None);

@@ -14,7 +14,7 @@ use super::inputs::{Frame, LightSource};
 use super::light_grid::{self, LightGrid};
 use super::points::DevicePoints;
 use super::resolve::{Own, PICTURE, ToFormat};
-use super::shade::LayerColors;
+use super::shade::{LayerColors, Numbers};
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
 use crate::cpu::shade_chiang::Source;
@@ -55,6 +55,8 @@ pub struct GpuRenderer {
     /// The light whose layers colour the hair, and the kernel that does so.
     pub(super) layers_of: Option<usize>,
     pub(super) layer_colors: Option<(usize, Kernel<LayerColors<'static>>)>,
+    /// What puts numbers in the place of light, once channels are asked for.
+    pub(super) numbers: Option<[Kernel<Numbers<'static>>; 2]>,
     pub(super) drawn: Drawn,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
     pub(super) lit: (Vec<Light>, Shadow, Vec3),
@@ -141,6 +143,7 @@ impl GpuRenderer {
             timer: Timer::new(gpu)?,
             layers_of: None,
             layer_colors: None,
+            numbers: None,
             drawn: Drawn::default(),
             lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
             own_color: mean_color(guides),
@@ -214,7 +217,7 @@ impl GpuRenderer {
     }
 
     /// Draws into a texture of the host's, of the picture's size and seen in a format, and does not wait for
-    /// it: the report has no times.
+    /// it: the report has neither times nor layers.
     ///
     /// # Errors
     /// As [`GpuRenderer::draw`]; a texture of another size.
