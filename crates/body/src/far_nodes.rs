@@ -27,7 +27,8 @@ pub(crate) struct FarNodes {
 }
 
 impl FarNodes {
-    /// Looks for the surface from every corner, at no more than `budget` triangles each; none for a small lattice.
+    /// Looks for the surface from every corner, at no more than `budget` triangles each; none for a small lattice. A
+    /// corner for which these do not suffice counts as near, so that the nodes of its blocks are searched for.
     pub fn new(tree: &TriangleTree, lattice: &Lattice, budget: u64) -> Option<Self> {
         if lattice.len() <= FEW {
             return None;
@@ -43,8 +44,11 @@ impl FarNodes {
                 if before.triangle != Nearest::NONE.triangle {
                     tree.offer(before.triangle, point, nearest);
                 }
-                tree.search(point, budget, nearest);
+                let sufficed = tree.search(point, budget, nearest) < budget;
                 before = *nearest;
+                if !sufficed {
+                    nearest.squared = 0.0;
+                }
             }
         });
         Some(Self { counts, nearest })
@@ -74,5 +78,36 @@ impl FarNodes {
         }
         let above = f64::from(SIDE * SIDE) / 8.0 * 2.0 / (least - HALF);
         (least >= FAR).then(|| Nearest { squared: (sum - above).powi(2), triangle })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layers::Corners;
+
+    /// A disc of thin triangles that meet at its middle \[cells\], aslant so that their boxes overlap.
+    fn disc(middle: DVec3, radius: f64, count: u32) -> Vec<Corners> {
+        let (u, v) = DVec3::ONE.normalize().any_orthonormal_pair();
+        let rim = |index: u32| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(index) / f64::from(count)).sin_cos();
+            middle + radius * (cos * u + sin * v)
+        };
+        (0..count).map(|index| [middle, rim(index), rim(index + 1)]).collect()
+    }
+
+    #[test]
+    fn what_could_not_be_made_sure_of_is_not_taken_for_known() {
+        let node_count = UVec3::new(128, 96, 128);
+        let lattice = Lattice { origin: glam::Vec3::ZERO, spacing: 1.0, node_count };
+        let triangles = disc(DVec3::new(40.0, 20.0, 40.0), 16.0, 2000);
+        let tree = TriangleTree::new(&triangles, (0..2000).collect());
+        let node = UVec3::new(70, 52, 71);
+        let mut nearest = Nearest::NONE;
+        tree.search(node.as_dvec3(), u64::MAX, &mut nearest);
+        let at = |budget| FarNodes::new(&tree, &lattice, budget).expect("a large lattice").at(node, &lattice);
+        let found = at(u64::MAX).expect("all corners of its block are far").squared.sqrt();
+        assert!(found <= nearest.squared.sqrt() && found > nearest.squared.sqrt() - 0.5, "{found}");
+        assert!(at(16).is_none(), "after 16 triangles of 2,000 a corner is sure of nothing");
     }
 }
