@@ -7,7 +7,7 @@ use strandline_checks::{On, Rig};
 use strandline_groom::{Frames, LANES, Vec3Lanes};
 use strandline_render::{
     DetailLevel,
-    cpu::{Curves, Strands, interpolate, tessellate},
+    cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
 };
 use strandline_sim::{Drive, Settings, Solver};
 
@@ -116,11 +116,10 @@ fn bound_strands_go_where_they_would_go_and_stay_out_of_the_head() {
         .flat_map(|strand| (0..points).map(move |point| (strand, point)))
         .map(|(strand, point)| place(&placed, points, strand, point))
         .collect();
-    outside(&some, &own, points, &pose, [1, 4], 1e-3);
-    // Between their points strands cut across creases: found 1.65 mm in her ears, where 1 mm is wanted.
+    println!("points of strands: {}", outside(&some, &own, points, &pose, [1, 4]));
     let (drawn, each) = drawn(&some, &placed, &pose);
     let per_span = some.scene.level_of_detail.segments_per_span as usize;
-    outside(&some, &drawn, each, &pose, [per_span, 8], 2e-3);
+    println!("drawn points: {}", outside(&some, &drawn, each, &pose, [per_span, 8]));
 }
 
 /// The points that pictures draw \[m\], world space, strand by strand, and how many each strand has.
@@ -129,6 +128,8 @@ fn drawn(prepared: &Prepared, placed: &[Vec3Lanes], pose: &Pose) -> (Vec<Vec3>, 
     let level = DetailLevel::full(prepared.scene.level_of_detail.segments_per_span, 1);
     let (mut curves, mut strands) = (Curves::default(), Strands::default());
     tessellate(placed, all, pose, &level, &mut curves);
+    let bound = prepared.bound.as_ref().unwrap();
+    keep_outside(&mut curves, all.points_per_strand(), &bound.solids().placed(*pose));
     interpolate(&curves, all, pose, look, &level, &mut strands);
     let each = level.segment_count(all.points_per_strand()) + 1;
     assert_eq!(strands.positions.len(), all.strand_count() * each);
@@ -136,16 +137,9 @@ fn drawn(prepared: &Prepared, placed: &[Vec3Lanes], pose: &Pose) -> (Vec<Vec3>, 
 }
 
 /// Asserts that points \[m\], world space, `each` of a strand, lie outside the head, measured against the mesh itself:
-/// 99.9 of 100, and none deeper than `most` \[m\]. The first of every strand are left out, which lead out of the skin,
-/// and all but every n-th strand: the distance to the mesh asks every triangle.
-fn outside(
-    prepared: &Prepared,
-    points: &[Vec3],
-    each: usize,
-    pose: &Pose,
-    [first, n]: [usize; 2],
-    most: f32,
-) {
+/// 99.9 of 100, and none deeper than 1 mm; what was found. The first of every strand are left out, which lead out of
+/// the skin, and all but every n-th strand: the distance to the mesh asks every triangle.
+fn outside(prepared: &Prepared, points: &[Vec3], each: usize, pose: &Pose, [first, n]: [usize; 2]) -> String {
     let (mesh, head_from_world) = (prepared.mesh.as_ref().unwrap(), pose.inverse());
     let shape = &prepared.colliders[0].shape;
     let (mut looked, mut deep, mut deepest) = (0, 0, 0.0_f32);
@@ -163,5 +157,6 @@ fn outside(
         }
     }
     let found = format!("{deep} of {looked} points inside, the deepest {:.2} mm", 1e3 * deepest);
-    assert!(deep as f32 <= 0.001 * looked as f32 && deepest <= most, "{found}");
+    assert!(deep as f32 <= 0.001 * looked as f32 && deepest <= 1e-3, "{found}");
+    found
 }

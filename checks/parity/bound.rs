@@ -1,9 +1,10 @@
 //! Bound strands placed on a GPU against the same on the CPU.
 
 use glam::{Quat, Vec3};
-use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape};
+use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
 use strandline_checks::gpu;
 use strandline_groom::{Binding, Frames, Guides, LANES, Style, StyleSettings, Surface, Vec3Lanes};
+use strandline_render::cpu::{Curves, keep_outside, tessellate};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
 
@@ -38,7 +39,7 @@ fn blown(guides: &Guides) -> Vec<Vec3Lanes> {
 }
 
 /// A head that is sampled, a ball in it and a bar beside it that stays where it is.
-fn solids() -> Vec<(Collider, f32)> {
+fn solids() -> Solids {
     let grid = DistanceGrid::from_field(&*Mannequin::new(), 0.006, 0.02).unwrap();
     let head = Collider::new(Shape::Grid(grid.into()), Carrier::Head, 0.3).unwrap();
     let ball = Shape::Sphere { center: Vec3::new(0.0, -0.1, 0.05), radius: 0.1 };
@@ -46,34 +47,22 @@ fn solids() -> Vec<(Collider, f32)> {
         Shape::Capsule { start: Vec3::new(0.1, -0.3, 0.1), end: Vec3::new(0.7, -0.3, 0.2), radius: 0.06 };
     let others = [(ball, Carrier::Head), (bar, Carrier::World)]
         .map(|(shape, carrier)| (Collider::new(shape, carrier, 0.3).unwrap(), 0.0));
-    [(head, 0.0015)].into_iter().chain(others).collect()
+    Solids::new([(head, 0.0015)].into_iter().chain(others))
 }
 
-fn nearest(solids: &[(Collider, f32)], point: Vec3) -> (f32, Vec3) {
-    let (mut best, head_from_world) = ((f32::INFINITY, Vec3::Y), pose().inverse());
-    for (solid, clearance) in solids {
-        let carried = solid.carrier == Carrier::Head;
-        let place = if carried { head_from_world.point(point) } else { point };
-        let (distance, gradient) = solid.shape.distance_and_gradient(place);
-        if distance - clearance < best.0 {
-            best = (distance - clearance, if carried { pose().direction(gradient) } else { gradient });
-        }
-    }
-    best
-}
-
-fn on_cpu(binding: &Binding, solids: &[(Collider, f32)]) -> Vec<Vec3Lanes> {
-    let surface = |point: Vec3| nearest(solids, point);
+fn on_cpu(binding: &Binding, solids: &Solids) -> Vec<Vec3Lanes> {
+    let placed = solids.placed(pose());
+    let surface = |point: Vec3| placed.at(point);
     let surface = Surface::of(&surface);
-    let surface = (!solids.is_empty()).then_some(&surface);
+    let surface = (!placed.is_empty()).then_some(&surface);
     let (mut frames, mut places) = (Frames::default(), Vec::new());
     binding.follow(&blown(binding.guides()), &pose(), &mut frames);
     binding.place(&frames, &pose(), surface, &mut places);
     places
 }
 
-/// None without a GPU.
-fn on_gpu(binding: &Binding, solids: &[(Collider, f32)]) -> Option<Vec<Vec3Lanes>> {
+/// Where strands are and the points of their curves; none without a GPU.
+fn on_gpu(binding: &Binding, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec3>)> {
     let settings = PictureSettings::sized(32, 32);
     let mut renderer = GpuRenderer::new(&gpu()?, binding.strands(), None, &settings).unwrap();
     renderer.bind(binding, solids).unwrap();
@@ -85,11 +74,12 @@ fn on_gpu(binding: &Binding, solids: &[(Collider, f32)]) -> Option<Vec<Vec3Lanes
         look: &look,
         body_look: &BodyLook::default(),
         lights: &[Light::default()],
-        level_of_detail: &LevelOfDetail::default(),
+        level_of_detail: &LevelOfDetail::full(),
     };
     let (_, report) = renderer.draw(&input).unwrap();
     assert_eq!(report.strands, binding.strands().strand_count());
-    Some(renderer.places().unwrap())
+    let [curves, ..] = renderer.curves().unwrap();
+    Some((renderer.places().unwrap(), curves))
 }
 
 fn apart(one: &[Vec3Lanes], two: &[Vec3Lanes], strands: usize) -> Vec<f32> {
@@ -107,8 +97,8 @@ fn apart(one: &[Vec3Lanes], two: &[Vec3Lanes], strands: usize) -> Vec<f32> {
 #[test]
 fn bound_strands_lie_where_the_cpu_has_them() {
     let binding = binding();
-    let Some(on_gpu) = on_gpu(&binding, &[]) else { return };
-    let on_cpu = on_cpu(&binding, &[]);
+    let Some((on_gpu, _)) = on_gpu(&binding, &Solids::default()) else { return };
+    let on_cpu = on_cpu(&binding, &Solids::default());
     let strands = binding.strands().strand_count();
     let apart_most = *apart(&on_cpu, &on_gpu, strands).last().unwrap();
     // Rotations that are carried along twelve points, as quaternions and as matrices, on strands of 0.4 m.
@@ -122,7 +112,7 @@ fn bound_strands_lie_where_the_cpu_has_them() {
 #[test]
 fn they_stay_out_of_solids_as_on_the_cpu() {
     let (binding, solids) = (binding(), solids());
-    let Some(on_gpu) = on_gpu(&binding, &solids) else { return };
+    let Some((on_gpu, _)) = on_gpu(&binding, &solids) else { return };
     let on_cpu = on_cpu(&binding, &solids);
     let strands = binding.strands().strand_count();
     let found = apart(&on_cpu, &on_gpu, strands);
@@ -135,13 +125,44 @@ fn they_stay_out_of_solids_as_on_the_cpu() {
         points
             .filter(|(strand, point)| {
                 let place = places[strand / LANES * POINTS + point].get(strand % LANES);
-                nearest(&solids, place).0 < -1e-4
+                solids.placed(pose()).at(place).0 < -1e-4
             })
             .count()
     };
-    let (free, both) = (deep(&self::on_cpu(&binding, &[])), [deep(&on_cpu), deep(&on_gpu)]);
+    let (free, both) = (deep(&self::on_cpu(&binding, &Solids::default())), [deep(&on_cpu), deep(&on_gpu)]);
     println!("inside: {free} of {} without a look at solids, {both:?} with", strands * (POINTS - 1));
     assert!(free > 300, "the comparison can fail: {free}");
     // Points whose segment cannot reach out; as many on both, but for rounding.
     assert!(both[1] <= both[0] + 5 && both[0] < free / 20, "{both:?}");
+}
+
+#[test]
+fn what_is_drawn_between_their_points_stays_out_as_on_the_cpu() {
+    let (binding, solids) = (binding(), solids());
+    let Some((places, on_gpu)) = on_gpu(&binding, &solids) else { return };
+    let (strands, placed) = (binding.strands(), solids.placed(pose()));
+    let level = LevelOfDetail::full().level(1.0, 1);
+    let mut curves = Curves::default();
+    let first = level.segments_per_span as usize;
+    let points = |curves: &Curves| -> Vec<Vec3> {
+        let all = (0..strands.strand_count())
+            .flat_map(|strand| (0..curves.points_per_curve).map(move |point| (strand, point)));
+        all.map(|(strand, point)| curves.point(strand, point)[0]).collect()
+    };
+    let deep = |all: &[Vec3], each: usize| {
+        let inside = |point: &&Vec3| placed.at(**point).0 < -1e-4;
+        all.chunks(each).map(|strand| strand[first..].iter().filter(inside).count()).sum::<usize>()
+    };
+    tessellate(&places, strands, &pose(), &level, &mut curves);
+    let (free, each) = (points(&curves), curves.points_per_curve);
+    keep_outside(&mut curves, strands.points_per_strand(), &placed);
+    let kept = points(&curves);
+    let mut apart: Vec<f32> = kept.iter().zip(&on_gpu).map(|(one, two)| one.distance(*two)).collect();
+    apart.sort_by(f32::total_cmp);
+    let [most, last] = [apart.len() * 999 / 1000, apart.len() - 1].map(|place| apart[place]);
+    let inside = [&free, &kept, &on_gpu].map(|all| deep(all, each));
+    println!("999 of 1000 within {most:e} m, all within {last:e} m; inside: {inside:?} of {}", kept.len());
+    // Where two surfaces are as near, rounding decides which of them a point comes out at.
+    assert!(kept.len() == on_gpu.len() && most < 1e-5, "{most} m");
+    assert!(inside[0] > 300 && inside[1..].iter().all(|deep| 20 * deep < inside[0]), "{inside:?}");
 }

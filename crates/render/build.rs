@@ -5,9 +5,10 @@ fn main() {}
 
 /// Modules with entry points; the others are imported by them.
 #[cfg(feature = "gpu")]
-const MODULES: [&str; 19] = [
+const MODULES: [&str; 20] = [
     "bound_frames",
     "bound",
+    "bound_curves",
     "tessellate",
     "interpolate",
     "fit",

@@ -7,14 +7,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
-use strandline_body::Mesh;
+use strandline_body::{Mesh, Solids};
 use strandline_groom::Guides;
 
 use crate::cpu::scalp::root_densities;
 use crate::cpu::skin::Skin;
 use crate::cpu::{
     Curves, Draw, DrawInput, Lit, Occlusion, Resolve, Samples, Scattering, Shadows, Strands, interpolate,
-    layer_colors, opacity_depth, opacity_layers, shade, tessellate,
+    keep_outside, layer_colors, opacity_depth, opacity_layers, shade, tessellate,
 };
 use crate::fibre::FibreModel;
 use crate::lights::{at_samples, first_sample};
@@ -37,6 +37,8 @@ pub struct FrameReport {
 #[derive(Debug)]
 pub struct Renderer {
     guides: Guides,
+    /// What curves stay out of.
+    solids: Solids,
     /// Middle of the guides at rest [m], head space.
     middle: Vec3,
     settings: PictureSettings,
@@ -65,6 +67,7 @@ impl Renderer {
     ) -> Result<Self, RenderError> {
         let mut renderer = Self {
             guides: guides.clone(),
+            solids: Solids::default(),
             middle: middle(guides),
             curves: Curves::default(),
             settings: *settings,
@@ -94,6 +97,12 @@ impl Renderer {
         let scale = settings.supersampling;
         self.samples.resize((settings.width * scale) as usize, (settings.height * scale) as usize);
         Ok(())
+    }
+
+    /// Keeps what lies between the points of strands out of solids too, which pass over ears and noses in long steps,
+    /// from the next picture on. The first span of a strand, which leads out of the skin, stays as it is.
+    pub fn keep_outside(&mut self, solids: Solids) {
+        self.solids = solids;
     }
 
     /// The size and tone of the pictures.
@@ -146,10 +155,12 @@ impl Renderer {
         let (guides, pose, own_color) = (&self.guides, &input.world_from_head, self.own_color);
         // It counts the places of the lights itself.
         given.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
-        let Self { curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } = self;
+        let Self { solids, curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } =
+            self;
         let mut clock = Clock::start();
 
         tessellate(input.positions, guides, pose, &level, curves);
+        keep_outside(curves, guides.points_per_strand(), &solids.placed(*pose));
         clock.lap("tessellate");
         interpolate(curves, guides, pose, input.look, &level, strands);
         clock.lap("interpolate");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::{
-    body::{Carrier, Collider, Pose, Shape},
+    body::{Collider, Pose, Shape, Solids},
     groom::{Binding, Frames, Guides, Surface, Vec3Lanes},
 };
 
@@ -26,13 +26,17 @@ pub(crate) fn clearance(shape: &Shape) -> f32 {
 #[derive(Clone, Debug)]
 pub struct BoundStrands {
     binding: Arc<Binding>,
-    solids: Arc<[Collider]>,
+    solids: Solids,
 }
 
 impl BoundStrands {
     /// Strands and solids; what the head carries is in head space.
     pub fn new(binding: Binding, solids: Vec<Collider>) -> Self {
-        Self { binding: Arc::new(binding), solids: solids.into() }
+        let away = |solid: Collider| {
+            let clearance = clearance(&solid.shape);
+            (solid, clearance)
+        };
+        Self { binding: Arc::new(binding), solids: Solids::new(solids.into_iter().map(away)) }
     }
 
     /// All strands at rest, head space.
@@ -54,37 +58,17 @@ impl BoundStrands {
         frames: &mut Frames,
         out: &mut Vec<Vec3Lanes>,
     ) {
-        let head_from_world = world_from_head.inverse();
-        let surface = |point: Vec3| {
-            let in_head = head_from_world.point(point);
-            let start = (f32::INFINITY, Vec3::Y, Carrier::World);
-            let nearest = self.solids.iter().fold(start, |best, solid| {
-                let place = if solid.carrier == Carrier::Head { in_head } else { point };
-                let (distance, gradient) = solid.shape.distance_and_gradient(place);
-                let distance = distance - clearance(&solid.shape);
-                if distance < best.0 { (distance, gradient, solid.carrier) } else { best }
-            });
-            let (distance, gradient, carrier) = nearest;
-            let turned =
-                if carrier == Carrier::Head { world_from_head.direction(gradient) } else { gradient };
-            (distance, turned)
-        };
-        let at_least = |point: Vec3| {
-            let in_head = head_from_world.point(point);
-            let least = self.solids.iter().map(|solid| {
-                let place = if solid.carrier == Carrier::Head { in_head } else { point };
-                solid.shape.distance_at_least(place) - clearance(&solid.shape)
-            });
-            least.fold(f32::INFINITY, f32::min)
-        };
-        let surface = Surface { at: &surface, at_least: &at_least };
-        let surface = (!self.solids.is_empty()).then_some(&surface);
+        let solids = self.solids.placed(*world_from_head);
+        let at = |point: Vec3| solids.at(point);
+        let at_least = |point: Vec3| solids.at_least(point);
+        let surface = Surface { at: &at, at_least: &at_least };
+        let surface = (!self.solids.all().is_empty()).then_some(&surface);
         self.binding.follow(guides, world_from_head, frames);
         self.binding.place(frames, world_from_head, surface, out);
     }
 
-    /// The solids that strands stay out of, and how far \[m\] from each.
-    pub fn solids(&self) -> Vec<(Collider, f32)> {
-        self.solids.iter().map(|solid| (solid.clone(), clearance(&solid.shape))).collect()
+    /// The solids that strands stay out of.
+    pub fn solids(&self) -> &Solids {
+        &self.solids
     }
 }

@@ -65,7 +65,7 @@ impl Painter {
         };
         let place = match placed {
             Some(place) => place,
-            None => Place::Cpu(Renderer::new(&strands, mesh, &settings)?.into()),
+            None => Place::Cpu(on_cpu(&strands, bound.as_ref(), mesh, &settings)?.into()),
         };
         Ok(Self {
             place,
@@ -170,7 +170,7 @@ impl Painter {
     fn stand_in(&mut self, failure: RenderError) -> Result<(), RenderError> {
         if self.stand_in.is_none() {
             self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
-            let renderer = Renderer::new(&self.strands, self.mesh.as_ref(), &self.settings)?;
+            let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_ref(), &self.settings)?;
             self.stand_in = Some(renderer.into());
         }
         Ok(())
@@ -196,10 +196,23 @@ impl Painter {
         if !(self.fall_back && failure.is_of_gpu() && self.gpu().is_some()) {
             return Err(failure);
         }
-        self.place = Place::Cpu(Renderer::new(&self.strands, self.mesh.as_ref(), settings)?.into());
+        let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_ref(), settings)?;
+        self.place = Place::Cpu(renderer.into());
         self.notes.push(format!("drawing on the CPU from here on: {failure}"));
         Ok(())
     }
+}
+
+/// A renderer on the CPU that keeps bound strands out of their solids.
+fn on_cpu(
+    strands: &Guides,
+    bound: Option<&BoundStrands>,
+    mesh: Option<&Mesh>,
+    settings: &PictureSettings,
+) -> Result<Renderer, RenderError> {
+    let mut renderer = Renderer::new(strands, mesh, settings)?;
+    renderer.keep_outside(bound.map(BoundStrands::solids).cloned().unwrap_or_default());
+    Ok(renderer)
 }
 
 /// A renderer on a GPU that places bound strands itself.
@@ -212,7 +225,7 @@ fn on_gpu(
 ) -> Result<GpuRenderer, RenderError> {
     let mut renderer = GpuRenderer::new(gpu, strands, mesh, settings)?;
     if let Some(bound) = bound {
-        renderer.bind(bound.binding(), &bound.solids())?;
+        renderer.bind(bound.binding(), bound.solids())?;
     }
     Ok(renderer)
 }

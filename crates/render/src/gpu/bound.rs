@@ -1,6 +1,6 @@
 //! Bound strands: where the guides have them that they are bound to, as `Binding::follow` and `Binding::place` say.
 
-use strandline_body::Collider;
+use strandline_body::Solids;
 use strandline_gpu::{Bound, Buffer, Gpu, GpuError, Kernel, groups, kernel, wgpu};
 use strandline_groom::Binding;
 
@@ -34,6 +34,16 @@ kernel! {
     }
 }
 
+kernel! {
+    /// One thread is one bound strand.
+    pub(super) struct KeepOutside in "bound_curves" (super::linked::BOUND_CURVES), entry "keep_outside" {
+        0 frame: Read Frame,
+        4 solids: Read u32,
+        10 tables: Read [f32; 4],
+        11 curves: ReadWrite [f32; 4],
+    }
+}
+
 /// The strands of a renderer, bound to guides.
 pub(super) struct BoundStrands {
     follow: Kernel<FollowGuides<'static>>,
@@ -45,19 +55,22 @@ pub(super) struct BoundStrands {
     solids: Buffer<u32>,
     frames: Buffer<[f32; 4]>,
     place: Bound,
+    keep_outside: Kernel<KeepOutside<'static>>,
+    /// It bound to the curves that are drawn.
+    kept: Option<(wgpu::Buffer, Bound)>,
     /// `follow_guides` bound to pairs of buffers of guide points.
     follows: Vec<([wgpu::Buffer; 2], Bound)>,
 }
 
 impl BoundStrands {
-    /// `frame` and `places` are the renderer's; strands stay as far \[m\] out of each solid as is said with it.
+    /// `frame` and `places` are the renderer's.
     ///
     /// # Errors
     /// Whatever the device refuses.
     pub fn new(
         gpu: &Gpu,
         binding: &Binding,
-        solids: &[(Collider, f32)],
+        solids: &Solids,
         frame: &Buffer<Frame>,
         places: &Buffer<f32>,
     ) -> Result<Self, RenderError> {
@@ -71,7 +84,7 @@ impl BoundStrands {
             .map(|one| [one.guide, one.weight.to_bits(), one.pace.to_bits(), 0])
             .collect();
         let influences = Buffer::from_slice(gpu, "influences of guides", &influences)?;
-        let solids = bound_solids::upload(gpu, guides.strand_count(), solids)?;
+        let solids = bound_solids::upload(gpu, guides.strand_count(), solids.all())?;
         let frames = Buffer::new(gpu, "frames of guides", 3 * points + guides.strand_count())?;
         let place = Kernel::<PlaceBound<'static>>::new(gpu, &[])?;
         let place = place.bind(
@@ -94,6 +107,8 @@ impl BoundStrands {
             solids,
             frames,
             place,
+            keep_outside: Kernel::new(gpu, &[])?,
+            kept: None,
             follows: Vec::new(),
         })
     }
@@ -134,5 +149,28 @@ impl BoundStrands {
             (follow, groups(self.guide_count, THREADS)),
             (self.place.clone(), groups(self.strand_count, THREADS)),
         ])
+    }
+
+    /// What keeps curves of the strands out of the solids.
+    ///
+    /// # Errors
+    /// Whatever the device refuses.
+    pub fn keep_outside(
+        &mut self,
+        gpu: &Gpu,
+        frame: &Buffer<Frame>,
+        tables: &Buffer<[f32; 4]>,
+        curves: &Buffer<[f32; 4]>,
+    ) -> Result<(Bound, [u32; 3]), GpuError> {
+        let raw = curves.raw().clone();
+        let bound = match self.kept.take_if(|(known, _)| *known == raw) {
+            Some((_, bound)) => bound,
+            None => {
+                let solids = &self.solids;
+                self.keep_outside.bind(gpu, &KeepOutside { frame, solids, tables, curves })?
+            }
+        };
+        self.kept = Some((raw, bound.clone()));
+        Ok((bound, groups(self.strand_count, THREADS)))
     }
 }

@@ -3,6 +3,7 @@
 strandline_gpu::linked! {
     BOUND_FRAMES = "bound_frames",
     BOUND = "bound",
+    BOUND_CURVES = "bound_curves",
     TESSELLATE = "tessellate",
     INTERPOLATE = "interpolate",
     FIT = "fit",

@@ -1,14 +1,14 @@
 //! Guide points: where they come from, and what reads them.
 
 use strandline_base::SettingError;
-use strandline_body::Collider;
-use strandline_gpu::{Bound, Buffer};
+use strandline_body::Solids;
+use strandline_gpu::{Bound, Buffer, groups};
 use strandline_groom::Binding;
 
-use super::GpuRenderer;
 use super::bound::BoundStrands;
 use super::buffers::{Groom, Strands, floats};
 use super::tessellate;
+use super::{GpuRenderer, THREADS};
 use crate::{FrameInput, RenderError};
 
 /// Guide points that lie on the device, `[block][point][component][lane]` \[m\], world space: at the two
@@ -25,12 +25,11 @@ pub struct DevicePoints<'a> {
 
 impl GpuRenderer {
     /// Lets guides carry the renderer's strands, which are those of `binding`: the points of its pictures are from
-    /// now on those of the guides, and the device places the strands, as far \[m\] out of each solid as is said
-    /// with it.
+    /// now on those of the guides, and the device places the strands, out of the solids.
     ///
     /// # Errors
     /// Strands that are not the renderer's; whatever the device refuses.
-    pub fn bind(&mut self, binding: &Binding, solids: &[(Collider, f32)]) -> Result<(), RenderError> {
+    pub fn bind(&mut self, binding: &Binding, solids: &Solids) -> Result<(), RenderError> {
         let shape = [binding.strands().strand_count(), binding.strands().points_per_strand()];
         if shape != [self.guides.strand_count(), self.guides.points_per_strand()] {
             let expected = "those of the renderer";
@@ -78,8 +77,22 @@ impl GpuRenderer {
             .into())
     }
 
+    /// `tessellate`, and what keeps the curves of bound strands out of solids.
+    pub(super) fn tessellate(
+        &mut self,
+        points: Option<DevicePoints>,
+    ) -> Result<Vec<(Bound, [u32; 3])>, RenderError> {
+        let tessellate = self.tessellate_alone(points)?;
+        let mut stages = vec![(tessellate, groups(self.guides.strand_count(), THREADS))];
+        if let (Some(bound), Some(strands)) = (&mut self.bound, &self.strands) {
+            let frame = &self.groom.frame;
+            stages.push(bound.keep_outside(&self.gpu, frame, &strands.tables, &strands.curves)?);
+        }
+        Ok(stages)
+    }
+
     /// `tessellate`, bound to guide points; the last two pairs of buffers stay bound.
-    pub(super) fn tessellate(&mut self, points: Option<DevicePoints>) -> Result<Bound, RenderError> {
+    fn tessellate_alone(&mut self, points: Option<DevicePoints>) -> Result<Bound, RenderError> {
         let Some(strands) = &self.strands else { unreachable!("made before") };
         let (before, after) = match &points {
             Some(points) if self.bound.is_none() => (points.before, points.after),

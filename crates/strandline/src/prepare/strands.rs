@@ -7,7 +7,7 @@ use strandline_base::math;
 
 use crate::{
     Error, Scene,
-    body::{Carrier, Collider, Shape},
+    body::{Carrier, Collider, Pose, Shape, Solids},
     groom::{
         Groom, Guides, Outside, Widths,
         format::{self, HAIR_WIDTH, LoadOptions, Part, Scale, Up},
@@ -83,25 +83,16 @@ pub(super) fn guides(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> O
     Some(guides)
 }
 
-/// The signed distance \[m\] of all solids that the head carries, less how far strands stay away from each, and its
-/// unit gradient.
-fn nearest(solids: &[(&Shape, f32)], point: Vec3) -> (f32, Vec3) {
-    let start = (f32::INFINITY, Vec3::Y);
-    solids.iter().fold(start, |best, (shape, clearance)| {
-        let (distance, gradient) = shape.distance_and_gradient(point);
-        if distance - clearance < best.0 { (distance - clearance, gradient) } else { best }
-    })
-}
-
 /// Puts what rests inside the solids that the head carries onto their surface; a note when there was such.
 pub(super) fn move_outside(
     guides: &mut Guides,
     colliders: &[Collider],
     clearance: impl Fn(&Shape) -> f32,
 ) -> Option<String> {
-    let on_head = colliders.iter().filter(|solid| solid.carrier == Carrier::Head).map(|solid| &solid.shape);
-    let solids: Vec<(&Shape, f32)> = on_head.map(|shape| (shape, clearance(shape))).collect();
-    let found = guides.move_outside(|point| nearest(&solids, point));
+    let on_head = colliders.iter().filter(|solid| solid.carrier == Carrier::Head);
+    let solids = Solids::new(on_head.map(|solid| (solid.clone(), clearance(&solid.shape))));
+    let at_rest = solids.placed(Pose::IDENTITY);
+    let found = guides.move_outside(|point| at_rest.at(point));
     let Outside { point_count, strand_count, depth, depth_left } = found;
     let mut note = format!(
         "{point_count} points of {strand_count} strands rested inside solids, by up to {:.2} mm: moved to the \
