@@ -89,6 +89,19 @@ fn draw_agrees_far_away() {
 }
 
 #[test]
+fn draw_agrees_where_strands_are_left_out() {
+    for look in [Look::brown(), Look::thesis()] {
+        let mut both = Both::new(Style::Wavy, 12);
+        both.look = Look { follow_strands: 1, hair_count: 0, ..look };
+        both.camera.position *= 8.0;
+        both.camera.field_of_view = 5.0;
+        let left_out = both.level().left_out;
+        assert!(left_out > 3.0 && left_out < 7.0, "{left_out} of eight");
+        check_pictures("strands of their own from afar", &both, true);
+    }
+}
+
+#[test]
 fn draw_notices_another_width_and_a_missing_light() {
     let both = Both::new(Style::Wavy, 12);
     let Some([on_cpu, _]) = pictures(&both, true) else { return };

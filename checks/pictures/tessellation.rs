@@ -229,20 +229,26 @@ fn covered_area(strands: &Strands) -> f64 {
 
 #[test]
 fn covered_area_is_the_same_at_every_distance() {
-    let guides = guides(300);
-    let look = Look::default();
     let levels = LevelOfDetail::default();
-    let area =
-        |distance: f32| covered_area(&strands(&guides, &look, &levels.level(distance, look.follow_strands)));
-    let near = area(0.3);
-    let expected = 8e-5 * f64::from(look.hair_count) * 0.2;
-    assert!(near > 0.5 * expected && near < 1.5 * expected, "{near} of about {expected}");
-    for distance in [1.6, 2.0, 2.9, 4.1, 6.0, 20.0] {
-        // Widths make up for lengths exactly; what is left is the length that coarser polylines cut off.
-        let ratio = area(distance) / near;
-        assert!((ratio - 1.0).abs() < 0.01, "{distance} m: {ratio}");
+    // Hair about each guide; strands that each stand for themselves, so many that their lengths average out.
+    for (follow_strands, guides) in [(16, guides(300)), (1, guides(4800))] {
+        let look = Look { follow_strands, ..Look::default() };
+        let area =
+            |distance: f32| covered_area(&strands(&guides, &look, &levels.level(distance, follow_strands)));
+        let near = area(0.3);
+        let expected = 8e-5 * f64::from(look.hair_count) * 0.2;
+        assert!(near > 0.5 * expected && near < 1.5 * expected, "{near} of about {expected}");
+        for distance in [1.6, 2.0, 2.9, 4.1, 6.0, 20.0] {
+            // Widths make up for lengths; what is left is the length that coarser polylines cut off.
+            let ratio = area(distance) / near;
+            assert!((ratio - 1.0).abs() < 0.01, "{follow_strands} at {distance} m: {ratio}");
+        }
+        let drawn = levels.level(6.0, follow_strands).drawn_strands(guides.strand_count());
+        assert_eq!(drawn, guides.strand_count() * follow_strands as usize / 4);
     }
     let thinned = DetailLevel { full_follow_strands: 8.0, ..levels.level(20.0, 16) };
+    let (guides, look) = (guides(300), Look::default());
+    let near = covered_area(&strands(&guides, &look, &levels.level(0.3, look.follow_strands)));
     assert!(covered_area(&strands(&guides, &look, &thinned)) < 0.6 * near, "lost strands must be seen");
 }
 

@@ -201,7 +201,8 @@ impl Renderer {
         };
         draw.draw(&draw_input, &skin, samples);
         clock.lap("draw");
-        let (count, segments) = (strands.strand_count, strands.segment_count());
+        let count = level.drawn_strands(guides.strand_count());
+        let segments = count * (strands.points_per_strand - 1);
         Ok(FrameReport { strands: count, segments, seconds: clock.seconds, layers: None })
     }
 

@@ -9,14 +9,15 @@ settings! {
     /// proportion to the distance, and that of segments with its square root (a segment strays from the
     /// curve by the square of its length, so it strays by the same number of pixels), down to their least shares. Both
     /// numbers are continuous, so nothing jumps: the last follow strand fades by its width while the
-    /// others widen (their sum stays), and the last segment of a strand shrinks to nothing at the tip.
+    /// others widen (their sum stays), and the last segment of a strand shrinks to nothing at the tip. Strands without
+    /// follow strands stand for themselves: of each eight as many are left out, in the same way.
     pub struct LevelOfDetail: Copy {
         /// Segments on each span between two guide points at full detail.
         segments_per_span: u32 = 4, in [1, 16], more "rounder strands, at a cost that grows with it";
         /// Distance from the camera to the hair's middle up to which all is drawn.
         full_distance: f32 = 1.5, in [1e-3, 1e6] "m", slider [0.2, 10.0],
             more "detail that falls later";
-        /// Least share of the follow strands that is drawn from afar.
+        /// Least share of the strands that is drawn from afar: of follow strands where there are some.
         least_strands: f32 = 0.125, in [0.0, 1.0], more "more, thinner strands from afar";
         /// Least share of the segments that is drawn from afar.
         least_segments: f32 = 0.5, in [0.0, 1.0], more "rounder strands from afar";
@@ -48,11 +49,14 @@ impl LevelOfDetail {
     pub fn level(&self, distance: f32, follow_strands: u32) -> DetailLevel {
         let share = self.full_distance / distance.max(self.full_distance);
         let follow_strands = follow_strands.max(1) as f32;
+        let drawn = share.max(self.least_strands);
+        let left_out = if follow_strands > 1.0 { 0.0 } else { EIGHT - (EIGHT * drawn).max(1.0) };
         DetailLevel {
             segments_per_span: (self.segments_per_span as f32 * share.sqrt().max(self.least_segments))
                 .max(1.0),
-            follow_strands: (follow_strands * share.max(self.least_strands)).max(1.0),
+            follow_strands: (follow_strands * drawn).max(1.0),
             full_follow_strands: follow_strands,
+            left_out,
         }
     }
 }
@@ -66,6 +70,18 @@ pub struct DetailLevel {
     pub follow_strands: f32,
     /// Follow strands of each guide at full detail.
     pub full_follow_strands: f32,
+    /// Of each eight strands without follow strands, those that are not drawn, at most 7; a fraction thins one.
+    pub left_out: f32,
+}
+
+/// Strands of which some are left out.
+const EIGHT: f32 = 8.0;
+/// The order in which strands of eight stay: each half of them is spread over all.
+const RANKS: [f32; 8] = [0.0, 4.0, 2.0, 6.0, 1.0, 5.0, 3.0, 7.0];
+
+/// Whether the strands of a guide are drawn where so many of eight are left out.
+pub(crate) fn is_drawn(guide: usize, left_out: f32) -> bool {
+    RANKS[guide % RANKS.len()] < EIGHT - left_out
 }
 
 impl DetailLevel {
@@ -75,6 +91,7 @@ impl DetailLevel {
             segments_per_span: segments_per_span as f32,
             follow_strands: follow_strands as f32,
             full_follow_strands: follow_strands as f32,
+            left_out: 0.0,
         }
     }
 
@@ -89,6 +106,23 @@ impl DetailLevel {
     /// Strands drawn of each guide.
     pub fn strand_count(&self) -> usize {
         (self.follow_strands.ceil() as usize).max(1)
+    }
+
+    /// Strands drawn of `guide_count` guides.
+    pub fn drawn_strands(&self, guide_count: usize) -> usize {
+        let (eights, rest) = (guide_count / RANKS.len(), guide_count % RANKS.len());
+        let drawn = |guides: usize| (0..guides).filter(|guide| is_drawn(*guide, self.left_out)).count();
+        (eights * drawn(RANKS.len()) + drawn(rest)) * self.strand_count()
+    }
+
+    /// Width of the strands of a guide of so many as a multiple of that at full detail: over each eight the multiples
+    /// sum to their number.
+    pub fn own_width_scale(&self, guide: usize, guide_count: usize) -> f32 {
+        let first = guide / RANKS.len() * RANKS.len();
+        let presence = |rank: f32| (EIGHT - self.left_out - rank).clamp(0.0, 1.0);
+        let ranks = &RANKS[..(guide_count - first).min(RANKS.len())];
+        let drawn: f32 = ranks.iter().map(|rank| presence(*rank)).sum();
+        presence(RANKS[guide - first]) * ranks.len() as f32 / drawn
     }
 
     /// Width of follow strand `index` as a multiple of its width at full detail. Over a guide's
@@ -120,11 +154,35 @@ mod tests {
     #[test]
     fn widths_sum_to_the_full_number() {
         for follow_strands in [16.0, 11.3, 7.999, 4.0, 1.0] {
-            let level = DetailLevel { segments_per_span: 4.0, follow_strands, full_follow_strands: 16.0 };
+            let level = DetailLevel { follow_strands, ..DetailLevel::full(4, 16) };
             let sum: f32 = (0..level.strand_count()).map(|index| level.width_scale(index)).sum();
             // Sixteen roundings of single precision.
             assert!((sum - 16.0).abs() < 16.0 * 16.0 * f32::EPSILON, "{follow_strands}: {sum}");
         }
+    }
+
+    #[test]
+    fn strands_that_stand_for_themselves_are_left_out_and_the_others_widen() {
+        let mut last = 8;
+        for step in 0..100 {
+            let level = LevelOfDetail::default().level(0.2 * step as f32, 1);
+            let drawn = level.drawn_strands(80);
+            assert!(drawn <= 10 * last && drawn.is_multiple_of(10), "{drawn}");
+            last = drawn / 10;
+            for count in [1, 5, 8, 19] {
+                let widths: Vec<f32> = (0..count).map(|guide| level.own_width_scale(guide, count)).collect();
+                let sum: f32 = widths.iter().sum();
+                assert!((sum - count as f32).abs() < 1e-5 * count as f32, "{count} at {step}: {sum}");
+                assert_eq!(widths.iter().filter(|width| **width > 0.0).count(), level.drawn_strands(count));
+            }
+        }
+        assert_eq!(last, 1, "least_strands is an eighth");
+        let level = |share: f32| LevelOfDetail::default().level(1.5 / share, 1);
+        let width = |strand: usize, share: f32| level(share).own_width_scale(strand, 8);
+        // Strand 7 is the first to go and fades, strand 0 is the last.
+        assert_eq!([width(7, 1.0), width(0, 1.0)], [1.0, 1.0]);
+        assert!((width(7, 0.95) - 0.6 / 0.95).abs() < 1e-4 && (width(0, 0.95) - 1.0 / 0.95).abs() < 1e-4);
+        assert!(width(7, 0.87) == 0.0 && width(0, 0.125) == 8.0);
     }
 
     #[test]

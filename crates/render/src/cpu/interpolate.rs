@@ -32,6 +32,7 @@ pub fn interpolate(
     let strands_per_guide = level.strand_count();
     let points_per_strand = curves.points_per_curve;
     out.resize(curves.guide_count, strands_per_guide, points_per_strand);
+    out.left_out = level.left_out;
     color(curves, guides, out);
     let shared = Shared {
         curves,
@@ -142,7 +143,8 @@ impl<'a> Guide<'a> {
             curve.push(CurvePoint { position, normal, binormal });
         }
         let seed = hash_pair(shared.look.seed, index as u32);
-        let width = width * shared.widening * kept_length(shared, seed);
+        let own = shared.level.own_width_scale(index, shared.curves.guide_count);
+        let width = width * shared.widening * kept_length(shared, seed) * own;
         Self { seed, curve, skin: [skin[1], skin[2]], outward, length, width }
     }
 }

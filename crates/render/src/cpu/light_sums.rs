@@ -39,7 +39,8 @@ fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, su
     let strands = scene.strands;
     let count = strands.points_per_strand;
     let mut values = vec![0.0; width - SKIN_SUMS];
-    for point in range.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
+    let drawn = range.filter(|strand| strands.is_drawn(*strand));
+    for point in drawn.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
         let (start, end) = (strands.positions[point], strands.positions[point + 1]);
         let way = end - start;
         let length = way.length();

@@ -11,6 +11,7 @@ use super::lanes::Wide3;
 use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, mean_radiance, toward};
 use super::{Shadows, Strands};
+use crate::level_of_detail::is_drawn;
 use crate::{Environment, Light, LightKind, Look};
 
 /// Fills the radiances of all strands \[linear RGB\] as seen from `eye` \[m\], world space.
@@ -26,7 +27,7 @@ pub fn shade(
 ) {
     occlusion.fill(strands, &look.shadow);
     let count = strands.points_per_strand;
-    let per_guide = strands.strands_per_guide;
+    let (per_guide, left_out) = (strands.strands_per_guide, strands.left_out);
     let shared = Shared::new(shadows, lights, look, eye, occlusion);
     let colors = &strands.colors;
     strands
@@ -35,6 +36,7 @@ pub fn shade(
         .zip_eq(strands.positions.par_chunks(count * per_guide))
         .zip_eq(strands.tangents.par_chunks(count * per_guide))
         .enumerate()
+        .filter(|(guide, _)| is_drawn(*guide, left_out))
         .for_each(|(guide, ((radiances, positions), tangents))| {
             let own = colors.get(guide * count..(guide + 1) * count).filter(|own| !own.is_empty());
             let places = positions.chunks(count).zip(tangents.chunks(count));

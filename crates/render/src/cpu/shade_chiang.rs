@@ -14,6 +14,7 @@ use super::occlusion::{Occlusion, toward};
 use super::{ShadowBody, Shadows, Strands};
 use crate::fibre::chiang::{INK, Pigments, Table, WHITE};
 use crate::fibre::{Chiang, Pigment};
+use crate::level_of_detail::is_drawn;
 use crate::{Light, Look};
 
 /// Noise nodes along a strand.
@@ -135,8 +136,9 @@ fn reach(strands: &Strands, lit: &Lit, reached: &mut Vec<Vec<f32>>) {
             continue;
         };
         reached.resize(strands.positions.len(), 0.0);
-        let both = reached.par_chunks_mut(4096).zip(strands.positions.par_chunks(4096));
-        both.for_each(|(reached, places)| {
+        let count = strands.points_per_strand;
+        let both = reached.par_chunks_mut(count).zip(strands.positions.par_chunks(count)).enumerate();
+        both.filter(|(strand, _)| strands.is_drawn(*strand)).for_each(|(_, (reached, places))| {
             for (reached, &place) in reached.iter_mut().zip(places) {
                 let open = map.body_visibility(place);
                 *reached =
@@ -208,7 +210,9 @@ fn radiances(
 ) {
     let (count, per_guide) = (strands.points_per_strand, strands.strands_per_guide);
     let (positions, tangents, colors) = (&strands.positions, &strands.tangents, &strands.colors);
-    strands.radiances.par_chunks_mut(count).enumerate().for_each(|(strand, radiances)| {
+    let left_out = strands.left_out;
+    let drawn = |(strand, _): &(usize, &mut [Vec3])| is_drawn(strand / per_guide, left_out);
+    strands.radiances.par_chunks_mut(count).enumerate().filter(drawn).for_each(|(strand, radiances)| {
         let guide = strand / per_guide;
         let own = colors.get(guide * count..(guide + 1) * count);
         let own = Strand::new(lit.look, own, guide as u32, (strand % per_guide) as u32);

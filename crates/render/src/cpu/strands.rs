@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::level_of_detail::is_drawn;
+
 /// All drawn strands of a frame. Every strand has the same number of points; shapes are
 /// `[strand][point]`, root first, guide after guide, each guide followed by its follow strands.
 #[derive(Clone, Debug, Default)]
@@ -10,6 +12,8 @@ pub struct Strands {
     pub strand_count: usize,
     /// Drawn strands of each guide, the guide itself first.
     pub strands_per_guide: usize,
+    /// Of each eight guides, those whose strands are not drawn ([`crate::DetailLevel::left_out`]).
+    pub left_out: f32,
     /// Points on each strand, one more than its segments.
     pub points_per_strand: usize,
     /// Positions \[m\], world space.
@@ -25,6 +29,11 @@ pub struct Strands {
 }
 
 impl Strands {
+    /// Whether a strand is drawn: from afar some of those that stand for themselves are left out.
+    pub fn is_drawn(&self, strand: usize) -> bool {
+        is_drawn(strand / self.strands_per_guide, self.left_out)
+    }
+
     /// Number of segments of all strands.
     pub fn segment_count(&self) -> usize {
         self.strand_count * (self.points_per_strand - 1)

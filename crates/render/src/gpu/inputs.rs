@@ -125,6 +125,9 @@ mirror! {
         /// What is drawn, in bits: 1 the groom's colours, 2 its widths along strands, in place of the look's;
         /// 4 light that is scattered many times, with the fibre of [Chiang2016], 8 the look's colours with it.
         pub kinds: u32,
+        /// Of each eight guides, those whose strands are not drawn.
+        pub left_out: f32,
+        pub unused: [u32; 3],
     }
 }
 
@@ -254,6 +257,8 @@ impl Frame {
             kinds: scene.own
                 | if look.fibre.model == FibreModel::Chiang { 4 } else { 0 }
                 | if look.fibre.chiang.pigment == Pigment::Color { 8 } else { 0 },
+            left_out: level.left_out,
+            unused: [0; 3],
         }
     }
 }

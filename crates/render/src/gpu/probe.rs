@@ -67,6 +67,7 @@ impl GpuRenderer {
         let mut strands = cpu::Strands::default();
         let drawn = self.drawn;
         strands.resize(self.guides.strand_count(), drawn.strands_per_guide, drawn.curve_points);
+        strands.left_out = drawn.left_out;
         let count = strands.positions.len();
         let points = Self::first(&self.room().points, count)?;
         strands.positions = vectors(&points);

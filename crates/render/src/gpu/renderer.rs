@@ -68,6 +68,7 @@ pub struct GpuRenderer {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Drawn {
     pub strands_per_guide: usize,
+    pub left_out: f32,
     pub curve_points: usize,
     pub shadows: usize,
 }
@@ -274,16 +275,18 @@ impl GpuRenderer {
             self.gpu.queue().submit([commands]);
         });
         submitted?;
-        let (strands, curve_points) = (scene.strand_count(), scene.curve_points());
+        let curve_points = scene.curve_points();
         self.drawn = Drawn {
             strands_per_guide: scene.level.strand_count(),
             curve_points,
             shadows: scene.shadow_count(),
+            left_out: scene.level.left_out,
         };
         let middle = scene.middle;
         self.lit.0.clear();
         self.lit.0.extend_from_slice(input.lights);
         (self.lit.1, self.lit.2) = (input.look.hair_shadow(), middle);
+        let strands = scene.level.drawn_strands(scene.guide_count);
         Ok(FrameReport { strands, segments: strands * (curve_points - 1), ..FrameReport::default() })
     }
 
