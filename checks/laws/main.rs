@@ -17,6 +17,7 @@ mod pendulum;
 mod poisson;
 mod recovery;
 mod rod_mechanics;
+mod rod_waves;
 mod rods;
 mod shake;
 mod sintel;

@@ -10,14 +10,14 @@ use crate::curl::curl;
 use crate::strands::{bare, first, line, one_strand};
 
 /// Rods of hair of 40 um in still air that takes nothing, that do not rub, without a volume.
-fn rods(time_step: f32) -> Settings {
+pub fn rods(time_step: f32) -> Settings {
     let mut settings = bare(time_step, 1);
     settings.strands.method = StrandMethod::Rods;
     settings.strands.rods.rubbing = 0.0;
     settings
 }
 
-fn solver(
+pub fn solver(
     guides: &Guides,
     settings: &Settings,
     held: impl Fn(usize) -> bool + Sync,
@@ -62,13 +62,12 @@ law! {
             (1000.0, 62, 21.094_14),
         ];
         for (gamma, count, droop_of_chain) in expected.into_iter().take(on.either(15, 5)) {
-            for rate in [30.0, 60.0, 240.0].into_iter().take(on.either(3, 2)) {
+            for rate in [30.0, 60.0, 240.0] {
                 for newton_steps in [4, 16].into_iter().take(on.either(2, 1)) {
                     let found = droop(on, gamma, count, 1.0 / rate, newton_steps) / droop_of_chain - 1.0;
-                    // The bound of the law. At 1000 the reach is a twentieth of the length, so that what rounding hides
-                    // of slow creep, 11 um in steps of 1/240 s, is 0.25 % of it.
-                    let bound = if gamma > 500.0 { 4e-3 } else { 1e-3 };
-                    assert!(found.abs() < bound, "{gamma}, {count} segments, 1/{rate} s, {newton_steps}: {found}");
+                    // The bound of the law. Found: 4e-4, at 1000 and 1/240 s, where the reach is a twentieth of the length
+                    // and what rounding hides of slow creep is most of it.
+                    assert!(found.abs() < 1e-3, "{gamma}, {count} segments, 1/{rate} s, {newton_steps}: {found}");
                 }
             }
         }

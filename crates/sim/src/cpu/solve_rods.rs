@@ -28,11 +28,17 @@ const LENGTH_ROUNDS: u32 = 2;
 /// Most that a point of a strand at rest moves in a part of a step, over its square \[m/s^2\]: two thousandths of
 /// gravity. What friction holds creeps by half as much.
 const STILL: f64 = 0.02;
-/// Most of it \[m\] for what neither a solid nor other hair holds.
+/// Most of it \[m\] for what neither a solid nor other hair holds, and over the square of the part \[m/s^2\]: air that
+/// slows a soft thread holds it up by as little.
 const STILL_LOOSE: f64 = 1e-7;
+const STILL_FREE: f64 = 2e-3;
 /// Most that its way differs from the one before, over the square of the part \[m/s^2\]: a strand at rest is not
 /// one that turns back.
 const STEADY: f64 = 2e-4;
+/// Arm \[m\] at which the turn of a section counts as way, the radius of a hair: what only twists moves too.
+const ARM: f64 = 4e-5;
+/// Turn \[rad\] that is rounding.
+const TURN_ROUNDING: f64 = 1e-6;
 /// Rounding of a number in single precision, over its size.
 const ROUNDING: f64 = 1.2e-7;
 
@@ -265,8 +271,12 @@ impl Strands<'_> {
         let per_step = f32x8::of(1.0 / self.parts.time_step);
         let step = f32x8::of(self.parts.time_step);
         let (mut largest, mut change, mut nothing) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
-        let mut size = f32x8::ZERO;
+        let (mut size, mut turn, mut turn_change) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
         for point in 0..=last {
+            let [.., angle] = space.work.moved[point];
+            let other = angle - space.spins[point] * step;
+            turn = turn.fast_max(angle * angle);
+            turn_change = turn_change.fast_max(other * other);
             let moved = space.carried[point] - space.points[point];
             let square = moved.dot(moved);
             let other = moved - space.velocities[point] * step;
@@ -282,10 +292,14 @@ impl Strands<'_> {
         let square = self.parts.time_step * self.parts.time_step;
         let rounding = size.root() * f32x8::of(ROUNDING);
         let rubbing = f64::from(self.parts.settings.rubbing);
-        let loose = f32x8::of((STILL * square).min(STILL_LOOSE).max(rubbing * square));
-        let still = solved.pressed.choose(f32x8::of(STILL * square), loose).fast_max(rounding);
-        let steady = f32x8::of(STEADY.max(rubbing) * square).fast_max(rounding);
-        let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | bad;
+        let loose = f32x8::of((STILL_FREE * square).min(STILL_LOOSE).max(rubbing * square));
+        let still = solved.pressed.choose(f32x8::of(STILL * square), loose);
+        let steady = f32x8::of(STEADY.max(rubbing) * square);
+        let turned = |way: f32x8| (way * f32x8::of(1.0 / ARM)).fast_max(f32x8::of(TURN_ROUNDING));
+        let (most, most_change) = (turned(still), turned(steady));
+        let turns = turn.simd_gt(most * most) | turn_change.simd_gt(most_change * most_change);
+        let (still, steady) = (still.fast_max(rounding), steady.fast_max(rounding));
+        let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | turns | bad;
         let moves = moving.bitselect(f32x8::of(1.0), f32x8::ZERO);
         let none = bad.bitselect(f32x8::splat(f32::NAN), f32x8::ZERO);
         let moves = if self.parts.moved { f32x8::of(1.0) } else { moves };
