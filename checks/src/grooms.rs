@@ -11,7 +11,19 @@ use strandline::{Prepared, Scene};
 /// # Panics
 /// The files are there and are not read, or they are missing and required.
 pub fn sintel(change: impl FnOnce(&mut Scene)) -> Option<Prepared> {
-    let files = ["sintel/SintelHairOriginal-sintel_hair.16points.tfx", "sintel/sintel.obj"];
+    groom(["sintel/SintelHairOriginal-sintel_hair.16points.tfx", "sintel/sintel.obj"], change)
+}
+
+/// The groom of a ponytail on its head; else as [`sintel`].
+///
+/// # Panics
+/// The files are there and are not read, or they are missing and required.
+pub fn ponytail(change: impl FnOnce(&mut Scene)) -> Option<Prepared> {
+    groom(["ponytail/ponytail.tfxproj", "ponytail/ponytail_mesh.obj"], change)
+}
+
+/// Hair on a head, of the folder of grooms.
+fn groom(files: [&str; 2], change: impl FnOnce(&mut Scene)) -> Option<Prepared> {
     let folder = folder("STRANDLINE_GROOMS", "grooms", &files)?;
     let [hair, head] = files.map(|file| Some(folder.join(file)));
     let mut scene = Scene::default();

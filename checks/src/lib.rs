@@ -8,7 +8,7 @@ mod rig;
 
 use std::sync::OnceLock;
 
-pub use grooms::{reference, sintel};
+pub use grooms::{ponytail, reference, sintel};
 pub use rig::{On, Rig};
 use strandline_gpu::Gpu;
 
