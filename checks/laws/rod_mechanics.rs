@@ -373,15 +373,25 @@ law! {
             translation: Vec3::X * (reach * (rate * step as f32 / 60.0).sin()),
             ..Default::default()
         };
-        let drives: Vec<_> =
-            (1..=on.either(1200, 240)).map(|step| Drive { world_from_head: pose(step), ..Drive::default() }).collect();
-        for report in rig.steps(&drives) {
-            assert_eq!(report.non_finite, 0);
-            assert!(report.stretch_max < 0.02, "{}", report.stretch_max);
+        // Ten minutes; mean square speed at every phase of the shake.
+        let (mut squares, mut most) = (Vec::new(), 0.0_f32);
+        for part in 0..on.either(36_000, 236) / 59 {
+            let drive = |step: usize| Drive { world_from_head: pose(part * 59 + step), ..Drive::default() };
+            for report in rig.steps(&(1..=59).map(drive).collect::<Vec<_>>()) {
+                assert_eq!(report.non_finite, 0);
+                most = most.max(report.stretch_max);
+            }
+            let velocities = &rig.state().velocities;
+            let speeds = velocities.iter().map(|lanes| lanes.get(0).length_squared());
+            squares.push(speeds.sum::<f32>() / velocities.len() as f32);
         }
-        let speeds = rig.state().velocities.iter().map(|lanes| lanes.get(0).length_squared());
-        let mean = speeds.sum::<f32>() / (rig.state().velocities.len() as f32);
-        // The head itself goes 6 m/s; the tip of a whip a few times as fast.
-        assert!(mean.sqrt() < 20.0, "{} m/s", mean.sqrt());
+        let mean = |squares: &[f32]| squares.iter().sum::<f32>() / squares.len() as f32;
+        let (first, second) = squares.split_at(squares.len() / 2);
+        // The bound of the law. Found: 3e-6.
+        assert!(most < 0.02, "stretched by {most}");
+        // Found: 73.4 and 73.5 m^2/s^2, 99 at most; the head itself goes 6 m/s, the tip of a whip a few times as fast.
+        assert!(squares.iter().all(|square| *square < 150.0), "{squares:?} m^2/s^2");
+        let growth = mean(second) / mean(first);
+        assert!(growth < on.either(1.05, 2.0), "its energy grows: {growth}");
     }
 }

@@ -32,11 +32,11 @@ fn apart(solver: &Solver, one: &[Vec3], other: &[Vec3]) -> f32 {
 /// Of a style at a step of 1 / `rate`: most speed \[m/s\], and most that tips are from those at other steps.
 ///
 /// The law asks for 0.5 mm/s of every style and for tips within 2 %. Two are not met. Long hair in steps of 1/480 s
-/// still creeps back to its place after six seconds, at 1.4 mm/s (of 120 strands 0.8), through a volume that each step
-/// stops from closing up; without a volume it is 0.1 mm/s, with one 0.04 six seconds later. And a strand in twenty comes
-/// to rest elsewhere, on another side of an ear or a shoulder, by up to half of its length: means of all tips go up to
-/// 7 %, so that the strand in the middle is held here. Found of it: wavy 2.0 %, bob 0.9, curly 1.3, long 1.8 (3.1 at
-/// 1/480 s), pixie 0.2, ponytail 1.7. What rubbing of 0.2 m/s^2 holds aside is 2 % of a length by itself.
+/// still creeps back to its place after six seconds, at 1.4 mm/s (of 120 strands 0.8); without a volume it is 0.1 mm/s,
+/// with one 0.04 six seconds later. And a few of 24 strands come to rest elsewhere, on another side of an ear or a
+/// shoulder, up to half of their length away: means of all tips go up to 8 %, so that the strand in the middle is held
+/// here. Found of it: wavy 2.0 %, bob 0.9, curly 1.3, long 1.8 (3.1 at 1/480 s), pixie 0.2, ponytail 1.7. What rubbing
+/// of 0.2 m/s^2 holds aside is 2 % of a length by itself.
 fn bounds(style: Style, rate: f32) -> (f32, f32) {
     if style == Style::Long && rate > 400.0 { (2e-3, 4e-2) } else { (5e-4, 2.5e-2) }
 }
