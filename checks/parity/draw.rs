@@ -92,7 +92,7 @@ fn draw_agrees_far_away() {
 fn draw_agrees_where_strands_are_left_out() {
     for look in [Look::brown(), Look::thesis()] {
         let mut both = Both::new(Style::Wavy, 12);
-        both.look = Look { follow_strands: 1, hair_count: 0, ..look };
+        both.look = Look { follow_strands: 1, ..look };
         both.camera.position *= 8.0;
         both.camera.field_of_view = 5.0;
         let left_out = both.level().left_out;

@@ -10,6 +10,9 @@ use super::shadow::{LightView, Window};
 
 /// Most parts that the strands are shared out to; each part fills a map of its own.
 const MOST_PARTS: usize = 8;
+/// Width \[texel\] above which hair is laid out in rows, and the most of them.
+const WIDE: f32 = 2.0;
+const MOST_ROWS: f32 = 256.0;
 /// Strands whose bounds are found together.
 const CHUNK: usize = 4096;
 
@@ -50,7 +53,8 @@ pub(crate) struct Piece {
 }
 
 /// Cuts segments into pieces no longer than a texel along the axis that they follow most, and
-/// hands each to `take`. The pieces of a segment cover width times length, whatever the map's size.
+/// hands each to `take`; hair of more than two texels' width in rows no wider than a texel. The pieces of a segment
+/// cover width times length, whatever the map's size.
 pub(crate) fn walk(
     strands: &Strands,
     range: Range<usize>,
@@ -92,16 +96,51 @@ fn cut(start: (Vec3, f32), end: (Vec3, f32), size: usize, take: &mut impl FnMut(
     let mut at = start.0 + 0.5 * step;
     let widening = (end.1 - start.1) * inverse;
     let mut width = start.1 + 0.5 * widening;
+    let widest = start.1.max(end.1);
+    let rows = if widest > WIDE && length > 0.0 { widest.min(MOST_ROWS).ceil() } else { 1.0 };
+    let aside = if rows > 1.0 { way.truncate().perp().normalize_or_zero() / rows } else { Vec2::ZERO };
     for _ in 0..pieces {
-        if at.x >= 0.0 && at.y >= 0.0 && at.x < limit && at.y < limit {
-            take(Piece {
-                texel: at.y as usize * size + at.x as usize,
-                depth: at.z,
-                coverage: length * width,
-                width,
-            });
+        for row in 0..rows as usize {
+            let place = at.truncate() + aside * (width * (row as f32 + 0.5 - 0.5 * rows));
+            if place.x >= 0.0 && place.y >= 0.0 && place.x < limit && place.y < limit {
+                take(Piece {
+                    texel: place.y as usize * size + place.x as usize,
+                    depth: at.z,
+                    coverage: length * width / rows,
+                    width,
+                });
+            }
         }
         at += step;
         width += widening;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a segment covers of each texel.
+    fn covered(width: f32) -> Vec<f32> {
+        let mut texels = vec![0.0; 64 * 64];
+        let ends = [Vec3::new(20.0, 20.0, 1.0), Vec3::new(44.0, 38.0, 1.0)];
+        cut((ends[0], width), (ends[1], width), 64, &mut |piece: Piece| {
+            texels[piece.texel] += piece.coverage
+        });
+        texels
+    }
+
+    #[test]
+    fn wide_hair_covers_texels_beside_its_middle() {
+        for width in [0.3, 1.9, 2.1, 8.0, 15.0] {
+            let texels = covered(width);
+            let (sum, most) = (texels.iter().sum::<f32>(), texels.iter().copied().fold(0.0, f32::max));
+            assert!((sum - 30.0 * width).abs() < 1e-3 * sum, "{width}: {sum}");
+            // Pieces of one row and of the next that fall into one texel; below two texels all lie on the middle.
+            assert!(most < if width > WIDE { 2.6 } else { 4.0 }, "{width}: {most}");
+            let touched = texels.iter().filter(|share| **share > 0.0).count();
+            // Pieces of a row step over corners of texels.
+            assert!(width < WIDE || touched as f32 > 0.7 * sum, "{width}: {touched} of {sum}");
+        }
     }
 }
