@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
 use strandline_checks::gpu;
 use strandline_groom::{Binding, Frames, Guides, LANES, Style, StyleSettings, Surface, Vec3Lanes};
-use strandline_render::cpu::{Curves, keep_outside, tessellate};
+use strandline_render::cpu::{Curves, Strands, interpolate, keep_outside, tessellate};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
 
@@ -61,12 +61,16 @@ fn on_cpu(binding: &Binding, solids: &Solids) -> Vec<Vec3Lanes> {
     places
 }
 
-/// Where strands are and the points of their curves; none without a GPU.
+fn look() -> Look {
+    Look { follow_strands: 3, ..Look::brown() }
+}
+
+/// Where strands are and the points that are drawn of them; none without a GPU.
 fn on_gpu(binding: &Binding, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec3>)> {
     let settings = PictureSettings::sized(32, 32);
     let mut renderer = GpuRenderer::new(&gpu()?, binding.strands(), None, &settings).unwrap();
     renderer.bind(binding, solids).unwrap();
-    let look = Look { follow_strands: 1, ..Look::brown() };
+    let look = look();
     let input = FrameInput {
         positions: &blown(binding.guides()),
         world_from_head: pose(),
@@ -77,9 +81,8 @@ fn on_gpu(binding: &Binding, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec
         level_of_detail: &LevelOfDetail::full(),
     };
     let (_, report) = renderer.draw(&input).unwrap();
-    assert_eq!(report.strands, binding.strands().strand_count());
-    let [curves, ..] = renderer.curves().unwrap();
-    Some((renderer.places().unwrap(), curves))
+    assert_eq!(report.strands, 3 * binding.strands().strand_count());
+    Some((renderer.places().unwrap(), renderer.strands().unwrap().positions))
 }
 
 fn apart(one: &[Vec3Lanes], two: &[Vec3Lanes], strands: usize) -> Vec<f32> {
@@ -141,22 +144,18 @@ fn what_is_drawn_between_their_points_stays_out_as_on_the_cpu() {
     let (binding, solids) = (binding(), solids());
     let Some((places, on_gpu)) = on_gpu(&binding, &solids) else { return };
     let (strands, placed) = (binding.strands(), solids.placed(pose()));
-    let level = LevelOfDetail::full().level(1.0, 1);
-    let mut curves = Curves::default();
+    let level = LevelOfDetail::full().level(1.0, 3);
+    let (mut curves, mut drawn) = (Curves::default(), Strands::default());
     let first = level.segments_per_span as usize;
-    let points = |curves: &Curves| -> Vec<Vec3> {
-        let all = (0..strands.strand_count())
-            .flat_map(|strand| (0..curves.points_per_curve).map(move |point| (strand, point)));
-        all.map(|(strand, point)| curves.point(strand, point)[0]).collect()
-    };
     let deep = |all: &[Vec3], each: usize| {
         let inside = |point: &&Vec3| placed.at(**point).0 < -1e-4;
         all.chunks(each).map(|strand| strand[first..].iter().filter(inside).count()).sum::<usize>()
     };
     tessellate(&places, strands, &pose(), &level, &mut curves);
-    let (free, each) = (points(&curves), curves.points_per_curve);
-    keep_outside(&mut curves, strands.points_per_strand(), &placed);
-    let kept = points(&curves);
+    interpolate(&curves, strands, &pose(), &look(), &level, &mut drawn);
+    let (free, each) = (drawn.positions.clone(), curves.points_per_curve);
+    keep_outside(&mut drawn, &curves, strands.points_per_strand(), &placed);
+    let kept = drawn.positions;
     let mut apart: Vec<f32> = kept.iter().zip(&on_gpu).map(|(one, two)| one.distance(*two)).collect();
     apart.sort_by(f32::total_cmp);
     let [most, last] = [apart.len() * 999 / 1000, apart.len() - 1].map(|place| apart[place]);

@@ -8,7 +8,7 @@ fn main() {}
 const MODULES: [&str; 20] = [
     "bound_frames",
     "bound",
-    "bound_curves",
+    "bound_outside",
     "tessellate",
     "interpolate",
     "fit",

@@ -148,7 +148,7 @@ pub struct SimOptions {
     #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub from: Option<u32>,
     /// Units and axes of a .usda: any (metres, y up), unreal (centimetres, z up, groom_* attributes) or blender
-    /// (metres, z up, frames from 1) [default: any].
+    /// (metres, z up, frames from 1); all else stays in metres with y up [default: any].
     #[arg(long = "for", value_name = "NAME", requires = "out", value_parser = Target::from_str)]
     pub target: Option<Target>,
     /// Go on where the run of this moving cache stood, with its own scene unless --scene names one; --frames is the

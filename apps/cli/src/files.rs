@@ -33,6 +33,9 @@ pub(crate) fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()>
     Ok(())
 }
 
+/// Groups that are listed: a grown style has one for each lock.
+const MOST_GROUPS: usize = 20;
+
 /// Says what a file holds.
 pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     let report = format::load(&options.file, &options.reading.options())?.report;
@@ -54,9 +57,12 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     if !report.attributes.is_empty() {
         print_line!("has       {}", report.attributes.join(", "));
     }
-    for (number, group) in &report.groups {
+    for (number, group) in report.groups.iter().take(MOST_GROUPS) {
         let name = group.name.as_deref().unwrap_or("without a name");
         print_line!("group     {number}: {name}, {} strands", group.strands);
+    }
+    if report.groups.len() > MOST_GROUPS {
+        print_line!("          and {} groups more (--json has all)", report.groups.len() - MOST_GROUPS);
     }
     for problem in &report.problems {
         print_line!("problem   {problem}");

@@ -97,7 +97,7 @@ fn bad_hair_files_are_refused_with_what_was_found_and_expected() {
 
 #[test]
 fn bad_tfx_files_are_refused_with_what_was_found_and_expected() {
-    let good = tfx::write(&two_strands()).unwrap();
+    let good = tfx::write(&Groom { widths: Widths::Constant(9e-5), ..two_strands() }).unwrap();
     let changed = |at: usize, value: u32| {
         let mut bytes = good.clone();
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -187,6 +187,25 @@ fn strands_without_a_width_get_that_of_a_hair() {
     let loaded = prepare(parsed.unwrap(), &LoadOptions::default()).unwrap();
     assert_eq!(loaded.groom.widths, Widths::Constant(8e-5));
     assert_eq!(loaded.report.problems, ["the file has no widths: 0.08 mm is taken"]);
+}
+
+#[test]
+fn a_width_that_no_file_had_is_not_written_into_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let groom = Groom { widths: Widths::Constant(8e-5), ..two_strands() };
+    let real = Groom { widths: Widths::Constant(9e-5), ..two_strands() };
+    for ending in ["hair", "tfx", "ply", "npz"] {
+        let path = folder.path().join(format!("two.{ending}"));
+        // In centimetres, 8e-5 would be hair of 0.8 um.
+        let options = LoadOptions { scale: Scale::Factor(0.01), ..LoadOptions::default() };
+        groom.save(&path).unwrap();
+        let loaded = load(&path, &options).unwrap();
+        assert_eq!(loaded.groom.widths, Widths::Constant(8e-5), "{ending}");
+        assert!(loaded.report.problems.iter().any(|said| said.contains("no widths")), "{ending}");
+        real.save(&path).unwrap();
+        let loaded = load(&path, &options).unwrap();
+        assert!((loaded.groom.widths.at(0, 0) - 9e-7).abs() < 1e-9, "{ending}");
+    }
 }
 
 #[test]

@@ -99,8 +99,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Keeps what lies between the points of strands out of solids too, which pass over ears and noses in long steps,
-    /// from the next picture on. The first span of a strand, which leads out of the skin, stays as it is.
+    /// Keeps all that is drawn of strands out of solids, between their points and about them, from the next picture on. The first span of a strand, which leads out of the skin, stays as it is.
     pub fn keep_outside(&mut self, solids: Solids) {
         self.solids = solids;
     }
@@ -160,9 +159,9 @@ impl Renderer {
         let mut clock = Clock::start();
 
         tessellate(input.positions, guides, pose, &level, curves);
-        keep_outside(curves, guides.points_per_strand(), &solids.placed(*pose));
         clock.lap("tessellate");
         interpolate(curves, guides, pose, input.look, &level, strands);
+        keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(*pose));
         clock.lap("interpolate");
         draw.place_body(input.world_from_head);
         opacity_depth(strands, draw.shadow_body(), input.lights, middle, &input.look.hair_shadow(), shadows);

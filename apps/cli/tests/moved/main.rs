@@ -110,6 +110,7 @@ fn errors_say_what_to_do() {
     fails(at, &["sim", "--scene", "small.toml", "--out", "f/%02d.abc"], 1, &["`abc`", "f/00.abc"]);
     fails(at, &["sim", "--what", "hair", "--out", "a.npz"], 2, &["guides, strands"]);
     fails(at, &["sim", "--for", "maya", "--out", "a.usda"], 2, &["any, unreal, blender"]);
+    fails(at, &["sim", "--for", "unreal", "--out", "a.npz"], 1, &["for", "unreal", ".usda"]);
     fails(at, &["sim", "--every", "2"], 2, &["--out"]);
     fails(at, &["sim", "--resume", "a.npz"], 1, &["made 8 frames", "--frames", "a.npz"]);
     let every = ["sim", "--resume", "a.npz", "--frames", "9", "--every", "2"];

@@ -1,7 +1,7 @@
 //! `.hair`, Cem Yuksel's HAIR format: a header of 128 bytes, then arrays in the order of their bits.
 
 use super::bytes::{Source, put, put_u32, vec3};
-use super::{MAX_POINTS, MAX_STRANDS, Parsed};
+use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part};
 use crate::{Groom, GroomError, Widths};
 
 const HEADER: u64 = 128;
@@ -204,7 +204,8 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
 /// The one diameter of all points, or else one for each.
 fn per_point_widths(groom: &Groom) -> Result<f32, Vec<f32>> {
     match &groom.widths {
-        Widths::Constant(width) => Ok(*width),
+        // What was taken because a file had none is nobody's width.
+        Widths::Constant(width) => Ok(if Part::Widths.is_in(groom) { *width } else { 0.0 }),
         Widths::PerPoint(widths) => Err(widths.clone()),
         Widths::PerStrand(widths) => {
             let counts = groom.starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize);

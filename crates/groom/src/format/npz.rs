@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::bytes::Source;
 use super::npy::{self, Array};
 use super::zip::{self, Entry};
-use super::{MAX_POINTS, MAX_STRANDS, Parsed};
+use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part};
 use crate::{Groom, GroomError, Influences, Widths};
 
 /// Arrays that hold points, the first that is there counts.
@@ -205,7 +205,11 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         Widths::PerPoint(widths) => {
             files.push(("widths.npy", npy::floats(&[points], widths.iter().copied())))
         }
-        _ => files.push(("strand_widths.npy", npy::floats(&[strands], groom.root_widths()))),
+        _ if Part::Widths.is_in(groom) => {
+            files.push(("strand_widths.npy", npy::floats(&[strands], groom.root_widths())))
+        }
+        // What was taken because a file had none is nobody's width.
+        _ => {}
     }
     let mut add = |name, array: Option<Vec<u8>>| files.extend(array.map(|array| (name, array)));
     let triples = |rows, all: &mut dyn Iterator<Item = [f32; 3]>| npy::floats(&[rows, 3], all.flatten());

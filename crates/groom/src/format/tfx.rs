@@ -1,7 +1,7 @@
 //! `.tfx`, the binary format of TressFX: versions 3 (read) and 4 (read and write).
 
 use super::bytes::{Source, put, put_u32, vec2, vec3};
-use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
+use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, Part};
 use crate::{Groom, GroomError, Widths};
 
 const HEADER_3: u64 = 296;
@@ -154,9 +154,12 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         Some(uvs) => put(&mut body, uvs.iter().flat_map(|uv| uv.to_array())),
         None => put(&mut body, std::iter::repeat_n(0.0, 2 * strands)),
     }
-    offsets[3] = here(&body);
-    let starts = groom.starts.iter().take(strands);
-    put(&mut body, starts.enumerate().map(|(strand, first)| groom.widths.at(strand, *first as usize)));
+    // What was taken because a file had none is nobody's width.
+    if Part::Widths.is_in(groom) {
+        offsets[3] = here(&body);
+        let starts = groom.starts.iter().take(strands);
+        put(&mut body, starts.enumerate().map(|(strand, first)| groom.widths.at(strand, *first as usize)));
+    }
     if let Some(colors) = &groom.colors {
         offsets[4] = here(&body);
         put(&mut body, colors.iter().flat_map(|[r, g, b]| [*r, *g, *b, 1.0]));

@@ -310,7 +310,7 @@ fn lifted(offset: Vec2, outward: Vec2, lift: f32) -> Vec2 {
 }
 
 /// Unit tangents of a polyline of even steps by central differences, one-sided at its ends.
-fn differentiate(positions: &[Vec3], tangents: &mut [Vec3]) {
+pub(super) fn differentiate(positions: &[Vec3], tangents: &mut [Vec3]) {
     let last = positions.len() - 1;
     let mut fallback = Vec3::Y;
     for (point, tangent) in tangents.iter_mut().enumerate() {

@@ -4,7 +4,7 @@ use strandline_body::Solids;
 use strandline_gpu::{Bound, Buffer, Gpu, GpuError, Kernel, groups, kernel, wgpu};
 use strandline_groom::Binding;
 
-use super::buffers::floats;
+use super::buffers::{Strands, floats};
 use super::inputs::Frame;
 use super::points::DevicePoints;
 use super::{THREADS, bound_solids};
@@ -35,12 +35,12 @@ kernel! {
 }
 
 kernel! {
-    /// One thread is one bound strand.
-    pub(super) struct KeepOutside in "bound_curves" (super::linked::BOUND_CURVES), entry "keep_outside" {
+    /// One thread is one drawn strand.
+    pub(super) struct KeepOutside in "bound_outside" (super::linked::BOUND_OUTSIDE), entry "keep_outside" {
         0 frame: Read Frame,
+        1 points: ReadWrite [f32; 4],
         4 solids: Read u32,
         10 tables: Read [f32; 4],
-        11 curves: ReadWrite [f32; 4],
     }
 }
 
@@ -56,7 +56,7 @@ pub(super) struct BoundStrands {
     frames: Buffer<[f32; 4]>,
     place: Bound,
     keep_outside: Kernel<KeepOutside<'static>>,
-    /// It bound to the curves that are drawn.
+    /// It bound to the points that are drawn.
     kept: Option<(wgpu::Buffer, Bound)>,
     /// `follow_guides` bound to pairs of buffers of guide points.
     follows: Vec<([wgpu::Buffer; 2], Bound)>,
@@ -151,7 +151,7 @@ impl BoundStrands {
         ])
     }
 
-    /// What keeps curves of the strands out of the solids.
+    /// What keeps so many drawn strands out of the solids.
     ///
     /// # Errors
     /// Whatever the device refuses.
@@ -159,18 +159,18 @@ impl BoundStrands {
         &mut self,
         gpu: &Gpu,
         frame: &Buffer<Frame>,
-        tables: &Buffer<[f32; 4]>,
-        curves: &Buffer<[f32; 4]>,
+        strands: &Strands,
+        count: usize,
     ) -> Result<(Bound, [u32; 3]), GpuError> {
-        let raw = curves.raw().clone();
+        let (raw, solids) = (strands.points.raw().clone(), &self.solids);
         let bound = match self.kept.take_if(|(known, _)| *known == raw) {
             Some((_, bound)) => bound,
             None => {
-                let solids = &self.solids;
-                self.keep_outside.bind(gpu, &KeepOutside { frame, solids, tables, curves })?
+                let (points, tables) = (&strands.points, &strands.tables);
+                self.keep_outside.bind(gpu, &KeepOutside { frame, points, solids, tables })?
             }
         };
         self.kept = Some((raw, bound.clone()));
-        Ok((bound, groups(self.strand_count, THREADS)))
+        Ok((bound, groups(count, THREADS)))
     }
 }

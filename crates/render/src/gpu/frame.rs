@@ -14,7 +14,9 @@ use crate::fibre::FibreModel;
 pub(super) struct Bounds<'a> {
     /// What places strands that guides carry; nothing without such.
     pub bound: Vec<(Bound, [u32; 3])>,
-    pub tessellate: Vec<(Bound, [u32; 3])>,
+    pub tessellate: Bound,
+    /// What keeps such strands out of solids.
+    pub keep_outside: Option<(Bound, [u32; 3])>,
     /// What colours the hair by layers, where that is asked for.
     pub layer_colors: Option<Bound>,
     pub stages: &'a Stages,
@@ -35,8 +37,9 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     if !bounds.bound.is_empty() {
         recorder.stage("bind", &bounds.bound);
     }
-    recorder.stage("tessellate", &bounds.tessellate);
-    recorder.stage("interpolate", &one(&stages.interpolate, points));
+    recorder.stage("tessellate", &one(&bounds.tessellate, scene.guide_count));
+    let interpolate = one(&stages.interpolate, points).into_iter().chain(bounds.keep_outside.clone());
+    recorder.stage("interpolate", &interpolate.collect::<Vec<_>>());
     record_opacity(recorder, scene, stages, bounds.maps);
     recorder.clear(&groom.areas);
     recorder.stage("shade", &one(&stages.sum_areas, segments));

@@ -127,7 +127,9 @@ mirror! {
         pub kinds: u32,
         /// Of each eight guides, those whose strands are not drawn.
         pub left_out: f32,
-        pub unused: [u32; 3],
+        pub unused: u32,
+        pub unused_too: u32,
+        pub unused_last: u32,
     }
 }
 
@@ -258,7 +260,9 @@ impl Frame {
                 | if look.fibre.model == FibreModel::Chiang { 4 } else { 0 }
                 | if look.fibre.chiang.pigment == Pigment::Color { 8 } else { 0 },
             left_out: level.left_out,
-            unused: [0; 3],
+            unused: 0,
+            unused_too: 0,
+            unused_last: 0,
         }
     }
 }

@@ -3,7 +3,7 @@
 strandline_gpu::linked! {
     BOUND_FRAMES = "bound_frames",
     BOUND = "bound",
-    BOUND_CURVES = "bound_curves",
+    BOUND_OUTSIDE = "bound_outside",
     TESSELLATE = "tessellate",
     INTERPOLATE = "interpolate",
     FIT = "fit",

@@ -2,13 +2,13 @@
 
 use strandline_base::SettingError;
 use strandline_body::Solids;
-use strandline_gpu::{Bound, Buffer, groups};
+use strandline_gpu::{Bound, Buffer};
 use strandline_groom::Binding;
 
+use super::GpuRenderer;
 use super::bound::BoundStrands;
 use super::buffers::{Groom, Strands, floats};
 use super::tessellate;
-use super::{GpuRenderer, THREADS};
 use crate::{FrameInput, RenderError};
 
 /// Guide points that lie on the device, `[block][point][component][lane]` \[m\], world space: at the two
@@ -77,22 +77,14 @@ impl GpuRenderer {
             .into())
     }
 
-    /// `tessellate`, and what keeps the curves of bound strands out of solids.
-    pub(super) fn tessellate(
-        &mut self,
-        points: Option<DevicePoints>,
-    ) -> Result<Vec<(Bound, [u32; 3])>, RenderError> {
-        let tessellate = self.tessellate_alone(points)?;
-        let mut stages = vec![(tessellate, groups(self.guides.strand_count(), THREADS))];
-        if let (Some(bound), Some(strands)) = (&mut self.bound, &self.strands) {
-            let frame = &self.groom.frame;
-            stages.push(bound.keep_outside(&self.gpu, frame, &strands.tables, &strands.curves)?);
-        }
-        Ok(stages)
+    /// What keeps so many drawn strands out of solids, where guides carry them.
+    pub(super) fn keep_outside(&mut self, count: usize) -> Result<Option<(Bound, [u32; 3])>, RenderError> {
+        let (Some(bound), Some(strands)) = (&mut self.bound, &self.strands) else { return Ok(None) };
+        Ok(Some(bound.keep_outside(&self.gpu, &self.groom.frame, strands, count)?))
     }
 
     /// `tessellate`, bound to guide points; the last two pairs of buffers stay bound.
-    fn tessellate_alone(&mut self, points: Option<DevicePoints>) -> Result<Bound, RenderError> {
+    pub(super) fn tessellate(&mut self, points: Option<DevicePoints>) -> Result<Bound, RenderError> {
         let Some(strands) = &self.strands else { unreachable!("made before") };
         let (before, after) = match &points {
             Some(points) if self.bound.is_none() => (points.before, points.after),

@@ -257,12 +257,22 @@ impl GpuRenderer {
         self.write(&scene, points.is_none())?;
         let bound = self.bound_stages(points)?;
         let tessellate = self.tessellate(points)?;
+        let keep_outside = self.keep_outside(scene.strand_count())?;
         let layer_colors = self.layer_colors(given)?;
         let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
         let resolve =
             &self.formats.iter().find(|known| known.format == format).expect("prepared above").bound;
-        let bounds =
-            Bounds { bound, tessellate, layer_colors, stages, resolve, maps, target, renderer: self };
+        let bounds = Bounds {
+            bound,
+            tessellate,
+            keep_outside,
+            layer_colors,
+            stages,
+            resolve,
+            maps,
+            target,
+            renderer: self,
+        };
         let submitted = self.gpu.guarded("a frame", || {
             let mut recorder = Recorder::new(&self.gpu, self.timer.as_ref());
             self.timer.iter().for_each(Timer::restart);

@@ -140,6 +140,7 @@ pub fn declarations() -> Vec<Declaration> {
     vec![
         bound::FollowGuides::declaration(),
         bound::PlaceBound::declaration(),
+        bound::KeepOutside::declaration(),
         tessellate::Tessellate::declaration(),
         interpolate::Interpolate::declaration(),
         fit::MeasureHair::declaration(),

@@ -6,6 +6,7 @@ use std::{
 };
 
 use glam::Vec3;
+use strandline_base::SettingError;
 
 use super::{
     Cache, Frame, Snapshot, Target, What,
@@ -91,12 +92,21 @@ impl OutSettings {
         Self { path: path.into(), what: What::default(), first: 0, every: 1, target: Target::default() }
     }
 
-    /// Refuses a name that no format has, before anything is loaded.
+    /// Refuses a name that no format has, and units that its format does not, before anything is loaded.
     ///
     /// # Errors
-    /// See [`Error::OutName`].
+    /// See [`Error::OutName`]; [`OutSettings::target`] of what is no `.usda`.
     pub fn check(&self) -> Result<(), Error> {
-        format(&self.path).map(|_| ())
+        self.format().map(|_| ())
+    }
+
+    fn format(&self) -> Result<Format, Error> {
+        let format = format(&self.path)?;
+        if format != Format::Usda && self.target != Target::Any {
+            let expected = "any: only a .usda has others, all else stays in metres with y up";
+            return Err(SettingError::new("for", self.target.name(), expected).into());
+        }
+        Ok(format)
     }
 }
 
@@ -106,7 +116,7 @@ impl Out {
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written.
     pub(crate) fn new(settings: &OutSettings, scene: &Scene, leaving: Leaving) -> Result<Self, Error> {
-        let format = format(&settings.path)?;
+        let format = settings.format()?;
         let shape = Shape::new(settings.what, scene, leaving)?;
         let (path, first, every) = (settings.path.as_path(), settings.first, settings.every.max(1));
         let writer = match format {

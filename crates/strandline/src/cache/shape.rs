@@ -10,7 +10,7 @@ use crate::{
     groom::{Frames, Guides, LANES, MOST_INFLUENCES, Vec3Lanes},
     render::{
         DetailLevel, Look,
-        cpu::{Curves, Strands, interpolate, tessellate},
+        cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
     },
     tags::Tags,
 };
@@ -220,6 +220,10 @@ impl Drawn {
         };
         tessellate(positions, drawn, world_from_head, level, curves);
         interpolate(curves, drawn, world_from_head, look, level, strands);
+        if let Some(bound) = bound {
+            let solids = bound.solids().placed(*world_from_head);
+            keep_outside(strands, curves, drawn.points_per_strand(), &solids);
+        }
     }
 }
 

@@ -75,6 +75,8 @@ pub(super) fn add_grooms(
             notes.push(format!("{}: a unit is {} m", part.file.display(), placing.scale));
         }
         strands::place(&mut further, placing, scene, part.rotation, part.translation);
+        let apart = mesh.and_then(|mesh| placing::apart(&further, mesh));
+        notes.extend(apart.map(|said| format!("{}: {said}", part.file.display())));
         let next = groom.groups.iter().flatten().max().map_or(0, |group| group.saturating_add(1));
         name_groups(&mut further, next, part.name.clone().unwrap_or_else(|| stem(Some(&part.file))));
         let strands = (groom.strand_count() + further.strand_count()) as u64;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::super::Part;
 use super::super::bytes::{put, put_u32};
 use super::super::tfx::longest;
 use crate::{Groom, GroomError, Widths};
@@ -61,7 +62,7 @@ fn header(groom: &Groom) -> String {
     line(&mut out, groom.velocities.is_some(), &["float vx", "float vy", "float vz"]);
     let _ = writeln!(out, "element strand {strands}");
     line(&mut out, true, &["ushort nsegs"]);
-    line(&mut out, !matches!(groom.widths, Widths::PerPoint(_)), &["float width"]);
+    line(&mut out, of_strands(groom), &["float width"]);
     line(&mut out, groom.root_uvs.is_some(), &["float s", "float t"]);
     line(&mut out, groom.root_normals.is_some(), &["float nx", "float ny", "float nz"]);
     line(&mut out, groom.groups.is_some(), &["uint group"]);
@@ -71,6 +72,11 @@ fn header(groom: &Groom) -> String {
     line(&mut out, true, &["uint vertex1", "uint vertex2"]);
     out.push_str("end_header\n");
     out
+}
+
+/// Whether strands have widths of one number each: what was taken because a file had none is not written.
+fn of_strands(groom: &Groom) -> bool {
+    Part::Widths.is_in(groom) && !matches!(groom.widths, Widths::PerPoint(_))
 }
 
 fn vertices(groom: &Groom, out: &mut Vec<u8>) {
@@ -89,7 +95,7 @@ fn vertices(groom: &Groom, out: &mut Vec<u8>) {
 fn strands(groom: &Groom, out: &mut Vec<u8>) {
     for (strand, width) in groom.root_widths().enumerate() {
         out.extend((groom.range(strand).len() as u16 - 1).to_le_bytes());
-        if !matches!(groom.widths, Widths::PerPoint(_)) {
+        if of_strands(groom) {
             put(out, [width]);
         }
         put(out, groom.root_uvs.iter().flat_map(|all| all[strand].to_array()));
