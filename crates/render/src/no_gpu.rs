@@ -1,6 +1,6 @@
 //! What stands for the renderer on a GPU in a build without GPUs: nothing of it can be made.
 
-use strandline_body::{Collider, Mesh};
+use strandline_body::{Mesh, Solids};
 use strandline_gpu::{Buffer, Gpu};
 use strandline_groom::{Binding, Guides};
 
@@ -36,7 +36,7 @@ impl GpuRenderer {
         match *self {}
     }
 
-    pub fn bind(&mut self, _: &Binding, _: &[(Collider, f32)]) -> Result<(), RenderError> {
+    pub fn bind(&mut self, _: &Binding, _: &Solids) -> Result<(), RenderError> {
         match *self {}
     }
 
