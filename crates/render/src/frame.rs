@@ -157,7 +157,6 @@ impl Renderer {
         let Self { solids, curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } =
             self;
         let mut clock = Clock::start();
-
         tessellate(input.positions, guides, pose, &level, curves);
         clock.lap("tessellate");
         interpolate(curves, guides, pose, input.look, &level, strands);

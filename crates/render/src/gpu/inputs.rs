@@ -133,6 +133,15 @@ mirror! {
     }
 }
 
+/// As resolve.wesl has it.
+fn tone_map_code(tone_map: ToneMap) -> u32 {
+    match tone_map {
+        ToneMap::Off => 0,
+        ToneMap::Filmic => 1,
+        ToneMap::Aces => 2,
+    }
+}
+
 mirror! {
     /// Mirrors `LightSource` in light.wesl.
     pub(super) struct LightSource {
@@ -249,11 +258,7 @@ impl Frame {
             triangle_count: scene.triangle_count as u32,
             gain: math::exp2(settings.exposure),
             supersampling: settings.supersampling,
-            tone_map: match settings.tone_map {
-                ToneMap::Off => 0,
-                ToneMap::Filmic => 1,
-                ToneMap::Aces => 2,
-            },
+            tone_map: tone_map_code(settings.tone_map),
             body_kind: scene.body_kind,
             middle: scene.middle.to_array(),
             kinds: scene.own

@@ -285,19 +285,17 @@ impl GpuRenderer {
             self.gpu.queue().submit([commands]);
         });
         submitted?;
-        let curve_points = scene.curve_points();
         self.drawn = Drawn {
             strands_per_guide: scene.level.strand_count(),
-            curve_points,
+            curve_points: scene.curve_points(),
             shadows: scene.shadow_count(),
             left_out: scene.level.left_out,
         };
-        let middle = scene.middle;
         self.lit.0.clear();
         self.lit.0.extend_from_slice(input.lights);
-        (self.lit.1, self.lit.2) = (input.look.hair_shadow(), middle);
+        (self.lit.1, self.lit.2) = (input.look.hair_shadow(), scene.middle);
         let strands = scene.level.drawn_strands(scene.guide_count);
-        Ok(FrameReport { strands, segments: strands * (curve_points - 1), ..FrameReport::default() })
+        Ok(FrameReport { strands, segments: strands * (scene.curve_points() - 1), ..FrameReport::default() })
     }
 
     pub(super) fn scene<'a>(
