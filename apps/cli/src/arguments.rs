@@ -80,6 +80,10 @@ pub struct Inputs {
     /// Load the body from this .obj, .gltf or .glb file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
+    /// Grow the style on what has this name in the body's files: a group, an object or a material [default: scalp,
+    /// where there is one].
+    #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "groom")]
+    pub scalp: Option<String>,
     /// What hair is made of: fine, medium, coarse, wet or sprayed.
     #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
     pub hair: Option<HairKind>,
@@ -195,9 +199,9 @@ pub struct ConvertOptions {
     /// Push strands out of this .obj, .gltf or .glb mesh, after they are moved; their lengths stay.
     #[arg(long, value_name = "MESH")]
     pub outside: Option<PathBuf>,
-    /// Metres per unit of that mesh.
-    #[arg(long, value_name = "F", default_value_t = 1.0)]
-    pub mesh_scale: f32,
+    /// Metres per unit of that mesh, or auto: what brings it to the roots.
+    #[arg(long, value_name = "F|auto", default_value = "auto", value_parser = parse_scale)]
+    pub mesh_scale: Scale,
 }
 
 /// How a groom file is read.

@@ -4,7 +4,10 @@ use anyhow::Context;
 use glam::Vec3;
 use strandline::base::math;
 use strandline::body::{DistanceGrid, Mesh, SignedDistance};
-use strandline::groom::{Groom, format};
+use strandline::groom::{
+    Groom,
+    format::{self, Scale},
+};
 
 use crate::arguments::ConvertOptions;
 use crate::progress::Waiting;
@@ -13,6 +16,8 @@ use crate::{files, output};
 /// Distance between the samples of a mesh that strands are pushed out of, and air around it \[m\].
 const SPACING: f32 = 0.002;
 const AIR: f32 = 0.01;
+/// Distance of roots from it, as a share of its size, beyond which a mesh is not theirs.
+const APART: f32 = 0.1;
 
 /// Reads one or more files as one groom, changes it as asked, and writes it.
 pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
@@ -40,9 +45,29 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     let rotation = math::pitch_yaw_roll(options.turn.unwrap_or_default());
     groom.transform(1.0, rotation, options.translation.unwrap_or_default());
     if let Some(file) = &options.outside {
-        push_out(&mut groom, &Mesh::load(file, options.mesh_scale)?)?;
+        let mut mesh = Mesh::load(file, 1.0)?;
+        place(&mut mesh, &groom, options.mesh_scale);
+        push_out(&mut groom, &mesh)?;
     }
     files::write(&groom, output)
+}
+
+/// Scales a mesh to metres, and says so where that was not given; says where it does not meet the strands.
+fn place(mesh: &mut Mesh, groom: &Groom, scale: Scale) {
+    let given = match scale {
+        Scale::Factor(unit) => Some(unit),
+        Scale::Auto => None,
+    };
+    let (unit, apart) = strandline::mesh_unit(groom, mesh, given);
+    mesh.positions.iter_mut().for_each(|position| *position *= unit);
+    if given.is_none() && unit != 1.0 {
+        output::note(&format!("a unit of the mesh is {unit} m; --mesh-scale says otherwise"));
+    }
+    if apart > APART {
+        output::note(
+            "the roots do not lie on the mesh: --scale, --up, --turn and --move place the strands, --mesh-scale the mesh",
+        );
+    }
 }
 
 /// Puts what lies inside a mesh onto its surface.

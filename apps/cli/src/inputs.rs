@@ -48,6 +48,9 @@ impl Inputs {
             scene.body.parts = parts(further, |file| BodyPart { file, ..BodyPart::default() })?;
             scene.begin_at_rest();
         }
+        if let Some(name) = &self.scalp {
+            scene.body.scalp = Some(name.clone());
+        }
         if let Some(hair) = self.hair {
             if scene.simulation.strands.method == StrandMethod::Constrain {
                 let mend = "--hair is for rods, and the scene's strands are not: simulation.strands.method is \

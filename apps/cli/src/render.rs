@@ -78,12 +78,14 @@ fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> any
         player.show(cache)?;
     }
     player.notes().iter().for_each(|note| output::note(note));
+    let stoppable = Stoppable::begin();
     let mut film = LayerFilm::new(path, player.frames())?;
-    let non_finite = play_channels(&mut player, &mut film, json);
+    let non_finite = play_channels(&mut player, &mut film, &stoppable, json);
     if non_finite.is_err() && !film.is_empty() {
         output::note(&format!("the {} files already written are whole: {}", film.len(), path.display()));
     }
     let (files, notes) = film.finish();
+    drop(stoppable);
     let non_finite = non_finite?;
     notes.iter().for_each(|note| output::note(note));
     if json {
@@ -96,10 +98,14 @@ fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> any
     Ok(non_finite.outcome()?)
 }
 
-fn play_channels(player: &mut Player, film: &mut LayerFilm, quiet: bool) -> anyhow::Result<NonFinite> {
+fn play_channels(
+    player: &mut Player,
+    film: &mut LayerFilm,
+    stoppable: &Stoppable,
+    quiet: bool,
+) -> anyhow::Result<NonFinite> {
     let frames = u64::from(player.frames());
     let mut progress = Progress::new(frames, "frames", quiet);
-    let stoppable = Stoppable::begin();
     let mut non_finite = NonFinite::default();
     while let Some(event) = player.next() {
         match event? {
@@ -133,12 +139,15 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
     if let Some(cache) = cache {
         player.show(cache)?;
     }
+    // A request to stop waits until the film is closed.
+    let stoppable = Stoppable::begin();
     let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second / every as f32)?;
     let mut drawn = Drawn::default();
-    if let Err(error) = play(&mut player, &mut film, &mut drawn, json) {
+    if let Err(error) = play(&mut player, &mut film, &mut drawn, &stoppable, json) {
         return Err(broken_off(film, folder, error));
     }
     let written = film.finish()?;
+    drop(stoppable);
     for note in &written.notes {
         output::note(note);
     }
@@ -174,9 +183,14 @@ struct Drawn {
     non_finite: NonFinite,
 }
 
-fn play(player: &mut Player, film: &mut Film, drawn: &mut Drawn, quiet: bool) -> anyhow::Result<()> {
+fn play(
+    player: &mut Player,
+    film: &mut Film,
+    drawn: &mut Drawn,
+    stoppable: &Stoppable,
+    quiet: bool,
+) -> anyhow::Result<()> {
     let mut progress = Progress::new(u64::from(player.frames()), "frames", quiet);
-    let stoppable = Stoppable::begin();
     while let Some(event) = player.next() {
         match event? {
             Event::Note(note) => progress.note(&note),

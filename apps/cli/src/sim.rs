@@ -212,11 +212,12 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     };
     let out = out_settings(options, former.as_ref());
     out.as_ref().map_or(Ok(()), OutSettings::check)?;
-    let mut player = begin(&scene, out, former.as_mut())?;
+    let (mut player, stoppable) = begin(&scene, out, former.as_mut())?;
     drop(former);
     let mut steps = Steps::default();
-    let played = play(&mut player, &mut steps, inputs.json);
+    let played = play(&mut player, &mut steps, &stoppable, inputs.json);
     let written = close(&mut player, played)?;
+    drop(stoppable);
     let mut report = steps.report(Ended::of(&player, &scene));
     report.out = written.map(|written| OutReport {
         path: written.place,
@@ -244,25 +245,30 @@ fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSetti
     Some(settings)
 }
 
-fn begin(scene: &Scene, out: Option<OutSettings>, former: Option<&mut Cache>) -> anyhow::Result<Player> {
+/// What plays, with its file; from then on a request to stop waits until that is closed.
+fn begin(
+    scene: &Scene,
+    out: Option<OutSettings>,
+    former: Option<&mut Cache>,
+) -> anyhow::Result<(Player, Stoppable)> {
     let waiting = Waiting::begin(LOADING);
     let mut player = Player::new(scene, scene.devices, false)?;
     drop(waiting);
     for note in player.notes() {
         output::note(note);
     }
+    let stoppable = Stoppable::begin();
     if let Some(settings) = out {
         player.set_out(&settings)?;
     }
     if let Some(former) = former {
         player.resume(former)?;
     }
-    Ok(player)
+    Ok((player, stoppable))
 }
 
-fn play(player: &mut Player, steps: &mut Steps, quiet: bool) -> anyhow::Result<()> {
+fn play(player: &mut Player, steps: &mut Steps, stoppable: &Stoppable, quiet: bool) -> anyhow::Result<()> {
     let mut progress = Progress::new(u64::from(player.frames()), "frames", quiet);
-    let stoppable = Stoppable::begin();
     while let Some(event) = player.next() {
         match event? {
             Event::Note(note) => progress.note(&note),

@@ -7,6 +7,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
 use eframe::egui;
+use strandline::groom::format::Format;
 use strandline::{Error, OutSettings, Player, Scene, Target, What, Written};
 
 use crate::App;
@@ -17,13 +18,15 @@ pub struct Wanted {
     /// Time of the film at which it begins and ends \[s\].
     pub from: f32,
     pub to: f32,
+    /// Every n-th frame of these.
+    pub every: u32,
     pub what: What,
     pub target: Target,
 }
 
 impl Default for Wanted {
     fn default() -> Self {
-        Self { from: 0.0, to: 4.0, what: What::default(), target: Target::default() }
+        Self { from: 0.0, to: 4.0, every: 1, what: What::default(), target: Target::default() }
     }
 }
 
@@ -56,8 +59,8 @@ impl Export {
     ) -> Result<Self, Error> {
         let [first, frames] = wanted.frames(scene.film.frames_per_second);
         scene.film.frames = frames;
-        let settings =
-            OutSettings { what: wanted.what, target: wanted.target, first, ..OutSettings::new(path) };
+        let Wanted { every, what, target, .. } = *wanted;
+        let settings = OutSettings { every, what, target, first, ..OutSettings::new(path) };
         settings.check()?;
         let (stop, done) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU32::new(0)));
         let (tell, result) = channel();
@@ -113,17 +116,28 @@ fn write(
     failed.map_or(Ok(written), Err)
 }
 
+/// The name of a file a frame, where a path is that of a groom other than a cache.
+fn numbered(path: &Path) -> Option<PathBuf> {
+    let ending = &Format::of(path).ok()?.ending;
+    let stem = path.file_stem()?.to_string_lossy();
+    let name = if stem.contains('%') { format!("{stem}.{ending}") } else { format!("{stem}.%04d.{ending}") };
+    (*ending != "npz").then(|| path.with_file_name(name))
+}
+
 impl App {
     /// Writes moving hair of the scene as it is now, or ends what is being written. The ending of the path says
-    /// what it is: .npz or .usda; without a path a free cache in the folder.
+    /// what it is: .npz, .usda, or that of a groom format for a file a frame; without a path a free cache in the folder.
     pub fn export(&mut self, path: Option<&Path>) {
         if self.exporting.take().is_some() {
             self.note("the export was stopped: what was done stays".to_owned());
             return;
         }
+        let numbered = path.and_then(numbered);
+        let path = numbered.as_deref().or(path);
         let ending = path.and_then(Path::extension).filter(|ending| ending.eq_ignore_ascii_case("usda"));
         let ending = if ending.is_some() { "usda" } else { "npz" };
-        let Some(path) = self.path_or_free(path, "hair", ending) else { return };
+        let free = || self.path_or_free(path, "hair", ending);
+        let Some(path) = numbered.clone().or_else(free) else { return };
         let mut scene = self.seen();
         // The hair begins where the film does, as in a run of the scene.
         scene.begin_at_rest();
@@ -159,10 +173,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_range_of_seconds_is_one_of_frames() {
+    fn a_range_is_one_of_frames_and_a_groom_a_file_for_each() {
         let wanted = |from, to| Wanted { from, to, ..Wanted::default() }.frames(30.0);
         assert_eq!(wanted(0.0, 4.0), [0, 121]);
         assert_eq!(wanted(1.0, 2.0), [30, 61]);
+        let named = |name: &str| numbered(Path::new(name)).map(|path| path.display().to_string());
+        assert_eq!(named("out/a.hair").as_deref(), Some("out/a.%04d.hair"));
+        assert_eq!(named("out/a_%03d.PLY").as_deref(), Some("out/a_%03d.ply"));
+        assert_eq!([named("a.npz"), named("a.usda"), named("a")], [None, None, None]);
         // Never less than one frame.
         assert_eq!(wanted(2.0, 1.0), [60, 61]);
     }

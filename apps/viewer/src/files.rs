@@ -5,6 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
+use strandline::groom::format::FORMATS;
 
 use crate::App;
 
@@ -71,6 +72,8 @@ fn question(wanted: Wanted) -> Question {
         }
         Wanted::Moving => {
             let dialog = dialog.set_title("Write moving hair").add_filter("moving hair", &["npz", "usda"]);
+            let grooms: Vec<&str> = FORMATS.iter().map(|format| format.ending).collect();
+            let dialog = dialog.add_filter("a groom file a frame", &grooms);
             Box::pin(dialog.set_file_name("hair.npz").save_file())
         }
     }

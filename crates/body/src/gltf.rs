@@ -7,6 +7,7 @@ use ::gltf::mesh::{Mode, Primitive};
 use glam::{Mat3, Mat4, Vec3};
 
 use crate::gltf_buffers::{Buffers, load_buffers};
+use crate::mesh_file::Names;
 use crate::parsing::{Refusal, read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
@@ -16,10 +17,11 @@ const LEAST_COUNT_LIMIT: usize = 1 << 16;
 /// The deepest nesting of nodes.
 const DEPTH_LIMIT: usize = 64;
 
-/// Reads a mesh in the units of the file, all nodes in place; vertices without a normal get a zero one.
-pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
+/// Reads a mesh, or the part of it that has a name, in the units of the file, all nodes in place; vertices without a
+/// normal get a zero one.
+pub(crate) fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
     let bytes = read_file(path)?;
-    parse(&bytes, path.parent()).map_err(|(found, expected)| BodyError::Mesh {
+    parse(&bytes, path.parent(), names).map_err(|(found, expected)| BodyError::Mesh {
         path: PathBuf::from(path),
         found,
         expected,
@@ -28,7 +30,11 @@ pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
 }
 
 /// The same from the bytes of a file; without a folder none beside it is read.
-pub(crate) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Mesh, Refusal> {
+pub(crate) fn parse(
+    bytes: &[u8],
+    folder: Option<&Path>,
+    mut names: Option<&mut Names>,
+) -> Result<Mesh, Refusal> {
     check_container(bytes)?;
     let refused = |error: ::gltf::Error| (format!("bad glTF ({error})"), "valid glTF 2.0");
     check_positions(&::gltf::Gltf::from_slice_without_validation(bytes).map_err(refused)?.document)?;
@@ -40,6 +46,13 @@ pub(crate) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Mesh, Refusal
     for (node, world_from_node) in placed_nodes(&document)? {
         let Some(part) = node.mesh() else { continue };
         for primitive in part.primitives() {
+            if let Some(names) = &mut names {
+                let own = [node.name(), part.name(), primitive.material().name()];
+                let is_asked = own.map(|name| name.is_some_and(|name| names.add(name)));
+                if !is_asked.contains(&true) {
+                    continue;
+                }
+            }
             append(&mut mesh, &primitive, world_from_node, &buffers, limit)?;
         }
     }

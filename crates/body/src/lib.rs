@@ -27,6 +27,7 @@ mod mesh_distance;
 mod mesh_file;
 mod motion;
 mod near_surface;
+mod nearest_place;
 mod obj;
 mod parsing;
 mod pose;

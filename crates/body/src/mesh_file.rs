@@ -1,5 +1,6 @@
 //! Reading a mesh from a file, by its ending.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::Vec3;
@@ -7,6 +8,44 @@ use glam::Vec3;
 use crate::mesh::vertex_normals;
 use crate::parsing::Refusal;
 use crate::{BodyError, Mesh, gltf, obj};
+
+/// Names that are kept of a file.
+const MOST_NAMES: usize = 1000;
+
+/// The name that is asked for, and all that a file has.
+pub(crate) struct Names {
+    asked: String,
+    found: BTreeSet<String>,
+}
+
+impl Names {
+    fn new(asked: &str) -> Self {
+        Self { asked: asked.to_owned(), found: BTreeSet::new() }
+    }
+
+    /// Takes note of a name; whether it is the one.
+    pub fn add(&mut self, name: &str) -> bool {
+        if !name.is_empty() && !self.found.contains(name) && self.found.len() < MOST_NAMES {
+            self.found.insert(name.to_owned());
+        }
+        !name.is_empty() && name.eq_ignore_ascii_case(&self.asked)
+    }
+}
+
+/// Reads a file by its ending, or the part of it that has a name.
+fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
+    match ending.as_str() {
+        "obj" => obj::read(path, names),
+        "gltf" | "glb" => gltf::read(path, names),
+        _ => Err(BodyError::Mesh {
+            path: path.into(),
+            found: format!("the ending `{ending}`"),
+            expected: "obj, gltf or glb",
+            mend: "export the body as OBJ or glTF 2.0",
+        }),
+    }
+}
 
 impl Mesh {
     /// Loads an OBJ or glTF 2.0 file (by its ending: .obj, .gltf, .glb), scaled by `scale` \[m per unit\].
@@ -25,21 +64,31 @@ impl Mesh {
                 expected,
             });
         }
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-        let mut mesh = match ending.as_str() {
-            "obj" => obj::read(path)?,
-            "gltf" | "glb" => gltf::read(path)?,
-            _ => {
-                return Err(BodyError::Mesh {
-                    path: path.into(),
-                    found: format!("the ending `{ending}`"),
-                    expected: "obj, gltf or glb",
-                    mend: "export the body as OBJ or glTF 2.0",
-                });
-            }
-        };
+        let mut mesh = read(path, None)?;
         mesh.positions.iter_mut().for_each(|position| *position *= scale);
         mesh.complete(path)
+    }
+
+    /// Loads the part of an OBJ or glTF 2.0 file that has a name, in the units of the file; `None` where nothing has
+    /// it. Names are those of objects, groups and materials of an OBJ, of nodes, meshes and materials of a glTF; upper
+    /// and lower case are the same.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn load_part(path: &Path, name: &str) -> Result<Option<Self>, BodyError> {
+        let mut names = Names::new(name);
+        let mesh = read(path, Some(&mut names))?;
+        if mesh.triangles.is_empty() { Ok(None) } else { mesh.complete(path).map(Some) }
+    }
+
+    /// The names that parts of an OBJ or glTF 2.0 file have, as [`Mesh::load_part`] knows them.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn part_names(path: &Path) -> Result<Vec<String>, BodyError> {
+        let mut names = Names::new("");
+        read(path, Some(&mut names))?;
+        Ok(names.found.into_iter().collect())
     }
 
     /// Reads an OBJ file from its bytes, in the units of the file.
@@ -56,7 +105,7 @@ impl Mesh {
     /// # Errors
     /// See [`BodyError`].
     pub fn from_gltf(bytes: &[u8]) -> Result<Self, BodyError> {
-        Self::from_parsed(gltf::parse(bytes, None))
+        Self::from_parsed(gltf::parse(bytes, None, None))
     }
 
     fn from_parsed(parsed: Result<Self, Refusal>) -> Result<Self, BodyError> {
@@ -81,5 +130,34 @@ impl Mesh {
             *normal = normal.as_dvec3().try_normalize().map_or(computed, |unit| unit.as_vec3());
         }
         Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two triangles: one of the object `Head A` and material `Skin`, one of the groups `cap` and `back`.
+    const TWO: &str = "o Head A\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 5\nusemtl Skin\nf 1 2 3\no \nusemtl Hair\ng cap back\n\
+                       f 1 3 4\n";
+
+    #[test]
+    fn parts_are_found_by_any_of_their_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("two.obj");
+        std::fs::write(&path, TWO).unwrap();
+        let highest = |name: &str| {
+            let part = Mesh::load_part(&path, name).unwrap()?;
+            assert_eq!(part.triangles.len(), 1, "{name}");
+            part.bounds().map(|bounds| bounds.max.z)
+        };
+        for name in ["Head A", "skin"] {
+            assert_eq!(highest(name), Some(0.0), "{name}");
+        }
+        for name in ["cap", "BACK", "cap back", "Hair"] {
+            assert_eq!(highest(name), Some(5.0), "{name}");
+        }
+        assert_eq!(highest("Head"), None);
+        assert_eq!(Mesh::part_names(&path).unwrap(), ["Hair", "Head A", "Skin", "back", "cap", "cap back"]);
     }
 }

@@ -5,18 +5,51 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use crate::mesh_file::Names;
 use crate::parsing::{Refusal, read_file, unit_normal};
 use crate::{BodyError, Mesh};
 
-/// Reads a mesh in the units of the file; vertices without a normal get a zero one.
-pub(crate) fn read(path: &Path) -> Result<Mesh, BodyError> {
-    let bytes = read_file(path)?;
+/// Reads a mesh, or the part of it that has a name, in the units of the file; vertices without a normal get a zero one.
+pub(crate) fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
+    let mut bytes = read_file(path)?;
+    if let Some(names) = names {
+        bytes = only(&bytes, names);
+    }
     parse(&bytes).map_err(|(found, expected)| BodyError::Mesh {
         path: path.into(),
         found,
         expected,
         mend: "export the body again",
     })
+}
+
+/// The file without the faces that have not the name asked for: that of their object, a group or the material.
+fn only(bytes: &[u8], names: &mut Names) -> Vec<u8> {
+    let mut kept = Vec::with_capacity(bytes.len());
+    // Of the object, the group and the material.
+    let mut is_asked = [false; 3];
+    for line in bytes.split_inclusive(|byte| *byte == b'\n') {
+        let text = String::from_utf8_lossy(line);
+        let mut words = text.split_whitespace();
+        let place = match words.next() {
+            Some("o") => 0,
+            Some("g") => 1,
+            Some("usemtl") => 2,
+            Some("f") if !is_asked.contains(&true) => continue,
+            _ => {
+                kept.extend_from_slice(line);
+                continue;
+            }
+        };
+        let words: Vec<&str> = words.collect();
+        // A name may hold spaces; a face may be in several groups.
+        is_asked[place] = names.add(&words.join(" "));
+        if place == 1 && words.len() > 1 {
+            is_asked[place] |= words.iter().map(|word| names.add(word)).fold(false, |one, two| one | two);
+        }
+        kept.extend_from_slice(line);
+    }
+    kept
 }
 
 /// The same from the bytes of a file.

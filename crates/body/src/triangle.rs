@@ -30,6 +30,23 @@ pub(crate) fn nearer(corners: &Corners, point: DVec3, known: f64) -> Option<f64>
     (nearest < known).then_some(nearest)
 }
 
+/// The place of a triangle that is nearest to a point.
+pub(crate) fn nearest_place(corners: &Corners, point: DVec3) -> DVec3 {
+    let [a, b, c] = *corners;
+    let normal = (b - a).cross(c - a);
+    let edges = [[a, b], [b, c], [c, a]];
+    let outer = edges.into_iter().filter(|[start, end]| is_outer(*start, *end, normal, point));
+    let places = outer.map(|[start, end]| {
+        let axis = end - start;
+        let share = (point - start).dot(axis) / axis.length_squared().max(f64::MIN_POSITIVE);
+        start + axis * share.clamp(0.0, 1.0)
+    });
+    let near = |one: &DVec3, two: &DVec3| one.distance_squared(point).total_cmp(&two.distance_squared(point));
+    places
+        .min_by(near)
+        .unwrap_or_else(|| point - normal * ((point - a).dot(normal) / normal.length_squared()))
+}
+
 /// Whether a point is not on the inner side of an edge; always for a triangle without an area.
 fn is_outer(start: DVec3, end: DVec3, normal: DVec3, point: DVec3) -> bool {
     (end - start).cross(point - start).dot(normal) <= 0.0

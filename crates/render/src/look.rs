@@ -6,7 +6,7 @@ use strandline_base::math;
 use strandline_base::{Key, SettingError, settings};
 
 use crate::Environment;
-use crate::fibre::Fibre;
+use crate::fibre::{Fibre, FibreModel, chiang::Pigment};
 use crate::preset::Preset;
 use crate::surroundings::Surroundings;
 
@@ -84,12 +84,41 @@ settings! {
         root_color: Option<Vec3> = None, in [0.0, 1.0];
         /// Reflectance at the tip, linear RGB; without it that at the root.
         tip_color: Option<Vec3> = None, in [0.0, 1.0];
+        /// Brown to black pigment, as `look.fibre.chiang.eumelanin`; a colour or a map of the group has the last word.
+        eumelanin: Option<f32> = None, in [0.0, 100.0];
+        /// Red to yellow pigment, as `look.fibre.chiang.pheomelanin`.
+        pheomelanin: Option<f32> = None, in [0.0, 100.0];
+        /// Pigment at the tip as a share of that at the root.
+        tip_pigment: Option<f32> = None, in [0.0, 2.0];
+        /// Spread of brightness among strands as a share of it.
+        variation: Option<f32> = None, in [0.0, 1.0];
+        /// Share of strands that have turned white.
+        grey: Option<f32> = None, in [0.0, 1.0];
         /// Multiple of the groom's root diameters, besides that of all.
         width_scale: f32 = 1.0, in [0.0, 1000.0], slider [0.1, 5.0], more "wider strands";
         /// A .png with the colour of each strand, as `look.color_map`.
         color_map: Option<PathBuf> = None;
         /// A .png with the width of each strand, as `look.width_map`.
         width_map: Option<PathBuf> = None;
+    }
+}
+
+impl GroupLook {
+    /// The look of all with what this group has of pigment, where it has some of its own.
+    pub fn own_pigment(&self, all: &Look) -> Option<Look> {
+        let (mut look, fibre) = (all.clone(), &all.fibre.chiang);
+        let own = &mut look.fibre.chiang;
+        own.eumelanin = self.eumelanin.unwrap_or(fibre.eumelanin);
+        own.pheomelanin = self.pheomelanin.unwrap_or(fibre.pheomelanin);
+        own.tip_pigment = self.tip_pigment.unwrap_or(fibre.tip_pigment);
+        look.variation = self.variation.unwrap_or(all.variation);
+        look.grey = self.grey.unwrap_or(all.grey);
+        let has_melanin = [self.eumelanin, self.pheomelanin, self.tip_pigment].iter().any(Option::is_some);
+        if has_melanin {
+            look.fibre.model = FibreModel::Chiang;
+            look.fibre.chiang.pigment = Pigment::Melanin;
+        }
+        (has_melanin || self.variation.is_some() || self.grey.is_some()).then_some(look)
     }
 }
 

@@ -69,7 +69,7 @@ pub use head::HeadMotion;
 pub use live::{Command, Live, News, Shown};
 pub use pick::Ray;
 pub use player::{Event, Player};
-pub use prepare::{Prepared, read_map};
+pub use prepare::{Prepared, mesh_unit, read_map};
 pub use render::{Camera, Light, Look, Picture};
 pub use scene::Scene;
 pub use sim::{Backend, Settings};

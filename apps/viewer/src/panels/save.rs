@@ -42,6 +42,9 @@ fn moving(app: &mut App, ui: &mut Ui) {
             ui.label(name);
             ui.add(DragValue::new(value).range(0.0..=3600.0).speed(0.05).suffix(" s")).on_hover_text(tip);
         }
+        ui.label("every");
+        let tip = "every n-th frame of these";
+        ui.add(DragValue::new(&mut wanted.every).range(1..=1000).speed(0.05)).on_hover_text(tip);
     });
     ui.horizontal(|ui| {
         for what in What::ALL {
@@ -56,7 +59,7 @@ fn moving(app: &mut App, ui: &mut Ui) {
         if button(ui, "Moving hair", "as a moving cache (.npz) into out/") {
             app.export(None);
         }
-        if button(ui, "as...", "as .npz or .usda, to a place of your choice") {
+        if button(ui, "as...", "as .npz or .usda, or a groom file a frame, to a place of your choice") {
             files::ask(app, files::Wanted::Moving, ui.ctx());
         }
     });

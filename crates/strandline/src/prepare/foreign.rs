@@ -1,12 +1,12 @@
 //! A groom that was made for another head: its scalp is fitted to the head of the body.
 
-use std::f32::consts::{FRAC_PI_2, PI};
-
 use glam::{Quat, Vec3};
-use strandline_base::math;
 
+use super::head;
 use super::placing::{self, Placing, Placings};
-use super::wrap::{self, Skull};
+use super::sample;
+use super::skull::Skull;
+use super::wrap;
 use crate::{
     Scene,
     body::{Mesh, Shape},
@@ -23,12 +23,8 @@ const WIDTHS: std::ops::RangeInclusive<f32> = 0.1..=3.0;
 /// Depth and height over the width of what may be a scalp: no fur, no brow and no beard.
 const DEPTHS: std::ops::RangeInclusive<f32> = 0.7..=1.8;
 const HEIGHTS: std::ops::RangeInclusive<f32> = 0.4..=1.6;
-/// Share of the head by which a face reaches out, or hair is combed, to one side.
-const ASIDE: f32 = 0.04;
 /// Width, height and depth of the roots on a head over those of its skull.
 const OF_SKULL: Vec3 = Vec3::new(1.0, 0.97, 0.94);
-/// Heights below the crown, over the width of the skull, between which the face is.
-const FACE: [f32; 2] = [0.8, 1.6];
 
 /// The places of a groom and a body that do not belong together, where a scene leaves both open; none where they do,
 /// or the groom is not the hair of a head.
@@ -39,15 +35,15 @@ pub(super) fn placings(scene: &Scene, groom: &Groom, mesh: &Mesh, as_one: &Placi
     let roots = placed(groom.roots(), &as_one.groom);
     let vertices = placed(mesh.positions.iter().copied(), &as_one.body);
     let (scalp, skull) = (Skull::of(&roots)?, Skull::of(&vertices)?);
-    let apart = placing::roots_apart(groom, mesh, &as_one.groom, &as_one.body);
+    let apart = sample::roots_apart(groom, mesh, &as_one.groom, &as_one.body);
     if apart <= APART && WIDTHS.contains(&(scalp.size.x / skull.size.x)) {
         return None;
     }
-    let alone = placing::guess(scene, Some(groom), None).groom;
-    let body = placing::guess(scene, None, Some(mesh)).body;
+    let alone = placing::guess(scene, &[groom], None).groom;
+    let body = placing::guess(scene, &[], Some(mesh)).body;
     let (roots, vertices) = (placed(groom.roots(), &alone), placed(mesh.positions.iter().copied(), &body));
     let tips = (0..groom.strand_count()).map(|strand| groom.strand(strand)[groom.strand(strand).len() - 1]);
-    let (turn_hair, turn_body) = (front_of_hair(&roots, &placed(tips, &alone))?, front_of_head(&vertices)?);
+    let (turn_hair, turn_body) = (front_of_hair(&roots, &placed(tips, &alone))?, head::front(&vertices)?);
     let turned = |placing: Placing, turn: Quat| Placing { turn: turn * placing.turn, ..placing };
     let (groom, body) = (turned(alone, turn_hair), turned(body, turn_body));
     Some(Placings { groom, body, note: None })
@@ -68,17 +64,6 @@ fn placed(places: impl Iterator<Item = Vec3>, placing: &Placing) -> Vec<Vec3> {
     places.map(|place| placing.turn * (placing.scale * place)).collect()
 }
 
-/// The turn about y after which a head looks along +z, given what reaches out to its front \[share of the head\]. A head is
-/// longer from front to back than from ear to ear.
-fn turned_to_z(skull: &Skull, front: Vec3) -> Quat {
-    let is_long = skull.size.y >= skull.size.x;
-    match [is_long, front.x < 0.0, front.z < -ASIDE] {
-        [true, _, true] => math::rotation(Vec3::Y, PI),
-        [true, _, false] => Quat::IDENTITY,
-        [false, is_left, _] => math::rotation(Vec3::Y, if is_left { FRAC_PI_2 } else { -FRAC_PI_2 }),
-    }
-}
-
 /// Turns hair so that it is combed to the back, -z; none where roots do not lie as those on a head.
 fn front_of_hair(roots: &[Vec3], tips: &[Vec3]) -> Option<Quat> {
     let scalp = Skull::of(roots)?;
@@ -90,19 +75,7 @@ fn front_of_hair(roots: &[Vec3], tips: &[Vec3]) -> Option<Quat> {
     }
     let combed = tips.iter().zip(roots).map(|(tip, root)| *tip - *root).sum::<Vec3>();
     let combed = combed / (roots.len() as f32 * scalp.size.max_element());
-    Some(turned_to_z(&scalp, -combed))
-}
-
-/// Turns a head so that its face, where it reaches out and has most vertices, looks along +z.
-fn front_of_head(vertices: &[Vec3]) -> Option<Quat> {
-    let skull = Skull::of(vertices)?;
-    let [high, low] = FACE.map(|below| skull.top - below * skull.size.x);
-    let face = vertices.iter().filter(|vertex| (low..=high).contains(&vertex.y));
-    let reach = 0.75 * skull.size.max_element();
-    let beside = face.map(|vertex| *vertex - Vec3::new(skull.middle.x, vertex.y, skull.middle.y));
-    let near: Vec<Vec3> = beside.filter(|beside| beside.length() < reach).collect();
-    let middle = near.iter().sum::<Vec3>() / near.len().max(1) as f32 / skull.size.max_element();
-    Some(turned_to_z(&skull, middle))
+    Some(head::turned_to_z(head::is_long(&scalp), -combed))
 }
 
 /// Fits hair that is placed by [`placings`] to the head of a mesh, head space: crown on crown and back on back.

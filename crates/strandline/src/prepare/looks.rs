@@ -47,14 +47,23 @@ pub(super) fn dress(scene: &Scene, groom: &mut Groom) -> Result<(), Error> {
         let expected = "one whose strands say where on the scalp they grow (`strandline info` tells)";
         return Err(SettingError::new("look.color_map or look.width_map", found, expected).into());
     }
+    let pigments: Vec<Option<Look>> = look.group.iter().map(|group| group.own_pigment(look)).collect();
     let dressed = |strand: usize| {
         let group = groups[strand];
+        let pigment = group.and_then(|group| pigments[group].as_ref());
         let (look, maps) = (group.map(|group| &look.group[group]), group.map(|group| &of_groups[group]));
         let uv = groom.root_uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs[strand]);
         let at = |which: usize| maps.and_then(|maps| maps[which].as_ref()).or(of_all[which].as_ref());
-        Dressed { look, color: at(0).map(|map| map.color(uv)), width: at(1).map(|map| map.share(uv)) }
+        Dressed {
+            look,
+            pigment,
+            color: at(0).map(|map| map.color(uv)),
+            width: at(1).map(|map| map.share(uv)),
+        }
     };
-    if has(0) || look.group.iter().any(|group| group.root_color.is_some()) {
+    if has(0)
+        || look.group.iter().zip(&pigments).any(|(group, own)| group.root_color.is_some() || own.is_some())
+    {
         groom.colors = Some(colors(look, groom, dressed));
     }
     if has(1) || look.group.iter().any(|group| group.width_scale != 1.0) {
@@ -66,6 +75,8 @@ pub(super) fn dress(scene: &Scene, groom: &mut Groom) -> Result<(), Error> {
 /// What one strand has of its own.
 struct Dressed<'a> {
     look: Option<&'a GroupLook>,
+    /// The look of all with its group's own pigment.
+    pigment: Option<&'a Look>,
     color: Option<Vec3>,
     width: Option<f32>,
 }
@@ -76,8 +87,13 @@ fn colors<'a>(look: &Look, groom: &Groom, dressed: impl Fn(usize) -> Dressed<'a>
         let own = dressed(strand);
         let ends = match (own.color, own.look.and_then(|look| Some((look.root_color?, look.tip_color)))) {
             (Some(color), _) => [color; 2],
-            (None, Some((root, tip))) => varied(look, strand, [root, tip.unwrap_or(root)]),
-            (None, None) => continue,
+            (None, Some((root, tip))) => {
+                varied(own.pigment.unwrap_or(look), strand, [root, tip.unwrap_or(root)])
+            }
+            (None, None) => match own.pigment {
+                Some(look) => of_look(look, strand),
+                None => continue,
+            },
         };
         fill(&mut colors[groom.range(strand)], ends);
     }

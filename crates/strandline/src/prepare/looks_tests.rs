@@ -1,3 +1,5 @@
+use crate::render::fibre::chiang::Chiang;
+
 use super::*;
 
 /// Four strands of three points, two of each of the groups 3 and 5, with roots at the corners of the scalp.
@@ -37,6 +39,26 @@ fn groups_have_colours_and_widths_of_their_own() {
     }
     assert_eq!(colors[6..9], [[0.99, 0.0, 0.0], [0.495, 0.495, 0.0], [0.0, 0.99, 0.0]]);
     assert_eq!(groom.widths, Widths::PerStrand(vec![2e-4, 2e-4, 1e-4, 1e-4]));
+}
+
+#[test]
+fn groups_have_pigments_of_their_own() {
+    let (mut scene, mut groom) = (Scene::default(), groom());
+    scene.look.variation = 0.0;
+    scene.look.group = vec![
+        GroupLook { eumelanin: Some(8.0), tip_pigment: Some(0.5), ..group("5") },
+        GroupLook { grey: Some(1.0), ..group("hair") },
+    ];
+    dress(&scene, &mut groom).unwrap();
+    let colors = groom.colors.as_ref().unwrap();
+    let black = Chiang { eumelanin: 8.0, tip_pigment: 0.5, ..scene.look.fibre.chiang };
+    assert_eq!([colors[6], colors[8]], black.reflectances(1.0).map(|color| color.to_array()));
+    let white = scene.look.fibre.chiang.reflectances(WHITE).map(|color| color.to_array());
+    assert_eq!([colors[0], colors[2]], white);
+    // A colour has the last word.
+    scene.look.group[0].root_color = Some(Vec3::X);
+    dress(&scene, &mut groom).unwrap();
+    assert_eq!(groom.colors.unwrap()[6], [0.99, 0.0, 0.0]);
 }
 
 #[test]

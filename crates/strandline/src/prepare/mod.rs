@@ -3,13 +3,19 @@
 mod body;
 mod fit;
 mod foreign;
+mod head;
 mod looks;
+mod marked;
 mod parts;
+mod place;
 mod placing;
+mod sample;
+mod skull;
 mod strands;
 mod wrap;
 
 pub use looks::read_map;
+pub use sample::mesh_unit;
 
 use glam::Vec3;
 
@@ -100,7 +106,9 @@ struct Loaded {
 /// Loads or grows strands and body, brings them together, and fits the scene to what it names.
 fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
     let (groom, mesh) = (strands::load(scene, notes)?, body::mesh(scene)?);
-    let mut placings = placing::guess(scene, groom.as_ref(), mesh.as_ref());
+    let further = parts::read(scene, notes)?;
+    let together = groom.iter().chain(parts::placed_as_first(scene, &further));
+    let mut placings = placing::guess(scene, &together.collect::<Vec<_>>(), mesh.as_ref());
     let pair = groom.as_ref().zip(mesh.as_ref());
     let foreign = pair.and_then(|(groom, mesh)| foreign::placings(scene, groom, mesh, &placings));
     let is_foreign = foreign.is_some();
@@ -115,7 +123,7 @@ fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
             if let Some(mesh) = drawn.filter(|_| is_foreign) {
                 notes.extend(foreign::fit(&mut groom, mesh));
             }
-            parts::add_grooms(scene, &mut groom, placings.groom, drawn, notes)?;
+            parts::add_grooms(scene, &mut groom, further, placings.groom, drawn, notes)?;
             notes.extend(fit::fit(scene, &groom, drawn));
             Some(groom)
         }
@@ -131,8 +139,10 @@ fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
         }
         None => {
             let mut grown = strands::grown(scene)?;
-            let fitted = drawn.map(|mesh| wrap::onto(&mut grown, mesh, body.shape.as_ref()));
-            notes.extend(fitted.flatten());
+            if let Some(mesh) = drawn {
+                let marked = marked::scalp(scene, placings.body)?;
+                notes.extend(wrap::onto(&mut grown, mesh, marked.as_ref(), body.shape.as_ref())?);
+            }
             grown
         }
     };

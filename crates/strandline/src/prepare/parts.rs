@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::Vec3;
 use strandline_base::SettingError;
 
 use crate::{
@@ -11,6 +12,7 @@ use crate::{
         Groom,
         format::{MAX_POINTS, MAX_STRANDS, Part, Scale, Up},
     },
+    scene::{BodyPart, GroomPart},
 };
 
 use super::{
@@ -38,12 +40,7 @@ pub(super) fn meshes(scene: &Scene, mut mesh: Mesh, placing: Placing) -> Result<
     let mut solid = (!body.parts.is_empty()).then(|| drawn.clone());
     for part in &body.parts {
         let mut mesh = Mesh::load(&scene.path(&part.file), 1.0)?;
-        let scale = match part.scale {
-            Scale::Auto => placing.scale,
-            Scale::Factor(factor) => factor,
-        };
-        let turn = if part.up == Up::Auto { placing.turn } else { placing::upright(part.up) };
-        placing::place_mesh(&mut mesh, Placing { scale, turn }, part.rotation, part.translation);
+        placing::place_mesh(&mut mesh, part_placing(part, placing), part.rotation, part.translation);
         if part.visible {
             drawn.append(&mesh)?;
         }
@@ -56,10 +53,37 @@ pub(super) fn meshes(scene: &Scene, mut mesh: Mesh, placing: Placing) -> Result<
     Ok(Meshes { drawn, solid })
 }
 
+/// The place of a further mesh, where that of the first is known.
+pub(super) fn part_placing(part: &BodyPart, first: Placing) -> Placing {
+    let scale = match part.scale {
+        Scale::Auto => first.scale,
+        Scale::Factor(factor) => factor,
+    };
+    let turn = if part.up == Up::Auto { first.turn } else { placing::upright(part.up) };
+    Placing { scale, turn }
+}
+
+/// The strands of a scene's further files, each in its own units and axes.
+pub(super) fn read(scene: &Scene, notes: &mut Vec<String>) -> Result<Vec<Groom>, Error> {
+    let parts = scene.groom.parts.iter();
+    parts.map(|part| strands::read(scene, &part.file, part.per_strand, notes)).collect()
+}
+
+/// Those of further files that are in the units and axes of the first, as far as a scene says.
+pub(super) fn placed_as_first<'a>(scene: &'a Scene, further: &'a [Groom]) -> impl Iterator<Item = &'a Groom> {
+    let is_open = |part: &GroomPart| {
+        part.scale == Scale::Auto
+            && part.up == Up::Auto
+            && [part.rotation, part.translation].iter().all(|by| *by == Vec3::ZERO)
+    };
+    further.iter().zip(&scene.groom.parts).filter(move |(_, part)| is_open(part)).map(|(groom, _)| groom)
+}
+
 /// Adds the strands of a scene's further files to those of the first, head space: each is a group.
 pub(super) fn add_grooms(
     scene: &Scene,
     groom: &mut Groom,
+    further: Vec<Groom>,
     first: Placing,
     mesh: Option<&Mesh>,
     notes: &mut Vec<String>,
@@ -68,8 +92,7 @@ pub(super) fn add_grooms(
         return Ok(());
     }
     name_groups(groom, 0, stem(scene.groom.file.as_deref()));
-    for part in &scene.groom.parts {
-        let mut further = strands::read(scene, &part.file, part.per_strand, notes)?;
+    for (part, mut further) in scene.groom.parts.iter().zip(further) {
         let placing = placing::of_part(&further, part, first, mesh);
         if placing != first {
             notes.push(format!("{}: a unit is {} m", part.file.display(), placing.scale));
@@ -151,8 +174,6 @@ fn alike(scene: &Scene, one: &mut Groom, two: &mut Groom) {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
 
     fn groom(count: usize) -> Groom {

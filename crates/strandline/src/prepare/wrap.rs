@@ -1,67 +1,31 @@
 //! A grown style on a body from a file: the built-in head's scalp is fitted to the head of the body.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
+use super::{marked, skull::Skull};
 use crate::{
+    Error,
     body::{Mannequin, Mesh, Shape},
     groom::Groom,
 };
 
-/// Depth below the crown over the width of the skull at which it is widest, above brows and ears.
-const WIDEST: f32 = 0.6;
-/// Width at which the search begins over the height of the body.
-const START: f32 = 0.12;
-/// Rounds in which the width is found, and what it changes by in the last one, as a share of it.
-const ROUNDS: usize = 64;
-const CONVERGED: f32 = 1e-3;
 /// Times that a root is led to the surface, and how far \[m\] a strand is led with it at most.
 const STEPS: usize = 4;
 const REACH: f32 = 0.1;
 
-/// The upper part of a head, where hair grows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Skull {
-    /// Height of the crown \[m\].
-    pub top: f32,
-    /// From ear to ear and from front to back \[m\].
-    pub size: Vec2,
-    /// The middle, seen from above \[m\].
-    pub middle: Vec2,
-}
-
-impl Skull {
-    /// That of the highest part of a body, given its vertices, or of a head, given the roots of its hair \[m\]. It stands
-    /// upright and looks along z.
-    pub fn of(places: &[Vec3]) -> Option<Self> {
-        let heights = places.iter().map(|place| place.y);
-        let (low, top) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, top), height| {
-            (low.min(height), top.max(height))
-        });
-        let above = |width: f32| {
-            let start = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-            let upper = places.iter().filter(|place| place.y >= top - WIDEST * width);
-            upper
-                .map(|place| Vec2::new(place.x, place.z))
-                .fold(start, |(low, high), place| (low.min(place), high.max(place)))
-        };
-        // From above, so that no shoulder is taken for it.
-        let mut width = START * (top - low);
-        for _ in 0..ROUNDS {
-            let (low, high) = above(width);
-            let found = (high.x - low.x).max(width);
-            if found - width < CONVERGED * width {
-                let size = high - low;
-                return (size.min_element() > 0.0).then_some(Self { top, size, middle: 0.5 * (low + high) });
-            }
-            width = found;
-        }
-        None
-    }
-}
-
-/// Fits the strands of a grown style to a body, and leads their roots to its surface; what is to be said of it.
-pub(super) fn onto(groom: &mut Groom, mesh: &Mesh, shape: Option<&Shape>) -> Option<String> {
-    let (from, to) = (Skull::of(&Mannequin::new().mesh().positions)?, Skull::of(&mesh.positions)?);
+/// Fits the strands of a grown style to a body, or to the scalp that it marks, and leads their roots to its surface;
+/// what is to be said of it.
+///
+/// # Errors
+/// The scalp is no such.
+pub(super) fn onto(
+    groom: &mut Groom,
+    mesh: &Mesh,
+    marked: Option<&Mesh>,
+    shape: Option<&Shape>,
+) -> Result<Option<String>, Error> {
+    let built_in = Skull::of(&Mannequin::new().mesh().positions);
+    let Some((from, to)) = built_in.zip(Skull::of(&mesh.positions)) else { return Ok(None) };
     let ratio = to.size / from.size;
     let scale = Vec3::new(ratio.x, ratio.x, ratio.y);
     let place = |point: Vec3| {
@@ -69,15 +33,16 @@ pub(super) fn onto(groom: &mut Groom, mesh: &Mesh, shape: Option<&Shape>) -> Opt
         beside * scale + Vec3::new(to.middle.x, to.top, to.middle.y)
     };
     groom.points.iter_mut().for_each(|point| *point = place(*point));
+    let on_scalp = marked.map(|marked| marked::onto(groom, marked, &to, place)).transpose()?;
     if let Some(shape) = shape {
         lead(groom, shape);
     }
     let percent = |ratio: f32| 100.0 * ratio;
-    Some(format!(
+    Ok(on_scalp.or_else(|| Some(format!(
         "the style grows on the highest part of the body: {:.0} % as wide and {:.0} % as deep as the built-in head",
         percent(ratio.x),
         percent(ratio.y)
-    ))
+    ))))
 }
 
 /// Leads the roots of strands to a surface, and each strand with its root.
@@ -107,6 +72,8 @@ fn settled(shape: &Shape, point: Vec3) -> (Vec3, Vec3) {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
+
     use super::*;
     use crate::groom::{Style, StyleSettings};
 
@@ -158,7 +125,7 @@ mod tests {
         let mut groom = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) }.grow().unwrap();
         let lengths = groom.lengths();
         let ball = Shape::sphere(middle, radius).unwrap();
-        let note = onto(&mut groom, &bust(Vec2::splat(radius), middle), Some(&ball)).unwrap();
+        let note = onto(&mut groom, &bust(Vec2::splat(radius), middle), None, Some(&ball)).unwrap().unwrap();
         for root in groom.roots() {
             assert!((root.distance(middle) - radius).abs() < 1e-5, "{root}");
             // Hair of a bob ends in the nape.

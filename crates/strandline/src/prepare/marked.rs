@@ -1,0 +1,246 @@
+//! A grown style on the scalp that a body's file marks: what grows over the built-in scalp is spread over that one.
+
+use std::f32::consts::{PI, TAU};
+use std::path::Path;
+
+use glam::Vec3;
+use strandline_base::{SettingError, math};
+
+use super::parts::part_placing;
+use super::placing::{self, Placing};
+use super::skull::Skull;
+use crate::{
+    Error, Scene,
+    body::{Mannequin, Mesh},
+    groom::Groom,
+};
+
+/// The name of a scalp where a scene gives none.
+const USUAL: &str = "scalp";
+/// Names that an error lists.
+const LISTED: usize = 12;
+/// Directions around the vertical axis in which the rim of a scalp is looked for.
+const DIRECTIONS: usize = 72;
+/// Places along the edge of a triangle that are looked at.
+const PLACES: usize = 6;
+/// Roots of the built-in scalp that tell where its rim is.
+const ROOTS: usize = 4000;
+/// How far from the marked scalp a root may come to lie, as a share of the width of the skull: it is led there from
+/// no farther.
+const ASTRAY: f32 = 0.08;
+
+/// The scalp that the files of a scene's body mark, head space; none where they mark none and none is asked for.
+///
+/// # Errors
+/// A file that cannot be read; none of them has the name that is asked for.
+pub(super) fn scalp(scene: &Scene, placing: Placing) -> Result<Option<Mesh>, Error> {
+    let body = &scene.body;
+    let Some(file) = &body.file else { return Ok(None) };
+    let name = body.scalp.as_deref().unwrap_or(USUAL);
+    let first = (file, placing, [body.rotation, body.translation]);
+    let further = body
+        .parts
+        .iter()
+        .map(|part| (&part.file, part_placing(part, placing), [part.rotation, part.translation]));
+    let files: Vec<_> = std::iter::once(first).chain(further).collect();
+    for (file, placing, [turn, translation]) in &files {
+        if let Some(mut found) = Mesh::load_part(&scene.path(file), name)? {
+            placing::place_mesh(&mut found, *placing, *turn, *translation);
+            return Ok(Some(found));
+        }
+    }
+    if body.scalp.is_none() {
+        return Ok(None);
+    }
+    let expected = known(files.iter().map(|(file, ..)| scene.path(file)))?;
+    Err(SettingError::new("body.scalp", format!("`{name}`"), expected).into())
+}
+
+/// What the parts of files are called, human-readable.
+fn known(files: impl Iterator<Item = impl AsRef<Path>>) -> Result<String, Error> {
+    let mut names = Vec::new();
+    for file in files {
+        names.extend(Mesh::part_names(file.as_ref())?);
+    }
+    let more = if names.len() > LISTED { " ..." } else { "" };
+    names.truncate(LISTED);
+    Ok(if names.is_empty() {
+        "a body with named parts: this one has none".to_owned()
+    } else {
+        format!("a part of the body: `{}`{more}", names.join("`, `"))
+    })
+}
+
+/// How far a scalp reaches down from the crown in each direction \[rad\], seen from within the skull.
+#[derive(Clone, Debug)]
+struct Rim {
+    polars: Vec<Option<f32>>,
+}
+
+impl Rim {
+    fn new(middle: Vec3, places: impl Iterator<Item = Vec3>) -> Self {
+        let mut polars = vec![None; DIRECTIONS];
+        for place in places {
+            let Seen { polar, azimuth, .. } = Seen::of(place - middle);
+            let rim: &mut Option<f32> =
+                &mut polars[(azimuth / TAU * DIRECTIONS as f32) as usize % DIRECTIONS];
+            *rim = Some(rim.map_or(polar, |held| held.max(polar)));
+        }
+        Self { polars }
+    }
+
+    /// In a direction, between those of which something is known.
+    fn at(&self, azimuth: f32) -> f32 {
+        let place = azimuth / TAU * DIRECTIONS as f32 - 0.5;
+        let low = place.floor();
+        let known = |from: f32, step: isize| {
+            let from = (from as isize).rem_euclid(DIRECTIONS as isize);
+            (0..DIRECTIONS as isize).find_map(|by| {
+                let rim = self.polars[(from + step * by).rem_euclid(DIRECTIONS as isize) as usize]?;
+                Some((rim, by as f32))
+            })
+        };
+        match (known(low, -1), known(low + 1.0, 1)) {
+            (Some((before, back)), Some((after, on))) => {
+                let share = (place - low + back) / (1.0 + back + on);
+                before + (after - before) * share
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+/// A place as it is seen from within the skull.
+struct Seen {
+    polar: f32,
+    azimuth: f32,
+    distance: f32,
+}
+
+impl Seen {
+    fn of(beside: Vec3) -> Self {
+        let distance = beside.length();
+        let polar = math::acos((beside.y / distance.max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0));
+        Self { polar, azimuth: math::atan2(beside.x, beside.z).rem_euclid(TAU), distance }
+    }
+
+    fn place(&self) -> Vec3 {
+        let ((across, up), (left, ahead)) = (math::sin_cos(self.polar), math::sin_cos(self.azimuth));
+        Vec3::new(across * left, up, across * ahead) * self.distance
+    }
+}
+
+/// Spreads a style, whose strands lie about the skull of the body already, over its marked scalp: along each meridian
+/// the rim of the built-in scalp comes to that of the marked one, what hangs below it follows less and less, and
+/// roots are led onto the mesh. `place` leads from the built-in head to this one. What is to be said of it.
+///
+/// # Errors
+/// Nothing grows on what is marked.
+pub(super) fn onto(
+    groom: &mut Groom,
+    marked: &Mesh,
+    skull: &Skull,
+    place: impl Fn(Vec3) -> Vec3,
+) -> Result<String, Error> {
+    let middle = Vec3::new(skull.middle.x, skull.top - 0.5 * skull.size.x, skull.middle.y);
+    let built_in = Mannequin::new().scalp().roots(ROOTS, 0);
+    let from = Rim::new(middle, built_in.iter().map(|root| place(root.position)));
+    let to = Rim::new(middle, places(marked));
+    for point in &mut groom.points {
+        let seen = Seen::of(*point - middle);
+        let (from, to) = (from.at(seen.azimuth), to.at(seen.azimuth));
+        let polar = if seen.polar < from {
+            seen.polar * to / from
+        } else {
+            to + (seen.polar - from) * (PI - to) / (PI - from).max(f32::MIN_POSITIVE)
+        };
+        *point = middle + Seen { polar, ..seen }.place();
+    }
+    let roots: Vec<Vec3> = groom.roots().collect();
+    let found = marked.nearest_places(&roots);
+    let kept: Vec<usize> = (0..roots.len())
+        .filter(|strand| roots[*strand].distance(found[*strand]) < ASTRAY * skull.size.x)
+        .collect();
+    if kept.is_empty() {
+        let expected = "a part at the top of the head, where hair grows";
+        return Err(SettingError::new("body.scalp", "a part far from the skull", expected).into());
+    }
+    for strand in 0..roots.len() {
+        let (range, way) = (groom.range(strand), found[strand] - roots[strand]);
+        groom.points[range].iter_mut().for_each(|point| *point += way);
+    }
+    let bare = roots.len() - kept.len();
+    if bare > 0 {
+        *groom = groom.select(&kept);
+    }
+    let left = if bare > 0 { format!("; {bare} strands have no place on it") } else { String::new() };
+    Ok(format!("the style grows on the scalp that the body marks{left}"))
+}
+
+/// Places all over the triangles of a mesh.
+fn places(mesh: &Mesh) -> impl Iterator<Item = Vec3> {
+    mesh.triangles.iter().flat_map(|corners| {
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+        let shares = (0..=PLACES).flat_map(|u| (0..=PLACES - u).map(move |v| (u, v)));
+        let share = |step: usize| step as f32 / PLACES as f32;
+        shares.map(move |(u, v)| a + (b - a) * share(u) + (c - a) * share(v))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::groom::{Style, StyleSettings};
+
+    /// The part of the built-in bust above a height that rises to the front.
+    fn cap(low: f32, rise: f32) -> Mesh {
+        let mesh = Mannequin::new().mesh();
+        let is_in = |corner: &u32| {
+            let place = mesh.positions[*corner as usize];
+            place.y > low + rise * place.z
+        };
+        let triangles = mesh.triangles.iter().filter(|corners| corners.iter().all(is_in)).copied();
+        Mesh::new(mesh.positions.clone(), triangles.collect()).unwrap()
+    }
+
+    #[test]
+    fn a_style_covers_what_is_marked_and_nothing_else() {
+        let mesh = Mannequin::new().mesh();
+        let skull = Skull::of(&mesh.positions).unwrap();
+        for (low, rise) in [(skull.top - 0.05, 0.0), (skull.top - 0.12, 0.6)] {
+            let marked = cap(low, rise);
+            let style = StyleSettings { strand_count: 1500, ..StyleSettings::new(Style::Bob) };
+            let mut groom = style.grow().unwrap();
+            let lengths = groom.lengths();
+            let note = onto(&mut groom, &marked, &skull, |point| point).unwrap();
+            assert!(note.contains("marks"), "{note}");
+            assert!(groom.strand_count() > 1350, "{} of 1,500 have a place", groom.strand_count());
+            let roots: Vec<Vec3> = groom.roots().collect();
+            for (root, place) in roots.iter().zip(marked.nearest_places(&roots)) {
+                assert!(root.distance(place) < 1e-5, "{root}");
+            }
+            // No bald place: each triangle of some size has a root nearby.
+            for corners in &marked.triangles {
+                let middle =
+                    corners.iter().map(|corner| marked.positions[*corner as usize]).sum::<Vec3>() / 3.0;
+                let nearest = roots.iter().map(|root| root.distance(middle)).fold(f32::INFINITY, f32::min);
+                assert!(nearest < 0.02, "{middle} is {nearest} m from a root");
+            }
+            // Hair is about as long as it was.
+            let mean = |lengths: &[f32]| lengths.iter().sum::<f32>() / lengths.len() as f32;
+            let ratio = mean(&groom.lengths()) / mean(&lengths);
+            assert!((0.8..1.25).contains(&ratio), "{ratio}");
+        }
+    }
+
+    #[test]
+    fn what_lies_elsewhere_is_no_scalp() {
+        let mesh = Mannequin::new().mesh();
+        let skull = Skull::of(&mesh.positions).unwrap();
+        let mut far = cap(skull.top - 0.05, 0.0);
+        far.positions.iter_mut().for_each(|place| *place += Vec3::Y);
+        let mut groom = StyleSettings { strand_count: 50, ..StyleSettings::new(Style::Bob) }.grow().unwrap();
+        let error = onto(&mut groom, &far, &skull, |point| point).unwrap_err().to_string();
+        assert!(error.contains("body.scalp") && error.contains("top of the head"), "{error}");
+    }
+}

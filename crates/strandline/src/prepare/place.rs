@@ -1,0 +1,42 @@
+//! Where a file's places lie in head space.
+
+use std::f32::consts::FRAC_PI_2;
+
+use glam::{Quat, Vec3};
+use strandline_base::math;
+
+use crate::{
+    body::{Aabb, Mesh},
+    groom::format::Up,
+};
+
+/// How a file's places become those of head space: scaled, then turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placing {
+    pub scale: f32,
+    pub turn: Quat,
+}
+
+/// What leads from a file with an axis that points up to y up.
+pub(super) fn upright(up: Up) -> Quat {
+    match up {
+        Up::Auto | Up::Y => Quat::IDENTITY,
+        Up::Z => math::rotation(Vec3::X, -FRAC_PI_2),
+    }
+}
+
+/// Places a mesh: scaled and turned as guessed, then turned and moved as a scene says.
+pub(super) fn place_mesh(mesh: &mut Mesh, placing: Placing, turn: Vec3, translation: Vec3) {
+    let turn = math::pitch_yaw_roll(turn) * placing.turn;
+    for position in &mut mesh.positions {
+        *position = turn * (placing.scale * *position) + translation;
+    }
+    for normal in &mut mesh.normals {
+        *normal = turn * *normal;
+    }
+}
+
+/// The length of the diagonal of a box.
+pub(super) fn diagonal(bounds: Aabb) -> f32 {
+    bounds.min.distance(bounds.max)
+}

@@ -1,0 +1,194 @@
+//! What roots, tips and vertices tell of how a groom and its body lie.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use glam::{Quat, Vec3};
+use strandline_base::math;
+
+use super::place::{Placing, diagonal, upright};
+use crate::{
+    body::{Aabb, Mesh},
+    groom::{Groom, format::Up},
+};
+
+/// Metres that a unit of a file may be, likelier ones first.
+pub(super) const UNITS: [f32; 4] = [1.0, 0.01, 0.001, 0.0254];
+/// Roots and vertices that are looked at.
+const ROOTS: usize = 200;
+const VERTICES: usize = 3000;
+/// Distance of roots from the body as a share of its size that needs no other guess, and how much nearer another
+/// one has to bring them.
+pub(super) const NEAR: f32 = 0.03;
+pub(super) const NEARER: f32 = 0.5;
+/// Share of the head by which hair has to grow and lead to one side of it for that to be its back.
+const BEHIND: f32 = 0.08;
+
+/// Hair is that of a head where roots lie as high on the body as this share of it, and lie around as much of what is
+/// there: not the fur of an animal, nor its mane.
+const ON_TOP: f32 = 0.3;
+const AROUND: f32 = 0.6;
+
+/// Some roots, tips and vertices of a groom and its body, in units of their files.
+pub(super) struct Sample {
+    roots: Vec<Vec3>,
+    tips: Vec<Vec3>,
+    vertices: Vec<Vec3>,
+    bounds: Aabb,
+}
+
+impl Sample {
+    pub fn new(grooms: &[&Groom], mesh: &Mesh) -> Self {
+        let count: usize = grooms.iter().map(|groom| groom.strand_count()).sum();
+        let every = (count / ROOTS).max(1);
+        let all =
+            || grooms.iter().flat_map(|groom| (0..groom.strand_count()).map(|strand| groom.strand(strand)));
+        let strands = || all().step_by(every);
+        let vertices = (mesh.positions.len() / VERTICES).max(1);
+        let nothing = Aabb { min: Vec3::ZERO, max: Vec3::ZERO };
+        Self {
+            roots: strands().map(|strand| strand[0]).collect(),
+            tips: strands().map(|strand| strand[strand.len() - 1]).collect(),
+            vertices: mesh.positions.iter().step_by(vertices).copied().collect(),
+            bounds: mesh.bounds().unwrap_or(nothing),
+        }
+    }
+
+    /// Metres of a unit of the groom: what brings its roots to the body; that of the body where it does not matter.
+    pub fn unit(&self, body_unit: f32, groom_up: Up, body_up: Up) -> f32 {
+        let apart = |unit| self.apart(unit, upright(groom_up), body_unit, upright(body_up));
+        let (mut best, mut least) = (body_unit, apart(body_unit));
+        for unit in UNITS {
+            let found = apart(unit);
+            if found < NEARER * least && least > NEAR {
+                (best, least) = (unit, found);
+            }
+        }
+        best
+    }
+
+    /// Middle distance of roots from the nearest vertex, as a share of the body's size.
+    pub fn apart(&self, groom_unit: f32, groom_turn: Quat, body_unit: f32, body_turn: Quat) -> f32 {
+        let vertices: Vec<Vec3> =
+            self.vertices.iter().map(|vertex| body_turn * (body_unit * *vertex)).collect();
+        let mut apart: Vec<f32> = self
+            .roots
+            .iter()
+            .map(|root| {
+                let root = groom_turn * (groom_unit * *root);
+                vertices.iter().map(|vertex| vertex.distance_squared(root)).fold(f32::INFINITY, f32::min)
+            })
+            .collect();
+        apart.sort_by(f32::total_cmp);
+        let middle = apart.get(apart.len() / 2).copied().unwrap_or(0.0).sqrt();
+        middle / (body_unit * diagonal(self.bounds)).max(f32::MIN_POSITIVE)
+    }
+
+    /// What speaks for an axis to point up, each -1 to 1: roots lie high on the body, and strands hang.
+    pub fn upness(&self, axis: Vec3) -> [f32; 2] {
+        let count = self.roots.len() as f32;
+        let extent = (self.bounds.max - self.bounds.min).dot(axis).max(f32::MIN_POSITIVE);
+        let middle = 0.5 * (self.bounds.min + self.bounds.max);
+        let high =
+            self.roots.iter().map(|root| (*root - middle).dot(axis) / (0.5 * extent)).sum::<f32>() / count;
+        let ways = self.roots.iter().zip(&self.tips).map(|(root, tip)| (*root - *tip).normalize_or_zero());
+        let hangs = ways.map(|way| way.dot(axis)).sum::<f32>() / count;
+        [high.clamp(-1.0, 1.0), hangs]
+    }
+
+    /// Width \[m\] of the scalp, where hair is that of a head that looks along z.
+    pub fn scalp(&self, groom: &Placing, body: &Placing) -> Option<f32> {
+        let placed = |places: &[Vec3], placing: &Placing| -> Vec<Vec3> {
+            places.iter().map(|place| placing.turn * (placing.scale * *place)).collect()
+        };
+        let between = |mut values: Vec<f32>| {
+            values.sort_by(f32::total_cmp);
+            let at = |percent: usize| values.get(values.len() * percent / 100).copied();
+            at(5).zip(at(95))
+        };
+        let (roots, vertices) = (placed(&self.roots, groom), placed(&self.vertices, body));
+        let (lowest, highest) = between(roots.iter().map(|root| root.y).collect())?;
+        let ends = vertices.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), vertex| {
+            (low.min(vertex.y), high.max(vertex.y))
+        });
+        let (left, right) = between(roots.iter().map(|root| root.x).collect())?;
+        let beside = vertices.iter().filter(|vertex| (lowest..=highest).contains(&vertex.y));
+        let (skull_left, skull_right) = between(beside.map(|vertex| vertex.x).collect())?;
+        let is_on_top = lowest - ends.0 > ON_TOP * (ends.1 - ends.0);
+        let is_around = right - left > AROUND * (skull_right - skull_left);
+        (is_on_top && is_around && right > left).then_some(right - left)
+    }
+
+    /// The turn about y after which a head looks along +z, where hair lies to one side of it: at its back.
+    pub fn to_front(&self, groom: &Placing, body: &Placing) -> Quat {
+        let roots: Vec<Vec3> = self.roots.iter().map(|root| groom.turn * (groom.scale * *root)).collect();
+        let mut heights: Vec<f32> = roots.iter().map(|root| root.y).collect();
+        heights.sort_by(f32::total_cmp);
+        // The skull is what lies as high as three of four roots: no shoulders, no nape.
+        let low = heights.get(heights.len() / 4).copied().unwrap_or(0.0);
+        let vertices = self.vertices.iter().map(|vertex| body.turn * (body.scale * *vertex));
+        let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (min, max) = vertices
+            .filter(|vertex| vertex.y >= low)
+            .fold(start, |(min, max), vertex| (min.min(vertex), max.max(vertex)));
+        if min.x > max.x {
+            return Quat::IDENTITY;
+        }
+        let center = roots.iter().sum::<Vec3>() / roots.len().max(1) as f32;
+        let size = (max - min).with_y(0.0).max_element().max(f32::MIN_POSITIVE);
+        let tips = self.tips.iter().map(|tip| groom.turn * (groom.scale * *tip));
+        let combed = tips.zip(&roots).map(|(tip, root)| tip - root).sum::<Vec3>() / roots.len().max(1) as f32;
+        // Hair grows at the back, and is combed there.
+        let back = (center - 0.5 * (min + max) + combed) / size;
+        if back.z.abs() >= back.x.abs() {
+            if back.z > BEHIND { math::rotation(Vec3::Y, PI) } else { Quat::IDENTITY }
+        } else if back.x.abs() > BEHIND {
+            // What is at +x comes to -z, or what is at -x.
+            math::rotation(Vec3::Y, FRAC_PI_2.copysign(back.x))
+        } else {
+            Quat::IDENTITY
+        }
+    }
+}
+
+/// Middle distance of roots from a body, both placed, as a share of the body's size.
+pub(super) fn roots_apart(groom: &Groom, mesh: &Mesh, of_groom: &Placing, of_body: &Placing) -> f32 {
+    Sample::new(&[groom], mesh).apart(of_groom.scale, of_groom.turn, of_body.scale, of_body.turn)
+}
+
+/// Metres of a unit of a mesh that strands \[m\] grow on: given, or what brings it to their roots. And how far half of
+/// the roots then are from it, as a share of its size.
+pub fn mesh_unit(groom: &Groom, mesh: &Mesh, given: Option<f32>) -> (f32, f32) {
+    let sample = Sample::new(&[groom], mesh);
+    let apart = |unit: f32| sample.apart(1.0, Quat::IDENTITY, unit, Quat::IDENTITY);
+    let (mut best, mut least) = (given.unwrap_or(1.0), apart(given.unwrap_or(1.0)));
+    for unit in UNITS.into_iter().filter(|_| given.is_none()) {
+        let found = apart(unit);
+        if found < NEARER * least && least > NEAR {
+            (best, least) = (unit, found);
+        }
+    }
+    (best, least)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        body::Mannequin,
+        groom::{Style, StyleSettings},
+    };
+
+    #[test]
+    fn the_unit_of_a_mesh_is_that_which_brings_it_to_the_roots() {
+        let groom = StyleSettings { strand_count: 300, ..StyleSettings::new(Style::Bob) }.grow().unwrap();
+        for unit in UNITS {
+            let mut mesh = Mannequin::new().mesh();
+            mesh.positions.iter_mut().for_each(|place| *place /= unit);
+            let (found, apart) = mesh_unit(&groom, &mesh, None);
+            assert!(found == unit && apart < 0.02, "{unit}: {found}, {apart}");
+        }
+        let mut far = Mannequin::new().mesh();
+        far.positions.iter_mut().for_each(|place| *place += Vec3::X * 3.0);
+        assert!(mesh_unit(&groom, &far, None).1 > 1.0);
+    }
+}
