@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 
 use super::head;
 use super::placing::{self, Placing, Placings};
-use super::sample;
+use super::sample::{self, HEIGHTS};
 use super::skull::Skull;
 use super::wrap;
 use crate::{
@@ -20,9 +20,8 @@ use crate::{
 const APART: f32 = 0.1;
 /// Width of a scalp over that of the skull below or above which the two have other units.
 const WIDTHS: std::ops::RangeInclusive<f32> = 0.1..=3.0;
-/// Depth and height over the width of what may be a scalp: no fur, no brow and no beard.
+/// Depth over the width of what may be a scalp.
 const DEPTHS: std::ops::RangeInclusive<f32> = 0.7..=1.8;
-const HEIGHTS: std::ops::RangeInclusive<f32> = 0.4..=1.6;
 /// Width, height and depth of the roots on a head over those of its skull.
 const OF_SKULL: Vec3 = Vec3::new(1.0, 0.97, 0.94);
 

@@ -156,3 +156,37 @@ fn boxes_that_do_not_meet_are_said() {
     let note = apart(&groom, &mesh).unwrap();
     assert!(note.contains("roots do not lie on the body"), "{note}");
 }
+
+#[test]
+fn a_brush_on_a_box_is_no_head() {
+    let corner = |index: u32| {
+        let at = |bit: u32| if index >> bit & 1 == 0 { -0.05 } else { 0.05 };
+        Vec3::new(at(0), 0.2 * at(1) - 0.01, at(2))
+    };
+    let sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let triangles = sides.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let mesh = Mesh::new((0..8).map(corner).collect(), triangles).unwrap();
+    let mut brush = Groom::empty(8e-5);
+    for strand in 0..400 {
+        let root = Vec3::new((strand % 20) as f32, 0.0, (strand / 20) as f32) * 0.0045
+            - Vec3::new(0.043, 0.0, 0.043);
+        brush.push([root, root + Vec3::Y * 0.3]);
+    }
+    let placings = guess(&scene(), &[&brush], Some(&mesh));
+    assert_eq!((placings.groom, placings.note), (Placing { scale: 1.0, turn: Quat::IDENTITY }, None));
+    assert_eq!(apart(&brush, &mesh), None, "eight vertices are far from most roots, the sides are not");
+}
+
+#[test]
+fn files_of_one_groom_are_placed_together() {
+    // The back of a head alone tells neither its front nor its size.
+    let (groom, mesh) = head();
+    let (groom, mesh) = turned(&groom, &mesh, 360.0, Quat::from_rotation_y(PI));
+    let low: Vec<usize> = (0..groom.strand_count()).filter(|strand| strand % 3 == 0).collect();
+    let rest: Vec<usize> = (0..groom.strand_count()).filter(|strand| strand % 3 != 0).collect();
+    let (one, two) = (groom.select(&low), groom.select(&rest));
+    let whole = guess(&scene(), &[&groom], Some(&mesh));
+    let parts = guess(&scene(), &[&one, &two], Some(&mesh));
+    assert_eq!(parts.body.turn, whole.body.turn);
+    assert!((parts.body.scale / whole.body.scale - 1.0).abs() < 0.06);
+}

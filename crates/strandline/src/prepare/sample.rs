@@ -7,7 +7,7 @@ use strandline_base::math;
 
 use super::place::{Placing, diagonal, upright};
 use crate::{
-    body::{Aabb, Mesh},
+    body::{Aabb, Mesh, Random},
     groom::{Groom, format::Up},
 };
 
@@ -26,6 +26,8 @@ const BEHIND: f32 = 0.08;
 /// Hair is that of a head where roots lie as high on the body as this share of it, and lie around as much of what is
 /// there: not the fur of an animal, nor its mane.
 const ON_TOP: f32 = 0.3;
+/// Height over the width of what may be a scalp: no fur, no brow and no beard.
+pub(super) const HEIGHTS: std::ops::RangeInclusive<f32> = 0.4..=1.6;
 const AROUND: f32 = 0.6;
 
 /// Some roots, tips and vertices of a groom and its body, in units of their files.
@@ -33,6 +35,8 @@ pub(super) struct Sample {
     roots: Vec<Vec3>,
     tips: Vec<Vec3>,
     vertices: Vec<Vec3>,
+    /// Places on the body's triangles too: of a box vertices alone are far from most of it.
+    skin: Vec<Vec3>,
     bounds: Aabb,
 }
 
@@ -44,11 +48,14 @@ impl Sample {
             || grooms.iter().flat_map(|groom| (0..groom.strand_count()).map(|strand| groom.strand(strand)));
         let strands = || all().step_by(every);
         let vertices = (mesh.positions.len() / VERTICES).max(1);
+        let mut skin: Vec<Vec3> = mesh.positions.iter().step_by(vertices).copied().collect();
+        skin.extend(on_triangles(mesh));
         let nothing = Aabb { min: Vec3::ZERO, max: Vec3::ZERO };
         Self {
             roots: strands().map(|strand| strand[0]).collect(),
             tips: strands().map(|strand| strand[strand.len() - 1]).collect(),
             vertices: mesh.positions.iter().step_by(vertices).copied().collect(),
+            skin,
             bounds: mesh.bounds().unwrap_or(nothing),
         }
     }
@@ -66,16 +73,15 @@ impl Sample {
         best
     }
 
-    /// Middle distance of roots from the nearest vertex, as a share of the body's size.
+    /// Middle distance of roots from the nearest place on the body, as a share of the body's size.
     pub fn apart(&self, groom_unit: f32, groom_turn: Quat, body_unit: f32, body_turn: Quat) -> f32 {
-        let vertices: Vec<Vec3> =
-            self.vertices.iter().map(|vertex| body_turn * (body_unit * *vertex)).collect();
+        let skin: Vec<Vec3> = self.skin.iter().map(|place| body_turn * (body_unit * *place)).collect();
         let mut apart: Vec<f32> = self
             .roots
             .iter()
             .map(|root| {
                 let root = groom_turn * (groom_unit * *root);
-                vertices.iter().map(|vertex| vertex.distance_squared(root)).fold(f32::INFINITY, f32::min)
+                skin.iter().map(|place| place.distance_squared(root)).fold(f32::INFINITY, f32::min)
             })
             .collect();
         apart.sort_by(f32::total_cmp);
@@ -114,8 +120,10 @@ impl Sample {
         let beside = vertices.iter().filter(|vertex| (lowest..=highest).contains(&vertex.y));
         let (skull_left, skull_right) = between(beside.map(|vertex| vertex.x).collect())?;
         let is_on_top = lowest - ends.0 > ON_TOP * (ends.1 - ends.0);
+        // A plate is no head.
+        let is_high = HEIGHTS.contains(&((highest - lowest) / (right - left)));
         let is_around = right - left > AROUND * (skull_right - skull_left);
-        (is_on_top && is_around && right > left).then_some(right - left)
+        (is_on_top && is_high && is_around && right > left).then_some(right - left)
     }
 
     /// The turn about y after which a head looks along +z, where hair lies to one side of it: at its back.
@@ -148,6 +156,31 @@ impl Sample {
             Quat::IDENTITY
         }
     }
+}
+
+/// Places spread over the triangles of a mesh by their areas.
+fn on_triangles(mesh: &Mesh) -> Vec<Vec3> {
+    let corners = |index: usize| mesh.triangles[index].map(|corner| mesh.positions[corner as usize]);
+    let mut total = 0.0;
+    let areas: Vec<f64> = (0..mesh.triangles.len())
+        .map(|index| {
+            let [a, b, c] = corners(index);
+            total += f64::from((b - a).cross(c - a).length());
+            total
+        })
+        .collect();
+    (0..VERTICES)
+        .map(|place| {
+            let wanted = total * (place as f64 + 0.5) / VERTICES as f64;
+            let [a, b, c] = corners(areas.partition_point(|area| *area <= wanted).min(areas.len() - 1));
+            let mut random = Random::new(0, place as u64);
+            let (mut u, mut v) = (random.unit(), random.unit());
+            if u + v > 1.0 {
+                (u, v) = (1.0 - u, 1.0 - v);
+            }
+            a + (b - a) * u + (c - a) * v
+        })
+        .collect()
 }
 
 /// Middle distance of roots from a body, both placed, as a share of the body's size.
