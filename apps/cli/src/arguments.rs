@@ -80,8 +80,8 @@ pub struct Inputs {
     /// Load the body from this .obj, .gltf or .glb file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
-    /// Grow the style on what has this name in the body's files: a group, an object or a material [default: scalp,
-    /// where there is one].
+    /// Grow the style on what has this name in the body's files: a group, an object or a material [default: the
+    /// built-in scalp, brought onto the skull].
     #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "groom")]
     pub scalp: Option<String>,
     /// What hair is made of: fine, medium, coarse, wet or sprayed.

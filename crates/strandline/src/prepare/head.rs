@@ -11,7 +11,7 @@ use crate::groom::format::Up;
 /// Share of the head by which a face reaches out, or hair is combed, to one side.
 const ASIDE: f32 = 0.04;
 /// Heights below the crown, over the width of the skull, between which the face is.
-const FACE: [f32; 2] = [0.8, 1.6];
+const FACE: [f32; 2] = [1.0, 1.4];
 /// Vertices whose mirrored places are looked for, and among how many.
 const MIRRORED: usize = 300;
 const AMONG: usize = 20_000;
@@ -55,22 +55,25 @@ pub(super) fn up(places: &[Vec3]) -> Up {
     }
 }
 
-/// Turns an upright head so that its face, where it reaches out and has most vertices, looks along +z; none where
-/// there is no head.
+/// Turns an upright head so that its face looks along +z: at its height a head reaches out to the front, and has most
+/// vertices there. None where there is no head.
 pub(super) fn front(vertices: &[Vec3]) -> Option<Quat> {
     let skull = Skull::of(vertices)?;
-    let [high, low] = FACE.map(|below| skull.top - below * skull.size.x);
+    let [high, low] = FACE.map(|below| skull.top - below * skull.size.min_element());
     let face = vertices.iter().filter(|vertex| (low..=high).contains(&vertex.y));
     let reach = 0.75 * skull.size.max_element();
     let beside = face.map(|vertex| *vertex - Vec3::new(skull.middle.x, vertex.y, skull.middle.y));
     let near: Vec<Vec3> = beside.filter(|beside| beside.length() < reach).collect();
-    let middle = near.iter().sum::<Vec3>() / near.len().max(1) as f32 / skull.size.max_element();
+    let mean = near.iter().sum::<Vec3>() / near.len().max(1) as f32;
+    let start = (Vec3::ZERO, Vec3::ZERO);
+    let (least, most) = near.iter().fold(start, |(least, most), by| (least.min(*by), most.max(*by)));
+    let ahead = (mean + 0.5 * (least + most)) / skull.size.max_element();
     let along_z = match side_axis(vertices) {
         Some(0) => true,
         Some(2) => false,
         _ => is_long(&skull),
     };
-    Some(turned_to_z(along_z, middle))
+    Some(turned_to_z(along_z, ahead))
 }
 
 /// Whether a head looks along z, or against it, by its shape: it is longer from front to back than from ear to ear.

@@ -15,8 +15,8 @@ use crate::{
     groom::Groom,
 };
 
-/// The name of a scalp where a scene gives none.
-const USUAL: &str = "scalp";
+/// What a part is called that may be one.
+const LIKELY: &str = "scalp";
 /// Names that an error lists.
 const LISTED: usize = 12;
 /// Directions around the vertical axis in which the rim of a scalp is looked for.
@@ -25,32 +25,39 @@ const DIRECTIONS: usize = 72;
 const PLACES: usize = 6;
 /// Roots of the built-in scalp that tell where its rim is.
 const ROOTS: usize = 4000;
-/// How far from the marked scalp a root may come to lie, as a share of the width of the skull: it is led there from
-/// no farther.
-const ASTRAY: f32 = 0.08;
+/// Times that a root is looked for on it again, from as far as it was found.
+const LOOKS: usize = 3;
+/// How far beside the marked scalp a root may lie, and from how far it is led there, as shares of the width of the skull.
+const ASTRAY: f32 = 0.05;
+const OFF: f32 = 0.4;
 
-/// The scalp that the files of a scene's body mark, head space; none where they mark none and none is asked for.
+/// The scalp that a scene names in the files of its body, head space; none where it names none. A note where it does
+/// not, and there is something of that name.
 ///
 /// # Errors
 /// A file that cannot be read; none of them has the name that is asked for.
-pub(super) fn scalp(scene: &Scene, placing: Placing) -> Result<Option<Mesh>, Error> {
+pub(super) fn scalp(scene: &Scene, placing: Placing, notes: &mut Vec<String>) -> Result<Option<Mesh>, Error> {
     let body = &scene.body;
     let Some(file) = &body.file else { return Ok(None) };
-    let name = body.scalp.as_deref().unwrap_or(USUAL);
     let first = (file, placing, [body.rotation, body.translation]);
     let further = body
         .parts
         .iter()
         .map(|part| (&part.file, part_placing(part, placing), [part.rotation, part.translation]));
     let files: Vec<_> = std::iter::once(first).chain(further).collect();
+    let Some(name) = &body.scalp else {
+        let parts = Mesh::part_names(&scene.path(file))?;
+        if let Some(part) = parts.iter().find(|part| part.eq_ignore_ascii_case(LIKELY)) {
+            notes
+                .push(format!("the body has a part `{part}`: body.scalp = \"{part}\" grows the style on it"));
+        }
+        return Ok(None);
+    };
     for (file, placing, [turn, translation]) in &files {
         if let Some(mut found) = Mesh::load_part(&scene.path(file), name)? {
             placing::place_mesh(&mut found, *placing, *turn, *translation);
             return Ok(Some(found));
         }
-    }
-    if body.scalp.is_none() {
-        return Ok(None);
     }
     let expected = known(files.iter().map(|(file, ..)| scene.path(file)))?;
     Err(SettingError::new("body.scalp", format!("`{name}`"), expected).into())
@@ -157,10 +164,13 @@ pub(super) fn onto(
         *point = middle + Seen { polar, ..seen }.place();
     }
     let roots: Vec<Vec3> = groom.roots().collect();
-    let found = marked.nearest_places(&roots);
-    let kept: Vec<usize> = (0..roots.len())
-        .filter(|strand| roots[*strand].distance(found[*strand]) < ASTRAY * skull.size.x)
-        .collect();
+    let (sought, found) = seen_on(marked, middle, &roots);
+    let width = skull.size.x;
+    let is_near = |strand: &usize| {
+        let (root, sought, found) = (roots[*strand], sought[*strand], found[*strand]);
+        sought.distance(found) < ASTRAY * width && root.distance(found) < OFF * width
+    };
+    let kept: Vec<usize> = (0..roots.len()).filter(is_near).collect();
     if kept.is_empty() {
         let expected = "a part at the top of the head, where hair grows";
         return Err(SettingError::new("body.scalp", "a part far from the skull", expected).into());
@@ -175,6 +185,19 @@ pub(super) fn onto(
     }
     let left = if bare > 0 { format!("; {bare} strands have no place on it") } else { String::new() };
     Ok(format!("the style grows on the scalp that the body marks{left}"))
+}
+
+/// Where roots would lie as far from the middle of the skull as a mesh does, and the places of the mesh nearest there.
+fn seen_on(mesh: &Mesh, middle: Vec3, roots: &[Vec3]) -> (Vec<Vec3>, Vec<Vec3>) {
+    let mut sought = roots.to_vec();
+    let mut found = mesh.nearest_places(&sought);
+    for _ in 0..LOOKS {
+        for (place, found) in sought.iter_mut().zip(&found) {
+            *place = middle + (*place - middle).normalize_or(Vec3::Y) * found.distance(middle);
+        }
+        found = mesh.nearest_places(&sought);
+    }
+    (sought, found)
 }
 
 /// Places all over the triangles of a mesh.

@@ -140,7 +140,7 @@ fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
         None => {
             let mut grown = strands::grown(scene)?;
             if let Some(mesh) = drawn {
-                let marked = marked::scalp(scene, placings.body)?;
+                let marked = marked::scalp(scene, placings.body, notes)?;
                 notes.extend(wrap::onto(&mut grown, mesh, marked.as_ref(), body.shape.as_ref())?);
             }
             grown

@@ -52,8 +52,7 @@ settings! {
         /// An .obj, .gltf or .glb file.
         file: Option<PathBuf> = None;
         /// Where a style grows on the body of a file: what has this name in its files, an object, a group or a material
-        /// of an .obj, a node, a mesh or a material of a glTF. Without it what is called "scalp", or where there is
-        /// nothing of that name the built-in scalp, brought onto the skull.
+        /// of an .obj, a node, a mesh or a material of a glTF. Without it the built-in scalp is brought onto the skull.
         scalp: Option<String> = None;
         /// A closed mesh that hair hits in place of the drawn one.
         collider_file: Option<PathBuf> = None;
