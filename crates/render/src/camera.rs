@@ -56,21 +56,30 @@ impl Camera {
         let mut camera = Self { target, ..Self::default() };
         let direction = direction.normalize_or(Vec3::Z);
         camera.position = target + direction;
-        let world_from_view = camera.view_from_world().inverse();
-        let (right, up) = (Vec3::from(world_from_view.x_axis), Vec3::from(world_from_view.y_axis));
-        let slope_up = math::tan(0.5 * camera.field_of_view.to_radians());
-        let slope_right = slope_up * aspect.max(1e-3);
-        let distance = (0..8).fold(0.0_f32, |distance, corner| {
+        let corners: [Vec3; 8] = std::array::from_fn(|corner| {
             let pick =
                 |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-            let offset = Vec3::new(pick(0), pick(1), pick(2)) - target;
-            let toward = offset.dot(direction);
-            let needed = (offset.dot(right).abs() / slope_right).max(offset.dot(up).abs() / slope_up);
-            distance.max(toward + needed)
+            Vec3::new(pick(0), pick(1), pick(2))
         });
+        let distance = camera.distance_to_see(&corners, aspect);
         // A margin of a twentieth keeps outlines off the picture's edge.
         camera.position = target + direction * (1.05 * distance).max(2.0 * camera.near);
         camera
+    }
+
+    /// The distance \[m\] from its target at which it sees all of some places, without turning.
+    pub fn distance_to_see(&self, places: &[Vec3], aspect: f32) -> f32 {
+        let direction = (self.position - self.target).normalize_or(Vec3::Z);
+        let world_from_view = self.view_from_world().inverse();
+        let (right, up) = (Vec3::from(world_from_view.x_axis), Vec3::from(world_from_view.y_axis));
+        let slope_up = math::tan(0.5 * self.field_of_view.to_radians());
+        let slope_right = slope_up * aspect.max(1e-3);
+        places.iter().fold(0.0_f32, |distance, place| {
+            let offset = *place - self.target;
+            let toward = offset.dot(direction);
+            let needed = (offset.dot(right).abs() / slope_right).max(offset.dot(up).abs() / slope_up);
+            distance.max(toward + needed)
+        })
     }
 
     /// The camera carried around its target: `yaw` about the up axis (to the camera's right), then

@@ -82,7 +82,7 @@ impl Player {
         let fitted = prepared.scene.clone();
         let scene = &fitted;
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
-        let camera = scene.camera.camera(prepared.bounds, aspect);
+        let camera = prepared.camera(aspect);
         let mut hair = Hair::from_scene(scene, prepared, devices)?;
         notes.extend(hair.take_notes());
         let (simulation, studio) = hair.into_parts();

@@ -152,8 +152,7 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
 
 /// The camera that the scene has for itself.
 fn first_camera() -> Camera {
-    let prepared = strandline::Prepared::new(&scene()).unwrap();
-    scene().camera.camera(prepared.bounds, 64.0 / 48.0)
+    strandline::Prepared::new(&scene()).unwrap().camera(64.0 / 48.0)
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     posed.film.settle = 1.0;
     let shown = first_picture(&posed);
     let mut fresh = hair(&posed).unwrap();
-    let camera = posed.camera.camera(fresh.bounds(), 64.0 / 48.0);
+    let camera = strandline::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
     assert_eq!(shown, fresh.picture(&camera, &posed.look).unwrap());
     posed.begin_at_rest();
     assert!(first_picture(&posed) != shown);

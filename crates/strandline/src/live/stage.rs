@@ -73,7 +73,7 @@ impl Stage {
         let fitted = prepared.scene.clone();
         let scene = &fitted;
         let aspect = scene.picture.width as f32 / scene.picture.height as f32;
-        let camera = scene.camera.camera(bounds, aspect);
+        let camera = prepared.camera(aspect);
         let mut hair = Hair::from_scene(scene, prepared, scene.devices)?;
         notes.extend(hair.take_notes());
         let (simulation, studio) = hair.into_parts();

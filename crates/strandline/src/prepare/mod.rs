@@ -22,7 +22,7 @@ use glam::Vec3;
 use body::Body;
 
 use crate::{
-    BoundStrands, Error, HeadMotion, Scene, attributes,
+    BoundStrands, Camera, Error, HeadMotion, Scene, attributes,
     body::{Aabb, Carrier, Collider, Mesh, Shape},
     bound::clearance,
     groom::{Binding, Groom, Guides},
@@ -97,6 +97,36 @@ impl Prepared {
     }
 }
 
+impl Prepared {
+    /// The scene's camera for pictures of a width over height: all of the hair at rest is in the picture, of a body as much as
+    /// fits.
+    pub fn camera(&self, aspect: f32) -> Camera {
+        let strands = self.bound.as_ref().map_or(&self.guides, BoundStrands::strands);
+        let hair = (0..strands.strand_count())
+            .flat_map(|strand| (0..strands.points_per_strand()).map(move |point| (strand, point)));
+        let hair = hair.map(|(strand, point)| strands.position(strand, point));
+        self.scene.camera.camera(self.bounds, &outermost(hair), aspect)
+    }
+}
+
+/// Of many places those that lie farthest in 98 directions.
+fn outermost(places: impl Iterator<Item = Vec3>) -> Vec<Vec3> {
+    let steps = || (-2..=2).map(|step| step as f32);
+    let directions =
+        steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| Vec3::new(x, y, z))));
+    let directions: Vec<Vec3> = directions.filter(|way| way.abs().max_element() > 1.5).collect();
+    let mut found = vec![(f32::NEG_INFINITY, Vec3::ZERO); directions.len()];
+    for place in places {
+        for (way, (farthest, at)) in directions.iter().zip(&mut found) {
+            let far = way.dot(place);
+            if far > *farthest {
+                (*farthest, *at) = (far, place);
+            }
+        }
+    }
+    found.into_iter().filter(|(far, _)| far.is_finite()).map(|(_, place)| place).collect()
+}
+
 /// Strands and body of a scene, head space.
 struct Loaded {
     groom: Groom,
@@ -107,7 +137,7 @@ struct Loaded {
 fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
     let (groom, mesh) = (strands::load(scene, notes)?, body::mesh(scene)?);
     let further = parts::read(scene, notes)?;
-    let together = groom.iter().chain(parts::placed_as_first(scene, &further));
+    let together = groom.iter().chain(parts::placed_as_first(scene, groom.as_ref(), &further));
     let mut placings = placing::guess(scene, &together.collect::<Vec<_>>(), mesh.as_ref());
     let pair = groom.as_ref().zip(mesh.as_ref());
     let foreign = pair.and_then(|(groom, mesh)| foreign::placings(scene, groom, mesh, &placings));

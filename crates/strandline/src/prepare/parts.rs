@@ -17,10 +17,13 @@ use crate::{
 
 use super::{
     looks,
+    place::diagonal,
     placing::{self, Placing},
     strands,
 };
 
+/// Times that files of one groom are as large as each other at most: brows, and hair to the hips.
+const ALIKE: f32 = 30.0;
 /// Least guides of a file that marks none, where others mark some.
 const LEAST_GUIDES: usize = 16;
 
@@ -69,14 +72,29 @@ pub(super) fn read(scene: &Scene, notes: &mut Vec<String>) -> Result<Vec<Groom>,
     parts.map(|part| strands::read(scene, &part.file, part.per_strand, notes)).collect()
 }
 
-/// Those of further files that are in the units and axes of the first, as far as a scene says.
-pub(super) fn placed_as_first<'a>(scene: &'a Scene, further: &'a [Groom]) -> impl Iterator<Item = &'a Groom> {
+/// Those of further files that seem to be in the units and axes of the first: a scene says nothing else of them, they
+/// are of its size, and near.
+pub(super) fn placed_as_first<'a>(
+    scene: &'a Scene,
+    first: Option<&Groom>,
+    further: &'a [Groom],
+) -> impl Iterator<Item = &'a Groom> {
+    let own = first.map(Groom::bounds);
     let is_open = |part: &GroomPart| {
         part.scale == Scale::Auto
             && part.up == Up::Auto
             && [part.rotation, part.translation].iter().all(|by| *by == Vec3::ZERO)
     };
-    further.iter().zip(&scene.groom.parts).filter(move |(_, part)| is_open(part)).map(|(groom, _)| groom)
+    let is_beside = move |groom: &Groom| {
+        own.is_some_and(|own| {
+            let other = groom.bounds();
+            let sizes = [own, other].map(diagonal);
+            let gap = (own.min.max(other.min) - own.max.min(other.max)).max_element();
+            sizes[0] < ALIKE * sizes[1] && sizes[1] < ALIKE * sizes[0] && gap < sizes[0].max(sizes[1])
+        })
+    };
+    let parts = further.iter().zip(&scene.groom.parts);
+    parts.filter(move |(groom, part)| is_open(part) && is_beside(groom)).map(|(groom, _)| groom)
 }
 
 /// Adds the strands of a scene's further files to those of the first, head space: each is a group.

@@ -45,16 +45,23 @@ settings! {
     also CameraSection::apart;
 }
 
-/// The framing holds the corners of the box around hair and body, and a head has none: the camera
-/// comes closer by this share.
+/// The framing holds the corners of the box around hair and body, and a head has none: the camera comes closer by
+/// this share, as far as the hair stays in the picture, with a margin of so much about it.
 const CLOSER: f32 = 0.82;
+const MARGIN: f32 = 1.02;
 
 impl CameraSection {
-    /// The camera, given the box around hair and body \[m\] and width / height of the picture.
-    pub fn camera(&self, bounds: Aabb, aspect: f32) -> Camera {
+    /// The camera, given the box around hair and body \[m\], places \[m\] that lie farthest out in it, and width / height
+    /// of the picture.
+    pub fn camera(&self, bounds: Aabb, outermost: &[Vec3], aspect: f32) -> Camera {
         let framing = Camera::framing(bounds, self.view.direction(), aspect);
         let target = self.target.unwrap_or(framing.target);
-        let position = self.position.unwrap_or(target + CLOSER * (framing.position - framing.target));
+        let mut away = CLOSER * (framing.position - framing.target);
+        let least = MARGIN * framing.distance_to_see(outermost, aspect);
+        if away.length() < least {
+            away *= least / away.length();
+        }
+        let position = self.position.unwrap_or(target + away);
         let field_of_view = self.field_of_view.unwrap_or(framing.field_of_view);
         Camera { position, target, field_of_view, ..framing }
     }
