@@ -118,7 +118,7 @@ pub struct RenderOptions {
     /// directions and strands (of more frames one file each, with its number).
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Draw the guides of this moving cache in place of a simulation, with its own scene unless --scene names one.
+    /// Draw the hair of this moving cache in place of a simulation, with its own scene unless --scene names one.
     #[arg(long, value_name = "FILE.npz")]
     pub cache: Option<PathBuf>,
 }

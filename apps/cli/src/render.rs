@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Backend, Cache, Event, Film, LayerFilm, Player, Scene};
+use strandline::{Backend, Cache, Error, Event, Film, LayerFilm, Player, Scene};
 
 use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};
@@ -71,12 +71,17 @@ fn is_exr(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
 }
 
+/// What plays a scene, or shows a cache of it.
+fn player(scene: &Scene, cache: Option<Cache>) -> Result<Player, Error> {
+    match cache {
+        Some(cache) => Player::showing(scene, scene.devices, cache),
+        None => Player::new(scene, scene.devices, true),
+    }
+}
+
 /// Writes an .exr file, or of more frames one each with its number before the ending.
 fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow::Result<()> {
-    let mut player = Player::new(scene, scene.devices, true)?;
-    if let Some(cache) = cache {
-        player.show(cache)?;
-    }
+    let mut player = player(scene, cache)?;
     player.notes().iter().for_each(|note| output::note(note));
     let stoppable = Stoppable::begin();
     let mut film = LayerFilm::new(path, player.frames())?;
@@ -128,16 +133,13 @@ fn play_channels(
 }
 
 fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyhow::Result<()> {
+    let every = cache.as_ref().map_or(1, Cache::every);
+    let source = cache.as_ref().map(|cache| cache.path().display().to_string());
     let waiting = Waiting::begin(LOADING);
-    let mut player = Player::new(scene, scene.devices, true)?;
+    let mut player = player(scene, cache)?;
     drop(waiting);
     for note in player.notes() {
         output::note(note);
-    }
-    let every = cache.as_ref().map_or(1, Cache::every);
-    let source = cache.as_ref().map(|cache| cache.path().display().to_string());
-    if let Some(cache) = cache {
-        player.show(cache)?;
     }
     // A request to stop waits until the film is closed.
     let stoppable = Stoppable::begin();

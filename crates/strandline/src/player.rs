@@ -1,6 +1,6 @@
 use crate::{
-    Cache, Devices, Error, Hair, OutSettings, Scene, Written,
-    cache::{Leaving, Out, Snapshot},
+    Cache, Devices, Error, Hair, OutSettings, Scene, What, Written,
+    cache::{Leaving, Out, Snapshot, drawn},
     course::Course,
     gpu::Gpu,
     groom::Guides,
@@ -75,7 +75,26 @@ impl Player {
     /// # Errors
     /// Whatever the scene's parts refuse.
     pub fn new(scene: &Scene, devices: impl Into<Devices>, draw: bool) -> Result<Self, Error> {
-        let mut prepared = Prepared::new(scene)?;
+        Self::of(Prepared::new(scene)?, devices, draw)
+    }
+
+    /// Draws the frames of a cache in place of a simulation, as many as the film of the scene that it was made with
+    /// has: its guides with the strands that hang on them, or its strands as they are.
+    ///
+    /// # Errors
+    /// Whatever the scene's parts refuse; a cache of other hair.
+    pub fn showing(scene: &Scene, devices: impl Into<Devices>, mut cache: Cache) -> Result<Self, Error> {
+        let mut player = Self::of(drawn::prepared(scene, &mut cache)?, devices, true)?;
+        if cache.what() == What::Guides {
+            let guides = player.guides();
+            cache.check_guides(guides.strand_count(), guides.points_per_strand())?;
+        }
+        player.frames = player.frames.min(u32::try_from(cache.len()).unwrap_or(u32::MAX));
+        player.cache = Some(cache);
+        Ok(player)
+    }
+
+    fn of(mut prepared: Prepared, devices: impl Into<Devices>, draw: bool) -> Result<Self, Error> {
         let head = prepared.head.clone();
         let mut notes = std::mem::take(&mut prepared.notes);
         let tags = std::mem::take(&mut prepared.tags);
@@ -136,7 +155,7 @@ impl Player {
     pub fn resume(&mut self, cache: &mut Cache) -> Result<(), Error> {
         let guides = self.guides();
         let (strands, points) = (guides.strand_count(), guides.points_per_strand());
-        if cache.what() == crate::What::Guides {
+        if cache.what() == What::Guides {
             cache.check_guides(strands, points)?;
         }
         let path = cache.path().to_owned();
@@ -158,18 +177,6 @@ impl Player {
         if let Some(out) = &mut self.out {
             out.copy(cache, &state)?;
         }
-        Ok(())
-    }
-
-    /// Shows the frames of a cache in place of a simulation, as many as the film has.
-    ///
-    /// # Errors
-    /// A cache of other hair, or of drawn strands.
-    pub fn show(&mut self, cache: Cache) -> Result<(), Error> {
-        let guides = self.guides();
-        cache.check_guides(guides.strand_count(), guides.points_per_strand())?;
-        self.frames = self.frames.min(u32::try_from(cache.len()).unwrap_or(u32::MAX));
-        self.cache = Some(cache);
         Ok(())
     }
 
@@ -291,7 +298,7 @@ impl Player {
             Some(cache) => {
                 let points = self.studio.guides.points_per_strand();
                 let mut lanes = self.studio.guides.positions().to_vec();
-                let pose = cache.read_guides(frame as usize, points, &mut lanes)?;
+                let pose = cache.read_lanes(frame as usize, points, &mut lanes)?;
                 Box::new(move |simulation: &mut Simulation| {
                     simulation.show_cached(pose, |positions| positions.copy_from_slice(&lanes))?;
                     Ok(Vec::new())

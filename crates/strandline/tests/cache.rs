@@ -69,12 +69,41 @@ fn pictures_of_a_cache_are_those_of_the_live_run() {
     assert!((cache.times()[0] - 1.0 / 100.0).abs() < 1e-12);
     let own = cache.scene().unwrap();
     assert_eq!(own.to_toml(), scene.to_toml());
-    let mut player = Player::new(&own, Backend::Cpu, true).unwrap();
-    player.show(cache).unwrap();
-    let shown = pictures(&mut player);
+    let shown = pictures(&mut Player::showing(&own, Backend::Cpu, cache).unwrap());
     assert_eq!(shown.len(), live.len());
     assert!(shown == live);
     assert!(live[0] != live[13], "nothing moved");
+}
+
+#[test]
+fn a_cache_of_drawn_strands_is_drawn_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = scene();
+    // Strands of more points than a simulation has.
+    (scene.groom.points_per_strand, scene.level_of_detail.segments_per_span) = (28, 3);
+    scene.look.variation = 0.0;
+    let settings = OutSettings { what: What::Strands, ..OutSettings::new(folder.path().join("a.npz")) };
+    whole(&scene, &settings);
+    let live = pictures(&mut Player::new(&scene, Backend::Cpu, true).unwrap());
+    let cache = Cache::open(&settings.path).unwrap();
+    let own = cache.scene().unwrap();
+    let mut player = Player::showing(&own, Backend::Cpu, cache).unwrap();
+    assert!(
+        player.notes().iter().any(|note| note.contains("120 strands of the cache")),
+        "{:?}",
+        player.notes()
+    );
+    let shown = pictures(&mut player);
+    assert_eq!(shown.len(), live.len());
+    let apart = |one: &Picture, two: &Picture| {
+        let each = one.pixels.iter().zip(&two.pixels).map(|(one, two)| f64::from(one.abs_diff(*two)));
+        each.sum::<f64>() / one.pixels.len() as f64
+    };
+    let moved = apart(&live[0], &live[13]);
+    for (shown, live) in shown.iter().zip(&live) {
+        // Of 255: 64 points of 82, tapers at roots and tips that are drawn twice.
+        assert!(apart(shown, live) < 0.15 * moved, "{} of {moved}", apart(shown, live));
+    }
 }
 
 /// Breaks a film off after some events, goes on, and compares the files.
@@ -125,21 +154,19 @@ fn what_does_not_fit_is_refused_with_its_mend() {
         ..scene.clone()
     };
     let mut player = Player::new(&other, Backend::Cpu, true).unwrap();
+    let show = |scene, cache| Player::showing(scene, Backend::Cpu, cache).err().unwrap();
     let refused = |error: strandline::Error, words: &[&str]| {
         let error = error.to_string();
         assert!(words.iter().all(|word| error.contains(word)) && error.ends_with(".npz"), "{error}");
     };
     let open = || Cache::open(&path).unwrap();
-    refused(player.show(open()).unwrap_err(), &["60 strands, 960 points", "61 strands of 16 points"]);
+    refused(show(&other, open()), &["60 strands, 960 points", "61 strands of 16 points"]);
     refused(player.resume(&mut open()).unwrap_err(), &["61 strands of 16 points"]);
     let mut over = Player::new(&scene, Backend::Cpu, false).unwrap();
     refused(over.resume(&mut open()).unwrap_err(), &["made 14 frames", "--frames"]);
     let strands = OutSettings { what: What::Strands, ..OutSettings::new(folder.path().join("s.npz")) };
     whole(&scene, &strands);
-    let cache = Cache::open(&strands.path).unwrap();
-    assert_eq!(cache.starts().len(), 121);
-    let mut player = Player::new(&scene, Backend::Cpu, true).unwrap();
-    refused(player.show(cache).unwrap_err(), &["drawn strands", "--what guides"]);
+    assert_eq!(Cache::open(&strands.path).unwrap().starts().len(), 121);
     let name = OutSettings::new("a.abc").check().unwrap_err().to_string();
     assert!(name.contains("`abc`") && name.contains("%04d") && name.ends_with("a.abc"), "{name}");
     std::fs::write(folder.path().join("no.npz"), b"PK\x05\x06").unwrap();

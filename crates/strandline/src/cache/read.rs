@@ -120,9 +120,9 @@ impl Cache {
         pose.map_err(|message| Error::Cache { path: self.path.clone(), message })
     }
 
-    /// Reads a frame of guides into blocks of lanes, `points_per_strand` points each; lanes without a strand
-    /// take the last one.
-    pub(crate) fn read_guides(
+    /// Reads a frame into blocks of lanes, `points_per_strand` points of each strand: its own, or as many evenly along
+    /// them; lanes without a strand take the last one.
+    pub(crate) fn read_lanes(
         &mut self,
         frame: usize,
         points_per_strand: usize,
@@ -130,22 +130,50 @@ impl Cache {
     ) -> Result<Pose, Error> {
         let mut points = Vec::new();
         let pose = self.read(frame, &mut points)?;
-        let strands = points.len() / points_per_strand;
+        let strands = self.starts().len() - 1;
+        let own = points.len() / strands;
+        let step = (own - 1) as f32 / (points_per_strand - 1).max(1) as f32;
         for (index, vectors) in lanes.iter_mut().enumerate() {
+            let point = index % points_per_strand;
             for lane in 0..LANES {
-                let strand = (index / points_per_strand * LANES + lane).min(strands - 1);
-                vectors.set(lane, points[strand * points_per_strand + index % points_per_strand]);
+                let first = own * (index / points_per_strand * LANES + lane).min(strands - 1);
+                let place = if own == points_per_strand {
+                    points[first + point]
+                } else {
+                    let low = ((step * point as f32) as usize).min(own - 2);
+                    points[first + low].lerp(points[first + low + 1], step * point as f32 - low as f32)
+                };
+                vectors.set(lane, place);
             }
         }
         Ok(pose)
+    }
+
+    /// Number of points of every strand.
+    ///
+    /// # Errors
+    /// Strands of different numbers of points, or of less than four.
+    pub(crate) fn points_per_strand(&self) -> Result<usize, Error> {
+        let starts = self.starts();
+        let points = starts[1] as usize;
+        if points < 4 || starts.iter().enumerate().any(|(strand, start)| *start as usize != strand * points) {
+            let found = "it holds strands of less than four or of different numbers of points";
+            return Err(self.refuse(format!("{found}, expected strands as `sim --out` writes them")));
+        }
+        Ok(points)
+    }
+
+    /// Numbers that it has for each point, rows of `columns`; none where it has none of a name.
+    pub(crate) fn per_point(&mut self, name: &str, columns: u64) -> Result<Option<Vec<f32>>, Error> {
+        let found = self.frames.per_point(name, columns);
+        found.map_err(|message| Error::Cache { path: self.path.clone(), message })
     }
 
     /// Refuses other hair than guides of this shape.
     pub(crate) fn check_guides(&self, strands: usize, points: usize) -> Result<(), Error> {
         if self.what() != What::Guides {
             return Err(self.refuse(
-                "it holds drawn strands, expected guides, of which pictures and simulations grow them: write it with \
-                 --what guides",
+                "it holds drawn strands, expected guides, with which a run goes on: write it with --what guides",
             ));
         }
         let starts = self.starts();
@@ -234,6 +262,20 @@ impl<R: Read + Seek> Frames<R> {
                 points[at]
             )),
             None => Ok(pose),
+        }
+    }
+
+    fn per_point(&mut self, name: &str, columns: u64) -> Result<Option<Vec<f32>>, String> {
+        if self.npz.open(name).map_err(text)?.is_none() {
+            return Ok(None);
+        }
+        let count = Some(u64::from(*self.starts.last().unwrap_or(&0)));
+        let shape = [count, Some(columns)];
+        let shape = &shape[..if columns == 1 { 1 } else { 2 }];
+        let found: Vec<f32> = numbers(&mut self.npz, name, Kind::F32, shape, |bytes| f32s(bytes).collect())?;
+        match found.iter().find(|number| !(**number >= 0.0 && **number <= MOST)) {
+            Some(number) => Err(format!("{name} hold {number}, expected numbers of 0 to {MOST}")),
+            None => Ok(Some(found)),
         }
     }
 
