@@ -75,6 +75,26 @@ law! {
 }
 
 law! {
+    fn a_group_has_clumps_and_waves_of_its_own_size(on) {
+        let clump = Clump { wave_amplitude: 0.001, lift: 0.85, ..STRAIGHT };
+        let [whole, spread] = [false, true].map(|is_own| {
+            let mut drawn = clumps(clump, 17);
+            let spreads = (0..GUIDES).map(|guide| [1.0, 0.25, 0.0][guide % 3]).collect();
+            drawn.guides.set_spreads(is_own.then_some(spreads)).unwrap();
+            drawn.strands(on)
+        });
+        let followers = 16;
+        for (whole, spread) in distances(&whole).into_iter().zip(distances(&spread)) {
+            for (strand, (whole, spread)) in whole.into_iter().zip(spread).enumerate() {
+                let share = [1.0, 0.25, 0.0][strand / followers % 3];
+                // Rounding of places of 0.6 m.
+                assert!((spread - share * whole).abs() < 5e-7, "{strand}: {spread} of {whole} m");
+            }
+        }
+    }
+}
+
+law! {
     fn follow_strands_are_shorter_by_up_to_their_share(on) {
         let clump = Clump { root_radius: 0.0, tip_radius: 0.0, shorter: 0.3, ..STRAIGHT };
         let strands = clumps(clump, 65).strands(on);

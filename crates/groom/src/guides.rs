@@ -23,6 +23,7 @@ pub struct Guides {
     colors: Option<Vec<[f32; 3]>>,
     masses: Option<Vec<f32>>,
     velocities: Option<Vec<Vec3>>,
+    spreads: Option<Vec<f32>>,
     groups: Option<Vec<u32>>,
     group_names: BTreeMap<u32, String>,
 }
@@ -81,6 +82,7 @@ impl Guides {
             colors,
             masses,
             velocities,
+            spreads: None,
             groups: groom.groups.clone(),
             group_names: groom.group_names.clone(),
         })
@@ -150,6 +152,29 @@ impl Guides {
     /// Velocities at the beginning \[m/s\], head space, shape `[strand][point]`, where the groom has some.
     pub fn velocities(&self) -> Option<&[Vec3]> {
         self.velocities.as_deref()
+    }
+
+    /// Multiples of how far drawn strands lie about each, shape `[strand]`; none where all have 1.
+    pub fn spreads(&self) -> Option<&[f32]> {
+        self.spreads.as_deref()
+    }
+
+    /// Sets how far drawn strands lie about each, as multiples of what a look says, shape `[strand]`.
+    ///
+    /// # Errors
+    /// Another number of them than strands; one that is not finite, or below 0.
+    pub fn set_spreads(&mut self, spreads: Option<Vec<f32>>) -> Result<(), GroomError> {
+        if let Some(spreads) = &spreads {
+            let is_bad = |spread: &f32| !(spread.is_finite() && *spread >= 0.0);
+            if spreads.len() != self.strand_count || spreads.iter().any(is_bad) {
+                let expected = format!("{} finite numbers from 0 on", self.strand_count);
+                return Err(
+                    SettingError::new("spreads", format!("{} of them", spreads.len()), expected).into()
+                );
+            }
+        }
+        self.spreads = spreads;
+        Ok(())
     }
 
     /// A group number for each strand, shape `[strand]`, where the groom has some.

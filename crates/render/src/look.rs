@@ -96,6 +96,9 @@ settings! {
         grey: Option<f32> = None, in [0.0, 1.0];
         /// Multiple of the groom's root diameters, besides that of all.
         width_scale: f32 = 1.0, in [0.0, 1000.0], slider [0.1, 5.0], more "wider strands";
+        /// Multiple of `look.clump`'s radii and of the waves of drawn strands. Without it one that fits groups whose
+        /// roots stand closer than those of most hair, where the radii are fitted too.
+        clump: Option<f32> = None, in [0.0, 10.0];
         /// A .png with the colour of each strand, as `look.color_map`.
         color_map: Option<PathBuf> = None;
         /// A .png with the width of each strand, as `look.width_map`.

@@ -271,6 +271,59 @@ fn several_files_are_one_groom_and_one_body() {
 }
 
 #[test]
+fn files_of_one_groom_are_placed_together() {
+    // A ball of 40 units on a plate, and hair in two files: a tuft in the nape, and the rest, combed to +z. Only both
+    // together tell that it is a head, which looks along -z, and how large it is.
+    let folder = tempfile::tempdir().unwrap();
+    let (mut text, rings, steps) = (String::new(), 24_u32, 32_u32);
+    let place = |polar: f32, around: f32| {
+        glam::Vec3::new(polar.sin() * around.cos(), polar.cos(), polar.sin() * around.sin()) * 40.0
+    };
+    for ring in 0..=rings {
+        for step in 0..steps {
+            let angles = [
+                std::f32::consts::PI * ring as f32 / rings as f32,
+                std::f32::consts::TAU * step as f32 / steps as f32,
+            ];
+            let at = place(angles[0], angles[1]);
+            text += &format!("v {} {} {}\n", at.x, at.y, at.z);
+        }
+    }
+    for ring in 0..rings {
+        for step in 0..steps {
+            let corner = |ring: u32, step: u32| 1 + steps * ring + step % steps;
+            let corners = [
+                corner(ring, step),
+                corner(ring, step + 1),
+                corner(ring + 1, step + 1),
+                corner(ring + 1, step),
+            ];
+            text += &format!("f {} {} {} {}\n", corners[0], corners[1], corners[2], corners[3]);
+        }
+    }
+    text += "v -40 -60 -40\nv 40 -60 -40\nv 40 -60 40\nv -40 -60 40\nf -4 -1 -2 -3\n";
+    std::fs::write(folder.path().join("head.obj"), text).unwrap();
+    let [mut nape, mut rest] = [Groom::empty(8e-5), Groom::empty(8e-5)];
+    for strand in 0..600 {
+        let (polar, around) = (1.4 * ((strand as f32 + 0.5) / 600.0).sqrt(), 2.4 * strand as f32);
+        let root = place(polar, around);
+        let hair =
+            (0..8).map(|point| root * (1.0 + 0.01 * point as f32) + glam::Vec3::Z * 3.0 * point as f32);
+        if polar > 1.2 && root.z > 20.0 { nape.push(hair) } else { rest.push(hair) }
+    }
+    nape.save(folder.path().join("nape.npz")).unwrap();
+    rest.save(folder.path().join("rest.npz")).unwrap();
+    let mut scene = Scene::default();
+    scene.folder = folder.path().to_owned();
+    scene.groom.file = Some("nape.npz".into());
+    scene.groom.parts = vec![GroomPart { file: "rest.npz".into(), ..GroomPart::default() }];
+    scene.body.file = Some("head.obj".into());
+    let notes = Prepared::new(&scene).unwrap().notes;
+    let said = |words: &str| notes.iter().any(|note| note.contains(words));
+    assert!(said("turned by 180 degrees") && said("the head of a person"), "{notes:?}");
+}
+
+#[test]
 fn a_style_grows_on_the_head_of_a_body() {
     let grooms = std::env::var_os("STRANDLINE_GROOMS").map_or_else(
         || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/grooms"),

@@ -120,6 +120,8 @@ struct Guide<'a> {
     length: f32,
     /// Root diameter of a drawn strand \[m\] at full width.
     width: f32,
+    /// Multiple of how far strands lie about it.
+    spread: f32,
 }
 
 impl<'a> Guide<'a> {
@@ -145,7 +147,8 @@ impl<'a> Guide<'a> {
         let seed = hash_pair(shared.look.seed, index as u32);
         let own = shared.level.own_width_scale(index, shared.curves.guide_count);
         let width = width * shared.widening * kept_length(shared, seed) * own;
-        Self { seed, curve, skin: [skin[1], skin[2]], outward, length, width }
+        let spread = shared.guides.spreads().map_or(1.0, |spreads| spreads[index]);
+        Self { seed, curve, skin: [skin[1], skin[2]], outward, length, width, spread }
     }
 }
 
@@ -182,12 +185,12 @@ impl Strand {
         let offset = disc_offset(seed, index);
         let waves = guide.length / clump.wave_length;
         Self {
-            root_offset: offset,
-            offset: lifted(offset, guide.outward, clump.lift),
+            root_offset: offset * guide.spread,
+            offset: lifted(offset, guide.outward, clump.lift) * guide.spread,
             length: relative_length(clump, seed, index),
             phases: Vec2::new(random.unit(), random.unit()),
             turns: waves * Vec2::new(0.6 + 0.8 * random.unit(), 0.6 + 0.8 * random.unit()),
-            amplitude: clump.wave_amplitude * (0.4 + 1.2 * random.unit()),
+            amplitude: guide.spread * clump.wave_amplitude * (0.4 + 1.2 * random.unit()),
         }
     }
 

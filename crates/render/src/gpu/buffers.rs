@@ -46,13 +46,16 @@ pub(super) struct Groom {
 
 impl Groom {
     pub fn new(gpu: &Gpu, guides: &Guides, body: Option<&Mesh>) -> Result<Self, GpuError> {
+        let spread = |guide: usize| guides.spreads().map_or(1.0, |spreads| spreads[guide]);
         let roots: Vec<[f32; 4]> = guides
             .root_normals()
             .iter()
             .zip(guides.widths())
-            .flat_map(|(&normal, &width)| {
+            .enumerate()
+            .flat_map(|(guide, (&normal, &width))| {
                 let [first, second] = skin_axes(normal);
-                [normal.extend(width), first.extend(0.0), second.extend(0.0)].map(|vector| vector.to_array())
+                [normal.extend(width), first.extend(spread(guide)), second.extend(0.0)]
+                    .map(|vector| vector.to_array())
             })
             .chain(own(guides))
             .collect();

@@ -1,6 +1,8 @@
 //! Settings that a scene leaves open, chosen to fit a groom from a file: points of strands, drawn strands about
 //! each, their widths and colours.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
 use crate::{
@@ -10,7 +12,7 @@ use crate::{
         Groom,
         format::{HAIR_WIDTH, Part},
     },
-    render::LevelOfDetail,
+    render::{GroupLook, LevelOfDetail},
 };
 
 /// Hair that is drawn when a groom has fewer strands, about \[strand\].
@@ -35,6 +37,10 @@ const COARSEST: f32 = 0.1;
 const NEAR: f32 = 2.5;
 /// Strands that are looked at.
 const LOOKED_AT: usize = 400;
+/// Groups that are looked at: of so many strands, and so many of them; whose roots are so much closer than those of all.
+const FEWEST: usize = 20;
+const MOST_GROUPS: usize = 64;
+const CLOSER: f32 = 0.7;
 /// Diameter of a hair over the distance of hairs on a head of a hundred thousand.
 const DENSITY: f32 = 0.095;
 
@@ -62,6 +68,7 @@ pub(super) fn fit(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Opti
         chosen.push(format!("level_of_detail.segments_per_span = {}", level.segments_per_span));
     }
     let spacing = spacing(groom);
+    let are_open = !given.root_radius && !given.tip_radius && look.clump == default.look.clump;
     let clump = &mut look.clump;
     let of_default = default.look.clump;
     let mut radius = |value: &mut f32, given: bool, default: f32, share: f32, key: &str| {
@@ -74,6 +81,9 @@ pub(super) fn fit(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Opti
     radius(&mut clump.tip_radius, given.tip_radius, of_default.tip_radius, TIP_SHARE, "tip_radius");
     let (waves, of_waves) = (given.wave_amplitude, of_default.wave_amplitude);
     radius(&mut clump.wave_amplitude, waves, of_waves, WAVE_SHARE, "wave_amplitude");
+    if are_open {
+        fit_clumps(scene, groom, spacing, &mut chosen);
+    }
     fit_widths(scene, groom, spacing, &default, &mut chosen);
     let size = mesh.and_then(Mesh::bounds).map_or(0.0, |bounds| bounds.min.distance(bounds.max));
     let body = &mut scene.body;
@@ -88,6 +98,35 @@ pub(super) fn fit(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Opti
         chosen.push(format!("level_of_detail.full_distance = {:.1}", level.full_distance));
     }
     (!chosen.is_empty()).then(|| format!("chosen to fit the groom: {}", chosen.join(", ")))
+}
+
+/// Clumps of groups whose roots stand closer than those of most: brows and lashes beside hair.
+fn fit_clumps(scene: &mut Scene, groom: &Groom, of_all: f32, chosen: &mut Vec<String>) {
+    let mut groups: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (strand, group) in groom.groups.iter().flatten().enumerate() {
+        groups.entry(*group).or_default().push(strand);
+    }
+    groups.retain(|_, strands| strands.len() >= FEWEST && strands.len() < groom.strand_count());
+    for (group, strands) in groups.iter().take(MOST_GROUPS) {
+        let ratio = spacing(&groom.select(strands)) / of_all.max(f32::MIN_POSITIVE);
+        if ratio > CLOSER || scene.look.group.len() >= MOST_GROUPS {
+            continue;
+        }
+        let name = groom.group_names.get(group).cloned().unwrap_or_else(|| group.to_string());
+        let looks = &mut scene.look.group;
+        let own = match looks.iter().position(|look| look.name == name) {
+            Some(place) => &mut looks[place],
+            None => {
+                looks.push(GroupLook { name: name.clone(), ..GroupLook::default() });
+                let last = looks.len() - 1;
+                &mut looks[last]
+            }
+        };
+        if own.clump.is_none() {
+            own.clump = Some(ratio);
+            chosen.push(format!("clump = {ratio:.2} of `{name}`"));
+        }
+    }
 }
 
 /// Widths: with those of the file drawn strands cover together what its strands cover, without them as much of
@@ -178,6 +217,32 @@ mod tests {
         assert!(curly >= 48, "{curly}");
         let spacing = spacing(&groom(0.0));
         assert!((0.0019..0.0041).contains(&spacing), "{spacing}");
+    }
+
+    #[test]
+    fn clumps_of_brows_are_narrower_than_those_of_hair() {
+        let mut groom = groom(0.0);
+        // A hundred roots 0.2 mm apart, ten to a row.
+        for strand in 0..100 {
+            let root = Vec3::new(0.5 + 2e-4 * (strand % 10) as f32, 0.0, 2e-4 * (strand / 10) as f32);
+            groom.push([root, root + Vec3::Y * 0.005, root + Vec3::Y * 0.01]);
+        }
+        groom.groups = Some((0..2600).map(|strand| u32::from(strand >= 2500)).collect());
+        groom.group_names = [(0, "hair".to_owned()), (1, "brows".to_owned())].into();
+        let mut scene = Scene::default();
+        scene.groom.file = Some("a.hair".into());
+        let mut given = scene.clone();
+        let note = fit(&mut scene, &groom, None).unwrap();
+        let [brows] = &scene.look.group[..] else { panic!("{:?}", scene.look.group) };
+        let clump = brows.clump.unwrap();
+        assert!(
+            brows.name == "brows" && (0.09..0.11).contains(&clump) && note.contains("of `brows`"),
+            "{note}"
+        );
+        let own = GroupLook { name: "brows".to_owned(), clump: Some(0.5), ..GroupLook::default() };
+        given.look.group = vec![own.clone()];
+        fit(&mut given, &groom, None);
+        assert_eq!(given.look.group, [own]);
     }
 
     #[test]

@@ -72,6 +72,15 @@ pub(super) fn dress(scene: &Scene, groom: &mut Groom) -> Result<(), Error> {
     Ok(())
 }
 
+/// Multiples of how far drawn strands lie about those of a groom; none where no group has its own.
+pub(super) fn spreads(look: &Look, groom: &Groom) -> Result<Option<Vec<f32>>, Error> {
+    if look.group.iter().all(|group| group.clump.is_none()) {
+        return Ok(None);
+    }
+    let of = |group: Option<usize>| group.and_then(|group| look.group[group].clump).unwrap_or(1.0);
+    Ok(Some(groups(look, groom)?.into_iter().map(of).collect()))
+}
+
 /// What one strand has of its own.
 struct Dressed<'a> {
     look: Option<&'a GroupLook>,

@@ -74,11 +74,16 @@ impl Prepared {
         let chosen = strands::guides(scene, &groom, &mut notes);
         let simulated = chosen.as_ref().map_or(groom.strand_count(), Vec::len);
         memory::check(scene, simulated, groom.strand_count())?;
-        let all = resampled(scene, &groom, body.shape.as_ref())?;
+        let mut all = resampled(scene, &groom, body.shape.as_ref())?;
         let mut guides = match &chosen {
             None => all.clone(),
             Some(chosen) => resampled(scene, &groom.select(chosen), body.shape.as_ref())?,
         };
+        let spreads = looks::spreads(&scene.look, &groom)?;
+        if chosen.is_none() {
+            guides.set_spreads(spreads.clone())?;
+        }
+        all.set_spreads(spreads)?;
         if let Some(file) = &scene.groom.attributes {
             attributes::load(&scene.path(file), &mut guides)?;
         }
