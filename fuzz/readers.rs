@@ -99,14 +99,25 @@ fn groom(parsed: Result<Parsed, GroomError>, again: impl Fn(&Groom) -> Result<bo
     true
 }
 
+/// What has a name in a mesh is no more than the mesh.
+fn part(bytes: &[u8], ending: &str, whole: &Mesh) -> bool {
+    for name in ["a", "scalp", "Mesh"] {
+        if let Ok(Some(part)) = Mesh::part_from(bytes, ending, name) {
+            assert!(part.triangles.len() <= whole.triangles.len());
+            assert_eq!(part.positions.len(), part.normals.len());
+        }
+    }
+    true
+}
+
 /// An OBJ file is read or refused; what was read is a mesh, and a solid where it is no larger than a body.
 pub fn obj(bytes: &[u8]) -> bool {
-    Mesh::from_obj(bytes).is_ok_and(|mesh| solid(&mesh))
+    Mesh::from_obj(bytes).is_ok_and(|mesh| part(bytes, "obj", &mesh) && solid(&mesh))
 }
 
 /// A glTF file, as an OBJ file.
 pub fn gltf(bytes: &[u8]) -> bool {
-    Mesh::from_gltf(bytes).is_ok_and(|mesh| solid(&mesh))
+    Mesh::from_gltf(bytes).is_ok_and(|mesh| part(bytes, "glb", &mesh) && solid(&mesh))
 }
 
 /// A glTF file in a folder, with files beside it, below it and outside: none from outside is read.

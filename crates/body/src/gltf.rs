@@ -7,8 +7,8 @@ use ::gltf::mesh::{Mode, Primitive};
 use glam::{Mat3, Mat4, Vec3};
 
 use crate::gltf_buffers::{Buffers, load_buffers};
-use crate::mesh_file::Names;
 use crate::parsing::{Refusal, read_file, unit_normal};
+use crate::part_names::Names;
 use crate::{BodyError, Mesh};
 
 /// The most vertices and the most triangles of one body, and those of a small file.

@@ -30,6 +30,7 @@ mod near_surface;
 mod nearest_place;
 mod obj;
 mod parsing;
+mod part_names;
 mod pose;
 mod random;
 mod scalp;

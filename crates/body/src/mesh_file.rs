@@ -1,36 +1,13 @@
 //! Reading a mesh from a file, by its ending.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use glam::Vec3;
 
 use crate::mesh::vertex_normals;
 use crate::parsing::Refusal;
+use crate::part_names::Names;
 use crate::{BodyError, Mesh, gltf, obj};
-
-/// Names that are kept of a file.
-const MOST_NAMES: usize = 1000;
-
-/// The name that is asked for, and all that a file has.
-pub(crate) struct Names {
-    asked: String,
-    found: BTreeSet<String>,
-}
-
-impl Names {
-    fn new(asked: &str) -> Self {
-        Self { asked: asked.to_owned(), found: BTreeSet::new() }
-    }
-
-    /// Takes note of a name; whether it is the one.
-    pub fn add(&mut self, name: &str) -> bool {
-        if !name.is_empty() && !self.found.contains(name) && self.found.len() < MOST_NAMES {
-            self.found.insert(name.to_owned());
-        }
-        !name.is_empty() && name.eq_ignore_ascii_case(&self.asked)
-    }
-}
 
 /// Reads a file by its ending, or the part of it that has a name.
 fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
@@ -88,7 +65,7 @@ impl Mesh {
     pub fn part_names(path: &Path) -> Result<Vec<String>, BodyError> {
         let mut names = Names::new("");
         read(path, Some(&mut names))?;
-        Ok(names.found.into_iter().collect())
+        Ok(names.all())
     }
 
     /// Reads an OBJ file from its bytes, in the units of the file.
@@ -106,6 +83,22 @@ impl Mesh {
     /// See [`BodyError`].
     pub fn from_gltf(bytes: &[u8]) -> Result<Self, BodyError> {
         Self::from_parsed(gltf::parse(bytes, None, None))
+    }
+
+    /// As [`Mesh::load_part`], from the bytes of a file whose ending is "obj" or else of a glTF that holds its buffers.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn part_from(bytes: &[u8], ending: &str, name: &str) -> Result<Option<Self>, BodyError> {
+        let mut names = Names::new(name);
+        let parsed = match ending {
+            "obj" => obj::parse_part(bytes, &mut names),
+            _ => gltf::parse(bytes, None, Some(&mut names)),
+        };
+        match parsed {
+            Ok(mesh) if mesh.triangles.is_empty() => Ok(None),
+            parsed => Self::from_parsed(parsed).map(Some),
+        }
     }
 
     fn from_parsed(parsed: Result<Self, Refusal>) -> Result<Self, BodyError> {

@@ -5,22 +5,25 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use crate::mesh_file::Names;
 use crate::parsing::{Refusal, read_file, unit_normal};
+use crate::part_names::Names;
 use crate::{BodyError, Mesh};
 
 /// Reads a mesh, or the part of it that has a name, in the units of the file; vertices without a normal get a zero one.
 pub(crate) fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
-    let mut bytes = read_file(path)?;
-    if let Some(names) = names {
-        bytes = only(&bytes, names);
-    }
-    parse(&bytes).map_err(|(found, expected)| BodyError::Mesh {
+    let bytes = read_file(path)?;
+    let parsed = names.map_or_else(|| parse(&bytes), |names| parse_part(&bytes, names));
+    parsed.map_err(|(found, expected)| BodyError::Mesh {
         path: path.into(),
         found,
         expected,
         mend: "export the body again",
     })
+}
+
+/// The part that has a name, from the bytes of a file.
+pub(crate) fn parse_part(bytes: &[u8], names: &mut Names) -> Result<Mesh, Refusal> {
+    parse(&only(bytes, names))
 }
 
 /// The file without the faces that have not the name asked for: that of their object, a group or the material.

@@ -1,4 +1,5 @@
 //! Strands that are bound to simulated ones, from a scene to a picture.
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use strandline::{
     Backend, Cache, Devices, Event, OutSettings, Picture, Player, Prepared, Scene, What,
@@ -313,8 +314,7 @@ fn files_of_one_groom_are_placed_together() {
     }
     nape.save(folder.path().join("nape.npz")).unwrap();
     rest.save(folder.path().join("rest.npz")).unwrap();
-    let mut scene = Scene::default();
-    scene.folder = folder.path().to_owned();
+    let mut scene = Scene { folder: folder.path().to_owned(), ..Scene::default() };
     scene.groom.file = Some("nape.npz".into());
     scene.groom.parts = vec![GroomPart { file: "rest.npz".into(), ..GroomPart::default() }];
     scene.body.file = Some("head.obj".into());

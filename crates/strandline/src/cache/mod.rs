@@ -4,6 +4,7 @@
 //! An `Out` writes frames while a run goes on, [`Cache`] reads a moving cache. What leaves is decided in `shape`
 //! alone: strands, and whatever attributes they have; every writer takes them from there.
 
+mod arrays;
 pub(crate) mod drawn;
 mod files;
 mod meta;
