@@ -114,9 +114,9 @@ pub struct RenderOptions {
     /// Size of a picture in pixels.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
-    /// Folder of the pictures [default: out/ and the scene's name], or an .exr file for linear light, depth, coverage,
-    /// directions and strands (of more frames one file each, with its number).
-    #[arg(long, value_name = "DIR")]
+    /// Folder of the pictures [default: out/ and the scene's name], or a .png file, or an .exr file for linear light,
+    /// depth, coverage, directions and strands (of more frames one file each, with its number).
+    #[arg(long, value_name = "DIR|FILE")]
     pub out: Option<PathBuf>,
     /// Draw the hair of this moving cache in place of a simulation, with its own scene unless --scene names one.
     #[arg(long, value_name = "FILE.npz")]

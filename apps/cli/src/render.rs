@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Backend, Cache, Error, Event, Film, LayerFilm, Player, Scene};
+use strandline::{Backend, Cache, Error, Event, Film, PictureFiles, Player, Scene};
 
 use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};
@@ -50,7 +50,10 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
     if let Some((width, height)) = options.size {
         (scene.picture.width, scene.picture.height) = (width, height);
     }
-    if let Some(path) = options.out.as_deref().filter(|path| is_exr(path)) {
+    if let Some(path) = options.out.as_deref().filter(|path| has_ending(path, "png")) {
+        return files(&scene, cache, path, options.inputs.json);
+    }
+    if let Some(path) = options.out.as_deref().filter(|path| has_ending(path, "exr")) {
         scene.picture.layers = true;
         if matches!(scene.devices.pictures, Backend::Gpu(_)) {
             output::note(
@@ -59,7 +62,7 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
         } else {
             scene.devices.pictures = Backend::Cpu;
         }
-        return channels(&scene, cache, path, options.inputs.json);
+        return files(&scene, cache, path, options.inputs.json);
     }
     let name = options.cache.as_deref().and_then(Path::file_stem).map(Path::new);
     let name = name.map_or_else(|| options.inputs.name().into(), Path::to_owned);
@@ -67,8 +70,8 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
     film(&scene, cache, &folder, options.inputs.json)
 }
 
-fn is_exr(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+fn has_ending(path: &Path, wanted: &str) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
 }
 
 /// What plays a scene, or shows a cache of it.
@@ -79,13 +82,15 @@ fn player(scene: &Scene, cache: Option<Cache>) -> Result<Player, Error> {
     }
 }
 
-/// Writes an .exr file, or of more frames one each with its number before the ending.
-fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow::Result<()> {
+/// Writes a .png or .exr file, or of more frames one each with its number before the ending.
+fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow::Result<()> {
+    let waiting = Waiting::begin(LOADING);
     let mut player = player(scene, cache)?;
+    drop(waiting);
     player.notes().iter().for_each(|note| output::note(note));
     let stoppable = Stoppable::begin();
-    let mut film = LayerFilm::new(path, player.frames())?;
-    let non_finite = play_channels(&mut player, &mut film, &stoppable, json);
+    let mut film = PictureFiles::new(path, player.frames())?;
+    let non_finite = play_files(&mut player, &mut film, has_ending(path, "exr"), &stoppable, json);
     if non_finite.is_err() && !film.is_empty() {
         output::note(&format!("the {} files already written are whole: {}", film.len(), path.display()));
     }
@@ -103,9 +108,10 @@ fn channels(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> any
     Ok(non_finite.outcome()?)
 }
 
-fn play_channels(
+fn play_files(
     player: &mut Player,
-    film: &mut LayerFilm,
+    film: &mut PictureFiles,
+    layers: bool,
     stoppable: &Stoppable,
     quiet: bool,
 ) -> anyhow::Result<NonFinite> {
@@ -119,9 +125,10 @@ fn play_channels(
                 let note = non_finite.add(&report, player.frames_done());
                 note.into_iter().for_each(|note| progress.note(&note));
             }
-            Event::Drawn { report, .. } => {
-                report.layers.iter().try_for_each(|layers| film.add(layers))?;
+            Event::Drawn { report, .. } if layers => {
+                report.layers.iter().try_for_each(|layers| film.add_layers(layers))?;
             }
+            Event::Drawn { picture, .. } => film.add(&picture)?,
         }
         let done = u64::from(player.frames_done());
         progress.reached(done);

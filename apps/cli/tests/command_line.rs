@@ -373,3 +373,16 @@ fn linear_light_and_channels_are_written_by_either_device() {
         assert!(name == same && apart < 0.02, "{name}: {one}, {same}: {two}");
     }
 }
+
+#[test]
+fn a_picture_of_a_name_is_that_file_and_a_film_one_for_each_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    small(folder.path());
+    let is_png =
+        |name: &str| std::fs::read(folder.path().join(name)).is_ok_and(|bytes| bytes.starts_with(b"\x89PNG"));
+    let said =
+        works(folder.path(), &["render", "--scene", "small.toml", "--frames", "1", "--out", "new/one.png"]);
+    assert!(said.contains("new/one.png") && is_png("new/one.png"), "{said}");
+    works(folder.path(), &["render", "--scene", "small.toml", "--frames", "2", "--out", "two.png"]);
+    assert!(is_png("two_0000.png") && is_png("two_0001.png") && !folder.path().join("two.png").exists());
+}

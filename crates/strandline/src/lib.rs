@@ -61,7 +61,7 @@ pub use bound::BoundStrands;
 pub use cache::{Cache, OutSettings, Target, What, Written, check_cache};
 pub use devices::Devices;
 pub use error::Error;
-pub use film::{Film, FilmFiles, LayerFilm};
+pub use film::{Film, FilmFiles, PictureFiles};
 pub use groom::{Groom, Style};
 pub use hair::Hair;
 pub use hair_pose::check_pose;

@@ -1,7 +1,7 @@
 //! Writes a film as it is drawn: frames, a contact sheet, and a video or an animated image.
 
 mod animation;
-mod layers;
+mod picture_files;
 mod sheet;
 mod video;
 
@@ -14,7 +14,7 @@ use strandline_base::{FolderLock, WholeFile};
 
 use crate::{Error, render::Picture};
 use animation::Animation;
-pub use layers::LayerFilm;
+pub use picture_files::PictureFiles;
 use video::Video;
 
 /// Names of the files beside the frames.

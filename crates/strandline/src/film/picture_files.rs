@@ -1,24 +1,27 @@
-//! Writes the frames of a film as .exr files.
+//! Writes the frames of a film as files that are named: .png, or .exr.
 
 use std::path::{Path, PathBuf};
 
 use strandline_base::FolderLock;
 
 use super::{claim, still_there, unlocked};
-use crate::{Error, render::Layers};
+use crate::{
+    Error,
+    render::{Layers, Picture},
+};
 
-/// Receives the layers of a film's pictures in order, and writes a file for each.
+/// Receives the pictures of a film in order, or their layers, and writes a file for each, .png or .exr.
 ///
 /// A film of one picture is the file that is named; of more, each has its number before the ending:
-/// `hair_0000.exr`. Every file is whole once it has its name. One film at a time is written into a folder.
-pub struct LayerFilm {
+/// `hair_0000.png`. Every file is whole once it has its name. One film at a time is written into a folder.
+pub struct PictureFiles {
     path: PathBuf,
     frames: u32,
     files: Vec<PathBuf>,
     lock: FolderLock,
 }
 
-impl LayerFilm {
+impl PictureFiles {
     /// A film of `frames` pictures; the folder of the file is made when it is not there.
     ///
     /// # Errors
@@ -38,19 +41,33 @@ impl LayerFilm {
         self.files.is_empty()
     }
 
-    /// Writes the next picture's layers.
+    /// Writes the next picture.
     ///
     /// # Errors
     /// The file cannot be written; earlier ones stay.
-    pub fn add(&mut self, layers: &Layers) -> Result<(), Error> {
-        let file = if self.frames == 1 {
-            self.path.clone()
-        } else {
-            self.path.with_file_name(format!("{}_{:04}.exr", self.stem(), self.files.len()))
-        };
+    pub fn add(&mut self, picture: &Picture) -> Result<(), Error> {
+        let file = self.next("png");
+        picture.save(&file)?;
+        self.files.push(file);
+        Ok(())
+    }
+
+    /// Writes the next picture's layers.
+    ///
+    /// # Errors
+    /// As [`PictureFiles::add`].
+    pub fn add_layers(&mut self, layers: &Layers) -> Result<(), Error> {
+        let file = self.next("exr");
         layers.save(&file)?;
         self.files.push(file);
         Ok(())
+    }
+
+    fn next(&self, ending: &str) -> PathBuf {
+        if self.frames == 1 {
+            return self.path.clone();
+        }
+        self.path.with_file_name(format!("{}_{:04}.{ending}", self.stem(), self.files.len()))
     }
 
     /// The files, in order, and notes for a person: of locks that the file system has not, and of files that an
@@ -66,8 +83,9 @@ impl LayerFilm {
 
     fn leftovers(&self) -> Option<String> {
         let stem = format!("{}_", self.stem());
+        let ending = format!(".{}", self.path.extension().unwrap_or_default().to_string_lossy());
         let number = |name: &String| {
-            let digits = name.strip_prefix(&stem)?.strip_suffix(".exr")?;
+            let digits = name.strip_prefix(&stem)?.strip_suffix(&ending)?;
             let is_ours = digits.len() >= 4 && digits.bytes().all(|byte| byte.is_ascii_digit());
             digits.parse::<usize>().ok().filter(|_| is_ours)
         };
@@ -94,8 +112,8 @@ mod tests {
     fn a_folder_is_made_and_held_and_older_frames_are_noted() {
         let home = tempfile::tempdir().unwrap();
         let path = home.path().join("new/hair.exr");
-        let film = LayerFilm::new(&path, 3).unwrap();
-        let busy = LayerFilm::new(&path, 3).err().expect("a folder that is taken").to_string();
+        let film = PictureFiles::new(&path, 3).unwrap();
+        let busy = PictureFiles::new(&path, 3).err().expect("a folder that is taken").to_string();
         assert!(busy.contains("new"), "{busy}");
         for name in ["hair_0000.exr", "hair_0002.exr", "hair_00x2.exr", "other_0009.exr", "hair_0001.png"] {
             std::fs::write(path.with_file_name(name), b"old").unwrap();
@@ -106,7 +124,7 @@ mod tests {
             notes,
             ["of an earlier film there are still hair_0000.exr and hair_0002.exr in the folder"]
         );
-        assert!(LayerFilm::new(&path, 1).is_ok(), "it is free again");
+        assert!(PictureFiles::new(&path, 1).is_ok(), "it is free again");
     }
 
     #[test]
