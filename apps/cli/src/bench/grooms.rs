@@ -187,6 +187,8 @@ fn place(pictures: Backend, [strands, guides]: [u32; 2], frames: u32) -> anyhow:
     (scene.film.frames, scene.film.settle) = (frames + 1, 0.0);
     (scene.look.follow_strands, scene.picture.width, scene.picture.height) = (1, 64, 64);
     scene.look.dress(strandline::render::Preset::Thesis);
+    // Curves of more points pass what a buffer holds by WebGPU's default limits.
+    scene.level_of_detail.segments_per_span = 1;
     (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, pictures);
     let mut player = Player::new(&scene, scene.devices, true)?;
     // Both at once would share the processor.
