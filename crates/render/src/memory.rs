@@ -19,9 +19,9 @@ const CUT_POINTS: u64 = 1 << 22;
 const POINT_BYTES: u64 = 40 + 16 + 80;
 /// Bytes of a guide's point: the smooth curve with its frame.
 const CURVE_BYTES: u64 = 36;
-/// Bytes of a shadow map's texel: layers and depths, and those that each of the threads fills.
-const TEXEL_BYTES: u64 = 24;
-const PART_BYTES: u64 = 16;
+/// Bytes of a shadow map's texel: layers and the body's depth, and the sums and depths that each of the threads fills.
+const TEXEL_BYTES: u64 = 20;
+const PART_BYTES: u64 = 20;
 /// Cells of the grid of scattered light, and bytes of one: light along 26 directions four times, sums and fields.
 const GRID_CELLS: u64 = 43 * 43 * 43;
 const CELL_BYTES: u64 = 26 * 16 * 4 + 600;

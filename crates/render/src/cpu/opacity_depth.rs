@@ -1,12 +1,14 @@
 //! `opacity_depth`: for each light with shadow, the depth of the first hair and of the body [Yuksel2008 §3].
 
+use std::iter;
+
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::Strands;
 use super::shadow::{LightView, NOTHING, ShadowMap, Shadows, Window};
 use super::shadow_body::draw_depth;
-use super::shadow_hair::{part_count, part_strands, plane_bounds, walk};
+use super::shadow_hair::{part_strands, parts_of, plane_bounds, walk};
 use crate::{Light, Shadow};
 
 /// A body that casts shadows, already in its place.
@@ -37,6 +39,9 @@ pub fn opacity_depth(
         map.view = LightView::new(light, middle);
         map.set(settings);
     }
+    let count = out.casts.iter().filter(|casts| **casts).count();
+    let active = out.maps.iter_mut().zip(&out.casts).filter(|(_, casts)| **casts);
+    active.enumerate().for_each(|(order, (map, _))| map.parts = parts_of(order, count));
     out.active().for_each(|map| {
         let hair = plane_bounds(&strands.positions, &map.view);
         map.hair_window = Window::around(hair, &map.view, middle, map.size);
@@ -58,25 +63,21 @@ fn body_depths(map: &mut ShadowMap, body: ShadowBody, middle: Vec3) {
 
 fn hair_depths(map: &mut ShadowMap, strands: &Strands) {
     let size = map.size;
-    let (view, window, parts) = (map.view, map.hair_window, part_count());
-    map.depth_parts.resize_with(parts, Vec::new);
-    map.depth_parts.par_iter_mut().enumerate().for_each(|(part, depths)| {
+    let (view, window, parts) = (map.view, map.hair_window, map.parts);
+    map.depth_parts.resize_with(parts - 1, Vec::new);
+    let mut all: Vec<_> = iter::once(&mut map.depths).chain(&mut map.depth_parts).collect();
+    all.par_iter_mut().enumerate().for_each(|(part, depths)| {
         depths.clear();
         depths.resize(size * size, NOTHING);
+        let depths = depths.as_mut_slice();
         walk(strands, part_strands(strands, part, parts), &view, &window, size, |piece| {
             let depth = &mut depths[piece.texel];
-            *depth = depth.min(piece.depth);
+            *depth = if piece.depth < *depth { piece.depth } else { *depth };
         });
     });
-    map.depths.resize(size * size, NOTHING);
-    let parts = &map.depth_parts;
-    map.depths.par_chunks_mut(size).enumerate().for_each(|(row, depths)| {
-        let row = row * size..(row + 1) * size;
-        depths.copy_from_slice(&parts[0][row.clone()]);
-        for part in &parts[1..] {
-            for (depth, other) in depths.iter_mut().zip(&part[row.clone()]) {
-                *depth = depth.min(*other);
-            }
-        }
-    });
+    for part in &map.depth_parts {
+        map.depths.par_chunks_mut(size).zip(part.par_chunks(size)).for_each(|(depths, others)| {
+            depths.iter_mut().zip(others).for_each(|(depth, other)| *depth = depth.min(*other));
+        });
+    }
 }

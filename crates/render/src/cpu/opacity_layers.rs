@@ -6,7 +6,7 @@ use strandline_base::math;
 
 use super::Strands;
 use super::shadow::{ShadowMap, Shadows};
-use super::shadow_hair::{part_count, part_strands, walk};
+use super::shadow_hair::{part_strands, walk};
 
 /// Whole numbers make sums that do not depend on their order: parts of a crossing.
 const UNITS: f32 = 65536.0;
@@ -24,21 +24,22 @@ pub fn opacity_layers(strands: &Strands, out: &mut Shadows) {
 
 fn sum_parts(map: &mut ShadowMap, strands: &Strands) {
     let size = map.size;
-    let (view, window, parts, depths) = (map.view, map.hair_window, part_count(), &map.depths);
+    let (view, window, parts, depths) = (map.view, map.hair_window, map.parts, &map.depths);
     let ([second, third, end], solid) = (map.borders, map.solid);
     map.layer_parts.resize_with(parts, Vec::new);
     map.layer_parts.par_iter_mut().enumerate().for_each(|(part, layers)| {
         layers.clear();
-        layers.resize(3 * size * size, 0);
+        // The first depth lies beside the sums, where it costs no further way to memory.
+        layers.extend(depths.iter().map(|depth| [0, 0, 0, depth.to_bits()]));
+        let layers = layers.as_mut_slice();
         walk(strands, part_strands(strands, part, parts), &view, &window, size, |piece| {
-            let behind = piece.depth - depths[piece.texel];
-            if behind > end {
-                return;
-            }
+            let texel = &mut layers[piece.texel];
+            let behind = piece.depth - f32::from_bits(texel[3]);
             let layer = usize::from(behind > second) + usize::from(behind > third);
             let hidden = if solid { piece.coverage * hiding(piece.width) } else { piece.coverage };
-            let sum = &mut layers[3 * piece.texel + layer];
-            *sum = sum.saturating_add((hidden * UNITS) as u32);
+            // Without a branch that nobody could foresee.
+            let hidden = if behind > end { 0.0 } else { hidden };
+            texel[layer] = texel[layer].saturating_add((hidden * UNITS) as u32);
         });
     });
 }
@@ -61,7 +62,7 @@ fn merge(map: &mut ShadowMap) {
         for (column, texel) in texels.iter_mut().enumerate() {
             let index = row * size + column;
             let sum = |layer| {
-                let units: u64 = parts.iter().map(|part| u64::from(part[3 * index + layer])).sum();
+                let units: u64 = parts.iter().map(|part| u64::from(part[index][layer])).sum();
                 units as f32 * (1.0 / UNITS)
             };
             *texel = Vec4::new(sum(0), sum(1), sum(2), depths[index]);

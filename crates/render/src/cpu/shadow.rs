@@ -137,8 +137,12 @@ pub struct ShadowMap {
     pub(crate) depths: Vec<f32>,
     /// Depth \[m\] of the body.
     pub(crate) body_depths: Vec<f32>,
+    /// Into how many parts the strands are shared out.
+    pub(crate) parts: usize,
+    /// Depths of all parts but the first.
     pub(crate) depth_parts: Vec<Vec<f32>>,
-    pub(crate) layer_parts: Vec<Vec<u32>>,
+    /// Sums of three layers, and the bits of the depth of the first hair, of each part.
+    pub(crate) layer_parts: Vec<Vec<[u32; 4]>>,
     /// Depths \[m\] behind the first hair at which layers begin.
     starts: Vec4,
     /// One over the thickness of each layer \[1/m\].

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
+use wide::f32x4;
 
 use super::Strands;
 use super::shadow::{LightView, Window};
@@ -16,9 +17,17 @@ const MOST_ROWS: f32 = 256.0;
 /// Strands whose bounds are found together.
 const CHUNK: usize = 4096;
 
-/// Number of parts: results do not depend on it.
+/// Most parts of a map's strands: results do not depend on it.
 pub(crate) fn part_count() -> usize {
     rayon::current_num_threads().min(MOST_PARTS)
+}
+
+/// Parts for the next of so many maps that are filled together. As many maps as threads are filled whole, one by
+/// each thread: parts must be cleared and summed.
+pub(crate) fn parts_of(map: usize, maps: usize) -> usize {
+    let threads = part_count();
+    let left = maps % threads;
+    if map < maps - left { 1 } else { threads.div_ceil(left) }
 }
 
 /// The strands of a part.
@@ -83,37 +92,83 @@ pub(crate) fn walk(
 /// Cuts one segment; ends are texel coordinates with depth, and width \[texel\].
 #[inline]
 fn cut(start: (Vec3, f32), end: (Vec3, f32), size: usize, take: &mut impl FnMut(Piece)) {
-    let way = end.0 - start.0;
+    let (start, end) = (start.0.extend(start.1), end.0.extend(end.1));
+    let way = end - start;
     let longest = way.x.abs().max(way.y.abs());
     let limit = size as f32;
     if longest.is_nan() || longest > 4.0 * limit {
         return;
     }
-    let pieces = (longest.ceil() as usize).max(1);
+    // Rounded up.
+    let whole = longest as i32;
+    let pieces = (whole + i32::from((whole as f32) < longest)).max(1);
     let inverse = 1.0 / pieces as f32;
     let length = (way.x * way.x + way.y * way.y).sqrt() * inverse;
     let step = way * inverse;
-    let mut at = start.0 + 0.5 * step;
-    let widening = (end.1 - start.1) * inverse;
-    let mut width = start.1 + 0.5 * widening;
-    let widest = start.1.max(end.1);
-    let rows = if widest > WIDE && length > 0.0 { widest.min(MOST_ROWS).ceil() } else { 1.0 };
-    let aside = if rows > 1.0 { way.truncate().perp().normalize_or_zero() / rows } else { Vec2::ZERO };
-    for _ in 0..pieces {
-        for row in 0..rows as usize {
-            let place = at.truncate() + aside * (width * (row as f32 + 0.5 - 0.5 * rows));
-            if place.x >= 0.0 && place.y >= 0.0 && place.x < limit && place.y < limit {
-                take(Piece {
-                    texel: place.y as usize * size + place.x as usize,
-                    depth: at.z,
-                    coverage: length * width / rows,
-                    width,
-                });
-            }
-        }
-        at += step;
-        width += widening;
+    let line = Line { at: start + 0.5 * step, step, pieces, length, size };
+    let widest = start.w.max(end.w);
+    if widest > WIDE && length > 0.0 {
+        let rows = widest.min(MOST_ROWS).ceil();
+        let aside = Vec2::new(way.x, way.y).perp().normalize_or_zero() / rows;
+        return line.rows(rows, aside, take);
     }
+    // Middles of pieces lie between the ends.
+    let (low, high) = (start.min(end), start.max(end));
+    if low.x >= 1.0 && low.y >= 1.0 && high.x < limit - 1.0 && high.y < limit - 1.0 {
+        line.row(|_| true, take);
+    } else {
+        line.row(|at| is_within(Vec2::new(at.x, at.y), limit), take);
+    }
+}
+
+/// A segment in pieces.
+struct Line {
+    /// Texel coordinates, depth \[m\] and width \[texel\] of the middle of the first piece, and what each adds.
+    at: Vec4,
+    step: Vec4,
+    pieces: i32,
+    /// Length of a piece \[texel\].
+    length: f32,
+    /// Texels along a side of the map.
+    size: usize,
+}
+
+impl Line {
+    /// Hands out the pieces that are `seen`.
+    #[inline]
+    fn row(self, seen: impl Fn(Vec4) -> bool, take: &mut impl FnMut(Piece)) {
+        let mut at = self.at;
+        for _ in 0..self.pieces {
+            if seen(at) {
+                let [column, row, ..] = f32x4::from(at.to_array()).fast_trunc_int().to_array();
+                let texel = row as u32 as usize * self.size + column as u32 as usize;
+                take(Piece { texel, depth: at.z, coverage: self.length * at.w, width: at.w });
+            }
+            at += self.step;
+        }
+    }
+
+    /// [`Line::row`] of hair that is laid out in so many rows, and the way from one to the next over its width.
+    #[cold]
+    fn rows(self, rows: f32, aside: Vec2, take: &mut impl FnMut(Piece)) {
+        let mut at = self.at;
+        for _ in 0..self.pieces {
+            for row in 0..rows as usize {
+                let place = Vec2::new(at.x, at.y) + aside * (at.w * (row as f32 + 0.5 - 0.5 * rows));
+                if is_within(place, self.size as f32) {
+                    let texel = place.y as usize * self.size + place.x as usize;
+                    take(Piece { texel, depth: at.z, coverage: self.length * at.w / rows, width: at.w });
+                }
+            }
+            at += self.step;
+        }
+    }
+}
+
+/// Whether texel coordinates lie in the map.
+#[inline]
+fn is_within(place: Vec2, limit: f32) -> bool {
+    place.x >= 0.0 && place.y >= 0.0 && place.x < limit && place.y < limit
 }
 
 #[cfg(test)]
