@@ -2,9 +2,35 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use strandline_groom::Vec3Lanes;
-use wide::f32x8;
+use wide::{f32x4, f32x8};
+
+/// The whole parts of coordinates that are not negative, and what is left of them; 0 where they are NaN. `floor` is a
+/// call on processors that every build must run on.
+#[inline]
+pub(crate) fn split(at: Vec3) -> ([usize; 3], Vec3) {
+    let whole = f32x4::from([at.x, at.y, at.z, 0.0]).trunc_int();
+    let [x, y, z, _] = f32x4::from_i32x4(whole).to_array();
+    let [columns, rows, layers, _] = whole.to_array().map(|whole| whole as u32 as usize);
+    ([columns, rows, layers], at - Vec3::new(x, y, z))
+}
+
+/// [`split`] of coordinates of 0 to 2^24.
+#[inline]
+pub(crate) fn split_texel(at: Vec2) -> ([usize; 2], Vec2) {
+    let whole = f32x4::from([at.x, at.y, 0.0, 0.0]).fast_trunc_int();
+    let [x, y, ..] = f32x4::from_i32x4(whole).to_array();
+    let [column, row, ..] = whole.to_array().map(|whole| whole as u32 as usize);
+    ([column, row], at - Vec2::new(x, y))
+}
+
+/// A number of 0 to 2^31 rounded up, without a call.
+#[inline]
+pub(crate) fn rounded_up(number: f32) -> i32 {
+    let whole = number as i32;
+    whole + i32::from((whole as f32) < number)
+}
 
 /// Eight vectors, component by component.
 #[derive(Clone, Copy)]

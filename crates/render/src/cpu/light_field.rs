@@ -88,7 +88,7 @@ pub fn on_surface(field: &Field, n: Vec3) -> Vec4 {
 /// A unit vector across `t` that points toward `to_eye`.
 #[inline]
 pub fn across(t: Vec3, to_eye: Vec3) -> Vec3 {
-    (to_eye - t * t.dot(to_eye)).normalize_or(t.any_orthonormal_vector())
+    (to_eye - t * t.dot(to_eye)).try_normalize().unwrap_or_else(|| t.any_orthonormal_vector())
 }
 
 #[cfg(test)]

@@ -4,13 +4,17 @@ use std::ops::Range;
 
 use glam::Vec3;
 use rayon::prelude::*;
+use wide::f32x4;
 
 use super::ShadowBody;
+use super::lanes::rounded_up;
 use super::light_scene::Scene;
 use super::occlusion::GridBox;
 
-/// Parts that the strands are shared out to.
+/// Most parts that the strands are shared out to.
 const PARTS: usize = 4;
+/// What is converted as 32 bits.
+const MOST_SMALL: f32 = 1_073_741_824.0;
 /// Whole numbers make sums that do not depend on their order: parts of a square metre, 2^40.
 pub(super) const UNITS: f32 = 1_099_511_627_776.0;
 /// Sums of a cell's hair: its area, that times its direction, and behind these that times what reaches it of each light.
@@ -22,11 +26,12 @@ pub(super) const SKIN_SUMS: usize = 6;
 pub(super) fn sum(grid: &GridBox, scene: &Scene, parts: &mut Vec<Vec<i64>>) {
     let (cells, strands) = (grid.cell_count(), scene.strands);
     let width = HAIR_SUMS + scene.lights.len() + SKIN_SUMS;
-    parts.resize_with(PARTS, Vec::new);
+    let count_of_parts = rayon::current_num_threads().clamp(1, PARTS);
+    parts.resize_with(count_of_parts, Vec::new);
     parts.par_iter_mut().enumerate().for_each(|(part, sums)| {
         sums.clear();
         sums.resize(cells * width, 0);
-        let range = |count: usize| count * part / PARTS..count * (part + 1) / PARTS;
+        let range = |count: usize| count * part / count_of_parts..count * (part + 1) / count_of_parts;
         sum_hair(grid, scene, range(strands.strand_count), width, sums);
         if let Some((body, _)) = &scene.body {
             sum_skin(grid, scene, body, range(body.triangles.len()), width, sums);
@@ -38,7 +43,9 @@ pub(super) fn sum(grid: &GridBox, scene: &Scene, parts: &mut Vec<Vec<i64>>) {
 fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, sums: &mut [i64]) {
     let strands = scene.strands;
     let count = strands.points_per_strand;
-    let mut values = vec![0.0; width - SKIN_SUMS];
+    // Whole vectors; what is beyond the sums of hair adds nothing to those of skin.
+    let mut values = vec![0.0; (width - SKIN_SUMS).next_multiple_of(4)];
+    let mut quads = vec![f32x4::ZERO; values.len() / 4];
     let drawn = range.filter(|strand| strands.is_drawn(*strand));
     for point in drawn.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
         let (start, end) = (strands.positions[point], strands.positions[point + 1]);
@@ -48,7 +55,7 @@ fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, su
         if !(length > 0.0 && longest < 1e4) {
             continue;
         }
-        let pieces = longest.ceil().max(1.0);
+        let pieces = rounded_up(longest).max(1) as f32;
         for piece in 0..pieces as usize {
             let along = (piece as f32 + 0.5) / pieces;
             let mix = |values: &[f32]| values[point] + (values[point + 1] - values[point]) * along;
@@ -58,13 +65,38 @@ fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, su
             for (value, reached) in values[HAIR_SUMS..].iter_mut().zip(scene.reached) {
                 *value = if reached.is_empty() { 0.0 } else { area * mix(reached) };
             }
+            let units = f32x4::splat(UNITS);
+            quads.iter_mut().zip(values.as_chunks::<4>().0).for_each(|(quad, values)| {
+                *quad = f32x4::from(*values) * units;
+            });
+            let small = values.iter().all(|value| value.abs() * UNITS < MOST_SMALL);
             grid.spread(start + way * along, |index, share| {
                 let cell = &mut sums[index * width..][..width];
-                for (sum, value) in cell.iter_mut().zip(&values) {
-                    *sum += (value * share * UNITS) as i64;
+                if small {
+                    add_small(cell, &quads, share);
+                } else {
+                    add(cell, &values[..width - SKIN_SUMS], share);
                 }
             });
         }
+    }
+}
+
+/// Adds a share of values.
+#[inline]
+fn add(sums: &mut [i64], values: &[f32], share: f32) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += (value * share * UNITS) as i64;
+    }
+}
+
+/// [`add`] of values in units that 32 bits hold, to the same bits: units are a power of two.
+#[inline]
+fn add_small(sums: &mut [i64], quads: &[f32x4], share: f32) {
+    let share = f32x4::splat(share);
+    for (sums, quad) in sums.as_chunks_mut::<4>().0.iter_mut().zip(quads) {
+        let parts = (*quad * share).fast_trunc_int().to_array();
+        sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += i64::from(part));
     }
 }
 
@@ -108,9 +140,7 @@ fn sum_skin(
             let light = light * area.length();
             grid.spread(place, |index, share| {
                 let sums = &mut sums[(index + 1) * width - SKIN_SUMS..][..SKIN_SUMS];
-                for (sum, value) in sums.iter_mut().zip([area, light].iter().flat_map(|v| v.to_array())) {
-                    *sum += (value * share * UNITS) as i64;
-                }
+                add(sums, &[area.x, area.y, area.z, light.x, light.y, light.z], share);
             });
         }
     }

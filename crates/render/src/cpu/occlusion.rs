@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::Strands;
 use super::fast_math::exp;
+use super::lanes::{rounded_up, split};
 use super::shadow::stepped_down;
 use crate::{Environment, Shadow};
 
@@ -103,8 +104,7 @@ impl Occlusion {
             return [1.0; 8];
         }
         let at = at.clamp(Vec3::ZERO, last.max(Vec3::ZERO));
-        let (x, y, z) = (at.x as usize, at.y as usize, at.z as usize);
-        let part = at - at.floor();
+        let ([x, y, z], part) = split(at);
         let [columns, rows, _] = self.counts;
         let first = (z * rows + y) * columns + x;
         let mut sum = [0.0; 8];
@@ -229,8 +229,8 @@ impl GridBox {
         let last = Vec3::from(self.counts.map(|count| count as f32 - 1.001));
         let at = ((place - self.min) / self.cell - Vec3::splat(0.5)).clamp(Vec3::ZERO, last.max(Vec3::ZERO));
         let [columns, rows, _] = self.counts;
-        let first = (at.z as usize * rows + at.y as usize) * columns + at.x as usize;
-        (first, at - at.floor())
+        let ([x, y, z], part) = split(at);
+        ((z * rows + y) * columns + x, part)
     }
 
     /// Hands the eight cells around a place \[m\] to `add`, each with its share.
@@ -265,10 +265,10 @@ impl Grid {
         if longest.is_nan() || longest > MOST_CELLS as f32 {
             return;
         }
-        let pieces = longest.ceil().max(1.0);
-        let share = 1.0 / pieces;
+        let pieces = rounded_up(longest).max(1);
+        let share = 1.0 / pieces as f32;
         let length = way.length() * (share * UNITS);
-        for piece in 0..pieces as usize {
+        for piece in 0..pieces {
             let along = (piece as f32 + 0.5) * share;
             let width = start.1 + (end.1 - start.1) * along;
             self.add(start.0 + way * along, length * width, areas);
@@ -280,8 +280,7 @@ impl Grid {
         let [columns, rows, layers] = self.counts;
         let last = Vec3::new(columns as f32, rows as f32, layers as f32) - Vec3::splat(1.001);
         let at = ((place - self.min) * self.inverse - Vec3::splat(0.5)).clamp(Vec3::ZERO, last);
-        let (x, y, z) = (at.x as usize, at.y as usize, at.z as usize);
-        let part = at - at.floor();
+        let ([x, y, z], part) = split(at);
         let first = (z * rows + y) * columns + x;
         for upper in 0..4 {
             let (dy, dz) = (upper & 1, upper >> 1);

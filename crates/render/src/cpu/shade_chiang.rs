@@ -4,7 +4,6 @@ use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::math;
 
-use super::fast_math::exp;
 use super::lattice::Lattice;
 use super::light_field;
 use super::light_grid::LightGrid;
@@ -140,9 +139,7 @@ fn reach(strands: &Strands, lit: &Lit, reached: &mut Vec<Vec<f32>>) {
         let both = reached.par_chunks_mut(count).zip(strands.positions.par_chunks(count)).enumerate();
         both.filter(|(strand, _)| strands.is_drawn(*strand)).for_each(|(_, (reached, places))| {
             for (reached, &place) in reached.iter_mut().zip(places) {
-                let open = map.body_visibility(place);
-                *reached =
-                    if open > 0.0 { open * exp(map.crossings(place) * map.log_transmission()) } else { 0.0 };
+                *reached = map.reach(place);
             }
         });
     }

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 use strandline_base::math;
 
 use super::fast_math::exp;
+use super::lanes::split_texel;
 use crate::{Light, LightKind, Shadow};
 
 /// Depth \[m\] of a texel that holds nothing.
@@ -188,7 +189,12 @@ impl ShadowMap {
     /// answers are blended: depths are never averaged across the outline of the hair [Yuksel2008 §3].
     #[inline]
     pub fn crossings(&self, point: Vec3) -> f32 {
-        let Some(projected) = self.view.project(point) else { return 0.0 };
+        self.view.project(point).map_or(0.0, |projected| self.crossed(projected))
+    }
+
+    /// [`ShadowMap::crossings`] of a point on the plane with its depth \[m\].
+    #[inline]
+    fn crossed(&self, projected: Vec3) -> f32 {
         let Some((index, weights)) = self.corners(self.hair_window.texel(projected.truncate())) else {
             return 0.0;
         };
@@ -205,7 +211,15 @@ impl ShadowMap {
     /// Share of the light that the body lets through to a point \[m\], world space: 0 in its shadow.
     #[inline]
     pub fn body_visibility(&self, point: Vec3) -> f32 {
-        self.body_seen(point, &[Vec2::ZERO])
+        self.view.project(point).map_or(1.0, |projected| self.body_open(projected, &[Vec2::ZERO]))
+    }
+
+    /// Share of the light that hair and body let through to a point of a strand \[m\], world space.
+    #[inline]
+    pub(crate) fn reach(&self, point: Vec3) -> f32 {
+        let Some(projected) = self.view.project(point) else { return 1.0 };
+        let open = self.body_open(projected, &[Vec2::ZERO]);
+        if open > 0.0 { open * exp(self.crossed(projected) * self.log_transmission) } else { 0.0 }
     }
 
     /// Share of the light that hair and body let through to a point \[m\], world space.
@@ -215,17 +229,21 @@ impl ShadowMap {
     pub fn transmittance(&self, point: Vec3) -> f32 {
         const AROUND: [Vec2; 4] =
             [Vec2::new(-0.9, -0.4), Vec2::new(0.4, -0.9), Vec2::new(0.9, 0.4), Vec2::new(-0.4, 0.9)];
-        let visibility = self.body_seen(point, &AROUND);
-        if visibility == 0.0 { 0.0 } else { visibility * exp(self.crossings(point) * self.log_transmission) }
+        let Some(projected) = self.view.project(point) else { return 1.0 };
+        let visibility = self.body_open(projected, &AROUND);
+        if visibility == 0.0 {
+            0.0
+        } else {
+            visibility * exp(self.crossed(projected) * self.log_transmission)
+        }
     }
 
-    /// Mean visibility past the body at offsets \[texel\] from a point \[m\].
+    /// Mean visibility past the body at offsets \[texel\] from a point on the plane with its depth \[m\].
     #[inline]
-    fn body_seen(&self, point: Vec3, offsets: &[Vec2]) -> f32 {
+    fn body_open(&self, projected: Vec3, offsets: &[Vec2]) -> f32 {
         if self.body_depths.is_empty() {
             return 1.0;
         }
-        let Some(projected) = self.view.project(point) else { return 1.0 };
         let texel = self.body_window.texel(projected.truncate());
         let nearest = projected.z - self.body_bias;
         let mut shadow = 0.0;
@@ -247,8 +265,7 @@ impl ShadowMap {
         if !(texel.x >= 0.0 && texel.y >= 0.0 && texel.x < limit && texel.y < limit) {
             return None;
         }
-        let (column, row) = (texel.x as usize, texel.y as usize);
-        let (x, y) = (texel.x - column as f32, texel.y - row as f32);
+        let ([column, row], Vec2 { x, y }) = split_texel(texel);
         let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
         Some((row * self.size + column, weights))
     }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use wide::f32x4;
 
 use super::Strands;
+use super::lanes::rounded_up;
 use super::shadow::{LightView, Window};
 
 /// Most parts that the strands are shared out to; each part fills a map of its own.
@@ -99,9 +100,7 @@ fn cut(start: (Vec3, f32), end: (Vec3, f32), size: usize, take: &mut impl FnMut(
     if longest.is_nan() || longest > 4.0 * limit {
         return;
     }
-    // Rounded up.
-    let whole = longest as i32;
-    let pieces = (whole + i32::from((whole as f32) < longest)).max(1);
+    let pieces = rounded_up(longest).max(1);
     let inverse = 1.0 / pieces as f32;
     let length = (way.x * way.x + way.y * way.y).sqrt() * inverse;
     let step = way * inverse;
