@@ -126,22 +126,20 @@ impl Light {
 
     /// What the light sends to a point \[m\], world space.
     pub fn at(&self, point: Vec3) -> Illumination {
+        self.shining().at(point)
+    }
+
+    /// The light for many points.
+    pub(crate) fn shining(&self) -> Shining<'_> {
         let axis = self.position - self.target;
-        let radiance = self.color * self.intensity;
-        if self.kind == LightKind::Directional {
-            return Illumination { to_light: axis.normalize_or(Vec3::Y), radiance };
+        let cosines = if self.kind == LightKind::Spot { self.cone_cosines() } else { [0.0; 2] };
+        Shining {
+            light: self,
+            axis: axis.normalize_or(Vec3::Y),
+            square: axis.length_squared(),
+            radiance: self.color * self.intensity,
+            cosines,
         }
-        let way = self.position - point;
-        let to_light = way.normalize_or(Vec3::Y);
-        let falloff = axis.length_squared() / way.length_squared().max(1e-6);
-        let facing = to_light.dot(axis.normalize_or(Vec3::Y));
-        let cone = match self.kind {
-            LightKind::Directional | LightKind::Point => 1.0,
-            LightKind::Spot => self.cone(facing),
-            // A matte surface.
-            LightKind::Rectangle | LightKind::Disc => facing.max(0.0),
-        };
-        Illumination { to_light, radiance: radiance * (falloff * cone) }
     }
 
     /// Places that it is taken to shine from.
@@ -183,18 +181,52 @@ impl Light {
         [self.width * middle(index % side), self.height * middle(index / side)]
     }
 
-    /// Share of a spot light at a cosine from its axis.
-    fn cone(&self, cosine: f32) -> f32 {
-        let [rim, full] = self.cone_cosines();
-        let share = ((cosine - rim) / (full - rim)).clamp(0.0, 1.0);
-        share * share * (3.0 - 2.0 * share)
-    }
-
     /// Cosines of a spot light's rim and of where it begins to fade.
     pub(crate) fn cone_cosines(&self) -> [f32; 2] {
         let rim = self.cone_angle.to_radians();
         let full = rim * (1.0 - self.cone_softness.clamp(1e-3, 1.0));
         [math::cos(rim), math::cos(full)]
+    }
+}
+
+/// A light with what it is to all points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shining<'a> {
+    light: &'a Light,
+    /// Unit direction to it from its target, and the square of their distance \[m^2\].
+    axis: Vec3,
+    square: f32,
+    /// Radiance at the target, linear RGB.
+    radiance: Vec3,
+    /// Of a spot light's rim and of where it begins to fade.
+    cosines: [f32; 2],
+}
+
+impl Shining<'_> {
+    /// What the light sends to a point \[m\], world space.
+    #[inline]
+    pub(crate) fn at(&self, point: Vec3) -> Illumination {
+        if self.light.kind == LightKind::Directional {
+            return Illumination { to_light: self.axis, radiance: self.radiance };
+        }
+        let way = self.light.position - point;
+        let to_light = way.normalize_or(Vec3::Y);
+        let falloff = self.square / way.length_squared().max(1e-6);
+        let facing = to_light.dot(self.axis);
+        let cone = match self.light.kind {
+            LightKind::Directional | LightKind::Point => 1.0,
+            LightKind::Spot => self.cone(facing),
+            // A matte surface.
+            LightKind::Rectangle | LightKind::Disc => facing.max(0.0),
+        };
+        Illumination { to_light, radiance: self.radiance * (falloff * cone) }
+    }
+
+    /// Share of a spot light at a cosine from its axis.
+    fn cone(&self, cosine: f32) -> f32 {
+        let [rim, full] = self.cosines;
+        let share = ((cosine - rim) / (full - rim)).clamp(0.0, 1.0);
+        share * share * (3.0 - 2.0 * share)
     }
 }
 

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use strandline_base::math;
 
 use super::light_field;
-use crate::fibre::chiang::{Lobes, Pigments, Table};
+use crate::fibre::chiang::{Lobes, Pigments, Seen, Table};
 
 /// Directions along which light is carried.
 pub const DIRECTIONS: usize = 26;
@@ -92,9 +92,10 @@ impl Lattice {
     pub fn weights(&self, t: Vec3, to_eye: Vec3) -> Rays {
         let sine = t.dot(to_eye);
         let u = light_field::across(t, to_eye);
+        let seen = self.seen(sine);
         let paths = self.ways.map(|(way, share)| {
             let solid = 4.0 * std::f32::consts::PI * share;
-            self.paths(t, u, sine, -way).map(|path| path * solid)
+            self.paths(t, u, &seen, -way).map(|path| path * solid)
         });
         let shares = self.table.shares(sine, self.pigment);
         let mut sums = [Vec3::ZERO; 3];
@@ -105,19 +106,26 @@ impl Lattice {
         paths.map(|[r, tt, trt]| (r * scales[0] + tt * scales[1] + trt * scales[2]).extend(0.0))
     }
 
-    fn paths(&self, t: Vec3, u: Vec3, sine: f32, to_light: Vec3) -> [Vec3; 3] {
+    /// What is seen by the sine of the eye's inclination.
+    fn seen(&self, sine: f32) -> Seen {
+        Seen::new(sine, Pigments::Even(self.pigment))
+    }
+
+    #[inline]
+    fn paths(&self, t: Vec3, u: Vec3, seen: &Seen, to_light: Vec3) -> [Vec3; 3] {
         let sine_light = t.dot(to_light);
         let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();
         let turn = (u.dot(to_light) / flat).clamp(-1.0, 1.0);
-        self.table.by_path(sine, sine_light, turn, Pigments::Even(self.pigment), 0.0)
+        self.table.by_path(seen, sine_light, turn, 0.0)
     }
 
     /// Adds what hair of unit tangent `t` shows along every direction of light of the given radiance (of a white
     /// surface that faces it) from a unit direction; what is shown all around is what meets the hair.
     pub fn add_light(&self, t: Vec3, to_light: Vec3, light: Vec3, shown: &mut Rays) {
         let flat = |sine: f32| (1.0 - sine * sine).max(0.0).sqrt();
-        let paths =
-            self.ways.map(|(way, _)| self.paths(t, light_field::across(t, way), t.dot(way), to_light));
+        let paths = self
+            .ways
+            .map(|(way, _)| self.paths(t, light_field::across(t, way), &self.seen(t.dot(way)), to_light));
         let mut sums = [Vec3::ZERO; 3];
         for (path, (way, share)) in paths.iter().zip(self.ways) {
             let weight = 4.0 * std::f32::consts::PI * share * flat(t.dot(way));

@@ -10,6 +10,7 @@ use super::ShadowBody;
 use super::lanes::rounded_up;
 use super::light_scene::Scene;
 use super::occlusion::GridBox;
+use crate::Light;
 
 /// Most parts that the strands are shared out to.
 const PARTS: usize = 4;
@@ -109,6 +110,7 @@ fn sum_skin(
     width: usize,
     sums: &mut [i64],
 ) {
+    let lights: Vec<_> = scene.lights.iter().map(Light::shining).collect();
     for corners in &body.triangles[range] {
         let [a, b, c] = corners.map(|corner| body.positions[corner as usize]);
         let (ab, ac) = (b - a, c - a);
@@ -128,7 +130,7 @@ fn sum_skin(
             let aside = (0.5 * at + if upright { 1.0 / 3.0 } else { 1.0 / 6.0 }) / pieces as f32;
             let place = a + ab * (along - aside) + ac * aside;
             let mut light = Vec3::ZERO;
-            for (index, source) in scene.lights.iter().enumerate() {
+            for (index, source) in lights.iter().enumerate() {
                 let lit = source.at(place);
                 let facing = normal.dot(lit.to_light);
                 if facing > 0.0 {

@@ -11,13 +11,15 @@ use super::light_scene::Scene;
 use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, toward};
 use super::{ShadowBody, Shadows, Strands};
-use crate::fibre::chiang::{INK, Pigments, Table, WHITE};
+use crate::fibre::chiang::{INK, Pigments, Seen, Table, WHITE};
 use crate::fibre::{Chiang, Pigment};
 use crate::level_of_detail::is_drawn;
 use crate::{Light, Look};
 
 /// Noise nodes along a strand.
 const NODES: usize = 8;
+/// A share of a light of which nothing is seen.
+const LEAST_SHARE: f32 = 1e-5;
 
 /// What the tables of a look are made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -208,6 +210,7 @@ fn radiances(
     let (count, per_guide) = (strands.points_per_strand, strands.strands_per_guide);
     let (positions, tangents, colors) = (&strands.positions, &strands.tangents, &strands.colors);
     let left_out = strands.left_out;
+    let lights: Vec<_> = lit.lights.iter().map(Light::shining).zip(reached).collect();
     let drawn = |(strand, _): &(usize, &mut [Vec3])| is_drawn(strand / per_guide, left_out);
     strands.radiances.par_chunks_mut(count).enumerate().filter(drawn).for_each(|(strand, radiances)| {
         let guide = strand / per_guide;
@@ -222,19 +225,22 @@ fn radiances(
             let sine = t.dot(to_eye);
             let u = light_field::across(t, to_eye);
             let (field, more) = grid.field(place);
-            let moments = table.moments(sine, pigments);
+            let seen = Seen::new(sine, pigments);
+            let moments = table.seen_moments(&seen);
             let mut sum = (light_field::shown(&field, &moments, t, u) * more).truncate();
-            for (light, source) in lit.lights.iter().enumerate() {
+            for (source, reached) in &lights {
+                let known = reached.get(point);
+                // Most hair lies in shadow.
+                if known.is_some_and(|share| *share <= LEAST_SHARE) {
+                    continue;
+                }
                 let from = source.at(place);
-                let share = match reached[light].get(point) {
-                    Some(share) => *share,
-                    None => toward(&occlusion.cube(place), from.to_light),
-                };
-                if share > 1e-5 {
+                let share = known.copied().unwrap_or_else(|| toward(&occlusion.cube(place), from.to_light));
+                if share > LEAST_SHARE {
                     let sine_light = t.dot(from.to_light);
                     let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();
                     let turn = (u.dot(from.to_light) / flat).clamp(-1.0, 1.0);
-                    let shown = table.scatter(sine, sine_light, turn, pigments, shift);
+                    let shown = table.shown(&seen, sine_light, turn, shift);
                     sum += shown * from.radiance * (share * std::f32::consts::PI);
                 }
             }

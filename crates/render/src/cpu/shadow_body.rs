@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::lanes::rounded_up;
 use super::shadow::{LightView, Window};
 
 /// Draws the nearest depth \[m\] of triangles into a square map that already holds depths.
@@ -13,14 +14,14 @@ pub(crate) fn draw_depth(
     size: usize,
     depths: &mut [f32],
 ) {
+    // Triangles with a corner behind the light are not finite.
+    let place = |&position: &Vec3| match view.project(position) {
+        Some(point) => window.texel(point.truncate()).extend(point.z),
+        None => Vec3::NAN,
+    };
+    let places: Vec<Vec3> = positions.iter().map(place).collect();
     for corners in triangles {
-        let [a, b, c] = corners.map(|corner| {
-            let point = view.project(positions[corner as usize])?;
-            Some(window.texel(point.truncate()).extend(point.z))
-        });
-        if let (Some(a), Some(b), Some(c)) = (a, b, c) {
-            fill([a, b, c], size, depths);
-        }
+        fill(corners.map(|corner| places[corner as usize]), size, depths);
     }
 }
 
@@ -34,16 +35,19 @@ fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32]) {
     let limit = Vec2::splat(size as f32);
     let min = a.min(b).min(c).truncate().max(Vec2::ZERO);
     let max = a.max(b).max(c).truncate().min(limit);
+    if !min.cmplt(max).all() {
+        return;
+    }
     let inverse = 1.0 / area;
-    for row in min.y as usize..max.y.ceil() as usize {
-        for column in min.x as usize..max.x.ceil() as usize {
+    for row in min.y as i32..rounded_up(max.y) {
+        for column in min.x as i32..rounded_up(max.x) {
             let middle = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
             let from = |corner: Vec3| corner.truncate() - middle;
             let first = from(b).perp_dot(from(c)) * inverse;
             let second = from(c).perp_dot(from(a)) * inverse;
             let third = 1.0 - first - second;
             if first >= 0.0 && second >= 0.0 && third >= 0.0 {
-                let depth = &mut depths[row * size + column];
+                let depth = &mut depths[row as usize * size + column as usize];
                 *depth = depth.min(first * a.z + second * b.z + third * c.z);
             }
         }

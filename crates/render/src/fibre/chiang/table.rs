@@ -55,6 +55,39 @@ pub enum Pigments {
     Channels(Vec3),
 }
 
+/// What all lights share that one point of hair shows: where its tables are looked up.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Inclination of the eye \[rad\], its sine, and one less the square of that.
+    angle: f32,
+    sine: f32,
+    square: f32,
+    /// The node before it and how far the next one is.
+    row: (usize, f32),
+    /// Levels of the pigment, of one channel or of three.
+    levels: [(usize, f32); 3],
+    even: bool,
+}
+
+impl Seen {
+    /// For the sine of the eye's inclination and a multiple of the pigment.
+    #[inline]
+    pub fn new(sine: f32, pigments: Pigments) -> Self {
+        let angle = arc_sine(sine);
+        let (levels, even) = match pigments {
+            Pigments::Even(pigment) => ([level_of(pigment); 3], true),
+            Pigments::Channels(pigments) => (pigments.to_array().map(level_of), false),
+        };
+        let row = place(angle.abs() * std::f32::consts::FRAC_2_PI, EYES);
+        Self { angle, sine, square: 1.0 - sine * sine, row, levels, even }
+    }
+
+    /// The sine of the eye's inclination.
+    pub fn sine(&self) -> f32 {
+        self.sine
+    }
+}
+
 impl Table {
     /// The tables of a fibre; absorption per fibre radius at the root.
     pub fn new(lobes: &Lobes, absorption: [f64; 3]) -> Self {
@@ -110,23 +143,28 @@ impl Table {
     /// highlights.
     #[inline]
     pub fn scatter(&self, eye: f32, light: f32, turn: f32, pigments: Pigments, shift: f32) -> Vec3 {
-        let [r, tt, trt] = self.by_path(eye, light, turn, pigments, shift);
+        self.shown(&Seen::new(eye, pigments), light, turn, shift)
+    }
+
+    /// [`Table::scatter`] of many lights that one point shows.
+    #[inline]
+    pub fn shown(&self, seen: &Seen, light: f32, turn: f32, shift: f32) -> Vec3 {
+        let [r, tt, trt] = self.by_path(seen, light, turn, shift);
         r + tt + trt
     }
 
-    /// [`Table::scatter`] of R, TT and TRT.
+    /// [`Table::shown`] of R, TT and TRT.
     #[inline]
-    pub fn by_path(&self, eye: f32, light: f32, turn: f32, pigments: Pigments, shift: f32) -> [Vec3; 3] {
-        let cosines = ((1.0 - eye * eye) * (1.0 - light * light)).max(0.0).sqrt();
-        let (eye, light) = (arc_sine(eye), arc_sine(light));
-        let along = self.along(eye, light, shift) / evened(cosines, self.floor);
+    pub fn by_path(&self, seen: &Seen, light: f32, turn: f32, shift: f32) -> [Vec3; 3] {
+        let cosines = (seen.square * (1.0 - light * light)).max(0.0).sqrt();
+        let along = self.along(seen.angle, arc_sine(light), shift) / evened(cosines, self.floor);
         let turn = FRAC_PI_2 as f32 - arc_sine(turn);
-        let [first, second] = match pigments {
-            Pigments::Even(pigment) => self.around(eye, turn, pigment),
-            Pigments::Channels(pigments) => {
-                let found = pigments.to_array().map(|pigment| self.around(eye, turn, pigment));
-                channels(found, [0, 1].map(|term| found[0][term].w))
-            }
+        let turn = place(turn * std::f32::consts::FRAC_1_PI, TURNS);
+        let [first, second] = if seen.even {
+            self.around(seen.row, turn, seen.levels[0])
+        } else {
+            let found = seen.levels.map(|level| self.around(seen.row, turn, level));
+            channels(found, [0, 1].map(|term| found[0][term].w))
         };
         [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
     }
@@ -143,12 +181,10 @@ impl Table {
         near.lerp(far, part)
     }
 
-    /// Terms around the fibre.
+    /// Terms around the fibre between nodes of the eye's inclination, the turn and the pigment.
     #[inline]
-    fn around(&self, eye: f32, turn: f32, pigment: f32) -> [Vec4; 2] {
-        let (row, down) = place(eye.abs() * std::f32::consts::FRAC_2_PI, EYES);
-        let (column, across) = place(turn * std::f32::consts::FRAC_1_PI, TURNS);
-        let (level, between) = level_of(pigment);
+    fn around(&self, eye: (usize, f32), turn: (usize, f32), pigment: (usize, f32)) -> [Vec4; 2] {
+        let ((row, down), (column, across), (level, between)) = (eye, turn, pigment);
         let at = |level: usize| {
             let first = AROUND + 2 * ((level * EYES + row) * TURNS + column);
             [0, 1].map(|part| {
@@ -179,19 +215,22 @@ impl Table {
     /// The fibre's moments (see `moments.rs`) for the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
     pub fn moments(&self, eye: f32, pigments: Pigments) -> [Vec4; MOMENTS] {
-        match pigments {
-            Pigments::Even(pigment) => self.even_moments(eye, pigment),
-            Pigments::Channels(pigments) => {
-                let found = pigments.to_array().map(|pigment| self.even_moments(eye, pigment));
-                channels(found, [0.0; MOMENTS])
-            }
+        self.seen_moments(&Seen::new(eye, pigments))
+    }
+
+    /// [`Table::moments`] of what is seen.
+    #[inline]
+    pub fn seen_moments(&self, seen: &Seen) -> [Vec4; MOMENTS] {
+        if seen.even {
+            self.even_moments(seen.angle, seen.levels[0])
+        } else {
+            channels(seen.levels.map(|level| self.even_moments(seen.angle, level)), [0.0; MOMENTS])
         }
     }
 
     #[inline]
-    fn even_moments(&self, eye: f32, pigment: f32) -> [Vec4; MOMENTS] {
-        let (row, part) = place(0.5 + arc_sine(eye) * std::f32::consts::FRAC_1_PI, MOMENT_EYES);
-        let (level, between) = level_of(pigment);
+    fn even_moments(&self, eye: f32, (level, between): (usize, f32)) -> [Vec4; MOMENTS] {
+        let (row, part) = place(0.5 + eye * std::f32::consts::FRAC_1_PI, MOMENT_EYES);
         let first = FIRST_MOMENT + MOMENTS * (level * MOMENT_EYES + row);
         std::array::from_fn(|moment| {
             let at = |first: usize| {
