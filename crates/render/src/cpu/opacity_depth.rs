@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::Strands;
 use super::shadow::{LightView, NOTHING, ShadowMap, Shadows, Window};
 use super::shadow_body::draw_depth;
-use super::shadow_hair::{part_strands, parts_of, plane_bounds, walk};
+use super::shadow_hair::{part_strands, parts_of, plane_bounds, stride, walk};
 use crate::{Light, Shadow};
 
 /// A body that casts shadows, already in its place.
@@ -68,7 +68,7 @@ fn hair_depths(map: &mut ShadowMap, strands: &Strands) {
     let mut all: Vec<_> = iter::once(&mut map.depths).chain(&mut map.depth_parts).collect();
     all.par_iter_mut().enumerate().for_each(|(part, depths)| {
         depths.clear();
-        depths.resize(size * size, NOTHING);
+        depths.resize(size * stride(size), NOTHING);
         let depths = depths.as_mut_slice();
         walk(strands, part_strands(strands, part, parts), &view, &window, size, |piece| {
             let depth = &mut depths[piece.texel];
@@ -76,8 +76,10 @@ fn hair_depths(map: &mut ShadowMap, strands: &Strands) {
         });
     });
     for part in &map.depth_parts {
-        map.depths.par_chunks_mut(size).zip(part.par_chunks(size)).for_each(|(depths, others)| {
-            depths.iter_mut().zip(others).for_each(|(depth, other)| *depth = depth.min(*other));
-        });
+        map.depths.par_chunks_mut(stride(size)).zip(part.par_chunks(stride(size))).for_each(
+            |(depths, others)| {
+                depths.iter_mut().zip(others).for_each(|(depth, other)| *depth = depth.min(*other));
+            },
+        );
     }
 }

@@ -6,7 +6,7 @@ use strandline_base::math;
 
 use super::Strands;
 use super::shadow::{ShadowMap, Shadows};
-use super::shadow_hair::{part_strands, walk};
+use super::shadow_hair::{part_strands, stride, walk};
 
 /// Whole numbers make sums that do not depend on their order: parts of a crossing.
 const UNITS: f32 = 65536.0;
@@ -84,7 +84,7 @@ fn merge(map: &mut ShadowMap) {
     let (parts, depths) = (&map.layer_parts, &map.depths);
     map.texels.par_chunks_mut(size).enumerate().for_each(|(row, texels)| {
         for (column, texel) in texels.iter_mut().enumerate() {
-            let index = row * size + column;
+            let index = row * stride(size) + column;
             let sum = |layer| {
                 let units: u64 = parts.iter().map(|part| u64::from(part[index][layer])).sum();
                 units as f32 * (1.0 / UNITS)

@@ -134,7 +134,7 @@ pub struct ShadowMap {
     pub(crate) size: usize,
     /// Hairs crossed in each of the three layers (RGB) and depth \[m\] of the first hair (A).
     pub(crate) texels: Vec<Vec4>,
-    /// Depth \[m\] of the first hair.
+    /// Depth \[m\] of the first hair, in rows of `shadow_hair::stride`.
     pub(crate) depths: Vec<f32>,
     /// Depth \[m\] of the body.
     pub(crate) body_depths: Vec<f32>,

@@ -31,6 +31,12 @@ pub(crate) fn parts_of(map: usize, maps: usize) -> usize {
     if map < maps - left { 1 } else { threads.div_ceil(left) }
 }
 
+/// From a row to the next of maps that are filled, so many texels wide. Rows that lie a power of two apart meet in the
+/// same lines of a cache, and hair hangs down across them.
+pub(crate) fn stride(size: usize) -> usize {
+    size + 16
+}
+
 /// The strands of a part.
 pub(crate) fn part_strands(strands: &Strands, part: usize, parts: usize) -> Range<usize> {
     strands.strand_count * part / parts..strands.strand_count * (part + 1) / parts
@@ -52,7 +58,7 @@ pub(crate) fn plane_bounds(points: &[Vec3], view: &LightView) -> (Vec2, Vec2) {
 
 /// A piece of hair in one texel.
 pub(crate) struct Piece {
-    /// Index of the texel.
+    /// Index of the texel, in rows of [`stride`].
     pub(crate) texel: usize,
     /// Depth \[m\].
     pub(crate) depth: f32,
@@ -137,10 +143,11 @@ impl Line {
     #[inline]
     fn row(self, seen: impl Fn(Vec4) -> bool, take: &mut impl FnMut(Piece)) {
         let mut at = self.at;
+        let stride = stride(self.size);
         for _ in 0..self.pieces {
             if seen(at) {
                 let [column, row, ..] = f32x4::from(at.to_array()).fast_trunc_int().to_array();
-                let texel = row as u32 as usize * self.size + column as u32 as usize;
+                let texel = row as u32 as usize * stride + column as u32 as usize;
                 take(Piece { texel, depth: at.z, coverage: self.length * at.w, width: at.w });
             }
             at += self.step;
@@ -155,7 +162,7 @@ impl Line {
             for row in 0..rows as usize {
                 let place = Vec2::new(at.x, at.y) + aside * (at.w * (row as f32 + 0.5 - 0.5 * rows));
                 if is_within(place, self.size as f32) {
-                    let texel = place.y as usize * self.size + place.x as usize;
+                    let texel = place.y as usize * stride(self.size) + place.x as usize;
                     take(Piece { texel, depth: at.z, coverage: self.length * at.w / rows, width: at.w });
                 }
             }
@@ -176,7 +183,7 @@ mod tests {
 
     /// What a segment covers of each texel.
     fn covered(width: f32) -> Vec<f32> {
-        let mut texels = vec![0.0; 64 * 64];
+        let mut texels = vec![0.0; 64 * stride(64)];
         let ends = [Vec3::new(20.0, 20.0, 1.0), Vec3::new(44.0, 38.0, 1.0)];
         cut((ends[0], width), (ends[1], width), 64, &mut |piece: Piece| {
             texels[piece.texel] += piece.coverage
