@@ -153,6 +153,9 @@ fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
     let drawn = meshes.as_ref().map(|meshes| &meshes.drawn);
     let groom = match groom {
         Some(mut groom) => {
+            if scene.body.scalp.is_some() {
+                notes.push("body.scalp is for styles: strands of a file stay where they grow".to_owned());
+            }
             let (turn, translation) = (scene.groom.rotation, scene.groom.translation);
             strands::place(&mut groom, placings.groom, scene, turn, translation);
             if let Some(mesh) = drawn.filter(|_| is_foreign) {

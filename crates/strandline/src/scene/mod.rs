@@ -175,12 +175,14 @@ impl Scene {
             }
         }
         self.check_as("")?;
-        for (key, missing, whole) in [
-            ("groom.parts", self.groom.file.is_none() && !self.groom.parts.is_empty(), "groom.file"),
-            ("body.parts", self.body.file.is_none() && !self.body.parts.is_empty(), "body.file"),
+        let (further, part) = ("further files without a first one", "a part of a body without a file");
+        let (no_groom, no_body) = (self.groom.file.is_none(), self.body.file.is_none());
+        for (key, missing, found, whole) in [
+            ("groom.parts", no_groom && !self.groom.parts.is_empty(), further, "groom.file"),
+            ("body.parts", no_body && !self.body.parts.is_empty(), further, "body.file"),
+            ("body.scalp", no_body && self.body.scalp.is_some(), part, "body.file"),
         ] {
             if missing {
-                let found = "further files without a first one";
                 return Err(SettingError::new(key, found, format!("`{whole}` too")).into());
             }
         }
