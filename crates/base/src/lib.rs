@@ -1,6 +1,6 @@
 //! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
-//! that one run writes at a time, arrays in a zip that grow while a run goes on, text that is safe to print, the
-//! settings table. No hair, no GPU, nothing of ours below it.
+//! that one run writes at a time, arrays in a zip that grow while a run goes on, vectors of eight
+//! strands, poses, random numbers, text that is safe to print, the settings table. No hair, no GPU, nothing of ours below it.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
@@ -8,21 +8,29 @@
 pub mod cache;
 mod folder_lock;
 mod growing_file;
+mod lanes;
 pub mod math;
 pub mod memory;
 pub mod npz;
 mod parts;
 mod plain_file;
+mod pose;
 mod printable;
+mod random;
+pub mod real;
 mod setting;
 mod setting_macro;
 mod setting_values;
+pub mod vec3x8;
 mod whole_file;
 
 pub use folder_lock::FolderLock;
 pub use growing_file::GrowingFile;
+pub use lanes::{LANES, Lanes, Vec3Lanes, block_count};
 pub use parts::{Abandoned, abandon_parts};
 pub use plain_file::{open_plain, read_plain};
+pub use pose::Pose;
 pub use printable::printable;
+pub use random::Random;
 pub use setting::{Group, Key, Kind, Row, SettingError, Table, Value, Word, number};
 pub use whole_file::WholeFile;

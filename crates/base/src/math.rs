@@ -9,10 +9,10 @@
 use glam::{DQuat, DVec3, Quat, Vec2, Vec3};
 
 /// Numbers that have these functions: [`f32`] and [`f64`].
-pub trait Real: sealed::Sealed {}
+pub trait Float: sealed::Sealed {}
 
-impl Real for f32 {}
-impl Real for f64 {}
+impl Float for f32 {}
+impl Float for f64 {}
 
 macro_rules! functions {
     ($($(#[$document:meta])* $name:ident($($more:ident)?) = $single:ident, $double:ident;)*) => {
@@ -39,7 +39,7 @@ macro_rules! functions {
 
         $($(#[$document])*
         #[inline]
-        pub fn $name<R: Real>(x: R $(, $more: R)?) -> R {
+        pub fn $name<R: Float>(x: R $(, $more: R)?) -> R {
             sealed::Sealed::$name(x $(, $more)?)
         })*
     };
@@ -80,7 +80,7 @@ functions! {
 
 /// Sine and cosine of an angle \[rad\].
 #[inline]
-pub fn sin_cos<R: Real + Copy>(x: R) -> (R, R) {
+pub fn sin_cos<R: Float + Copy>(x: R) -> (R, R) {
     (sin(x), cos(x))
 }
 

@@ -1,7 +1,8 @@
 //! Where bound strands are: eight at a time, one lane a strand.
 
-use glam::{Mat3, Vec3, Vec4};
+use glam::Vec4;
 use rayon::prelude::*;
+use strandline_base::vec3x8::{Rigid, Vec3x8};
 use strandline_body::Pose;
 use wide::f32x8;
 
@@ -9,49 +10,6 @@ use super::frames::{Frame, Frames};
 use super::influence::{Followed, MOST_INFLUENCES};
 use super::{Binding, Surface};
 use crate::{LANES, Vec3Lanes, outside::placed_outside};
-
-/// Vectors of eight strands: x, y and z.
-type Vectors = [f32x8; 3];
-
-fn load(lanes: &Vec3Lanes) -> Vectors {
-    [lanes.x, lanes.y, lanes.z].map(f32x8::from)
-}
-
-fn store(vectors: Vectors) -> Vec3Lanes {
-    let [x, y, z] = vectors.map(f32x8::to_array);
-    Vec3Lanes { x, y, z }
-}
-
-fn minus(one: Vectors, two: Vectors) -> Vectors {
-    [one[0] - two[0], one[1] - two[1], one[2] - two[2]]
-}
-
-fn squared(vectors: Vectors) -> f32x8 {
-    vectors[0] * vectors[0] + vectors[1] * vectors[1] + vectors[2] * vectors[2]
-}
-
-/// The head's turn.
-struct Turn {
-    columns: [Vec3; 3],
-    translation: Vec3,
-}
-
-impl Turn {
-    fn new(pose: &Pose) -> Self {
-        let Mat3 { x_axis, y_axis, z_axis } = Mat3::from_quat(pose.rotation);
-        Self { columns: [x_axis, y_axis, z_axis], translation: pose.translation }
-    }
-
-    fn directions(&self, vectors: Vectors) -> Vectors {
-        let [x, y, z] = self.columns;
-        std::array::from_fn(|axis| vectors[0] * x[axis] + vectors[1] * y[axis] + vectors[2] * z[axis])
-    }
-
-    fn points(&self, vectors: Vectors) -> Vectors {
-        let turned = self.directions(vectors);
-        std::array::from_fn(|axis| turned[axis] + f32x8::splat(self.translation[axis]))
-    }
-}
 
 impl Binding {
     /// Where all strands are \[m\], world space, shape `[block][point]` of lanes, given where the guides are
@@ -65,7 +23,7 @@ impl Binding {
         out: &mut Vec<Vec3Lanes>,
     ) {
         let count = self.strands.points_per_strand();
-        let turn = Turn::new(world_from_head);
+        let turn = Rigid::new(world_from_head);
         out.resize(self.strands.positions().len(), Vec3Lanes::default());
         let blocks = out.par_chunks_mut(count).zip_eq(self.strands.positions().par_chunks(count));
         blocks.zip_eq(&self.blocks).for_each(|((places, rest), followed)| {
@@ -79,33 +37,32 @@ fn place_block(
     rest: &[Vec3Lanes],
     followed: &[Followed; MOST_INFLUENCES],
     frames: &Frames,
-    turn: &Turn,
+    turn: &Rigid,
     surface: Option<&Surface>,
     places: &mut [Vec3Lanes],
 ) {
     let count = rest.len();
     let scale = scales(followed, frames);
-    let mut here = load(&rest[0]);
+    let mut here = Vec3x8::load(&rest[0]);
     let mut before = turn.points(here);
     // Where the frames have the point before: segments lead as from one such place to the next.
     let mut blended_before = before;
     // How far \[m\] the surface is at least.
     let mut clear = f32x8::ZERO;
-    places[0] = store(before);
+    before.store(&mut places[0]);
     for point in 1..count {
-        let next = load(&rest[point]);
+        let next = Vec3x8::load(&rest[point]);
         let blended = blend(followed, &frames.points, point, count, &rest[point]);
-        let (segment, step) = (minus(next, here), minus(blended, blended_before));
-        let (own, stretched) = (squared(segment), squared(step));
+        let (segment, step) = (next - here, blended - blended_before);
+        let (own, stretched) = (segment.dot(segment), step.dot(step));
         let moves = stretched.simd_gt(f32x8::ZERO);
         let mut factor = scale * (own / stretched).sqrt();
         let mut way = step;
         if !moves.all() {
-            let carried = turn.directions(segment);
-            way = std::array::from_fn(|axis| moves.select(step[axis], carried[axis]));
+            way = step.or(moves, turn.directions(segment));
             factor = moves.select(factor, scale);
         }
-        let mut placed: Vectors = std::array::from_fn(|axis| before[axis] + way[axis] * factor);
+        let mut placed = before + way * factor;
         if let Some(surface) = surface {
             let length = scale * own.sqrt();
             clear -= length;
@@ -114,7 +71,7 @@ fn place_block(
                 (placed, clear) = outside(close, before, placed, length, clear, surface);
             }
         }
-        places[point] = store(placed);
+        placed.store(&mut places[point]);
         (here, before, blended_before) = (next, placed, blended);
     }
 }
@@ -134,7 +91,7 @@ fn blend(
     point: usize,
     count: usize,
     rest: &Vec3Lanes,
-) -> Vectors {
+) -> Vec3x8 {
     let last = (count - 1) as f32;
     let along = followed.each_ref().map(|one| {
         (f32x8::from(one.paces) * point as f32).fast_min(f32x8::splat(last)).fast_trunc_int().to_array()
@@ -150,32 +107,34 @@ fn blend(
         }
         found.set(lane, sum.truncate());
     }
-    load(&found)
+    Vec3x8::load(&found)
 }
 
 /// Puts those strands' points that may lie inside onto the surface: `close` has a bit for each.
 fn outside(
     close: u32,
-    before: Vectors,
-    placed: Vectors,
+    before: Vec3x8,
+    placed: Vec3x8,
     length: f32x8,
     clear: f32x8,
     surface: &Surface,
-) -> (Vectors, f32x8) {
-    let (before, mut placed) = (store(before), store(placed));
+) -> (Vec3x8, f32x8) {
+    let (mut from, mut to) = (Vec3Lanes::default(), Vec3Lanes::default());
+    before.store(&mut from);
+    placed.store(&mut to);
     let (length, mut clear) = (length.to_array(), clear.to_array());
     for lane in (0..LANES).filter(|lane| close >> lane & 1 == 1) {
-        let point = placed.get(lane);
+        let point = to.get(lane);
         clear[lane] = (surface.at_least)(point);
         if clear[lane] > 0.0 {
             continue;
         }
         clear[lane] = (surface.at)(point).0;
         if clear[lane] < 0.0 {
-            let moved = placed_outside(before.get(lane), point, length[lane], &surface.at);
-            placed.set(lane, moved.0);
+            let moved = placed_outside(from.get(lane), point, length[lane], &surface.at);
+            to.set(lane, moved.0);
             clear[lane] = 0.0;
         }
     }
-    (load(&placed), f32x8::from(clear))
+    (Vec3x8::load(&to), f32x8::from(clear))
 }

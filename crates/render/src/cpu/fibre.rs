@@ -7,10 +7,10 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 use strandline_base::math;
+use strandline_base::vec3x8::Vec3x8;
 use wide::f32x8;
 
 use super::fast_math::exp_lanes;
-use super::lanes::Wide3;
 use crate::{Highlight, Look};
 
 /// How much more a hair sends back toward the light than onward; 1 sends nothing straight on.
@@ -76,7 +76,13 @@ impl Fibre {
 
     /// Light scattered from `to_light` to `to_eye` by strands of unit `tangent`, root to tip.
     #[inline]
-    pub(crate) fn scatter(&self, tangent: Wide3, to_light: Wide3, to_eye: Wide3, jitter: f32x8) -> Scattered {
+    pub(crate) fn scatter(
+        &self,
+        tangent: Vec3x8,
+        to_light: Vec3x8,
+        to_eye: Vec3x8,
+        jitter: f32x8,
+    ) -> Scattered {
         let (zero, one) = (f32x8::splat(0.0), f32x8::splat(1.0));
         let sine_light = tangent.dot(to_light);
         let sine_eye = tangent.dot(to_eye);
@@ -109,7 +115,7 @@ pub fn reflectance(
     to_light: Vec3,
     to_eye: Vec3,
 ) -> Vec3 {
-    let [tangent, to_light, to_eye] = [tangent, to_light, to_eye].map(Wide3::splat);
+    let [tangent, to_light, to_eye] = [tangent, to_light, to_eye].map(Vec3x8::splat);
     let scattered = Fibre::new(look).scatter(tangent, to_light, to_eye, f32x8::splat(0.0));
     let [diffuse, first, second] =
         [scattered.diffuse, scattered.first, scattered.second].map(|lanes| lanes.to_array()[0]);

@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::vec3x8::Vec3x8;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::fast_math::exp_lanes;
 use super::fibre::Fibre;
-use super::lanes::Wide3;
 use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, mean_radiance, toward};
 use super::{Shadows, Strands};
@@ -98,10 +98,10 @@ impl StrandColor {
 /// Eight consecutive points of one strand; lanes beyond its tip repeat the tip.
 struct Points {
     places: [Vec3; LANES],
-    position: Wide3,
-    tangent: Wide3,
-    color: Wide3,
-    tint: Wide3,
+    position: Vec3x8,
+    tangent: Vec3x8,
+    color: Vec3x8,
+    tint: Vec3x8,
     jitter: f32x8,
     sparkle: f32x8,
 }
@@ -136,14 +136,14 @@ impl Points {
             };
             lanes[2].set(lane, color);
         }
-        let color = Wide3::load(&lanes[2]);
+        let color = Vec3x8::load(&lanes[2]);
         // The second highlight crosses the hair once there and back, diffuse light many hairs: its
         // colour is paler.
-        let tint = Wide3 { x: color.x.sqrt(), y: color.y.sqrt(), z: color.z.sqrt() };
+        let tint = Vec3x8 { x: color.x.sqrt(), y: color.y.sqrt(), z: color.z.sqrt() };
         Self {
             places,
-            position: Wide3::load(&lanes[0]),
-            tangent: Wide3::load(&lanes[1]),
+            position: Vec3x8::load(&lanes[0]),
+            tangent: Vec3x8::load(&lanes[1]),
             color,
             tint,
             jitter: f32x8::from(jitter),
@@ -167,7 +167,7 @@ struct Shared<'a> {
     look: &'a Look,
     environment: Environment,
     fibre: Fibre,
-    eye: Wide3,
+    eye: Vec3x8,
     occlusion: &'a Occlusion,
     log_transmission: f32,
 }
@@ -193,7 +193,7 @@ impl<'a> Shared<'a> {
             look,
             environment: look.gradient(),
             fibre: Fibre::new(look),
-            eye: Wide3::splat(eye),
+            eye: Vec3x8::splat(eye),
             occlusion,
             log_transmission: look.shadow.log_transmission(),
         }
@@ -205,8 +205,8 @@ impl<'a> Shared<'a> {
         for (lane, cube) in cubes.iter().enumerate() {
             ambient.set(lane, mean_radiance(cube, &self.environment));
         }
-        let mut sum = points.color.times(Wide3::load(&ambient));
-        let to_eye = (self.eye - points.position).normalize_or(Wide3::splat(Vec3::Z));
+        let mut sum = points.color.times(Vec3x8::load(&ambient));
+        let to_eye = (self.eye - points.position).normalize_or(Vec3x8::splat(Vec3::Z));
         for (index, source) in self.sources.iter().enumerate() {
             let (to_light, radiance) = source.at(&points.places);
             let scattered = self.fibre.scatter(points.tangent, to_light, to_eye, points.jitter);
@@ -214,13 +214,13 @@ impl<'a> Shared<'a> {
             let extinction = crossings * f32x8::splat(self.log_transmission);
             let straight = open * exp_lanes(extinction);
             let highlights = points.tint * (scattered.second * points.sparkle * straight)
-                + Wide3::same(scattered.first * straight);
+                + Vec3x8::same(scattered.first * straight);
             // Bright hair passes on more of what meets it, in its own colour.
-            let dull = (Wide3::same(f32x8::splat(1.0)) - points.tint * f32x8::splat(self.look.translucency))
+            let dull = (Vec3x8::same(f32x8::splat(1.0)) - points.tint * f32x8::splat(self.look.translucency))
                 * extinction;
-            let passed = Wide3 { x: exp_lanes(dull.x), y: exp_lanes(dull.y), z: exp_lanes(dull.z) };
+            let passed = Vec3x8 { x: exp_lanes(dull.x), y: exp_lanes(dull.y), z: exp_lanes(dull.z) };
             let diffuse = points.color.times(passed) * (scattered.diffuse * open);
-            sum = sum + (diffuse + highlights).times(radiance);
+            sum += (diffuse + highlights).times(radiance);
         }
         let mut lanes = Vec3Lanes::default();
         sum.store(&mut lanes);
@@ -233,7 +233,7 @@ impl<'a> Shared<'a> {
         light: usize,
         points: &Points,
         cubes: &[[f32; 8]; LANES],
-        to_light: Wide3,
+        to_light: Vec3x8,
     ) -> (f32x8, f32x8) {
         let mut crossings = [0.0; LANES];
         let mut open = [1.0; LANES];
@@ -254,9 +254,9 @@ impl<'a> Shared<'a> {
 }
 
 impl Source {
-    fn at(&self, places: &[Vec3; LANES]) -> (Wide3, Wide3) {
+    fn at(&self, places: &[Vec3; LANES]) -> (Vec3x8, Vec3x8) {
         match self {
-            Self::Distant(to_light, radiance) => (Wide3::splat(*to_light), Wide3::splat(*radiance)),
+            Self::Distant(to_light, radiance) => (Vec3x8::splat(*to_light), Vec3x8::splat(*radiance)),
             Self::Near(light) => {
                 let mut lanes = [Vec3Lanes::default(); 2];
                 for (lane, &place) in places.iter().enumerate() {
@@ -264,7 +264,7 @@ impl Source {
                     lanes[0].set(lane, light.to_light);
                     lanes[1].set(lane, light.radiance);
                 }
-                (Wide3::load(&lanes[0]), Wide3::load(&lanes[1]))
+                (Vec3x8::load(&lanes[0]), Vec3x8::load(&lanes[1]))
             }
         }
     }

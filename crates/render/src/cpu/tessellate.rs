@@ -9,11 +9,11 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::vec3x8::Vec3x8;
 use strandline_body::Pose;
 use strandline_groom::{Guides, LANES, Vec3Lanes};
 use wide::f32x8;
 
-use super::lanes::Wide3;
 use crate::DetailLevel;
 
 /// The guides as smooth curves, all of the same number of points, root first.
@@ -128,7 +128,7 @@ pub fn tessellate(
 /// Positions and unit tangents of a block's curves.
 fn spline(points: &[Vec3Lanes], taps: &[Tap], positions: &mut [Vec3Lanes], tangents: &mut [Vec3Lanes]) {
     let last = points.len() - 1;
-    let point = |index: usize| Wide3::load(&points[index]);
+    let point = |index: usize| Vec3x8::load(&points[index]);
     let bent = |index: usize| {
         if index == 0 || index == last {
             return point(index);
@@ -142,14 +142,14 @@ fn spline(points: &[Vec3Lanes], taps: &[Tap], positions: &mut [Vec3Lanes], tange
         _ => bent(index - 1),
     };
     // Where points coincide the tangent of the point before is the best there is.
-    let mut fallback = Wide3::splat(Vec3::Y);
+    let mut fallback = Vec3x8::splat(Vec3::Y);
     for ((tap, position), tangent) in taps.iter().zip(positions).zip(tangents) {
-        let mut point = Wide3::splat(Vec3::ZERO);
-        let mut direction = Wide3::splat(Vec3::ZERO);
+        let mut point = Vec3x8::splat(Vec3::ZERO);
+        let mut direction = Vec3x8::splat(Vec3::ZERO);
         for offset in 0..4 {
             let control = control(tap.first + offset);
-            point = point + control * f32x8::splat(tap.position[offset]);
-            direction = direction + control * f32x8::splat(tap.tangent[offset]);
+            point += control * f32x8::splat(tap.position[offset]);
+            direction += control * f32x8::splat(tap.tangent[offset]);
         }
         fallback = direction.normalize_or(fallback);
         point.store(position);
@@ -195,13 +195,13 @@ fn carry_frame(positions: &[Vec3Lanes], tangents: &[Vec3Lanes], normals: &mut [V
     // Smaller squares are rounding; dividing by this instead reflects by nothing.
     let least = f32x8::splat(1e-18);
     for point in 1..positions.len() {
-        let tangent = Wide3::load(&tangents[point - 1]);
-        let normal = Wide3::load(&normals[point - 1]);
-        let chord = Wide3::load(&positions[point]) - Wide3::load(&positions[point - 1]);
+        let tangent = Vec3x8::load(&tangents[point - 1]);
+        let normal = Vec3x8::load(&normals[point - 1]);
+        let chord = Vec3x8::load(&positions[point]) - Vec3x8::load(&positions[point - 1]);
         let scale = two / chord.dot(chord).max(least);
         let left_normal = normal - chord * (scale * chord.dot(normal));
         let left_tangent = tangent - chord * (scale * chord.dot(tangent));
-        let next = Wide3::load(&tangents[point]);
+        let next = Vec3x8::load(&tangents[point]);
         let turn = next - left_tangent;
         let carried = left_normal - turn * (two / turn.dot(turn).max(least) * turn.dot(left_normal));
         let across = carried - next * carried.dot(next);

@@ -25,8 +25,9 @@ pub(crate) mod length_pass;
 pub(crate) mod lengths;
 mod rod_pulls;
 pub(crate) mod spans;
-pub(crate) mod vec3x8;
 pub(crate) mod way;
+
+pub(crate) use strandline_base::vec3x8;
 
 pub use cell_kind::Kind;
 pub use obstacles::Obstacles;

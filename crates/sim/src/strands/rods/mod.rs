@@ -19,12 +19,13 @@ pub mod material;
 pub mod model;
 pub(crate) mod other_lengths;
 pub mod presets;
-pub mod real;
 pub mod rest;
 pub mod rod;
 pub mod settings;
 mod stability;
 pub(crate) mod workspace;
+
+pub use strandline_base::real;
 
 #[cfg(test)]
 mod tests;

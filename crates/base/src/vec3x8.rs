@@ -1,10 +1,10 @@
 //! Arithmetic on blocks: eight strands at a time.
 
 use glam::{Mat3, Vec3};
-use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use crate::strands::rods::real::Vector;
+use crate::real::Vector;
+use crate::{Lanes, Pose, Vec3Lanes};
 
 /// One vector for each strand of a block, in registers.
 pub type Vec3x8 = Vector<f32x8>;
@@ -45,6 +45,28 @@ impl Vec3x8 {
         lanes.z = self.z.to_array();
     }
 
+    /// The same number in all three components.
+    #[inline(always)]
+    pub fn same(number: f32x8) -> Self {
+        Self { x: number, y: number, z: number }
+    }
+
+    /// Component by component.
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        Self { x: self.x * other.x, y: self.y * other.y, z: self.z * other.z }
+    }
+
+    /// Unit vectors; lanes too short to have a direction take `fallback`.
+    #[inline(always)]
+    pub fn normalize_or(self, fallback: Self) -> Self {
+        let square = self.dot(self);
+        let least = f32x8::splat(1e-24);
+        let sound = square.simd_gt(least);
+        let unit = self * (f32x8::splat(1.0) / square.max(least).sqrt());
+        unit.or(sound, fallback)
+    }
+
     /// This where the mask is set, else `other`.
     #[inline(always)]
     pub fn or(self, mask: f32x8, other: Self) -> Self {
@@ -65,7 +87,7 @@ pub struct Rigid {
 
 impl Rigid {
     /// The transform of a pose.
-    pub fn new(pose: &strandline_body::Pose) -> Self {
+    pub fn new(pose: &Pose) -> Self {
         let Mat3 { x_axis, y_axis, z_axis } = Mat3::from_quat(pose.rotation);
         Self { columns: [x_axis, y_axis, z_axis], translation: pose.translation }
     }

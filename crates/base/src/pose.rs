@@ -1,6 +1,7 @@
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use strandline_base::math;
+
+use crate::math;
 
 /// A rigid transform. Name a value by its two spaces: `world_from_head`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,11 +22,13 @@ impl Pose {
     }
 
     /// Carries a point \[m\].
+    #[inline]
     pub fn point(&self, point: Vec3) -> Vec3 {
         self.rotation * point + self.translation
     }
 
     /// Carries a direction; lengths are kept.
+    #[inline]
     pub fn direction(&self, direction: Vec3) -> Vec3 {
         self.rotation * direction
     }

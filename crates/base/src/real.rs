@@ -1,4 +1,4 @@
-//! Numbers that the rod solver computes with: one strand in double precision, or eight in single.
+//! Numbers and vectors that the same code computes with: one strand in double precision, or eight in single.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -31,26 +31,32 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    #[inline]
     fn of(number: f64) -> Self {
         number
     }
 
+    #[inline]
     fn root(self) -> Self {
         self.sqrt()
     }
 
+    #[inline]
     fn or_more(self, other: Self) -> Self {
         self.max(other)
     }
 
+    #[inline]
     fn or_less(self, other: Self) -> Self {
         self.min(other)
     }
 
+    #[inline]
     fn choose(self, yes: Self, no: Self) -> Self {
         if self > 0.0 { yes } else { no }
     }
 
+    #[inline]
     fn any_positive(self) -> bool {
         self > 0.0
     }

@@ -1,3 +1,5 @@
+//! Random numbers with the same bits everywhere.
+
 /// A small generator of random numbers: PCG-XSH-RR with 64 bits of state \[ONeill2014\].
 #[derive(Clone, Debug)]
 pub struct Random {
@@ -17,6 +19,7 @@ impl Random {
     }
 
     /// 32 random bits.
+    #[inline]
     pub fn bits(&mut self) -> u32 {
         let old = self.state;
         self.state = old.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(self.increment);
@@ -25,11 +28,13 @@ impl Random {
     }
 
     /// A number from 0 up to, and without, 1.
+    #[inline]
     pub fn unit(&mut self) -> f32 {
         (self.bits() >> 8) as f32 / (1u32 << 24) as f32
     }
 
     /// A number from -1 up to, and without, 1.
+    #[inline]
     pub fn signed(&mut self) -> f32 {
         2.0 * self.unit() - 1.0
     }

@@ -1,3 +1,5 @@
+//! Eight strands at a time, as they lie in memory.
+
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
