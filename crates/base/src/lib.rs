@@ -1,6 +1,7 @@
 //! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
 //! that one run writes at a time, arrays in a zip that grow while a run goes on, vectors of eight
-//! strands, poses, random numbers, text that is safe to print, the settings table. No hair, no GPU, nothing of ours below it.
+//! strands, poses, random numbers, clocks, text that is safe to
+//! print, the settings table. No hair, no GPU, nothing of ours below it.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
@@ -16,11 +17,12 @@ mod parts;
 mod plain_file;
 mod pose;
 mod printable;
-mod random;
+pub mod random;
 pub mod real;
 mod setting;
 mod setting_macro;
 mod setting_values;
+mod stopwatch;
 pub mod vec3x8;
 mod whole_file;
 
@@ -33,4 +35,5 @@ pub use pose::Pose;
 pub use printable::printable;
 pub use random::Random;
 pub use setting::{Group, Key, Kind, Row, SettingError, Table, Value, Word, number};
+pub use stopwatch::{Stopwatch, timed};
 pub use whole_file::WholeFile;

@@ -3,11 +3,11 @@
 use std::fs;
 use std::io::{Result, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, SystemTime};
 
 use glam::{UVec3, Vec3};
 use sha2::{Digest, Sha256};
-use strandline_base::{WholeFile, read_plain};
+use strandline_base::{Stopwatch, WholeFile, read_plain};
 
 use crate::lattice::Lattice;
 use crate::{BodyError, DistanceGrid, Mesh};
@@ -43,9 +43,9 @@ impl DistanceGrid {
         if let Some(grid) = read(&path, &key) {
             return Ok(grid);
         }
-        let begin = Instant::now();
+        let watch = Stopwatch::start();
         let grid = Self::of_mesh(mesh, spacing, padding)?;
-        if begin.elapsed() >= WORTH_A_FILE {
+        if watch.elapsed() >= WORTH_A_FILE {
             // Nothing is lost but time.
             let _ = fs::create_dir_all(folder).and_then(|()| write(&grid, &path, &key));
             forget_oldest(folder, MOST_BYTES);

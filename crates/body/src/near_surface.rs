@@ -142,11 +142,8 @@ mod tests {
     /// No node that is within reach of a triangle is left out, whatever its shape and place.
     #[test]
     fn every_node_within_reach_is_visited() {
-        let mut state = 7_u64;
-        let mut number = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as f64 / (1_u64 << 31) as f64
-        };
+        let mut random = crate::Random::new(7, 0);
+        let mut number = || f64::from(random.unit());
         let high = DVec3::new(11.0, 9.0, 8.0);
         let low = DVec3::new(0.0, 0.0, 2.0);
         for turn in 0..3000 {

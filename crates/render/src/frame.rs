@@ -4,9 +4,9 @@ mod input;
 pub use input::FrameInput;
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use glam::{DVec3, Vec3};
+use strandline_base::{Stopwatch, timed};
 use strandline_body::{Mesh, Solids};
 use strandline_groom::Guides;
 
@@ -129,9 +129,9 @@ impl Renderer {
         picture: &mut Picture,
     ) -> Result<FrameReport, RenderError> {
         let mut report = self.draw_samples(input)?;
-        let start = Instant::now();
-        self.resolve.resolve(&self.samples, &self.settings, picture);
-        report.seconds.push(("resolve", start.elapsed().as_secs_f64()));
+        timed(&mut report.seconds, "resolve", || {
+            self.resolve.resolve(&self.samples, &self.settings, picture);
+        });
         if self.settings.layers {
             let lights = at_samples(input.lights, input.look.suns());
             report.layers = Some(Arc::new(self.channels(&FrameInput { lights: &lights, ..*input })));
@@ -156,17 +156,17 @@ impl Renderer {
         given.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
         let Self { solids, curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } =
             self;
-        let mut clock = Clock::start();
+        let (mut watch, mut seconds) = (Stopwatch::start(), Vec::new());
         tessellate(input.positions, guides, pose, &level, curves);
-        clock.lap("tessellate");
+        seconds.push(("tessellate", watch.lap()));
         interpolate(curves, guides, pose, input.look, &level, strands);
         keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(*pose));
-        clock.lap("interpolate");
+        seconds.push(("interpolate", watch.lap()));
         draw.place_body(input.world_from_head);
         opacity_depth(strands, draw.shadow_body(), input.lights, middle, &input.look.hair_shadow(), shadows);
-        clock.lap("opacity_depth");
+        seconds.push(("opacity_depth", watch.lap()));
         opacity_layers(strands, shadows);
-        clock.lap("opacity_layers");
+        seconds.push(("opacity_layers", watch.lap()));
         occlusion.set_middle(middle);
         let eye = input.camera.position;
         match input.look.fibre.model {
@@ -180,7 +180,7 @@ impl Renderer {
         if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
             layer_colors(strands, map);
         }
-        clock.lap("shade");
+        seconds.push(("shade", watch.lap()));
         let draw_input = DrawInput {
             strands,
             camera: input.camera,
@@ -198,10 +198,10 @@ impl Renderer {
             eye: input.camera.position,
         };
         draw.draw(&draw_input, &skin, samples);
-        clock.lap("draw");
+        seconds.push(("draw", watch.lap()));
         let count = level.drawn_strands(guides.strand_count());
         let segments = count * (strands.points_per_strand - 1);
-        Ok(FrameReport { strands: count, segments, seconds: clock.seconds, layers: None })
+        Ok(FrameReport { strands: count, segments, seconds, layers: None })
     }
 
     /// Colours hair by the layer of a light's opacity map in which it lies instead of lighting it, from the
@@ -244,25 +244,6 @@ pub(crate) fn mean_color(guides: &Guides) -> Option<Vec3> {
     let colors = guides.colors().filter(|colors| !colors.is_empty())?;
     let sum: DVec3 = colors.iter().map(|&color| Vec3::from(color).as_dvec3()).sum();
     Some((sum / colors.len() as f64).as_vec3())
-}
-
-/// Notes how long each stage takes.
-struct Clock {
-    last: Instant,
-    seconds: Vec<(&'static str, f64)>,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self { last: Instant::now(), seconds: Vec::new() }
-    }
-
-    /// Ends a stage.
-    fn lap(&mut self, stage: &'static str) {
-        let now = Instant::now();
-        self.seconds.push((stage, (now - self.last).as_secs_f64()));
-        self.last = now;
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Pictures on whichever backend draws them.
 
-use std::time::Instant;
-
+use strandline_base::Stopwatch;
 use strandline_gpu::Gpu;
 
 use crate::{
@@ -150,10 +149,10 @@ impl Painter {
 
     /// Draws on the CPU, where there is a renderer for it: strands that guides carry are placed first.
     fn draw_on_cpu(&mut self, input: &FrameInput, picture: &mut Picture) -> Result<FrameReport, RenderError> {
-        let begin = Instant::now();
+        let watch = Stopwatch::start();
         let bind = self.bound.as_ref().map(|bound| {
             bound.place(input.positions, &input.world_from_head, &mut self.frames, &mut self.places);
-            ("bind", begin.elapsed().as_secs_f64())
+            ("bind", watch.seconds())
         });
         let positions = if bind.is_some() { &self.places } else { input.positions };
         let renderer = match (&mut self.place, &mut self.stand_in) {

@@ -3,6 +3,8 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use strandline_base::Random;
+
 use crate::worker::{Gone, Work, Worker};
 
 /// Writes its settings and the number of its frame all over a page.
@@ -54,10 +56,9 @@ fn order(page: Vec<[u64; 2]>) -> Order {
     Order { page, setting: None, wait: Duration::ZERO, panic: false }
 }
 
-/// A small generator of numbers, so that a failure repeats.
-fn random(state: &mut u64) -> u64 {
-    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    *state >> 33
+/// A whole number that repeats with its seed, so that a failure does.
+fn random(state: &mut Random) -> u64 {
+    state.bits().into()
 }
 
 /// Plays frames with two pages that change hands, either side slow at random, and settings that
@@ -66,10 +67,10 @@ fn random(state: &mut u64) -> u64 {
 fn play(frames: u64, slow: impl Fn(u64) -> [u64; 2], seed: u64) {
     let (work, ended) = scribe();
     let mut worker = Worker::new(work).unwrap();
-    let (mut state, mut setting) = (seed, 0);
+    let (mut state, mut setting) = (Random::new(seed, 0), 0);
     let mut settings = std::collections::VecDeque::new();
     let mut spare = vec![Vec::new(), Vec::new()];
-    let mut start = |worker: &mut Worker<Scribe>, page, state: &mut u64| {
+    let mut start = |worker: &mut Worker<Scribe>, page, state: &mut Random| {
         let number = random(state);
         let change = number.is_multiple_of(5).then_some(number);
         setting = change.unwrap_or(setting);

@@ -1,6 +1,6 @@
 //! How fast the device moves memory: what other kernels are measured by.
 
-use std::time::Instant;
+use strandline_base::Stopwatch;
 
 use crate::{Buffer, Gpu, GpuError};
 
@@ -28,8 +28,8 @@ impl Gpu {
         };
         // The first touch of fresh memory is not a copy.
         run(1)?;
-        let begin = Instant::now();
+        let watch = Stopwatch::start();
         run(copies)?;
-        Ok(2.0 * (BYTES * copies) as f64 / begin.elapsed().as_secs_f64())
+        Ok(2.0 * (BYTES * copies) as f64 / watch.seconds())
     }
 }

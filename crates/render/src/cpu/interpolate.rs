@@ -3,11 +3,12 @@
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::random::{HashStream, hash_pair, unit};
 use strandline_body::Pose;
 use strandline_groom::Guides;
 
 use super::Strands;
-use super::noise::{Random, hash_pair, sine, unit};
+use super::noise::sine;
 use super::tessellate::{Curves, skin_frame};
 use crate::look::Clump;
 use crate::{DetailLevel, Look};
@@ -181,7 +182,7 @@ impl Strand {
                 amplitude: 0.0,
             };
         }
-        let mut random = Random::new(hash_pair(seed, index as u32));
+        let mut random = HashStream::new(hash_pair(seed, index as u32));
         let offset = disc_offset(seed, index);
         let waves = guide.length / clump.wave_length;
         Self {

@@ -2,13 +2,13 @@
 
 use glam::Vec3;
 use rayon::prelude::*;
+use strandline_base::random::{HashStream, hash_pair, unit};
 use strandline_base::vec3x8::Vec3x8;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::fast_math::exp_lanes;
 use super::fibre::Fibre;
-use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, mean_radiance, toward};
 use super::{Shadows, Strands};
 use crate::level_of_detail::is_drawn;
@@ -76,7 +76,7 @@ impl StrandColor {
         let seed = hash_pair(look.seed ^ 0x10_5e, guide);
         // Half of the variation belongs to the whole clump, as in real locks.
         let clump = unit(seed) - 0.5;
-        let mut random = Random::new(hash_pair(seed, index));
+        let mut random = HashStream::new(hash_pair(seed, index));
         let own = random.unit() - 0.5;
         let brightness = 1.0 + look.variation * (clump + own);
         let white = random.unit() < look.grey;

@@ -3,12 +3,12 @@
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::random::{HashStream, hash_pair, unit};
 
 use super::lattice::Lattice;
 use super::light_field;
 use super::light_grid::LightGrid;
 use super::light_scene::Scene;
-use super::noise::{Random, hash_pair, unit};
 use super::occlusion::{Occlusion, toward};
 use super::{ShadowBody, Shadows, Strands};
 use crate::fibre::chiang::{INK, Pigments, Seen, Table, WHITE};
@@ -163,7 +163,7 @@ impl<'a> Strand<'a> {
         let seed = hash_pair(look.seed ^ 0x10_5e, guide);
         // Half of the variation belongs to the whole clump, as in real locks.
         let clump = unit(seed) - 0.5;
-        let mut random = Random::new(hash_pair(seed, index));
+        let mut random = HashStream::new(hash_pair(seed, index));
         let apart = random.unit() - 0.5;
         let darker = math::exp2(-look.variation * (clump + apart));
         let darker = if random.unit() < look.grey { WHITE } else { darker };

@@ -2,11 +2,11 @@
 
 use std::{
     path::{Path, PathBuf},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
 use glam::Vec3;
-use strandline_base::SettingError;
+use strandline_base::{SettingError, Stopwatch};
 
 use super::{
     Cache, Frame, Snapshot, Target, What,
@@ -155,13 +155,13 @@ impl Out {
         if !self.takes(number) {
             return Ok(());
         }
-        let begin = Instant::now();
+        let watch = Stopwatch::start();
         self.shape.place(&moment.positions, &moment.world_from_head, &mut self.points);
         let points = std::mem::take(&mut self.points);
         let frame = Frame { number, time, points: &points, world_from_head: moment.world_from_head };
         let added = self.write(&frame, state);
         self.points = points;
-        self.time += begin.elapsed();
+        self.time += watch.elapsed();
         added
     }
 
@@ -216,7 +216,7 @@ impl Out {
     /// Ends the file of a whole film, or of one that was broken off.
     pub(crate) fn close(self, whole: bool, state: Option<&Snapshot>) -> Result<Written, Error> {
         let (strands, points) = (self.shape.strand_count(), self.shape.point_count());
-        let begin = Instant::now();
+        let watch = Stopwatch::start();
         let one = |path: PathBuf| (size(&path), path, Vec::new());
         let (bytes, place, left_out) = match self.writer {
             Writer::Store(store) if whole => one(store.finish(state)?),
@@ -224,7 +224,7 @@ impl Out {
             Writer::Usd(usd) => one(usd.finish(whole)?),
             Writer::Files(files) => files.finish(),
         };
-        let time = self.time + begin.elapsed();
+        let time = self.time + watch.elapsed();
         Ok(Written { place, frames: self.frames, strands, points, bytes, time, left_out })
     }
 }
