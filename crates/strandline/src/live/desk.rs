@@ -4,13 +4,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use strandline_base::Stopwatch;
+
+use super::course::{Course, changes_cost, of_size};
 use super::messages::{Command, FRAME, News, Out, Shown};
 use super::recorder::Recorder;
 use super::stage::Stage;
-use crate::{Error, FilmFiles, Scene, render::PictureSettings, sim::StepReport, worker::Gone};
+use crate::{Error, FilmFiles, Scene, sim::StepReport, worker::Gone};
 
 /// What the drawing thread is told.
 pub(super) enum Message {
@@ -29,102 +31,6 @@ pub(super) struct Desk {
     own: Sender<Message>,
     out: Arc<Mutex<Out>>,
     wake: Box<dyn Fn() + Send>,
-}
-
-/// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
-const SLOW: f64 = 0.08;
-/// How long \[s\] nothing may happen before what stands still is drawn in full.
-const MOMENT: Duration = Duration::from_millis(200);
-
-/// What the thread goes on with.
-struct Course {
-    stage: Option<Box<Stage>>,
-    playing: bool,
-    /// Frames to be made while it stands still.
-    steps: u32,
-    /// Whether the picture is older than what it shows.
-    stale: bool,
-    /// Whether pictures may be simpler, and whether full ones take too long.
-    adapts: bool,
-    slow: bool,
-    /// Whether that was seen of the scene and the look as they are.
-    tried: bool,
-    /// Whether the last picture was simpler.
-    draft: bool,
-    frame: u64,
-    heard: u64,
-    /// Number of the last load, and of the one that is on stage.
-    load: u64,
-    staged: u64,
-    recorder: Option<Recorder>,
-    /// The last step, and whether there is a frame, of which no picture was drawn yet.
-    step: Option<StepReport>,
-    is_frame: bool,
-    /// Number of the last film.
-    film: u64,
-    /// Films that are being finished.
-    finishing: Vec<JoinHandle<()>>,
-}
-
-impl Course {
-    const START: Self = Self {
-        stage: None,
-        playing: true,
-        steps: 0,
-        stale: false,
-        adapts: false,
-        slow: false,
-        tried: false,
-        draft: false,
-        frame: 0,
-        heard: 0,
-        load: 0,
-        staged: 0,
-        recorder: None,
-        step: None,
-        is_frame: false,
-        film: 0,
-        finishing: Vec::new(),
-    };
-
-    /// Notes how long \[s\] a picture took.
-    fn judge(&mut self, seconds: f64, draft: bool) {
-        if !draft {
-            self.slow = seconds > SLOW;
-            self.tried = true;
-        } else if !self.tried && 4.0 * seconds < SLOW {
-            // A full one takes some four times as long: it is tried, once.
-            self.slow = false;
-        }
-    }
-
-    /// How long to wait for a message before going on.
-    fn patience(&self) -> Duration {
-        // Every message wakes it.
-        const LONG: Duration = Duration::from_secs(3600);
-        match self.stage {
-            Some(_) if self.playing || self.steps > 0 || self.stale => Duration::ZERO,
-            Some(_) if self.draft => MOMENT,
-            _ => LONG,
-        }
-    }
-}
-
-/// Whether pictures may take another time after a command.
-fn changes_cost(command: &Command) -> bool {
-    use Command::{LevelOfDetail, Lights, Look, Picture};
-    matches!(command, Look(_) | LevelOfDetail(_) | Lights(_) | Picture(_))
-}
-
-/// A command that leaves the pictures as large as they are.
-fn of_size(command: Command, kept: PictureSettings) -> Command {
-    match command {
-        Command::Picture(settings) => {
-            let PictureSettings { width, height, .. } = kept;
-            Command::Picture(PictureSettings { width, height, ..settings })
-        }
-        other => other,
-    }
 }
 
 impl Desk {
@@ -349,12 +255,12 @@ impl Desk {
         if course.playing {
             stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
         }
-        let begin = Instant::now();
+        let watch = Stopwatch::start();
         let (picture, drawing) = stage.draw(draft)?;
         std::mem::take(&mut stage.studio.painter.notes)
             .into_iter()
             .for_each(|note| self.say(News::Note(note)));
-        let seconds = begin.elapsed().as_secs_f64();
+        let seconds = watch.seconds();
         if let Some(recorder) = course.recorder.as_mut().filter(|_| is_frame) {
             recorder.add(&picture);
         }

@@ -1,5 +1,6 @@
 //! Hair that plays until it is told otherwise, for windows: nothing here makes its caller wait.
 
+mod course;
 mod desk;
 mod messages;
 mod recorder;
