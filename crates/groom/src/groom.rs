@@ -1,12 +1,9 @@
-use std::{collections::BTreeMap, ops::Range, path::Path};
+use std::{collections::BTreeMap, ops::Range};
 
 use glam::{Quat, Vec2, Vec3};
 use strandline_body::Aabb;
 
-use crate::{
-    GroomError, Influences,
-    format::{self, LoadOptions, Saved},
-};
+use crate::Influences;
 
 /// Strand diameters \[m\].
 #[derive(Clone, Debug, PartialEq)]
@@ -100,22 +97,6 @@ impl Groom {
     /// Indices of the points of a strand among all points.
     pub fn range(&self, strand: usize) -> Range<usize> {
         self.starts[strand] as usize..self.starts[strand + 1] as usize
-    }
-
-    /// Loads a file of any of the [`format::FORMATS`] strictly, in metres, y up; see [`format::load`] for more.
-    ///
-    /// # Errors
-    /// See [`GroomError`].
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, GroomError> {
-        Ok(format::load(path.as_ref(), &LoadOptions::default())?.groom)
-    }
-
-    /// Writes a file of the format that its ending names; says what the format could not hold.
-    ///
-    /// # Errors
-    /// See [`GroomError`].
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<Saved, GroomError> {
-        format::save(self, path.as_ref())
     }
 
     /// Length of every strand \[m\], shape `[strand]`.

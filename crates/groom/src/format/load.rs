@@ -2,12 +2,11 @@ use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use strandline_base::{Key, Kind, Row, SettingError, Value, WholeFile, choices, math, memory, read_plain};
+use strandline_base::{Key, Kind, Row, SettingError, Value, choices, math, memory, read_plain};
 
 use super::report::Report;
 use super::{
-    Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, endings, project,
-    sieve::sieve,
+    Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project, sieve::sieve,
 };
 use crate::{Groom, GroomError, Widths};
 
@@ -111,11 +110,14 @@ pub struct Loaded {
     pub report: Report,
 }
 
-/// What writing left out.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Saved {
-    /// Parts of the groom that the format cannot hold.
-    pub left_out: Vec<&'static str>,
+impl Groom {
+    /// Loads a file of any of the [`FORMATS`](super::FORMATS) strictly, in metres, y up; see [`load`] for more.
+    ///
+    /// # Errors
+    /// See [`GroomError`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, GroomError> {
+        Ok(load(path.as_ref(), &LoadOptions::default())?.groom)
+    }
 }
 
 /// Loads a file of any of the formats; its ending names it.
@@ -255,32 +257,4 @@ fn plausible_scale(groom: &Groom) -> f32 {
     let diagonal = bounds.min.distance(bounds.max);
     let fits = |scale: &f32| (0.05..=2.0).contains(&(scale * diagonal));
     [1.0, 0.01, 0.001, 0.0254].into_iter().find(fits).unwrap_or(1.0)
-}
-
-/// Writes a file of the format that its ending names. The file is whole or not there.
-///
-/// # Errors
-/// A format that is not written or cannot hold the groom, or a folder that cannot be written.
-pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
-    let format = Format::of(path)?;
-    let Some(write) = format.write else {
-        return Err(GroomError::NotWritten {
-            ending: format.ending,
-            expected: endings(|format| format.write.is_some()),
-            path: path.to_owned(),
-        });
-    };
-    let is_lost = |part: &Part| part.is_in(groom) && !format.holds.contains(part);
-    let mut lost: Vec<Part> = Part::ALL.into_iter().filter(is_lost).collect();
-    // One of the two says it all.
-    if lost.contains(&Part::Widths) {
-        lost.retain(|part| *part != Part::WidthsAlong);
-    }
-    let bytes = write(groom).map_err(|error| error.of(path))?;
-    WholeFile::save(path, &bytes).map_err(|source| GroomError::File {
-        action: "write",
-        path: path.to_owned(),
-        source,
-    })?;
-    Ok(Saved { left_out: lost.into_iter().map(Part::name).collect() })
 }

@@ -16,14 +16,16 @@ pub mod ply;
 pub mod project;
 mod registry;
 mod report;
+mod save;
 mod sieve;
 pub mod tfx;
 mod zip;
 
-pub use load::{LoadOptions, Loaded, Saved, Scale, Up, load, load_all, prepare, save};
+pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
 pub use report::{Counts, GroupOf, Lengths, Report};
+pub use save::{Saved, save};
 
 /// Most strands that a reader accepts.
 pub const MAX_STRANDS: u64 = 8_000_000;

@@ -1,0 +1,53 @@
+//! Writes a groom to a file of any of the formats.
+
+use std::path::Path;
+
+use strandline_base::WholeFile;
+
+use super::{Format, Part, endings};
+use crate::{Groom, GroomError};
+
+/// What writing left out.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Saved {
+    /// Parts of the groom that the format cannot hold.
+    pub left_out: Vec<&'static str>,
+}
+
+impl Groom {
+    /// Writes a file of the format that its ending names; says what the format could not hold.
+    ///
+    /// # Errors
+    /// See [`GroomError`].
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<Saved, GroomError> {
+        save(self, path.as_ref())
+    }
+}
+
+/// Writes a file of the format that its ending names. The file is whole or not there.
+///
+/// # Errors
+/// A format that is not written or cannot hold the groom, or a folder that cannot be written.
+pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
+    let format = Format::of(path)?;
+    let Some(write) = format.write else {
+        return Err(GroomError::NotWritten {
+            ending: format.ending,
+            expected: endings(|format| format.write.is_some()),
+            path: path.to_owned(),
+        });
+    };
+    let is_lost = |part: &Part| part.is_in(groom) && !format.holds.contains(part);
+    let mut lost: Vec<Part> = Part::ALL.into_iter().filter(is_lost).collect();
+    // One of the two says it all.
+    if lost.contains(&Part::Widths) {
+        lost.retain(|part| *part != Part::WidthsAlong);
+    }
+    let bytes = write(groom).map_err(|error| error.of(path))?;
+    WholeFile::save(path, &bytes).map_err(|source| GroomError::File {
+        action: "write",
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(Saved { left_out: lost.into_iter().map(Part::name).collect() })
+}
