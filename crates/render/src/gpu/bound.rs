@@ -5,8 +5,8 @@ use strandline_gpu::{Bound, Buffer, Gpu, GpuError, Kernel, groups, kernel, wgpu}
 use strandline_groom::Binding;
 
 use super::buffers::{Strands, floats};
+use super::device_points::DevicePoints;
 use super::inputs::Frame;
-use super::points::DevicePoints;
 use super::{THREADS, bound_solids};
 use crate::RenderError;
 

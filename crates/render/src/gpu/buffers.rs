@@ -5,7 +5,7 @@ use strandline_body::Mesh;
 use strandline_gpu::{Buffer, Gpu, GpuError, Scan, Texture, wgpu};
 use strandline_groom::Guides;
 
-use super::inputs::{Frame, LightSource};
+use super::inputs::{Frame, LightSource, body_stride};
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
 use crate::cpu::scalp::root_densities;
 use crate::cpu::tessellate::skin_axes;
@@ -160,7 +160,7 @@ pub(super) struct Maps {
     pub shadows: usize,
     /// Four numbers a texel: see opacity_depth.wesl.
     pub texels: Buffer<[u32; 4]>,
-    /// Depths of the body, rows of [`super::opacity_depth::stride`].
+    /// Depths of the body, rows of [`body_stride`].
     pub body: Buffer<f32>,
     pub body_depth: Texture,
 }
@@ -168,7 +168,7 @@ pub(super) struct Maps {
 impl Maps {
     pub fn new(gpu: &Gpu, size: u32, shadows: usize) -> Result<Self, GpuError> {
         let texels = shadows * (size * size) as usize;
-        let stride = super::opacity_depth::stride(size);
+        let stride = body_stride(size);
         Ok(Self {
             size,
             shadows,

@@ -70,7 +70,7 @@ impl GpuRenderer {
         self.gpu.guarded("channels", || {
             let mut recorder = Recorder::new(&self.gpu, None);
             recorder.stage("shade", &[(numbers, threads)]);
-            samples(&mut recorder, &scene, self, stages);
+            samples(&mut recorder, &scene, &self.held(stages));
             self.gpu.queue().submit([recorder.finish(|_| ())]);
         })?;
         self.read_light(found)?;

@@ -1,12 +1,13 @@
 //! A frame as a list of stages, recorded into one submission.
 
-use strandline_gpu::{Amount, Bound, BoundDrawing, Recorder, Targets, groups, wgpu};
+use strandline_gpu::{Amount, Bound, BoundDrawing, Buffer, Recorder, Targets, groups, wgpu};
 
-use super::buffers::{CELLS, Maps};
+use super::buffers::{CELLS, Groom, Maps};
+use super::inputs::body_stride;
 use super::light_grid::{self, LightGrid};
-use super::renderer::{GpuRenderer, Scene};
+use super::scene::Scene;
 use super::stages::Stages;
-use super::{THREADS, draw, fit, opacity_depth};
+use super::{THREADS, buffers, draw, fit};
 use crate::cpu::lattice::DIRECTIONS;
 use crate::fibre::FibreModel;
 
@@ -19,20 +20,30 @@ pub(super) struct Bounds<'a> {
     pub keep_outside: Option<(Bound, [u32; 3])>,
     /// What colours the hair by layers, where that is asked for.
     pub layer_colors: Option<Bound>,
-    pub stages: &'a Stages,
     pub resolve: &'a BoundDrawing,
     pub maps: &'a Maps,
     pub target: &'a wgpu::TextureView,
-    pub renderer: &'a GpuRenderer,
+    pub held: Held<'a>,
+}
+
+/// What a renderer keeps from frame to frame.
+#[derive(Clone, Copy)]
+pub(super) struct Held<'a> {
+    pub groom: &'a Groom,
+    pub stages: &'a Stages,
+    /// Scattered light, once a look asked for it.
+    pub light_grid: Option<&'a LightGrid>,
+    pub indices: &'a Buffer<u32>,
+    /// What samples are drawn into.
+    pub samples: &'a buffers::Targets,
 }
 
 /// Records every stage in order.
 pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
-    let stages = bounds.stages;
+    let Held { stages, groom, .. } = bounds.held;
     let (strands, segments) = (scene.strand_count(), scene.strand_count() * (scene.curve_points() - 1));
     let points = scene.strand_count() * scene.curve_points();
     let one = |bound: &Bound, threads: usize| [(bound.clone(), groups(threads, THREADS))];
-    let groom = &bounds.renderer.groom;
 
     if !bounds.bound.is_empty() {
         recorder.stage("bind", &bounds.bound);
@@ -44,7 +55,7 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     recorder.clear(&groom.areas);
     recorder.stage("shade", &one(&stages.sum_areas, segments));
     recorder.stage("shade", &[(stages.sweep.clone(), [6, 1, 1])]);
-    match &scattering(scene, bounds.renderer) {
+    match &scattering(scene, &bounds.held) {
         Some((grid, light)) => {
             recorder.clear(grid.sums());
             recorder.stage("shade", &light_stages(scene, light, segments));
@@ -59,19 +70,17 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     recorder.stage("draw", &one(&stages.list_segments, strands));
     recorder.stage("draw", &stages.scan);
     recorder.stage("draw", &one(&stages.order_segments, segments));
-    samples(recorder, scene, bounds.renderer, stages);
+    samples(recorder, scene, &bounds.held);
     let target =
         Targets { color: Some((bounds.target, wgpu::LoadOp::Clear(wgpu::Color::BLACK))), depth: None };
     recorder.draw("resolve", &target, &[(bounds.resolve, Amount::Vertices { count: 3, instance: 0 })]);
 }
 
 /// Scattered light, where the look has it.
-fn scattering<'a>(
-    scene: &Scene,
-    renderer: &'a GpuRenderer,
-) -> Option<(&'a LightGrid, &'a light_grid::Bounds)> {
+fn scattering<'a>(scene: &Scene, held: &Held<'a>) -> Option<(&'a LightGrid, &'a light_grid::Bounds)> {
     let scatters = scene.input.look.fibre.model == FibreModel::Chiang;
-    if scatters { renderer.light_grid.as_ref().zip(renderer.light_bounds.as_ref()) } else { None }
+    let grid = held.light_grid.filter(|_| scatters)?;
+    Some((grid, grid.bounds()?))
 }
 
 /// Hair and skin summed into cells, and light carried through them.
@@ -130,7 +139,7 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
         return;
     }
     let count = 3 * scene.triangle_count as u32;
-    let row_bytes = 4 * opacity_depth::stride(maps.size);
+    let row_bytes = 4 * body_stride(maps.size);
     for slot in 0..scene.shadow_count() {
         let depth = Some((maps.body_depth.view(), wgpu::LoadOp::Clear(1.0)));
         let amount = Amount::Vertices { count, instance: slot as u32 };
@@ -152,22 +161,22 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
 }
 
 /// Background, body and hair, in this order.
-pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, renderer: &GpuRenderer, stages: &Stages) {
+pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, held: &Held) {
     let segments = scene.strand_count() * (scene.curve_points() - 1);
     let instances = segments.div_ceil(draw::BATCH) as u32;
     let mut list = Vec::new();
     if !scene.settings.transparent {
-        list.push((&stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
+        list.push((&held.stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
     }
     if scene.triangle_count > 0 {
         let count = 3 * scene.triangle_count as u32;
-        let body = scattering(scene, renderer).map_or(&stages.body, |(_, light)| &light.body);
+        let body = scattering(scene, held).map_or(&held.stages.body, |(_, light)| &light.body);
         list.push((body, Amount::Vertices { count, instance: 0 }));
     }
-    list.push((&stages.hair, Amount::Instanced { indices: &renderer.indices, instances }));
+    list.push((&held.stages.hair, Amount::Instanced { indices: held.indices, instances }));
     let targets = Targets {
-        color: Some((renderer.targets.samples.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))),
-        depth: Some((renderer.targets.depth.view(), wgpu::LoadOp::Clear(0.0))),
+        color: Some((held.samples.samples.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))),
+        depth: Some((held.samples.depth.view(), wgpu::LoadOp::Clear(0.0))),
     };
     recorder.draw("draw", &targets, &list);
 }

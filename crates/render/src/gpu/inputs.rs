@@ -5,7 +5,7 @@ use strandline_base::math;
 use strandline_body::Pose;
 use strandline_gpu::mirror;
 
-use super::renderer::Scene;
+use super::scene::Scene;
 use crate::cpu::shadow::LightView;
 use crate::fibre::{FibreModel, Pigment};
 use crate::{Highlight, LightKind, Look, ToneMap};
@@ -175,6 +175,11 @@ mirror! {
     }
 }
 
+/// Texels from a row of the body's depths to the next: copies of textures have rows of whole 256 bytes.
+pub(super) fn body_stride(map_size: u32) -> u32 {
+    map_size.next_multiple_of(64)
+}
+
 /// No shadow.
 pub(super) const NO_MAP: u32 = u32::MAX;
 
@@ -202,20 +207,47 @@ impl Frame {
     /// What a frame needs.
     pub fn new(scene: &Scene) -> Self {
         let Scene { input, settings, level, .. } = scene;
-        let (look, body, shadow) = (input.look, input.body_look, &input.look.hair_shadow());
-        let gradient = look.gradient();
         let (width, height) = (settings.width as f32, settings.height as f32);
-        let scale = settings.supersampling as f32;
-        let share = look.first_highlight.strength + look.second_highlight.strength;
+        let (scale, map_size) = (settings.supersampling as f32, input.look.hair_shadow().map_size);
         Self {
             world_from_head: Rigid::of_pose(&input.world_from_head),
             view_from_world: Rigid::of_affine(&input.camera.view_from_world()),
-            around: Around::new(look, look.scalp(body.scalp, scene.own_color)),
             eye: input.camera.position.to_array(),
             share: scene.share,
             size: [width * scale, height * scale],
             focal: 0.5 * height * scale * input.camera.focal(),
             near: input.camera.near,
+            background_top: settings.background.top.to_array(),
+            background_bottom: settings.background.bottom.to_array(),
+            widening: crate::cpu::interpolate::widening(input.look, scene.guide_count),
+            guide_count: scene.guide_count as u32,
+            guide_points: scene.guide_points as u32,
+            curve_points: scene.curve_points() as u32,
+            strands_per_guide: level.strand_count() as u32,
+            full_strands: level.full_follow_strands as u32,
+            light_count: input.lights.len() as u32,
+            shadow_count: scene.shadow_count() as u32,
+            map_size,
+            body_stride: body_stride(map_size),
+            vertex_count: scene.vertex_count as u32,
+            triangle_count: scene.triangle_count as u32,
+            gain: math::exp2(settings.exposure),
+            supersampling: settings.supersampling,
+            tone_map: tone_map_code(settings.tone_map),
+            body_kind: scene.body_kind,
+            middle: scene.middle.to_array(),
+            left_out: level.left_out,
+            ..Self::of_looks(scene)
+        }
+    }
+
+    /// What the looks of hair and body say of it; the rest is 0.
+    fn of_looks(scene: &Scene) -> Self {
+        let (look, body, shadow) = (scene.input.look, scene.input.body_look, &scene.input.look.hair_shadow());
+        let gradient = look.gradient();
+        let share = look.first_highlight.strength + look.second_highlight.strength;
+        Self {
+            around: Around::new(look, look.scalp(body.scalp, scene.own_color)),
             sky: gradient.sky.to_array(),
             tip_width: look.tip_width,
             ground: gradient.ground.to_array(),
@@ -230,9 +262,7 @@ impl Frame {
             sparkle: look.sparkle,
             body_color: body.color.to_array(),
             body_wrap: body.wrap,
-            background_top: settings.background.top.to_array(),
             body_specular: body.specular,
-            background_bottom: settings.background.bottom.to_array(),
             body_roughness: body.roughness,
             layers: shadow.layers,
             log_transmission: shadow.log_transmission(),
@@ -243,31 +273,11 @@ impl Frame {
             wave_amplitude: look.clump.wave_amplitude,
             wave_length: look.clump.wave_length,
             shorter: look.clump.shorter,
-            widening: crate::cpu::interpolate::widening(look, scene.guide_count),
             seed: look.seed,
-            guide_count: scene.guide_count as u32,
-            guide_points: scene.guide_points as u32,
-            curve_points: scene.curve_points() as u32,
-            strands_per_guide: level.strand_count() as u32,
-            full_strands: level.full_follow_strands as u32,
-            light_count: input.lights.len() as u32,
-            shadow_count: scene.shadow_count() as u32,
-            map_size: shadow.map_size,
-            body_stride: super::opacity_depth::stride(shadow.map_size),
-            vertex_count: scene.vertex_count as u32,
-            triangle_count: scene.triangle_count as u32,
-            gain: math::exp2(settings.exposure),
-            supersampling: settings.supersampling,
-            tone_map: tone_map_code(settings.tone_map),
-            body_kind: scene.body_kind,
-            middle: scene.middle.to_array(),
             kinds: scene.own
                 | if look.fibre.model == FibreModel::Chiang { 4 } else { 0 }
                 | if look.fibre.chiang.pigment == Pigment::Color { 8 } else { 0 },
-            left_out: level.left_out,
-            unused: 0,
-            unused_too: 0,
-            unused_last: 0,
+            ..bytemuck::Zeroable::zeroed()
         }
     }
 }

@@ -5,7 +5,7 @@ use strandline_gpu::{Bound, BoundDrawing, Buffer, Drawing, Gpu, GpuError, Kernel
 use super::body::Body;
 use super::buffers::{CELLS, Groom, Maps, Strands};
 use super::inputs::{Frame, LightSource};
-use super::{GpuRenderer, MAX_SHADOWS, draw};
+use super::{MAX_SHADOWS, draw};
 use crate::RenderError;
 use crate::cpu::lattice::DIRECTIONS;
 use crate::cpu::shade_chiang::{Made, Source};
@@ -126,6 +126,7 @@ pub(super) struct LightGrid {
     /// The fibre's tables, and scattered light of every cell.
     glow: Buffer<[f32; 4]>,
     made: Option<Made>,
+    bounds: Option<Bounds>,
 }
 
 /// The kernels, bound to the buffers of the moment.
@@ -157,11 +158,38 @@ impl LightGrid {
             lattice: Buffer::new(gpu, "scattering among directions", Made::lattice_len())?,
             glow: Buffer::new(gpu, "scattered light", FIRST_GLOW + GLOW * CELLS)?,
             made: None,
+            bounds: None,
         })
     }
 
+    /// Brings the tables of a fibre, and binds the kernels where [`Self::forget`] was called.
+    pub fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        source: Source,
+        groom: &Groom,
+        strands: &Strands,
+        maps: &Maps,
+    ) -> Result<(), RenderError> {
+        self.write(source)?;
+        if self.bounds.is_none() {
+            self.bounds = Some(self.bind(gpu, groom, strands, maps)?);
+        }
+        Ok(())
+    }
+
+    /// The buffers that the kernels were bound to are no more.
+    pub fn forget(&mut self) {
+        self.bounds = None;
+    }
+
+    /// The kernels, where they are bound.
+    pub fn bounds(&self) -> Option<&Bounds> {
+        self.bounds.as_ref()
+    }
+
     /// Tables of a fibre, where they are not there yet.
-    pub fn write(&mut self, source: Source) -> Result<(), RenderError> {
+    fn write(&mut self, source: Source) -> Result<(), RenderError> {
         if self.made.as_ref().is_some_and(|made| made.from == source) {
             return Ok(());
         }
@@ -181,7 +209,7 @@ impl LightGrid {
     }
 
     /// Binds the kernels.
-    pub fn bind(&self, gpu: &Gpu, groom: &Groom, strands: &Strands, maps: &Maps) -> Result<Bounds, GpuError> {
+    fn bind(&self, gpu: &Gpu, groom: &Groom, strands: &Strands, maps: &Maps) -> Result<Bounds, GpuError> {
         let Groom { frame, lights, fitted, cubes: open, triangles, vertices, .. } = groom;
         let Strands { points, radiances, .. } = strands;
         let Maps { texels: maps, body: body_depths, .. } = maps;
@@ -209,23 +237,6 @@ impl LightGrid {
                 &Body { frame, lights, fitted, maps, body_depths, cubes: glow, triangles, vertices },
             )?,
         })
-    }
-}
-
-impl GpuRenderer {
-    /// Makes room for scattered light, and the fibre's tables.
-    pub(super) fn prepare_light(&mut self, source: Source) -> Result<(), RenderError> {
-        if self.light_grid.is_none() {
-            self.light_grid = Some(LightGrid::new(&self.gpu)?);
-        }
-        let Some(grid) = &mut self.light_grid else { unreachable!("made above") };
-        grid.write(source)?;
-        if self.light_bounds.is_none()
-            && let (Some(strands), Some(maps)) = (&self.strands, &self.maps)
-        {
-            self.light_bounds = Some(grid.bind(&self.gpu, &self.groom, strands, maps)?);
-        }
-        Ok(())
     }
 }
 

@@ -10,6 +10,7 @@ mod bound;
 mod bound_solids;
 mod buffers;
 mod channels;
+mod device_points;
 mod draw;
 mod fit;
 mod frame;
@@ -24,13 +25,14 @@ mod points;
 mod probe;
 mod renderer;
 mod resolve;
+mod scene;
 mod shade;
 mod sort;
 mod stages;
 mod tessellate;
 
+pub use device_points::DevicePoints;
 pub use linked::modules;
-pub use points::DevicePoints;
 pub use renderer::GpuRenderer;
 pub use stages::declarations;
 

@@ -34,8 +34,3 @@ drawing! {
         8 vertices: Read [f32; 4],
     }
 }
-
-/// Texels from a row of the body's depths to the next: copies of textures have rows of whole 256 bytes.
-pub(super) fn stride(map_size: u32) -> u32 {
-    map_size.next_multiple_of(64)
-}

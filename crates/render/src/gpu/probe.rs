@@ -6,7 +6,8 @@ use strandline_groom::Vec3Lanes;
 
 use super::GpuRenderer;
 use super::frame::record_opacity;
-use super::renderer::{Drawn, Scene};
+use super::renderer::Drawn;
+use super::scene::Scene;
 use crate::cpu::shadow::{LightView, ShadowMap, Shadows, Window};
 use crate::{DetailLevel, FrameInput, Light, Picture, RenderError, Shadow, cpu};
 

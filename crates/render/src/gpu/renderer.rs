@@ -2,19 +2,20 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::SettingError;
-use strandline_body::Mesh;
-use strandline_gpu::{Bound, Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
-use strandline_groom::Guides;
+use strandline_body::{Mesh, Solids};
+use strandline_gpu::{Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
+use strandline_groom::{Binding, Guides};
 
 use super::body::ball;
-use super::bound::BoundStrands;
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
-use super::frame::{Bounds, record};
+use super::device_points::DevicePoints;
+use super::frame::{Bounds, Held, record};
 use super::inputs::{Frame, LightSource};
-use super::light_grid::{self, LightGrid};
-use super::points::DevicePoints;
+use super::light_grid::LightGrid;
+use super::points::GuidePoints;
 use super::resolve::{Own, PICTURE, ToFormat};
-use super::shade::{LayerColors, Numbers};
+use super::scene::Scene;
+use super::shade::{LayerColoring, Numbers};
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
 use crate::cpu::shade_chiang::Source;
@@ -44,17 +45,11 @@ pub struct GpuRenderer {
     formats: Vec<ToFormat>,
     pub(super) indices: Buffer<u32>,
     pub(super) stages: Option<Stages>,
-    /// Scattered light, once a look asks for it, and its kernels bound.
-    pub(super) light_grid: Option<LightGrid>,
-    pub(super) light_bounds: Option<light_grid::Bounds>,
-    /// What places the strands where guides carry them.
-    pub(super) bound: Option<BoundStrands>,
-    /// `tessellate` bound to pairs of buffers of guide points.
-    pub(super) tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
+    /// Scattered light, once a look asks for it.
+    light_grid: Option<LightGrid>,
+    points: GuidePoints,
     timer: Option<Timer>,
-    /// The light whose layers colour the hair, and the kernel that does so.
-    pub(super) layers_of: Option<usize>,
-    pub(super) layer_colors: Option<(usize, Kernel<LayerColors<'static>>)>,
+    layer_coloring: LayerColoring,
     /// What puts numbers in the place of light, once channels are asked for.
     pub(super) numbers: Option<[Kernel<Numbers<'static>>; 2]>,
     pub(super) drawn: Drawn,
@@ -71,41 +66,6 @@ pub(super) struct Drawn {
     pub left_out: f32,
     pub curve_points: usize,
     pub shadows: usize,
-}
-
-/// What one frame shows, worked out on the host.
-pub(super) struct Scene<'a> {
-    pub input: &'a FrameInput<'a>,
-    pub settings: &'a PictureSettings,
-    pub level: DetailLevel,
-    pub share: f32,
-    pub guide_count: usize,
-    pub guide_points: usize,
-    pub vertex_count: usize,
-    pub triangle_count: usize,
-    /// 0 none, 1 open, 2 closed.
-    pub body_kind: u32,
-    pub body_ball: (Vec3, f32),
-    /// What of the groom is drawn: see common.wesl.
-    pub own: u32,
-    /// Middle of the hair \[m\], world space.
-    pub middle: Vec3,
-    /// Mean of the guides' colours.
-    pub own_color: Option<Vec3>,
-}
-
-impl Scene<'_> {
-    pub fn curve_points(&self) -> usize {
-        self.level.segment_count(self.guide_points) + 1
-    }
-
-    pub fn strand_count(&self) -> usize {
-        self.guide_count * self.level.strand_count()
-    }
-
-    pub fn shadow_count(&self) -> usize {
-        self.input.lights.iter().filter(|light| light.shadow).count()
-    }
 }
 
 impl GpuRenderer {
@@ -138,12 +98,9 @@ impl GpuRenderer {
             indices: draw::indices(gpu)?,
             stages: None,
             light_grid: None,
-            light_bounds: None,
-            bound: None,
-            tessellates: Vec::new(),
+            points: GuidePoints::default(),
             timer: Timer::new(gpu)?,
-            layers_of: None,
-            layer_colors: None,
+            layer_coloring: LayerColoring::default(),
             numbers: None,
             drawn: Drawn::default(),
             lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
@@ -182,6 +139,20 @@ impl GpuRenderer {
         }
         self.settings = *settings;
         Ok(())
+    }
+
+    /// Lets guides carry the renderer's strands, which are those of `binding`: the points of its pictures are from
+    /// now on those of the guides, and the device places the strands, out of the solids.
+    ///
+    /// # Errors
+    /// Strands that are not the renderer's; whatever the device refuses.
+    pub fn bind(&mut self, binding: &Binding, solids: &Solids) -> Result<(), RenderError> {
+        self.points.bind(&self.gpu, &self.groom, &self.guides, binding, solids)
+    }
+
+    /// As [`Renderer::show_layers`](crate::Renderer::show_layers).
+    pub fn show_layers(&mut self, light: Option<usize>) {
+        self.layer_coloring.light = light;
     }
 
     /// Draws a picture.
@@ -249,17 +220,20 @@ impl GpuRenderer {
         input.validate()?;
         let (given, lights) = (input.lights, at_samples(input.lights, input.look.suns()));
         let input = &FrameInput { lights: &lights, ..*input };
-        self.check_points(input, points)?;
+        self.points.check(&self.gpu, &self.groom, input, points)?;
         let settings = self.settings;
         let scene = self.scene(input, &settings, points.map_or(1.0, |points| points.share));
         self.prepare(&scene)?;
         self.prepare_format(format)?;
         self.write(&scene, points.is_none())?;
-        let bound = self.bound_stages(points)?;
-        let tessellate = self.tessellate(points)?;
-        let keep_outside = self.keep_outside(scene.strand_count())?;
-        let layer_colors = self.layer_colors(given)?;
-        let (Some(stages), Some(maps)) = (&self.stages, &self.maps) else { unreachable!("prepared above") };
+        let (Some(stages), Some(maps), Some(strands)) = (&self.stages, &self.maps, &self.strands) else {
+            unreachable!("prepared above")
+        };
+        let (gpu, groom, count) = (&self.gpu, &self.groom, scene.strand_count());
+        let bound = self.points.stages(gpu, groom, points)?;
+        let tessellate = self.points.tessellate(gpu, &self.kernels.tessellate, groom, strands, points)?;
+        let keep_outside = self.points.keep_outside(gpu, groom, strands, count)?;
+        let layer_colors = self.layer_coloring.bind(gpu, given, groom, strands, maps)?;
         let resolve =
             &self.formats.iter().find(|known| known.format == format).expect("prepared above").bound;
         let bounds = Bounds {
@@ -267,11 +241,10 @@ impl GpuRenderer {
             tessellate,
             keep_outside,
             layer_colors,
-            stages,
             resolve,
             maps,
             target,
-            renderer: self,
+            held: self.held(stages),
         };
         let submitted = self.gpu.guarded("a frame", || {
             let mut recorder = Recorder::new(&self.gpu, self.timer.as_ref());
@@ -285,6 +258,13 @@ impl GpuRenderer {
             self.gpu.queue().submit([commands]);
         });
         submitted?;
+        self.note(&scene);
+        let strands = scene.level.drawn_strands(scene.guide_count);
+        Ok(FrameReport { strands, segments: strands * (scene.curve_points() - 1), ..FrameReport::default() })
+    }
+
+    /// Remembers what a frame drew.
+    fn note(&mut self, scene: &Scene) {
         self.drawn = Drawn {
             strands_per_guide: scene.level.strand_count(),
             curve_points: scene.curve_points(),
@@ -292,10 +272,19 @@ impl GpuRenderer {
             left_out: scene.level.left_out,
         };
         self.lit.0.clear();
-        self.lit.0.extend_from_slice(input.lights);
-        (self.lit.1, self.lit.2) = (input.look.hair_shadow(), scene.middle);
-        let strands = scene.level.drawn_strands(scene.guide_count);
-        Ok(FrameReport { strands, segments: strands * (scene.curve_points() - 1), ..FrameReport::default() })
+        self.lit.0.extend_from_slice(scene.input.lights);
+        (self.lit.1, self.lit.2) = (scene.input.look.hair_shadow(), scene.middle);
+    }
+
+    /// What is kept from frame to frame, with the stages bound.
+    pub(super) fn held<'a>(&'a self, stages: &'a Stages) -> Held<'a> {
+        Held {
+            groom: &self.groom,
+            stages,
+            light_grid: self.light_grid.as_ref(),
+            indices: &self.indices,
+            samples: &self.targets,
+        }
     }
 
     pub(super) fn scene<'a>(
@@ -342,7 +331,7 @@ impl GpuRenderer {
             strands.strands_per_guide < strands_per_guide || strands.curve_points < curve_points
         }) {
             self.forget();
-            self.tessellates.clear();
+            self.points.forget();
             self.strands = None;
             self.strands = Some(Strands::new(&self.gpu, scene.guide_count, strands_per_guide, curve_points)?);
         }
@@ -363,10 +352,21 @@ impl GpuRenderer {
         Ok(())
     }
 
+    /// Makes room for scattered light, and the fibre's tables.
+    fn prepare_light(&mut self, source: Source) -> Result<(), RenderError> {
+        if self.light_grid.is_none() {
+            self.light_grid = Some(LightGrid::new(&self.gpu)?);
+        }
+        if let (Some(grid), Some(strands), Some(maps)) = (&mut self.light_grid, &self.strands, &self.maps) {
+            grid.prepare(&self.gpu, source, &self.groom, strands, maps)?;
+        }
+        Ok(())
+    }
+
     /// What was drawn is lost with the buffers that held it.
     fn forget(&mut self) {
         self.stages = None;
-        self.light_bounds = None;
+        self.light_grid.iter_mut().for_each(LightGrid::forget);
         self.drawn = Drawn::default();
         self.lit.0.clear();
     }
@@ -393,7 +393,7 @@ impl GpuRenderer {
         let scales = (0..scene.level.strand_count()).map(|index| scene.level.width_scale(index));
         strands.scales.write(&scales.collect::<Vec<f32>>())?;
         if host_points {
-            self.host_points().write(floats(scene.input.positions))?;
+            self.points.of_host(groom).write(floats(scene.input.positions))?;
         }
         Ok(())
     }

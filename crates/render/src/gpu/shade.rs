@@ -1,9 +1,8 @@
 //! `shade`: light from every point of the hair toward the camera.
 
-use strandline_gpu::{Bound, Kernel, kernel};
+use strandline_gpu::{Bound, Gpu, Kernel, kernel};
 
-use super::GpuRenderer;
-use super::buffers::{Groom, Strands};
+use super::buffers::{Groom, Maps, Strands};
 use super::inputs::{Frame, LightSource};
 use crate::lights::first_sample;
 use crate::{Light, RenderError};
@@ -43,26 +42,34 @@ kernel! {
     }
 }
 
-impl GpuRenderer {
-    /// As [`Renderer::show_layers`](crate::Renderer::show_layers).
-    pub fn show_layers(&mut self, light: Option<usize>) {
-        self.layers_of = light;
-    }
+/// Hair coloured by the layers of a light's map, where that is asked for.
+#[derive(Default)]
+pub(super) struct LayerColoring {
+    /// The light, as the host counts lights.
+    pub light: Option<usize>,
+    /// The kernel for a place of it.
+    compiled: Option<(usize, Kernel<LayerColors<'static>>)>,
+}
 
-    /// What colours the hair by layers, if a light with shadow is chosen for it.
-    pub(super) fn layer_colors(&mut self, lights: &[Light]) -> Result<Option<Bound>, RenderError> {
-        let chosen = self.layers_of.filter(|&light| lights.get(light).is_some_and(|light| light.shadow));
-        let chosen = chosen.map(|light| first_sample(lights, light));
-        let (Some(light), Some(strands), Some(maps)) = (chosen, &self.strands, &self.maps) else {
-            return Ok(None);
-        };
-        if self.layer_colors.as_ref().is_none_or(|(compiled, _)| *compiled != light) {
-            self.layer_colors = Some((light, Kernel::new(&self.gpu, &[("LAYERS_OF", light as f64)])?));
+impl LayerColoring {
+    /// What colours the hair, if a light with shadow is chosen for it.
+    pub fn bind(
+        &mut self,
+        gpu: &Gpu,
+        lights: &[Light],
+        groom: &Groom,
+        strands: &Strands,
+        maps: &Maps,
+    ) -> Result<Option<Bound>, RenderError> {
+        let chosen = self.light.filter(|&light| lights.get(light).is_some_and(|light| light.shadow));
+        let Some(light) = chosen.map(|light| first_sample(lights, light)) else { return Ok(None) };
+        if self.compiled.as_ref().is_none_or(|(compiled, _)| *compiled != light) {
+            self.compiled = Some((light, Kernel::new(gpu, &[("LAYERS_OF", light as f64)])?));
         }
-        let Groom { frame, lights, fitted, .. } = &self.groom;
+        let Groom { frame, lights, fitted, .. } = groom;
         let Strands { points, radiances, .. } = strands;
         let buffers = LayerColors { frame, points, lights, fitted, maps: &maps.texels, radiances };
-        let bind = |(_, kernel): &(usize, Kernel<LayerColors>)| kernel.bind(&self.gpu, &buffers);
-        Ok(self.layer_colors.as_ref().map(bind).transpose()?)
+        let bind = |(_, kernel): &(usize, Kernel<LayerColors>)| kernel.bind(gpu, &buffers);
+        Ok(self.compiled.as_ref().map(bind).transpose()?)
     }
 }

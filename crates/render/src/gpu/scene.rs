@@ -1,0 +1,40 @@
+//! One frame as the host knows it.
+
+use glam::Vec3;
+
+use crate::{DetailLevel, FrameInput, PictureSettings};
+
+/// What one frame shows, worked out on the host.
+pub(super) struct Scene<'a> {
+    pub input: &'a FrameInput<'a>,
+    pub settings: &'a PictureSettings,
+    pub level: DetailLevel,
+    pub share: f32,
+    pub guide_count: usize,
+    pub guide_points: usize,
+    pub vertex_count: usize,
+    pub triangle_count: usize,
+    /// 0 none, 1 open, 2 closed.
+    pub body_kind: u32,
+    pub body_ball: (Vec3, f32),
+    /// What of the groom is drawn: see common.wesl.
+    pub own: u32,
+    /// Middle of the hair \[m\], world space.
+    pub middle: Vec3,
+    /// Mean of the guides' colours.
+    pub own_color: Option<Vec3>,
+}
+
+impl Scene<'_> {
+    pub fn curve_points(&self) -> usize {
+        self.level.segment_count(self.guide_points) + 1
+    }
+
+    pub fn strand_count(&self) -> usize {
+        self.guide_count * self.level.strand_count()
+    }
+
+    pub fn shadow_count(&self) -> usize {
+        self.input.lights.iter().filter(|light| light.shadow).count()
+    }
+}
