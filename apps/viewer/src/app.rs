@@ -5,11 +5,10 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::groom::format::{Format, endings};
 use strandline::{
-    Backend, Camera, Command, Error, Live, News, Scene, Shown, base::SettingError, body::Aabb,
-    render::PictureSettings,
+    Backend, Camera, Command, Error, Live, Scene, Shown, base::SettingError, render::PictureSettings,
 };
 
-use crate::{export, files, messages, panels, rescue, saves, stage, strip};
+use crate::{export, files, messages, rescue, saves};
 
 /// The window's state: what plays, and what a person made of it.
 pub struct App {
@@ -32,14 +31,14 @@ pub struct App {
     pub(crate) grabs: bool,
     pub(crate) radius: f32,
     /// The scene that is on its way, and the number of its command.
-    pending: Option<(u64, Box<Scene>)>,
+    pub(crate) pending: Option<(u64, Box<Scene>)>,
     pub(crate) error: Option<String>,
-    pub(crate) notes: Vec<messages::Note>,
+    pub(crate) notes: messages::Notes,
     pub(crate) shown: Option<Shown>,
     pub(crate) texture: Option<egui::TextureHandle>,
     /// Pictures a second, smoothed.
     pub(crate) rate: f32,
-    last: Option<Instant>,
+    pub(crate) last: Option<Instant>,
     /// What is typed as the path of a file.
     pub(crate) path: String,
     /// Whether pictures may be simpler while the hair moves.
@@ -52,11 +51,11 @@ pub struct App {
     pub(crate) saves: saves::Saves,
     /// What is seen, for the case that the window stops in an error, and when it was kept last.
     pub(crate) kept: rescue::Kept,
-    kept_at: Option<Instant>,
+    pub(crate) kept_at: Option<Instant>,
     /// Number of the last step that was asked for by dragging while nothing plays, and whether another one
     /// is wanted once its picture is there.
-    stepped: u64,
-    wants_step: bool,
+    pub(crate) stepped: u64,
+    pub(crate) wants_step: bool,
     pub(crate) dialog: Option<files::Dialog>,
     /// Moving hair that is being written, and what of it.
     pub(crate) exporting: Option<export::Export>,
@@ -67,9 +66,6 @@ pub struct App {
 
 /// How long a new picture waits to be shown.
 const SOON: Duration = Duration::from_millis(1);
-
-/// How often what is seen is kept.
-const KEPT_EVERY: Duration = Duration::from_secs(2);
 
 /// What the mouse does in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,7 +110,7 @@ impl App {
             radius: Self::RADIUS,
             pending: Some((1, Box::new(scene))),
             error: None,
-            notes: Vec::new(),
+            notes: messages::Notes::default(),
             shown: None,
             texture: None,
             rate: 0.0,
@@ -167,6 +163,17 @@ impl App {
 
     pub(crate) fn send_look(&self) {
         self.live.tell(Command::Look(Box::new(self.scene.look.clone())));
+    }
+
+    /// Goes on, or stands still.
+    pub(crate) fn play(&mut self, playing: bool) {
+        self.playing = playing;
+        self.live.tell(Command::Play(playing));
+    }
+
+    /// Shows a line for a while.
+    pub(crate) fn note(&mut self, text: String) {
+        self.notes.add(text);
     }
 
     /// Has pictures drawn as the scene says, with something behind them.
@@ -227,12 +234,6 @@ impl App {
         self.pending = Some((number, Box::new(scene)));
     }
 
-    /// Loads what was dropped on the window.
-    fn take_files(&mut self, ui: &egui::Ui) {
-        let dropped = ui.input(|input| input.raw.dropped_files.clone());
-        dropped.iter().for_each(|file| self.open_file(file.path()));
-    }
-
     /// Loads a scene, or another groom or body into the one that is there.
     pub(crate) fn open_file(&mut self, file: &Path) {
         // A body dropped right after a groom goes with it.
@@ -240,73 +241,6 @@ impl App {
         match Self::scene_of(onto, file) {
             Ok(scene) => self.load(scene),
             Err(error) => self.error = Some(error.to_string()),
-        }
-    }
-
-    fn take_news(&mut self) {
-        for news in self.live.take_news() {
-            match news {
-                News::Loaded(number, scene, camera, bounds, notes) => {
-                    self.take_scene(number, *scene, camera, bounds);
-                    notes.into_iter().for_each(|note| self.note(note));
-                }
-                News::Note(note) => self.note(note),
-                News::NotLoaded(number, error) => {
-                    // What plays is still what played before.
-                    self.pending.take_if(|(pending, _)| *pending == number);
-                    self.error = Some(error);
-                    if self.shown.is_none() {
-                        self.give_up_pictures();
-                    }
-                }
-                News::Error(error) => self.error = Some(error),
-                News::Paused => {
-                    self.playing = false;
-                    self.give_up_pictures();
-                }
-                News::Saved(path) => self.note(format!("wrote {}", path.display())),
-                News::Recorded if self.finishing > 0 => self.finishing -= 1,
-                News::Recorded => self.recording = false,
-            }
-        }
-    }
-
-    /// Makes the scene that has come the one that the controls change.
-    fn take_scene(&mut self, number: u64, scene: Scene, camera: Camera, bounds: Aabb) {
-        if self.pending.take_if(|(pending, _)| *pending == number).is_none() {
-            return;
-        }
-        (self.scene, self.loaded) = (scene, number);
-        if self.scene.lights.is_empty() {
-            // Those that it is lit with, for the panel to change.
-            self.scene.lights = self.scene.look.lights(0.5 * (bounds.min + bounds.max));
-        }
-        self.base = self.scene.clone();
-        (self.camera, self.home, self.grabs) = (camera, camera, false);
-        self.notes.clear();
-        self.live.tell(Command::Play(self.playing));
-    }
-
-    fn take_picture(&mut self, context: &egui::Context) {
-        let Some(shown) = self.live.take_shown() else { return };
-        let size = [shown.picture.width as usize, shown.picture.height as usize];
-        let image = egui::ColorImage::from_rgb(size, &shown.picture.pixels);
-        match &mut self.texture {
-            Some(texture) => texture.set(image, egui::TextureOptions::LINEAR),
-            None => {
-                self.texture = Some(context.load_texture("picture", image, egui::TextureOptions::LINEAR));
-            }
-        }
-        let now = Instant::now();
-        if let Some(last) = self.last.replace(now) {
-            let rate = 1.0 / (now - last).as_secs_f32().max(1e-3);
-            self.rate += (rate - self.rate) * if self.rate == 0.0 { 1.0 } else { 0.1 };
-        }
-        let step = shown.step.clone().or(self.shown.take().and_then(|old| old.step));
-        self.shown = Some(Shown { step, ..shown });
-        self.save_if_full();
-        if self.wants_step {
-            self.step_on();
         }
     }
 
@@ -322,35 +256,5 @@ impl App {
             *file = std::path::absolute(&path).unwrap_or(path);
         }
         scene
-    }
-
-    /// Keeps what is seen, now and then: it may be the last that there is of it.
-    fn keep_scene(&mut self) {
-        if self.kept_at.is_none_or(|last| last.elapsed() > KEPT_EVERY) {
-            self.kept.keep(self.seen());
-            self.kept_at = Some(Instant::now());
-        }
-    }
-
-    /// Draws the window.
-    pub fn show(&mut self, ui: &mut egui::Ui) {
-        self.context.get_or_init(|| ui.ctx().clone());
-        self.take_news();
-        self.take_files(ui);
-        self.take_picture(ui.ctx());
-        files::take_answer(self);
-        self.take_saved();
-        self.take_exported();
-        self.keep_scene();
-        stage::keys(self, ui);
-        egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
-        egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
-        egui::CentralPanel::default().show(ui, |ui| stage::show(self, ui));
-    }
-}
-
-impl eframe::App for App {
-    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
-        self.show(ui);
     }
 }

@@ -10,8 +10,6 @@ use eframe::egui;
 use strandline::groom::format::Format;
 use strandline::{Error, OutSettings, Player, Scene, Target, What, Written};
 
-use crate::App;
-
 /// What is to be written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
@@ -51,7 +49,11 @@ pub struct Export {
 }
 
 impl Export {
-    fn new(
+    /// Begins to write.
+    ///
+    /// # Errors
+    /// A setting outside its range; the system gives no thread.
+    pub fn new(
         mut scene: Scene,
         wanted: &Wanted,
         path: &Path,
@@ -78,6 +80,11 @@ impl Export {
         let thread =
             std::thread::Builder::new().name("exporting".to_owned()).spawn(run).map_err(Error::Thread)?;
         Ok(Self { path: path.to_owned(), stop, done, frames, result, thread: Some(thread) })
+    }
+
+    /// What is written, and what came of it once it is done.
+    pub fn result(&self) -> Option<(&Path, Result<Option<Written>, String>)> {
+        Some((&self.path, self.result.try_recv().ok()?))
     }
 
     /// Share of the frames that is done.
@@ -117,55 +124,11 @@ fn write(
 }
 
 /// The name of a file a frame, where a path is that of a groom other than a cache.
-fn numbered(path: &Path) -> Option<PathBuf> {
+pub fn numbered(path: &Path) -> Option<PathBuf> {
     let ending = &Format::of(path).ok()?.ending;
     let stem = path.file_stem()?.to_string_lossy();
     let name = if stem.contains('%') { format!("{stem}.{ending}") } else { format!("{stem}.%04d.{ending}") };
     (*ending != "npz").then(|| path.with_file_name(name))
-}
-
-impl App {
-    /// Writes moving hair of the scene as it is now, or ends what is being written. The ending of the path says
-    /// what it is: .npz, .usda, or that of a groom format for a file a frame; without a path a free cache in the folder.
-    pub fn export(&mut self, path: Option<&Path>) {
-        if self.exporting.take().is_some() {
-            self.note("the export was stopped: what was done stays".to_owned());
-            return;
-        }
-        let numbered = path.and_then(numbered);
-        let path = numbered.as_deref().or(path);
-        let ending = path.and_then(Path::extension).filter(|ending| ending.eq_ignore_ascii_case("usda"));
-        let ending = if ending.is_some() { "usda" } else { "npz" };
-        let free = || self.path_or_free(path, "hair", ending);
-        let Some(path) = numbered.clone().or_else(free) else { return };
-        let mut scene = self.seen();
-        // The hair begins where the film does, as in a run of the scene.
-        scene.begin_at_rest();
-        match Export::new(scene, &self.export_wanted, &path, self.context.clone()) {
-            Ok(export) => self.exporting = Some(export),
-            Err(error) => self.error = Some(error.to_string()),
-        }
-    }
-
-    /// Whether moving hair is being written.
-    pub fn is_exporting(&self) -> bool {
-        self.exporting.is_some()
-    }
-
-    /// Tells of moving hair that is written.
-    pub(crate) fn take_exported(&mut self) {
-        let Some(result) = self.exporting.as_ref().and_then(|export| export.result.try_recv().ok()) else {
-            return;
-        };
-        let path = self.exporting.take().map(|export| export.path.clone()).unwrap_or_default();
-        match result {
-            Ok(Some(Written { place, frames, strands, .. })) => {
-                self.note(format!("wrote {frames} frames of {strands} strands: {}", place.display()));
-            }
-            Ok(None) => {}
-            Err(error) => self.error = Some(format!("cannot export {}: {error}", path.display())),
-        }
-    }
 }
 
 #[cfg(test)]

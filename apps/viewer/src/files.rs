@@ -7,8 +7,6 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::groom::format::FORMATS;
 
-use crate::App;
-
 /// What a file is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
@@ -32,22 +30,42 @@ pub struct Dialog {
 /// No person puts a dialog away as fast as this: there was none.
 const AT_ONCE: Duration = Duration::from_millis(300);
 
-/// Opens a dialog, unless one is open.
-pub fn ask(app: &mut App, wanted: Wanted, context: &egui::Context) {
-    if app.dialog.is_some() {
-        return;
+/// What a dialog said.
+pub struct Answer {
+    /// What was asked for.
+    pub wanted: Wanted,
+    /// The file, where there is one.
+    pub file: Option<PathBuf>,
+    /// Whether it came sooner than a person answers.
+    pub at_once: bool,
+}
+
+impl Dialog {
+    /// Opens one.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn open(wanted: Wanted, context: &egui::Context) -> std::io::Result<Self> {
+        let (answer_to, answer) = channel();
+        let (question, context) = (question(wanted), context.clone());
+        let wait = move || {
+            let file = pollster::block_on(question).map(|file| file.path().to_owned());
+            // The window may be gone.
+            let _ = answer_to.send(file);
+            context.request_repaint();
+        };
+        std::thread::Builder::new().name("dialog".to_owned()).spawn(wait)?;
+        Ok(Self { wanted, answer, since: Instant::now() })
     }
-    let (answer_to, answer) = channel();
-    let (question, context) = (question(wanted), context.clone());
-    let wait = move || {
-        let file = pollster::block_on(question).map(|file| file.path().to_owned());
-        // The window may be gone.
-        let _ = answer_to.send(file);
-        context.request_repaint();
-    };
-    match std::thread::Builder::new().name("dialog".to_owned()).spawn(wait) {
-        Ok(_) => app.dialog = Some(Dialog { wanted, answer, since: Instant::now() }),
-        Err(error) => app.error = Some(format!("cannot open a dialog: {error}")),
+
+    /// What it said, once it did.
+    pub fn answer(&self) -> Option<Answer> {
+        let file = match self.answer.try_recv() {
+            Err(TryRecvError::Empty) => return None,
+            Err(TryRecvError::Disconnected) => None,
+            Ok(file) => file,
+        };
+        Some(Answer { wanted: self.wanted, file, at_once: self.since.elapsed() < AT_ONCE })
     }
 }
 
@@ -76,30 +94,5 @@ fn question(wanted: Wanted) -> Question {
             let dialog = dialog.add_filter("a groom file a frame", &grooms);
             Box::pin(dialog.set_file_name("hair.npz").save_file())
         }
-    }
-}
-
-/// Takes the answer of a dialog, if it is there.
-pub fn take_answer(app: &mut App) {
-    let Some(dialog) = &app.dialog else { return };
-    let (wanted, since) = (dialog.wanted, dialog.since);
-    let answer = match dialog.answer.try_recv() {
-        Err(TryRecvError::Empty) => return,
-        Err(TryRecvError::Disconnected) => None,
-        Ok(answer) => answer,
-    };
-    app.dialog = None;
-    match (answer, wanted) {
-        (Some(file), Wanted::Open) => app.open_file(&file),
-        (Some(file), Wanted::Picture) => app.save_picture(Some(file)),
-        (Some(file), Wanted::Scene) => app.save_scene(Some(&file)),
-        (Some(file), Wanted::Moving) => app.export(Some(&file)),
-        (None, Wanted::Open) if since.elapsed() < AT_ONCE => {
-            app.note("this system has no file dialog: type a path, or drop a file on the window".to_owned());
-        }
-        (None, _) if since.elapsed() < AT_ONCE => {
-            app.note("this system has no file dialog: save into out/ instead".to_owned());
-        }
-        (None, _) => {}
     }
 }

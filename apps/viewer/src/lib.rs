@@ -3,17 +3,21 @@
 #![forbid(unsafe_code)]
 
 mod app;
+mod asking;
 mod controls;
 mod export;
+mod exporting;
 mod files;
 mod libraries;
 mod messages;
 mod panels;
 mod rescue;
 mod saves;
+mod saving;
 mod stage;
 mod strip;
 mod wind;
+mod window;
 
 pub use app::{App, Tool};
 use std::sync::Arc;

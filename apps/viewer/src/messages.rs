@@ -4,33 +4,40 @@ use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Align2, Color32, Rect};
 
-use crate::App;
-
 /// How long a note is shown.
 const READING: Duration = Duration::from_secs(8);
 /// Notes that are shown at once.
 const MOST: usize = 5;
 
 /// Something to read, and since when.
-pub struct Note {
+struct Note {
     text: String,
     since: Instant,
 }
 
-impl App {
+/// The notes that are shown, oldest first.
+#[derive(Default)]
+pub struct Notes(Vec<Note>);
+
+impl Notes {
     /// Shows a line for a while.
-    pub(crate) fn note(&mut self, text: String) {
-        if self.notes.len() == MOST {
-            self.notes.remove(0);
+    pub fn add(&mut self, text: String) {
+        if self.0.len() == MOST {
+            self.0.remove(0);
         }
-        self.notes.push(Note { text, since: Instant::now() });
+        self.0.push(Note { text, since: Instant::now() });
+    }
+
+    /// Puts all of them away.
+    pub fn clear(&mut self) {
+        self.0.clear();
     }
 }
 
 /// Shows the notes for a while, and the last error until it is put away.
-pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
-    app.notes.retain(|note| note.since.elapsed() < READING);
-    if app.notes.is_empty() && app.error.is_none() {
+pub fn show(notes: &mut Notes, last_error: &mut Option<String>, ui: &egui::Ui, room: Rect) {
+    notes.0.retain(|note| note.since.elapsed() < READING);
+    if notes.0.is_empty() && last_error.is_none() {
         return;
     }
     ui.ctx().request_repaint_after(READING);
@@ -40,14 +47,14 @@ pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     area.show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.set_max_width(width);
-            for note in &app.notes {
+            for note in &notes.0 {
                 ui.label(&note.text);
             }
-            let Some(error) = app.error.clone() else { return };
+            let Some(error) = last_error.clone() else { return };
             ui.horizontal_wrapped(|ui| {
                 ui.colored_label(Color32::LIGHT_RED, error);
                 if ui.small_button("x").on_hover_text("puts the message away").clicked() {
-                    app.error = None;
+                    *last_error = None;
                 }
             });
         });

@@ -1,29 +1,23 @@
-//! What is seen, as files: written by threads of their own, so that the window goes on.
+//! Pictures that are to be saved, and names that are given away.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
 
-use strandline::{Command, News};
-
-use crate::{App, stage};
+use strandline::render::Picture;
 
 /// What a picture's writing led to: its path, or what went wrong.
-type Saved = Result<PathBuf, String>;
+pub type Saved = Result<PathBuf, String>;
 
 /// Pictures that are to be saved, and names that are given away.
 pub struct Saves {
     /// Those that wait for a picture in full: paths, or none for one in the folder.
-    waiting: Vec<Option<PathBuf>>,
+    pub waiting: Vec<Option<PathBuf>>,
     threads: Vec<JoinHandle<()>>,
     told: (Sender<Saved>, Receiver<Saved>),
     taken: HashSet<PathBuf>,
 }
-
-/// How long a window that is closed waits for a picture in full.
-const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Default for Saves {
     fn default() -> Self {
@@ -32,155 +26,53 @@ impl Default for Saves {
     }
 }
 
-impl Drop for App {
-    /// What a person saved is written, though the window is closed; after ten seconds as it is seen.
-    fn drop(&mut self) {
-        let begin = Instant::now();
-        while !self.saves.waiting.is_empty() && begin.elapsed() < PATIENCE {
-            if let Some(shown) = self.live.take_shown() {
-                self.shown = Some(shown);
-                self.save_if_full();
-            }
-            let fails = |news: &News| matches!(news, News::Paused | News::NotLoaded(..));
-            if self.live.take_news().iter().any(fails) {
-                break;
-            }
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        self.write_pictures();
-        self.saves.threads.drain(..).for_each(|thread| drop(thread.join()));
-    }
-}
-
-impl App {
-    /// Saves the next picture that is drawn in full, or the one that is seen where it is; into a free file of
-    /// the folder when no path is given.
-    pub fn save_picture(&mut self, path: Option<PathBuf>) {
-        if self.shown.is_none() && !self.is_loading() {
-            self.error = Some("there is no picture yet".to_owned());
-            return;
-        }
-        self.saves.waiting.push(path);
-        self.send_adapt();
-        self.save_if_full();
-    }
-
-    /// Tells that pictures are not saved, after the error that is the reason.
-    pub(crate) fn give_up_pictures(&mut self) {
-        if !self.saves.waiting.is_empty() {
-            self.saves.waiting.clear();
-            let reason = self.error.take().unwrap_or_default();
-            self.error = Some(format!("no picture was saved: {reason}"));
-            self.send_adapt();
-        }
-    }
-
-    /// Has pictures be simpler, unless one is to be saved.
-    pub(crate) fn send_adapt(&self) {
-        self.live.tell(Command::Adapt(self.adapts && self.saves.waiting.is_empty()));
-    }
-
-    /// Saves the pictures that are wanted, if they are there.
-    pub(crate) fn save_if_full(&mut self) {
-        if self.saves.waiting.is_empty() || self.shown.as_ref().is_none_or(|shown| shown.draft) {
-            return;
-        }
-        self.write_pictures();
-        self.send_adapt();
-    }
-
-    /// Writes the picture that is seen to all files that wait for one.
-    fn write_pictures(&mut self) {
-        for path in std::mem::take(&mut self.saves.waiting) {
-            self.write_picture(path.as_deref());
-        }
-    }
-
-    fn write_picture(&mut self, path: Option<&Path>) {
-        let Some(path) = self.path_or_free(path, "view", "png") else { return };
-        let Some(picture) = self.shown.as_ref().map(|shown| shown.picture.clone()) else { return };
-        let (context, told) = (self.context.clone(), self.saves.told.0.clone());
+impl Saves {
+    /// Writes a picture on a thread of its own.
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn write(
+        &mut self,
+        picture: Picture,
+        path: PathBuf,
+        done: impl FnOnce() + Send + 'static,
+    ) -> std::io::Result<()> {
+        let told = self.told.0.clone();
         let write = move || {
             let saved = picture.save(&path).map(|()| path).map_err(|error| error.to_string());
             // The window may be gone.
             let _ = told.send(saved);
-            context.get().into_iter().for_each(eframe::egui::Context::request_repaint);
+            done();
         };
-        match std::thread::Builder::new().name("saving".to_owned()).spawn(write) {
-            Ok(thread) => self.saves.threads.push(thread),
-            Err(error) => self.error = Some(format!("cannot save the picture: {error}")),
-        }
+        self.threads.push(std::thread::Builder::new().name("saving".to_owned()).spawn(write)?);
+        Ok(())
     }
 
-    /// Saves what is seen as a scene, or tells why not.
-    pub fn save_scene(&mut self, path: Option<&Path>) {
-        if let Some(path) = self.path_or_free(path, "view", "toml") {
-            self.live.tell(Command::Save(Box::new(self.seen()), self.loaded, path));
-        }
+    /// What came of pictures that are written since.
+    pub fn written(&mut self) -> Vec<Saved> {
+        self.threads.retain(|thread| !thread.is_finished());
+        self.told.1.try_iter().collect()
     }
 
-    /// Tells of the pictures that are written.
-    pub(crate) fn take_saved(&mut self) {
-        self.saves.threads.retain(|thread| !thread.is_finished());
-        while let Ok(saved) = self.saves.told.1.try_recv() {
-            match saved {
-                Ok(path) => self.note(format!("wrote {}", path.display())),
-                Err(error) => self.error = Some(error),
-            }
-        }
+    /// Waits for all that is being written.
+    pub fn join(&mut self) {
+        self.threads.drain(..).for_each(|thread| drop(thread.join()));
     }
 
-    /// Begins a video, or ends the one that is recorded.
-    pub fn record(&mut self) {
-        if self.recording {
-            self.finishing += 1;
-            self.recording = false;
-            self.live.tell(Command::StopRecording);
-            return;
-        }
-        let folder = self.free_path("video", "").and_then(|folder| {
-            // It is taken from now on.
-            std::fs::create_dir(&folder).map_err(|error| format!("cannot make the folder: {error}"))?;
-            Ok(folder)
-        });
-        match folder {
-            Ok(folder) => {
-                self.recording = true;
-                self.live.tell(Command::Record(folder));
-                stage::play(self, true);
-            }
-            Err(error) => self.error = Some(error),
-        }
-    }
-
-    /// Whether a video is recorded.
-    pub fn is_recording(&self) -> bool {
-        self.recording
-    }
-
-    /// The path with its ending, or a free one; none after an error that was told.
-    pub(crate) fn path_or_free(&mut self, path: Option<&Path>, stem: &str, ending: &str) -> Option<PathBuf> {
-        let has_ending =
-            |path: &Path| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));
-        let path = match path {
-            Some(path) if has_ending(path) => Ok(path.to_owned()),
-            Some(path) => Ok(path.with_added_extension(ending)),
-            None => self.free_path(stem, ending),
-        };
-        path.map_err(|error| self.error = Some(error)).ok()
-    }
-
-    /// A name that is not taken, of a file or, without an ending, of a folder.
-    fn free_path(&mut self, stem: &str, ending: &str) -> Result<PathBuf, String> {
-        std::fs::create_dir_all(&self.folder)
-            .map_err(|error| format!("cannot make the folder: {error}: {}", self.folder.display()))?;
-        let path = |number: usize| self.folder.join(format!("{stem}_{number:03}")).with_extension(ending);
+    /// A name in a folder that is not taken, of a file or, without an ending, of a folder.
+    ///
+    /// # Errors
+    /// The folder cannot be made or is full.
+    pub fn free_path(&mut self, folder: &Path, stem: &str, ending: &str) -> Result<PathBuf, String> {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| format!("cannot make the folder: {error}: {}", folder.display()))?;
+        let path = |number: usize| folder.join(format!("{stem}_{number:03}")).with_extension(ending);
         let free = (0..1000)
             .map(path)
-            .find(|path| !path.exists() && !self.saves.taken.contains(path))
-            .ok_or_else(|| format!("a thousand of them lie there already: {}", self.folder.display()))?;
+            .find(|path| !path.exists() && !self.taken.contains(path))
+            .ok_or_else(|| format!("a thousand of them lie there already: {}", folder.display()))?;
         // It may be written only later.
-        self.saves.taken.insert(free.clone());
+        self.taken.insert(free.clone());
         Ok(free)
     }
 }

@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
 use glam::Vec2;
 use strandline::{Camera, Command, Ray, base::Group, render::PictureSettings, scene::MotionSection};
 
-use crate::{App, Tool, controls::button, files, messages, wind};
+use crate::{App, Tool, controls::button, files::Wanted, messages, wind};
 
 /// Turn of the view or the head for a point that the mouse moves \[radians\].
 const ORBIT: f32 = 0.008;
@@ -37,7 +37,7 @@ pub fn keys(app: &mut App, ui: &egui::Ui) {
 
 fn file_keys(app: &mut App, ui: &egui::Ui, pressed: impl Fn(Key) -> bool) {
     if pressed(Key::O) {
-        files::ask(app, files::Wanted::Open, ui.ctx());
+        app.ask(Wanted::Open, ui.ctx());
     }
     if pressed(Key::S) {
         app.save_scene(None);
@@ -49,10 +49,10 @@ fn file_keys(app: &mut App, ui: &egui::Ui, pressed: impl Fn(Key) -> bool) {
 
 fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
     if pressed(Key::Space) {
-        play(app, !app.playing);
+        app.play(!app.playing);
     }
     if pressed(Key::Period) {
-        play(app, false);
+        app.play(false);
         app.live.tell(Command::Step);
     }
     if pressed(Key::R) {
@@ -73,12 +73,6 @@ fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
     if pressed(Key::F) {
         look(app, app.home);
     }
-}
-
-/// Goes on, or stands still.
-pub fn play(app: &mut App, playing: bool) {
-    app.playing = playing;
-    app.live.tell(Command::Play(playing));
 }
 
 fn look(app: &mut App, camera: Camera) {
@@ -105,7 +99,7 @@ fn zoom(app: &mut App, share: f32) {
 pub fn show(app: &mut App, ui: &mut egui::Ui) {
     let room = ui.available_rect_before_wrap();
     fit(app, room.size(), ui.ctx().pixels_per_point());
-    messages::show(app, ui, room);
+    messages::show(&mut app.notes, &mut app.error, ui, room);
     let Some(texture) = &app.texture else {
         // Nothing that turns: it would take from the loading what it needs.
         let text = if app.is_loading() { "growing hair ..." } else { "nothing to show yet: open a scene" };

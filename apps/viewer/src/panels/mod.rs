@@ -14,7 +14,6 @@ use strandline::Command;
 use crate::{
     App,
     controls::{button, section},
-    stage,
 };
 
 pub fn show(app: &mut App, ui: &mut Ui) {
@@ -34,10 +33,10 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 fn play(app: &mut App, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         if button(ui, if app.playing { "Pause" } else { "Play" }, "stands still or goes on: space") {
-            stage::play(app, !app.playing);
+            app.play(!app.playing);
         }
         if button(ui, "Step", "one frame of 1/60 s: the full stop") {
-            stage::play(app, false);
+            app.play(false);
             app.live.tell(Command::Step);
         }
         if button(ui, "Reset", "back to rest, and to the beginning of the motion: R") {

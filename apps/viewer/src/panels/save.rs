@@ -3,7 +3,7 @@
 use eframe::egui::{self, DragValue, Ui};
 use strandline::{Target, What};
 
-use crate::{App, controls::button, files};
+use crate::{App, controls::button, files::Wanted};
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     ui.horizontal(|ui| {
@@ -11,7 +11,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             app.save_picture(None);
         }
         if button(ui, "as...", "as PNG, to a place of your choice") {
-            files::ask(app, files::Wanted::Picture, ui.ctx());
+            app.ask(Wanted::Picture, ui.ctx());
         }
     });
     ui.horizontal(|ui| {
@@ -20,7 +20,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             app.save_scene(None);
         }
         if button(ui, "as...", "the same, to a place of your choice") {
-            files::ask(app, files::Wanted::Scene, ui.ctx());
+            app.ask(Wanted::Scene, ui.ctx());
         }
     });
     moving(app, ui);
@@ -60,7 +60,7 @@ fn moving(app: &mut App, ui: &mut Ui) {
             app.export(None);
         }
         if button(ui, "as...", "as .npz or .usda, or a groom file a frame, to a place of your choice") {
-            files::ask(app, files::Wanted::Moving, ui.ctx());
+            app.ask(Wanted::Moving, ui.ctx());
         }
     });
 }

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Ui};
 use strandline::{Scene, Style};
 
-use crate::{App, controls::button, files};
+use crate::{App, controls::button, files::Wanted};
 
 pub fn show(app: &mut App, ui: &mut Ui) {
     let mut chosen = app.scene.style.style;
@@ -31,7 +31,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             }
         }
         if button(ui, "Open...", "a scene, groom or body: ctrl O") {
-            files::ask(app, files::Wanted::Open, ui.ctx());
+            app.ask(Wanted::Open, ui.ctx());
         }
     });
     ui.horizontal(|ui| {

@@ -1,0 +1,51 @@
+//! Moving hair of what is seen.
+
+use std::path::Path;
+
+use strandline::Written;
+
+use crate::App;
+use crate::export::{Export, numbered};
+
+impl App {
+    /// Writes moving hair of the scene as it is now, or ends what is being written. The ending of the path says
+    /// what it is: .npz, .usda, or that of a groom format for a file a frame; without a path a free cache in the folder.
+    pub fn export(&mut self, path: Option<&Path>) {
+        if self.exporting.take().is_some() {
+            self.note("the export was stopped: what was done stays".to_owned());
+            return;
+        }
+        let numbered = path.and_then(numbered);
+        let path = numbered.as_deref().or(path);
+        let ending = path.and_then(Path::extension).filter(|ending| ending.eq_ignore_ascii_case("usda"));
+        let ending = if ending.is_some() { "usda" } else { "npz" };
+        let free = || self.path_or_free(path, "hair", ending);
+        let Some(path) = numbered.clone().or_else(free) else { return };
+        let mut scene = self.seen();
+        // The hair begins where the film does, as in a run of the scene.
+        scene.begin_at_rest();
+        match Export::new(scene, &self.export_wanted, &path, self.context.clone()) {
+            Ok(export) => self.exporting = Some(export),
+            Err(error) => self.error = Some(error.to_string()),
+        }
+    }
+
+    /// Whether moving hair is being written.
+    pub fn is_exporting(&self) -> bool {
+        self.exporting.is_some()
+    }
+
+    /// Tells of moving hair that is written.
+    pub(crate) fn take_exported(&mut self) {
+        let Some((path, result)) = self.exporting.as_ref().and_then(Export::result) else { return };
+        let path = path.to_owned();
+        self.exporting = None;
+        match result {
+            Ok(Some(Written { place, frames, strands, .. })) => {
+                self.note(format!("wrote {frames} frames of {strands} strands: {}", place.display()));
+            }
+            Ok(None) => {}
+            Err(error) => self.error = Some(format!("cannot export {}: {error}", path.display())),
+        }
+    }
+}

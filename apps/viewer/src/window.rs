@@ -1,0 +1,116 @@
+//! A pass of the window: what came since the last one is taken, then everything is drawn.
+
+use std::time::{Duration, Instant};
+
+use eframe::egui;
+use strandline::{Camera, Command, News, Scene, Shown, body::Aabb};
+
+use crate::{App, panels, stage, strip};
+
+/// How often what is seen is kept.
+const KEPT_EVERY: Duration = Duration::from_secs(2);
+
+impl App {
+    /// Loads what was dropped on the window.
+    fn take_files(&mut self, ui: &egui::Ui) {
+        let dropped = ui.input(|input| input.raw.dropped_files.clone());
+        dropped.iter().for_each(|file| self.open_file(file.path()));
+    }
+
+    fn take_news(&mut self) {
+        for news in self.live.take_news() {
+            match news {
+                News::Loaded(number, scene, camera, bounds, notes) => {
+                    self.take_scene(number, *scene, camera, bounds);
+                    notes.into_iter().for_each(|note| self.note(note));
+                }
+                News::Note(note) => self.note(note),
+                News::NotLoaded(number, error) => {
+                    // What plays is still what played before.
+                    self.pending.take_if(|(pending, _)| *pending == number);
+                    self.error = Some(error);
+                    if self.shown.is_none() {
+                        self.give_up_pictures();
+                    }
+                }
+                News::Error(error) => self.error = Some(error),
+                News::Paused => {
+                    self.playing = false;
+                    self.give_up_pictures();
+                }
+                News::Saved(path) => self.note(format!("wrote {}", path.display())),
+                News::Recorded if self.finishing > 0 => self.finishing -= 1,
+                News::Recorded => self.recording = false,
+            }
+        }
+    }
+
+    /// Makes the scene that has come the one that the controls change.
+    fn take_scene(&mut self, number: u64, scene: Scene, camera: Camera, bounds: Aabb) {
+        if self.pending.take_if(|(pending, _)| *pending == number).is_none() {
+            return;
+        }
+        (self.scene, self.loaded) = (scene, number);
+        if self.scene.lights.is_empty() {
+            // Those that it is lit with, for the panel to change.
+            self.scene.lights = self.scene.look.lights(0.5 * (bounds.min + bounds.max));
+        }
+        self.base = self.scene.clone();
+        (self.camera, self.home, self.grabs) = (camera, camera, false);
+        self.notes.clear();
+        self.live.tell(Command::Play(self.playing));
+    }
+
+    fn take_picture(&mut self, context: &egui::Context) {
+        let Some(shown) = self.live.take_shown() else { return };
+        let size = [shown.picture.width as usize, shown.picture.height as usize];
+        let image = egui::ColorImage::from_rgb(size, &shown.picture.pixels);
+        match &mut self.texture {
+            Some(texture) => texture.set(image, egui::TextureOptions::LINEAR),
+            None => {
+                self.texture = Some(context.load_texture("picture", image, egui::TextureOptions::LINEAR));
+            }
+        }
+        let now = Instant::now();
+        if let Some(last) = self.last.replace(now) {
+            let rate = 1.0 / (now - last).as_secs_f32().max(1e-3);
+            self.rate += (rate - self.rate) * if self.rate == 0.0 { 1.0 } else { 0.1 };
+        }
+        let step = shown.step.clone().or(self.shown.take().and_then(|old| old.step));
+        self.shown = Some(Shown { step, ..shown });
+        self.save_if_full();
+        if self.wants_step {
+            self.step_on();
+        }
+    }
+
+    /// Keeps what is seen, now and then: it may be the last that there is of it.
+    fn keep_scene(&mut self) {
+        if self.kept_at.is_none_or(|last| last.elapsed() > KEPT_EVERY) {
+            self.kept.keep(self.seen());
+            self.kept_at = Some(Instant::now());
+        }
+    }
+
+    /// Draws the window.
+    pub fn show(&mut self, ui: &mut egui::Ui) {
+        self.context.get_or_init(|| ui.ctx().clone());
+        self.take_news();
+        self.take_files(ui);
+        self.take_picture(ui.ctx());
+        self.take_answer();
+        self.take_saved();
+        self.take_exported();
+        self.keep_scene();
+        stage::keys(self, ui);
+        egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
+        egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
+        egui::CentralPanel::default().show(ui, |ui| stage::show(self, ui));
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}
