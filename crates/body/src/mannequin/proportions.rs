@@ -15,21 +15,11 @@ impl BustShape {
             cranium: Ellipsoid { center: vec3(0.0000, 0.0107, -0.0057), radii: vec3(0.0821, 0.0980, 0.0942) },
             face: Ellipsoid { center: vec3(0.0000, -0.0477, 0.0413), radii: vec3(0.0667, 0.0804, 0.0475) },
             face_reach: 0.0151,
-            jaw: RoundCone {
-                start: vec3(0.0458, -0.0724, 0.0198),
-                end: vec3(0.0029, -0.0953, 0.0625),
-                start_radius: 0.0085,
-                end_radius: 0.0251,
-            },
+            jaw: cone(vec3(0.0458, -0.0724, 0.0198), vec3(0.0029, -0.0953, 0.0625), [0.0085, 0.0251]),
             jaw_reach: 0.0249,
             chin: Ellipsoid { center: vec3(0.0000, -0.1088, 0.0699), radii: vec3(0.0246, 0.0172, 0.0188) },
             chin_reach: 0.0221,
-            nose: RoundCone {
-                start: vec3(0.0000, -0.0050, 0.0840),
-                end: vec3(0.0000, -0.0441, 0.1032),
-                start_radius: 0.0061,
-                end_radius: 0.0116,
-            },
+            nose: cone(vec3(0.0000, -0.0050, 0.0840), vec3(0.0000, -0.0441, 0.1032), [0.0061, 0.0116]),
             nose_reach: 0.0173,
             nostril: Ellipsoid { center: vec3(0.0134, -0.0474, 0.0928), radii: vec3(0.0028, 0.0069, 0.0103) },
             nostril_reach: 0.0072,
@@ -39,41 +29,26 @@ impl BustShape {
                 swelling(vec3(0.0305, -0.0230, 0.0820), vec3(0.0175, 0.0024, 0.0130), -0.0013, 13.0),
                 swelling(vec3(0.0310, -0.0085, 0.0820), vec3(0.0180, 0.0030, 0.0140), -0.0009, -12.0),
             ],
-            neck: RoundCone {
-                start: vec3(0.0000, -0.0358, 0.0000),
-                end: vec3(0.0000, -0.2072, -0.0349),
-                start_radius: 0.0579,
-                end_radius: 0.0362,
-            },
+            neck: cone(vec3(0.0000, -0.0358, 0.0000), vec3(0.0000, -0.2072, -0.0349), [0.0579, 0.0362]),
             neck_reach: 0.0301,
-            trapezius: RoundCone {
-                start: vec3(0.0290, -0.1722, -0.0541),
-                end: vec3(0.0995, -0.2192, -0.0866),
-                start_radius: 0.0116,
-                end_radius: 0.0127,
-            },
+            trapezius: cone(vec3(0.0290, -0.1722, -0.0541), vec3(0.0995, -0.2192, -0.0866), [0.0116, 0.0127]),
             trapezius_reach: 0.0621,
-            shoulder: RoundCone {
-                start: vec3(0.0401, -0.2409, -0.0539),
-                end: vec3(0.1462, -0.2533, -0.0421),
-                start_radius: 0.0544,
-                end_radius: 0.0575,
-            },
+            shoulder: cone(vec3(0.0401, -0.2409, -0.0539), vec3(0.1462, -0.2533, -0.0421), [0.0544, 0.0575]),
             shoulder_reach: 0.0446,
             chest: Ellipsoid { center: vec3(0.0000, -0.2954, -0.0162), radii: vec3(0.1529, 0.0895, 0.0832) },
             chest_reach: 0.0851,
-            muscle: RoundCone {
-                start: vec3(0.0462, -0.0499, -0.0037),
-                end: vec3(-0.0002, -0.1865, -0.0034),
-                start_radius: 0.0081,
-                end_radius: -0.0049,
-            },
+            muscle: cone(vec3(0.0462, -0.0499, -0.0037), vec3(-0.0002, -0.1865, -0.0034), [0.0081, -0.0049]),
             muscle_reach: 0.0195,
             ear: ear(),
             masses: masses(),
             details: details(),
         }
     }
+}
+
+/// Between two points \[m\], with a radius \[m\] at each.
+fn cone(start: Vec3, end: Vec3, [start_radius, end_radius]: [f32; 2]) -> RoundCone {
+    RoundCone { start, end, start_radius, end_radius }
 }
 
 fn ear() -> Ear {

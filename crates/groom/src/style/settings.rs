@@ -53,66 +53,86 @@ impl StyleSettings {
         let plain = Self { style, ..Self::default() };
         match style {
             Style::Long => plain,
-            Style::Bob => Self {
-                length: 0.34,
-                length_variation: 0.03,
-                cut_height: -0.112,
-                layering: 0.004,
-                turn_under: 0.7,
-                parting: 0.025,
-                volume: 0.016,
-                clump_share: 0.15,
-                noise: 0.0015,
-                ..plain
-            },
-            Style::Wavy => Self {
-                layering: 0.06,
-                volume: 0.017,
-                parting: 0.02,
-                clump_width: 0.022,
-                clump_share: 0.55,
-                wave_amplitude: 0.011,
-                wave_length: 0.095,
-                ..plain
-            },
-            Style::Curly => Self {
-                length: 0.34,
-                length_variation: 0.25,
-                cut_height: -0.175,
-                layering: 0.09,
-                parting: -0.02,
-                volume: 0.026,
-                clump_width: 0.017,
-                clump_share: 0.7,
-                curl_radius: 0.0085,
-                curl_length: 0.06,
-                noise: 0.005,
-                ..plain
-            },
-            Style::Pixie => Self {
-                length: 0.075,
-                length_variation: 0.25,
-                cut_height: -0.105,
-                parting: 0.03,
-                swirl: 0.35,
-                volume: 0.010,
-                clump_width: 0.0155,
-                clump_share: 0.35,
-                noise: 0.004,
-                ..plain
-            },
-            Style::Ponytail => Self {
-                length: 0.50,
-                length_variation: 0.15,
-                cut_height: -0.25,
-                volume: 0.009,
-                clump_width: 0.025,
-                clump_share: 0.25,
-                wave_amplitude: 0.003,
-                wave_length: 0.12,
-                noise: 0.002,
-                ..plain
-            },
+            Style::Bob => plain.bob(),
+            Style::Wavy => plain.wavy(),
+            Style::Curly => plain.curly(),
+            Style::Pixie => plain.pixie(),
+            Style::Ponytail => plain.ponytail(),
+        }
+    }
+
+    fn bob(self) -> Self {
+        Self {
+            length: 0.34,
+            length_variation: 0.03,
+            cut_height: -0.112,
+            layering: 0.004,
+            turn_under: 0.7,
+            parting: 0.025,
+            volume: 0.016,
+            clump_share: 0.15,
+            noise: 0.0015,
+            ..self
+        }
+    }
+
+    fn wavy(self) -> Self {
+        Self {
+            layering: 0.06,
+            volume: 0.017,
+            parting: 0.02,
+            clump_width: 0.022,
+            clump_share: 0.55,
+            wave_amplitude: 0.011,
+            wave_length: 0.095,
+            ..self
+        }
+    }
+
+    fn curly(self) -> Self {
+        Self {
+            length: 0.34,
+            length_variation: 0.25,
+            cut_height: -0.175,
+            layering: 0.09,
+            parting: -0.02,
+            volume: 0.026,
+            clump_width: 0.017,
+            clump_share: 0.7,
+            curl_radius: 0.0085,
+            curl_length: 0.06,
+            noise: 0.005,
+            ..self
+        }
+    }
+
+    fn pixie(self) -> Self {
+        Self {
+            length: 0.075,
+            length_variation: 0.25,
+            cut_height: -0.105,
+            parting: 0.03,
+            swirl: 0.35,
+            volume: 0.010,
+            clump_width: 0.0155,
+            clump_share: 0.35,
+            noise: 0.004,
+            ..self
+        }
+    }
+
+    fn ponytail(self) -> Self {
+        Self {
+            length: 0.50,
+            length_variation: 0.15,
+            cut_height: -0.25,
+            volume: 0.009,
+            clump_width: 0.025,
+            clump_share: 0.25,
+            wave_amplitude: 0.003,
+            wave_length: 0.12,
+            noise: 0.002,
+            ..self
         }
     }
 
