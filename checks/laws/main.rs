@@ -15,6 +15,7 @@ mod length_scale;
 mod lengths;
 mod pendulum;
 mod poisson;
+mod projection;
 mod recovery;
 mod rod_buckling;
 mod rod_curl;

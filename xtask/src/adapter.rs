@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::run::{example, root};
+use crate::cargo::{example, root};
 
 /// What the tests ask of the machine: a missing adapter is a failure.
 pub const REQUIRED: &str = "STRANDLINE_REQUIRE_GPU";

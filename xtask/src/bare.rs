@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::run::root;
+use crate::cargo::root;
 
 /// Crates that only GPUs and windows need.
 const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];

@@ -11,7 +11,7 @@ use std::process::Stdio;
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 
-use crate::run::{cargo_command, root};
+use crate::cargo::{cargo_command, root};
 
 /// The packages that people get: what these need is in the program.
 const PROGRAM: &str = "strandline-cli";

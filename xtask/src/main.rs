@@ -5,6 +5,7 @@
 
 mod adapter;
 mod bare;
+mod cargo;
 mod faults;
 mod house;
 mod licences;

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::run::root;
+use crate::cargo::root;
 
 /// A crate with stages and the file that lists them.
 struct Recipe {

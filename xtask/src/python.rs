@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use crate::run::root;
+use crate::cargo::root;
 
 /// What names it to the tests.
 pub const NAMED: &str = "STRANDLINE_PYTHON";

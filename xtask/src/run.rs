@@ -1,10 +1,11 @@
 //! Runs the steps one after the other and adds up what the test runners print.
 
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::PathBuf;
+use std::process::Stdio;
 use std::time::Instant;
 
+use crate::cargo::{cargo_command, example, root};
 use crate::{adapter, bare, house, licences, names, python};
 
 /// Sums over every `test result:` line.
@@ -55,22 +56,16 @@ pub fn test(setup: bool) -> bool {
     let begin = Instant::now();
     let mut tally = Tally::default();
     let mut broken: Vec<String> = Vec::new();
+    let denied = licences::deny_if_installed();
     let mut step = |name: &str, passed: bool| {
         if !passed {
             broken.push(name.to_owned());
         }
     };
-    step("format", cargo(&["fmt", "--all", "--check"], &[], &mut tally));
-    step("names", names::check());
-    step("house", house::check());
-    step("licences", licences::check());
-    let denied = licences::deny_if_installed();
+    for (name, passed) in look() {
+        step(name, passed);
+    }
     step("deny", denied.unwrap_or(true));
-    let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
-    step("lints", cargo(&lints, &[], &mut tally));
-    let bare: Vec<&str> =
-        ["clippy", "--quiet"].into_iter().chain(bare::CHOICE).chain(["--", "-D", "warnings"]).collect();
-    step("without GPUs and window", bare::check() && cargo(&bare, &[], &mut tally));
     let tests = ["test", "--workspace", "--all-targets", "--no-fail-fast"];
     step("tests", cargo(&tests, &wanted, &mut tally));
     step("doc tests", cargo(&["test", "--workspace", "--doc", "--no-fail-fast"], &[], &mut tally));
@@ -84,26 +79,37 @@ pub fn test(setup: bool) -> bool {
         step(&format!("example {name}"), ran);
     }
     println!("\ntook {:.0} s", begin.elapsed().as_secs_f64());
-    if !there.adapter {
-        println!("NOT TESTED: {}", adapter::UNTESTED);
-    }
-    if !there.display {
-        println!("NOT TESTED: {}", adapter::NO_WINDOW);
-    }
-    if python.is_none() {
-        println!("NOT TESTED: {}", python::NONE);
-    }
-    if denied.is_none() {
-        println!("NOT TESTED: {}", licences::NOT_INSTALLED);
-    }
-    if !grooms_are_there() {
-        println!("NOT TESTED: {NO_GROOMS}");
+    let missing = [
+        (there.adapter, adapter::UNTESTED),
+        (there.display, adapter::NO_WINDOW),
+        (python.is_some(), python::NONE),
+        (denied.is_some(), licences::NOT_INSTALLED),
+        (grooms_are_there(), NO_GROOMS),
+    ];
+    for (_, what) in missing.iter().filter(|(is_there, _)| !is_there) {
+        println!("NOT TESTED: {what}");
     }
     for name in &broken {
         println!("FAILED: {name}");
     }
     println!("tests: {} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.ignored);
     broken.is_empty() && tally.failed == 0 && tally.passed > 0
+}
+
+/// The checks that run nothing of the program: each one's name, and whether it passed.
+fn look() -> [(&'static str, bool); 6] {
+    let passes = |arguments: &[&str]| cargo(arguments, &[], &mut Tally::default());
+    let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
+    let bare: Vec<&str> =
+        ["clippy", "--quiet"].into_iter().chain(bare::CHOICE).chain(["--", "-D", "warnings"]).collect();
+    [
+        ("format", passes(&["fmt", "--all", "--check"])),
+        ("names", names::check()),
+        ("house", house::check()),
+        ("licences", licences::check()),
+        ("lints", passes(&lints)),
+        ("without GPUs and window", bare::check() && passes(&bare)),
+    ]
 }
 
 /// What is left out where nobody has put the grooms.
@@ -146,39 +152,6 @@ fn examples() -> Vec<String> {
     names
 }
 
-/// The repository's root.
-pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the root")
-}
-
-/// Cargo in the root.
-pub fn cargo_command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(arguments).current_dir(root());
-    command
-}
-
-/// An example's program, built with the workspace: a package by itself has other features of its dependencies, so
-/// that all of them would be built once more. None where it does not build.
-pub fn example(name: &str) -> Option<Command> {
-    let build = ["build", "--workspace", "--quiet", "--example", name];
-    let mut command = cargo_command(&build);
-    let output = command.arg("--message-format=json-render-diagnostics").stderr(Stdio::inherit()).output();
-    let output = output.ok().filter(|output| output.status.success())?;
-    let mut program = Command::new(executable(&String::from_utf8_lossy(&output.stdout), name)?);
-    program.current_dir(root());
-    Some(program)
-}
-
-/// The file of an example in what cargo tells line by line.
-fn executable(messages: &str, name: &str) -> Option<PathBuf> {
-    let messages = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
-    messages.filter(|message| message["target"]["name"] == name).find_map(|message| {
-        let is_example = message["target"]["kind"].as_array()?.iter().any(|kind| kind == "example");
-        message["executable"].as_str().filter(|_| is_example).map(PathBuf::from)
-    })
-}
-
 /// Runs cargo in the root, prints what it prints, and adds up its test results.
 fn cargo(arguments: &[&str], environment: &[(&str, &str)], tally: &mut Tally) -> bool {
     println!("\n== cargo {}", arguments.join(" "));
@@ -203,17 +176,6 @@ fn cargo(arguments: &[&str], environment: &[(&str, &str)], tally: &mut Tally) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_program_of_an_example_is_found_in_what_cargo_tells() {
-        let messages = r#"not json
-{"reason":"compiler-artifact","target":{"kind":["lib"],"name":"hello"},"executable":null}
-{"reason":"compiler-artifact","target":{"kind":["bin"],"name":"hello"},"executable":"/t/hello"}
-{"reason":"compiler-artifact","target":{"kind":["example"],"name":"length"},"executable":"/t/examples/length"}
-{"reason":"compiler-artifact","target":{"kind":["example"],"name":"hello"},"executable":"/t/examples/hello"}"#;
-        assert_eq!(executable(messages, "hello"), Some("/t/examples/hello".into()));
-        assert_eq!(executable(messages, "gallery"), None);
-    }
 
     #[test]
     fn results_are_added_and_other_lines_are_not() {

@@ -110,18 +110,20 @@ fn every_change_shows_in_the_next_pictures() {
     assert!(live.take_news().iter().all(|news| matches!(news, News::Loaded(..))));
 }
 
+/// The next error that is told.
+fn error(live: &Live) -> String {
+    wait(|| {
+        live.take_news().into_iter().find_map(|news| match news {
+            News::Error(error) | News::NotLoaded(_, error) => Some(error),
+            _ => None,
+        })
+    })
+}
+
 #[test]
 fn what_cannot_be_done_is_told_and_what_is_there_stays() {
     let (live, first) = still();
     live.take_news();
-    let error = |live: &Live| {
-        wait(|| {
-            live.take_news().into_iter().find_map(|news| match news {
-                News::Error(error) | News::NotLoaded(_, error) => Some(error),
-                _ => None,
-            })
-        })
-    };
     let mut missing = scene();
     missing.groom.file = Some("no-such.hair".into());
     live.tell(Command::Load(Box::new(missing)));
@@ -157,12 +159,12 @@ fn first_camera() -> Camera {
 
 #[test]
 fn it_may_be_left_at_any_moment_under_any_commands() {
-    let mut state = 7_u64;
+    let mut random = strandline::base::Random::new(7, 0);
     for round in 0..12 {
         let live = Live::new(scene(), || ()).unwrap();
         for _ in 0..round * 4 {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            live.tell(match state >> 61 {
+            let bits = random.bits();
+            live.tell(match bits >> 29 {
                 0 => Command::Play(false),
                 1 => Command::Play(true),
                 2 => Command::Step,
@@ -175,7 +177,7 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
                     ..scene().motion
                 })),
             });
-            std::thread::sleep(Duration::from_micros(state >> 52));
+            std::thread::sleep(Duration::from_micros((bits >> 20).into()));
         }
         drop(live);
     }
@@ -340,7 +342,7 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     let frames = found.iter().filter(|name| name.starts_with("frame_")).count();
     assert!(frames >= 4, "{found:?}");
     assert!(found.iter().any(|name| name.starts_with("video.") || name.starts_with("animation.gif")));
-    let first = image_size(&folder.path().join("one/frame_0000.png"));
+    let first = image::image_dimensions(folder.path().join("one/frame_0000.png")).unwrap();
     assert_eq!(first, (64, 48));
     // Closing the window in the middle finishes the film.
     live.tell(Command::Record(folder.path().join("two")));
@@ -370,10 +372,6 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     assert_eq!(next(&live).recorded, None);
 }
 
-fn image_size(path: &std::path::Path) -> (u32, u32) {
-    image::image_dimensions(path).unwrap()
-}
-
 #[test]
 fn a_scene_is_saved_even_when_nobody_waits_for_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -381,12 +379,7 @@ fn a_scene_is_saved_even_when_nobody_waits_for_it() {
     let live = Live::new(scene(), || ()).unwrap();
     while next(&live).frame < 10 {}
     live.tell(Command::Save(Box::new(scene()), 1, folder.path().join("nowhere/kept.toml")));
-    let refused = wait(|| {
-        live.take_news().into_iter().find_map(|news| match news {
-            News::Error(error) => Some(error),
-            _ => None,
-        })
-    });
+    let refused = error(&live);
     assert!(refused.starts_with("cannot save the hair"), "{refused}");
     live.tell(Command::Save(Box::new(scene()), 1, path.clone()));
     // What comes behind it does not count, in whatever heap it is heard.

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
-use super::run::{kept, make_room};
-use super::{Backends, Fault};
+use super::kept::{kept, make_room};
+use super::list::{Backends, Fault};
 
 /// What a fault's tests came to.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

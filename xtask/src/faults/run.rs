@@ -2,27 +2,24 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
 
+use super::kept::kept;
+use super::list::Fault;
 use super::report::{Outcome, seen};
 use super::tree::Tree;
-use super::{Fault, Wish};
-use crate::run::root;
+use super::wish::Wish;
+use crate::cargo::root;
 
 /// A build and its tests may take so long; a fault may make a test run for ever.
 const LONGEST: Duration = Duration::from_secs(1800);
 
 /// Names the folder of grooms that are no part of the project.
 const GROOMS: &str = "STRANDLINE_GROOMS";
-
-/// Everything of planted faults that is kept from run to run.
-pub fn kept() -> PathBuf {
-    root().join("target/faults")
-}
 
 /// A test binary.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -245,12 +242,6 @@ fn run(tree: &Tree, target: &Target, filters: &[String], wish: &Wish) -> Result<
     }
     ran.in_time = in_time;
     Ok(ran)
-}
-
-/// Makes the folder of a file.
-pub fn make_room(path: &Path) -> Result<()> {
-    let folder = path.parent().context("a file in a folder")?;
-    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())
 }
 
 #[cfg(test)]

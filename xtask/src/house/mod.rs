@@ -14,7 +14,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 
-use crate::run::root;
+use crate::cargo::root;
 
 const LONGEST_RUST: usize = 400;
 const LONGEST_SHADER: usize = 200;
@@ -88,22 +88,45 @@ fn problems(root: &Path) -> Result<Vec<String>> {
     Ok(compare(&look(root)?, &known))
 }
 
+/// Where code of ours lies.
+const PLACES: [&str; 6] = ["apps", "checks", "crates", "examples", "fuzz", "xtask"];
+
 fn look(root: &Path) -> Result<Found> {
     let mut found = Found::default();
     for (folder, allowed) in ARROWS {
         let manifest = std::fs::read_to_string(root.join(folder).join("Cargo.toml"))?;
         found.arrows.extend(wrong_arrows(folder, &manifest, allowed)?);
-        let mut files = Vec::new();
-        read(&root.join(folder).join("src"), "", &mut files)?;
-        found.look_at(folder, &files);
+    }
+    for place in PLACES {
+        found.look_below(root, place)?;
     }
     Ok(found)
 }
 
 impl Found {
-    fn look_at(&mut self, folder: &str, files: &[(String, String)]) {
+    /// Looks at a folder: as one program or library where it has its root, else at each file and folder in it.
+    fn look_below(&mut self, root: &Path, folder: &str) -> Result<()> {
+        let here = root.join(folder);
+        if ["lib.rs", "main.rs"].iter().any(|file| here.join(file).is_file()) {
+            let mut files = Vec::new();
+            read(&here, "", &mut files)?;
+            self.measure(folder, &files);
+            self.find_circles(folder, files);
+            return Ok(());
+        }
+        for (name, entry) in entries(&here)? {
+            if !entry.file_type()?.is_dir() {
+                self.measure(folder, read_code(&entry.path(), &name)?.as_slice());
+            } else if name != "target" {
+                self.look_below(root, &format!("{folder}/{name}"))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn measure(&mut self, folder: &str, files: &[(String, String)]) {
         for (file, code) in files {
-            let name = format!("{folder}/src/{file}");
+            let name = format!("{folder}/{file}");
             let most = if file.ends_with(".rs") { LONGEST_RUST } else { LONGEST_SHADER };
             let lines = code.lines().count();
             if lines > most {
@@ -113,26 +136,42 @@ impl Found {
                 self.functions.insert(format!("{name} {function}"), lines);
             }
         }
-        let rust: Vec<_> = files.iter().filter(|(file, _)| file.ends_with(".rs")).cloned().collect();
-        let circles = imports::circles(&imports::Modules::read(&rust).imports());
-        let named = |file: String| format!("{folder}/src/{file}");
+    }
+
+    fn find_circles(&mut self, folder: &str, mut files: Vec<(String, String)>) {
+        files.retain(|(file, _)| file.ends_with(".rs"));
+        let circles = imports::circles(&imports::Modules::read(&files).imports());
+        let named = |file: String| format!("{folder}/{file}");
         self.circles.extend(circles.into_iter().map(|circle| circle.into_iter().map(named).collect()));
     }
 }
 
+/// What lies in a folder, by name.
+fn entries(folder: &Path) -> Result<Vec<(String, std::fs::DirEntry)>> {
+    let entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
+    let mut named: Vec<_> =
+        entries.into_iter().map(|entry| (entry.file_name().to_string_lossy().into_owned(), entry)).collect();
+    named.sort_by(|one, other| one.0.cmp(&other.0));
+    Ok(named)
+}
+
 /// Rust and shader files below a folder, with their names from there.
 fn read(folder: &Path, name: &str, files: &mut Vec<(String, String)>) -> Result<()> {
-    let mut entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    for entry in entries {
-        let below = format!("{name}{}", entry.file_name().to_string_lossy());
+    for (own, entry) in entries(folder)? {
+        let below = format!("{name}{own}");
         if entry.file_type()?.is_dir() {
             read(&entry.path(), &format!("{below}/"), files)?;
-        } else if below.ends_with(".rs") || below.ends_with(".wesl") {
-            files.push((below, std::fs::read_to_string(entry.path())?));
+        } else {
+            files.extend(read_code(&entry.path(), &below)?);
         }
     }
     Ok(())
+}
+
+/// A file under a name, where it is Rust or a shader.
+fn read_code(path: &Path, name: &str) -> Result<Option<(String, String)>> {
+    let is_code = name.ends_with(".rs") || name.ends_with(".wesl");
+    Ok(if is_code { Some((name.to_owned(), std::fs::read_to_string(path)?)) } else { None })
 }
 
 /// Dependencies on crates of ours that lie beside or above.

@@ -2,6 +2,7 @@
 #![cfg(target_os = "linux")]
 
 mod grooms;
+mod mapped;
 mod pictures;
 
 use std::fmt::Write;
@@ -59,7 +60,7 @@ fn give(name: &str, bytes: &[u8]) {
         std::fs::write(folder.path().join("lit.toml"), lit).unwrap();
     }
     if name.ends_with("png") {
-        pictures::write_mapped(folder.path(), name);
+        mapped::write_mapped(folder.path(), name);
     }
     let scene = ["sim", "--scene", "scene.toml"];
     let arguments = match name.rsplit_once('.').unwrap().1 {
@@ -83,11 +84,8 @@ fn give(name: &str, bytes: &[u8]) {
 
 /// Numbers between 0 and 1, the same ones every time, at no special places.
 fn numbers() -> impl FnMut() -> f64 {
-    let mut state = 1_u64;
-    move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as f64 / (1_u64 << 31) as f64
-    }
+    let mut random = strandline::base::Random::new(1, 0);
+    move || f64::from(random.bits()) / (1_u64 << 32) as f64
 }
 
 #[test]

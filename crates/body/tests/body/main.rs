@@ -6,3 +6,4 @@ mod distance_grid;
 mod files;
 mod mesh_files;
 mod shapes;
+mod thin_triangles;
