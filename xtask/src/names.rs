@@ -6,16 +6,15 @@ use std::path::Path;
 
 use crate::cargo::root;
 
-/// A crate with stages and the file that lists them.
+/// A crate with stages: its CPU backend says which there are.
 struct Recipe {
     crate_folder: &'static str,
-    /// The files that list them, for each backend, and the ending of a kernel where there is one.
-    backends: &'static [Backend],
-    stages: &'static [&'static str],
+    cpu: Backend,
+    gpu: Backend,
 }
 
-/// A backend of a crate: its folder, the file that lists its stages, and the endings of the files of
-/// a stage.
+/// A backend of a crate: its folder, the file that lists its stages in order, each with its timer label, and the
+/// endings of the files of a stage.
 struct Backend {
     folder: &'static str,
     list: &'static str,
@@ -25,29 +24,13 @@ struct Backend {
 const RECIPES: [Recipe; 2] = [
     Recipe {
         crate_folder: "crates/sim",
-        backends: &[
-            Backend { folder: "cpu", list: "src/step.rs", endings: &["rs"] },
-            Backend { folder: "gpu", list: "src/gpu/step.rs", endings: &["rs", "wesl"] },
-        ],
-        stages: &[
-            "pose_roots",
-            "integrate",
-            "constrain",
-            "solve_rods",
-            "splat",
-            "mark",
-            "solve_pressure",
-            "gather",
-            "advance",
-        ],
+        cpu: Backend { folder: "cpu", list: "src/step.rs", endings: &["rs"] },
+        gpu: Backend { folder: "gpu", list: "src/gpu/step.rs", endings: &["rs", "wesl"] },
     },
     Recipe {
         crate_folder: "crates/render",
-        backends: &[
-            Backend { folder: "cpu", list: "src/frame.rs", endings: &["rs"] },
-            Backend { folder: "gpu", list: "src/gpu/frame.rs", endings: &["rs", "wesl"] },
-        ],
-        stages: &["tessellate", "interpolate", "opacity_depth", "opacity_layers", "shade", "draw", "resolve"],
+        cpu: Backend { folder: "cpu", list: "src/frame.rs", endings: &["rs"] },
+        gpu: Backend { folder: "gpu", list: "src/gpu/frame.rs", endings: &["rs", "wesl"] },
     },
 ];
 
@@ -69,17 +52,21 @@ fn problems(root: &Path) -> Vec<String> {
     let mut known = BTreeSet::new();
     let mut found = Vec::new();
     for recipe in &RECIPES {
-        for backend in recipe.backends {
-            found.extend(missing_in_backend(root, recipe, backend));
+        let stages = timed(&read(&root.join(recipe.list(&recipe.cpu))));
+        if stages.is_empty() {
+            found.push(format!("no stage is timed in {}", recipe.list(&recipe.cpu)));
         }
-        for stage in recipe.stages {
-            known.insert((*stage).to_owned());
-            if recipe.backends.len() > 1 && !parity.contains(&format!("fn {stage}_")) {
+        for backend in [&recipe.cpu, &recipe.gpu] {
+            found.extend(recipe.missing(root, backend, &stages));
+        }
+        for stage in stages {
+            if !parity.contains(&format!("fn {stage}_")) {
                 found.push(format!("{stage}: no check in checks/parity named after it"));
             }
-            if !rows.contains(*stage) {
+            if !rows.contains(&stage) {
                 found.push(format!("{stage}: no row in ARCHITECTURE.md's stage table"));
             }
+            known.insert(stage);
         }
     }
     found.extend(
@@ -88,23 +75,36 @@ fn problems(root: &Path) -> Vec<String> {
     found
 }
 
-/// Stages without their files or their timer label in one backend.
-fn missing_in_backend(root: &Path, recipe: &Recipe, backend: &Backend) -> Vec<String> {
-    let list_file = format!("{}/{}", recipe.crate_folder, backend.list);
-    let list = read(&root.join(&list_file));
-    let mut found = Vec::new();
-    for stage in recipe.stages {
-        for ending in backend.endings {
-            let file = format!("{}/src/{}/{stage}.{ending}", recipe.crate_folder, backend.folder);
-            if !root.join(&file).is_file() {
-                found.push(format!("{stage}: no file {file}"));
+impl Recipe {
+    /// The file in which a backend lists its stages.
+    fn list(&self, backend: &Backend) -> String {
+        format!("{}/{}", self.crate_folder, backend.list)
+    }
+
+    /// Stages without their files or their timer label in one backend.
+    fn missing(&self, root: &Path, backend: &Backend, stages: &[String]) -> Vec<String> {
+        let list = read(&root.join(self.list(backend)));
+        let mut found = Vec::new();
+        for stage in stages {
+            for ending in backend.endings {
+                let file = format!("{}/src/{}/{stage}.{ending}", self.crate_folder, backend.folder);
+                if !root.join(&file).is_file() {
+                    found.push(format!("{stage}: no file {file}"));
+                }
+            }
+            if !list.contains(&format!("\"{stage}\"")) {
+                found.push(format!("{stage}: no timer label \"{stage}\" in {}", self.list(backend)));
             }
         }
-        if !list.contains(&format!("\"{stage}\"")) {
-            found.push(format!("{stage}: no timer label \"{stage}\" in {list_file}"));
-        }
+        found
     }
-    found
+}
+
+/// The stages that a text times: the names in its calls of `timed`.
+fn timed(text: &str) -> Vec<String> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+    let calls = code.split("timed(").skip(1);
+    calls.filter_map(|call| Some(call.split(';').next()?.split('"').nth(1)?.to_owned())).collect()
 }
 
 /// The text of every file of a folder.
@@ -138,9 +138,24 @@ mod tests {
     }
 
     #[test]
+    fn stages_are_those_that_are_timed() {
+        let list = "use x::timed;\ntimed(seconds, \"splat\", || splat());\nlet a = timed(\n    s,\n    \"mark\", f);\n\
+                    fn timed(s: S);\n#[cfg(test)]\nmod tests { timed(s, \"no\", f); }";
+        assert_eq!(timed(list), ["splat", "mark"]);
+    }
+
+    #[test]
     fn an_empty_folder_lacks_everything() {
         let folder = std::env::temp_dir().join("strandline-names-of-nothing");
-        // A row each; a file and a label on the CPU; two files, a label and a check on the GPU.
-        assert_eq!(problems(&folder).len(), (9 + 7) * (1 + 2 + 4));
+        assert_eq!(problems(&folder).len(), RECIPES.len());
+    }
+
+    #[test]
+    fn a_stage_that_has_nothing_else_is_missed_everywhere() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(folder.path().join("crates/sim/src")).unwrap();
+        std::fs::write(folder.path().join("crates/sim/src/step.rs"), "timed(s, \"new\", f);").unwrap();
+        // A file on the CPU; two files and a label on the GPU; a check and a row; and no stage of pictures.
+        assert_eq!(problems(folder.path()).len(), 1 + 3 + 2 + 1);
     }
 }

@@ -6,7 +6,7 @@ pub use input::FrameInput;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
-use strandline_base::{Stopwatch, timed};
+use strandline_base::timed;
 use strandline_body::{Mesh, Solids};
 use strandline_groom::Guides;
 
@@ -156,31 +156,29 @@ impl Renderer {
         given.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
         let Self { solids, curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } =
             self;
-        let (mut watch, mut seconds) = (Stopwatch::start(), Vec::new());
-        tessellate(input.positions, guides, pose, &level, curves);
-        seconds.push(("tessellate", watch.lap()));
-        interpolate(curves, guides, pose, input.look, &level, strands);
-        keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(*pose));
-        seconds.push(("interpolate", watch.lap()));
-        draw.place_body(input.world_from_head);
-        opacity_depth(strands, draw.shadow_body(), input.lights, middle, &input.look.hair_shadow(), shadows);
-        seconds.push(("opacity_depth", watch.lap()));
-        opacity_layers(strands, shadows);
-        seconds.push(("opacity_layers", watch.lap()));
+        let mut times = Vec::new();
+        let seconds = &mut times;
+        timed(seconds, "tessellate", || tessellate(input.positions, guides, pose, &level, curves));
+        timed(seconds, "interpolate", || {
+            interpolate(curves, guides, pose, input.look, &level, strands);
+            keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(*pose));
+        });
+        timed(seconds, "opacity_depth", || {
+            draw.place_body(*pose);
+            let (body, shadow) = (draw.shadow_body(), &input.look.hair_shadow());
+            opacity_depth(strands, body, input.lights, middle, shadow, shadows);
+        });
+        timed(seconds, "opacity_layers", || opacity_layers(strands, shadows));
         occlusion.set_middle(middle);
-        let eye = input.camera.position;
-        match input.look.fibre.model {
-            FibreModel::Scheuermann => shade(strands, shadows, input.lights, input.look, eye, occlusion),
-            FibreModel::Chiang => {
-                let body = draw.shadow_body().map(|body| (body, input.body_look.color));
-                let lit = Lit { lights: input.lights, shadows, body, look: input.look, own_color, eye };
-                scattering.shade(strands, &lit, occlusion);
+        let (lights, look, eye) = (input.lights, input.look, input.camera.position);
+        timed(seconds, "shade", || {
+            let body = draw.shadow_body().map(|body| (body, input.body_look.color));
+            let lit = Lit { lights, shadows, body, look, own_color, eye };
+            shade_by_model(strands, &lit, occlusion, scattering);
+            if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
+                layer_colors(strands, map);
             }
-        }
-        if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
-            layer_colors(strands, map);
-        }
-        seconds.push(("shade", watch.lap()));
+        });
         let draw_input = DrawInput {
             strands,
             camera: input.camera,
@@ -189,19 +187,18 @@ impl Renderer {
         };
         let skin = Skin {
             look: input.body_look,
-            lights: input.lights,
+            lights,
             shadows,
             occlusion,
-            scalp: input.look.scalp(input.body_look.scalp, own_color),
-            grid: (input.look.fibre.model == FibreModel::Chiang).then(|| scattering.grid()),
-            environment: &input.look.gradient(),
-            eye: input.camera.position,
+            scalp: look.scalp(input.body_look.scalp, own_color),
+            grid: (look.fibre.model == FibreModel::Chiang).then(|| scattering.grid()),
+            environment: &look.gradient(),
+            eye,
         };
-        draw.draw(&draw_input, &skin, samples);
-        seconds.push(("draw", watch.lap()));
+        timed(seconds, "draw", || draw.draw(&draw_input, &skin, samples));
         let count = level.drawn_strands(guides.strand_count());
         let segments = count * (strands.points_per_strand - 1);
-        Ok(FrameReport { strands: count, segments, seconds, layers: None })
+        Ok(FrameReport { strands: count, segments, seconds: times, layers: None })
     }
 
     /// Colours hair by the layer of a light's opacity map in which it lies instead of lighting it, from the
@@ -227,6 +224,14 @@ impl Renderer {
     /// The samples of the last picture, before `resolve`.
     pub fn samples(&self) -> &Samples {
         &self.samples
+    }
+}
+
+/// Light at every point of the hair, by the model of its fibre.
+fn shade_by_model(strands: &mut Strands, lit: &Lit, occlusion: &mut Occlusion, scattering: &mut Scattering) {
+    match lit.look.fibre.model {
+        FibreModel::Scheuermann => shade(strands, lit.shadows, lit.lights, lit.look, lit.eye, occlusion),
+        FibreModel::Chiang => scattering.shade(strands, lit, occlusion),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Bound strands: where the guides have them that they are bound to, as `Binding::follow` and `Binding::place` say.
 
 use strandline_body::Solids;
-use strandline_gpu::{Bound, Buffer, Gpu, GpuError, Kernel, groups, kernel, wgpu};
+use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, groups, kernel, wgpu};
 use strandline_groom::Binding;
 
 use super::buffers::{Strands, floats};
@@ -42,6 +42,11 @@ kernel! {
         4 solids: Read u32,
         10 tables: Read [f32; 4],
     }
+}
+
+/// The declarations of its kernels.
+pub(super) fn declarations() -> [Declaration; 3] {
+    [FollowGuides::declaration(), PlaceBound::declaration(), KeepOutside::declaration()]
 }
 
 /// The strands of a renderer, bound to guides.

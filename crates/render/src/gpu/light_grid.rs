@@ -1,6 +1,8 @@
 //! Light that hair and skin scatter many times, and `shade` with it.
 
-use strandline_gpu::{Bound, BoundDrawing, Buffer, Drawing, Gpu, GpuError, Kernel, kernel};
+use strandline_gpu::{
+    Bindings, Bound, BoundDrawing, Buffer, Declaration, Drawing, Gpu, GpuError, Kernel, kernel,
+};
 
 use super::body::Body;
 use super::buffers::{CELLS, Groom, Maps, Strands};
@@ -106,6 +108,19 @@ kernel! {
         6 cubes: Read [f32; 4],
         7 radiances: ReadWrite [u32; 2],
     }
+}
+
+/// The declarations of its kernels.
+pub(super) fn declarations() -> [Declaration; 7] {
+    [
+        SumHair::declaration(),
+        SumSkin::declaration(),
+        Prepare::declaration(),
+        Carry::declaration(),
+        Scatter::declaration(),
+        Gather::declaration(),
+        ShadeChiang::declaration(),
+    ]
 }
 
 /// The kernels and buffers of scattered light, there once a look asks for them.
