@@ -1,6 +1,6 @@
 //! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
 //! that one run writes at a time, arrays in a zip that grow while a run goes on, vectors of eight
-//! strands, poses, random numbers, clocks, text that is safe to
+//! strands, poses, random numbers, clocks, parallel loops, text that is safe to
 //! print, the settings table. No hair, no GPU, nothing of ours below it.
 
 #![forbid(unsafe_code)]
@@ -13,6 +13,7 @@ mod lanes;
 pub mod math;
 pub mod memory;
 pub mod npz;
+pub mod par;
 mod parts;
 mod plain_file;
 mod pose;

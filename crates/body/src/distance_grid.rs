@@ -1,7 +1,7 @@
 use std::fmt;
 
 use glam::{UVec3, Vec3, Vec4};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use crate::lattice::Lattice;
 use crate::{Aabb, BodyError, Mesh, SignedDistance, mesh_distance};

@@ -6,7 +6,7 @@
 //! it is never more than the distance.
 
 use glam::{DVec3, UVec3};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use crate::lattice::Lattice;
 use crate::triangle_tree::{Nearest, TriangleTree};

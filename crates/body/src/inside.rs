@@ -1,7 +1,7 @@
 //! Which nodes of a lattice are inside a closed surface.
 
 use glam::DVec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use crate::lattice::{Lattice, SLAB};
 use crate::layers::{Corners, Layers};

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use crate::Mesh;
 use crate::buried::OutsideCounts;

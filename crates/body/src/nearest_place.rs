@@ -1,7 +1,7 @@
 //! The places of a mesh that are nearest to points.
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use crate::Mesh;
 use crate::layers::Corners;

@@ -4,8 +4,8 @@ mod hairline;
 use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 
 use crate::{Mannequin, Random, SignedDistance};
 

@@ -6,8 +6,8 @@
 //! from root to tip. At rest all frames are the head's, so that a groom at rest is exactly the groom.
 
 use glam::{Quat, Vec3};
-use rayon::prelude::*;
 use strandline_base::SettingError;
+use strandline_base::par::prelude::*;
 use strandline_body::Pose;
 
 use crate::{

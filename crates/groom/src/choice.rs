@@ -3,7 +3,7 @@
 mod roots;
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 pub(crate) use roots::Roots;
 

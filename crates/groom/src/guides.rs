@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use rayon::prelude::*;
 use strandline_base::SettingError;
+use strandline_base::par::prelude::*;
 
 use crate::arcs::equal_arcs;
 use crate::{Groom, GroomError, LANES, Vec3Lanes, Widths, attributes, block_count};

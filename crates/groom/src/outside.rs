@@ -1,7 +1,7 @@
 //! Strands that rest inside a body are put outside before anything moves.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_body::turned_out;
 
 use crate::{Groom, Guides, LANES};

@@ -1,4 +1,4 @@
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use crate::{Guides, LANES, Lanes, Vec3Lanes};
 

@@ -1,7 +1,7 @@
 use fast_surface_nets::ndshape::RuntimeShape;
 use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use glam::{UVec3, Vec3};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::model::Mannequin;
 use crate::{Mesh, SignedDistance};

@@ -2,7 +2,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use glam::{IVec3, Vec3};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 /// A place and how crowded it was when it entered the queue.
 #[derive(PartialEq)]

@@ -1,7 +1,7 @@
 //! Where bound strands are: eight at a time, one lane a strand.
 
 use glam::Vec4;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::{Rigid, Vec3x8};
 use strandline_body::Pose;
 use wide::f32x8;

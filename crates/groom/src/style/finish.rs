@@ -3,8 +3,8 @@
 use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random};
 
 use super::StyleSettings;

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use rayon::prelude::*;
 use strandline_base::math;
 use strandline_base::memory::{self, Need};
+use strandline_base::par::prelude::*;
 use strandline_body::{Mannequin, Random, Root, SignedDistance};
 
 use super::comb::{Combed, Place, TIE_RADIUS, smooth};

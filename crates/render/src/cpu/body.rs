@@ -1,7 +1,7 @@
 //! The body on the screen: which triangle each sample shows, and how far it is.
 
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_body::{Mesh, Pose};
 
 use super::projection::Projection;

@@ -1,7 +1,7 @@
 //! `draw`: the body and the hair, front to back, over the background [Chen2011 §3].
 
 use glam::{Vec2, Vec3, Vec4};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_body::{Mesh, Pose};
 
 use super::ShadowBody;

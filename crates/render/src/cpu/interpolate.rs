@@ -1,8 +1,8 @@
 //! `interpolate`: the strands that are drawn, grown about each guide's curve [Chen2011 §3.2].
 
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 use strandline_base::random::{HashStream, hash_pair, unit};
 use strandline_body::Pose;
 use strandline_groom::Guides;

@@ -4,8 +4,8 @@
 //! directions is the share of light that goes that way: even light stays even whatever the directions resolve.
 
 use glam::{IVec3, Vec3, Vec4};
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 
 use super::light_field;
 use crate::fibre::chiang::{Lobes, Pigments, Seen, Table};

@@ -1,7 +1,7 @@
 //! Hair coloured by the layer of a light's opacity map in which it lies, to look at [Chen2011 fig. 8].
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::Strands;
 use super::shadow::{NOTHING, ShadowMap};

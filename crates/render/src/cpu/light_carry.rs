@@ -1,7 +1,7 @@
 //! Light on its way through the cells of a grid, and what they scatter of it: part of `light_grid`.
 
 use glam::{IVec3, Vec3, Vec4};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::fast_math::exp;
 use super::lattice::{DIRECTIONS, Rays, directions};

@@ -6,7 +6,7 @@
 //! a light.
 
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::lattice::Rays;
 use super::light_carry::Carried;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::{self, prelude::*};
 use wide::f32x4;
 
 use super::ShadowBody;
@@ -27,7 +27,7 @@ pub(super) const SKIN_SUMS: usize = 6;
 pub(super) fn sum(grid: &GridBox, scene: &Scene, parts: &mut Vec<Vec<i64>>) {
     let (cells, strands) = (grid.cell_count(), scene.strands);
     let width = HAIR_SUMS + scene.lights.len() + SKIN_SUMS;
-    let count_of_parts = rayon::current_num_threads().clamp(1, PARTS);
+    let count_of_parts = par::current_num_threads().clamp(1, PARTS);
     parts.resize_with(count_of_parts, Vec::new);
     parts.par_iter_mut().enumerate().for_each(|(part, sums)| {
         sums.clear();

@@ -5,7 +5,7 @@
 //! directions. A place keeps six visibilities, an ambient cube \[McTaggart2004\].
 
 use glam::{UVec3, Vec3};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::Strands;
 use super::fast_math::exp;

@@ -3,7 +3,7 @@
 use std::iter;
 
 use glam::{Vec2, Vec3};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::Strands;
 use super::shadow::{LightView, NOTHING, ShadowMap, Shadows, Window};

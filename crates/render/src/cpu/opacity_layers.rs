@@ -1,8 +1,8 @@
 //! `opacity_layers`: for each light with shadow, the hairs crossed in three layers behind the first [Yuksel2008 §3].
 
 use glam::Vec4;
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 
 use super::Strands;
 use super::shadow::{ShadowMap, Shadows};

@@ -1,7 +1,7 @@
 //! What is drawn of bound strands between their points, and about them, is kept out of the body.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_body::PlacedSolids;
 
 use super::interpolate::differentiate;

@@ -6,8 +6,8 @@
 //! gives the same total, 1/4, to the picture, so that thin hairs keep their coverage wherever they lie.
 
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 
 use super::samples::Samples;
 use crate::{Picture, PictureSettings, ToneMap};

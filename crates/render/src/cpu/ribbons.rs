@@ -1,7 +1,7 @@
 //! Strands on the screen: which of their segments are drawn, and in which order.
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::body::Occluders;
 use super::projection::Projection;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::{IVec3, Vec3};
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_groom::Guides;
 
 /// Share of the surface of the box around the roots on which they lie.

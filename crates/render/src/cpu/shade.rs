@@ -1,7 +1,7 @@
 //! `shade`: light from every point of the hair toward the camera [Chen2011 §3.4].
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_base::random::{HashStream, hash_pair, unit};
 use strandline_base::vec3x8::Vec3x8;
 use strandline_groom::{LANES, Vec3Lanes};

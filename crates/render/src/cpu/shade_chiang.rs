@@ -1,8 +1,8 @@
 //! `shade` with the fibre of \[Chiang2016\]: straight light from every light, and what hair and skin scatter.
 
 use glam::Vec3;
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 use strandline_base::random::{HashStream, hash_pair, unit};
 
 use super::lattice::Lattice;

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 
 use super::fast_math::exp;
 use super::lanes::split_texel;
@@ -291,8 +292,7 @@ impl Shadows {
         if *self.casts.get(light)? { self.maps.get(light) } else { None }
     }
 
-    pub(crate) fn active(&mut self) -> impl rayon::iter::ParallelIterator<Item = &mut ShadowMap> {
-        use rayon::prelude::*;
+    pub(crate) fn active(&mut self) -> impl ParallelIterator<Item = &mut ShadowMap> {
         self.maps.par_iter_mut().zip(self.casts.par_iter()).filter_map(|(map, casts)| casts.then_some(map))
     }
 }

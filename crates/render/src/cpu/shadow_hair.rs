@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::{Vec2, Vec3, Vec4};
-use rayon::prelude::*;
+use strandline_base::par::{self, prelude::*};
 use wide::f32x4;
 
 use super::Strands;
@@ -20,7 +20,7 @@ const CHUNK: usize = 4096;
 
 /// Most parts of a map's strands: results do not depend on it.
 pub(crate) fn part_count() -> usize {
-    rayon::current_num_threads().min(MOST_PARTS)
+    par::current_num_threads().min(MOST_PARTS)
 }
 
 /// Parts for the next of so many maps that are filled together. As many maps as threads are filled whole, one by

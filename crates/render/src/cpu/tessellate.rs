@@ -8,7 +8,7 @@
 //! the curve starts and ends at the guide's ends.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::Vec3x8;
 use strandline_body::Pose;
 use strandline_groom::{Guides, LANES, Vec3Lanes};

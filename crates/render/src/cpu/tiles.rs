@@ -1,6 +1,6 @@
 //! Sorts things into the tiles that they touch, keeping their order.
 
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::samples::{Samples, TILE};
 

@@ -1,7 +1,7 @@
 //! Values as USD's text format has them.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 /// Points that one thread writes at a time.
 const AT_ONCE: usize = 2048;

@@ -7,8 +7,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{Vec3, Vec4};
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 
 use super::lobes::{LOBES, Lobes};
 use super::moments::{MOMENTS, moments, powers};
