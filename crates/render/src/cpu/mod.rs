@@ -3,8 +3,7 @@
 mod body;
 mod coverage;
 pub mod draw;
-mod fast_math;
-pub mod fibre;
+pub(crate) mod fast_math;
 pub mod interpolate;
 pub(crate) mod known;
 mod lanes;

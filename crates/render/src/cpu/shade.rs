@@ -8,9 +8,9 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::fast_math::exp_lanes;
-use super::fibre::Fibre;
 use super::occlusion::{Occlusion, mean_radiance, toward};
 use super::{Shadows, Strands};
+use crate::fibre::scheuermann::Scheuermann;
 use crate::level_of_detail::is_drawn;
 use crate::{Environment, Light, LightKind, Look};
 
@@ -166,7 +166,7 @@ struct Shared<'a> {
     sources: Vec<Source>,
     look: &'a Look,
     environment: Environment,
-    fibre: Fibre,
+    fibre: Scheuermann,
     eye: Vec3x8,
     occlusion: &'a Occlusion,
     log_transmission: f32,
@@ -192,7 +192,7 @@ impl<'a> Shared<'a> {
             sources: sources.collect(),
             look,
             environment: look.gradient(),
-            fibre: Fibre::new(look),
+            fibre: Scheuermann::new(look),
             eye: Vec3x8::splat(eye),
             occlusion,
             log_transmission: look.shadow.log_transmission(),

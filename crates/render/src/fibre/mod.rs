@@ -1,6 +1,7 @@
 //! How one fibre scatters light: the models, each in a folder of its own, and the choice among them.
 
 pub mod chiang;
+pub mod scheuermann;
 
 use strandline_base::{choices, settings};
 

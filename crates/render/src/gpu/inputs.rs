@@ -7,8 +7,8 @@ use strandline_gpu::mirror;
 
 use super::scene::Scene;
 use crate::cpu::shadow::LightView;
-use crate::fibre::{FibreModel, Pigment};
-use crate::{Highlight, LightKind, Look, ToneMap};
+use crate::fibre::{FibreModel, Pigment, scheuermann::lobe};
+use crate::{LightKind, Look, ToneMap};
 
 mirror! {
     /// Rows of a rotation, each with its component of the translation \[m\] behind it.
@@ -70,7 +70,7 @@ mirror! {
         pub variation: f32,
         pub tip_color: [f32; 3],
         pub grey: f32,
-        /// Shift, sharpness and peak: see cpu/fibre.rs.
+        /// Shift, sharpness and peak: see fibre/scheuermann.
         pub first_lobe: [f32; 3],
         /// Greatest shift of the highlights along a strand, as a sum of sines.
         pub jitter: f32,
@@ -280,16 +280,6 @@ impl Frame {
             ..bytemuck::Zeroable::zeroed()
         }
     }
-}
-
-fn lobe(highlight: &Highlight) -> [f32; 3] {
-    use std::f32::consts::PI;
-    let deviation = 2.0 * math::sin(highlight.width.to_radians());
-    [
-        2.0 * math::sin(highlight.shift.to_radians()),
-        -0.5 / (deviation * deviation),
-        highlight.strength * PI / (deviation * (2.0 * PI).sqrt()),
-    ]
 }
 
 impl LightSource {

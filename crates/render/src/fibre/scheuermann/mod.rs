@@ -1,4 +1,4 @@
-//! How a hair scatters light: the shading model, a function of directions.
+//! The thesis's fibre: a function of directions, fitted to how hair looks.
 //!
 //! Diffuse light about the strand \[Kajiya1989\] and two highlights from shifted tangents, the second one
 //! coloured \[Scheuermann2004\]. Each part is scaled so that it never gives back more than it takes.
@@ -10,11 +10,22 @@ use strandline_base::math;
 use strandline_base::vec3x8::Vec3x8;
 use wide::f32x8;
 
-use super::fast_math::exp_lanes;
+use crate::cpu::fast_math::exp_lanes;
 use crate::{Highlight, Look};
 
 /// How much more a hair sends back toward the light than onward; 1 sends nothing straight on.
 const BACKWARD: f32 = 0.8;
+
+/// Shift, sharpness and peak of a highlight: see [`Lobe`].
+pub(crate) fn lobe(highlight: &Highlight) -> [f32; 3] {
+    // Both directions turn, so a sum of sines is twice as wide as the highlight.
+    let deviation = 2.0 * math::sin(highlight.width.to_radians());
+    [
+        2.0 * math::sin(highlight.shift.to_radians()),
+        -0.5 / (deviation * deviation),
+        highlight.strength * PI / (deviation * (2.0 * PI).sqrt()),
+    ]
+}
 
 /// A highlight as shading needs it.
 #[derive(Clone, Copy)]
@@ -29,13 +40,8 @@ pub(crate) struct Lobe {
 
 impl Lobe {
     pub(crate) fn new(highlight: &Highlight) -> Self {
-        // Both directions turn, so a sum of sines is twice as wide as the highlight.
-        let deviation = 2.0 * math::sin(highlight.width.to_radians());
-        Self {
-            shift: f32x8::splat(2.0 * math::sin(highlight.shift.to_radians())),
-            sharpness: f32x8::splat(-0.5 / (deviation * deviation)),
-            peak: f32x8::splat(highlight.strength * PI / (deviation * (2.0 * PI).sqrt())),
-        }
+        let [shift, sharpness, peak] = lobe(highlight).map(f32x8::splat);
+        Self { shift, sharpness, peak }
     }
 
     /// Brightness for a sum of sines, before the turn about the strand; `jitter` moves the highlight.
@@ -48,7 +54,7 @@ impl Lobe {
 
 /// The model with its settings worked out.
 #[derive(Clone, Copy)]
-pub(crate) struct Fibre {
+pub(crate) struct Scheuermann {
     first: Lobe,
     second: Lobe,
     pub(crate) diffuse: f32,
@@ -64,7 +70,7 @@ pub(crate) struct Scattered {
     pub(crate) second: f32x8,
 }
 
-impl Fibre {
+impl Scheuermann {
     pub(crate) fn new(look: &Look) -> Self {
         let share = 1.0 - look.first_highlight.strength - look.second_highlight.strength;
         Self {
@@ -116,7 +122,7 @@ pub fn reflectance(
     to_eye: Vec3,
 ) -> Vec3 {
     let [tangent, to_light, to_eye] = [tangent, to_light, to_eye].map(Vec3x8::splat);
-    let scattered = Fibre::new(look).scatter(tangent, to_light, to_eye, f32x8::splat(0.0));
+    let scattered = Scheuermann::new(look).scatter(tangent, to_light, to_eye, f32x8::splat(0.0));
     let [diffuse, first, second] =
         [scattered.diffuse, scattered.first, scattered.second].map(|lanes| lanes.to_array()[0]);
     color * diffuse + Vec3::splat(first) + tint * second
