@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides, RestShape, Vec3Lanes};
-use strandline_sim::{Angles, Drive, Settings, Solver, Springs};
+use strandline_sim::{Angles, Drive, Model, Settings, Springs};
 
 use crate::strands::{bare, first};
 
@@ -43,11 +43,11 @@ fn drift(on: &On) -> [f32; 2] {
     let guides = guides();
     let settings = Settings { springs: Springs::default(), angles: Angles::default(), ..settings() };
     let rest = RestShape::new(&guides, settings.mass_per_length);
-    let mut solver = Solver::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
+    let mut model = Model::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
     // A mass per length is for hair that has no masses.
-    solver.set_settings(&Settings { mass_per_length: 1e-3, ..settings }).unwrap();
-    assert!((solver.rest().mass[4].0[0] / mass(4) - 1.0).abs() < 1e-5);
-    let mut rig = Rig::new(on, solver);
+    model.set_settings(&Settings { mass_per_length: 1e-3, ..settings }).unwrap();
+    assert!((model.rest().mass[4].0[0] / mass(4) - 1.0).abs() < 1e-5);
+    let mut rig = Rig::new(on, model);
     let kinds: [fn(usize) -> f32; 2] = [mass, |_| 1.0];
     let start = kinds.map(|mass| mean_velocity(&mut rig, mass));
     rig.steps(&[Drive::default(); 30]);
@@ -67,10 +67,10 @@ law! {
 law! {
     fn hair_begins_with_the_velocities_that_it_has(on) {
         let settings = Settings { iterations: 1, ..settings() };
-        let solver = Solver::new(&guides(), &settings, Vec::new()).unwrap();
-        let mut rig = Rig::new(on, solver.clone());
+        let model = Model::new(&guides(), &settings, Vec::new()).unwrap();
+        let mut rig = Rig::new(on, model.clone());
         let turned = Pose { rotation: Quat::from_rotation_y(1.0), ..Pose::IDENTITY };
-        rig.change(|state| *state = solver.rest_state(turned));
+        rig.change(|state| *state = model.rest_state(turned));
         let before = first(rig.state());
         let expected = |point: usize| if point < 2 { Vec3::ZERO } else { turned.rotation * velocity(point) };
         for point in 0..POINTS {

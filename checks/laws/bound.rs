@@ -9,7 +9,7 @@ use strandline_render::{
     DetailLevel,
     cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
 };
-use strandline_sim::{Drive, Settings, Solver};
+use strandline_sim::{Drive, Model, Settings};
 
 /// Her hair with so many guides, to which the other strands are bound.
 fn sintel(guides: Option<u32>) -> Option<Prepared> {
@@ -19,8 +19,8 @@ fn sintel(guides: Option<u32>) -> Option<Prepared> {
 /// Where the simulated strands are \[m\] after two seconds of shake.
 fn shaken(prepared: &Prepared) -> (Vec<Vec3Lanes>, Pose) {
     let settings = Settings::default();
-    let solver = Solver::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
-    let mut rig = Rig::new(&On::Cpu, solver);
+    let model = Model::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
+    let mut rig = Rig::new(&On::Cpu, model);
     let pose = |step: usize| prepared.head.pose(step as f64 * f64::from(settings.time_step));
     let steps = (2.0 / settings.time_step) as usize;
     let drive = |step| Drive { world_from_head: pose(step), ..Drive::default() };

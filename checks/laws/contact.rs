@@ -4,7 +4,7 @@ use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, Mannequin, Motion, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, RestShape, Style, StyleSettings};
-use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
+use strandline_sim::{Drive, Model, Settings, VolumeSettings};
 
 use crate::strands::{ball_of_hair, bare, first, line, one_strand, skull};
 
@@ -23,8 +23,8 @@ fn slide(on: &On, degrees: f32, friction: f32) -> f32 {
     let guides = one_strand(&points);
     let settings = Settings { collision_margin: 1e-3, ..bare(1.0 / 60.0, 20) };
     let rest = RestShape::new(&guides, 6.5e-6);
-    let solver = Solver::with_rest(&guides, rest, |_, _| false, &settings, vec![floor]).unwrap();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::with_rest(&guides, rest, |_, _| false, &settings, vec![floor]).unwrap();
+    let mut rig = Rig::new(on, model);
     rig.steps(&[Drive::default(); 60]);
     first(rig.state())[4].distance(points[4])
 }
@@ -65,8 +65,8 @@ fn depth_below(
     motion: &Motion,
     settings: &Settings,
 ) -> f32 {
-    let solver = Solver::new(hair, settings, collider.into_iter().collect()).unwrap();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::new(hair, settings, collider.into_iter().collect()).unwrap();
+    let mut rig = Rig::new(on, model);
     let mut deepest = 0.0_f32;
     let steps = on.either(240, 120);
     for step in 1..=steps {

@@ -4,7 +4,7 @@ use glam::{Vec3, vec3};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides};
 use strandline_sim::rods::Rest;
-use strandline_sim::{Drive, Settings, Solver};
+use strandline_sim::{Drive, Model, Settings};
 
 /// A curl of eight turns: radius 9 mm, 4 cm of hair a turn, hanging from the origin.
 pub fn curl() -> Guides {
@@ -26,8 +26,8 @@ fn hung(on: &On, rest: Rest, youngs_modulus: f32) -> (f32, f32) {
     (rods.rest, rods.youngs_modulus) = (rest, youngs_modulus);
     settings.volume.enabled = false;
     let guides = curl();
-    let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::new(&guides, &settings, Vec::new()).unwrap();
+    let mut rig = Rig::new(on, model);
     rig.steps(&[Drive::default(); 120]);
     let points: Vec<Vec3> = rig.state().positions.iter().map(|lanes| lanes.get(0)).collect();
     let axis = |point: &Vec3| vec3(point.x, 0.0, point.z).length();

@@ -4,15 +4,15 @@ use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::RestShape;
-use strandline_sim::{Angles, Drag, Drive, LengthPass, Settings, Solver, Spring, Springs, State};
+use strandline_sim::{Angles, Drag, Drive, LengthPass, Model, Settings, Spring, Springs, State};
 
 use crate::strands::{bare, first, line, one_strand};
 
 fn loose(on: &On, points: &[Vec3], settings: &Settings) -> Rig {
     let guides = one_strand(points);
     let rest = RestShape::new(&guides, 6.5e-6);
-    let solver = Solver::with_rest(&guides, rest, |_, _| false, settings, Vec::new()).unwrap();
-    Rig::new(on, solver)
+    let model = Model::with_rest(&guides, rest, |_, _| false, settings, Vec::new()).unwrap();
+    Rig::new(on, model)
 }
 
 /// A helix: three-dimensional, so that every spring has work to do.
@@ -28,7 +28,7 @@ fn steps(rig: &mut Rig, count: usize) {
 }
 
 fn momentum(rig: &mut Rig) -> Vec3 {
-    let masses = rig.solver().rest().mass.clone();
+    let masses = rig.model().rest().mass.clone();
     rig.state().velocities.iter().zip(masses).map(|(velocity, mass)| velocity.get(0) * mass.0[0]).sum()
 }
 
@@ -97,8 +97,8 @@ law! {
             angles: Angles { limit: 0.1, stiffness: 100.0 },
             ..bare(1.0 / 60.0, 20)
         };
-        let solver = Solver::new(&one_strand(&helix(12)), &settings, Vec::new()).unwrap();
-        let mut rig = Rig::new(on, solver);
+        let model = Model::new(&one_strand(&helix(12)), &settings, Vec::new()).unwrap();
+        let mut rig = Rig::new(on, model);
         let before = first(rig.state());
         steps(&mut rig, 600);
         let moved = |state: &State| {
@@ -121,8 +121,8 @@ law! {
         let settings =
             Settings { springs: Springs { stretch: stiff, bend: stiff, torsion: stiff }, ..bare(1.0 / 60.0, 20) };
         let guides = one_strand(&helix(16));
-        let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
-        let mut rig = Rig::new(on, solver);
+        let model = Model::new(&guides, &settings, Vec::new()).unwrap();
+        let mut rig = Rig::new(on, model);
         for _ in 0..1200 {
             let report = rig.step(&Drive::default());
             assert_eq!(report.non_finite, 0);
@@ -136,7 +136,7 @@ law! {
 law! {
     fn what_is_no_number_is_reported(on) {
         let guides = one_strand(&helix(16));
-        let mut rig = Rig::new(on, Solver::new(&guides, &bare(1.0 / 60.0, 20), Vec::new()).unwrap());
+        let mut rig = Rig::new(on, Model::new(&guides, &bare(1.0 / 60.0, 20), Vec::new()).unwrap());
         let report = rig.step(&Drive::default());
         assert!(report.stretch_max.is_finite() && report.non_finite == 0, "{report:?}");
         let nowhere = Pose { translation: Vec3::NAN, ..Pose::IDENTITY };

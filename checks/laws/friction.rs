@@ -4,7 +4,7 @@ use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides, RestShape};
-use strandline_sim::{Drive, Settings, Solver};
+use strandline_sim::{Drive, Model, Settings};
 
 use crate::strands::bare;
 
@@ -27,9 +27,9 @@ fn slid(on: &On, rounds: u32, friction: f32) -> f32 {
     let hair = Guides::resample(&groom, 17).unwrap();
     let settings = Settings { collision_margin: margin, ..bare(1.0 / 60.0, rounds) };
     let rest = RestShape::new(&hair, 6.5e-6);
-    let solver = Solver::with_rest(&hair, rest, |_, _| false, &settings, vec![log]).unwrap();
-    let masses: Vec<f32> = solver.rest().mass.iter().map(|lanes| lanes.0[0]).collect();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::with_rest(&hair, rest, |_, _| false, &settings, vec![log]).unwrap();
+    let masses: Vec<f32> = model.rest().mass.iter().map(|lanes| lanes.0[0]).collect();
+    let mut rig = Rig::new(on, model);
     // Let it settle, then push it.
     rig.steps(&[Drive::default(); 30]);
     rig.change(|state| {

@@ -3,7 +3,7 @@
 use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Pose, Shape};
 use strandline_checks::{On, Rig, law};
-use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
+use strandline_sim::{CpuRunner, Drive, Model, Settings, VolumeSettings};
 
 use crate::curl::curl;
 use crate::strands::{ball_of_hair, bare, chain, first, line, one_strand, skull};
@@ -76,8 +76,8 @@ law! {
         let hair = ball_of_hair(48, 12, 0.2);
         let settings =
             Settings { volume: VolumeSettings { enabled: false, ..VolumeSettings::default() }, ..Settings::default() };
-        let solver = || Solver::new(&hair, &settings, vec![skull(0.3)]).unwrap();
-        let (mut still, mut pulled) = (Rig::new(on, solver()), Rig::new(on, solver()));
+        let model = || Model::new(&hair, &settings, vec![skull(0.3)]).unwrap();
+        let (mut still, mut pulled) = (Rig::new(on, model()), Rig::new(on, model()));
         let hand = hair.positions()[11].get(3);
         let count = pulled.grab(hand, 0.05);
         assert!((1..24).contains(&count), "{count} strands are held");
@@ -106,7 +106,7 @@ law! {
             friction: 0.3,
         };
         for settings in [Settings::default(), Settings::constrained()] {
-            let mut rig = Rig::new(on, Solver::new(&rope, &settings, vec![ball.clone()]).unwrap());
+            let mut rig = Rig::new(on, Model::new(&rope, &settings, vec![ball.clone()]).unwrap());
             assert_eq!(rig.grab(Vec3::new(0.3, 0.1, 0.0), 0.01), 1);
             let mut deepest = 0.0_f32;
             for step in 1..=120 {
@@ -126,7 +126,7 @@ law! {
     fn a_curl_in_a_hand_gives_way_and_comes_back(on) {
         let mut settings = Settings::default();
         settings.volume.enabled = false;
-        let mut rig = Rig::new(on, Solver::new(&curl(), &settings, Vec::new()).unwrap());
+        let mut rig = Rig::new(on, Model::new(&curl(), &settings, Vec::new()).unwrap());
         rig.steps(&[Drive::default(); 120]);
         let tip = |rig: &mut Rig| rig.state().positions[63].get(0);
         let hung = tip(&mut rig);
@@ -147,18 +147,18 @@ law! {
 #[test]
 fn a_hand_that_is_nowhere_holds_nothing() {
     let points = line(Vec3::ZERO, Vec3::NEG_Y, LINKS);
-    let solver = chain(&points, 1.0, |point| point == 0, &bare(1.0 / 60.0, 20));
-    let mut state = solver.rest_state(Pose::IDENTITY);
+    let model = chain(&points, 1.0, |point| point == 0, &bare(1.0 / 60.0, 20));
+    let mut state = model.rest_state(Pose::IDENTITY);
     for (hand, radius) in
         [(Vec3::NAN, 1.0), (Vec3::ZERO, f32::NAN), (Vec3::ZERO, f32::INFINITY), (Vec3::ZERO, -1.0)]
     {
-        assert_eq!(state.grab(&solver, hand, radius), 0, "{hand} {radius}");
+        assert_eq!(state.grab(&model, hand, radius), 0, "{hand} {radius}");
     }
-    assert_eq!(state.grab(&solver, Vec3::NEG_Y * 5.0, 1.0), 0, "out of reach");
-    assert_eq!(state.grab(&solver, Vec3::NEG_Y, 0.1), 1);
+    assert_eq!(state.grab(&model, Vec3::NEG_Y * 5.0, 1.0), 0, "out of reach");
+    assert_eq!(state.grab(&model, Vec3::NEG_Y, 0.1), 1);
     assert_eq!(state.grabbed(), 1);
     // A hand that is not a number stays where it was.
-    solver.step(&mut state, &Drive { hand: Some(Vec3::NAN), ..Drive::default() });
+    CpuRunner::from(model).step(&mut state, &Drive { hand: Some(Vec3::NAN), ..Drive::default() });
     assert!(first(&state).iter().all(|point| point.is_finite()));
     state.release();
     assert_eq!(state.grabbed(), 0);

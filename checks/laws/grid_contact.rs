@@ -6,7 +6,7 @@ use glam::{Vec3, vec3};
 use strandline_body::{Aabb, Carrier, Collider, DistanceGrid, Pose, Shape, SignedDistance};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides, RestShape};
-use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
+use strandline_sim::{Drive, Model, Settings, VolumeSettings};
 
 use crate::strands::{ball_of_hair, line, one_strand};
 
@@ -48,10 +48,10 @@ fn curtain() -> Guides {
 
 /// How deep \[m\] the free points of a rig are inside a ball that stays or that the head carries.
 fn depth(rig: &mut Rig, ball: &Ball, head: Pose, carrier: Carrier) -> f32 {
-    let points = rig.solver().points_per_strand();
+    let points = rig.model().points_per_strand();
     let from_world = if carrier == Carrier::Head { head.inverse() } else { Pose::IDENTITY };
     let blocks = rig.state().positions.chunks(points);
-    let free = blocks.flat_map(|block| &block[Solver::ROOTED_POINTS..]);
+    let free = blocks.flat_map(|block| &block[Model::ROOTED_POINTS..]);
     let lanes = free.flat_map(|lanes| (0..8).map(|lane| lanes.get(lane)));
     lanes.map(|point| -ball.distance(from_world.point(point))).fold(0.0, f32::max)
 }
@@ -59,7 +59,7 @@ fn depth(rig: &mut Rig, ball: &Ball, head: Pose, carrier: Carrier) -> f32 {
 /// Deepest point \[m\] of hair that is lowered onto a ball, taken away and lowered again, and how far the
 /// report was off.
 fn lowered(on: &On, ball: &Ball, colliders: Vec<Collider>, settings: &Settings) -> (f32, f32) {
-    let mut rig = Rig::new(on, Solver::new(&curtain(), settings, colliders).unwrap());
+    let mut rig = Rig::new(on, Model::new(&curtain(), settings, colliders).unwrap());
     let (mut deepest, mut unseen) = (0.0_f32, 0.0_f32);
     let away = vec3(0.0, 0.0, 0.0);
     let onto = vec3(0.0, -0.5, 0.0);
@@ -113,8 +113,8 @@ law! {
         for settings in [Settings::constrained(), Settings::default()] {
             let method = settings.strands.method;
             let settings = Settings { volume: VolumeSettings { enabled: false, ..settings.volume }, ..settings };
-            let solver = Solver::new(&hair, &settings, vec![sampled(&ball, Carrier::World)]).unwrap();
-            let mut rig = Rig::new(on, solver);
+            let model = Model::new(&hair, &settings, vec![sampled(&ball, Carrier::World)]).unwrap();
+            let mut rig = Rig::new(on, model);
             for step in 1..=60 {
                 let way = vec3(-0.105, -0.7, -0.105) * (step as f32 / 60.0);
                 let head = Pose { translation: way, ..Pose::IDENTITY };
@@ -141,8 +141,8 @@ law! {
         let shape = Shape::Sphere { center: ball.center, radius: ball.radius };
         let solid = Collider { shape, carrier: Carrier::World, friction: 0.3 };
         let held = |_: usize, point: usize| point == 0 || point == 15;
-        let solver = Solver::with_rest(&hair, rest, held, &settings, vec![solid]).unwrap();
-        let mut rig = Rig::new(on, solver);
+        let model = Model::with_rest(&hair, rest, held, &settings, vec![solid]).unwrap();
+        let mut rig = Rig::new(on, model);
         let mut deepest = 0.0_f32;
         for step in 1..=60 {
             let head = Pose { translation: ball.center * (step as f32 / 60.0), ..Pose::IDENTITY };
@@ -161,7 +161,7 @@ law! {
 fn shaken(on: &On, collider: Collider, settings: &Settings) -> f32 {
     let ball = Ball { center: Vec3::ZERO, radius: 0.1 };
     let hair = ball_of_hair(64, 12, 0.3);
-    let mut rig = Rig::new(on, Solver::new(&hair, settings, vec![collider]).unwrap());
+    let mut rig = Rig::new(on, Model::new(&hair, settings, vec![collider]).unwrap());
     let speed = 2.0 * PI * 5.0;
     let amplitude = 20.0 * 9.81 / (speed * speed);
     let mut deepest = 0.0_f32;
@@ -208,8 +208,8 @@ law! {
             let ways = [Settings::constrained(), Settings::thesis()].into_iter();
             for (settings, speed) in ways.flat_map(|settings| speeds.map(|speed| (settings.clone(), speed))) {
                 let loose = |_: usize, _: usize| false;
-                let solver = Solver::with_rest(&hair, rest.clone(), loose, &settings, solids.clone()).unwrap();
-                let mut rig = Rig::new(on, solver);
+                let model = Model::with_rest(&hair, rest.clone(), loose, &settings, solids.clone()).unwrap();
+                let mut rig = Rig::new(on, model);
                 rig.change(|state| {
                     for velocity in &mut state.velocities {
                         (0..8).for_each(|lane| velocity.set(lane, speed));

@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides};
 use strandline_sim::rods::{GroupSettings, HairKind, Rest};
-use strandline_sim::{Drive, Settings, Solver};
+use strandline_sim::{Drive, Model, Settings};
 
 use crate::strands::line;
 
@@ -29,8 +29,8 @@ fn sagging() -> Settings {
 
 /// How far the tips hang below the roots \[m\] after a time \[s\].
 fn droops(on: &On, guides: &Guides, settings: &Settings, seconds: f32) -> [f32; 2] {
-    let solver = Solver::new(guides, settings, Vec::new()).unwrap();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::new(guides, settings, Vec::new()).unwrap();
+    let mut rig = Rig::new(on, model);
     rig.steps(&vec![Drive::default(); (seconds * 60.0) as usize]);
     let tip = &rig.state().positions[guides.points_per_strand() - 1];
     [0, 1].map(|lane| -tip.get(lane).y)
@@ -136,17 +136,17 @@ fn a_group_that_the_groom_has_not_is_refused_with_those_it_has() {
     let guides = guides(0.1, 8);
     let groups = vec![group("back", HairKind::Wet)];
     let settings = Settings { groups, ..Settings::default() };
-    let refused = Solver::new(&guides, &settings, Vec::new()).err().unwrap().to_string();
+    let refused = Model::new(&guides, &settings, Vec::new()).err().unwrap().to_string();
     assert_eq!(refused, "simulation.groups[0].group is `back`, expected a group of the groom: 3, fringe");
-    let mut solver = Solver::new(&guides, &Settings::default(), Vec::new()).unwrap();
-    assert!(solver.set_settings(&settings).is_err());
-    assert_eq!(solver.settings(), &Settings::default());
+    let mut model = Model::new(&guides, &Settings::default(), Vec::new()).unwrap();
+    assert!(model.set_settings(&settings).is_err());
+    assert_eq!(model.settings(), &Settings::default());
     let mut other = settings.clone();
     other.groups[0].group = "3".to_owned();
-    solver.set_settings(&other).unwrap();
-    let compiled = Solver::new(&guides, &other, Vec::new()).unwrap();
+    model.set_settings(&other).unwrap();
+    let compiled = Model::new(&guides, &other, Vec::new()).unwrap();
     assert_eq!(
-        solver.inverse_mass(),
+        model.inverse_mass(),
         compiled.inverse_mass(),
         "settings that change are those that were compiled"
     );

@@ -3,7 +3,7 @@
 use glam::{Vec3, vec3};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::RestShape;
-use strandline_sim::{Angles, Drive, Settings, Solver, Springs, StrandMethod};
+use strandline_sim::{Angles, Drive, Model, Settings, Springs, StrandMethod};
 
 use crate::strands::{bare, first, line, one_strand};
 
@@ -17,9 +17,9 @@ fn loose(on: &On, scale: f32) -> Rig {
     let rest = RestShape::new(&guides, 6.5e-6);
     let within = Settings { springs: Springs::default(), angles: Angles::default(), ..bare(1.0 / 60.0, 20) };
     let settings = Settings { gravity: Vec3::ZERO, ..within };
-    let solver = Solver::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
-    let mut rig = Rig::new(on, solver.clone());
-    rig.change(|state| state.set_length_scale(&solver, &[scale]).unwrap());
+    let model = Model::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
+    let mut rig = Rig::new(on, model.clone());
+    rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
     rig
 }
 
@@ -65,9 +65,9 @@ law! {
         for scale in [0.3, 1.0, 2.0] {
             let guides = one_strand(&line(Vec3::ZERO, Vec3::NEG_Y * 0.2, POINTS - 1));
             for settings in [Settings::default(), Settings::constrained()] {
-                let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
-                let mut rig = Rig::new(on, solver.clone());
-                rig.change(|state| state.set_length_scale(&solver, &[scale]).unwrap());
+                let model = Model::new(&guides, &settings, Vec::new()).unwrap();
+                let mut rig = Rig::new(on, model.clone());
+                rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
                 rig.steps(&[Drive::default(); 60]);
                 let tip = first(rig.state())[POINTS - 1];
                 // The length pass is exact but for rounding.
@@ -96,11 +96,11 @@ law! {
             .collect();
         let guides = one_strand(&points);
         let rest = RestShape::new(&guides, settings.line_density());
-        let solver = Solver::with_rest(&guides, rest, |_, point| point < 2, &settings, Vec::new()).unwrap();
+        let model = Model::with_rest(&guides, rest, |_, point| point < 2, &settings, Vec::new()).unwrap();
         for scale in [0.6, 1.4] {
-            let mut rig = Rig::new(on, solver.clone());
+            let mut rig = Rig::new(on, model.clone());
             let before = first(rig.state());
-            rig.change(|state| state.set_length_scale(&solver, &[scale]).unwrap());
+            rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
             rig.steps(&[Drive::default(); 240]);
             let after = first(rig.state());
             // The segments of the first half keep their lengths. In single precision the weight of what is left

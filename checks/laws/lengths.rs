@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::LANES;
-use strandline_sim::{Drive, Settings, Solver, State, VolumeSettings};
+use strandline_sim::{Drive, Model, Settings, State, VolumeSettings};
 
 use crate::strands::{ball_of_hair, skull};
 
@@ -19,7 +19,7 @@ fn head(on: &On, strands: usize, hair: (usize, f32), settings: &Settings, volume
         ..settings.clone()
     };
     let guides = ball_of_hair(strands, hair.0, hair.1);
-    Rig::new(on, Solver::new(&guides, &settings, vec![skull(0.3)]).unwrap())
+    Rig::new(on, Model::new(&guides, &settings, vec![skull(0.3)]).unwrap())
 }
 
 /// Largest difference \[m/s\] of a stored velocity and the way of its point in the last step, and the

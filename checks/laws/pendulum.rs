@@ -27,8 +27,8 @@ fn period(
     time_step: f32,
     settings: impl Fn(Settings) -> Settings,
 ) -> f32 {
-    let solver = chain(&rod(amplitude, length), 1.0, |point| point < 3, &settings(bare(time_step, 4)));
-    let mut rig = Rig::new(on, solver);
+    let model = chain(&rod(amplitude, length), 1.0, |point| point < 3, &settings(bare(time_step, 4)));
+    let mut rig = Rig::new(on, model);
     let mut before = first(rig.state())[3].x;
     for step in 0..100_000 {
         rig.step(&Drive::default());
@@ -96,8 +96,8 @@ fn mode_error(on: &On, links: usize, tip_mass: f32, expected: f32) -> f32 {
     let settings = bare(2.0 * PI / (120.0 * expected * (GRAVITY / length).sqrt()), 200);
     let shape = mode_shape(links, expected);
     let rest = line(Vec3::ZERO, Vec3::NEG_Y * length, links);
-    let solver = chain(&rest, tip_mass, |point| point == 0, &settings);
-    let mut rig = Rig::new(on, solver);
+    let model = chain(&rest, tip_mass, |point| point == 0, &settings);
+    let mut rig = Rig::new(on, model);
     let link = length / links as f32;
     rig.change(|state| {
         for point in 1..=links {
@@ -169,8 +169,8 @@ fn sag_error(on: &On, span: f32, sag: f32, settings: &Settings) -> f32 {
     let low = Vec3::new(0.5 * span, -rise, 0.0);
     let mut points = line(Vec3::ZERO, low, 8);
     points.extend(&line(low, Vec3::X * span, 8)[1..]);
-    let solver = chain(&points, 1.0, |point| point == 0 || point == 16, settings);
-    let mut rig = Rig::new(on, solver);
+    let model = chain(&points, 1.0, |point| point == 0 || point == 16, settings);
+    let mut rig = Rig::new(on, model);
     // It hangs still after a few seconds.
     rig.steps(&vec![Drive::default(); (on.either(20.0, 4.0) / settings.time_step) as usize]);
     let lowest = first(rig.state()).iter().fold(0.0_f32, |low, point| low.max(-point.y));

@@ -9,7 +9,7 @@ use strandline_sim::cpu::solve_pressure::solve_pressure;
 use strandline_sim::cpu::splat::splat;
 use strandline_sim::cpu::{Kind, Obstacles, Volume};
 use strandline_sim::gpu::Probe;
-use strandline_sim::{Drive, VolumeSettings};
+use strandline_sim::{Drive, Stage, VolumeSettings};
 
 use crate::transfer::{Cloud, POINTS, ball};
 
@@ -37,8 +37,8 @@ fn projected_on(gpu: &Gpu, tolerance: f32) -> [f32; 2] {
     let shape = Shape::sphere(Vec3::ZERO, 0.05).unwrap();
     let collider = Collider::new(shape, Carrier::Head, 0.0).unwrap();
     let settings = VolumeSettings { tolerance, ..VolumeSettings::default() };
-    let solver = cloud.stand_in(gpu, settings, 0.01, vec![collider]);
-    let mut probe = cloud.probe(&solver);
+    let runner = cloud.stand_in(gpu, settings, 0.01, vec![collider]);
+    let mut probe = cloud.probe(&runner);
     let end = Pose { translation: vec3(0.002, 0.0, 0.0), ..Pose::IDENTITY };
     let drive = Drive { world_from_head: end, ..Drive::default() };
     let size = 34;
@@ -54,9 +54,9 @@ fn projected_on(gpu: &Gpu, tolerance: f32) -> [f32; 2] {
         let fluid = (0..count).filter(|&cell| kinds[cell] == Kind::Fluid);
         fluid.map(|cell| divergence(cell).abs()).fold(0.0, f32::max)
     };
-    probe.run(&drive, &["splat", "mark"]).unwrap();
+    probe.run(&drive, &[Stage::Splat, Stage::Mark]).unwrap();
     let before = largest(&probe);
-    probe.run(&drive, &["solve_pressure"]).unwrap();
+    probe.run(&drive, &[Stage::SolvePressure]).unwrap();
     [before, largest(&probe)]
 }
 

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline_checks::{On, Rig, law};
-use strandline_sim::{Drive, Settings, Solver, Spring, Springs, VolumeSettings};
+use strandline_sim::{Drive, Model, Settings, Spring, Springs, VolumeSettings};
 
 use crate::strands::{bare, chain, first, line, one_strand};
 
@@ -15,7 +15,7 @@ fn strand(on: &On) -> Rig {
         ..Settings::constrained()
     };
     let guides = one_strand(&line(Vec3::ZERO, Vec3::X * 0.3, 11));
-    Rig::new(on, Solver::new(&guides, &settings, Vec::new()).unwrap())
+    Rig::new(on, Model::new(&guides, &settings, Vec::new()).unwrap())
 }
 
 law! {

@@ -5,7 +5,7 @@ use strandline_checks::{On, Rig, law};
 use strandline_sim::rods::Rest;
 use strandline_sim::{Drive, Settings};
 
-use crate::rod_mechanics::{rods, solver};
+use crate::rod_mechanics::{model, rods};
 use crate::strands::{line, one_strand};
 
 /// Length \[m\] of the rods that free segments make, and their number.
@@ -22,7 +22,7 @@ fn straight() -> Settings {
 /// How far \[lengths\] a straight rod is from its line five seconds after a push of 0.03 m/s across it at its tip.
 fn aside(on: &On, along: Vec3, across: Vec3, settings: &Settings) -> f32 {
     let points = line(along * (-LENGTH / COUNT as f32), along * LENGTH, COUNT + 1);
-    let mut rig = Rig::new(on, solver(&one_strand(&points), settings, |point| point < 2, Vec::new()));
+    let mut rig = Rig::new(on, model(&one_strand(&points), settings, |point| point < 2, Vec::new()));
     rig.change(|state| {
         for point in 2..COUNT + 2 {
             let share = (point as f32 - 1.0) / COUNT as f32;

@@ -5,7 +5,7 @@ use strandline_checks::{On, Rig, law};
 use strandline_sim::rods::Rest;
 use strandline_sim::{Drive, State};
 
-use crate::rod_mechanics::{rods, solver};
+use crate::rod_mechanics::{model, rods};
 use crate::strands::{first, one_strand};
 
 /// Height \[m\] at rest.
@@ -25,7 +25,7 @@ fn let_go(on: &On, rest: Rest) -> (f32, f32) {
     // So soft that it would sag by 17 % if its rest shape did not carry its weight.
     (settings.damping, settings.strands.rods.youngs_modulus, settings.strands.rods.rest) = (4.0, 0.03, rest);
     let points: Vec<Vec3> = (0..count + 2).map(point).collect();
-    let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+    let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
     let tip = |rig: &mut Rig| first(rig.state())[usize::from(count) + 1];
     let start = tip(&mut rig);
     assert_eq!(rig.grab(start, 1e-3), 1);

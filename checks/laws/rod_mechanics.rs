@@ -4,7 +4,7 @@ use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, RestShape};
-use strandline_sim::{Drive, Settings, Solver, State, StrandMethod, rods::Rest};
+use strandline_sim::{Drive, Model, Settings, State, StrandMethod, rods::Rest};
 
 use crate::curl::curl;
 use crate::strands::{bare, first, line, one_strand};
@@ -17,14 +17,14 @@ pub fn rods(time_step: f32) -> Settings {
     settings
 }
 
-pub fn solver(
+pub fn model(
     guides: &Guides,
     settings: &Settings,
     held: impl Fn(usize) -> bool + Sync,
     solids: Vec<Collider>,
-) -> Solver {
+) -> Model {
     let rest = RestShape::new(guides, settings.line_density());
-    Solver::with_rest(guides, rest, |_, point| held(point), settings, solids).unwrap()
+    Model::with_rest(guides, rest, |_, point| held(point), settings, solids).unwrap()
 }
 
 /// Droop over reach of a horizontal rod of so many segments with w L^3 / B = `gamma`, when it is still.
@@ -41,7 +41,7 @@ fn droop(on: &On, gamma: f32, count: usize, time_step: f32, newton_steps: u32) -
     // Air that takes the swing; the equilibrium is the same.
     settings.damping = 20.0;
     let points = line(Vec3::NEG_X * (length / count as f32), Vec3::X * length, count + 1);
-    let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+    let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
     let quarter = vec![Drive::default(); (0.25 / time_step) as usize];
     let rests = (0..40).any(|_| rig.steps(&quarter).last().unwrap().rods.unwrap().resting == 1);
     assert!(rests, "{gamma}, {count} segments, {time_step} s: not still after 10 s");
@@ -99,7 +99,7 @@ law! {
                 if along < 1.0 { low * along } else { low.lerp(Vec3::X * span, along - 1.0) }
             }).collect();
             let held = |point| point == 0 || point == 16;
-            let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, held, Vec::new()));
+            let mut rig = Rig::new(on, model(&one_strand(&points), &settings, held, Vec::new()));
             rig.steps(&[Drive::default(); 300]);
             let lowest = first(rig.state()).iter().fold(0.0_f32, |low, point| low.max(-point.y));
             assert!((lowest / sag - 1.0).abs() < 2e-3, "span {span}: {lowest}, expected {sag}");
@@ -118,7 +118,7 @@ fn slid(on: &On, slope: f32, friction: f32) -> (f32, f32) {
     let bar = Shape::capsule(vec3(-1.0, -0.05, 0.0), vec3(1.0, -0.05, 0.0), 0.05).unwrap();
     let plane = Collider::new(bar, Carrier::World, friction).unwrap();
     let points = line(vec3(-0.05, 1e-5, 0.0), vec3(0.05, 1e-5, 0.0), 9);
-    let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |_| false, vec![plane]));
+    let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |_| false, vec![plane]));
     let start = first(rig.state())[5].x;
     rig.steps(&[Drive::default(); 15]);
     let before = first(rig.state())[5].x;
@@ -148,9 +148,9 @@ law! {
     fn a_curl_of_rods_unrolls_in_a_hand_and_comes_back(on) {
         let mut settings = rods(1.0 / 60.0);
         settings.drag = strandline_sim::Drag::default();
-        let solver = Solver::new(&curl(), &settings, Vec::new()).unwrap();
-        let length: f32 = solver.rest().stretch.iter().map(|lanes| lanes.0[0]).sum();
-        let mut rig = Rig::new(on, solver);
+        let model = Model::new(&curl(), &settings, Vec::new()).unwrap();
+        let length: f32 = model.rest().stretch.iter().map(|lanes| lanes.0[0]).sum();
+        let mut rig = Rig::new(on, model);
         let tip = |rig: &mut Rig| first(rig.state())[63];
         let rest = tip(&mut rig);
         assert_eq!(rig.grab(rest, 1e-3), 1);
@@ -179,11 +179,11 @@ law! {
         rod.youngs_modulus = 4.0 * rod.density * 9.81 * length * length * length / (10.0 * radius * radius) * 1e-9;
         settings.damping = 20.0;
         let points = line(Vec3::NEG_X * (length / count as f32), Vec3::X * length, count + 1);
-        let solver = solver(&one_strand(&points), &settings, |point| point < 2, Vec::new());
-        let mut rig = Rig::new(on, solver.clone());
+        let model = model(&one_strand(&points), &settings, |point| point < 2, Vec::new());
+        let mut rig = Rig::new(on, model.clone());
         // The segment that is held has its share.
         let scale = (0.5 + 1.0 / count as f32) / (1.0 + 1.0 / count as f32);
-        rig.change(|state| state.set_length_scale(&solver, &[scale]).unwrap());
+        rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
         rig.steps(&[Drive::default(); 240]);
         // What is left of the other half is the last 3 mm.
         let tip = first(rig.state())[count / 2 + 1];
@@ -199,9 +199,9 @@ const CUT: f32 = 0.155_546;
 
 /// Kinetic energy and that of gravity \[J\]: no more than both and the elastic one, which is 0 in a shape without
 /// moments.
-fn energy(solver: &Solver, state: &State) -> f64 {
-    let gravity = solver.settings().gravity;
-    let each = state.positions.iter().zip(&state.velocities).zip(&solver.rest().mass);
+fn energy(model: &Model, state: &State) -> f64 {
+    let gravity = model.settings().gravity;
+    let each = state.positions.iter().zip(&state.velocities).zip(&model.rest().mass);
     each.map(|((position, velocity), mass)| {
         let speed = velocity.get(0);
         f64::from(mass.0[0]) * f64::from(0.5 * speed.length_squared() - gravity.dot(position.get(0)))
@@ -216,17 +216,17 @@ law! {
             settings.strands.rods.rest = Rest::Unstressed;
             settings.strands.rods.damping = 0.0;
             let points = line(Vec3::NEG_X * 0.0125, Vec3::X * 0.2, 17);
-            let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+            let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
             let start = rig.state().clone();
-            let first_energy = energy(rig.solver(), &start);
+            let first_energy = energy(rig.model(), &start);
             // Its weight at its length.
-            let weight: f32 = rig.solver().rest().mass.iter().map(|mass| mass.0[0]).sum::<f32>() * 9.81;
+            let weight: f32 = rig.model().rest().mass.iter().map(|mass| mass.0[0]).sum::<f32>() * 9.81;
             let scale = f64::from(weight) * 0.2;
             let mut lowest = f64::INFINITY;
             for _ in 0..on.either(600, 20) {
                 rig.steps(&vec![Drive::default(); (0.1 / time_step).round() as usize]);
                 let state = rig.state().clone();
-                let gained = (energy(rig.solver(), &state) - first_energy) / scale;
+                let gained = (energy(rig.model(), &state) - first_energy) / scale;
                 assert!(gained < 1e-4, "{time_step} s: gained {gained} of its weight at its length");
                 lowest = lowest.min(gained);
             }
@@ -249,7 +249,7 @@ law! {
         settings.time_step = std::f32::consts::TAU / rate / 200.0;
         let count = 32;
         let points = line(Vec3::NEG_X * (length / count as f32), Vec3::X * length, count + 1);
-        let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+        let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
         rig.change(|state| {
             for point in 2..count + 2 {
                 let along = (point as f32 - 1.0) / count as f32;
@@ -293,7 +293,7 @@ fn out_of_plane(on: &On, curvature: f32) -> f32 {
         here += size * vec3(angle.sin(), -angle.cos(), 0.0);
         points.push(here);
     }
-    let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+    let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
     rig.steps(&vec![Drive::default(); 600]);
     rig.change(|state| {
         for point in 2..count + 2 {
@@ -322,7 +322,7 @@ law! {
             let mut settings = Settings { gravity: Vec3::ZERO, ..rods(1.0 / rate) };
             settings.strands.rods.rubbing = 0.5;
             let points = line(Vec3::ZERO, Vec3::NEG_Y * 0.1, 6);
-            let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |_| false, Vec::new()));
+            let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |_| false, Vec::new()));
             rig.change(|state| state.velocities.iter_mut().for_each(|velocity| velocity.set(0, Vec3::X * 0.4)));
             let second = vec![Drive::default(); rate as usize];
             rig.steps(&second[..second.len() / 2]);
@@ -345,14 +345,14 @@ law! {
 
 law! {
     fn a_rod_that_is_not_finite_goes_back_to_rest(on) {
-        let mut rig = Rig::new(on, Solver::new(&curl(), &rods(1.0 / 60.0), Vec::new()).unwrap());
+        let mut rig = Rig::new(on, Model::new(&curl(), &rods(1.0 / 60.0), Vec::new()).unwrap());
         rig.steps(&[Drive { wind: Vec3::X, ..Drive::default() }; 10]);
         rig.change(|state| state.velocities[20].set(0, Vec3::NAN));
         let report = rig.step(&Drive::default());
         assert!(report.non_finite > 0);
         let report = rig.step(&Drive::default());
         assert_eq!(report.non_finite, 0);
-        let rest = rig.solver().rest_state(Default::default());
+        let rest = rig.model().rest_state(Default::default());
         for (found, rest) in rig.state().positions.iter().zip(&rest.positions) {
             // Sag-free: it stays there.
             assert!(found.get(0).distance(rest.get(0)) < 1e-5, "{}", found.get(0).distance(rest.get(0)));
@@ -366,7 +366,7 @@ law! {
     fn a_rod_shaken_at_twenty_g_stays_whole(on) {
         let mut settings = rods(1.0 / 60.0);
         settings.drag = strandline_sim::Drag::default();
-        let mut rig = Rig::new(on, Solver::new(&curl(), &settings, Vec::new()).unwrap());
+        let mut rig = Rig::new(on, Model::new(&curl(), &settings, Vec::new()).unwrap());
         // 20 g at 5 Hz.
         let (rate, reach) = (std::f32::consts::TAU * 5.0, 20.0 * 9.81 / (std::f32::consts::TAU * 5.0_f32).powi(2));
         let pose = |step: usize| strandline_body::Pose {

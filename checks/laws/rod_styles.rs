@@ -4,23 +4,23 @@ use glam::Vec3;
 use strandline_body::Motion;
 use strandline_checks::law;
 use strandline_groom::{LANES, Style};
-use strandline_sim::{Solver, State, StrandMethod};
+use strandline_sim::{Model, State, StrandMethod};
 
 use crate::rods::{drift, settings, speeds, stepped, style};
 
 /// Tips of all strands \[m\].
-fn tips(solver: &Solver, state: &State) -> Vec<Vec3> {
-    let points = solver.points_per_strand();
+fn tips(model: &Model, state: &State) -> Vec<Vec3> {
+    let points = model.points_per_strand();
     let tip = |strand: usize| state.positions[(strand / LANES + 1) * points - 1].get(strand % LANES);
-    (0..solver.strand_count()).map(tip).collect()
+    (0..model.strand_count()).map(tip).collect()
 }
 
 /// How far tips are apart in the middle of all strands, over the length of their strand.
-fn apart(solver: &Solver, one: &[Vec3], other: &[Vec3]) -> f32 {
-    let points = solver.points_per_strand();
+fn apart(model: &Model, one: &[Vec3], other: &[Vec3]) -> f32 {
+    let points = model.points_per_strand();
     let length = |strand: usize| -> f32 {
         let block = strand / LANES * points;
-        (block..block + points).map(|point| solver.rest().stretch[point].0[strand % LANES]).sum()
+        (block..block + points).map(|point| model.rest().stretch[point].0[strand % LANES]).sum()
     };
     let pairs = one.iter().zip(other).enumerate();
     let mut each: Vec<f32> =
@@ -53,17 +53,17 @@ law! {
             for &rate in rates {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / rate);
                 settings.volume.enabled = on.either(true, first);
-                let solver = style(name, &settings, 24);
-                let state = stepped(on, &solver, on.either(7.0, if first { 5.0 } else { 7.0 }), shake);
+                let model = style(name, &settings, 24);
+                let state = stepped(on, &model, on.either(7.0, if first { 5.0 } else { 7.0 }), shake);
                 let (speed, farthest) = bounds(name, rate);
                 let speed = on.either(speed, if first { 1e-3 } else { speed });
-                let (moved, stored) = speeds(&solver, &state);
+                let (moved, stored) = speeds(&model, &state);
                 assert!(moved < speed && stored < speed, "{name:?}, 1/{rate} s: {moved} m/s, stored {stored} m/s");
-                let (mean, _) = drift(&solver, &state);
+                let (mean, _) = drift(&model, &state);
                 assert!(mean < 3e-2, "{name:?}, 1/{rate} s: {mean} from where it was");
-                let end = tips(&solver, &state);
+                let end = tips(&model, &state);
                 for (other, before) in rates.iter().zip(&ends) {
-                    let apart = apart(&solver, before, &end);
+                    let apart = apart(&model, before, &end);
                     assert!(apart < farthest, "{name:?}: tips of 1/{other} and 1/{rate} s are {apart} apart");
                 }
                 ends.push(end);

@@ -5,9 +5,9 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use glam::{Vec3, vec3};
 use strandline_body::Pose;
 use strandline_checks::{Rig, law};
-use strandline_sim::{Drive, Settings, Solver, State, VolumeSettings};
+use strandline_sim::{Drive, Model, Settings, State, VolumeSettings};
 
-use crate::rod_mechanics::{rods, solver};
+use crate::rod_mechanics::{model, rods};
 use crate::strands::{first, line, one_strand};
 
 /// Angle \[rad\] by which the section of a segment has turned about the x axis.
@@ -28,7 +28,7 @@ law! {
         let rate = FRAC_PI_2 / length * (1e6 / material.density).sqrt();
         settings.time_step = TAU / rate / 200.0;
         let points = line(Vec3::NEG_X * (length / count as f32), Vec3::X * length, count + 1);
-        let mut rig = Rig::new(on, solver(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+        let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
         let rest = rig.state().clone();
         rig.change(|state| {
             for segment in 1..=count {
@@ -57,10 +57,10 @@ law! {
 }
 
 /// Long hair of the default material that hangs from a head at rest, without a volume.
-fn hanging(time_step: f32) -> Solver {
+fn hanging(time_step: f32) -> Model {
     let mut settings = Settings { time_step, ..Settings::default() };
     settings.volume = VolumeSettings { enabled: false, ..settings.volume };
-    Solver::new(&one_strand(&line(Vec3::ZERO, Vec3::NEG_Y * LENGTH, TIP)), &settings, Vec::new()).unwrap()
+    Model::new(&one_strand(&line(Vec3::ZERO, Vec3::NEG_Y * LENGTH, TIP)), &settings, Vec::new()).unwrap()
 }
 
 /// Length \[m\] of long hair, and its last point.

@@ -5,7 +5,7 @@ use strandline::{Prepared, Scene};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Motion, Pose, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, LANES, Style, StyleSettings};
-use strandline_sim::{Drive, Settings, Solver, State, StrandMethod};
+use strandline_sim::{Drive, Model, Settings, State, StrandMethod};
 
 pub fn settings(method: StrandMethod, time_step: f32) -> Settings {
     let mut settings = Settings { time_step, ..Settings::default() };
@@ -14,48 +14,48 @@ pub fn settings(method: StrandMethod, time_step: f32) -> Settings {
 }
 
 /// A built-in style with few guides, with its body.
-pub fn style(style: Style, settings: &Settings, strands: usize) -> Solver {
+pub fn style(style: Style, settings: &Settings, strands: usize) -> Model {
     let mut scene = Scene::default();
     scene.set_style(style);
     scene.style.strand_count = strands;
     let prepared = Prepared::new(&scene).unwrap();
-    Solver::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap()
+    Model::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap()
 }
 
 /// Mean and largest distance of points from where they rest on the head, over their strands' lengths.
-pub fn drift(solver: &Solver, state: &State) -> (f32, f32) {
-    let points = solver.points_per_strand();
-    let rest = solver.rest_state(state.world_from_head);
+pub fn drift(model: &Model, state: &State) -> (f32, f32) {
+    let points = model.points_per_strand();
+    let rest = model.rest_state(state.world_from_head);
     let (mut sum, mut most) = (0.0, 0.0_f32);
-    for strand in 0..solver.strand_count() {
+    for strand in 0..model.strand_count() {
         let (block, lane) = (strand / LANES * points, strand % LANES);
-        let length: f32 = (0..points).map(|point| solver.rest().stretch[block + point].0[lane]).sum();
+        let length: f32 = (0..points).map(|point| model.rest().stretch[block + point].0[lane]).sum();
         for point in block..block + points {
             let moved = state.positions[point].get(lane).distance(rest.positions[point].get(lane)) / length;
             sum += moved;
             most = most.max(moved);
         }
     }
-    (sum / (solver.strand_count() * points) as f32, most)
+    (sum / (model.strand_count() * points) as f32, most)
 }
 
 /// Mean speed \[m/s\] of the last step: of what moved, and as it is stored.
-pub fn speeds(solver: &Solver, state: &State) -> (f32, f32) {
+pub fn speeds(model: &Model, state: &State) -> (f32, f32) {
     let count = (state.positions.len() * LANES) as f32;
     let lanes = |index: usize| (0..LANES).map(move |lane| (index, lane));
     let each = (0..state.positions.len()).flat_map(lanes);
     let (mut moved, mut stored) = (0.0, 0.0);
     for (index, lane) in each {
         let way = state.positions[index].get(lane).distance(state.previous_positions[index].get(lane));
-        moved += way / solver.settings().time_step;
+        moved += way / model.settings().time_step;
         stored += state.velocities[index].get(lane).length();
     }
     (moved / count, stored / count)
 }
 
-pub fn stepped(on: &On, solver: &Solver, seconds: f32, motion: impl Fn(f64) -> Pose) -> State {
-    let mut rig = Rig::new(on, solver.clone());
-    let step = solver.settings().time_step;
+pub fn stepped(on: &On, model: &Model, seconds: f32, motion: impl Fn(f64) -> Pose) -> State {
+    let mut rig = Rig::new(on, model.clone());
+    let step = model.settings().time_step;
     let drive = |index: u32| {
         let world_from_head = motion(f64::from(index) * f64::from(step));
         Drive { world_from_head, ..Drive::default() }
@@ -75,9 +75,9 @@ law! {
             for volume in [true, false].into_iter().take(on.either(2, 1)) {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
                 settings.volume.enabled = volume;
-                let solver = style(name, &settings, 120);
-                let state = stepped(on, &solver, on.either(10.0, 0.5), |_| Pose::IDENTITY);
-                let (mean, most) = drift(&solver, &state);
+                let model = style(name, &settings, 120);
+                let state = stepped(on, &model, on.either(10.0, 0.5), |_| Pose::IDENTITY);
+                let (mean, most) = drift(&model, &state);
                 // Of 2,000 strands of each style nothing moved by a bit in 5 s on the CPU, but for some two curls that
                 // lie so near the body that they are pushed: by 1.1 %, 0.001 % on average; of these 120 by 0.26 %.
                 let largest = if volume { 1e-2 } else { 1e-3 };
@@ -90,7 +90,7 @@ law! {
 
 /// A style whose strands lie on the skin of the mannequin, in the creases of ears and neck: drawn `inward` \[m\] from
 /// five centimetres behind the root on, then put outside as at load.
-fn creased(style: Style, inward: f32) -> Solver {
+fn creased(style: Style, inward: f32) -> Model {
     let mut groom = StyleSettings { strand_count: 120, ..StyleSettings::new(style) }.grow().unwrap();
     for strand in 0..groom.strand_count() {
         let range = groom.range(strand);
@@ -105,13 +105,13 @@ fn creased(style: Style, inward: f32) -> Solver {
     guides.move_outside(|point| shape.distance_and_gradient(point));
     let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
     settings.volume.enabled = false;
-    Solver::new(&guides, &settings, vec![Collider { shape, carrier: Carrier::Head, friction: 0.3 }]).unwrap()
+    Model::new(&guides, &settings, vec![Collider { shape, carrier: Carrier::Head, friction: 0.3 }]).unwrap()
 }
 
 law! {
     fn hair_in_creases_of_the_skin_stays_as_it_was_groomed(on) {
-        let solver = creased(Style::Bob, 0.03);
-        let (mean, most) = drift(&solver, &stepped(on, &solver, on.either(1.0, 0.5), |_| Pose::IDENTITY));
+        let model = creased(Style::Bob, 0.03);
+        let (mean, most) = drift(&model, &stepped(on, &model, on.either(1.0, 0.5), |_| Pose::IDENTITY));
         // As of any style. Found: 5e-8, at most 1e-5; 6e-5, at most 3e-3, where planes were those of the places that
         // points would fall to.
         assert!(mean < 1e-5 && most < 1e-3, "{mean}, at most {most}");
@@ -120,7 +120,7 @@ law! {
 
 law! {
     fn hair_on_a_head_that_turned_and_came_back_is_as_it_was(on) {
-        let solver = style(Style::Wavy, &settings(StrandMethod::Rods, 1.0 / 60.0), 120);
+        let model = style(Style::Wavy, &settings(StrandMethod::Rods, 1.0 / 60.0), 120);
         // Once around and back, slowly; a software adapter takes a quarter of the way.
         let (turn, ends) = on.either((std::f32::consts::TAU, 8.0), (0.5 * std::f32::consts::PI, 2.0));
         let motion = |time: f64| {
@@ -128,8 +128,8 @@ law! {
             let angle = 0.5 * turn * (1.0 - (std::f32::consts::TAU * along).cos());
             Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), Quat::from_rotation_y(angle))
         };
-        let state = stepped(on, &solver, ends + on.either(4.0, 2.0), motion);
-        let (mean, _) = drift(&solver, &state);
+        let state = stepped(on, &model, ends + on.either(4.0, 2.0), motion);
+        let (mean, _) = drift(&model, &state);
         assert!(mean < 0.03, "{mean} from where it was");
     }
 }
@@ -144,9 +144,9 @@ law! {
 
 #[test]
 fn rods_are_the_same_for_any_number_of_threads() {
-    let solver = style(Style::Curly, &settings(StrandMethod::Rods, 1.0 / 60.0), 120);
+    let model = style(Style::Curly, &settings(StrandMethod::Rods, 1.0 / 60.0), 120);
     let shake = |time: f64| Motion::Shake.pose(time, Vec3::new(0.0, -0.1, 0.0));
-    let shaken = || stepped(&On::Cpu, &solver, 0.2, shake);
+    let shaken = || stepped(&On::Cpu, &model, 0.2, shake);
     let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let (one, three) = (pool(1).install(shaken), pool(3).install(shaken));
     assert_eq!(one.positions, three.positions);

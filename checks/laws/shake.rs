@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_body::{Motion, Pose};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{LANES, Vec3Lanes};
-use strandline_sim::{Clock, Drive, Settings, Solver, State};
+use strandline_sim::{Clock, CpuRunner, Drive, Model, Settings, State};
 
 use crate::strands::{ball_of_hair, skull};
 
@@ -24,8 +24,8 @@ fn mean_square_speed(state: &State) -> f32 {
 /// take longer there.
 fn shaken(on: &On, settings: &Settings) -> f32 {
     let hair = ball_of_hair(64, 12, 0.3);
-    let solver = Solver::new(&hair, settings, vec![skull(0.3)]).unwrap();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::new(&hair, settings, vec![skull(0.3)]).unwrap();
+    let mut rig = Rig::new(on, model);
     let speed = 2.0 * PI * 5.0;
     let amplitude = 20.0 * 9.81 / (speed * speed);
     let mut largest = 0.0_f32;
@@ -54,14 +54,15 @@ law! {
     }
 }
 
-fn shake_for(clock: &mut Clock, solver: &Solver, frames: usize, rate: f64) -> State {
-    let mut state = solver.rest_state(Pose::IDENTITY);
+fn shake_for(clock: &mut Clock, model: &Model, frames: usize, rate: f64) -> State {
+    let mut runner = CpuRunner::from(model.clone());
+    let mut state = model.rest_state(Pose::IDENTITY);
     for _ in 0..frames {
         let ticks = clock.advance(1.0 / rate);
         for step in ticks.first..ticks.first + u64::from(ticks.count) {
             let time = clock.step_time(step + 1);
             let world_from_head = Motion::Shake.pose(time, Vec3::NEG_Y * 0.1);
-            solver.step(&mut state, &Drive { world_from_head, ..Drive::default() });
+            runner.step(&mut state, &Drive { world_from_head, ..Drive::default() });
         }
     }
     state
@@ -74,13 +75,13 @@ fn shake_for(clock: &mut Clock, solver: &Solver, frames: usize, rate: f64) -> St
 fn the_frame_rate_does_not_change_a_bit() {
     let hair = ball_of_hair(40, 8, 0.25);
     let settings = Settings { time_step: 1.0 / 64.0, ..Settings::default() };
-    let solver = Solver::new(&hair, &settings, vec![skull(0.3)]).unwrap();
+    let model = Model::new(&hair, &settings, vec![skull(0.3)]).unwrap();
     let mut results = [30.0, 60.0, 144.0].map(|rate| {
-        shake_for(&mut Clock::new(settings.time_step), &solver, 2 * rate as usize, rate).positions
+        shake_for(&mut Clock::new(settings.time_step), &model, 2 * rate as usize, rate).positions
     });
     assert_eq!(results[0], results[1]);
     assert_eq!(results[0], results[2]);
-    let late = shake_for(&mut Clock::new(settings.time_step), &solver, 61, 30.0);
+    let late = shake_for(&mut Clock::new(settings.time_step), &model, 61, 30.0);
     results[1] = late.positions;
     assert_ne!(results[0], results[1], "another time is not noticed");
 }
@@ -89,9 +90,9 @@ fn with_threads(threads: usize, friction: f32) -> Vec<Vec3Lanes> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let hair = ball_of_hair(300, 8, 0.25);
-        let solver = Solver::new(&hair, &Settings::default(), vec![skull(friction)]).unwrap();
+        let model = Model::new(&hair, &Settings::default(), vec![skull(friction)]).unwrap();
         let mut clock = Clock::new(1.0 / 60.0);
-        shake_for(&mut clock, &solver, 60, 60.0).positions
+        shake_for(&mut clock, &model, 60, 60.0).positions
     })
 }
 
@@ -106,8 +107,8 @@ fn the_number_of_threads_does_not_change_a_bit() {
 /// Mean way \[m\] of a point in the last step of 10 s on a head that rests.
 fn restless(on: &On, wind: Vec3) -> f32 {
     let hair = ball_of_hair(64, 12, 0.3);
-    let solver = Solver::new(&hair, &Settings::default(), vec![skull(0.3)]).unwrap();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::new(&hair, &Settings::default(), vec![skull(0.3)]).unwrap();
+    let mut rig = Rig::new(on, model);
     let gust = |step: usize| Drive { wind: wind * (step as f32 * 0.1).sin(), ..Drive::default() };
     rig.steps(&(0..600).map(gust).collect::<Vec<_>>());
     let state = rig.state();

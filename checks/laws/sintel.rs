@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline::Prepared;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
-use strandline_sim::{Drive, Settings, Solver};
+use strandline_sim::{Drive, Model, Settings};
 
 use crate::rods::drift;
 
@@ -18,13 +18,13 @@ fn sintel() -> Option<Prepared> {
 /// Deepest free point \[m\] in the head while it moves, as the report says; it is checked against the head
 /// itself after the last step.
 fn depth(on: &On, prepared: &Prepared, settings: &Settings, steps: usize, pose: impl Fn(f64) -> Pose) -> f32 {
-    let solver = Solver::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap();
-    let points = solver.points_per_strand();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap();
+    let points = model.points_per_strand();
+    let mut rig = Rig::new(on, model);
     let drive = |step: usize| Drive { world_from_head: pose(step as f64 / 60.0), ..Drive::default() };
     let reports = rig.steps(&(1..=steps).map(drive).collect::<Vec<_>>());
     let head_from_world = pose(steps as f64 / 60.0).inverse();
-    let free = rig.state().positions.chunks(points).flat_map(|block| &block[Solver::ROOTED_POINTS..]);
+    let free = rig.state().positions.chunks(points).flat_map(|block| &block[Model::ROOTED_POINTS..]);
     let found = free
         .flat_map(|lanes| (0..8).map(|lane| head_from_world.point(lanes.get(lane))))
         .map(|point| -prepared.colliders[0].shape.distance(point))
@@ -75,10 +75,10 @@ law! {
 fn drift_at_rest(on: &On, prepared: &Prepared, volume: bool) -> (f32, f32) {
     let mut settings = Settings::default();
     settings.volume.enabled = volume;
-    let solver = Solver::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
-    let mut rig = Rig::new(on, solver.clone());
+    let model = Model::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
+    let mut rig = Rig::new(on, model.clone());
     rig.steps(&vec![Drive::default(); on.either(600, 20)]);
-    drift(&solver, rig.state())
+    drift(&model, rig.state())
 }
 
 law! {

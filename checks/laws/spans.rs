@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_body::{Carrier, Collider, Pose, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Lanes, RestShape};
-use strandline_sim::{Drive, LengthPass, Settings, Solver};
+use strandline_sim::{Drive, LengthPass, Model, Settings};
 
 use crate::strands::{bare, chain, first, line, one_strand};
 
@@ -77,8 +77,8 @@ law! {
         for (links, span) in cases.into_iter().flatten().step_by(on.either(1, 5)) {
             let length = 0.3;
             let points = hung(Vec3::ZERO, Vec3::X * length * span as f32, length, links);
-            let solver = chain(&points, 1.0, |point| point == 0 || point == links, &settings());
-            let mut rig = Rig::new(on, solver);
+            let model = chain(&points, 1.0, |point| point == 0 || point == links, &settings());
+            let mut rig = Rig::new(on, model);
             rig.steps(&vec![Drive::default(); on.either(1200, 400)]);
             let points = first(rig.state());
             let found = points.iter().fold(0.0_f32, |low, point| low.max(-point.y)) / length;
@@ -102,9 +102,9 @@ struct Swing {
 fn swung(on: &On, held: &[usize], swing: &Swing) -> (Vec<Vec3>, f32) {
     const LINKS: usize = 24;
     let points = hung(Vec3::ZERO, Vec3::X * 0.25, 0.4, LINKS);
-    let solver = chain(&points, 1.0, |point| held.contains(&point), &settings());
+    let model = chain(&points, 1.0, |point| held.contains(&point), &settings());
     let length = points[0].distance(points[1]);
-    let mut rig = Rig::new(on, solver);
+    let mut rig = Rig::new(on, model);
     let mut worst = 0.0_f32;
     for step in 1..=120 {
         let time = step as f32 / 60.0;
@@ -146,7 +146,7 @@ law! {
             *lanes = Lanes([*length; 8]);
         }
         let held = |_, point| point == 0 || point == 20;
-        let mut rig = Rig::new(on, Solver::with_rest(&guides, rest, held, &settings(), Vec::new()).unwrap());
+        let mut rig = Rig::new(on, Model::with_rest(&guides, rest, held, &settings(), Vec::new()).unwrap());
         rig.steps(&[Drive::default(); 120]);
         let points = first(rig.state());
         for (pair, length) in points.windows(2).zip(&lengths) {
@@ -169,7 +169,7 @@ law! {
         let guides = one_strand(&rope);
         let rest = RestShape::new(&guides, 1e-5);
         let held = |_, point| point == 0 || point == 24;
-        let mut rig = Rig::new(on, Solver::with_rest(&guides, rest, held, &settings(), vec![ball]).unwrap());
+        let mut rig = Rig::new(on, Model::with_rest(&guides, rest, held, &settings(), vec![ball]).unwrap());
         let reports = rig.steps(&[Drive::default(); 240]);
         let last = reports.last().unwrap();
         assert!(last.penetration_max < 1e-3 && last.stretch_max < 1e-3, "{last:?}");
@@ -181,8 +181,8 @@ law! {
 law! {
     fn a_hand_between_two_holds_stretches_nothing(on) {
         let points = hung(Vec3::ZERO, Vec3::X * 0.2, 0.3, 24);
-        let solver = chain(&points, 1.0, |point| point == 0 || point == 24, &settings());
-        let mut rig = Rig::new(on, solver);
+        let model = chain(&points, 1.0, |point| point == 0 || point == 24, &settings());
+        let mut rig = Rig::new(on, model);
         let middle = points[12];
         assert_eq!(rig.grab(middle, 0.005), 1);
         for step in 1..=90 {

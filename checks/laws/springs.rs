@@ -6,9 +6,9 @@ use glam::{DVec3, Vec3, vec3};
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, Lanes, RestShape};
-use strandline_sim::cpu::integrate::integrate;
-use strandline_sim::gpu::{GpuSolver, Probe};
-use strandline_sim::{Drive, Settings, Solver, Spring, Springs};
+use strandline_sim::cpu::{Scratch, integrate::integrate};
+use strandline_sim::gpu::{GpuRunner, Probe};
+use strandline_sim::{Drive, Model, Settings, Spring, Springs, Stage};
 
 use crate::strands::{bare, chain, first, one_strand};
 
@@ -54,8 +54,8 @@ fn kicks(on: &On, settings: &Settings, rooted: usize) -> Vec<Vec3> {
     let guides = helix();
     let mut rest = RestShape::new(&guides, 1.0);
     rest.mass.iter_mut().enumerate().for_each(|(point, lanes)| *lanes = Lanes([mass(point); 8]));
-    let solver = Solver::with_rest(&guides, rest, |_, point| point < rooted, settings, Vec::new()).unwrap();
-    let mut state = solver.rest_state(Pose::IDENTITY);
+    let model = Model::with_rest(&guides, rest, |_, point| point < rooted, settings, Vec::new()).unwrap();
+    let mut state = model.rest_state(Pose::IDENTITY);
     let before = moved(&guides);
     for (point, (position, velocity)) in before.iter().enumerate() {
         state.positions[point].set(0, *position);
@@ -63,13 +63,14 @@ fn kicks(on: &On, settings: &Settings, rooted: usize) -> Vec<Vec3> {
     }
     match on {
         On::Cpu => {
-            integrate(&solver, &mut state, Vec3::ZERO);
+            let mut scratch = Scratch::new(&model, &state);
+            integrate(&model, &mut state, &mut scratch, Vec3::ZERO);
             state.velocities.iter().zip(&before).map(|(after, before)| after.get(0) - before.1).collect()
         }
         On::Gpu(gpu) => {
-            let solver = GpuSolver::new(gpu, solver).unwrap();
-            let mut probe = Probe::new(&solver, &state).unwrap();
-            probe.run(&Drive::default(), &["integrate"]).unwrap();
+            let runner = GpuRunner::new(gpu, model).unwrap();
+            let mut probe = Probe::new(&runner, &state).unwrap();
+            probe.run(&Drive::default(), &[Stage::Integrate]).unwrap();
             let predicted = probe.predicted().unwrap();
             let ends = predicted.iter().map(|end| end.get(0));
             ends.zip(&before).map(|(end, (start, v))| (end - start) / settings.time_step - v).collect()

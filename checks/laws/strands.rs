@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use glam::Vec3;
 use strandline_body::{Carrier, Collider, Shape};
 use strandline_groom::{Groom, Guides, Lanes, RestShape};
-use strandline_sim::{Angles, Drag, LengthPass, Settings, Solver, Springs, State, VolumeSettings};
+use strandline_sim::{Angles, Drag, LengthPass, Model, Settings, Springs, State, VolumeSettings};
 
 /// Lengths only: no air, no springs, no shape, no pass and no volume.
 pub fn bare(time_step: f32, iterations: u32) -> Settings {
@@ -39,12 +39,12 @@ pub fn chain(
     tip_mass: f32,
     held: impl Fn(usize) -> bool + Sync,
     settings: &Settings,
-) -> Solver {
+) -> Model {
     let guides = one_strand(points);
     let mut rest = RestShape::new(&guides, 1.0);
     rest.mass.fill(Lanes([1.0; 8]));
     rest.mass.last_mut().unwrap().0[0] = tip_mass;
-    Solver::with_rest(&guides, rest, |_, point| held(point), settings, Vec::new()).unwrap()
+    Model::with_rest(&guides, rest, |_, point| held(point), settings, Vec::new()).unwrap()
 }
 
 /// The points of the first strand.

@@ -16,8 +16,8 @@ use crate::strands::{bare, chain, first, line};
 /// step: 0.3 of them are lost per second.
 fn stretch(on: &On, links: usize, amplitude: f32, settings: &Settings) -> (f32, f32) {
     let points = line(Vec3::ZERO, Vec3::NEG_Y * 0.3, links);
-    let solver = chain(&points, 1.0, |point| point == 0, settings);
-    let mut rig = Rig::new(on, solver);
+    let model = chain(&points, 1.0, |point| point == 0, settings);
+    let mut rig = Rig::new(on, model);
     let (mut segment, mut total) = (0.0_f32, 0.0_f32);
     for step in 1..=600 {
         let time = step as f32 / 60.0;

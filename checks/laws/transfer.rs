@@ -10,8 +10,8 @@ use strandline_sim::cpu::mark::mark;
 use strandline_sim::cpu::solve_pressure::solve_pressure;
 use strandline_sim::cpu::splat::splat;
 use strandline_sim::cpu::{Obstacles, Volume};
-use strandline_sim::gpu::{GpuSolver, Probe};
-use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
+use strandline_sim::gpu::{GpuRunner, Probe};
+use strandline_sim::{Drive, Model, Settings, Stage, VolumeSettings};
 
 /// Points of a strand; the first two are rooted and `gather` leaves them alone.
 pub const POINTS: usize = 6;
@@ -82,9 +82,9 @@ impl Cloud {
             On::Cpu => self.transfer(&mut volume(self, cells, flip_share)),
             On::Gpu(gpu) => {
                 let settings = VolumeSettings { cells, flip_share, ..VolumeSettings::default() };
-                let solver = self.stand_in(gpu, settings, 1.0 / 60.0, Vec::new());
-                let mut probe = self.probe(&solver);
-                probe.run(&Drive::default(), &["splat", "gather"]).unwrap();
+                let runner = self.stand_in(gpu, settings, 1.0 / 60.0, Vec::new());
+                let mut probe = self.probe(&runner);
+                probe.run(&Drive::default(), &[Stage::Splat, Stage::Gather]).unwrap();
                 self.velocities = probe.velocities().unwrap();
             }
         }
@@ -105,10 +105,10 @@ impl Cloud {
                 self.gather(&volume, 0.01);
             }
             On::Gpu(gpu) => {
-                let solver = self.stand_in(gpu, settings, 0.01, solids.to_vec());
-                let mut probe = self.probe(&solver);
+                let runner = self.stand_in(gpu, settings, 0.01, solids.to_vec());
+                let mut probe = self.probe(&runner);
                 let drive = Drive { world_from_head: end, ..Drive::default() };
-                probe.run(&drive, &["splat", "mark", "solve_pressure", "gather"]).unwrap();
+                probe.run(&drive, &[Stage::Splat, Stage::Mark, Stage::SolvePressure, Stage::Gather]).unwrap();
                 self.velocities = probe.velocities().unwrap();
             }
         }
@@ -121,17 +121,17 @@ impl Cloud {
         volume: VolumeSettings,
         time_step: f32,
         colliders: Vec<Collider>,
-    ) -> GpuSolver {
+    ) -> GpuRunner {
         let mut groom = Groom::empty(8e-5);
         (0..self.strands).for_each(|_| groom.push([Vec3::ZERO, Vec3::NEG_Y]));
         let guides = Guides::resample(&groom, POINTS).unwrap();
         let settings = Settings { volume, time_step, ..Settings::constrained() };
-        GpuSolver::new(gpu, Solver::new(&guides, &settings, colliders).unwrap()).unwrap()
+        GpuRunner::new(gpu, Model::new(&guides, &settings, colliders).unwrap()).unwrap()
     }
 
     /// The device's copy of the cloud.
-    pub fn probe<'a>(&self, solver: &'a GpuSolver) -> Probe<'a> {
-        let probe = Probe::new(solver, &solver.solver().rest_state(Pose::IDENTITY)).unwrap();
+    pub fn probe(&self, runner: &GpuRunner) -> Probe {
+        let probe = Probe::new(runner, &runner.model().rest_state(Pose::IDENTITY)).unwrap();
         probe.set_predicted(&self.positions).unwrap();
         probe.set_velocities(&self.velocities).unwrap();
         probe.set_mass(&self.mass).unwrap();
@@ -244,9 +244,9 @@ fn spin_after_a_quarter_second(on: &On, flip_share: f32, time_step: f32) -> f32 
         }
         On::Gpu(gpu) => {
             let settings = VolumeSettings { cells: [32; 3], flip_share, ..VolumeSettings::default() };
-            let solver = cloud.stand_in(gpu, settings, time_step, Vec::new());
-            let mut probe = cloud.probe(&solver);
-            (0..count).for_each(|_| probe.run(&Drive::default(), &["splat", "gather"]).unwrap());
+            let runner = cloud.stand_in(gpu, settings, time_step, Vec::new());
+            let mut probe = cloud.probe(&runner);
+            (0..count).for_each(|_| probe.run(&Drive::default(), &[Stage::Splat, Stage::Gather]).unwrap());
             cloud.velocities = probe.velocities().unwrap();
         }
     }
@@ -274,23 +274,23 @@ law! {
         let rest = RestShape::new(&guides, 1e-5);
         let settings = VolumeSettings { cells: [4; 3], flip_share: 0.0, ..VolumeSettings::default() };
         let settings = Settings { volume: settings, ..Settings::constrained() };
-        let solver = Solver::with_rest(&guides, rest, |_, point| point == 3, &settings, Vec::new()).unwrap();
-        let state = solver.rest_state(Pose::IDENTITY);
+        let model = Model::with_rest(&guides, rest, |_, point| point == 3, &settings, Vec::new()).unwrap();
+        let state = model.rest_state(Pose::IDENTITY);
         let given = |point: usize| Vec3::Y * if point.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut velocities = state.velocities.clone();
         (0..POINTS).for_each(|point| (0..LANES).for_each(|lane| velocities[point].set(lane, given(point))));
         let found = match on {
             On::Cpu => {
                 let mut volume = Volume::new(&settings.volume, 1, POINTS);
-                splat(&mut volume, state.predicted(), &velocities, &solver.rest().mass);
-                gather(&volume, 1.0 / 60.0, solver.inverse_mass(), state.predicted(), &mut velocities);
+                splat(&mut volume, &state.positions, &velocities, &model.rest().mass);
+                gather(&volume, 1.0 / 60.0, model.inverse_mass(), &state.positions, &mut velocities);
                 velocities
             }
             On::Gpu(gpu) => {
-                let solver = GpuSolver::new(gpu, solver).unwrap();
-                let mut probe = Probe::new(&solver, &state).unwrap();
+                let runner = GpuRunner::new(gpu, model).unwrap();
+                let mut probe = Probe::new(&runner, &state).unwrap();
                 probe.set_velocities(&velocities).unwrap();
-                probe.run(&Drive::default(), &["splat", "gather"]).unwrap();
+                probe.run(&Drive::default(), &[Stage::Splat, Stage::Gather]).unwrap();
                 probe.velocities().unwrap()
             }
         };

@@ -7,7 +7,7 @@ use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides, RestShape};
 use strandline_sim::cpu::Volume;
 use strandline_sim::cpu::splat::splat;
-use strandline_sim::{Drive, Settings, Solver, State, VolumeSettings};
+use strandline_sim::{Drive, Model, Settings, Stage, State, VolumeSettings};
 
 use crate::strands::bare;
 use crate::transfer::{Cloud, POINTS, ball};
@@ -121,9 +121,9 @@ fn splatted(on: &On, cloud: &Cloud, cells: [u32; 3]) -> Faces {
             (origin, grid.spacing(), size, (0..3).map(component).collect())
         }
         On::Gpu(gpu) => {
-            let solver = cloud.stand_in(gpu, settings, 1.0 / 60.0, Vec::new());
-            let mut probe = cloud.probe(&solver);
-            probe.run(&Drive::default(), &["splat"]).unwrap();
+            let model = cloud.stand_in(gpu, settings, 1.0 / 60.0, Vec::new());
+            let mut probe = cloud.probe(&model);
+            probe.run(&Drive::default(), &[Stage::Splat]).unwrap();
             let (origin, spacing) = probe.grid().unwrap();
             let faces = probe.faces().unwrap();
             let component = |faces: &[[f32; 2]]| faces.iter().map(|face| face[0]).collect();
@@ -223,8 +223,8 @@ fn pressed_together(on: &On, enabled: bool) -> [f32; 2] {
     let volume = VolumeSettings { enabled, cells: [16; 3], flip_share: 0.9, ..VolumeSettings::default() };
     let settings = Settings { gravity: Vec3::ZERO, volume, ..bare(1.0 / 120.0, 10) };
     let rest = RestShape::new(&guides, 6.5e-6);
-    let solver = Solver::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
-    let mut rig = Rig::new(on, solver);
+    let model = Model::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
+    let mut rig = Rig::new(on, model);
     let side = |block: usize| block / (ROWS * ROWS / 8);
     rig.change(|state| {
         for (index, velocities) in state.velocities.iter_mut().enumerate() {

@@ -1,12 +1,14 @@
 //! Hair that the stages are compared on.
 
+use std::ops::{Deref, DerefMut};
+
 use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, LANES, Vec3Lanes};
-use strandline_sim::cpu::Obstacles;
-use strandline_sim::gpu::GpuSolver;
-use strandline_sim::{Drive, Settings, Solver, State, StrandMethod, VolumeSettings};
+use strandline_sim::cpu::{Obstacles, Scratch};
+use strandline_sim::gpu::{GpuRunner, Probe};
+use strandline_sim::{CpuRunner, Drive, Model, Settings, State, StrandMethod, VolumeSettings};
 
 /// One kind of hair: what is compared on it.
 pub struct Head {
@@ -17,28 +19,68 @@ pub struct Head {
 }
 
 impl Head {
-    pub fn solver(&self) -> Solver {
-        Solver::new(&self.guides, &self.settings, self.colliders.clone()).unwrap()
+    pub fn model(&self) -> Model {
+        Model::new(&self.guides, &self.settings, self.colliders.clone()).unwrap()
     }
 
-    pub fn gpu_solver(&self, gpu: &Gpu) -> GpuSolver {
-        GpuSolver::new(gpu, self.solver()).unwrap()
+    pub fn gpu_runner(&self, gpu: &Gpu) -> GpuRunner {
+        GpuRunner::new(gpu, self.model()).unwrap()
     }
 
     /// The hair after some steps of a head that turns, with nothing remembered of the solids.
-    pub fn moving(&self, solver: &Solver) -> State {
-        let mut state = solver.rest_state(Pose::IDENTITY);
+    pub fn moving(&self, model: &Model) -> Moving {
+        let mut state = model.rest_state(Pose::IDENTITY);
+        let mut runner = CpuRunner::from(model.clone());
         for step in 1..=5 {
-            solver.step(&mut state, &drive(step));
+            runner.step(&mut state, &drive(step));
         }
-        let mut fresh = solver.rest_state(state.world_from_head);
+        let mut fresh = model.rest_state(state.world_from_head);
         fresh.positions = state.positions;
         fresh.previous_positions = state.previous_positions;
         fresh.velocities = state.velocities;
         fresh.corrections = state.corrections;
         fresh.sections = state.sections;
         fresh.spins = state.spins;
-        fresh
+        Moving { scratch: Scratch::new(model, &fresh), state: fresh }
+    }
+}
+
+/// A state between two stages of a step.
+#[derive(Clone)]
+pub struct Moving {
+    pub state: State,
+    pub scratch: Scratch,
+}
+
+impl Moving {
+    pub fn predicted(&self) -> &[Vec3Lanes] {
+        &self.scratch.predicted
+    }
+
+    /// Runs a stage on the CPU.
+    pub fn run<T>(&mut self, stage: impl FnOnce(&mut State, &mut Scratch) -> T) -> T {
+        stage(&mut self.state, &mut self.scratch)
+    }
+
+    /// The same on a device.
+    pub fn probe(&self, runner: &GpuRunner) -> Probe {
+        let probe = Probe::new(runner, &self.state).unwrap();
+        probe.set_predicted(self.predicted()).unwrap();
+        probe
+    }
+}
+
+impl Deref for Moving {
+    type Target = State;
+
+    fn deref(&self) -> &State {
+        &self.state
+    }
+}
+
+impl DerefMut for Moving {
+    fn deref_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 }
 
@@ -53,12 +95,12 @@ pub fn drive(step: usize) -> Drive {
 }
 
 /// The solids in the sixth step.
-pub fn obstacles<'a>(solver: &'a Solver, state: &State) -> Obstacles<'a> {
+pub fn obstacles<'a>(model: &'a Model, state: &State) -> Obstacles<'a> {
     Obstacles {
-        colliders: solver.colliders(),
+        colliders: model.colliders(),
         start: state.world_from_head,
         end: drive(6).world_from_head,
-        time_step: solver.settings().time_step,
+        time_step: model.settings().time_step,
     }
 }
 

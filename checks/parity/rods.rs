@@ -1,12 +1,11 @@
 //! Rods on both backends.
 
-use strandline_body::Pose;
 use strandline_checks::gpu;
-use strandline_sim::cpu::{pose_roots::pose_roots, solve_rods::solve_rods};
-use strandline_sim::gpu::{GpuSolver, Probe};
-use strandline_sim::{Settings, Solver, State, StrandMethod};
+use strandline_sim::cpu::{Scratch, pose_roots::pose_roots, solve_rods::solve_rods};
+use strandline_sim::gpu::{GpuRunner, Probe};
+use strandline_sim::{Model, Settings, Stage, StrandMethod};
 
-use crate::heads::{Head, apart, drive, mean_apart, obstacles, rods, strands_apart};
+use crate::heads::{Head, Moving, apart, drive, mean_apart, obstacles, rods, strands_apart};
 
 /// Rounding of positions of some decimetres \[m\], over the operations of up to sixteen Newton steps: they
 /// start from the same shape, and what they solve for is how far points move. 1.3e-6 were found on 64 points.
@@ -16,24 +15,26 @@ const PLACE: f32 = 2e-6;
 /// kernels.
 fn both(
     head: &Head,
-    change: impl Fn(&Solver, &mut State),
+    change: impl Fn(&Model, &mut Moving),
     others: impl Fn(&mut Settings),
-    compare: impl Fn(&State, &Probe),
+    compare: impl Fn(&Moving, &Probe),
 ) {
     let Some(gpu) = gpu() else { return };
-    let solver = head.solver();
-    let mut state = head.moving(&solver);
-    change(&solver, &mut state);
+    let model = head.model();
+    let mut state = head.moving(&model);
+    change(&model, &mut state);
+    state.scratch = Scratch::new(&model, &state);
     let drive = drive(6);
     let mut settings = head.settings.clone();
     others(&mut settings);
-    let on_gpu = Solver::new(&head.guides, &settings, head.colliders.clone()).unwrap();
-    let gpu_solver = GpuSolver::new(&gpu, on_gpu).unwrap();
-    let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-    probe.run(&drive, &["pose_roots", "solve_rods", "advance"]).unwrap();
-    let obstacles = obstacles(&solver, &state);
-    pose_roots(&solver, &mut state, &drive.world_from_head);
-    let (bad, report) = solve_rods(&solver, &mut state, &obstacles, drive.wind);
+    let on_gpu = Model::new(&head.guides, &settings, head.colliders.clone()).unwrap();
+    let gpu_runner = GpuRunner::new(&gpu, on_gpu).unwrap();
+    let mut probe = state.probe(&gpu_runner);
+    probe.run(&drive, &[Stage::PoseRoots, Stage::SolveRods, Stage::Advance]).unwrap();
+    let obstacles = obstacles(&model, &state);
+    state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.world_from_head));
+    let (bad, report) =
+        state.run(|state, scratch| solve_rods(&model, state, scratch, &obstacles, drive.wind));
     assert_eq!(bad.count, 0);
     let found = probe.report().unwrap().rods.unwrap();
     compare(&state, &probe);
@@ -53,7 +54,7 @@ fn both(
 #[test]
 fn solve_rods_agrees() {
     for head in rods() {
-        let nothing = |_: &Solver, _: &mut State| ();
+        let nothing = |_: &Model, _: &mut Moving| ();
         both(
             &head,
             nothing,
@@ -81,12 +82,12 @@ fn solve_rods_agrees_on_hair_in_a_hand_and_of_other_lengths() {
     for mut head in rods() {
         head.colliders.clear();
         let last = head.guides.points_per_strand() - 1;
-        let grab = |solver: &Solver, state: &mut State| {
+        let grab = |model: &Model, state: &mut Moving| {
             let scales: Vec<f32> =
                 (0..head.guides.strand_count()).map(|strand| 0.6 + 0.2 * (strand % 4) as f32).collect();
-            state.set_length_scale(solver, &scales).unwrap();
+            state.set_length_scale(model, &scales).unwrap();
             let tip = state.positions[last].get(0);
-            assert!(state.grab(solver, tip, 0.03) > 0);
+            assert!(state.grab(model, tip, 0.03) > 0);
         };
         both(
             &head,
@@ -109,7 +110,7 @@ fn solve_rods_agrees_on_hair_in_a_hand_and_of_other_lengths() {
 #[test]
 fn solve_rods_sees_another_material() {
     let head = &rods()[0];
-    let nothing = |_: &Solver, _: &mut State| ();
+    let nothing = |_: &Model, _: &mut Moving| ();
     let changes: [fn(&mut Settings); 3] = [
         |settings| settings.strands.rods.youngs_modulus *= 1.1,
         |settings| settings.strands.rods.damping *= 1.5,
@@ -127,19 +128,18 @@ fn solve_rods_sees_another_material() {
 fn a_change_of_the_strand_solver_keeps_the_hair() {
     let Some(gpu) = gpu() else { return };
     let head = &rods()[2];
-    let mut solver = head.gpu_solver(&gpu);
-    let mut state = solver.rest_state(Pose::IDENTITY).unwrap();
+    let mut runner = head.gpu_runner(&gpu);
     let mut settings = head.settings.clone();
     for method in [StrandMethod::Constrain, StrandMethod::Rods] {
-        solver.step(&mut state, &drive(1)).unwrap();
-        let before = solver.download(&state).unwrap();
+        runner.step(&drive(1)).unwrap();
+        let before = runner.state().unwrap();
         settings.strands.method = method;
-        solver.set_settings(&settings, &mut state).unwrap();
-        let after = solver.download(&state).unwrap();
+        runner.set_settings(&settings).unwrap();
+        let after = runner.state().unwrap();
         assert_eq!(before.positions, after.positions, "{method:?}");
         assert_eq!(before.velocities, after.velocities, "{method:?}");
-        solver.step(&mut state, &drive(2)).unwrap();
-        let reports = solver.reports(&mut state).unwrap();
+        runner.step(&drive(2)).unwrap();
+        let reports = runner.reports().unwrap();
         assert!(reports.iter().all(|report| report.non_finite == 0));
         assert_eq!(reports.last().unwrap().rods.is_some(), method == StrandMethod::Rods);
     }

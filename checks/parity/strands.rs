@@ -2,47 +2,53 @@
 
 use strandline_checks::gpu;
 use strandline_sim::cpu::{
-    advance::advance, constrain::constrain, integrate::integrate, pose_roots::pose_roots,
+    Scratch, advance::advance, constrain::constrain, integrate::integrate, pose_roots::pose_roots,
 };
 use strandline_sim::gpu::{LengthsForm, LengthsInput, Probe, lengths_alone};
-use strandline_sim::{Solver, State};
+use strandline_sim::{Model, Stage};
 
-use crate::heads::{Head, apart, drive, heads, mean_apart, obstacles};
+use crate::heads::{Head, Moving, apart, drive, heads, mean_apart, obstacles};
 
 /// Rounding of positions of some decimetres \[m\], over a few operations.
 const PLACE: f32 = 1e-6;
 /// Runs the stages before `last` on the CPU, then `last` on both.
-fn both(head: &Head, last: &str, compare: impl Fn(&Solver, &State, &Probe)) {
+fn both(head: &Head, last: Stage, compare: impl Fn(&Model, &Moving, &Probe)) {
     both_from(head, last, |_, _| (), compare);
 }
 
 /// The same from a state that is changed before.
 fn both_from(
     head: &Head,
-    last: &str,
-    change: impl Fn(&Solver, &mut State),
-    compare: impl Fn(&Solver, &State, &Probe),
+    last: Stage,
+    change: impl Fn(&Model, &mut Moving),
+    compare: impl Fn(&Model, &Moving, &Probe),
 ) {
     let Some(gpu) = gpu() else { return };
-    let solver = head.solver();
-    let mut state = head.moving(&solver);
-    change(&solver, &mut state);
+    let model = head.model();
+    let mut state = head.moving(&model);
+    change(&model, &mut state);
+    state.scratch = Scratch::new(&model, &state);
     let drive = drive(6);
-    let gpu_solver = head.gpu_solver(&gpu);
-    for stage in ["pose_roots", "integrate", "constrain"] {
+    let gpu_runner = head.gpu_runner(&gpu);
+    for stage in [Stage::PoseRoots, Stage::Integrate, Stage::Constrain] {
         let probe = (stage == last).then(|| {
-            let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+            let mut probe = state.probe(&gpu_runner);
             probe.run(&drive, &[stage]).unwrap();
             probe
         });
-        let obstacles = obstacles(&solver, &state);
+        let obstacles = obstacles(&model, &state);
         match stage {
-            "pose_roots" => pose_roots(&solver, &mut state, &drive.world_from_head),
-            "integrate" => integrate(&solver, &mut state, drive.wind),
-            _ => assert_eq!(constrain(&solver, &mut state, &obstacles).count, 0),
+            Stage::PoseRoots => {
+                state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.world_from_head));
+            }
+            Stage::Integrate => state.run(|state, scratch| integrate(&model, state, scratch, drive.wind)),
+            _ => {
+                let bad = state.run(|state, scratch| constrain(&model, state, scratch, &obstacles));
+                assert_eq!(bad.count, 0);
+            }
         }
         if let Some(probe) = probe {
-            return compare(&solver, &state, &probe);
+            return compare(&model, &state, &probe);
         }
     }
 }
@@ -50,7 +56,7 @@ fn both_from(
 #[test]
 fn pose_roots_agrees() {
     for head in heads() {
-        both(&head, "pose_roots", |_, state, probe| {
+        both(&head, Stage::PoseRoots, |_, state, probe| {
             assert!(
                 apart(state.predicted(), &probe.predicted().unwrap(), &head.guides) < PLACE,
                 "{}",
@@ -66,7 +72,7 @@ fn pose_roots_agrees() {
 #[test]
 fn integrate_agrees() {
     for head in heads() {
-        both(&head, "integrate", |_, state, probe| {
+        both(&head, Stage::Integrate, |_, state, probe| {
             let distance = apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
             assert!(distance < PLACE, "{}: {distance}", head.name);
         });
@@ -76,7 +82,7 @@ fn integrate_agrees() {
 #[test]
 fn constrain_agrees() {
     for head in heads() {
-        both(&head, "constrain", |_, state, probe| {
+        both(&head, Stage::Constrain, |_, state, probe| {
             let distance = apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
             let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);
             // Rounding grows over 20 rounds along up to 63 segments; in the edge where two solids meet it may
@@ -96,7 +102,7 @@ fn constrain_agrees() {
 fn constrain_agrees_without_solids_to_rounding() {
     for mut head in heads() {
         head.colliders.clear();
-        both(&head, "constrain", |_, state, probe| {
+        both(&head, Stage::Constrain, |_, state, probe| {
             let distance = apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
             assert!(distance < 20.0 * PLACE, "{}: {distance}", head.name);
         });
@@ -108,11 +114,11 @@ fn constrain_agrees_on_hair_in_a_hand() {
     for mut head in heads() {
         head.colliders.clear();
         let last = head.guides.points_per_strand() - 1;
-        let grab = |solver: &Solver, state: &mut State| {
+        let grab = |model: &Model, state: &mut Moving| {
             let tip = state.positions[last].get(0);
-            assert!(state.grab(solver, tip, 0.03) > 0);
+            assert!(state.grab(model, tip, 0.03) > 0);
         };
-        both_from(&head, "constrain", grab, |_, state, probe| {
+        both_from(&head, Stage::Constrain, grab, |_, state, probe| {
             let found = probe.predicted().unwrap();
             let distance = apart(state.predicted(), &found, &head.guides);
             // Rounding grows over the 32 turns between hand and head.
@@ -125,17 +131,17 @@ fn constrain_agrees_on_hair_in_a_hand() {
 fn advance_measures_the_same() {
     let Some(gpu) = gpu() else { return };
     for head in heads() {
-        let solver = head.solver();
-        let gpu_solver = head.gpu_solver(&gpu);
-        let mut state = head.moving(&solver);
+        let model = head.model();
+        let gpu_runner = head.gpu_runner(&gpu);
+        let mut state = head.moving(&model);
         let drive = drive(6);
-        let obstacles = obstacles(&solver, &state);
-        pose_roots(&solver, &mut state, &drive.world_from_head);
-        integrate(&solver, &mut state, drive.wind);
+        let obstacles = obstacles(&model, &state);
+        state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.world_from_head));
+        state.run(|state, scratch| integrate(&model, state, scratch, drive.wind));
         // Not constrained: stretched strands, some inside the solids.
-        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-        probe.run(&drive, &["advance"]).unwrap();
-        let expected = advance(&solver, &mut state, &obstacles);
+        let mut probe = state.probe(&gpu_runner);
+        probe.run(&drive, &[Stage::Advance]).unwrap();
+        let expected = state.run(|state, scratch| advance(&model, state, scratch, &obstacles));
         let found = probe.report().unwrap();
         let name = head.name;
         assert!(expected.stretch_max > 1e-4, "{name}: nothing to measure");
@@ -150,20 +156,20 @@ fn advance_measures_the_same() {
 fn a_bad_strand_goes_back_to_rest_and_is_counted() {
     let Some(gpu) = gpu() else { return };
     let head = &heads()[0];
-    let solver = head.solver();
-    let gpu_solver = head.gpu_solver(&gpu);
-    let mut state = head.moving(&solver);
+    let model = head.model();
+    let mut runner = head.gpu_runner(&gpu);
+    let mut state = head.moving(&model);
     let sound = state.clone();
     state.velocities[5].set(3, glam::Vec3::new(f32::NAN, 0.0, 0.0));
     state.positions[40].set(1, glam::Vec3::new(0.0, f32::INFINITY, 0.0));
-    let mut found = gpu_solver.upload(&state).unwrap();
-    gpu_solver.step(&mut found, &drive(6)).unwrap();
-    let reports = gpu_solver.reports(&mut found).unwrap();
+    runner.write(&state).unwrap();
+    runner.step(&drive(6)).unwrap();
+    let (found, reports) = (runner.state().unwrap(), runner.reports().unwrap());
     assert!(reports[0].non_finite >= 2, "{reports:?}");
-    let mut other = gpu_solver.upload(&sound).unwrap();
-    gpu_solver.step(&mut other, &drive(6)).unwrap();
-    let (found, other) = (gpu_solver.download(&found).unwrap(), gpu_solver.download(&other).unwrap());
-    let rest = solver.rest_state(drive(6).world_from_head);
+    runner.write(&sound).unwrap();
+    runner.step(&drive(6)).unwrap();
+    let other = runner.state().unwrap();
+    let rest = model.rest_state(drive(6).world_from_head);
     for (index, lanes) in found.positions.iter().enumerate() {
         for lane in 0..8 {
             let bad = (index / 16, lane) == (0, 3) || (index / 16, lane) == (2, 1);

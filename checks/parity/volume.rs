@@ -6,31 +6,31 @@ use strandline_sim::cpu::{
     Kind, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
     pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
 };
-use strandline_sim::gpu::{GpuSolver, Gradient, Probe, Spread};
-use strandline_sim::{Preconditioner, Solver, State, VolumeSettings};
+use strandline_sim::gpu::{GpuRunner, Gradient, Probe, Spread};
+use strandline_sim::{Model, Preconditioner, Stage, State, VolumeSettings};
 
-use crate::heads::{Head, apart, drive, heads, obstacles};
+use crate::heads::{Head, Moving, apart, drive, heads, obstacles};
 
 /// Everything up to the volume on the CPU, and an empty volume.
-fn constrained(head: &Head) -> (Solver, State, Volume) {
-    let solver = head.solver();
-    let mut state = head.moving(&solver);
-    let obstacles = obstacles(&solver, &state);
-    pose_roots(&solver, &mut state, &drive(6).world_from_head);
-    integrate(&solver, &mut state, drive(6).wind);
-    constrain(&solver, &mut state, &obstacles);
+fn constrained(head: &Head) -> (Model, Moving, Volume) {
+    let model = head.model();
+    let mut state = head.moving(&model);
+    let obstacles = obstacles(&model, &state);
+    state.run(|state, scratch| pose_roots(&model, state, scratch, &drive(6).world_from_head));
+    state.run(|state, scratch| integrate(&model, state, scratch, drive(6).wind));
+    state.run(|state, scratch| constrain(&model, state, scratch, &obstacles));
     let volume =
         Volume::new(&head.settings.volume, head.guides.strand_count(), head.guides.points_per_strand());
-    (solver, state, volume)
+    (model, state, volume)
 }
 
-fn splat_cpu(solver: &Solver, state: &State, volume: &mut Volume) {
-    splat(volume, state.predicted(), &state.velocities, &solver.rest().mass);
+fn splat_cpu(model: &Model, state: &Moving, volume: &mut Volume) {
+    splat(volume, state.predicted(), &state.velocities, &model.rest().mass);
 }
 
-fn gather_cpu(solver: &Solver, volume: &Volume, state: &mut State, positions: &[Vec3Lanes]) {
-    let time_step = solver.settings().time_step;
-    gather(volume, time_step, solver.inverse_mass(), positions, &mut state.velocities);
+fn gather_cpu(model: &Model, volume: &Volume, state: &mut State, positions: &[Vec3Lanes]) {
+    let time_step = model.settings().time_step;
+    gather(volume, time_step, model.inverse_mass(), positions, &mut state.velocities);
 }
 
 /// The fastest point \[m/s\], 1 at least: what velocities are rounded by.
@@ -59,11 +59,11 @@ fn faces_apart(volume: &Volume, found: &[[f32; 2]]) -> [f32; 2] {
 fn splat_sorts_and_sums_the_same() {
     let Some(gpu) = gpu() else { return };
     for head in heads() {
-        let (solver, state, mut volume) = constrained(&head);
-        splat_cpu(&solver, &state, &mut volume);
-        let gpu_solver = head.gpu_solver(&gpu);
-        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-        probe.run(&drive(6), &["splat"]).unwrap();
+        let (model, state, mut volume) = constrained(&head);
+        splat_cpu(&model, &state, &mut volume);
+        let gpu_runner = head.gpu_runner(&gpu);
+        let mut probe = state.probe(&gpu_runner);
+        probe.run(&drive(6), &[Stage::Splat]).unwrap();
         let name = head.name;
         let (origin, spacing) = probe.grid().unwrap();
         assert_eq!(spacing, volume.grid.spacing(), "{name}");
@@ -95,13 +95,13 @@ fn splat_sorts_and_sums_the_same() {
 fn mark_tells_the_same_cells_and_walls() {
     let Some(gpu) = gpu() else { return };
     for head in heads() {
-        let (solver, state, mut volume) = constrained(&head);
-        splat_cpu(&solver, &state, &mut volume);
-        let gpu_solver = head.gpu_solver(&gpu);
-        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-        probe.run(&drive(6), &["splat"]).unwrap();
-        probe.run(&drive(6), &["mark"]).unwrap();
-        mark(&mut volume, &obstacles(&solver, &state));
+        let (model, state, mut volume) = constrained(&head);
+        splat_cpu(&model, &state, &mut volume);
+        let gpu_runner = head.gpu_runner(&gpu);
+        let mut probe = state.probe(&gpu_runner);
+        probe.run(&drive(6), &[Stage::Splat]).unwrap();
+        probe.run(&drive(6), &[Stage::Mark]).unwrap();
+        mark(&mut volume, &obstacles(&model, &state));
         let kinds = probe.kinds().unwrap();
         for (cell, kind) in kinds.iter().enumerate() {
             assert_eq!(*kind, volume.kind(cell), "{}, cell {cell}", head.name);
@@ -114,19 +114,19 @@ fn mark_tells_the_same_cells_and_walls() {
 }
 
 /// A volume with its walls, ready to be solved.
-fn marked(head: &Head) -> (Solver, State, Volume) {
-    let (solver, state, mut volume) = constrained(head);
-    splat_cpu(&solver, &state, &mut volume);
-    mark(&mut volume, &obstacles(&solver, &state));
-    (solver, state, volume)
+fn marked(head: &Head) -> (Model, Moving, Volume) {
+    let (model, state, mut volume) = constrained(head);
+    splat_cpu(&model, &state, &mut volume);
+    mark(&mut volume, &obstacles(&model, &state));
+    (model, state, volume)
 }
 
 /// The same volume, solved on the device.
-fn solved<'a>(solver: &'a GpuSolver, state: &State, volume: &Volume, spread: Spread) -> Probe<'a> {
-    let mut probe = Probe::new(solver, state).unwrap();
-    probe.state.set_spread(spread);
+fn solved(model: &GpuRunner, state: &Moving, volume: &Volume, spread: Spread) -> Probe {
+    let mut probe = state.probe(model);
+    probe.runner.set_spread(spread);
     probe.set_volume(volume).unwrap();
-    probe.run(&drive(6), &["solve_pressure"]).unwrap();
+    probe.run(&drive(6), &[Stage::SolvePressure]).unwrap();
     probe
 }
 
@@ -135,11 +135,11 @@ fn solve_pressure_times_the_same_gradient_in_both_forms() {
     let Some(gpu) = gpu() else { return };
     let head = &heads()[0];
     let (_, state, volume) = marked(head);
-    let solver = head.gpu_solver(&gpu);
+    let runner = head.gpu_runner(&gpu);
     let subtracted = |forms: &[Gradient]| {
-        let probe = solved(&solver, &state, &volume, Spread::One);
+        let probe = solved(&runner, &state, &volume, Spread::One);
         for form in forms {
-            let seconds = solver.seconds_of_gradient(&probe.state, *form, 3).unwrap();
+            let seconds = probe.runner.seconds_of_gradient(*form, 3).unwrap();
             assert!(seconds.is_none_or(|seconds| seconds > 0.0 && seconds < 1.0), "{form:?}: {seconds:?}");
             assert_eq!(seconds.is_some(), gpu.has_timestamps());
         }
@@ -156,9 +156,7 @@ fn solve_pressure_times_the_same_gradient_in_both_forms() {
     assert!(apart(&one, &three) < 1e-3 * largest, "the two forms do different work");
     assert!(apart(&none, &one) > 0.1 * largest, "what is timed does nothing");
     // Before the first step there is no volume to take it from.
-    assert!(
-        solver.seconds_of_gradient(&solver.upload(&state).unwrap(), Gradient::Joint, 1).unwrap().is_none()
-    );
+    assert!(runner.another(&state).unwrap().seconds_of_gradient(Gradient::Joint, 1).unwrap().is_none());
 }
 
 #[test]
@@ -172,13 +170,13 @@ fn solve_pressure_agrees_in_every_way_to_run_it() {
             let (_, state, volume) = marked(&head);
             let mut solved = volume.clone();
             let expected = solve_pressure(&mut solved);
-            let gpu_solver = head.gpu_solver(&gpu);
+            let gpu_runner = head.gpu_runner(&gpu);
             for (spread, gradient) in [(Spread::One, Gradient::Joint), (Spread::Many, Gradient::Split)] {
-                let mut probe = Probe::new(&gpu_solver, &state).unwrap();
-                probe.state.set_spread(spread);
-                probe.state.set_gradient(gradient);
+                let mut probe = state.probe(&gpu_runner);
+                probe.runner.set_spread(spread);
+                probe.runner.set_gradient(gradient);
                 probe.set_volume(&volume).unwrap();
-                probe.run(&drive(6), &["solve_pressure"]).unwrap();
+                probe.run(&drive(6), &[Stage::SolvePressure]).unwrap();
                 let name = format!("{}, {preconditioner:?}, {spread:?}", head.name);
                 let (pressure, found) = probe.pressure().unwrap();
                 assert_eq!(found.fluid_cells as usize, expected.fluid_cells, "{name}");
@@ -205,9 +203,9 @@ fn a_solve_that_may_not_go_on_stops_and_says_so() {
     head.settings.volume.preconditioner = Preconditioner::Jacobi;
     let (_, state, volume) = marked(&head);
     let expected = solve_pressure(&mut volume.clone());
-    let gpu_solver = head.gpu_solver(&gpu);
+    let gpu_runner = head.gpu_runner(&gpu);
     for spread in [Spread::One, Spread::Many] {
-        let probe = solved(&gpu_solver, &state, &volume, spread);
+        let probe = solved(&gpu_runner, &state, &volume, spread);
         let (_, found) = probe.pressure().unwrap();
         assert_eq!(found.iterations, 3, "{spread:?}");
         let relative = found.residual / found.first;
@@ -238,10 +236,10 @@ fn more_iterations_than_rounds_go_on_in_one_workgroup() {
     let mut solved = volume.clone();
     let expected = solve_pressure(&mut solved);
     assert!(expected.iterations > 60, "{expected:?}");
-    let gpu_solver = head.gpu_solver(&gpu);
-    let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+    let gpu_runner = head.gpu_runner(&gpu);
+    let mut probe = state.probe(&gpu_runner);
     probe.set_volume(&volume).unwrap();
-    probe.run(&drive(6), &["solve_pressure"]).unwrap();
+    probe.run(&drive(6), &[Stage::SolvePressure]).unwrap();
     let (_, found) = probe.pressure().unwrap();
     assert!(found.iterations > 55 && found.residual <= 1e-6 * found.first, "{found:?}");
     let [velocity, _] = faces_apart(&solved, &probe.faces().unwrap());
@@ -254,7 +252,7 @@ fn rooms_without_air_are_levelled() {
     let mut head = heads().swap_remove(0);
     head.settings.volume.cells = [12; 3];
     let (_, state, volume) = marked(&head);
-    let gpu_solver = head.gpu_solver(&gpu);
+    let gpu_runner = head.gpu_runner(&gpu);
     // Every air cell becomes solid: what is fluid is enclosed.
     let mut closed = volume.clone();
     for cell in 0..closed.grid.cell_count() {
@@ -266,7 +264,7 @@ fn rooms_without_air_are_levelled() {
     let expected = solve_pressure(&mut expected_faces);
     assert!(expected.fluid_cells > 10 && expected.relative_residual <= 1e-5, "{expected:?}");
     for spread in [Spread::One, Spread::Many] {
-        let probe = solved(&gpu_solver, &state, &closed, spread);
+        let probe = solved(&gpu_runner, &state, &closed, spread);
         let (_, found) = probe.pressure().unwrap();
         assert!(found.residual <= 1e-5 * found.first, "{spread:?}: {found:?}");
         let [velocity, _] = faces_apart(&expected_faces, &probe.faces().unwrap());
@@ -280,7 +278,7 @@ fn nothing_to_solve_is_solved() {
     let mut head = heads().swap_remove(0);
     head.settings.volume.cells = [8; 3];
     let (_, state, volume) = marked(&head);
-    let gpu_solver = head.gpu_solver(&gpu);
+    let gpu_runner = head.gpu_runner(&gpu);
     for kind in [Kind::Air, Kind::Solid] {
         let mut volume = volume.clone();
         for cell in 0..volume.grid.cell_count() {
@@ -288,7 +286,7 @@ fn nothing_to_solve_is_solved() {
         }
         assert_eq!(solve_pressure(&mut volume.clone()).iterations, 0);
         for spread in [Spread::One, Spread::Many] {
-            let probe = solved(&gpu_solver, &state, &volume, spread);
+            let probe = solved(&gpu_runner, &state, &volume, spread);
             let (_, found) = probe.pressure().unwrap();
             assert_eq!((found.iterations, found.fluid_cells), (0, 0));
             assert_eq!(faces_apart(&volume, &probe.faces().unwrap()), [0.0; 2]);
@@ -300,15 +298,15 @@ fn nothing_to_solve_is_solved() {
 fn gather_agrees() {
     let Some(gpu) = gpu() else { return };
     for head in heads() {
-        let (solver, mut state, mut volume) = marked(&head);
+        let (model, mut state, mut volume) = marked(&head);
         solve_pressure(&mut volume);
-        let gpu_solver = head.gpu_solver(&gpu);
-        let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+        let gpu_runner = head.gpu_runner(&gpu);
+        let mut probe = state.probe(&gpu_runner);
         probe.set_volume(&volume).unwrap();
-        probe.run(&drive(6), &["gather"]).unwrap();
+        probe.run(&drive(6), &[Stage::Gather]).unwrap();
         let before = state.velocities.clone();
         let predicted = state.predicted().to_vec();
-        gather_cpu(&solver, &volume, &mut state, &predicted);
+        gather_cpu(&model, &volume, &mut state, &predicted);
         // A lone strand's volume gives it back what it gave.
         let changed = apart(&before, &state.velocities, &head.guides);
         assert!(changed > 1e-3 || head.guides.strand_count() == 1, "{}: {changed}", head.name);
@@ -321,7 +319,7 @@ fn gather_agrees() {
 fn points_outside_and_on_borders_of_cells_go_where_they_belong() {
     let Some(gpu) = gpu() else { return };
     let head = heads().swap_remove(2);
-    let (solver, mut state, mut volume) = constrained(&head);
+    let (model, mut state, mut volume) = constrained(&head);
     // A box from corner to corner, points on its cells' borders, one far out and one not a number.
     let places = [
         [0.0, 0.0, 0.0],
@@ -341,11 +339,11 @@ fn points_outside_and_on_borders_of_cells_go_where_they_belong() {
     for (lanes, place) in predicted.iter_mut().zip(places) {
         (0..8).for_each(|lane| lanes.set(lane, place.into()));
     }
-    splat(&mut volume, &predicted, &state.velocities, &solver.rest().mass);
-    let gpu_solver = head.gpu_solver(&gpu);
-    let mut probe = Probe::new(&gpu_solver, &state).unwrap();
+    splat(&mut volume, &predicted, &state.velocities, &model.rest().mass);
+    let gpu_runner = head.gpu_runner(&gpu);
+    let mut probe = state.probe(&gpu_runner);
     probe.set_predicted(&predicted).unwrap();
-    probe.run(&drive(6), &["splat"]).unwrap();
+    probe.run(&drive(6), &[Stage::Splat]).unwrap();
     let mut order = probe.order().unwrap();
     order.sort_unstable();
     let mut expected = volume.sort.order().to_vec();
@@ -355,7 +353,7 @@ fn points_outside_and_on_borders_of_cells_go_where_they_belong() {
     let [velocity, _] = faces_apart(&volume, &probe.faces().unwrap());
     assert!(velocity < 1e-5, "{velocity}");
     // Points outside keep their velocities.
-    probe.run(&drive(6), &["gather"]).unwrap();
-    gather_cpu(&solver, &volume, &mut state, &predicted);
+    probe.run(&drive(6), &[Stage::Gather]).unwrap();
+    gather_cpu(&model, &volume, &mut state, &predicted);
     assert!(apart(&state.velocities, &probe.velocities().unwrap(), &head.guides) < 1e-5);
 }

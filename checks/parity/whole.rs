@@ -4,8 +4,8 @@ use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{gpu, own_gpu};
 use strandline_groom::{Groom, Guides};
-use strandline_sim::gpu::GpuSolver;
-use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
+use strandline_sim::gpu::GpuRunner;
+use strandline_sim::{CpuRunner, Drive, Model, Settings, VolumeSettings};
 
 use crate::heads::{apart, ball, drive, heads, mean_apart};
 
@@ -13,17 +13,17 @@ use crate::heads::{apart, ball, drive, heads, mean_apart};
 fn short_runs_agree_by_points() {
     let Some(gpu) = gpu() else { return };
     for head in heads() {
-        let solver = head.solver();
-        let gpu_solver = head.gpu_solver(&gpu);
-        let mut expected = solver.rest_state(Pose::IDENTITY);
-        let mut found = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
+        let model = head.model();
+        let mut runner = head.gpu_runner(&gpu);
+        let mut on_cpu = CpuRunner::from(model.clone());
+        let mut expected = model.rest_state(Pose::IDENTITY);
         let mut reports = Vec::new();
         for step in 1..=4 {
-            reports.push(solver.step(&mut expected, &drive(step)));
-            gpu_solver.step(&mut found, &drive(step)).unwrap();
+            reports.push(on_cpu.step(&mut expected, &drive(step)));
+            runner.step(&drive(step)).unwrap();
         }
-        let told = gpu_solver.reports(&mut found).unwrap();
-        let found = gpu_solver.download(&found).unwrap();
+        let told = runner.reports().unwrap();
+        let found = runner.state().unwrap();
         let name = head.name;
         assert_eq!(told.len(), 4, "{name}");
         assert_eq!(found.world_from_head, expected.world_from_head);
@@ -53,28 +53,28 @@ fn short_runs_agree_by_points() {
 fn long_runs_agree_by_statistics() {
     let Some(gpu) = gpu() else { return };
     let head = &heads()[0];
-    let solver = head.solver();
-    let gpu_solver = head.gpu_solver(&gpu);
-    let mut expected = solver.rest_state(Pose::IDENTITY);
-    let mut found = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
+    let model = head.model();
+    let mut runner = head.gpu_runner(&gpu);
+    let mut on_cpu = CpuRunner::from(model.clone());
+    let mut expected = model.rest_state(Pose::IDENTITY);
     let still = Drive::default();
     let mut energies = [0.0_f64; 2];
     let mut deepest = 0.0_f32;
     for step in 1..=150 {
         let drive = if step <= 60 { drive(step.min(30)) } else { still };
-        let report = solver.step(&mut expected, &drive);
-        gpu_solver.step(&mut found, &drive).unwrap();
+        let report = on_cpu.step(&mut expected, &drive);
+        runner.step(&drive).unwrap();
         assert_eq!(report.non_finite, 0);
         deepest = deepest.max(report.penetration_max);
     }
-    let reports = gpu_solver.reports(&mut found).unwrap();
+    let reports = runner.reports().unwrap();
     assert_eq!(reports.len(), 150);
     assert!(reports.iter().all(|report| report.non_finite == 0));
     assert!(reports.iter().all(|report| report.stretch_max < 1e-3), "the length pass holds lengths");
     // Points that a wedge of two solids holds go as deep on either side.
     let depth = reports.iter().map(|report| report.penetration_max).fold(0.0, f32::max);
     assert!(depth < deepest + 1e-3, "{depth}, on the CPU {deepest}");
-    let found = gpu_solver.download(&found).unwrap();
+    let found = runner.state().unwrap();
     let mean = |state: &strandline_sim::State| {
         let points: Vec<glam::Vec3> =
             state.positions.iter().flat_map(|lanes| (0..8).map(|lane| lanes.get(lane))).collect();
@@ -98,18 +98,17 @@ fn long_runs_agree_by_statistics() {
 fn steps_may_be_queued_and_a_zero_number_of_them_changes_nothing() {
     let Some(gpu) = gpu() else { return };
     let head = &heads()[2];
-    let gpu_solver = head.gpu_solver(&gpu);
-    let mut state = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
-    let before = gpu_solver.download(&state).unwrap();
-    assert!(gpu_solver.reports(&mut state).unwrap().is_empty());
-    assert_eq!(gpu_solver.download(&state).unwrap().positions, before.positions);
+    let mut runner = head.gpu_runner(&gpu);
+    let before = runner.state().unwrap();
+    assert!(runner.reports().unwrap().is_empty());
+    assert_eq!(runner.state().unwrap().positions, before.positions);
     // More than the device keeps reports of.
     for step in 0..70 {
-        gpu_solver.step(&mut state, &drive(step)).unwrap();
+        runner.step(&drive(step)).unwrap();
     }
-    let reports = gpu_solver.reports(&mut state).unwrap();
+    let reports = runner.reports().unwrap();
     assert_eq!(reports.len(), 70);
-    let costs = state.costs();
+    let costs = runner.costs();
     assert!(costs.dispatches - costs.solve_dispatches < 40, "{costs:?}");
     if gpu.has_timestamps() {
         let stages: Vec<&str> = reports[69].seconds.iter().map(|(name, _)| *name).collect();
@@ -132,14 +131,14 @@ fn more_points_than_a_row_of_workgroups_holds_all_move() {
     drop(groom);
     let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
     let settings = Settings { volume, iterations: 2, ..Settings::constrained() };
-    let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
-    let mut expected = solver.rest_state(Pose::IDENTITY);
-    let gpu_solver = GpuSolver::new(&gpu, solver).unwrap();
-    let mut found = gpu_solver.rest_state(Pose::IDENTITY).unwrap();
-    gpu_solver.solver().step(&mut expected, &drive(1));
-    gpu_solver.step(&mut found, &drive(1)).unwrap();
+    let model = Model::new(&guides, &settings, Vec::new()).unwrap();
+    let mut on_cpu = CpuRunner::from(model.clone());
+    let mut expected = model.rest_state(Pose::IDENTITY);
+    let mut runner = GpuRunner::new(&gpu, model).unwrap();
+    on_cpu.step(&mut expected, &drive(1));
+    runner.step(&drive(1)).unwrap();
     let mut moved = expected.clone();
-    found.read_into(&mut moved).unwrap();
+    runner.read_into(&mut moved).unwrap();
     let distance = apart(&expected.positions, &moved.positions, &guides);
     // Positions of a metre are rounded to 6e-8 m, a few times.
     assert!(distance < 2e-6, "{distance}");
@@ -154,11 +153,11 @@ fn more_points_than_a_buffer_holds_are_refused_with_the_sizes() {
         volume: VolumeSettings { cells: [512; 3], ..VolumeSettings::default() },
         ..Settings::default()
     };
-    let solver = GpuSolver::new(&gpu, Solver::new(&guides, &settings, Vec::new()).unwrap()).unwrap();
+    let runner = GpuRunner::new(&gpu, Model::new(&guides, &settings, Vec::new()).unwrap()).unwrap();
     let used = gpu.memory_used();
-    let mut state = solver.rest_state(Pose::IDENTITY).unwrap();
-    let error = solver.step(&mut state, &drive(1)).unwrap_err().to_string();
+    let mut other = runner.another(&runner.model().rest_state(Pose::IDENTITY)).unwrap();
+    let error = other.step(&drive(1)).unwrap_err().to_string();
     assert!(error.contains(&gpu.adapter().name) && error.contains("134217728"), "{error}");
-    drop(state);
+    drop(other);
     assert_eq!(gpu.memory_used(), used, "what was had for the refused volume is given back");
 }

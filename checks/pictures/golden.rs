@@ -10,7 +10,7 @@ use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, Picture, PictureSettings, Renderer,
 };
-use strandline_sim::{Drive, Settings, Solver, VolumeSettings};
+use strandline_sim::{Drive, Model, Settings, VolumeSettings};
 
 /// A style of few guides, each with 16 follow strands, and what is needed to draw it.
 struct Sitting {
@@ -53,7 +53,7 @@ impl Sitting {
         let solid = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
         let volume = VolumeSettings { cells: [24; 3], ..VolumeSettings::default() };
         let settings = Settings { volume, ..Settings::default() };
-        let mut rig = Rig::new(on, Solver::new(&self.guides, &settings, vec![solid]).unwrap());
+        let mut rig = Rig::new(on, Model::new(&self.guides, &settings, vec![solid]).unwrap());
         let drive = |step: u32| {
             let time = f64::from(step) * f64::from(settings.time_step);
             Drive { world_from_head: Motion::Shake.pose(time, Vec3::NEG_Y * 0.1), ..Drive::default() }

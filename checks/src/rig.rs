@@ -1,10 +1,8 @@
 //! A simulation on either backend, so that a law is written once.
 
 use glam::Vec3;
-use strandline_body::Pose;
 use strandline_gpu::Gpu;
-use strandline_sim::gpu::{GpuSolver, GpuState};
-use strandline_sim::{Drive, Solver, State, StepReport};
+use strandline_sim::{Drive, Model, Simulator, State, StepReport};
 
 /// The backend that a law is tried on.
 #[derive(Clone, Debug)]
@@ -25,35 +23,20 @@ impl On {
     }
 }
 
-/// A solver and a state on a backend.
-pub struct Rig {
-    place: Place,
-    state: State,
-    /// Whether the device has gone on since the state was read.
-    stale: bool,
-}
-
-enum Place {
-    Cpu(Box<Solver>),
-    Gpu(Box<(GpuSolver, GpuState)>),
-}
+/// A simulator on a backend that never fails.
+pub struct Rig(Simulator);
 
 impl Rig {
     /// The hair at rest.
     ///
     /// # Panics
     /// The device refuses.
-    pub fn new(on: &On, solver: Solver) -> Self {
-        let state = solver.rest_state(Pose::IDENTITY);
-        let place = match on {
-            On::Cpu => Place::Cpu(solver.into()),
-            On::Gpu(gpu) => {
-                let solver = GpuSolver::new(gpu, solver).unwrap();
-                let device = solver.upload(&state).unwrap();
-                Place::Gpu(Box::new((solver, device)))
-            }
+    pub fn new(on: &On, model: Model) -> Self {
+        let gpu = match on {
+            On::Cpu => None,
+            On::Gpu(gpu) => Some(gpu),
         };
-        Self { place, state, stale: false }
+        Self(Simulator::new(gpu, model).unwrap())
     }
 
     /// Advances by a step.
@@ -69,16 +52,7 @@ impl Rig {
     /// # Panics
     /// The device refuses.
     pub fn steps(&mut self, drives: &[Drive]) -> Vec<StepReport> {
-        match &mut self.place {
-            Place::Cpu(solver) => drives.iter().map(|drive| solver.step(&mut self.state, drive)).collect(),
-            Place::Gpu(pair) => {
-                for drive in drives {
-                    pair.0.step(&mut pair.1, drive).unwrap();
-                }
-                self.stale = true;
-                pair.0.reports(&mut pair.1).unwrap()
-            }
-        }
+        self.0.run(drives).unwrap()
     }
 
     /// The state as it is now.
@@ -86,12 +60,7 @@ impl Rig {
     /// # Panics
     /// The device refuses.
     pub fn state(&mut self) -> &State {
-        if let Place::Gpu(pair) = &self.place
-            && std::mem::take(&mut self.stale)
-        {
-            pair.1.read_into(&mut self.state).unwrap();
-        }
-        &self.state
+        self.0.state().unwrap()
     }
 
     /// Changes the state by hand.
@@ -99,11 +68,11 @@ impl Rig {
     /// # Panics
     /// The device refuses.
     pub fn change(&mut self, change: impl FnOnce(&mut State)) {
-        self.state();
-        change(&mut self.state);
-        if let Place::Gpu(pair) = &mut self.place {
-            pair.1.write(&pair.0, &self.state).unwrap();
-        }
+        let changed = self.0.change(|state, _| {
+            change(state);
+            Ok(())
+        });
+        changed.unwrap();
     }
 
     /// Takes hair into a hand; the number of strands.
@@ -111,23 +80,12 @@ impl Rig {
     /// # Panics
     /// The device refuses.
     pub fn grab(&mut self, hand: Vec3, radius: f32) -> usize {
-        self.state();
-        match &mut self.place {
-            Place::Cpu(solver) => self.state.grab(solver, hand, radius),
-            Place::Gpu(pair) => {
-                let count = self.state.grab(pair.0.solver(), hand, radius);
-                pair.1.write_grab(&self.state).unwrap();
-                count
-            }
-        }
+        self.0.grab(hand, radius).unwrap()
     }
 
-    /// The solver.
-    pub fn solver(&self) -> &Solver {
-        match &self.place {
-            Place::Cpu(solver) => solver,
-            Place::Gpu(pair) => pair.0.solver(),
-        }
+    /// The model.
+    pub fn model(&self) -> &Model {
+        self.0.model()
     }
 }
 

@@ -25,7 +25,7 @@ const RECIPES: [Recipe; 2] = [
     Recipe {
         crate_folder: "crates/sim",
         cpu: Backend { folder: "cpu", list: "src/step.rs", endings: &["rs"] },
-        gpu: Backend { folder: "gpu", list: "src/gpu/step.rs", endings: &["rs", "wesl"] },
+        gpu: Backend { folder: "gpu", list: "src/step.rs", endings: &["rs", "wesl"] },
     },
     Recipe {
         crate_folder: "crates/render",
@@ -100,11 +100,14 @@ impl Recipe {
     }
 }
 
-/// The stages that a text times: the names in its calls of `timed`.
+/// The stages that a text lists: the names in its calls of `timed`, or those that the arms of `Stage::name` return.
 fn timed(text: &str) -> Vec<String> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let calls = code.split("timed(").skip(1);
-    calls.filter_map(|call| Some(call.split(';').next()?.split('"').nth(1)?.to_owned())).collect()
+    let called = calls.filter_map(|call| Some(call.split(';').next()?.split('"').nth(1)?.to_owned()));
+    let arms = code.lines().filter(|line| line.trim_start().starts_with("Self::"));
+    let named = arms.filter_map(|line| Some(line.split_once("=> \"")?.1.split_once('"')?.0.to_owned()));
+    called.chain(named).collect()
 }
 
 /// The text of every file of a folder.
@@ -142,6 +145,7 @@ mod tests {
         let list = "use x::timed;\ntimed(seconds, \"splat\", || splat());\nlet a = timed(\n    s,\n    \"mark\", f);\n\
                     fn timed(s: S);\n#[cfg(test)]\nmod tests { timed(s, \"no\", f); }";
         assert_eq!(timed(list), ["splat", "mark"]);
+        assert_eq!(timed("Self::Splat,\n    Self::Splat => \"splat\",\n"), ["splat"]);
     }
 
     #[test]
@@ -155,7 +159,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir_all(folder.path().join("crates/sim/src")).unwrap();
         std::fs::write(folder.path().join("crates/sim/src/step.rs"), "timed(s, \"new\", f);").unwrap();
-        // A file on the CPU; two files and a label on the GPU; a check and a row; and no stage of pictures.
-        assert_eq!(problems(folder.path()).len(), 1 + 3 + 2 + 1);
+        // A file on the CPU; two files on the GPU; a check and a row; and no stage of pictures.
+        assert_eq!(problems(folder.path()).len(), 1 + 2 + 2 + 1);
     }
 }

@@ -127,17 +127,20 @@ pub struct Ended {
 
 impl Ended {
     /// What a player of a scene has come to.
-    pub fn of(player: &Player, scene: &Scene) -> Self {
+    ///
+    /// # Errors
+    /// The GPU was lost.
+    pub fn of(player: &Player, scene: &Scene) -> Result<Self, strandline::Error> {
         let guides = player.guides();
-        Self {
+        Ok(Self {
             backend: player.simulated_on(),
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
-            drift: player.drift(),
+            drift: player.drift()?,
             stiffened: player.stiffened(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
-        }
+        })
     }
 }
 
@@ -218,7 +221,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let played = play(&mut player, &mut steps, &stoppable, inputs.json);
     let written = close(&mut player, played)?;
     drop(stoppable);
-    let mut report = steps.report(Ended::of(&player, &scene));
+    let mut report = steps.report(Ended::of(&player, &scene)?);
     report.out = written.map(|written| OutReport {
         path: written.place,
         frames: written.frames,

@@ -1,4 +1,4 @@
-//! What a solver takes from guides at rest.
+//! What a model takes from guides at rest.
 
 use glam::Vec3;
 use rayon::prelude::*;

@@ -4,8 +4,7 @@
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
-use crate::state::Scratch;
-use crate::{SimError, Solver, State};
+use crate::{Model, SimError, State};
 
 /// A state as numbers.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,11 +106,12 @@ impl State {
             world_from_head,
             time,
             length_scale,
+            contacts,
+            volume_box,
+            // Lengths follow from their scales; a hand lets go.
+            lengths: _,
             grab: _,
-            scratch,
         } = self;
-        // Lengths, masses and rods follow from the length scales; predictions are made anew in every step.
-        let Scratch { predicted: _, contacts, lengths: _, masses: _, rods: _, volume, place } = scratch;
         let blocks = length_scale.len();
         let points = positions.len() / blocks.max(1);
         let mut parts = Vec::new();
@@ -133,9 +133,7 @@ impl State {
         add(LENGTH_SCALE, &[blocks, LANES], scalars(length_scale));
         let planes = contacts.blocks.first().map_or(0, Vec::len);
         add(CONTACTS, &[blocks, planes, contacts.numbers_per_plane(), LANES], contacts.numbers());
-        if let Some(place) = volume.as_ref().map(|volume| volume.grid.place_numbers()).or(*place) {
-            add(VOLUME, &[4], place.to_vec());
-        }
+        add(VOLUME, &[4], volume_box.iter().flatten().copied().collect());
         Checkpoint { parts, world_from_head: *world_from_head, time: *time }
     }
 
@@ -143,13 +141,13 @@ impl State {
     ///
     /// # Errors
     /// A checkpoint of other hair, or with numbers that are not finite; then nothing changes.
-    pub fn restore(&mut self, solver: &Solver, from: &Checkpoint) -> Result<(), SimError> {
-        let points = solver.points_per_strand;
-        let blocks = solver.positions.len() / points;
-        let mut state = solver.rest_state(from.world_from_head);
+    pub fn restore(&mut self, model: &Model, from: &Checkpoint) -> Result<(), SimError> {
+        let points = model.points_per_strand;
+        let blocks = model.positions.len() / points;
+        let mut state = model.rest_state(from.world_from_head);
         let scales = from.finite(LENGTH_SCALE, &[blocks, LANES])?;
         if scales.iter().any(|scale| *scale != 1.0) {
-            state.set_length_scale(solver, &scales[..solver.strand_count])?;
+            state.set_length_scale(model, &scales[..model.strand_count])?;
         }
         let shape = [blocks, points, 3, LANES];
         for (name, into) in [
@@ -161,11 +159,11 @@ impl State {
             into.clear();
             into.extend(to_vectors(from.finite(name, &shape)?));
         }
-        if solver.rods.is_some() {
+        if model.rods.is_some() {
             state.sections = to_vectors(from.finite(SECTIONS, &shape)?).collect();
             state.spins = to_scalars(from.finite(SPINS, &[blocks, points, LANES])?).collect();
         }
-        let contacts = &mut state.scratch.contacts;
+        let contacts = &mut state.contacts;
         let planes = contacts.blocks.first().map_or(0, Vec::len);
         // A state from a GPU remembers no planes, and one with other solids none that fit.
         let numbers = contacts.numbers_per_plane();
@@ -173,7 +171,7 @@ impl State {
             contacts.set_numbers(numbers);
         }
         if let Some(numbers) = from.numbers(VOLUME, &[4])? {
-            state.scratch.place = Some([numbers[0], numbers[1], numbers[2], numbers[3]]);
+            state.volume_box = Some([numbers[0], numbers[1], numbers[2], numbers[3]]);
         }
         state.time = from.time;
         *self = state;
@@ -188,10 +186,10 @@ mod tests {
     use strandline_groom::{Groom, Guides};
 
     use super::*;
-    use crate::{Drive, Settings, StrandMethod, VolumeSettings};
+    use crate::{CpuRunner, Drive, Settings, StrandMethod, VolumeSettings};
 
     /// Hair on a ball and its settings.
-    fn hair(method: StrandMethod) -> (Solver, State) {
+    fn hair(method: StrandMethod) -> (Model, State) {
         let mut groom = Groom::empty(8e-5);
         for strand in 0..11 {
             let root = Quat::from_rotation_y(strand as f32) * Vec3::new(0.08, 0.06, 0.0);
@@ -203,18 +201,19 @@ mod tests {
         let solids = vec![Collider::new(ball, Carrier::Head, 0.3).unwrap()];
         let mut settings = Settings { volume, ..Settings::default() };
         settings.strands.method = method;
-        let solver = Solver::new(&guides, &settings, solids).unwrap();
-        let mut state = solver.rest_state(Pose::IDENTITY);
+        let model = Model::new(&guides, &settings, solids).unwrap();
+        let mut state = model.rest_state(Pose::IDENTITY);
         let scales: Vec<f32> = (0..11).map(|strand| 0.8 + 0.03 * strand as f32).collect();
-        state.set_length_scale(&solver, &scales).unwrap();
-        (solver, state)
+        state.set_length_scale(&model, &scales).unwrap();
+        (model, state)
     }
 
-    fn run(solver: &Solver, state: &mut State, steps: std::ops::Range<u32>) {
+    fn run(model: &Model, state: &mut State, steps: std::ops::Range<u32>) {
+        let mut runner = CpuRunner::from(model.clone());
         for step in steps {
             let rotation = Quat::from_rotation_y(0.4 * (step as f32 * 0.3).sin());
             let world_from_head = Pose { rotation, translation: Vec3::ZERO };
-            solver.step(state, &Drive { world_from_head, ..Drive::default() });
+            runner.step(state, &Drive { world_from_head, ..Drive::default() });
         }
     }
 
@@ -228,22 +227,21 @@ mod tests {
     /// Saves hair in its swing, with so many parts, and goes on from what was saved, whole and with each of these
     /// parts changed.
     fn needs(method: StrandMethod, count: usize, parts: &[&str]) {
-        let (solver, mut state) = hair(method);
-        run(&solver, &mut state, 0..9);
+        let (model, mut state) = hair(method);
+        run(&model, &mut state, 0..9);
         // A box that larger hair left: it is kept while the hair needs most of it.
-        let volume = state.scratch.volume.as_mut().unwrap();
-        let [x, y, z, spacing] = volume.grid.place_numbers();
-        volume.grid.set_place([x, y, z, 1.1 * spacing]);
+        let [x, y, z, spacing] = state.volume_box.unwrap();
+        state.volume_box = Some([x, y, z, 1.1 * spacing]);
         let saved = state.checkpoint();
         let names: Vec<_> = saved.parts.iter().map(|part| part.name).collect();
         assert_eq!(names.len(), count, "{names:?}");
-        run(&solver, &mut state, 9..14);
+        run(&model, &mut state, 9..14);
         let wanted = state.checkpoint();
         let again = |from: &Checkpoint| {
-            let mut state = solver.rest_state(Pose::IDENTITY);
-            state.restore(&solver, from).unwrap();
+            let mut state = model.rest_state(Pose::IDENTITY);
+            state.restore(&model, from).unwrap();
             let found = state.checkpoint();
-            run(&solver, &mut state, 9..14);
+            run(&model, &mut state, 9..14);
             (found, state.checkpoint())
         };
         assert!(again(&saved) == (saved.clone(), wanted.clone()));
@@ -257,13 +255,13 @@ mod tests {
 
     #[test]
     fn states_of_other_hair_are_refused_and_change_nothing() {
-        let (solver, state) = hair(StrandMethod::Constrain);
+        let (model, state) = hair(StrandMethod::Constrain);
         let saved = state.checkpoint();
         let mut kept = state.clone();
         let mut refused = |change: &dyn Fn(&mut Part)| {
             let mut saved = saved.clone();
             saved.parts.iter_mut().for_each(change);
-            let error = kept.restore(&solver, &saved).unwrap_err().to_string();
+            let error = kept.restore(&model, &saved).unwrap_err().to_string();
             assert!(kept.checkpoint() == state.checkpoint());
             error
         };
@@ -272,6 +270,6 @@ mod tests {
         assert!(refused(&|part| part.numbers[3] = f32::NAN).contains("hold NaN"));
         assert!(refused(&|part| part.numbers.truncate(1)).contains("expected"));
         let lost = Checkpoint { parts: Vec::new(), ..saved.clone() };
-        assert!(kept.restore(&solver, &lost).unwrap_err().to_string().contains("no length_scale"));
+        assert!(kept.restore(&model, &lost).unwrap_err().to_string().contains("no length_scale"));
     }
 }

@@ -1,6 +1,6 @@
 use strandline_base::SettingError;
 
-/// Why a solver could not be made or a state changed.
+/// Why a model or a runner could not be made or a state changed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimError {

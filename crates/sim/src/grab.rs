@@ -4,7 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
-use crate::Solver;
+use crate::Model;
 
 /// Stands for the point of a strand that is not held.
 pub(crate) const NO_POINT: u32 = u32::MAX;
@@ -59,17 +59,17 @@ fn to_segment(start: Vec3, end: Vec3) -> f32 {
 impl Grab {
     /// Takes every strand that comes within `radius` \[m\] of the hand, by the nearest free end of the segment
     /// that is nearest to it.
-    pub fn new(solver: &Solver, positions: &[Vec3Lanes], hand: Vec3, radius: f32) -> Self {
-        let points = solver.points_per_strand;
+    pub fn new(model: &Model, positions: &[Vec3Lanes], hand: Vec3, radius: f32) -> Self {
+        let points = model.points_per_strand;
         let grips: Vec<Grip> = positions
             .par_chunks(points)
             .enumerate()
             .with_min_len(64)
             .map(|(block, positions)| {
                 let mut grip = Grip::NOTHING;
-                let live = crate::cpu::constrain::live_lanes(solver, block);
+                let live = model.live_lanes(block);
                 for lane in 0..live {
-                    let free = |point: &usize| solver.inverse_mass[block * points + point].0[lane] > 0.0;
+                    let free = |point: &usize| model.inverse_mass[block * points + point].0[lane] > 0.0;
                     let offset = |point: usize| positions[point].get(lane) - hand;
                     let segments = (1..points).filter(|end| free(end) || free(&(end - 1)));
                     let nearest = segments.map(|end| (to_segment(offset(end - 1), offset(end)), end));

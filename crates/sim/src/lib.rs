@@ -1,6 +1,6 @@
 //! How hair moves: position-based strands coupled to a FLIP volume [Chen2011 §4].
 //!
-//! [`Settings`] are plain data in SI units, a [`Solver`] is compiled once and never changes, a
+//! [`Settings`] are plain data in SI units, a [`Model`] is compiled once and never changes, a
 //! [`State`] is all that changes with time.
 
 #![deny(unsafe_code)]
@@ -24,23 +24,29 @@ mod grab;
 mod length_scale;
 mod masses;
 mod memory;
+mod model;
 mod report;
+mod rest_state;
 mod settings;
-mod solver;
+mod simulator;
+
 mod state;
 mod step;
 pub mod strands;
 
 pub use checkpoint::{Checkpoint, Part};
 pub use clock::{Clock, Ticks};
+pub use cpu::CpuRunner;
 pub use error::SimError;
+pub use model::Model;
 pub use report::{Drift, PressureReport, RodReport, StepReport};
 pub use settings::{
     Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, StrandMethod, StrandSettings,
     VolumeSettings,
 };
-pub use solver::Solver;
+pub use simulator::Simulator;
 pub use state::{Drive, State};
+pub use step::Stage;
 pub use strandline_gpu::Backend;
 
 /// Settings of rods.

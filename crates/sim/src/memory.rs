@@ -4,7 +4,7 @@ use strandline_base::memory::Need;
 
 use crate::Settings;
 
-/// Bytes of a simulated point: its rest shape in guides and solver, its state in both halves of a step,
+/// Bytes of a simulated point: its rest shape in guides and model, its state in both halves of a step,
 /// what it remembers of the solids of two carriers, what it brings to the volume and where, and the copies that are drawn.
 const POINT_BYTES: u64 = 296;
 /// Bytes of a point of a rod besides: its node, its section and spin, and the copies of them that a change of settings

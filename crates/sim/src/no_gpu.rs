@@ -1,17 +1,13 @@
-//! What stands for the solver on a GPU in a build without GPUs: nothing of it can be made.
+//! What stands for the runner on a GPU in a build without GPUs: nothing of it can be made.
 
 use strandline_body::Pose;
 use strandline_gpu::{Buffer, Gpu};
 
-use crate::{Drive, Settings, SimError, Solver, State, StepReport};
+use crate::{Drive, Model, Settings, SimError, State, StepReport};
 
-/// A solver on a GPU.
+/// A runner on a GPU.
 #[derive(Debug)]
-pub enum GpuSolver {}
-
-/// A state on a GPU.
-#[derive(Debug)]
-pub enum GpuState {}
+pub enum GpuRunner {}
 
 /// No shader modules.
 pub fn modules() -> Vec<(&'static str, &'static str)> {
@@ -19,12 +15,12 @@ pub fn modules() -> Vec<(&'static str, &'static str)> {
 }
 
 #[expect(missing_docs, clippy::missing_errors_doc, reason = "none of it can be called")]
-impl GpuSolver {
-    pub fn new(gpu: &Gpu, _: Solver) -> Result<Self, SimError> {
+impl GpuRunner {
+    pub fn new(gpu: &Gpu, _: Model) -> Result<Self, SimError> {
         match *gpu {}
     }
 
-    pub fn solver(&self) -> &Solver {
+    pub fn model(&self) -> &Model {
         match *self {}
     }
 
@@ -32,30 +28,11 @@ impl GpuSolver {
         match *self {}
     }
 
-    pub fn set_settings(&mut self, _: &Settings, _: &mut GpuState) -> Result<(), SimError> {
-        match *self {}
-    }
-
-    pub fn rest_state(&self, _: Pose) -> Result<GpuState, SimError> {
-        match *self {}
-    }
-
-    pub fn upload(&self, _: &State) -> Result<GpuState, SimError> {
-        match *self {}
-    }
-
-    pub fn step(&self, _: &mut GpuState, _: &Drive) -> Result<(), SimError> {
-        match *self {}
-    }
-
-    pub fn reports(&self, _: &mut GpuState) -> Result<Vec<StepReport>, SimError> {
-        match *self {}
-    }
-}
-
-#[expect(missing_docs, clippy::missing_errors_doc, reason = "none of it can be called")]
-impl GpuState {
     pub fn time(&self) -> f64 {
+        match *self {}
+    }
+
+    pub fn world_from_head(&self) -> Pose {
         match *self {}
     }
 
@@ -63,11 +40,27 @@ impl GpuState {
         match *self {}
     }
 
+    pub fn set_settings(&mut self, _: &Settings) -> Result<(), SimError> {
+        match *self {}
+    }
+
+    pub fn step(&mut self, _: &Drive) -> Result<(), SimError> {
+        match *self {}
+    }
+
+    pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        match *self {}
+    }
+
+    pub fn state(&self) -> Result<State, SimError> {
+        match *self {}
+    }
+
     pub fn read_into(&self, _: &mut State) -> Result<(), SimError> {
         match *self {}
     }
 
-    pub fn write(&mut self, _: &GpuSolver, _: &State) -> Result<(), SimError> {
+    pub fn write(&mut self, _: &State) -> Result<(), SimError> {
         match *self {}
     }
 

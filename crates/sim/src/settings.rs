@@ -20,6 +20,10 @@ settings! {
         /// that of a hair 80 um thick. Points with masses of their own keep them.
         mass_per_length: f32 = 6.5e-6, in [1e-9, 1.0] "kg/m", slider [1e-6, 5e-5],
             more "springs that move hair less";
+        /// Steps after which a GPU's state is read, from which the CPU goes on where the GPU fails: so many it makes
+        /// again.
+        checkpoint_every: u32 = 120, in [1.0, 10_000.0] "steps",
+            more "fewer waits for the GPU, a longer one where it fails";
         /// Share of the velocity that is lost per second.
         damping: f32 = 0.0, in [0.0, 1000.0] "1/s", slider [0.0, 20.0], more "calmer, slower hair";
         /// Distance that strands keep from solids. A point that rests nearer may come as near as it

@@ -1,17 +1,16 @@
+use std::sync::Arc;
+
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_base::SettingError;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
-use crate::cpu::Volume;
 use crate::cpu::contacts::Contacts;
 use crate::cpu::vec3x8::{Vec3x8, splat};
 use crate::grab::Grab;
 use crate::length_scale;
-use crate::masses::Masses;
-use crate::strands::rods::other_lengths::OtherLengths;
-use crate::{SimError, Solver};
+use crate::{Model, SimError};
 
 /// What the world does to the hair during one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -62,28 +61,14 @@ pub struct State {
     pub time: f64,
     /// Length over rest length of each strand, shape `[block]` of lanes.
     pub(crate) length_scale: Vec<Lanes>,
+    /// The rest shape with these lengths, but for its masses.
+    pub(crate) lengths: Arc<RestShape>,
     pub(crate) grab: Grab,
-    pub(crate) scratch: Scratch,
-}
-
-/// What a step works in; all of it follows from the rest.
-#[derive(Clone, Debug)]
-pub(crate) struct Scratch {
-    /// Positions at the end of the step \[m\], world space, shape `[block][point]` of lanes.
-    pub predicted: Vec<Vec3Lanes>,
     /// Contact planes remembered from step to step.
-    pub contacts: Contacts,
-    /// The rest shape with the length scales applied; its masses are in `masses`.
-    pub lengths: RestShape,
-    /// Masses of points, which follow those lengths.
-    pub masses: Masses,
-    /// Rods with those lengths, made by the first step after a change; none while all are those at rest.
-    pub rods: Option<OtherLengths>,
-    /// The fluid volume; none while it is off.
-    pub volume: Option<Volume>,
-    /// Where the box of the volume is, lower corner with the ring \[m\] and spacing \[m\], while there is none
-    /// here: on a device, or in a state that was saved.
-    pub place: Option<[f32; 4]>,
+    pub(crate) contacts: Contacts,
+    /// Where the box of the volume is: lower corner with the ring \[m\] and spacing \[m\]; none before the first step
+    /// of one, or while it is off.
+    pub(crate) volume_box: Option<[f32; 4]>,
 }
 
 impl State {
@@ -98,20 +83,14 @@ impl State {
         });
     }
 
-    /// Positions at the end of the step \[m\], world space, shape `[block][point]` of lanes: what the
-    /// stages between `pose_roots` and `advance` work on.
-    pub fn predicted(&self) -> &[Vec3Lanes] {
-        &self.scratch.predicted
-    }
-
     /// Takes hair into a hand, and lets go of what it held: of every strand that comes within `radius`
     /// \[m\] of `hand` \[m\], world space, the point nearest there follows [`Drive::hand`] from now on. It keeps
     /// its place beside the hand, outside the solids, and lags behind a hand that the strand does not
     /// reach. Returns the number of strands; none when a number is not finite.
-    pub fn grab(&mut self, solver: &Solver, hand: Vec3, radius: f32) -> usize {
+    pub fn grab(&mut self, model: &Model, hand: Vec3, radius: f32) -> usize {
         self.grab = Grab::default();
         if hand.is_finite() && radius.is_finite() {
-            self.grab = Grab::new(solver, &self.positions, hand, radius);
+            self.grab = Grab::new(model, &self.positions, hand, radius);
         }
         self.grab.count()
     }
@@ -142,11 +121,11 @@ impl State {
     ///
     /// # Errors
     /// Another number of scales than strands, a scale outside [`State::LENGTH_SCALES`]; then nothing changes.
-    pub fn set_length_scale(&mut self, solver: &Solver, scales: &[f32]) -> Result<(), SimError> {
+    pub fn set_length_scale(&mut self, model: &Model, scales: &[f32]) -> Result<(), SimError> {
         let refuse = |found: String, expected: &str| {
             Err(SettingError::new("the length scale", found, expected).into())
         };
-        if scales.len() != solver.strand_count {
+        if scales.len() != model.strand_count {
             return refuse(format!("given for {} strands", scales.len()), "one for each strand");
         }
         if let Some(scale) = scales.iter().find(|scale| !Self::LENGTH_SCALES.contains(scale)) {
@@ -157,16 +136,15 @@ impl State {
                 *slot = scales[(block * LANES + lane).min(scales.len() - 1)];
             }
         }
-        let points = solver.points_per_strand;
+        let points = model.points_per_strand;
+        let lengths = Arc::make_mut(&mut self.lengths);
         for (block, scale) in self.length_scale.iter().enumerate() {
             let range = block * points..(block + 1) * points;
-            length_scale::scale(&solver.rest, &mut self.scratch.lengths, range.clone(), scale);
-            let lengths = &self.scratch.lengths.stretch[range.clone()];
+            length_scale::scale(&model.rest, lengths, range.clone(), scale);
+            let lengths = &lengths.stretch[range.clone()];
             length_scale::slide(&mut self.positions[range.clone()], lengths);
             length_scale::slide(&mut self.previous_positions[range], lengths);
         }
-        self.scratch.masses = Masses::new(solver, &self.scratch.lengths);
-        self.scratch.rods = None;
         Ok(())
     }
 }
@@ -176,24 +154,29 @@ mod tests {
     use strandline_groom::{Groom, Guides};
 
     use super::*;
-    use crate::{Settings, VolumeSettings};
+    use crate::masses::Masses;
+    use crate::{CpuRunner, Settings, VolumeSettings};
 
-    fn two_strands() -> (Solver, State) {
+    fn step(model: &Model, state: &mut State) -> crate::StepReport {
+        CpuRunner::from(model.clone()).step(state, &Drive::default())
+    }
+
+    fn two_strands() -> (Model, State) {
         let mut groom = Groom::empty(8e-5);
         groom.push([Vec3::ZERO, Vec3::NEG_Y * 0.3]);
         groom.push([Vec3::X, Vec3::X + Vec3::NEG_Y * 0.3]);
         let guides = Guides::resample(&groom, 7).unwrap();
         let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
         let settings = Settings { volume, ..Settings::constrained() };
-        let solver = Solver::new(&guides, &settings, Vec::new()).unwrap();
-        let state = solver.rest_state(Pose::IDENTITY);
-        (solver, state)
+        let model = Model::new(&guides, &settings, Vec::new()).unwrap();
+        let state = model.rest_state(Pose::IDENTITY);
+        (model, state)
     }
 
     #[test]
     fn a_cut_strand_loses_its_tip_only() {
-        let (solver, mut state) = two_strands();
-        state.set_length_scale(&solver, &[0.75, 1.0]).unwrap();
+        let (model, mut state) = two_strands();
+        state.set_length_scale(&model, &[0.75, 1.0]).unwrap();
         for _ in 0..2 {
             let length = |point: usize, lane| {
                 state.positions[point].get(lane).distance(state.positions[point + 1].get(lane))
@@ -205,15 +188,15 @@ mod tests {
                 assert!((length(point, 1) - 0.05).abs() < 1e-6, "the other strand, segment {point}");
             }
             assert_eq!((state.length_scale(0), state.length_scale(1)), (0.75, 1.0));
-            let report = solver.step(&mut state, &Drive::default());
+            let report = step(&model, &mut state);
             assert!(report.stretch_max < 1e-4, "{}", report.stretch_max);
         }
     }
 
     #[test]
     fn a_strand_grows_at_its_tip_and_weighs_more() {
-        let (solver, mut state) = two_strands();
-        state.set_length_scale(&solver, &[1.5, 1.0]).unwrap();
+        let (model, mut state) = two_strands();
+        state.set_length_scale(&model, &[1.5, 1.0]).unwrap();
         for _ in 0..2 {
             let length = |point: usize, lane| {
                 state.positions[point].get(lane).distance(state.positions[point + 1].get(lane))
@@ -224,10 +207,10 @@ mod tests {
                 assert!((length(point, 0) - expected).abs() < 1e-6, "segment {point}: {}", length(point, 0));
                 assert!((length(point, 1) - 0.05).abs() < 1e-6, "the other strand, segment {point}");
             }
-            let report = solver.step(&mut state, &Drive::default());
+            let report = step(&model, &mut state);
             assert!(report.stretch_max < 1e-4, "{}", report.stretch_max);
         }
-        let masses = &state.scratch.masses;
+        let masses = Masses::new(&model, &state.lengths);
         let weight = |lane: usize| masses.mass.iter().map(|lanes| lanes.0[lane]).sum::<f32>();
         assert!((weight(0) / weight(1) - 1.5).abs() < 1e-5, "{}", weight(0) / weight(1));
         // The tip has half of a segment three times as long.
@@ -238,43 +221,30 @@ mod tests {
     }
 
     #[test]
-    fn a_change_of_mass_reaches_strands_of_another_length() {
-        let (mut solver, mut state) = two_strands();
-        state.set_length_scale(&solver, &[0.5, 1.0]).unwrap();
-        let before = state.scratch.masses.clone();
-        let mass_per_length = 2.0 * solver.settings().mass_per_length;
-        solver.set_settings(&Settings { mass_per_length, ..solver.settings().clone() }).unwrap();
-        solver.step(&mut state, &Drive::default());
-        for (now, before) in state.scratch.masses.mass.iter().zip(&before.mass) {
-            assert!((now.0[0] / before.0[0] - 2.0).abs() < 1e-5);
-        }
-    }
-
-    #[test]
     fn a_strand_that_is_cut_and_grown_again_has_its_length_back() {
-        let (solver, mut state) = two_strands();
-        state.set_length_scale(&solver, &[0.05, 0.3]).unwrap();
-        state.set_length_scale(&solver, &[1.0, 1.0]).unwrap();
-        for (found, rest) in state.positions.iter().zip(&solver.positions) {
+        let (model, mut state) = two_strands();
+        state.set_length_scale(&model, &[0.05, 0.3]).unwrap();
+        state.set_length_scale(&model, &[1.0, 1.0]).unwrap();
+        for (found, rest) in state.positions.iter().zip(&model.positions) {
             assert!((found.get(0) - rest.get(0)).length() < 1e-5);
         }
-        assert_eq!(state.scratch.lengths.stretch, solver.rest.stretch);
+        assert_eq!(state.lengths.stretch, model.rest.stretch);
     }
 
     #[test]
     fn a_length_scale_out_of_range_is_refused() {
-        let (solver, mut state) = two_strands();
-        assert!(state.set_length_scale(&solver, &[1.0]).is_err());
-        assert!(state.set_length_scale(&solver, &[1.0, 2.1]).is_err());
-        assert!(state.set_length_scale(&solver, &[f32::NAN, 1.0]).is_err());
+        let (model, mut state) = two_strands();
+        assert!(state.set_length_scale(&model, &[1.0]).is_err());
+        assert!(state.set_length_scale(&model, &[1.0, 2.1]).is_err());
+        assert!(state.set_length_scale(&model, &[f32::NAN, 1.0]).is_err());
         assert_eq!(state.length_scale(1), 1.0);
     }
 
     #[test]
     fn pictures_lie_between_the_last_two_steps() {
-        let (solver, mut state) = two_strands();
+        let (model, mut state) = two_strands();
         let pose = Pose { translation: Vec3::new(0.1, 0.0, 0.0), ..Pose::IDENTITY };
-        solver.step(&mut state, &Drive { world_from_head: pose, ..Drive::default() });
+        CpuRunner::from(model).step(&mut state, &Drive { world_from_head: pose, ..Drive::default() });
         let mut between = Vec::new();
         state.interpolated(0.25, &mut between);
         assert!((between[0].get(0).x - 0.025).abs() < 1e-6);
@@ -284,25 +254,25 @@ mod tests {
 
     #[test]
     fn a_bad_strand_goes_back_to_rest_and_does_not_spread() {
-        let (solver, mut state) = two_strands();
+        let (model, mut state) = two_strands();
         let (_, mut sound) = two_strands();
         state.velocities[3].set(0, Vec3::new(f32::NAN, 0.0, 0.0));
-        let report = solver.step(&mut state, &Drive::default());
+        let report = step(&model, &mut state);
         assert_eq!((report.non_finite > 0, report.non_finite_strand), (true, Some(0)));
-        assert_eq!(solver.step(&mut sound, &Drive::default()).non_finite, 0);
+        assert_eq!(step(&model, &mut sound).non_finite, 0);
         for (index, lanes) in state.positions.iter().enumerate() {
-            assert_eq!(lanes.get(0), solver.positions[index].get(0));
+            assert_eq!(lanes.get(0), model.positions[index].get(0));
             assert_eq!(lanes.get(1), sound.positions[index].get(1));
         }
-        assert_eq!(solver.step(&mut state, &Drive::default()).non_finite, 0);
+        assert_eq!(step(&model, &mut state).non_finite, 0);
     }
 
     #[test]
     fn a_drive_that_is_not_finite_leaves_the_head_where_it_is() {
-        let (solver, mut state) = two_strands();
+        let (model, mut state) = two_strands();
         let pose = Pose { translation: Vec3::splat(f32::NAN), ..Pose::IDENTITY };
-        let report =
-            solver.step(&mut state, &Drive { world_from_head: pose, wind: Vec3::NAN, hand: Some(Vec3::NAN) });
+        let report = CpuRunner::from(model)
+            .step(&mut state, &Drive { world_from_head: pose, wind: Vec3::NAN, hand: Some(Vec3::NAN) });
         assert_eq!(report.non_finite, 0);
         assert_eq!(state.world_from_head, Pose::IDENTITY);
     }

@@ -1,82 +1,72 @@
-//! The step as a list of stages.
+//! A step as a list of stages, the same on both backends [Chen2011 §4, fig. 11-12].
 
-use std::time::Instant;
+use crate::{Settings, StrandMethod};
 
-use crate::cpu::advance::advance;
-use crate::cpu::constrain::constrain;
-use crate::cpu::gather::gather;
-use crate::cpu::integrate::integrate;
-use crate::cpu::mark::mark;
-use crate::cpu::pose_roots::pose_roots;
-use crate::cpu::solve_pressure::solve_pressure;
-use crate::cpu::solve_rods::solve_rods;
-use crate::cpu::splat::splat;
-use crate::cpu::{Obstacles, Volume};
-use crate::masses::Masses;
-use crate::{Drive, Solver, State, StepReport};
-
-/// Advances a state by one step [Chen2011 §4, fig. 11-12].
-pub(crate) fn step(solver: &Solver, state: &mut State, drive: &Drive) -> StepReport {
-    let drive = drive.or_still_at(state.world_from_head);
-    let obstacles = Obstacles {
-        colliders: &solver.colliders,
-        start: state.world_from_head,
-        end: drive.world_from_head,
-        time_step: solver.settings.time_step,
-    };
-    state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
-    if state.scratch.masses.key != solver.mass_key() {
-        state.scratch.masses = Masses::new(solver, &state.scratch.lengths);
-    }
-    solver.give_sections(state);
-    let mut report = StepReport::default();
-    let seconds = &mut report.seconds;
-    timed(seconds, "pose_roots", || pose_roots(solver, state, &drive.world_from_head));
-    let non_finite = if solver.rods.is_some() {
-        let solve = || solve_rods(solver, state, &obstacles, drive.wind);
-        let (non_finite, rods) = timed(seconds, "solve_rods", solve);
-        report.rods = Some(rods);
-        non_finite
-    } else {
-        timed(seconds, "integrate", || integrate(solver, state, drive.wind));
-        timed(seconds, "constrain", || constrain(solver, state, &obstacles))
-    };
-    if let Some(mut volume) = volume(solver, state) {
-        let (positions, velocities) = (&state.scratch.predicted, &mut state.velocities);
-        let masses = &state.scratch.masses.mass;
-        timed(seconds, "splat", || splat(&mut volume, positions, velocities, masses));
-        timed(seconds, "mark", || mark(&mut volume, &obstacles));
-        report.pressure = timed(seconds, "solve_pressure", || solve_pressure(&mut volume));
-        let (time_step, weights) = (solver.settings.time_step, &solver.inverse_mass);
-        timed(seconds, "gather", || gather(&volume, time_step, weights, positions, velocities));
-        state.scratch.volume = Some(volume);
-    }
-    let outcome = timed(seconds, "advance", || advance(solver, state, &obstacles));
-    report.stretch_mean = outcome.stretch_mean();
-    report.stretch_max = outcome.stretch_max;
-    report.penetration_max = outcome.penetration_max;
-    report.speed_mean = (outcome.speed_sum / (solver.strand_count * solver.points_per_strand) as f64) as f32;
-    report.speed_max = outcome.speed_max;
-    let non_finite = non_finite.with(outcome.non_finite);
-    (report.non_finite, report.non_finite_strand) = (non_finite.count, non_finite.first_strand);
-    report
+/// A stage of a step. One stem each: its folder or files, the timer label, the check in checks/parity and the row in
+/// ARCHITECTURE.md carry its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Roots follow the skin.
+    PoseRoots,
+    /// Forces, then a prediction; for strands that are constrained.
+    Integrate,
+    /// Lengths, bends and solids; for strands that are constrained.
+    Constrain,
+    /// Strands as rods, in place of these two.
+    SolveRods,
+    /// Points sorted by cell, velocities onto faces; this and what follows for a volume.
+    Splat,
+    /// What each cell is.
+    Mark,
+    /// Pressure, and its gradient taken away.
+    SolvePressure,
+    /// Velocities back to the points.
+    Gather,
+    /// The new state, the report.
+    Advance,
 }
 
-/// The fluid volume of a state, unless it is switched off.
-fn volume(solver: &Solver, state: &mut State) -> Option<Volume> {
-    let settings = &solver.settings.volume;
-    let (old, place) = (state.scratch.volume.take(), state.scratch.place.take());
-    settings.enabled.then(|| {
-        let mut volume = Volume::keep_or_new(old, settings, solver.strand_count, solver.points_per_strand);
-        place.into_iter().for_each(|place| volume.grid.set_place(place));
-        volume
-    })
+impl Stage {
+    /// All, in the order of a step.
+    pub const ALL: [Self; 9] = [
+        Self::PoseRoots,
+        Self::Integrate,
+        Self::Constrain,
+        Self::SolveRods,
+        Self::Splat,
+        Self::Mark,
+        Self::SolvePressure,
+        Self::Gather,
+        Self::Advance,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::PoseRoots => "pose_roots",
+            Self::Integrate => "integrate",
+            Self::Constrain => "constrain",
+            Self::SolveRods => "solve_rods",
+            Self::Splat => "splat",
+            Self::Mark => "mark",
+            Self::SolvePressure => "solve_pressure",
+            Self::Gather => "gather",
+            Self::Advance => "advance",
+        }
+    }
+
+    /// Whether a step with these settings has it.
+    fn is_in(self, settings: &Settings) -> bool {
+        match self {
+            Self::PoseRoots | Self::Advance => true,
+            Self::Integrate | Self::Constrain => settings.strands.method == StrandMethod::Constrain,
+            Self::SolveRods => settings.strands.method == StrandMethod::Rods,
+            Self::Splat | Self::Mark | Self::SolvePressure | Self::Gather => settings.volume.enabled,
+        }
+    }
 }
 
-/// Runs a stage and notes how long it took \[s\].
-fn timed<T>(seconds: &mut Vec<(&'static str, f64)>, stage: &'static str, run: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
-    let result = run();
-    seconds.push((stage, start.elapsed().as_secs_f64()));
-    result
+/// The stages of a step with these settings, in order.
+pub(crate) fn stages(settings: &Settings) -> impl Iterator<Item = Stage> {
+    Stage::ALL.into_iter().filter(|stage| stage.is_in(settings))
 }

@@ -15,14 +15,14 @@ use crate::{
         BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings,
         gpu::DevicePoints,
     },
-    sim::{Settings, Solver, State, StepReport},
+    sim::{Model, Settings, State, StepReport},
     simulation::{Moment, Simulation},
 };
 
 /// Points of a guide when nothing else is said.
 const POINTS_PER_STRAND: usize = 16;
 
-/// A head of hair that moves and can be drawn: solver, state and renderer in one.
+/// A head of hair that moves and can be drawn: simulator and renderer in one.
 pub struct Hair {
     simulation: Simulation,
     studio: Studio,
@@ -133,7 +133,7 @@ impl Hair {
         settings: &Settings,
     ) -> Result<Self, Error> {
         let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
-        let mut engine = Engine::new(gpu.as_ref(), Solver::new(&guides, settings, colliders)?, fall_back)?;
+        let mut engine = Engine::new(gpu.as_ref(), Model::new(&guides, settings, colliders)?, fall_back)?;
         engine.notes.extend(notes);
         let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
         let studio = Studio {
@@ -230,12 +230,15 @@ impl Hair {
 
     /// The hair that a line of sight meets first before the body \[m\], world space: where a hand takes
     /// what lies within `radius` \[m\] of it. The picture of [`Ray::new`] is the one of now.
-    pub fn pick(&mut self, ray: &Ray, radius: f32) -> Option<Vec3> {
-        self.simulation.show(&mut self.moment);
+    ///
+    /// # Errors
+    /// As [`Hair::grab`].
+    pub fn pick(&mut self, ray: &Ray, radius: f32) -> Result<Option<Vec3>, Error> {
+        self.simulation.show(&mut self.moment)?;
         let guides = &self.studio.guides;
         let body = self.studio.painter.mesh().map(|mesh| (mesh, &self.moment.world_from_head));
         let shape = [guides.strand_count(), guides.points_per_strand()];
-        ray.hair(&self.moment.positions, shape, radius, body).map(|picked| picked.point)
+        Ok(ray.hair(&self.moment.positions, shape, radius, body).map(|picked| picked.point))
     }
 
     /// Moves the hand to a place \[m\], world space, evenly over the next [`Hair::step`].
@@ -305,9 +308,9 @@ impl Hair {
         camera: &Camera,
         look: &Look,
     ) -> Result<(Picture, FrameReport), Error> {
-        self.simulation.show(&mut self.moment);
+        self.simulation.show(&mut self.moment)?;
         self.set_stage();
-        let points = device_points(&self.simulation, &self.studio.painter);
+        let points = self.simulation.device_points(self.studio.painter.gpu());
         self.studio.draw_points(&self.moment, points, camera, look)
     }
 
@@ -359,9 +362,12 @@ impl Hair {
         &self.studio.guides
     }
 
-    /// The state of the simulation.
-    pub fn state(&self) -> &State {
-        self.simulation.engine.state()
+    /// The state of the simulation; a GPU is waited for where it has gone on since it was last asked.
+    ///
+    /// # Errors
+    /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
+    pub fn state(&mut self) -> Result<&State, Error> {
+        Ok(self.simulation.engine.state()?)
     }
 
     /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Four tensors of the
@@ -371,25 +377,18 @@ impl Hair {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn save_pose(&self, path: &Path) -> Result<(), Error> {
-        let file = self.simulation.hair_pose().write(path)?;
+    pub fn save_pose(&mut self, path: &Path) -> Result<(), Error> {
+        let file = self.simulation.hair_pose()?.write(path)?;
         file.keep().map_err(Error::save("the hair", path))
     }
 
     /// The settings of the simulation.
     pub fn settings(&self) -> &Settings {
-        self.simulation.engine.solver().settings()
+        self.simulation.engine.model().settings()
     }
 
     /// The box around hair and body at rest \[m\], head space.
     pub fn bounds(&self) -> Aabb {
         self.studio.bounds
     }
-}
-
-/// The points of the simulation, where the pictures are drawn on the device that they lie on.
-fn device_points<'a>(simulation: &'a Simulation, painter: &Painter) -> Option<DevicePoints<'a>> {
-    let [after, before] = simulation.engine.device_points()?;
-    let is_same = painter.gpu()?.is_same(after.gpu());
-    is_same.then_some(DevicePoints { before, after, share: simulation.share() })
 }

@@ -232,7 +232,7 @@ mod tests {
     use super::*;
     use crate::{
         groom::{Groom, Guides},
-        sim::{Settings, Solver},
+        sim::{Model, Settings},
     };
 
     const SHAPE: [usize; 2] = [11, 5];
@@ -266,8 +266,8 @@ mod tests {
         let mut groom = Groom::empty(8e-5);
         (0..SHAPE[0]).for_each(|_| groom.push([Vec3::ZERO, Vec3::NEG_Y]));
         let guides = Guides::resample(&groom, SHAPE[1]).unwrap();
-        let solver = Solver::new(&guides, &Settings::constrained(), Vec::new()).unwrap();
-        let mut state = solver.rest_state(Pose::IDENTITY);
+        let model = Model::new(&guides, &Settings::constrained(), Vec::new()).unwrap();
+        let mut state = model.rest_state(Pose::IDENTITY);
         pose.place(&mut state);
         // The last lanes have no strand of their own.
         assert_eq!(state.positions[SHAPE[1]].get(7), state.positions[SHAPE[1]].get(2));

@@ -191,7 +191,7 @@ impl Player {
             self.take()?;
         }
         let Some(out) = self.out.take() else { return Ok(None) };
-        let state = self.taken.checked_sub(1).map(|frame| self.worker.work().snapshot(frame));
+        let state = self.taken.checked_sub(1).map(|frame| self.worker.work().snapshot(frame)).transpose()?;
         out.close(self.taken == self.frames, state.as_ref()).map(Some)
     }
 
@@ -230,21 +230,26 @@ impl Player {
     }
 
     /// The state of the simulation: as long as a frame is on its way, before it or after.
-    pub fn state(&self) -> State {
-        self.worker.work().engine.state().clone()
+    ///
+    /// # Errors
+    /// The GPU failed, and it was not to go on on the CPU.
+    pub fn state(&self) -> Result<State, Error> {
+        Ok(self.worker.work().engine.state()?.clone())
     }
 
     /// How far the hair lies from the groom as loaded, which the head carries.
-    pub fn drift(&self) -> Drift {
-        let work = self.worker.work();
-        work.engine.solver().drift(work.engine.state())
+    ///
+    /// # Errors
+    /// As [`Player::state`].
+    pub fn drift(&self) -> Result<Drift, Error> {
+        Ok(self.worker.work().engine.drift()?)
     }
 
     /// Strands of rods that had to be stiffer for their shape to be stable, and how many times stiffer the stiffest
     /// of them is; 0 without rods.
     pub fn stiffened(&self) -> (usize, f32) {
         let work = self.worker.work();
-        work.engine.solver().rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest))
+        work.engine.model().rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest))
     }
 
     /// The device that the hair is simulated on; none on the CPU.
@@ -327,7 +332,7 @@ impl Player {
         self.taken += 1;
         let wanted = self.out.as_ref().is_some_and(|out| out.wants_state(frame));
         // Before the next frame begins.
-        let state: Option<Snapshot> = wanted.then(|| self.worker.work().snapshot(frame));
+        let state: Option<Snapshot> = wanted.then(|| self.worker.work().snapshot(frame)).transpose()?;
         if self.overlap {
             self.start()?;
         }

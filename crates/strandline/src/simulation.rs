@@ -105,8 +105,8 @@ impl Work for Simulation {
         let before = self.passed;
         let run = || {
             let reports = act(self);
-            self.show_on(gpu.as_ref(), &mut moment);
-            reports
+            let shown = self.show_on(gpu.as_ref(), &mut moment);
+            reports.and_then(|reports| shown.map(|()| reports))
         };
         let reports = match &threads {
             Some(threads) => threads.install(run),
@@ -114,7 +114,7 @@ impl Work for Simulation {
         };
         self.threads = threads;
         let place = place(self.engine.gpu());
-        let grabbed = self.engine.state().grabbed();
+        let grabbed = self.engine.grabbed();
         let seconds = self.passed - before;
         let notes = self.engine.take_notes();
         Done { moment, reports, notes, seconds, grabbed, is_frame, heard, place }
@@ -143,7 +143,7 @@ impl Simulation {
 
     /// Changes the settings; steps of another length take that long from now on.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
-        let before = self.engine.solver().settings().time_step;
+        let before = self.engine.model().settings().time_step;
         self.engine.set_settings(settings)?;
         if settings.time_step != before {
             self.clock.set_time_step(settings.time_step);
@@ -166,10 +166,10 @@ impl Simulation {
     }
 
     /// Where the run stands after a frame.
-    pub fn snapshot(&self, frame: u32) -> Snapshot {
+    pub fn snapshot(&mut self, frame: u32) -> Result<Snapshot, SimError> {
         let [before, now] = self.poses;
-        let state = self.engine.state().checkpoint();
-        Snapshot { frame, time: self.clock.time(), state, poses: [before, now, self.end] }
+        let state = self.engine.state()?.checkpoint();
+        Ok(Snapshot { frame, time: self.clock.time(), state, poses: [before, now, self.end] })
     }
 
     /// Goes back to where a run stood: what follows is what followed there.
@@ -188,7 +188,7 @@ impl Simulation {
     pub fn show_cached(
         &mut self,
         world_from_head: Pose,
-        place: impl FnOnce(&mut [Vec3Lanes]),
+        place: impl Fn(&mut [Vec3Lanes]),
     ) -> Result<(), SimError> {
         self.engine.show(place)?;
         self.begin_at(world_from_head);
@@ -196,17 +196,18 @@ impl Simulation {
     }
 
     fn begin_at(&mut self, pose: Pose) {
-        self.clock = Clock::new(self.engine.solver().settings().time_step);
+        self.clock = Clock::new(self.engine.model().settings().time_step);
         (self.poses, self.end, self.share) = ([pose; 2], pose, 1.0);
         self.hand = None;
     }
 
     /// Where the hair of the moment that is shown is, and how it moves.
-    pub fn hair_pose(&self) -> HairPose {
-        let (mut moment, solver) = (Moment::default(), self.engine.solver());
-        self.show(&mut moment);
-        let shape = [solver.strand_count(), solver.points_per_strand()];
-        HairPose::new(shape, &moment.positions, self.engine.state(), &moment.world_from_head)
+    pub fn hair_pose(&mut self) -> Result<HairPose, SimError> {
+        let mut moment = Moment::default();
+        self.show(&mut moment)?;
+        let model = self.engine.model();
+        let shape = [model.strand_count(), model.points_per_strand()];
+        Ok(HairPose::new(shape, &moment.positions, self.engine.state()?, &moment.world_from_head))
     }
 
     /// Takes the hair within `radius` \[m\] of a place \[m\] into a hand; the number of strands.
@@ -232,11 +233,6 @@ impl Simulation {
     /// Where the last run ended.
     pub fn end(&self) -> Pose {
         self.end
-    }
-
-    /// Where the moment shown lies between the last two states, 0 to 1.
-    pub fn share(&self) -> f32 {
-        self.share
     }
 
     /// Length of a step \[s\].
@@ -331,21 +327,30 @@ impl Simulation {
     }
 
     /// Fills a moment with what is to be shown now.
-    pub fn show(&self, moment: &mut Moment) {
-        self.engine.state().interpolated(self.share, &mut moment.positions);
-        moment.world_from_head = self.poses[0].toward(&self.poses[1], self.share);
+    pub fn show(&mut self, moment: &mut Moment) -> Result<(), SimError> {
+        let share = self.share;
+        moment.world_from_head = self.poses[0].toward(&self.poses[1], share);
         moment.device = None;
+        self.engine.state()?.interpolated(share, &mut moment.positions);
+        Ok(())
+    }
+
+    /// The points of the last two states, where they lie on a device.
+    pub fn device_points(&self, gpu: Option<&Gpu>) -> Option<DevicePoints<'_>> {
+        let [after, before] = self.engine.device_points()?;
+        gpu?.is_same(after.gpu()).then_some(DevicePoints { before, after, share: self.share })
     }
 
     /// As [`Simulation::show`]; on a device the points are copied there too, so that the next step may
     /// begin while they are drawn.
-    pub fn show_on(&self, gpu: Option<&Gpu>, moment: &mut Moment) {
+    pub fn show_on(&mut self, gpu: Option<&Gpu>, moment: &mut Moment) -> Result<(), SimError> {
         let kept = moment.device.take();
-        self.show(moment);
-        let Some([after, before]) = self.engine.device_points() else { return };
-        let Some(gpu) = gpu.filter(|gpu| gpu.is_same(after.gpu())) else { return };
+        self.show(moment)?;
+        let Some([after, before]) = self.engine.device_points() else { return Ok(()) };
+        let Some(gpu) = gpu.filter(|gpu| gpu.is_same(after.gpu())) else { return Ok(()) };
         // What cannot be copied there is drawn from the host's copy.
         moment.device = copied(gpu, [before, after], kept, self.share).ok();
+        Ok(())
     }
 }
 

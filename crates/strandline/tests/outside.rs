@@ -10,7 +10,7 @@ use strandline::{
         format::{Scale, Up},
     },
     scene::Model,
-    sim::{Drive, Solver},
+    sim::{self, CpuRunner, Drive},
 };
 
 /// Strands with roots on the mannequin's skin: one leads away from it, one straight down through an ear, the neck and
@@ -44,9 +44,10 @@ fn inside(guides: &Guides, distance: impl Fn(Vec3) -> f32) -> (usize, usize, f32
 
 /// How deep \[m\] hair comes to lie in half a second, as the report says: margins are never below 0.
 fn simulated(prepared: &Prepared, settings: &Settings) -> f32 {
-    let solver = Solver::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap();
-    let mut state = solver.rest_state(Pose::IDENTITY);
-    let depths = (0..30).map(|_| solver.step(&mut state, &Drive::default()).penetration_max);
+    let model = sim::Model::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap();
+    let mut state = model.rest_state(Pose::IDENTITY);
+    let mut runner = CpuRunner::from(model);
+    let depths = (0..30).map(|_| runner.step(&mut state, &Drive::default()).penetration_max);
     depths.fold(0.0, f32::max)
 }
 

@@ -26,7 +26,7 @@ fn sums(scene: &Scene) -> [u32; 2] {
             last = Some(picture);
         }
     }
-    let state = player.state();
+    let state = player.state().unwrap();
     let mut step = crc32fast::Hasher::new();
     for lanes in state.positions.iter().chain(&state.velocities) {
         for values in [lanes.x, lanes.y, lanes.z] {

@@ -27,7 +27,7 @@ fn scene(time_step: f32, frames_per_second: f32, seconds: f32) -> Scene {
 fn play(scene: &Scene, backend: Backend) -> (usize, State) {
     let mut player = Player::new(scene, backend, false).unwrap();
     let steps = player.by_ref().filter(|event| matches!(event.as_ref().unwrap(), Event::Stepped(_))).count();
-    (steps, player.state())
+    (steps, player.state().unwrap())
 }
 
 /// The largest distance \[m\] between two sets of positions.
@@ -127,7 +127,7 @@ fn a_frame_without_time_moves_nothing_but_the_head() {
     let reports = hair.step(1.0 / 60.0, &turned).unwrap();
     assert_eq!((reports.len(), reports[0].non_finite), (1, 0));
     // On its way the head is interpolated, which rounds.
-    let rotation = hair.state().world_from_head.rotation;
+    let rotation = hair.state().unwrap().world_from_head.rotation;
     assert!(rotation.abs_diff_eq(turned.rotation, 1e-6), "{rotation}");
     let refused = hair.step(1e9, &turned).unwrap_err().to_string();
     assert!(refused.contains("steps at once, expected no more than 1000000 steps"), "{refused}");
@@ -195,7 +195,11 @@ fn a_window_with_very_short_steps_slows_time_down_and_the_head_with_it() {
     assert!((saved.film.start - 79e-4).abs() < 1e-8, "{} s", saved.film.start);
     let head = strandline::Prepared::new(&slow).unwrap().head;
     let prepared = strandline::Prepared::new(&saved).unwrap();
-    let found = strandline::Hair::from_scene(&saved, prepared, Backend::Cpu).unwrap().state().world_from_head;
+    let found = strandline::Hair::from_scene(&saved, prepared, Backend::Cpu)
+        .unwrap()
+        .state()
+        .unwrap()
+        .world_from_head;
     let away = |time: f64| found.rotation.angle_between(head.pose(time).rotation);
     // Between the ends of a frame the head goes straight.
     assert!(away(saved.film.start) < 0.1 * away(80e-3), "{} rad", away(saved.film.start));

@@ -101,7 +101,7 @@ fn a_wrong_setting_ends_the_film_with_its_error_and_the_last_state_stays() {
     assert_eq!(last, 3);
     assert!(outcome.unwrap().contains("time_step"));
     assert!(player.next().is_none());
-    let state = player.state();
+    let state = player.state().unwrap();
     assert!(state.positions.iter().all(|lanes| lanes.get(0).is_finite()) && state.time > 0.0);
 }
 

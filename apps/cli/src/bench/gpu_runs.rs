@@ -5,8 +5,8 @@ use std::time::Instant;
 use strandline::{
     Prepared, Scene,
     sim::{
-        Drive, SimError, Solver,
-        gpu::{GpuSolver, GpuState, Gradient},
+        Drive, Model, SimError,
+        gpu::{GpuRunner, Gradient},
     },
 };
 
@@ -19,14 +19,14 @@ const QUEUED: usize = 16;
 
 impl GradientTimes {
     /// After the last step, whose markers and pressure it takes.
-    fn measured(solver: &GpuSolver, state: &GpuState, software: bool) -> anyhow::Result<Option<Self>> {
+    fn measured(runner: &GpuRunner, software: bool) -> anyhow::Result<Option<Self>> {
         const ROWS: usize = 5;
         let in_a_row = if software { 8 } else { 64 };
         // Both in turn, so that whatever else happens falls on both.
         let mut best = [f64::INFINITY; 2];
         for _ in 0..ROWS {
             for (best, gradient) in best.iter_mut().zip([Gradient::Joint, Gradient::Split]) {
-                match solver.seconds_of_gradient(state, gradient, in_a_row)? {
+                match runner.seconds_of_gradient(gradient, in_a_row)? {
                     Some(seconds) => *best = best.min(1e6 * seconds),
                     None => return Ok(None),
                 }
@@ -41,13 +41,15 @@ impl Device {
     /// Plays a scene without pictures.
     pub fn measure(&self, scene: &Scene, what: &'static str) -> anyhow::Result<GpuRun> {
         let Prepared { guides, colliders, head, .. } = Prepared::new(scene)?;
-        let solver = GpuSolver::new(&self.gpu, Solver::new(&guides, &scene.simulation, colliders)?)?;
-        let mut state = solver.rest_state(head.pose(0.0))?;
+        let model = Model::new(&guides, &scene.simulation, colliders)?;
+        let begun = model.rest_state(head.pose(0.0));
+        let mut runner = GpuRunner::new(&self.gpu, model)?;
+        runner.write(&begun)?;
         let mut steps = Steps::default();
         let count = scene.film.frames as usize;
         let mut progress = Progress::new(count as u64, what, false);
         // The first steps compile and allocate.
-        self.run(&solver, &mut state, 2, |_| Drive::default())?;
+        run(&mut runner, 2, |_| Drive::default())?;
         let mut wall = 0.0;
         for first in (0..count).step_by(QUEUED) {
             let queued = QUEUED.min(count - first);
@@ -56,7 +58,7 @@ impl Device {
                 let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
                 Drive { world_from_head: head.pose(time), wind: scene.wind.at(time), hand: None }
             };
-            for (step, report) in self.run(&solver, &mut state, queued, drive)?.iter().enumerate() {
+            for (step, report) in run(&mut runner, queued, drive)?.iter().enumerate() {
                 let note = steps.add(report, (first + step) as u32);
                 note.into_iter().for_each(|note| progress.note(&note));
             }
@@ -64,22 +66,22 @@ impl Device {
             progress.reached((first + queued) as u64);
         }
         drop(progress);
-        let plain = solver.solver();
+        let plain = runner.model();
         let steps = steps.report(Ended {
             backend: self.adapter.name.clone(),
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
-            drift: plain.drift(&solver.download(&state)?),
+            drift: plain.drift(&runner.state()?),
             stiffened: plain.rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest)),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         });
-        let costs = state.costs();
+        let costs = runner.costs();
         let solve = steps.ms_per_step.stages.sum(&["solve_pressure"]);
         let rest: f64 = steps.ms_per_step.stages.iter().map(|(_, time)| time).sum::<f64>() - solve;
         let copied = self.adapter.copy_bytes_per_second * rest * 1e-3;
         Ok(GpuRun {
-            us_of_gradient: GradientTimes::measured(&solver, &state, self.adapter.software)?,
+            us_of_gradient: GradientTimes::measured(&runner, self.adapter.software)?,
             steps,
             wall_ms_per_step: 1e3 * wall / count.max(1) as f64,
             dispatches: costs.dispatches,
@@ -88,17 +90,16 @@ impl Device {
             share_of_copy_bandwidth: if copied > 0.0 { costs.bytes as f64 / copied } else { 0.0 },
         })
     }
+}
 
-    fn run(
-        &self,
-        solver: &GpuSolver,
-        state: &mut GpuState,
-        count: usize,
-        drive: impl Fn(usize) -> Drive,
-    ) -> Result<Vec<strandline::sim::StepReport>, SimError> {
-        for step in 0..count {
-            solver.step(state, &drive(step))?;
-        }
-        solver.reports(state)
+/// Runs steps, and waits for their reports.
+fn run(
+    runner: &mut GpuRunner,
+    count: usize,
+    drive: impl Fn(usize) -> Drive,
+) -> Result<Vec<strandline::sim::StepReport>, SimError> {
+    for step in 0..count {
+        runner.step(&drive(step))?;
     }
+    runner.reports()
 }

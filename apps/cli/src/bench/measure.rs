@@ -24,6 +24,6 @@ pub fn measure(scene: &Scene, draw: bool, what: &'static str) -> Result<(SimRepo
         }
         progress.reached(u64::from(player.frames_done()));
     }
-    let report = steps.report(Ended { backend: "cpu".to_owned(), ..Ended::of(&player, scene) });
+    let report = steps.report(Ended { backend: "cpu".to_owned(), ..Ended::of(&player, scene)? });
     Ok((report, pictures.times(), segments))
 }

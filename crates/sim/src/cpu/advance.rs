@@ -6,11 +6,10 @@ use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::Obstacles;
-use super::constrain::live_lanes;
 use super::contacts::Solids;
 use super::vec3x8::{Vec3x8, load, splat};
-use crate::{Solver, State};
+use super::{Obstacles, Scratch};
+use crate::{Model, State};
 
 /// What a step did to the strands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,14 +50,14 @@ impl NonFinite {
 }
 
 /// Makes the predicted positions the positions, and measures them.
-pub fn advance(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> Outcome {
-    let points = solver.points_per_strand;
+pub fn advance(model: &Model, state: &mut State, scratch: &mut Scratch, obstacles: &Obstacles) -> Outcome {
+    let points = model.points_per_strand;
     let solids = Solids::new(obstacles, points);
     std::mem::swap(&mut state.positions, &mut state.previous_positions);
-    std::mem::swap(&mut state.positions, &mut state.scratch.predicted);
+    std::mem::swap(&mut state.positions, &mut scratch.predicted);
     state.world_from_head = obstacles.end;
-    state.time += f64::from(solver.settings.time_step);
-    let lengths = &state.scratch.lengths.stretch;
+    state.time += f64::from(model.settings.time_step);
+    let lengths = &state.lengths.stretch;
     let speeds = state.velocities.par_chunks_mut(points).zip(state.corrections.par_chunks_mut(points));
     let outcomes: Vec<Outcome> = state
         .positions
@@ -69,11 +68,11 @@ pub fn advance(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> Out
         .with_min_len(16)
         .map(|(block, ((positions, previous), (velocities, corrections)))| {
             let hair = Block { positions: &mut *positions, previous, velocities, corrections };
-            let non_finite = recover(solver, &obstacles.end, block, hair);
+            let non_finite = recover(model, &obstacles.end, block, hair);
             let lengths = &lengths[block * points..(block + 1) * points];
-            let live = live_lanes(solver, block);
+            let live = model.live_lanes(block);
             let mut outcome = Outcome { non_finite, ..Outcome::default() };
-            let inverse_mass = &solver.inverse_mass[block * points..(block + 1) * points];
+            let inverse_mass = &model.inverse_mass[block * points..(block + 1) * points];
             for point in 1..points {
                 let pair = [Vec3x8::load(&positions[point - 1]), Vec3x8::load(&positions[point])];
                 let free = load(&inverse_mass[point - 1]) + load(&inverse_mass[point]);
@@ -82,7 +81,7 @@ pub fn advance(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> Out
             }
             for (now, before) in positions.iter().zip(&*previous) {
                 let moved = (Vec3x8::load(now) - Vec3x8::load(before)).length();
-                outcome.add_speed(moved * splat(1.0 / solver.settings.time_step), live);
+                outcome.add_speed(moved * splat(1.0 / model.settings.time_step), live);
             }
             outcome.penetration_max = deepest(&solids, positions, inverse_mass, live);
             outcome
@@ -159,7 +158,7 @@ pub(crate) struct Block<'a> {
 /// Puts strands that hold a number which is not finite back to rest and finds their bad points,
 /// so that one bad strand never spreads. They have been there one step ago too, so that no picture
 /// between the two steps shows the way back.
-pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hair: Block) -> NonFinite {
+pub(crate) fn recover(model: &Model, world_from_head: &Pose, block: usize, hair: Block) -> NonFinite {
     let Block { positions, previous, velocities, corrections } = hair;
     let mut nothing = splat(0.0);
     for point in 0..positions.len() {
@@ -173,7 +172,7 @@ pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hai
     if bad == 0 {
         return NonFinite::default();
     }
-    let live = live_lanes(solver, block);
+    let live = model.live_lanes(block);
     let mut found = NonFinite::default();
     for lane in (0..LANES).filter(|lane| bad & (1 << lane) != 0) {
         for point in 0..positions.len() {
@@ -183,7 +182,7 @@ pub(crate) fn recover(solver: &Solver, world_from_head: &Pose, block: usize, hai
             if !finite && lane < live {
                 found = found.with(NonFinite { count: 1, first_strand: Some(block * LANES + lane) });
             }
-            let home = world_from_head.point(solver.positions[block * positions.len() + point].get(lane));
+            let home = world_from_head.point(model.positions[block * positions.len() + point].get(lane));
             positions[point].set(lane, home);
             previous[point].set(lane, home);
             velocities[point].set(lane, Vec3::ZERO);

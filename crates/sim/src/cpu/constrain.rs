@@ -4,7 +4,6 @@ use rayon::prelude::*;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
-use super::Obstacles;
 use super::advance::{Block, NonFinite, recover};
 use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
 use super::contacts::{Care, Plane, Query, Solids, Touch};
@@ -12,27 +11,32 @@ use super::length_pass::Follow;
 use super::lengths::Segments;
 use super::spans::Spans;
 use super::vec3x8::{Vec3x8, load, splat};
+use super::{Obstacles, Scratch};
 use crate::grab::Pinned;
-use crate::{Solver, State};
+use crate::{Model, State};
 
 /// Projects the predicted positions onto the constraints and derives the velocities from them.
 ///
 /// All rounds of a block of strands run one after the other, so that its points stay in the first
 /// cache. Returns the points that were not finite; their strands are back at rest, so that they
 /// do not spoil the volume.
-pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> NonFinite {
-    let points = solver.points_per_strand;
-    let settings = &solver.settings;
+pub fn constrain(
+    model: &Model,
+    state: &mut State,
+    scratch: &mut Scratch,
+    obstacles: &Obstacles,
+) -> NonFinite {
+    let points = model.points_per_strand;
+    let settings = &model.settings;
     let solids = Solids::new(obstacles, points);
     let bends = Bends::new(&settings.angles, settings.time_step, settings.iterations, obstacles.end.rotation);
-    let (scratch, grab) = (&mut state.scratch, &state.grab);
-    let (lengths, masses) = (&scratch.lengths.stretch, &scratch.masses);
+    let (lengths, masses, grab) = (&state.lengths.stretch, &scratch.masses, &state.grab);
     scratch
         .predicted
         .par_chunks_mut(points)
         .zip(state.velocities.par_chunks_mut(points).zip(state.corrections.par_chunks_mut(points)))
         .zip(state.positions.par_chunks_mut(points))
-        .zip(scratch.contacts.blocks.par_iter_mut())
+        .zip(state.contacts.blocks.par_iter_mut())
         .enumerate()
         .with_min_len(8)
         .map_init(
@@ -40,7 +44,7 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> N
             |work, (block, (((predicted, (velocities, corrections)), start), planes))| {
                 let range = block * points..(block + 1) * points;
                 let strands = Strands {
-                    solver,
+                    model,
                     bends,
                     segments: Segments {
                         lengths: &lengths[range.clone()],
@@ -48,7 +52,7 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> N
                         share_upper: &masses.share_upper[range.clone()],
                     },
                     joints: Joints {
-                        directions: &solver.directions[range.clone()],
+                        directions: &model.directions[range.clone()],
                         inverse_mass: &masses.inverse_mass[range],
                     },
                     solids: &solids,
@@ -58,7 +62,7 @@ pub fn constrain(solver: &Solver, state: &mut State, obstacles: &Obstacles) -> N
                 work.pinned.extend(grab.pinned(block, predicted, lengths, strands.joints.inverse_mass));
                 let mut hair = Block { positions: predicted, previous: start, velocities, corrections };
                 strands.solve(block, &mut hair, planes, work);
-                recover(solver, &obstacles.end, block, hair)
+                recover(model, &obstacles.end, block, hair)
             },
         )
         .reduce(NonFinite::default, NonFinite::with)
@@ -101,7 +105,7 @@ impl Workspace {
 
 /// One block of strands.
 struct Strands<'a> {
-    solver: &'a Solver,
+    model: &'a Model,
     bends: Option<Bends>,
     segments: Segments<'a>,
     joints: Joints<'a>,
@@ -111,10 +115,10 @@ struct Strands<'a> {
 impl Strands<'_> {
     fn solve(&self, block: usize, hair: &mut Block, planes: &mut [Plane], work: &mut Workspace) {
         let Block { positions: predicted, previous: start, velocities, corrections } = hair;
-        let pass = &self.solver.settings.length_pass;
+        let pass = &self.model.settings.length_pass;
         work.spans.find(self.joints.inverse_mass, work.pinned.iter().map(|held| (held.lane, held.point)));
         let spanned = if pass.enabled { work.spans.held_behind } else { splat(0.0) };
-        for round in 0..self.solver.settings.iterations {
+        for round in 0..self.model.settings.iterations {
             if round % ROUNDS_PER_LOOK == 0 {
                 self.find_touches(block, round == 0, predicted, start, planes, work);
             }
@@ -127,7 +131,7 @@ impl Strands<'_> {
             }
             work.resolve_touches(predicted);
         }
-        if !self.solver.settings.length_pass.enabled {
+        if !self.model.settings.length_pass.enabled {
             // Nothing follows: what the rounds moved far has its last look here.
             self.find_touches(block, false, predicted, start, planes, work);
             work.resolve_touches(predicted);
@@ -145,7 +149,7 @@ impl Strands<'_> {
             };
             follow.place(predicted, planes, &mut work.corrections);
         }
-        let rate = splat(1.0 / self.solver.settings.time_step);
+        let rate = splat(1.0 / self.model.settings.time_step);
         let returned = rate * splat(-pass.correction);
         for point in 0..predicted.len() {
             let moved = Vec3x8::load(&predicted[point]) - Vec3x8::load(&start[point]);
@@ -172,7 +176,7 @@ impl Strands<'_> {
         if self.solids.is_empty() {
             return;
         }
-        let settings = &self.solver.settings;
+        let settings = &self.model.settings;
         let mut care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
         if !is_first {
             // The planes that points have left are what this look is for, also those of where a solid
@@ -180,7 +184,7 @@ impl Strands<'_> {
             care.stale = 0.0;
         }
         let most = splat(settings.collision_margin);
-        let clearance = &self.solver.rest_clearance[block * predicted.len()..];
+        let clearance = &self.model.rest_clearance[block * predicted.len()..];
         for point in 0..predicted.len() {
             let free = load(&self.joints.inverse_mass[point]).simd_gt(splat(0.0));
             let (position, start) = (Vec3x8::load(&predicted[point]), Vec3x8::load(&start[point]));
@@ -220,9 +224,4 @@ impl Workspace {
             }
         }
     }
-}
-
-/// Strands of a block that carry hair, as lanes.
-pub(crate) fn live_lanes(solver: &Solver, block: usize) -> usize {
-    (solver.strand_count - block * LANES).min(LANES)
 }

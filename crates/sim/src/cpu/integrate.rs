@@ -6,23 +6,23 @@ use strandline_base::math;
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
+use super::Scratch;
 use super::vec3x8::{Vec3x8, load, splat};
-use crate::{Solver, Spring, State};
+use crate::{Model, Spring, State};
 
 /// Applies gravity, drag and springs to the velocities of free points and predicts their
 /// positions. `wind` is the velocity of the air \[m/s\], world space.
-pub fn integrate(solver: &Solver, state: &mut State, wind: Vec3) {
-    let points = solver.points_per_strand;
-    let (lengths, masses) = (&state.scratch.lengths, &state.scratch.masses);
-    let settings = &solver.settings;
+pub fn integrate(model: &Model, state: &mut State, scratch: &mut Scratch, wind: Vec3) {
+    let points = model.points_per_strand;
+    let (lengths, masses) = (&state.lengths, &scratch.masses);
+    let settings = &model.settings;
     let springs = [
         (1, settings.springs.stretch, &lengths.stretch),
         (2, settings.springs.bend, &lengths.bend),
         (3, settings.springs.torsion, &lengths.torsion),
     ];
-    let fall = Fall::new(solver, wind);
-    state
-        .scratch
+    let fall = Fall::new(model, wind);
+    scratch
         .predicted
         .par_chunks_mut(points)
         .zip(state.velocities.par_chunks_mut(points))
@@ -95,13 +95,13 @@ pub(crate) struct Fall {
 }
 
 impl Fall {
-    fn new(solver: &Solver, wind: Vec3) -> Self {
-        Self::for_time(solver, solver.settings.time_step, wind)
+    fn new(model: &Model, wind: Vec3) -> Self {
+        Self::for_time(model, model.settings.time_step, wind)
     }
 
     /// For a time \[s\] that is a part of a step.
-    pub(crate) fn for_time(solver: &Solver, time_step: f32, wind: Vec3) -> Self {
-        let settings = &solver.settings;
+    pub(crate) fn for_time(model: &Model, time_step: f32, wind: Vec3) -> Self {
+        let settings = &model.settings;
         let taken = |rate: f32| -math::exp_m1(-rate * time_step);
         Self {
             time_step: splat(time_step),

@@ -14,6 +14,8 @@ pub mod obstacles;
 pub mod pcg;
 pub mod poisson;
 pub mod pose_roots;
+mod runner;
+mod scratch;
 pub mod solve_pressure;
 pub mod solve_rods;
 pub mod splat;
@@ -31,4 +33,6 @@ pub(crate) use strandline_base::vec3x8;
 
 pub use cell_kind::Kind;
 pub use obstacles::Obstacles;
+pub use runner::CpuRunner;
+pub use scratch::Scratch;
 pub use volume::Volume;

@@ -26,7 +26,7 @@ impl Strands<'_> {
     ) {
         space.pulls.clear();
         let stiff = f32x8::of(STIFF / (self.parts.time_step * self.parts.time_step));
-        let most = f32x8::splat(self.solver.settings.collision_margin);
+        let most = f32x8::splat(self.model.settings.collision_margin);
         for point in 0..self.nodes.len() {
             let node = &self.nodes[point];
             let margin = most.fast_min(f32x8::new(self.clearance[point].0)).fast_max(f32x8::ZERO);

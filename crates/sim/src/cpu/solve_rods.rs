@@ -1,27 +1,22 @@
 //! The stage: rods of all strands through a step, in parts, then outside the solids at exact lengths.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::Obstacles;
 use super::advance::{Block, NonFinite, recover};
-use super::constrain::live_lanes;
 use super::contacts::{Plane, Solids};
 use super::integrate::Fall;
 use super::length_pass::Follow;
+use super::{Obstacles, Scratch};
 use crate::grab::Pinned;
-use crate::strands::rods::model::Rods;
-use crate::strands::rods::other_lengths::OtherLengths;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::{Node, Solved, StepSettings};
 use crate::strands::rods::settings::RodSettings;
 use crate::strands::rods::workspace::{Carry, Workspace};
-use crate::{RodReport, Solver, State};
+use crate::{Model, RodReport, State};
 
 /// Rounds of the projection onto lengths.
 const LENGTH_ROUNDS: u32 = 2;
@@ -46,24 +41,23 @@ const ROUNDING: f64 = 1.2e-7;
 /// velocities. Returns the points that were not finite, whose strands are back at rest, and how the
 /// strands were solved. Without rods nothing is done.
 pub fn solve_rods(
-    solver: &Solver,
+    model: &Model,
     state: &mut State,
+    scratch: &mut Scratch,
     obstacles: &Obstacles,
     wind: Vec3,
 ) -> (NonFinite, RodReport) {
-    let Some(rods) = &solver.rods else { return Default::default() };
-    let points = solver.points_per_strand;
-    let parts = Parts::new(solver, &solver.settings.strands.rods, obstacles, wind);
-    refresh(solver, rods, state);
-    let (scratch, grab) = (&mut state.scratch, &state.grab);
-    let nodes = scratch.rods.as_ref().map_or(&rods.nodes, |other| &other.nodes);
-    let (lengths, masses) = (&scratch.lengths.stretch, &scratch.masses);
+    let Some(rods) = &model.rods else { return Default::default() };
+    let points = model.points_per_strand;
+    let parts = Parts::new(model, &model.settings.strands.rods, obstacles, wind);
+    let nodes = scratch.nodes.as_ref().unwrap_or(&rods.nodes);
+    let (lengths, masses, grab) = (&state.lengths.stretch, &scratch.masses, &state.grab);
     scratch
         .predicted
         .par_chunks_mut(points)
         .zip(state.velocities.par_chunks_mut(points))
         .zip(state.positions.par_chunks_mut(points))
-        .zip(scratch.contacts.blocks.par_iter_mut())
+        .zip(state.contacts.blocks.par_iter_mut())
         .zip(state.sections.par_chunks_mut(points))
         .zip(state.spins.par_chunks_mut(points))
         .zip(state.corrections.par_chunks_mut(points))
@@ -75,15 +69,15 @@ pub fn solve_rods(
                 let range = block * points..(block + 1) * points;
                 work.load(start, velocities, sections, spins);
                 let strands = Strands {
-                    solver,
+                    model,
                     parts: &parts,
                     nodes: &nodes[range.clone()],
                     lengths: &lengths[range.clone()],
                     inverse_mass: &masses.inverse_mass[range.clone()],
-                    rest: &solver.positions[range.clone()],
-                    clearance: &solver.rest_clearance[range.clone()],
+                    rest: &model.positions[range.clone()],
+                    clearance: &model.rest_clearance[range.clone()],
                     rest_sections: &rods.sections[range],
-                    live: live_lanes(solver, block),
+                    live: model.live_lanes(block),
                 };
                 let pinned: Vec<Pinned> =
                     grab.pinned(block, predicted, strands.lengths, strands.inverse_mass).collect();
@@ -91,21 +85,10 @@ pub fn solve_rods(
                 work.store(predicted, velocities, sections, spins);
                 corrections.fill(Vec3Lanes::default());
                 let hair = Block { positions: predicted, previous: start, velocities, corrections };
-                (recover(solver, &obstacles.end, block, hair), work.report)
+                (recover(model, &obstacles.end, block, hair), work.report)
             },
         )
         .reduce(Default::default, |one, other| (one.0.with(other.0), one.1.with(other.1)))
-}
-
-/// Makes the nodes of strands of other lengths anew where lengths or rods have changed; none where all lengths are
-/// those at rest.
-fn refresh(solver: &Solver, rods: &Rods, state: &mut State) {
-    let kept = state.scratch.rods.as_ref().is_some_and(|kept| Arc::ptr_eq(&kept.of, &rods.key));
-    if kept || state.length_scale.iter().all(|scale| scale.0.iter().all(|scale| *scale == 1.0)) {
-        return;
-    }
-    let nodes = rods.with_lengths(solver, &state.scratch.lengths, &state.scratch.masses);
-    state.scratch.rods = Some(OtherLengths { nodes, of: rods.key.clone() });
 }
 
 /// What all strands share in a step.
@@ -121,9 +104,9 @@ pub(super) struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    fn new(solver: &'a Solver, settings: &'a RodSettings, obstacles: &Obstacles<'a>, wind: Vec3) -> Self {
+    fn new(model: &'a Model, settings: &'a RodSettings, obstacles: &Obstacles<'a>, wind: Vec3) -> Self {
         let count = settings.substeps;
-        let time_step = solver.settings.time_step / count as f32;
+        let time_step = model.settings.time_step / count as f32;
         let pose = |part: u32| obstacles.start.toward(&obstacles.end, part as f32 / count as f32);
         let poses = (0..count)
             .map(|part| {
@@ -140,8 +123,8 @@ impl<'a> Parts<'a> {
             settings,
             count,
             time_step: f64::from(time_step),
-            fall: Fall::for_time(solver, time_step, wind),
-            solids: Solids::new(obstacles, solver.points_per_strand),
+            fall: Fall::for_time(model, time_step, wind),
+            solids: Solids::new(obstacles, model.points_per_strand),
             poses,
             moved: obstacles.start != obstacles.end,
         }
@@ -150,7 +133,7 @@ impl<'a> Parts<'a> {
 
 /// One block of strands.
 pub(super) struct Strands<'a> {
-    pub(super) solver: &'a Solver,
+    pub(super) model: &'a Model,
     pub(super) parts: &'a Parts<'a>,
     pub(super) nodes: &'a [Node<f32x8>],
     lengths: &'a [Lanes],

@@ -1,31 +1,10 @@
 //! Measures the step: stretch, penetration, non-finite points.
 
-use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel, mirror};
+use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
+use super::buffers::Buffers;
 use super::inputs::Step;
-use super::solve_pressure::PressureState;
-use super::{Buffers, Dispatches, THREADS};
-
-mirror! {
-    /// What a step did. Mirrors `Report` in advance.wesl.
-    pub(super) struct Report {
-        pub stretch_sum: f32,
-        pub stretch_max: f32,
-        pub penetration_max: f32,
-        /// A number of points.
-        pub non_finite: f32,
-        /// Of rods: see `RodReport`.
-        pub residual: f32,
-        pub unsolved: f32,
-        pub resting: f32,
-        pub speed_sum: f32,
-        pub speed_max: f32,
-        pub unused_a: f32,
-        pub unused_b: f32,
-        pub unused_c: f32,
-        pub pressure: PressureState,
-    }
-}
+use super::records::{PressureState, Report, THREADS};
 
 kernel! {
     /// One thread is one strand.

@@ -2,24 +2,20 @@
 
 use strandline_gpu::{Buffer, Recorder, Timer};
 
-use super::{GpuSolver, GpuState, Gradient};
+use super::records::Gradient;
+use super::runner::GpuRunner;
 use crate::SimError;
 
-impl GpuSolver {
+impl GpuRunner {
     /// Seconds that subtracting the pressure gradient once takes in a form, by the device's own clock
     /// [Chen2011 table 1]: the mean of `count` times in a row, with the markers and the pressure of the
-    /// last step of the state, which is left as it is. None without a volume, before the first step and
+    /// last step, which is left as it is. None without a volume, before the first step and
     /// where the device offers no timestamps.
     ///
     /// # Errors
     /// The device has no memory left or was lost.
-    pub fn seconds_of_gradient(
-        &self,
-        state: &GpuState,
-        gradient: Gradient,
-        count: usize,
-    ) -> Result<Option<f64>, SimError> {
-        let (Some(volume), Some(timer)) = (&state.buffers.volume, Timer::new(&self.gpu)?) else {
+    pub fn seconds_of_gradient(&self, gradient: Gradient, count: usize) -> Result<Option<f64>, SimError> {
+        let (Some(volume), Some(timer)) = (&self.buffers.volume, Timer::new(&self.gpu)?) else {
             return Ok(None);
         };
         // The next step gathers the velocities of faces anew, so nothing depends on what is left on them.

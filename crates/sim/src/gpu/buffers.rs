@@ -3,15 +3,14 @@
 use strandline_gpu::{Buffer, Gpu};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
-use super::advance::Report;
 use super::inputs::Step;
-use super::solve_pressure::PressureState;
-use super::solve_rods::{NUMBERS, RodBuffers};
+use super::records::{PressureState, Report, THREADS};
+use super::rod_buffers::{NUMBERS, RodBuffers};
+use super::solids;
 use super::volume::Volume;
-use super::{THREADS, solids};
 use crate::grab::{Grab, Grip, NO_POINT};
 use crate::masses::Masses;
-use crate::{SimError, Solver, State};
+use crate::{Model, SimError, State};
 
 /// Steps whose reports the device keeps until they are read.
 pub(super) const REPORTS: usize = 64;
@@ -55,23 +54,23 @@ pub(super) struct Buffers {
 
 impl Buffers {
     /// Copies a state to the device.
-    pub fn new(gpu: &Gpu, solver: &Solver, state: &State) -> Result<Self, SimError> {
-        let state = &solver.with_sections(state);
-        let points = solver.points_per_strand;
-        let lane_count = solver.lane_count();
+    pub fn new(gpu: &Gpu, model: &Model, state: &State) -> Result<Self, SimError> {
+        let state = &model.with_sections(state);
+        let points = model.points_per_strand;
+        let lane_count = model.lane_count();
         let count = lane_count * points;
         let workgroups = lane_count.div_ceil(THREADS);
         let vectors = |name, lanes: &[Vec3Lanes]| Buffer::from_slice(gpu, name, floats(lanes));
         let buffers = Self {
-            strand_count: solver.strand_count,
+            strand_count: model.strand_count,
             lane_count,
             points,
             step: Buffer::new(gpu, "step", 1)?,
-            rest_positions: vectors("rest positions", &solver.positions)?,
+            rest_positions: vectors("rest positions", &model.positions)?,
             rest: Buffer::new(gpu, "rest shape", 6 * count)?,
             springs: Buffer::new(gpu, "springs", 2 * count)?,
             mass: Buffer::new(gpu, "masses", count)?,
-            solids: solids::upload(gpu, &solver.colliders)?,
+            solids: solids::upload(gpu, &model.colliders)?,
             places: [
                 vectors("positions", &state.positions)?,
                 vectors("predicted positions", &state.previous_positions)?,
@@ -79,17 +78,17 @@ impl Buffers {
             velocities: Buffer::from_slice(gpu, "velocities", &speeds(state))?,
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
             grips: Buffer::new(gpu, "grips", lane_count)?,
-            boxes: Buffer::new(gpu, "boxes", 2 * solver.strand_count.div_ceil(THREADS))?,
+            boxes: Buffer::new(gpu, "boxes", 2 * model.strand_count.div_ceil(THREADS))?,
             outcomes: Buffer::new(gpu, "outcomes", 3 * workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,
-            rods: match &solver.rods {
+            rods: match &model.rods {
                 Some(_) => Some(RodBuffers::new(gpu, lane_count, points)?),
                 None => None,
             },
         };
-        buffers.write_rest(solver, &state.scratch.lengths)?;
+        buffers.write_rest(model, &state.lengths)?;
         buffers.write_grips(&state.grab)?;
         Ok(buffers)
     }
@@ -118,14 +117,14 @@ impl Buffers {
     }
 
     /// Writes what follows from the settings and the lengths of the strands.
-    pub fn write_rest(&self, solver: &Solver, lengths: &RestShape) -> Result<(), SimError> {
-        let masses = Masses::new(solver, lengths);
-        let mut rest = Vec::with_capacity(6 * LANES * solver.positions.len());
-        let mut springs = Vec::with_capacity(2 * LANES * solver.positions.len());
-        let axes = solver.rods.as_ref().map_or(&solver.directions, |rods| &rods.sections);
-        for index in 0..solver.positions.len() {
+    pub fn write_rest(&self, model: &Model, lengths: &RestShape) -> Result<(), SimError> {
+        let masses = Masses::new(model, lengths);
+        let mut rest = Vec::with_capacity(6 * LANES * model.positions.len());
+        let mut springs = Vec::with_capacity(2 * LANES * model.positions.len());
+        let axes = model.rods.as_ref().map_or(&model.directions, |rods| &rods.sections);
+        for index in 0..model.positions.len() {
             rest.extend_from_slice(floats(&axes[index..=index]));
-            for lanes in [&lengths.stretch, &masses.inverse_mass, &solver.rest_clearance] {
+            for lanes in [&lengths.stretch, &masses.inverse_mass, &model.rest_clearance] {
                 // Infinity has no place in a shader.
                 rest.extend(lanes[index].0.map(|number| number.min(f32::MAX)));
             }
@@ -135,14 +134,16 @@ impl Buffers {
         self.rest.write(&rest)?;
         self.springs.write(&springs)?;
         self.mass.write(bytemuck::cast_slice(&masses.mass))?;
-        self.write_rods(solver, lengths, &masses)
+        self.write_rods(model, lengths, &masses)
     }
 
     /// Writes the nodes of rods with lengths of their strands.
-    fn write_rods(&self, solver: &Solver, lengths: &RestShape, masses: &Masses) -> Result<(), SimError> {
-        let (Some(buffers), Some(rods)) = (&self.rods, &solver.rods) else { return Ok(()) };
+    fn write_rods(&self, model: &Model, lengths: &RestShape, masses: &Masses) -> Result<(), SimError> {
+        let (Some(buffers), Some(nodes)) = (&self.rods, model.nodes_with(lengths, &masses.mass)) else {
+            return Ok(());
+        };
         let mut numbers = Vec::with_capacity(buffers.nodes.len());
-        for (position, node) in solver.positions.iter().zip(&rods.with_lengths(solver, lengths, masses)) {
+        for (position, node) in model.positions.iter().zip(&nodes) {
             numbers.extend_from_slice(floats(std::slice::from_ref(position)));
             let [one, two, three] = node.rest;
             for lanes in [node.length, node.stretch, node.stiffness[0], one, two, three, node.inertia] {
@@ -190,4 +191,9 @@ pub(super) fn speeds(state: &State) -> Vec<f32> {
 /// Vectors as the numbers that they are.
 pub(super) fn floats(lanes: &[Vec3Lanes]) -> &[f32] {
     bytemuck::cast_slice(lanes)
+}
+
+/// Vectors as the numbers that they are, to be written.
+pub(super) fn floats_mut(lanes: &mut [Vec3Lanes]) -> &mut [f32] {
+    bytemuck::cast_slice_mut(lanes)
 }

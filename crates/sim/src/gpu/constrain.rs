@@ -1,9 +1,10 @@
 //! Lengths, bends and solids: all rounds of a strand in one thread.
 
-use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
+use super::buffers::Buffers;
 use super::inputs::Step;
-use super::{Buffers, Dispatches, THREADS};
+use super::records::THREADS;
 
 kernel! {
     /// One thread is one strand.

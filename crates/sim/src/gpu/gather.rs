@@ -1,10 +1,11 @@
 //! Points take their velocities from the faces.
 
-use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
+use super::buffers::Buffers;
 use super::inputs::Step;
+use super::records::THREADS;
 use super::volume::GridState;
-use super::{Buffers, Dispatches, THREADS};
 
 kernel! {
     /// One thread is one point.

@@ -8,7 +8,7 @@ use strandline_gpu::mirror;
 use crate::cpu::angles::bend_share;
 use crate::cpu::contacts::Care;
 use crate::grab::Grab;
-use crate::{Drive, Preconditioner, Solver, Spring};
+use crate::{Drive, Model, Preconditioner, Spring};
 
 mirror! {
     /// Rows of a rotation, each with its component of the translation \[m\] behind it.
@@ -106,8 +106,8 @@ impl Rigid {
 }
 
 impl RodStep {
-    fn new(solver: &Solver, start: &Pose, end: &Pose, part_time: f32) -> Self {
-        let rods = &solver.settings.strands.rods;
+    fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32) -> Self {
+        let rods = &model.settings.strands.rods;
         let part = start.toward(end, 1.0 / rods.substeps as f32);
         let section = rods.material().section();
         Self {
@@ -130,8 +130,8 @@ impl RodStep {
 
 impl Step {
     /// What a step needs that starts at a pose of the head.
-    pub fn new(solver: &Solver, start: &Pose, drive: &Drive, grab: &Grab, slot: usize) -> Self {
-        let settings = &solver.settings;
+    pub fn new(model: &Model, start: &Pose, drive: &Drive, grab: &Grab, slot: usize) -> Self {
+        let settings = &model.settings;
         let end = drive.world_from_head;
         // What acts on all points alike acts in each part of a step of rods.
         let parts = if settings.has_rods() { settings.strands.rods.substeps } else { 1 };
@@ -166,10 +166,10 @@ impl Step {
             length_pass: u32::from(settings.length_pass.enabled),
             correction: settings.length_pass.correction,
             iterations: settings.iterations,
-            strand_count: solver.strand_count as u32,
-            lane_count: solver.lane_count() as u32,
-            points: solver.points_per_strand as u32,
-            collider_count: solver.colliders.len() as u32,
+            strand_count: model.strand_count as u32,
+            lane_count: model.lane_count() as u32,
+            points: model.points_per_strand as u32,
+            collider_count: model.colliders.len() as u32,
             flip_share: settings.volume.flip_share_in(settings.time_step),
             tolerance: settings.volume.tolerance,
             max_iterations: settings.volume.max_iterations,
@@ -181,7 +181,7 @@ impl Step {
             slot: slot as u32,
             holds: u32::from(!grab.grips.is_empty()),
             hand: grab.hand.to_array(),
-            rods: RodStep::new(solver, start, &end, part_time),
+            rods: RodStep::new(model, start, &end, part_time),
             ..Self::default()
         }
     }

@@ -1,6 +1,6 @@
 //! The stages as kernels, through wgpu; every one has a twin in plain Rust under the same name.
 //!
-//! A [`GpuSolver`] is compiled once, a [`GpuState`] lies on the device. A step is one submission;
+//! A [`GpuRunner`] holds the compiled kernels and a state on the device. A step is one submission;
 //! nothing is read back until it is asked for.
 
 mod advance;
@@ -10,32 +10,27 @@ mod constrain;
 mod gather;
 mod inputs;
 mod integrate;
+mod kernels;
 mod lengths_alone;
 mod linked;
 mod mark;
 mod pcg;
+mod pending;
 mod pose_roots;
 mod probe;
+mod records;
+mod rod_buffers;
+mod runner;
 mod solids;
 mod solve_pressure;
 mod solve_rods;
-mod solver;
 mod splat;
-mod state;
-mod step;
-
+mod transfer;
 mod volume;
 
-use buffers::Buffers;
+pub use kernels::declarations;
 pub use lengths_alone::{LengthsForm, LengthsInput, lengths_alone};
 pub use linked::modules;
-pub use pcg::Spread;
 pub use probe::Probe;
-pub use solve_pressure::{Gradient, PressureState};
-pub use solver::{GpuSolver, declarations};
-pub use state::{Costs, GpuState};
-use strandline_gpu::Dispatches;
-use strandline_groom::LANES;
-
-/// Threads of a workgroup, as in common.wesl.
-const THREADS: usize = 64;
+pub use records::{Gradient, PressureState, Spread};
+pub use runner::{Costs, GpuRunner};

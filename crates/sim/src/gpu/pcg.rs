@@ -1,10 +1,9 @@
 //! Preconditioned conjugate gradients on the device.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, kernel};
+use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Kernel, kernel};
 
-use super::Dispatches;
 use super::inputs::Step;
-use super::solve_pressure::PressureState;
+use super::records::{PressureState, Spread};
 use super::volume::{GridState, Volume};
 use crate::Preconditioner;
 use crate::cpu::pcg::CHEBYSHEV_STEPS;
@@ -59,26 +58,12 @@ kernel! {
     }
 }
 
-/// Where the solve runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Spread {
-    /// Small grids on one workgroup, others on many.
-    #[default]
-    Auto,
-    /// On one workgroup.
-    One,
-    /// On many.
-    Many,
-}
-
 /// Rounds over many workgroups before one finishes, with the polynomial and without: about what hair
 /// needs, since a round that has nothing left to do is not free. Even numbers, so that the state ends
 /// where it began.
 const ROUNDS: [usize; 2] = [16, 32];
 /// Cells up to which one workgroup does it all: 32 x 32 x 32 and their ring.
 const SMALL: usize = 34 * 34 * 34;
-/// Most workgroups of a round: each sums what all of them found.
-pub(super) const MOST_WORKGROUPS: usize = 256;
 
 pub(super) struct Pcg {
     search: [Kernel<Search<'static>>; 2],

@@ -2,38 +2,36 @@
 
 use strandline_groom::{Lanes, Vec3Lanes};
 
-use super::buffers::floats;
-use super::state::floats_mut;
+use super::buffers::{floats, floats_mut};
+use super::runner::GpuRunner;
 use super::volume::GridState;
-use super::{GpuSolver, GpuState, step};
 use crate::cpu::{Kind, Volume};
+use crate::step::Stage;
 use crate::{Drive, SimError, State, StepReport};
 
-/// A state under examination: stages run alone, buffers are set and read.
-pub struct Probe<'a> {
-    solver: &'a GpuSolver,
-    /// The state.
-    pub state: GpuState,
+/// A runner under examination: stages run alone, buffers are set and read.
+pub struct Probe {
+    /// The runner.
+    pub runner: GpuRunner,
 }
 
-impl<'a> Probe<'a> {
-    /// Copies a state of the host to the device, its predicted positions too.
+impl Probe {
+    /// Another runner of a state of the host.
     ///
     /// # Errors
     /// The device has no memory left or was lost.
-    pub fn new(solver: &'a GpuSolver, state: &State) -> Result<Self, SimError> {
-        let mut probe = Self { solver, state: solver.upload(state)? };
-        probe.state.buffers.places[1].write(floats(&state.scratch.predicted))?;
-        probe.state.prepare(solver)?;
-        Ok(probe)
+    pub fn new(runner: &GpuRunner, state: &State) -> Result<Self, SimError> {
+        let mut runner = runner.another(state)?;
+        runner.prepare()?;
+        Ok(Self { runner })
     }
 
-    /// Runs the named stages of a step; the state does not count it as one.
+    /// Runs stages of a step; the state does not count it as one.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn run(&mut self, drive: &Drive, stages: &[&str]) -> Result<(), SimError> {
-        step::run(self.solver, &mut self.state, drive, |name| stages.contains(&name))
+    pub fn run(&mut self, drive: &Drive, stages: &[Stage]) -> Result<(), SimError> {
+        self.runner.run(drive, |stage| stages.contains(&stage))
     }
 
     /// What `advance` told of the last run.
@@ -41,8 +39,8 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn report(&mut self) -> Result<StepReport, SimError> {
-        self.state.pending = 1;
-        let reports = self.state.take_reports(self.solver)?;
+        self.runner.pending.count = 1;
+        let reports = self.runner.reports()?;
         Ok(reports.into_iter().next().unwrap_or_default())
     }
 
@@ -51,7 +49,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn set_predicted(&self, predicted: &[Vec3Lanes]) -> Result<(), SimError> {
-        Ok(self.state.buffers.places[1 - self.state.side].write(floats(predicted))?)
+        Ok(self.runner.buffers.places[1 - self.runner.side].write(floats(predicted))?)
     }
 
     /// Replaces the velocities \[m/s\].
@@ -59,7 +57,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn set_velocities(&self, velocities: &[Vec3Lanes]) -> Result<(), SimError> {
-        Ok(self.state.buffers.velocities.write(floats(velocities))?)
+        Ok(self.runner.buffers.velocities.write(floats(velocities))?)
     }
 
     /// Replaces the masses \[kg\] that the volume sees.
@@ -67,7 +65,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn set_mass(&self, mass: &[Lanes]) -> Result<(), SimError> {
-        Ok(self.state.buffers.mass.write(bytemuck::cast_slice(mass))?)
+        Ok(self.runner.buffers.mass.write(bytemuck::cast_slice(mass))?)
     }
 
     /// Predicted positions \[m\].
@@ -75,7 +73,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn predicted(&self) -> Result<Vec<Vec3Lanes>, SimError> {
-        let read = self.state.buffers.places[1 - self.state.side].read()?;
+        let read = self.runner.buffers.places[1 - self.runner.side].read()?;
         Ok(vectors(&read))
     }
 
@@ -96,8 +94,8 @@ impl<'a> Probe<'a> {
     }
 
     fn velocities_and_corrections(&self) -> Result<(Vec<f32>, Vec<f32>), SimError> {
-        let mut velocities = self.state.buffers.velocities.read()?;
-        let count = 3 * self.state.buffers.point_count();
+        let mut velocities = self.runner.buffers.velocities.read()?;
+        let count = 3 * self.runner.buffers.point_count();
         let mut corrections = velocities.split_off(count);
         corrections.truncate(count);
         Ok((velocities, corrections))
@@ -108,7 +106,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn set_volume(&self, volume: &Volume) -> Result<(), SimError> {
-        let Some(device) = &self.state.buffers.volume else { return Ok(()) };
+        let Some(device) = &self.runner.buffers.volume else { return Ok(()) };
         let count = device.cell_count;
         let grid = GridState {
             origin: (volume.grid.low_corner() - volume.grid.spacing()).to_array(),
@@ -139,7 +137,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn grid(&self) -> Result<([f32; 3], f32), SimError> {
-        let grid = match &self.state.buffers.volume {
+        let grid = match &self.runner.buffers.volume {
             Some(volume) => volume.grid.read()?[0],
             None => GridState::default(),
         };
@@ -151,7 +149,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn start_index(&self) -> Result<Vec<u32>, SimError> {
-        self.state.buffers.volume.as_ref().map_or(Ok(Vec::new()), |volume| Ok(volume.start_index.read()?))
+        self.runner.buffers.volume.as_ref().map_or(Ok(Vec::new()), |volume| Ok(volume.start_index.read()?))
     }
 
     /// Indices of the points in the order of their cells; as many as there are sorted points.
@@ -159,7 +157,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn order(&self) -> Result<Vec<u32>, SimError> {
-        let Some(volume) = &self.state.buffers.volume else { return Ok(Vec::new()) };
+        let Some(volume) = &self.runner.buffers.volume else { return Ok(Vec::new()) };
         let count = self.start_index()?.last().copied().unwrap_or(0);
         let sorted = volume.sorted_points.read_first(count as usize)?;
         Ok(sorted.iter().map(|point| point.index).collect())
@@ -170,7 +168,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn faces(&self) -> Result<Vec<[f32; 2]>, SimError> {
-        self.state.buffers.volume.as_ref().map_or(Ok(Vec::new()), |volume| Ok(volume.faces.read()?))
+        self.runner.buffers.volume.as_ref().map_or(Ok(Vec::new()), |volume| Ok(volume.faces.read()?))
     }
 
     /// What each cell is.
@@ -178,7 +176,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn kinds(&self) -> Result<Vec<Kind>, SimError> {
-        let Some(volume) = &self.state.buffers.volume else { return Ok(Vec::new()) };
+        let Some(volume) = &self.runner.buffers.volume else { return Ok(Vec::new()) };
         let kind = |number| match number {
             1 => Kind::Fluid,
             2 => Kind::Solid,
@@ -192,7 +190,7 @@ impl<'a> Probe<'a> {
     /// # Errors
     /// The device was lost.
     pub fn pressure(&self) -> Result<(Vec<f32>, super::PressureState), SimError> {
-        let Some(volume) = &self.state.buffers.volume else { return Ok(Default::default()) };
+        let Some(volume) = &self.runner.buffers.volume else { return Ok(Default::default()) };
         let state = volume.states.read_first(1)?[0];
         Ok((volume.vectors.read_first(state.fluid_cells as usize + 1)?, state))
     }

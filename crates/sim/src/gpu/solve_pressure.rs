@@ -1,47 +1,13 @@
 //! The pressure that takes the divergence out of the hair's velocity, without a readback.
 
-use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel, mirror};
+use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
+use super::buffers::Buffers;
 use super::pcg::Pcg;
+use super::records::{Gradient, PressureState, THREADS};
 use super::volume::{GridState, Volume};
-use super::{Buffers, Dispatches, THREADS};
-use crate::{Preconditioner, PressureReport};
+use crate::Preconditioner;
 use strandline_gpu::Scan;
-
-mirror! {
-    /// Where the solve stands. Mirrors `PressureState` in pressure.wesl.
-    pub struct PressureState {
-        /// Residual in the preconditioner's norm.
-        pub rate: f32,
-        /// Largest component of the residual \[m/s\].
-        pub residual: f32,
-        /// The same before the first iteration.
-        pub first: f32,
-        /// 1 once there is nothing left to do.
-        pub done: u32,
-        /// Iterations so far.
-        pub iterations: u32,
-        /// Iterations until the tolerance was met as an absolute one.
-        pub iterations_absolute: u32,
-        /// Unknowns.
-        pub fluid_cells: u32,
-        /// 1 once it was met.
-        pub met: u32,
-    }
-}
-
-impl From<PressureState> for PressureReport {
-    fn from(state: PressureState) -> Self {
-        let solved = state.fluid_cells > 0 && state.first > 0.0;
-        Self {
-            iterations: state.iterations as usize,
-            iterations_absolute: state.iterations_absolute as usize,
-            relative_residual: if solved { state.residual / state.first } else { 0.0 },
-            absolute_residual: state.residual,
-            fluid_cells: state.fluid_cells as usize,
-        }
-    }
-}
 
 kernel! {
     /// Rows of the system; one thread is one cell.
@@ -77,16 +43,6 @@ kernel! {
         6 unknowns: Read u32,
         7 faces: ReadWrite [f32; 2],
     }
-}
-
-/// How the gradient is subtracted [Chen2011 table 1].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Gradient {
-    /// One kernel for all components.
-    #[default]
-    Joint,
-    /// A kernel for each component.
-    Split,
 }
 
 pub(super) struct Stage {

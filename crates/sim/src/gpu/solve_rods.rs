@@ -1,9 +1,9 @@
 //! Rods: a strand bends and twists in one thread, in all parts of a step.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, kernel};
+use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, kernel};
 
+use super::buffers::Buffers;
 use super::inputs::Step;
-use super::{Buffers, Dispatches, THREADS};
 
 kernel! {
     /// One thread is one strand after another.
@@ -19,40 +19,7 @@ kernel! {
     }
 }
 
-/// Numbers of a node in the buffer of rods.
-pub(super) const NUMBERS: usize = 10;
-/// Vectors of four numbers that a point takes while its strand is solved.
-const SLOTS: usize = 18;
-
 pub(super) struct Stage(Kernel<SolveRods<'static>>);
-
-/// What rods have on the device besides what all strands have.
-pub(super) struct RodBuffers {
-    /// See rods.wesl.
-    pub nodes: Buffer<f32>,
-    work: Buffer<[f32; 4]>,
-    /// Workgroups that there is room for.
-    groups: usize,
-}
-
-impl RodBuffers {
-    /// Room for the nodes and the grips of so many strands, and for those that are solved at a time.
-    pub fn new(gpu: &Gpu, lane_count: usize, points: usize) -> Result<Self, GpuError> {
-        let groups = groups_at_once(lane_count, points);
-        Ok(Self {
-            nodes: Buffer::new(gpu, "rods", lane_count * (NUMBERS * points + 4))?,
-            work: Buffer::new(gpu, "work of rods", groups * THREADS * points * SLOTS)?,
-            groups,
-        })
-    }
-}
-
-/// Workgroups whose strands fit a buffer of WebGPU's size, of those that there is work for.
-fn groups_at_once(lane_count: usize, points: usize) -> usize {
-    const BUFFER: usize = 128 << 20;
-    let bytes = THREADS * points * SLOTS * size_of::<[f32; 4]>();
-    lane_count.div_ceil(THREADS).min(BUFFER / bytes)
-}
 
 impl Stage {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
@@ -76,20 +43,5 @@ impl Stage {
             },
         )?;
         Ok(vec![(bound, [rods.groups as u32, 1, 1])])
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_threads_work_in_fits_a_buffer_and_no_thread_is_idle() {
-        assert_eq!(groups_at_once(100, 16), 2);
-        for points in [4, 16, 32, 64, 128] {
-            let groups = groups_at_once(1 << 20, points);
-            assert!(groups * THREADS * points * SLOTS * 16 <= 128 << 20);
-            assert!((groups + 1) * THREADS * points * SLOTS * 16 > 128 << 20);
-        }
     }
 }

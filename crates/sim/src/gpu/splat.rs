@@ -1,11 +1,11 @@
 //! Points become velocities on the faces of the staggered grid: sorted by cell, then gathered.
 
-use strandline_gpu::{Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, Scan, groups, kernel};
 
+use super::buffers::Buffers;
 use super::inputs::Step;
+use super::records::THREADS;
 use super::volume::{GridState, SortedPoint};
-use super::{Buffers, Dispatches, THREADS};
-use strandline_gpu::Scan;
 
 kernel! {
     /// Boxes around the points of strands; one thread is one strand.

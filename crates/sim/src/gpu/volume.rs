@@ -1,12 +1,10 @@
 //! The buffers of the fluid volume.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, mirror};
+use strandline_gpu::{Buffer, Gpu, GpuError, Scan, mirror};
+use strandline_groom::LANES;
 
-use super::pcg::{MOST_WORKGROUPS, Spread};
-use super::solve_pressure::{Gradient, PressureState};
-use super::{LANES, THREADS};
+use super::records::{Gradient, MOST_WORKGROUPS, PressureState, Spread, THREADS};
 use crate::cpu::grid::{Grid, MIN_SPACING, ladder};
-use strandline_gpu::Scan;
 
 mirror! {
     /// The box. Mirrors `GridState` in grid.wesl.

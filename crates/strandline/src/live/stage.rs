@@ -76,9 +76,9 @@ impl Stage {
         let camera = prepared.camera(aspect);
         let mut hair = Hair::from_scene(scene, prepared, scene.devices)?;
         notes.extend(hair.take_notes());
-        let (simulation, studio) = hair.into_parts();
+        let (mut simulation, studio) = hair.into_parts();
         let mut shown = Moment::default();
-        simulation.show(&mut shown);
+        simulation.show(&mut shown)?;
         let simulated_on = place(simulation.engine.gpu());
         Ok(Self {
             worker: Worker::new(simulation).map_err(Error::Thread)?,
@@ -157,10 +157,10 @@ impl Stage {
     /// A file cannot be written; then what was there before stays, unless only the last renaming fails.
     pub fn save(&self, mut scene: Scene, path: &Path) -> Result<(), Error> {
         let pose_path = pose_path(path);
-        let simulation = self.worker.work();
-        let pose = simulation.hair_pose().write(&pose_path)?;
+        let mut simulation = self.worker.work();
+        let pose = simulation.hair_pose()?.write(&pose_path)?;
         // What is shown lies a step behind the end of a frame.
-        let step = f64::from(simulation.engine.solver().settings().time_step);
+        let step = f64::from(simulation.engine.model().settings().time_step);
         drop(simulation);
         scene.film.start = (self.time - step).max(self.begun);
         scene.groom.pose = pose_path.file_name().map(PathBuf::from);
@@ -235,7 +235,7 @@ impl Stage {
         self.hand = Some(picked.point);
         self.act(Box::new(move |simulation| {
             // The hair has moved on since it was seen.
-            let now = simulation.engine.state().positions[picked.index].get(picked.lane);
+            let now = simulation.engine.state()?.positions[picked.index].get(picked.lane);
             simulation.grab(now, radius).map(|_| Vec::new())
         }))
     }

@@ -1,4 +1,4 @@
-//! What the strands of a solver are made of: the material of the settings, or that of their group.
+//! What the strands of a model are made of: the material of the settings, or that of their group.
 
 use std::collections::BTreeMap;
 

@@ -4,20 +4,31 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use rayon::prelude::*;
-use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::hairs::Hairs;
 use super::material::{Section, nodes};
-use super::other_lengths::Lengthened;
 use super::real::Vector;
 use super::rest;
 use super::rod::Node;
 use super::settings::Rest;
-use crate::Solver;
-use crate::masses::Masses;
 
-/// The rods of a solver: it does not change while time passes.
+/// Strands at rest as rods are compiled from them, shapes `[block][point]` of lanes.
+pub(crate) struct RodsAtRest<'a> {
+    pub strand_count: usize,
+    pub points_per_strand: usize,
+    /// Places \[m\], head space.
+    pub positions: &'a [Vec3Lanes],
+    /// 1 over the mass \[1/kg\], 0 for a rooted point.
+    pub inverse_mass: &'a [Lanes],
+    /// \[kg\].
+    pub mass: &'a [Lanes],
+    /// \[m/s^2\].
+    pub gravity: Vec3,
+}
+
+/// The rods of a groom: they do not change while time passes.
 #[derive(Clone)]
 pub struct Rods {
     /// Shape `[block][point]`.
@@ -33,21 +44,19 @@ pub struct Rods {
 }
 
 impl Rods {
-    /// Compiles the rods of a solver: gravity is the load that its rest shape carries, unless it is to
-    /// sag.
-    pub(crate) fn new(solver: &Solver, hairs: &Hairs, rest: Rest) -> Self {
-        let points = solver.points_per_strand;
-        let gravity = solver.settings.gravity;
-        let blocks: Vec<Block> = solver
+    /// Compiles rods: gravity is the load that their rest shape carries, unless it is to sag.
+    pub(crate) fn new(strands: &RodsAtRest, hairs: &Hairs, rest: Rest) -> Self {
+        let points = strands.points_per_strand;
+        let blocks: Vec<Block> = strands
             .positions
             .par_chunks(points)
-            .zip(solver.inverse_mass.par_chunks(points))
+            .zip(strands.inverse_mass.par_chunks(points))
             .enumerate()
             .map(|(block, (positions, inverse_mass))| {
-                let live = solver.strand_count.saturating_sub(block * LANES).clamp(1, LANES);
-                let mass = &solver.rest.mass[block * points..(block + 1) * points];
+                let live = strands.strand_count.saturating_sub(block * LANES).clamp(1, LANES);
+                let mass = &strands.mass[block * points..(block + 1) * points];
                 let section = |lane: usize| hairs.section(block * LANES + lane);
-                Block::new(positions, inverse_mass, mass, live, section, rest, gravity)
+                Block::new(positions, inverse_mass, mass, live, section, rest, strands.gravity)
             })
             .collect();
         let stiffening = || blocks.iter().flat_map(|block| block.stiffening).filter(|times| *times > 1.0);
@@ -58,30 +67,6 @@ impl Rods {
             nodes: blocks.iter().flat_map(|block| block.nodes.iter().copied()).collect(),
             sections: blocks.iter().flat_map(|block| block.sections.iter().copied()).collect(),
         }
-    }
-}
-
-impl Rods {
-    /// The nodes of strands with other lengths \[m\] and masses \[kg\].
-    pub(crate) fn with_lengths(
-        &self,
-        solver: &Solver,
-        lengths: &RestShape,
-        masses: &Masses,
-    ) -> Vec<Node<f32x8>> {
-        let settings = &solver.settings;
-        let carries = settings.strands.rods.rest == Rest::SagFree;
-        let strands = Lengthened {
-            points_per_strand: solver.points_per_strand,
-            positions: &solver.positions,
-            rest: &solver.rest.stretch,
-            now: &lengths.stretch,
-            mass: &masses.mass,
-            gravity: carries.then_some(settings.gravity),
-        };
-        let mut nodes = self.nodes.clone();
-        strands.change(&mut nodes);
-        nodes
     }
 }
 

@@ -1,7 +1,5 @@
 //! Rods of other lengths than at rest: what is left keeps its shape.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 use rayon::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
@@ -11,15 +9,6 @@ use super::joint::{Joint, Segment};
 use super::real::{Real, Vector};
 use super::rest::{across, sag_free, segments};
 use super::rod::Node;
-
-/// Nodes of strands of which some have another length than at rest, kept from step to step.
-#[derive(Clone, Debug)]
-pub(crate) struct OtherLengths {
-    /// Shape `[block][point]`.
-    pub nodes: Vec<Node<f32x8>>,
-    /// Tells the rods that they were made from.
-    pub of: Arc<()>,
-}
 
 /// Strands as they are at rest and what became of them, shapes `[block][point]` of lanes.
 pub(crate) struct Lengthened<'a> {

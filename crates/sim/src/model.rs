@@ -1,25 +1,23 @@
-use std::borrow::Cow;
+use std::sync::Arc;
 
-use glam::Vec3;
-use rayon::prelude::*;
 use strandline_base::memory;
-use strandline_body::{Collider, Pose};
+use strandline_body::Collider;
 use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
+use wide::f32x8;
 
-use crate::at_rest::{by_lane, carried, check_rest, clearance, directions, velocities};
-use crate::cpu::contacts::Contacts;
-use crate::grab::Grab;
-use crate::masses::Masses;
-use crate::state::Scratch;
+use crate::at_rest::{by_lane, check_rest, clearance, directions, velocities};
 use crate::strands::rods::hairs::Hairs;
-use crate::strands::rods::model::Rods;
-use crate::{Drift, Drive, Settings, SimError, State, StepReport, StrandMethod};
+use crate::strands::rods::model::{Rods, RodsAtRest};
+use crate::strands::rods::other_lengths::Lengthened;
+use crate::strands::rods::rod::Node;
+use crate::strands::rods::settings::Rest;
+use crate::{Settings, SimError, StrandMethod};
 
-/// The compiled solver: rest shape, settings and colliders. It does not change while time passes.
+/// All that stages read and that time does not change: rest shape, masses, material, colliders, settings.
 #[derive(Clone)]
-pub struct Solver {
+pub struct Model {
     pub(crate) settings: Settings,
-    pub(crate) rest: RestShape,
+    pub(crate) rest: Arc<RestShape>,
     pub(crate) colliders: Vec<Collider>,
     pub(crate) strand_count: usize,
     pub(crate) points_per_strand: usize,
@@ -40,12 +38,12 @@ pub struct Solver {
     /// What each strand is made of.
     hairs: Hairs,
     /// Velocities at the beginning \[m/s\], head space, shape `[block][point]` of lanes; empty at rest.
-    velocities: Vec<Vec3Lanes>,
+    pub(crate) velocities: Vec<Vec3Lanes>,
     /// None with another strand solver.
     pub(crate) rods: Option<Rods>,
 }
 
-/// Masses at the mass per length that a solver was compiled with.
+/// Masses at the mass per length that a model was compiled with.
 #[derive(Clone)]
 struct Compiled {
     /// \[kg/m\].
@@ -56,11 +54,11 @@ struct Compiled {
     inverse_mass: Vec<Lanes>,
 }
 
-impl Solver {
+impl Model {
     /// Points of a strand that the head carries, so that hair leaves the skin in its own direction.
     pub const ROOTED_POINTS: usize = 2;
 
-    /// Compiles a solver for hair: the first two points of every strand are rooted in the head.
+    /// Compiles a model of hair: the first two points of every strand are rooted in the head.
     ///
     /// # Errors
     /// A setting outside its range; more memory than may be taken.
@@ -69,7 +67,7 @@ impl Solver {
         Self::with_rest(guides, rest, |_, point| point < Self::ROOTED_POINTS, settings, colliders)
     }
 
-    /// Compiles a solver for strands of any mass that are held at any points: ropes, chains.
+    /// Compiles a model of strands of any mass that are held at any points: ropes, chains.
     ///
     /// `rooted(strand, point)` tells which points the head carries. Rest lengths of 0 are allowed
     /// nowhere but at the ends, where [`RestShape`] has them.
@@ -105,9 +103,9 @@ impl Solver {
             mass: rest.mass.clone(),
             inverse_mass: inverse_mass.clone(),
         };
-        let mut solver = Self {
+        let mut model = Self {
             settings: settings.clone(),
-            rest,
+            rest: Arc::new(rest),
             colliders,
             strand_count: guides.strand_count(),
             points_per_strand: points,
@@ -121,8 +119,8 @@ impl Solver {
             hairs,
             rods: None,
         };
-        solver.weigh();
-        Ok(solver.with_rods())
+        model.weigh();
+        Ok(model.with_rods())
     }
 
     /// Sets the masses of points from those that were compiled and the settings, unless the guides have their own.
@@ -147,10 +145,10 @@ impl Solver {
         };
         let mass = scaled(&self.compiled.mass, &|mass, factor| mass * factor);
         self.inverse_mass = scaled(&self.compiled.inverse_mass, &|inverse, factor| inverse / factor);
-        self.rest.mass = mass;
+        Arc::make_mut(&mut self.rest).mass = mass;
     }
 
-    /// Tells masses apart: two solvers of the same key have the same.
+    /// Tells masses apart: two models of the same key have the same.
     pub(crate) fn mass_key(&self) -> u64 {
         self.hairs.key(&self.settings)
     }
@@ -160,9 +158,37 @@ impl Solver {
         let settings = &self.settings.strands;
         self.rods = match settings.method {
             StrandMethod::Constrain => None,
-            StrandMethod::Rods => Some(Rods::new(&self, &self.hairs, settings.rods.rest)),
+            StrandMethod::Rods => Some(Rods::new(&self.rods_at_rest(), &self.hairs, settings.rods.rest)),
         };
         self
+    }
+
+    fn rods_at_rest(&self) -> RodsAtRest<'_> {
+        RodsAtRest {
+            strand_count: self.strand_count,
+            points_per_strand: self.points_per_strand,
+            positions: &self.positions,
+            inverse_mass: &self.inverse_mass,
+            mass: &self.rest.mass,
+            gravity: self.settings.gravity,
+        }
+    }
+
+    /// The nodes of rods with lengths of segments \[m\] and masses of points \[kg\] of their own; none with another
+    /// strand solver.
+    pub(crate) fn nodes_with(&self, lengths: &RestShape, mass: &[Lanes]) -> Option<Vec<Node<f32x8>>> {
+        let carries = self.settings.strands.rods.rest == Rest::SagFree;
+        let strands = Lengthened {
+            points_per_strand: self.points_per_strand,
+            positions: &self.positions,
+            rest: &self.rest.stretch,
+            now: &lengths.stretch,
+            mass,
+            gravity: carries.then_some(self.settings.gravity),
+        };
+        let mut nodes = self.rods.as_ref()?.nodes.clone();
+        strands.change(&mut nodes);
+        Some(nodes)
     }
 
     /// The compiled rods; none with another strand solver.
@@ -225,95 +251,20 @@ impl Solver {
         self.positions.len() / self.points_per_strand * LANES
     }
 
+    /// Lanes of a block that hold strands.
+    pub(crate) fn live_lanes(&self, block: usize) -> usize {
+        (self.strand_count - block * LANES).min(LANES)
+    }
+
     /// Points on each strand.
     pub fn points_per_strand(&self) -> usize {
         self.points_per_strand
-    }
-
-    /// The guides at rest, carried by a pose of the head; those with velocities of their own begin with them.
-    pub fn rest_state(&self, world_from_head: Pose) -> State {
-        let positions: Vec<Vec3Lanes> =
-            self.positions.par_iter().map(|lanes| carried(lanes, &world_from_head)).collect();
-        let blocks = positions.len() / self.points_per_strand;
-        let turn = Pose { translation: Vec3::ZERO, ..world_from_head };
-        let rods = self.rods.as_ref().map_or(0, |rods| rods.sections.len());
-        State {
-            sections: self.sections(&turn),
-            spins: vec![Lanes::default(); rods],
-            corrections: vec![Vec3Lanes::default(); positions.len()],
-            velocities: if self.velocities.is_empty() {
-                vec![Vec3Lanes::default(); positions.len()]
-            } else {
-                self.velocities.par_iter().map(|lanes| carried(lanes, &turn)).collect()
-            },
-            previous_positions: positions.clone(),
-            world_from_head,
-            time: 0.0,
-            length_scale: vec![Lanes([1.0; LANES]); blocks],
-            grab: Grab::default(),
-            scratch: Scratch {
-                predicted: positions.clone(),
-                contacts: Contacts::new(&self.colliders, blocks, self.points_per_strand),
-                masses: Masses::new(self, &self.rest),
-                lengths: self.rest.clone(),
-                rods: None,
-                volume: None,
-                place: None,
-            },
-            positions,
-        }
-    }
-
-    /// How far a state lies from the hair at rest that the head of the state carries.
-    pub fn drift(&self, state: &State) -> Drift {
-        let points = self.points_per_strand;
-        let (mut sum, mut max) = (0.0, 0.0_f32);
-        for strand in 0..self.strand_count {
-            let (first, lane) = (strand / LANES * points, strand % LANES);
-            let length: f32 = (first..first + points).map(|index| self.rest.stretch[index].0[lane]).sum();
-            for index in first..first + points {
-                let home = state.world_from_head.point(self.positions[index].get(lane));
-                let apart = state.positions[index].get(lane).distance(home) / length;
-                sum += f64::from(apart);
-                max = max.max(apart);
-            }
-        }
-        Drift { mean: (sum / (self.strand_count * points) as f64) as f32, max }
-    }
-
-    /// Gives a state that was without rods the sections that they have at rest, and takes those of one that has no
-    /// rods any more.
-    pub(crate) fn give_sections(&self, state: &mut State) {
-        let count = self.rods.as_ref().map_or(0, |rods| rods.sections.len());
-        if state.sections.len() != count {
-            let turn = Pose { translation: Vec3::ZERO, ..state.world_from_head };
-            state.sections = self.sections(&turn);
-            state.spins = vec![Lanes::default(); count];
-        }
-    }
-
-    /// A state with the sections that this solver needs.
-    pub(crate) fn with_sections<'a>(&self, state: &'a State) -> Cow<'a, State> {
-        let mut state = Cow::Borrowed(state);
-        if state.sections.len() != self.rods.as_ref().map_or(0, |rods| rods.sections.len()) {
-            self.give_sections(state.to_mut());
-        }
-        state
-    }
-
-    fn sections(&self, turn: &Pose) -> Vec<Vec3Lanes> {
-        let rods = self.rods.iter();
-        rods.flat_map(|rods| rods.sections.iter().map(|lanes| carried(lanes, turn))).collect()
-    }
-
-    /// Advances a state by one step of `settings.time_step`.
-    pub fn step(&self, state: &mut State, drive: &Drive) -> StepReport {
-        crate::step::step(self, state, drive)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
     use strandline_groom::Groom;
 
     use super::*;
@@ -329,7 +280,7 @@ mod tests {
         let with = |change: fn(&mut RestShape)| {
             let mut rest = RestShape::new(&guides(), 1e-5);
             change(&mut rest);
-            Solver::with_rest(&guides(), rest, |_, point| point == 0, &Settings::default(), Vec::new())
+            Model::with_rest(&guides(), rest, |_, point| point == 0, &Settings::default(), Vec::new())
                 .err()
                 .map(|error| error.to_string())
         };
@@ -341,36 +292,26 @@ mod tests {
 
     #[test]
     fn settings_change_between_steps_or_not_at_all() {
-        let mut solver = Solver::new(&guides(), &Settings::constrained(), Vec::new()).unwrap();
-        let light = solver.inverse_mass[3].0[0];
+        let mut model = Model::new(&guides(), &Settings::constrained(), Vec::new()).unwrap();
+        let light = model.inverse_mass[3].0[0];
         let settings = Settings { mass_per_length: 1.3e-5, iterations: 7, ..Settings::constrained() };
-        solver.set_settings(&settings).unwrap();
-        assert!((solver.inverse_mass[3].0[0] / light - 0.5).abs() < 1e-6);
-        assert!(solver.set_settings(&Settings { iterations: 0, ..settings.clone() }).is_err());
-        assert_eq!(solver.settings(), &settings);
+        model.set_settings(&settings).unwrap();
+        assert!((model.inverse_mass[3].0[0] / light - 0.5).abs() < 1e-6);
+        assert!(model.set_settings(&Settings { iterations: 0, ..settings.clone() }).is_err());
+        assert_eq!(model.settings(), &settings);
     }
 
     #[test]
     fn a_mass_that_is_moved_there_and_back_leaves_every_bit() {
-        let compiled = Solver::new(&guides(), &Settings::constrained(), Vec::new()).unwrap();
-        let mut solver = compiled.clone();
+        let compiled = Model::new(&guides(), &Settings::constrained(), Vec::new()).unwrap();
+        let mut model = compiled.clone();
         for step in 1..40 {
             let mass_per_length = 6.5e-6 * (1.0 + 0.037 * step as f32);
-            solver.set_settings(&Settings { mass_per_length, ..Settings::constrained() }).unwrap();
-            assert_ne!(solver.rest.mass, compiled.rest.mass);
+            model.set_settings(&Settings { mass_per_length, ..Settings::constrained() }).unwrap();
+            assert_ne!(model.rest.mass, compiled.rest.mass);
         }
-        solver.set_settings(&Settings::constrained()).unwrap();
-        assert_eq!(solver.rest.mass, compiled.rest.mass);
-        assert_eq!(solver.inverse_mass, compiled.inverse_mass);
-    }
-
-    #[test]
-    fn lanes_beyond_the_last_strand_move_with_it() {
-        let solver = Solver::new(&guides(), &Settings::default(), Vec::new()).unwrap();
-        let mut state = solver.rest_state(Pose::IDENTITY);
-        solver.step(&mut state, &Drive { wind: Vec3::X, ..Drive::default() });
-        for lanes in &state.positions {
-            assert_eq!(lanes.get(0), lanes.get(7));
-        }
+        model.set_settings(&Settings::constrained()).unwrap();
+        assert_eq!(model.rest.mass, compiled.rest.mass);
+        assert_eq!(model.inverse_mass, compiled.inverse_mass);
     }
 }

@@ -1,0 +1,132 @@
+//! Runs steps on the CPU.
+
+use strandline_base::Stopwatch;
+
+use super::advance::{NonFinite, advance};
+use super::constrain::constrain;
+use super::gather::gather;
+use super::integrate::integrate;
+use super::mark::mark;
+use super::pose_roots::pose_roots;
+use super::solve_pressure::solve_pressure;
+use super::solve_rods::solve_rods;
+use super::splat::splat;
+use super::{Obstacles, Scratch};
+use crate::step::{Stage, stages};
+use crate::{Drive, Model, Settings, SimError, State, StepReport};
+
+/// A model with what its steps on the CPU work in.
+pub struct CpuRunner {
+    model: Model,
+    scratch: Option<Scratch>,
+}
+
+impl From<Model> for CpuRunner {
+    fn from(model: Model) -> Self {
+        Self { model, scratch: None }
+    }
+}
+
+impl CpuRunner {
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Changes the settings between two steps; states go on as they are.
+    ///
+    /// # Errors
+    /// As [`Model::set_settings`].
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
+        self.model.set_settings(settings)
+    }
+
+    /// Advances a state by one step of `settings.time_step`. It may be another state than the one before.
+    pub fn step(&mut self, state: &mut State, drive: &Drive) -> StepReport {
+        let model = &self.model;
+        let scratch = self.scratch.get_or_insert_with(|| Scratch::new(model, state));
+        scratch.refresh(model, state);
+        model.give_sections(state);
+        let drive = drive.or_still_at(state.world_from_head);
+        state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
+        let obstacles = Obstacles {
+            colliders: &model.colliders,
+            start: state.world_from_head,
+            end: drive.world_from_head,
+            time_step: model.settings.time_step,
+        };
+        let mut step = Step { model, state, scratch, obstacles, drive, report: StepReport::default() };
+        for stage in stages(&model.settings) {
+            let watch = Stopwatch::start();
+            step.run(stage);
+            step.report.seconds.push((stage.name(), watch.seconds()));
+        }
+        let Step { report, .. } = step;
+        state.volume_box = scratch.volume.as_ref().map(|volume| volume.grid.place_numbers());
+        report
+    }
+}
+
+/// A step while it runs.
+struct Step<'a> {
+    model: &'a Model,
+    state: &'a mut State,
+    scratch: &'a mut Scratch,
+    obstacles: Obstacles<'a>,
+    drive: Drive,
+    report: StepReport,
+}
+
+impl Step<'_> {
+    fn run(&mut self, stage: Stage) {
+        let (model, obstacles, wind) = (self.model, &self.obstacles, self.drive.wind);
+        let (state, scratch) = (&mut *self.state, &mut *self.scratch);
+        match stage {
+            Stage::PoseRoots => pose_roots(model, state, scratch, &self.drive.world_from_head),
+            Stage::Integrate => integrate(model, state, scratch, wind),
+            Stage::Constrain => {
+                let non_finite = constrain(model, state, scratch, obstacles);
+                self.count(non_finite);
+            }
+            Stage::SolveRods => {
+                let (non_finite, rods) = solve_rods(model, state, scratch, obstacles, wind);
+                self.report.rods = Some(rods);
+                self.count(non_finite);
+            }
+            Stage::Splat => {
+                scratch.volume.iter_mut().for_each(|volume| {
+                    splat(volume, &scratch.predicted, &state.velocities, &scratch.masses.mass);
+                });
+            }
+            Stage::Mark => scratch.volume.iter_mut().for_each(|volume| mark(volume, obstacles)),
+            Stage::SolvePressure => {
+                self.report.pressure = scratch.volume.as_mut().map(solve_pressure).unwrap_or_default();
+            }
+            Stage::Gather => scratch.volume.iter().for_each(|volume| {
+                let (time_step, weights) = (model.settings.time_step, &model.inverse_mass);
+                gather(volume, time_step, weights, &scratch.predicted, &mut state.velocities);
+            }),
+            Stage::Advance => self.advance(),
+        }
+    }
+
+    fn advance(&mut self) {
+        let outcome = advance(self.model, self.state, self.scratch, &self.obstacles);
+        let points = self.model.strand_count * self.model.points_per_strand;
+        let report = &mut self.report;
+        report.stretch_mean = outcome.stretch_mean();
+        report.stretch_max = outcome.stretch_max;
+        report.penetration_max = outcome.penetration_max;
+        report.speed_mean = (outcome.speed_sum / points as f64) as f32;
+        report.speed_max = outcome.speed_max;
+        self.count(outcome.non_finite);
+    }
+
+    /// Counts points that were not finite.
+    fn count(&mut self, found: NonFinite) {
+        let report = &mut self.report;
+        let before = NonFinite { count: report.non_finite, first_strand: report.non_finite_strand };
+        let NonFinite { count, first_strand } = before.with(found);
+        (report.non_finite, report.non_finite_strand) = (count, first_strand);
+    }
+}

@@ -1,0 +1,88 @@
+//! What kernels and the host share, and how the work is laid out.
+
+use strandline_gpu::mirror;
+
+use crate::PressureReport;
+
+/// Threads of a workgroup, as in common.wesl.
+pub(super) const THREADS: usize = 64;
+/// Most workgroups of a round: each sums what all of them found.
+pub(super) const MOST_WORKGROUPS: usize = 256;
+
+mirror! {
+    /// What a step did. Mirrors `Report` in advance.wesl.
+    pub(super) struct Report {
+        pub stretch_sum: f32,
+        pub stretch_max: f32,
+        pub penetration_max: f32,
+        /// A number of points.
+        pub non_finite: f32,
+        /// Of rods: see `RodReport`.
+        pub residual: f32,
+        pub unsolved: f32,
+        pub resting: f32,
+        pub speed_sum: f32,
+        pub speed_max: f32,
+        pub unused_a: f32,
+        pub unused_b: f32,
+        pub unused_c: f32,
+        pub pressure: PressureState,
+    }
+}
+
+mirror! {
+    /// Where the solve stands. Mirrors `PressureState` in pressure.wesl.
+    pub struct PressureState {
+        /// Residual in the preconditioner's norm.
+        pub rate: f32,
+        /// Largest component of the residual \[m/s\].
+        pub residual: f32,
+        /// The same before the first iteration.
+        pub first: f32,
+        /// 1 once there is nothing left to do.
+        pub done: u32,
+        /// Iterations so far.
+        pub iterations: u32,
+        /// Iterations until the tolerance was met as an absolute one.
+        pub iterations_absolute: u32,
+        /// Unknowns.
+        pub fluid_cells: u32,
+        /// 1 once it was met.
+        pub met: u32,
+    }
+}
+
+impl From<PressureState> for PressureReport {
+    fn from(state: PressureState) -> Self {
+        let solved = state.fluid_cells > 0 && state.first > 0.0;
+        Self {
+            iterations: state.iterations as usize,
+            iterations_absolute: state.iterations_absolute as usize,
+            relative_residual: if solved { state.residual / state.first } else { 0.0 },
+            absolute_residual: state.residual,
+            fluid_cells: state.fluid_cells as usize,
+        }
+    }
+}
+
+/// How the gradient is subtracted [Chen2011 table 1].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Gradient {
+    /// One kernel for all components.
+    #[default]
+    Joint,
+    /// A kernel for each component.
+    Split,
+}
+
+/// Where the solve runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spread {
+    /// Small grids on one workgroup, others on many.
+    #[default]
+    Auto,
+    /// On one workgroup.
+    One,
+    /// On many.
+    Many,
+}

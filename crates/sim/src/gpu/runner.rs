@@ -1,0 +1,321 @@
+//! Runs steps on a GPU.
+
+use std::sync::Arc;
+
+use strandline_body::Pose;
+use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Recorder, Timer};
+use strandline_groom::{LANES, Lanes, RestShape};
+
+use super::buffers::{Buffers, REPORTS};
+use super::inputs::Step;
+use super::kernels::Kernels;
+use super::pending::{Pending, Reported};
+use super::records::{Gradient, Spread};
+use super::volume::Volume;
+use crate::grab::Grab;
+use crate::step::{Stage, stages};
+use crate::{Drive, Model, RodReport, Settings, SimError, State, StepReport};
+
+/// A model with its kernels and a state on a device.
+///
+/// It agrees with a [`CpuRunner`](crate::cpu::CpuRunner) of the same model within rounding, as far as the order of
+/// sums and the freshness of contact planes allow. An exact mannequin is sampled every 3 mm, since kernels know grids
+/// only.
+pub struct GpuRunner {
+    pub(super) gpu: Gpu,
+    pub(super) model: Model,
+    pub(super) kernels: Arc<Kernels>,
+    pub(super) buffers: Buffers,
+    /// Which of the two buffers of positions is the newer.
+    pub(super) side: usize,
+    /// The stages bound to the buffers, in order, for both sides; none after a change.
+    bound: Option<[Vec<(Stage, Dispatches)>; 2]>,
+    pub(super) world_from_head: Pose,
+    pub(super) time: f64,
+    pub(super) length_scale: Vec<Lanes>,
+    /// The rest shape with these lengths.
+    pub(super) lengths: Arc<RestShape>,
+    /// Where the box of the volume is to be from the next step on \[m\]; none leaves it.
+    pub(super) volume_box: Option<[f32; 4]>,
+    pub(super) grab: Grab,
+    pub(super) pending: Pending,
+    /// Reports that were read before somebody asked for them.
+    reports: Vec<StepReport>,
+    gradient: Gradient,
+    spread: Spread,
+    costs: Costs,
+}
+
+/// What a step asked of the device.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Costs {
+    /// Kernels started.
+    pub dispatches: usize,
+    /// Those of the pressure solve among them.
+    pub solve_dispatches: usize,
+    /// Bytes that the kernels without the solve's rounds must move at least: every number that they
+    /// read or write, once for each kernel.
+    pub bytes: u64,
+}
+
+impl GpuRunner {
+    /// Compiles the kernels for a model; its guides are at rest.
+    ///
+    /// # Errors
+    /// MIC(0), which is for the CPU only; more than 2,000 iterations of the pressure solve; whatever the
+    /// device refuses.
+    pub fn new(gpu: &Gpu, model: Model) -> Result<Self, SimError> {
+        model.settings.check_on_gpu()?;
+        let kernels = Kernels::new(gpu, model.points_per_strand)?;
+        let state = model.rest_state(Pose::IDENTITY);
+        Self::with_kernels(gpu, model, Arc::new(kernels), &state)
+    }
+
+    /// Another runner with the same kernels, for a state.
+    ///
+    /// # Errors
+    /// The device has no memory left or was lost.
+    pub fn another(&self, state: &State) -> Result<Self, SimError> {
+        Self::with_kernels(&self.gpu, self.model.clone(), Arc::clone(&self.kernels), state)
+    }
+
+    fn with_kernels(gpu: &Gpu, model: Model, kernels: Arc<Kernels>, state: &State) -> Result<Self, SimError> {
+        Ok(Self {
+            gpu: gpu.clone(),
+            kernels,
+            buffers: Buffers::new(gpu, &model, state)?,
+            model,
+            side: 0,
+            bound: None,
+            world_from_head: state.world_from_head,
+            time: state.time,
+            length_scale: state.length_scale.clone(),
+            lengths: Arc::clone(&state.lengths),
+            volume_box: state.volume_box,
+            grab: state.grab.clone(),
+            pending: Pending::new(gpu)?,
+            reports: Vec::new(),
+            gradient: Gradient::default(),
+            spread: Spread::default(),
+            costs: Costs::default(),
+        })
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Time of the state \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Pose of the head now.
+    pub fn world_from_head(&self) -> Pose {
+        self.world_from_head
+    }
+
+    /// Positions \[m\] now and one step ago, world space, `[block][point][component][lane]`: for a
+    /// renderer on the same device. They change places with every step.
+    pub fn positions(&self) -> [&Buffer<f32>; 2] {
+        [&self.buffers.places[self.side], &self.buffers.places[1 - self.side]]
+    }
+
+    /// What the last step asked of the device.
+    pub fn costs(&self) -> Costs {
+        self.costs
+    }
+
+    /// Chooses between one kernel and three for the pressure gradient [Chen2011 table 1].
+    pub fn set_gradient(&mut self, gradient: Gradient) {
+        self.gradient = gradient;
+        self.bound = None;
+    }
+
+    /// Chooses where the pressure solve runs.
+    pub fn set_spread(&mut self, spread: Spread) {
+        self.spread = spread;
+        self.bound = None;
+    }
+
+    /// Changes the settings between two steps.
+    ///
+    /// # Errors
+    /// A setting outside its range or MIC(0), then nothing changes; or the device was lost.
+    pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
+        settings.check_on_gpu()?;
+        self.gpu.check()?;
+        let had_rods = self.model.rods.is_some();
+        let host = if settings.has_rods() == had_rods {
+            None
+        } else {
+            self.drain()?;
+            Some(self.state()?)
+        };
+        self.model.set_settings(settings)?;
+        self.bound = None;
+        match host {
+            // Another strand solver has other buffers.
+            Some(host) => {
+                self.buffers = Buffers::new(&self.gpu, &self.model, &host)?;
+                self.side = 0;
+            }
+            // Masses may have changed.
+            None => self.buffers.write_rest(&self.model, &self.lengths)?,
+        }
+        Ok(())
+    }
+
+    /// Advances the state by one step of `settings.time_step`: one submission, which is not waited
+    /// for. Now and then, when the device holds as many reports as it can, they are read.
+    ///
+    /// # Errors
+    /// The device has no memory left or was lost; then nothing is known of the state until
+    /// [`GpuRunner::write`] replaces it.
+    pub fn step(&mut self, drive: &Drive) -> Result<(), SimError> {
+        self.run(drive, |_| true)?;
+        self.side = 1 - self.side;
+        self.world_from_head = drive.or_still_at(self.world_from_head).world_from_head;
+        self.time += f64::from(self.model.settings.time_step);
+        self.pending.count += 1;
+        Ok(())
+    }
+
+    /// Waits for the device and reports all steps since the last call.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        self.drain()?;
+        Ok(std::mem::take(&mut self.reports))
+    }
+
+    /// Records and submits the stages of a step that are wanted.
+    pub(super) fn run(&mut self, drive: &Drive, wanted: impl Fn(Stage) -> bool) -> Result<(), SimError> {
+        self.prepare()?;
+        let drive = drive.or_still_at(self.world_from_head);
+        self.grab.hand = drive.hand.unwrap_or(self.grab.hand);
+        let uniform = Step::new(&self.model, &self.world_from_head, &drive, &self.grab, self.pending.count);
+        self.buffers.step.write(&[uniform])?;
+        let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
+        let Pending { timer, marks, count } = &self.pending;
+        self.gpu.guarded("a step", || {
+            let mut recorder = Recorder::new(&self.gpu, timer.as_ref());
+            timer.iter().for_each(Timer::restart);
+            for (stage, dispatches) in self.bound.iter().flat_map(|sides| &sides[self.side]) {
+                if !wanted(*stage) {
+                    continue;
+                }
+                if let (Stage::Splat, Some(volume)) = (stage, &self.buffers.volume) {
+                    recorder.clear(&volume.start_index);
+                }
+                recorder.stage(stage.name(), dispatches);
+                costs.dispatches += dispatches.len();
+                costs.solve_dispatches += if *stage == Stage::SolvePressure { dispatches.len() } else { 0 };
+            }
+            let recorded = recorder.finish(|encoder| {
+                if let Some(timer) = timer {
+                    timer.resolve(encoder, marks.raw(), *count as u64 * Timer::BYTES);
+                }
+            });
+            self.gpu.queue().submit([recorded]);
+        })?;
+        self.costs = costs;
+        Ok(())
+    }
+
+    /// Makes the volume fit the settings and binds the stages where that changed.
+    pub(super) fn prepare(&mut self) -> Result<(), SimError> {
+        let settings = &self.model.settings.volume;
+        let kept = self.buffers.volume.take().filter(|old| settings.enabled && old.cells == settings.cells);
+        let changed = kept.is_some() != settings.enabled;
+        self.buffers.volume = match kept {
+            Some(volume) => Some(volume),
+            None if settings.enabled => {
+                let Buffers { lane_count, points, .. } = self.buffers;
+                let made = Volume::new(&self.gpu, settings.cells, lane_count, points);
+                Some(made.map_err(|error| SimError::of_volume(settings.cells, error))?)
+            }
+            None => None,
+        };
+        if let (Some(volume), Some(place)) = (&self.buffers.volume, self.volume_box.take()) {
+            volume.put(place)?;
+        }
+        if changed || self.bound.is_none() {
+            // Times of stages that are no longer there cannot be told apart later.
+            self.drain()?;
+            if let Some(volume) = &mut self.buffers.volume {
+                volume.gradient = self.gradient;
+                volume.spread = self.spread;
+            }
+            self.bound = None;
+            self.bound = Some([self.bind(0)?, self.bind(1)?]);
+        }
+        if self.pending.count == REPORTS {
+            self.drain()?;
+        }
+        Ok(())
+    }
+
+    /// Binds the stages for the steps that start with the newer positions on a side.
+    fn bind(&self, side: usize) -> Result<Vec<(Stage, Dispatches)>, GpuError> {
+        let preconditioner = self.model.settings.volume.preconditioner;
+        let bind =
+            |stage| Ok((stage, self.kernels.bind(stage, &self.gpu, &self.buffers, side, preconditioner)?));
+        stages(&self.model.settings).map(bind).collect()
+    }
+
+    /// Reads the reports that lie on the device.
+    fn drain(&mut self) -> Result<(), SimError> {
+        let found = self.pending.drain(&self.gpu, &self.buffers.reports)?;
+        let segments = segment_count(&self.model);
+        self.reports.extend(found.into_iter().map(|reported| step_report(reported, &self.model, segments)));
+        Ok(())
+    }
+}
+
+/// Segments of strands that can stretch.
+fn segment_count(model: &Model) -> usize {
+    let points = model.points_per_strand;
+    let free = |strand: usize, point: usize| {
+        model.inverse_mass[strand / LANES * points + point].0[strand % LANES] > 0.0
+    };
+    let stretches = |strand: usize| (1..points).filter(move |&p| free(strand, p - 1) || free(strand, p));
+    (0..model.strand_count).map(|strand| stretches(strand).count()).sum()
+}
+
+fn step_report((report, seconds): Reported, model: &Model, segment_count: usize) -> StepReport {
+    StepReport {
+        seconds,
+        pressure: report.pressure.into(),
+        rods: model.rods.is_some().then_some(RodReport {
+            residual: report.residual,
+            unsolved: report.unsolved as usize,
+            resting: report.resting as usize,
+        }),
+        stretch_mean: report.stretch_sum / segment_count.max(1) as f32,
+        stretch_max: report.stretch_max,
+        penetration_max: report.penetration_max,
+        speed_mean: report.speed_sum / (model.strand_count * model.points_per_strand) as f32,
+        speed_max: report.speed_max,
+        non_finite: report.non_finite as usize,
+        non_finite_strand: None,
+    }
+}
+
+/// What keeps a lost device's error apart from a setting's.
+impl SimError {
+    /// What keeps a volume of so many cells off the device: the setting, where there is too little room.
+    fn of_volume(cells: [u32; 3], source: GpuError) -> Self {
+        match source {
+            GpuError::Limit { .. } | GpuError::OutOfMemory { .. } => Self::Cells { cells, source },
+            other => Self::Gpu(other),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! States on their way between host and device.
+
+use std::sync::Arc;
+
+use strandline_gpu::Readback;
+use strandline_groom::Vec3Lanes;
+
+use super::buffers::{floats, floats_mut, speeds};
+use super::runner::GpuRunner;
+use super::volume::GridState;
+use crate::{SimError, State};
+
+impl GpuRunner {
+    /// Waits for the device and copies the state back.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn state(&self) -> Result<State, SimError> {
+        let mut state = self.model.rest_state(self.world_from_head);
+        state.length_scale.clone_from(&self.length_scale);
+        state.grab.clone_from(&self.grab);
+        state.lengths = Arc::clone(&self.lengths);
+        self.read_into(&mut state)?;
+        Ok(state)
+    }
+
+    /// Waits for the device and copies what a picture needs into a state of the host: positions,
+    /// those of one step ago, the head's pose and the time; and the velocities with their corrections, of rods
+    /// how their sections are turned.
+    ///
+    /// # Errors
+    /// The device was lost; the state is then as it was.
+    pub fn read_into(&self, state: &mut State) -> Result<(), SimError> {
+        let [positions, previous] = self.positions();
+        let velocities = &self.buffers.velocities;
+        let mut batch = Readback::new();
+        let parts = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
+        let grid = self.buffers.volume.as_ref().map(|volume| batch.add(&volume.grid, 1));
+        let copied = batch.read(velocities.gpu())?;
+        state.volume_box = grid.and_then(|grid| copied.take(grid).first().map(GridState::place));
+        let [positions, previous, velocities] = parts.map(|part| copied.take(part));
+        floats_mut(&mut state.positions).copy_from_slice(&positions);
+        floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
+        let count = self.buffers.point_count();
+        let (velocities, others) = velocities.split_at(3 * count);
+        floats_mut(&mut state.velocities).copy_from_slice(velocities);
+        if self.buffers.rods.is_some() {
+            state.corrections.fill(Vec3Lanes::default());
+            floats_mut(&mut state.sections).copy_from_slice(&others[..3 * count]);
+            bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
+        } else {
+            floats_mut(&mut state.corrections).copy_from_slice(others);
+        }
+        state.world_from_head = self.world_from_head;
+        state.time = self.time;
+        state.grab.hand = self.grab.hand;
+        Ok(())
+    }
+
+    /// Replaces the state on the device by one of the host.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn write(&mut self, state: &State) -> Result<(), SimError> {
+        self.buffers.write_rest(&self.model, &state.lengths)?;
+        self.buffers.places[self.side].write(floats(&state.positions))?;
+        self.buffers.places[1 - self.side].write(floats(&state.previous_positions))?;
+        self.buffers.velocities.write(&speeds(&self.model.with_sections(state)))?;
+        self.length_scale.clone_from(&state.length_scale);
+        self.lengths = Arc::clone(&state.lengths);
+        self.volume_box = state.volume_box;
+        self.world_from_head = state.world_from_head;
+        self.time = state.time;
+        self.write_grab(state)
+    }
+
+    /// Holds on the device what the hand of a state of the host holds: see [`State::grab`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn write_grab(&mut self, state: &State) -> Result<(), SimError> {
+        self.buffers.write_grips(&state.grab)?;
+        self.grab.clone_from(&state.grab);
+        Ok(())
+    }
+}
