@@ -10,7 +10,7 @@ pub(super) const THREADS: usize = 64;
 pub(super) const MOST_WORKGROUPS: usize = 256;
 
 mirror! {
-    /// What a step did. Mirrors `Report` in advance.wesl.
+    /// What a step did. Mirrors `Report` in report.wesl.
     pub(super) struct Report {
         pub stretch_sum: f32,
         pub stretch_max: f32,

@@ -9,7 +9,7 @@ use super::volume::{GridState, SortedPoint};
 
 kernel! {
     /// Boxes around the points of strands; one thread is one strand.
-    pub(super) struct Bounds in "splat" (super::linked::SPLAT), entry "bounds" {
+    pub(super) struct Bounds in "follow" (super::linked::FOLLOW), entry "bounds" {
         0 step: Read Step,
         2 predicted: Read f32,
         4 mass: Read f32,
@@ -19,7 +19,7 @@ kernel! {
 
 kernel! {
     /// Moves the grid over the points; one workgroup.
-    pub(super) struct Follow in "splat" (super::linked::SPLAT), entry "follow" {
+    pub(super) struct Follow in "follow" (super::linked::FOLLOW), entry "follow" {
         1 grid: ReadWrite GridState,
         5 boxes: ReadWrite [f32; 4],
         6 ladder: Read f32,
