@@ -1,7 +1,7 @@
 //! What a model takes from guides at rest.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_body::{Carrier, Collider, Pose};
 use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 

@@ -1,7 +1,7 @@
 //! Hair in a hand: one point of every strand that it holds follows it.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use crate::Model;

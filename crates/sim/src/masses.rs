@@ -1,4 +1,4 @@
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_groom::{Lanes, RestShape};
 
 use crate::Model;

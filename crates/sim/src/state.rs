@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use rayon::prelude::*;
 use strandline_base::SettingError;
+use strandline_base::par::prelude::*;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 

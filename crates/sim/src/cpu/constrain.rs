@@ -1,6 +1,6 @@
 //! Lengths, bends and solids, then v* = (x* - x) / dt [Mueller2007; Chen2011 §4.1].
 
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 

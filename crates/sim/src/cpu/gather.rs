@@ -1,6 +1,6 @@
 //! `gather`: points take their velocities from the faces.
 
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use super::faces::{Faces, Stencil};

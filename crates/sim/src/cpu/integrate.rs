@@ -1,8 +1,8 @@
 //! Forces, then a prediction: v* = v + dt a, x* = x + dt (v* + c), with c the length pass's correction.
 
 use glam::Vec3;
-use rayon::prelude::*;
 use strandline_base::math;
+use strandline_base::par::prelude::*;
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 

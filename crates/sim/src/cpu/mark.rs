@@ -1,6 +1,6 @@
 //! `mark`: every cell near hair is fluid, solid or air.
 
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 
 use super::cell_kind::Kind;
 use super::obstacles::Obstacles;
@@ -62,7 +62,7 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
             let far = |cell: usize| kinds.get(cell) == Some(&Kind::Fluid) && distances[cell] > depth;
             !around.flatten().any(far) && look_up(cell) < 0.0
         })
-        .copied()
+        .map(|cell| *cell)
         .collect();
     for cell in beside {
         volume.kinds[cell as usize] = Kind::Solid;

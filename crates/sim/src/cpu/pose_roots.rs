@@ -1,6 +1,6 @@
 //! Rooted points follow the head. \[Chen2011\] says nothing of them; a point of inverse mass 0 is what its §4.1 allows.
 
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_body::Pose;
 
 use super::Scratch;

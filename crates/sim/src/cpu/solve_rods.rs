@@ -1,7 +1,7 @@
 //! The stage: rods of all strands through a step, in parts, then outside the solids at exact lengths.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;

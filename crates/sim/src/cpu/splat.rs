@@ -1,7 +1,7 @@
 //! `splat`: points become velocities on the faces of the staggered grid.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::{self, prelude::*};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use super::cell_sort::NO_CELL;
@@ -25,10 +25,10 @@ pub fn splat(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lan
     let Volume { grid, carried, faces, touched, .. } = volume;
     let strides = grid.strides();
     let [u, v, w] = &mut faces.components;
-    rayon::join(
+    par::join(
         || component::<0>(strides, carried, touched, u),
         || {
-            rayon::join(
+            par::join(
                 || component::<1>(strides, carried, touched, v),
                 || component::<2>(strides, carried, touched, w),
             )

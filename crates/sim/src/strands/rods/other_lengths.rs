@@ -1,7 +1,7 @@
 //! Rods of other lengths than at rest: what is left keeps its shape.
 
 use glam::Vec3;
-use rayon::prelude::*;
+use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
