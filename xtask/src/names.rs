@@ -100,13 +100,13 @@ impl Recipe {
     }
 }
 
-/// The stages that a text lists: the names in its calls of `timed`, or those that the arms of `Stage::name` return.
+/// The stages that a text lists: the names in its calls of `timed`, or in its lines of `stages!`.
 fn timed(text: &str) -> Vec<String> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let calls = code.split("timed(").skip(1);
     let called = calls.filter_map(|call| Some(call.split(';').next()?.split('"').nth(1)?.to_owned()));
-    let arms = code.lines().filter(|line| line.trim_start().starts_with("Self::"));
-    let named = arms.filter_map(|line| Some(line.split_once("=> \"")?.1.split_once('"')?.0.to_owned()));
+    let lines = code.lines().filter(|line| line.ends_with(';'));
+    let named = lines.filter_map(|line| Some(line.split_once(" = \"")?.1.split_once("\", ")?.0.to_owned()));
     called.chain(named).collect()
 }
 
@@ -145,7 +145,7 @@ mod tests {
         let list = "use x::timed;\ntimed(seconds, \"splat\", || splat());\nlet a = timed(\n    s,\n    \"mark\", f);\n\
                     fn timed(s: S);\n#[cfg(test)]\nmod tests { timed(s, \"no\", f); }";
         assert_eq!(timed(list), ["splat", "mark"]);
-        assert_eq!(timed("Self::Splat,\n    Self::Splat => \"splat\",\n"), ["splat"]);
+        assert_eq!(timed("stages! {\n    /// Sorted.\n    Splat = \"splat\", volume;\n}\n"), ["splat"]);
     }
 
     #[test]

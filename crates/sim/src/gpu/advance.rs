@@ -1,10 +1,11 @@
 //! Measures the step: stretch, penetration, non-finite points.
 
-use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::{PressureState, Report, THREADS};
+use super::stage::{StageKernels, Target};
 
 kernel! {
     /// One thread is one strand.
@@ -35,12 +36,17 @@ pub(super) struct Stage {
     report: Kernel<Gathered<'static>>,
 }
 
-impl Stage {
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        vec![Advance::declaration(), Gathered::declaration()]
+    }
+
+    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
         Ok(Self { advance: Kernel::new(gpu, &[])?, report: Kernel::new(gpu, &[])? })
     }
 
-    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, side, .. } = *to;
         let Buffers { step, solids, rest_positions, rest, velocities, outcomes, .. } = buffers;
         let (positions, predicted) = (&buffers.places[side], &buffers.places[1 - side]);
         let hair = Advance { step, solids, rest_positions, rest, predicted, velocities, positions, outcomes };

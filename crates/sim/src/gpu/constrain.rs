@@ -1,10 +1,10 @@
 //! Lengths, bends and solids: all rounds of a strand in one thread.
 
-use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
-use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::THREADS;
+use super::stage::{StageKernels, Target};
 
 kernel! {
     /// One thread is one strand.
@@ -25,15 +25,20 @@ pub(super) struct Stage {
     strands_per_workgroup: usize,
 }
 
-impl Stage {
-    pub fn new(gpu: &Gpu, points: usize) -> Result<Self, GpuError> {
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        vec![Constrain::declaration()]
+    }
+
+    fn new(gpu: &Gpu, points: usize) -> Result<Self, GpuError> {
         let strands = strands_per_workgroup(points);
         // POINTS and STRANDS of strand.wesl.
         let constants = [("0", points as f64), ("1", strands as f64)];
         Ok(Self { kernel: Kernel::new(gpu, &constants)?, strands_per_workgroup: strands })
     }
 
-    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, side, .. } = *to;
         let bound = self.kernel.bind(
             gpu,
             &Constrain {

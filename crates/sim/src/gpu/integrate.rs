@@ -1,10 +1,10 @@
 //! Forces, then a prediction.
 
-use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
-use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::THREADS;
+use super::stage::{StageKernels, Target};
 
 kernel! {
     /// One thread is one point.
@@ -20,12 +20,17 @@ kernel! {
 
 pub(super) struct Stage(Kernel<Integrate<'static>>);
 
-impl Stage {
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        vec![Integrate::declaration()]
+    }
+
+    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
         Kernel::new(gpu, &[]).map(Self)
     }
 
-    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, side, .. } = *to;
         let bound = self.0.bind(
             gpu,
             &Integrate {

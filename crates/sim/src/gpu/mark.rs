@@ -1,10 +1,10 @@
 //! Every cell near hair is fluid, solid or air.
 
-use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
-use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::THREADS;
+use super::stage::{StageKernels, Target};
 use super::volume::GridState;
 
 kernel! {
@@ -35,12 +35,17 @@ pub(super) struct Stage {
     carry_walls: Kernel<CarryWalls<'static>>,
 }
 
-impl Stage {
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        vec![Mark::declaration(), CarryWalls::declaration()]
+    }
+
+    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
         Ok(Self { mark: Kernel::new(gpu, &[])?, carry_walls: Kernel::new(gpu, &[])? })
     }
 
-    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers) -> Result<Dispatches, GpuError> {
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, .. } = *to;
         let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
         let (step, solids) = (&buffers.step, &buffers.solids);
         let (grid, start_index, kinds) = (&volume.grid, &volume.start_index, &volume.kinds);

@@ -25,6 +25,7 @@ mod solids;
 mod solve_pressure;
 mod solve_rods;
 mod splat;
+mod stage;
 mod transfer;
 mod volume;
 

@@ -1,6 +1,6 @@
 //! Preconditioned conjugate gradients on the device.
 
-use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Kernel, kernel};
+use strandline_gpu::{Bindings, Buffer, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
 use super::records::{PressureState, Spread};
@@ -74,6 +74,10 @@ pub(super) struct Pcg {
 }
 
 impl Pcg {
+    pub fn declarations() -> [Declaration; 4] {
+        [Search::declaration(), Update::declaration(), SmoothResidual::declaration(), Finish::declaration()]
+    }
+
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let smooth = |degree: usize| -> Result<_, GpuError> {
             let kernel = |side| Kernel::new(gpu, &[("SIDE", side), ("DEGREE", degree as f64)]);

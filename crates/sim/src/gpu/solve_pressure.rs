@@ -1,13 +1,11 @@
 //! The pressure that takes the divergence out of the hair's velocity, without a readback.
 
-use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
-use super::buffers::Buffers;
 use super::pcg::Pcg;
 use super::records::{Gradient, PressureState, THREADS};
+use super::stage::{StageKernels, Target};
 use super::volume::{GridState, Volume};
-use crate::Preconditioner;
-use strandline_gpu::Scan;
 
 kernel! {
     /// Rows of the system; one thread is one cell.
@@ -53,8 +51,15 @@ pub(super) struct Stage {
     gradient_along: [Kernel<SubtractGradient<'static>>; 3],
 }
 
-impl Stage {
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        let mut all =
+            vec![Assemble::declaration(), LevelRooms::declaration(), SubtractGradient::declaration()];
+        all.extend(Pcg::declarations());
+        all
+    }
+
+    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
         let gradient = |axes: f64| Kernel::new(gpu, &[("AXES", axes)]);
         Ok(Self {
             assemble: Kernel::new(gpu, &[])?,
@@ -65,13 +70,8 @@ impl Stage {
         })
     }
 
-    pub fn bind(
-        &self,
-        gpu: &Gpu,
-        buffers: &Buffers,
-        scan: &Scan,
-        preconditioner: Preconditioner,
-    ) -> Result<Dispatches, GpuError> {
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, scan, preconditioner, .. } = *to;
         let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
         let by_cell = groups(volume.cell_count, THREADS);
         let Volume { grid, vectors, neighbours, states, kinds, unknowns, faces, rooms, .. } = volume;
@@ -84,7 +84,9 @@ impl Stage {
         dispatches.extend(self.bind_gradient(gpu, volume, volume.gradient)?);
         Ok(dispatches)
     }
+}
 
+impl Stage {
     /// Subtracting the gradient alone, in a form.
     pub fn bind_gradient(&self, gpu: &Gpu, volume: &Volume, form: Gradient) -> Result<Dispatches, GpuError> {
         let Volume { grid, vectors, neighbours, kinds, unknowns, faces, .. } = volume;

@@ -1,9 +1,9 @@
 //! Rods: a strand bends and twists in one thread, in all parts of a step.
 
-use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
-use super::buffers::Buffers;
 use super::inputs::Step;
+use super::stage::{StageKernels, Target};
 
 kernel! {
     /// One thread is one strand after another.
@@ -21,13 +21,18 @@ kernel! {
 
 pub(super) struct Stage(Kernel<SolveRods<'static>>);
 
-impl Stage {
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        vec![SolveRods::declaration()]
+    }
+
+    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
         Kernel::new(gpu, &[]).map(Self)
     }
 
     /// Nothing without rods.
-    pub fn bind(&self, gpu: &Gpu, buffers: &Buffers, side: usize) -> Result<Dispatches, GpuError> {
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, side, .. } = *to;
         let Some(rods) = &buffers.rods else { return Ok(Vec::new()) };
         let bound = self.0.bind(
             gpu,

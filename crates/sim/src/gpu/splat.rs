@@ -1,10 +1,11 @@
 //! Points become velocities on the faces of the staggered grid: sorted by cell, then gathered.
 
-use strandline_gpu::{Dispatches, Gpu, GpuError, Kernel, Scan, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::THREADS;
+use super::stage::{StageKernels, Target};
 use super::volume::{GridState, SortedPoint};
 
 kernel! {
@@ -92,8 +93,20 @@ pub(super) struct Stage {
     sum_faces: Kernel<SumFaces<'static>>,
 }
 
-impl Stage {
-    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        vec![
+            Bounds::declaration(),
+            Follow::declaration(),
+            FindCells::declaration(),
+            ListPoints::declaration(),
+            RankPoints::declaration(),
+            SortPoints::declaration(),
+            SumFaces::declaration(),
+        ]
+    }
+
+    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
         Ok(Self {
             bounds: Kernel::new(gpu, &[])?,
             follow: Kernel::new(gpu, &[])?,
@@ -106,13 +119,8 @@ impl Stage {
     }
 
     /// `start_index` must be all 0 when the first kernel starts.
-    pub fn bind(
-        &self,
-        gpu: &Gpu,
-        buffers: &Buffers,
-        scan: &Scan,
-        side: usize,
-    ) -> Result<Dispatches, GpuError> {
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, scan, side, .. } = *to;
         let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
         let Buffers { step, velocities, mass, .. } = buffers;
         let predicted = &buffers.places[1 - side];
