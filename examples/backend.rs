@@ -2,7 +2,7 @@
 //! `cargo run --release -p strandline --example backend`
 #![allow(clippy::print_stdout)]
 
-use strandline::{Backend, Hair, Pose, Prepared, Scene};
+use strandline::{Backend, Hair, Pose, Scene, low_level::Prepared};
 
 fn main() -> Result<(), strandline::Error> {
     let mut scene = Scene::demo();
@@ -10,7 +10,8 @@ fn main() -> Result<(), strandline::Error> {
     // `Backend::Gpu(None)` would take a software adapter too, and fail where there is none.
     let mut hair = Hair::from_scene(&scene, Prepared::new(&scene)?, Backend::auto())?;
     let reports = hair.step(0.2, &Pose::IDENTITY)?;
-    let is_sound = |report: &strandline::sim::StepReport| report.non_finite == 0 && report.stretch_max < 1e-3;
+    let is_sound =
+        |report: &strandline::low_level::sim::StepReport| report.non_finite == 0 && report.stretch_max < 1e-3;
     assert!(!reports.is_empty() && reports.iter().all(is_sound), "a step went wrong: {reports:?}");
     println!("simulated on {}", hair.simulated_on());
     for note in hair.take_notes() {

@@ -1,7 +1,7 @@
 //! The README's code: grow a style on the built-in head, shake it for a second, save a picture.
 //! `cargo run --release -p strandline --example hello`
 
-use strandline::{Camera, Error, Hair, Prepared, Scene, Style};
+use strandline::{Camera, Error, Hair, Scene, Style, low_level::Prepared};
 
 fn hello() -> Result<(), Error> {
     let mut scene = Scene::demo(); // or Scene::load("scene.toml".as_ref())?

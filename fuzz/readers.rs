@@ -1,12 +1,12 @@
 //! What must hold of any bytes, for every reader: fuzz targets and the test of the kept corpora share it.
 
 use strandline::Scene;
-use strandline::body::{DistanceGrid, Mesh, SignedDistance};
-use strandline::groom::format::{
+use strandline::low_level::body::{DistanceGrid, Mesh, SignedDistance};
+use strandline::low_level::groom::format::{
     LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx,
 };
-use strandline::groom::{Groom, GroomError, Guides};
-use strandline::render::surroundings::{Panorama, Surroundings};
+use strandline::low_level::groom::{Groom, GroomError, Guides};
+use strandline::low_level::render::surroundings::{Panorama, Surroundings};
 
 /// A reader's target; whether it read the bytes.
 pub type Target = fn(&[u8]) -> bool;
@@ -203,7 +203,7 @@ pub fn scene(bytes: &[u8]) -> bool {
 
 /// The pose of hair is read or refused.
 pub fn pose(bytes: &[u8]) -> bool {
-    strandline::check_pose(bytes, POSE).is_ok()
+    strandline::low_level::check_pose(bytes, POSE).is_ok()
 }
 
 /// Masses and velocities of hair are read or refused.
@@ -211,7 +211,7 @@ pub fn attributes(bytes: &[u8]) -> bool {
     let mut groom = Groom::empty(8e-5);
     (0..POSE[0]).for_each(|_| groom.push([[0.0; 3], [0.0, -1.0, 0.0]].map(Into::into)));
     let mut guides = Guides::resample(&groom, POSE[1]).expect("a groom with a strand");
-    let is_read = strandline::check_attributes(bytes, &mut guides).is_ok();
+    let is_read = strandline::low_level::check_attributes(bytes, &mut guides).is_ok();
     assert!(guides.masses().into_iter().flatten().all(|mass| mass.is_finite() && *mass > 0.0));
     assert!(guides.velocities().into_iter().flatten().all(|velocity| velocity.is_finite()));
     is_read
@@ -220,7 +220,7 @@ pub fn attributes(bytes: &[u8]) -> bool {
 /// A map over the scalp is read or refused; what was read is light at every place.
 pub fn map(bytes: &[u8]) -> bool {
     [[0.0, 0.0], [1.0, 1.0], [0.3, 0.7], [-1e30, 1e30]].into_iter().all(|uv| {
-        strandline::read_map(bytes, uv.into()).is_ok_and(|(color, share)| {
+        strandline::low_level::read_map(bytes, uv.into()).is_ok_and(|(color, share)| {
             assert!(color.is_finite() && (0.0..=1.0).contains(&share), "{color} {share} at {uv:?}");
             true
         })
@@ -229,7 +229,7 @@ pub fn map(bytes: &[u8]) -> bool {
 
 /// A moving cache is read, every frame of it, or refused.
 pub fn cache(bytes: &[u8]) -> bool {
-    strandline::check_cache(bytes).is_ok()
+    strandline::low_level::check_cache(bytes).is_ok()
 }
 
 /// A picture of the surroundings is read or refused; what was read lights with finite numbers.

@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use strandline::{Prepared, Scene};
+use strandline::{Scene, low_level::Prepared};
 
 /// Sintel's hair on her head, in a scene that is changed first; none, with a word, where the folder of grooms
 /// (`STRANDLINE_GROOMS`) is not.

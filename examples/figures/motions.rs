@@ -1,7 +1,9 @@
 //! Sheets of hair in motion: strands of constraints above, rods below.
 
 use glam::Vec3;
-use strandline::{Camera, Look, Picture, Pose, Scene, Style, scene::MotionName, sim::StrandMethod};
+use strandline::{
+    Camera, Look, Picture, Pose, Scene, Style, low_level::sim::StrandMethod, scene::MotionName,
+};
 
 use crate::strip::{joined, stacked};
 use crate::studio::{FRAME, Figure, Moving, Studio, THREE_QUARTER, bust};

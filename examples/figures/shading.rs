@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline::{
     Camera, Hair, Light, Look, Picture, Style,
-    render::{Environment, Highlight},
+    low_level::render::{Environment, Highlight},
 };
 
 use crate::strip::joined;

@@ -2,10 +2,9 @@
 
 use glam::Vec3;
 use strandline::{
-    Backend, Camera, Hair, HeadMotion, Picture, Pose, Prepared, Scene, Style,
-    render::PictureSettings,
+    Backend, Camera, Hair, Picture, Pose, Scene, Style,
+    low_level::{HeadMotion, Prepared, render::PictureSettings, sim::StrandMethod},
     scene::{FilmSection, MotionName},
-    sim::StrandMethod,
 };
 
 /// A finished figure, or why there is none.

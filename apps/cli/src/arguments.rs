@@ -5,8 +5,12 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
-use strandline::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
-use strandline::{Backend, Style, Target, What, scene::MotionName, sim::rods::HairKind};
+use strandline::low_level::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
+use strandline::{
+    Backend, Style,
+    low_level::{Target, What, sim::rods::HairKind},
+    scene::MotionName,
+};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///

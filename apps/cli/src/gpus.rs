@@ -1,6 +1,9 @@
 //! `strandline gpus` and `strandline shaders`: what there is to simulate on, and what runs there.
 
-use strandline::{Error, base::WholeFile, gpu::Gpu, render, sim};
+use strandline::{
+    Error,
+    low_level::{base::WholeFile, gpu::Gpu, render, sim},
+};
 
 use crate::arguments::ShaderOptions;
 use crate::output::print_line;

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use strandline::{
-    Cache, Scene,
+    Scene,
+    low_level::{Cache, sim::StrandMethod},
     scene::{BodyPart, GroomPart},
-    sim::StrandMethod,
 };
 
 use crate::arguments::{Inputs, Usage};

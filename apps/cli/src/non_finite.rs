@@ -3,7 +3,7 @@
 use std::fmt;
 
 use serde::Serialize;
-use strandline::sim::StepReport;
+use strandline::low_level::sim::StepReport;
 
 /// The points of a run that were not finite.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

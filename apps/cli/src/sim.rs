@@ -4,8 +4,11 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 use strandline::{
-    Cache, Event, OutSettings, Player, Scene, Written,
-    sim::{Drift, StepReport},
+    Event, Player, Scene,
+    low_level::{
+        Cache, OutSettings, Written,
+        sim::{Drift, StepReport},
+    },
 };
 
 use crate::arguments::SimOptions;

@@ -3,9 +3,10 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use strandline::groom::format::{Format, endings};
+use strandline::low_level::groom::format::{Format, endings};
 use strandline::{
-    Backend, Camera, Command, Error, Live, Scene, Shown, base::SettingError, render::PictureSettings,
+    Backend, Camera, Error, Live, Scene,
+    low_level::{Command, Shown, base::SettingError, render::PictureSettings},
 };
 
 use crate::{export, files, messages, rescue, saves};

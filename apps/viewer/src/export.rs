@@ -7,8 +7,11 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
 use eframe::egui;
-use strandline::groom::format::Format;
-use strandline::{Error, OutSettings, Player, Scene, Target, What, Written};
+use strandline::low_level::groom::format::Format;
+use strandline::{
+    Error, Player, Scene,
+    low_level::{OutSettings, Target, What, Written},
+};
 
 /// What is to be written.
 #[derive(Clone, Copy, Debug, PartialEq)]

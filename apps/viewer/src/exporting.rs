@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use strandline::Written;
+use strandline::low_level::Written;
 
 use crate::App;
 use crate::export::{Export, numbered};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use strandline::{Command, News};
+use strandline::low_level::{Command, News};
 
 use crate::App;
 

@@ -2,7 +2,11 @@
 
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
 use glam::Vec2;
-use strandline::{Camera, Command, Ray, base::Group, render::PictureSettings, scene::MotionSection};
+use strandline::{
+    Camera,
+    low_level::{Command, Ray, base::Group, render::PictureSettings},
+    scene::MotionSection,
+};
 
 use crate::{App, Tool, controls::button, files::Wanted, messages, wind};
 

@@ -3,7 +3,10 @@
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use strandline::{Camera, Command, News, Scene, Shown, body::Aabb};
+use strandline::{
+    Camera, Scene,
+    low_level::{Command, News, Shown, body::Aabb},
+};
 
 use crate::{App, panels, stage, strip};
 

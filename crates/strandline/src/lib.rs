@@ -48,29 +48,30 @@ mod worker_tests;
 
 pub mod scene;
 
-pub use strandline_base as base;
-pub use strandline_body as body;
-pub use strandline_gpu as gpu;
-pub use strandline_groom as groom;
-pub use strandline_render as render;
-pub use strandline_sim as sim;
+pub mod low_level;
 
-pub use attributes::check_attributes;
-pub use body::{Motion, Pose};
-pub use bound::BoundStrands;
-pub use cache::{Cache, OutSettings, Target, What, Written, check_cache};
-pub use devices::Devices;
+use strandline_body as body;
+use strandline_gpu as gpu;
+use strandline_groom as groom;
+use strandline_render as render;
+use strandline_sim as sim;
+
+pub use body::Pose;
 pub use error::Error;
-pub use film::{Film, FilmFiles, PictureFiles};
+pub use film::Film;
 pub use groom::{Groom, Style};
 pub use hair::Hair;
-pub use hair_pose::check_pose;
-pub use head::HeadMotion;
-pub use live::{Command, Live, News, Shown};
-pub use pick::Ray;
+pub use live::Live;
 pub use player::{Event, Player};
-pub use prepare::{Prepared, mesh_unit, read_map};
 pub use render::{Camera, Light, Look, Picture};
 pub use scene::Scene;
 pub use sim::{Backend, Settings};
-pub use tags::Tags;
+
+// Names of this crate's own modules.
+use bound::BoundStrands;
+use cache::{Cache, OutSettings, What, Written};
+use devices::Devices;
+use film::FilmFiles;
+use head::HeadMotion;
+use pick::Ray;
+use prepare::Prepared;

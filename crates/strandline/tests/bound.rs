@@ -2,12 +2,15 @@
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use strandline::{
-    Backend, Cache, Devices, Event, OutSettings, Picture, Player, Prepared, Scene, What,
-    groom::{
-        Groom,
-        format::{Part, Scale},
+    Backend, Event, Picture, Player, Scene,
+    low_level::{
+        Cache, Devices, OutSettings, Prepared, What,
+        groom::{
+            Groom,
+            format::{Part, Scale},
+        },
+        render::Preset,
     },
-    render::Preset,
     scene::{BodyPart, GroomPart, MotionName},
 };
 
@@ -57,7 +60,7 @@ fn all_strands_of_a_style_are_drawn_alike_on_both_backends() {
     let (without, strands, _) = last(&few, Backend::Cpu);
     assert_eq!(strands, 90);
     assert!(difference(&on_cpu, &without) > 2.0, "the comparison can fail");
-    if let Err(error) = strandline::gpu::Gpu::any() {
+    if let Err(error) = strandline::low_level::gpu::Gpu::any() {
         return eprintln!("not tested on a GPU: {error}");
     }
     let (on_gpu, strands, _) = last(&scene(), Backend::Gpu(Some(0)));
@@ -127,20 +130,24 @@ fn film(path: &std::path::Path) -> Scene {
 }
 
 /// What a film leaves in a cache: its path.
-fn written(scene: &Scene, path: &std::path::Path, what: What) -> strandline::base::npz::Npz<std::fs::File> {
+fn written(
+    scene: &Scene,
+    path: &std::path::Path,
+    what: What,
+) -> strandline::low_level::base::npz::Npz<std::fs::File> {
     let mut player = Player::new(scene, scene.devices, false).unwrap();
     player.set_out(&OutSettings { what, ..OutSettings::new(path) }).unwrap();
     player.by_ref().for_each(|event| drop(event.unwrap()));
     player.close_out().unwrap().unwrap();
     assert_eq!(Cache::open(path).unwrap().what(), what);
-    strandline::base::npz::Npz::new(std::fs::File::open(path).unwrap()).unwrap()
+    strandline::low_level::base::npz::Npz::new(std::fs::File::open(path).unwrap()).unwrap()
 }
 
 #[test]
 fn strands_that_guides_carry_leave_with_what_the_groom_says_of_them() {
     let folder = tempfile::tempdir().unwrap();
     let scene = film(&folder.path().join("lawn.npz"));
-    let rows = |npz: &mut strandline::base::npz::Npz<_>, name: &str| {
+    let rows = |npz: &mut strandline::low_level::base::npz::Npz<_>, name: &str| {
         npz.open(name).unwrap().map_or(0, |rows| rows.shape()[0])
     };
     let all = &mut written(&scene, &folder.path().join("all.npz"), What::Strands);
@@ -206,8 +213,11 @@ fn all_strands_leave_with_the_guides_that_they_follow() {
         assert_eq!((&one.guide_flags, &one.influences), (&groom.guide_flags, &groom.influences));
     }
     let at = folder.path().join("all.usda");
-    let settings =
-        OutSettings { what: What::Strands, target: strandline::Target::Unreal, ..OutSettings::new(&at) };
+    let settings = OutSettings {
+        what: What::Strands,
+        target: strandline::low_level::Target::Unreal,
+        ..OutSettings::new(&at)
+    };
     let mut player = Player::new(&scene, scene.devices, false).unwrap();
     player.set_out(&settings).unwrap();
     player.by_ref().for_each(|event| drop(event.unwrap()));

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use strandline::{
-    Backend, Cache, Event, OutSettings, Picture, Player, Scene, Target, What, scene::MotionName,
-    sim::StrandMethod,
+    Backend, Event, Picture, Player, Scene,
+    low_level::{Cache, OutSettings, Target, What, sim::StrandMethod},
+    scene::MotionName,
 };
 
 const FRAMES: u32 = 14;
@@ -150,7 +151,7 @@ fn what_does_not_fit_is_refused_with_its_mend() {
     let scene = scene();
     whole(&scene, &OutSettings::new(&path));
     let other = Scene {
-        style: strandline::groom::StyleSettings { strand_count: 61, ..scene.style.clone() },
+        style: strandline::low_level::groom::StyleSettings { strand_count: 61, ..scene.style.clone() },
         ..scene.clone()
     };
     let mut player = Player::new(&other, Backend::Cpu, true).unwrap();

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use strandline::body::Random;
+use strandline::low_level::body::Random;
 
 #[path = "../../../fuzz/readers.rs"]
 mod readers;

@@ -3,7 +3,10 @@
 use std::time::{Duration, Instant};
 
 use strandline::scene::{MotionName, MotionSection};
-use strandline::{Camera, Command, Live, Look, News, Scene, Shown};
+use strandline::{
+    Camera, Live, Look, Scene,
+    low_level::{Command, News, Shown},
+};
 
 fn scene() -> Scene {
     let mut scene = Scene::demo();
@@ -84,7 +87,7 @@ fn every_change_shows_in_the_next_pictures() {
         Command::Camera(Camera::back()),
         Command::Look(Box::new(Look { follow_strands: 2, ..scene().look })),
         Command::Lights(Vec::new()),
-        Command::Picture(strandline::render::PictureSettings { exposure: 1.0, ..scene().picture }),
+        Command::Picture(strandline::low_level::render::PictureSettings { exposure: 1.0, ..scene().picture }),
         Command::Length(0.5),
     ];
     for change in changes {
@@ -154,12 +157,12 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
 
 /// The camera that the scene has for itself.
 fn first_camera() -> Camera {
-    strandline::Prepared::new(&scene()).unwrap().camera(64.0 / 48.0)
+    strandline::low_level::Prepared::new(&scene()).unwrap().camera(64.0 / 48.0)
 }
 
 #[test]
 fn it_may_be_left_at_any_moment_under_any_commands() {
-    let mut random = strandline::base::Random::new(7, 0);
+    let mut random = strandline::low_level::base::Random::new(7, 0);
     for round in 0..12 {
         let live = Live::new(scene(), || ()).unwrap();
         for _ in 0..round * 4 {
@@ -249,7 +252,7 @@ fn of_two_scenes_on_their_way_the_last_one_stays() {
     (slow.style.strand_count, fast.style.strand_count) = (300, 30);
     // How long the slow one takes by itself.
     let begin = Instant::now();
-    strandline::Prepared::new(&slow).unwrap();
+    strandline::low_level::Prepared::new(&slow).unwrap();
     let needed = begin.elapsed();
     let told = Instant::now();
     live.tell(Command::Load(Box::new(slow)));
@@ -298,7 +301,7 @@ fn hair_is_pulled_by_a_hand() {
             _ => None,
         })
     });
-    let ray = |x: f32, y: f32| strandline::Ray::new(&camera, glam::Vec2::new(x, y));
+    let ray = |x: f32, y: f32| strandline::low_level::Ray::new(&camera, glam::Vec2::new(x, y));
     // Beside the head, where there is nothing; then in the middle of the hair.
     live.tell(Command::Grab(ray(2.0, 0.9), 0.02));
     next(&live);
@@ -334,7 +337,10 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     };
     live.tell(Command::Record(folder.path().join("one")));
     // The size stays, whatever the window wants.
-    live.tell(Command::Picture(strandline::render::PictureSettings { width: 96, ..scene().picture }));
+    live.tell(Command::Picture(strandline::low_level::render::PictureSettings {
+        width: 96,
+        ..scene().picture
+    }));
     wait(|| live.take_shown().filter(|shown| shown.recorded >= Some(4)));
     live.tell(Command::StopRecording);
     wait(|| live.take_news().into_iter().find(|news| *news == News::Recorded));

@@ -6,7 +6,10 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicIsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use strandline::{Camera, Command, Live, Ray, Scene, Shown};
+use strandline::{
+    Camera, Live, Scene,
+    low_level::{Command, Ray, Shown},
+};
 
 /// The system's allocator, counted.
 struct Counted;

@@ -3,14 +3,17 @@
 
 use glam::{Vec3, vec3};
 use strandline::{
-    Groom, Pose, Prepared, Scene, Settings,
-    body::Mannequin,
-    groom::{
-        Guides,
-        format::{Scale, Up},
+    Groom, Pose, Scene, Settings,
+    low_level::{
+        Prepared,
+        body::Mannequin,
+        groom::{
+            Guides,
+            format::{Scale, Up},
+        },
+        sim::{self, CpuRunner, Drive},
     },
     scene::Model,
-    sim::{self, CpuRunner, Drive},
 };
 
 /// Strands with roots on the mannequin's skin: one leads away from it, one straight down through an ear, the neck and

@@ -2,9 +2,12 @@
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use strandline::{
-    Backend, Error, Event, Hair, Picture, Player, Pose, Prepared, Scene,
-    groom::{LANES, Vec3Lanes},
-    sim::{State, StrandMethod},
+    Backend, Error, Event, Hair, Picture, Player, Pose, Scene,
+    low_level::{
+        Prepared,
+        groom::{LANES, Vec3Lanes},
+        sim::{State, StrandMethod},
+    },
 };
 
 const STRANDS: usize = 60;
@@ -100,7 +103,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     posed.film.settle = 1.0;
     let shown = first_picture(&posed);
     let mut fresh = hair(&posed).unwrap();
-    let camera = strandline::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
+    let camera = strandline::low_level::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
     assert_eq!(shown, fresh.picture(&camera, &posed.look).unwrap());
     posed.begin_at_rest();
     assert!(first_picture(&posed) != shown);

@@ -1,6 +1,6 @@
 //! The README's code is that of examples/hello.rs, which is compiled and run with the other examples.
 
-use strandline::{Hair, Prepared, Scene};
+use strandline::{Hair, Scene, low_level::Prepared};
 
 #[test]
 fn the_readme_shows_the_example() {

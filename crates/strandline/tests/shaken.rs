@@ -4,8 +4,8 @@
 use std::f64::consts::TAU;
 use std::sync::{Mutex, PoisonError};
 
-use strandline::sim::StrandMethod;
-use strandline::{Backend, Hair, Pose, Prepared, Scene};
+use strandline::low_level::sim::StrandMethod;
+use strandline::{Backend, Hair, Pose, Scene, low_level::Prepared};
 
 /// Shakes in a second, and how far to each side \[m\]: 20 times 9.81 m/s^2 at the turning points.
 const RATE: f64 = 5.0;

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
-use strandline::render::{BodyLook, LevelOfDetail, PictureSettings, fibre::FibreModel};
+use strandline::low_level::render::{BodyLook, LevelOfDetail, PictureSettings, fibre::FibreModel};
 use strandline::scene::{Model, MotionName, MotionSection, WindSection};
 use strandline::{
-    Backend, Camera, Command, Event, Light, Live, Look, News, Picture, Ray, Scene, Shown, body,
+    Backend, Camera, Event, Light, Live, Look, Picture, Scene,
+    low_level::{Command, News, Ray, Shown, body},
 };
 
 const PICTURES: u64 = 10_000;

@@ -1,6 +1,6 @@
 //! One thread a strand against one a point: the rounds of lengths alone [Chen2011 fig. 16-17].
 
-use strandline::sim::gpu::{LengthsForm, LengthsInput, lengths_alone};
+use strandline::low_level::sim::gpu::{LengthsForm, LengthsInput, lengths_alone};
 
 use super::gpu::{Device, Forms};
 use crate::output::print_line;

@@ -3,10 +3,13 @@
 use std::time::Instant;
 
 use strandline::{
-    Prepared, Scene,
-    sim::{
-        Drive, Model, SimError,
-        gpu::{GpuRunner, Gradient},
+    Scene,
+    low_level::{
+        Prepared,
+        sim::{
+            Drive, Model, SimError,
+            gpu::{GpuRunner, Gradient},
+        },
     },
 };
 
@@ -97,7 +100,7 @@ fn run(
     runner: &mut GpuRunner,
     count: usize,
     drive: impl Fn(usize) -> Drive,
-) -> Result<Vec<strandline::sim::StepReport>, SimError> {
+) -> Result<Vec<strandline::low_level::sim::StepReport>, SimError> {
     for step in 0..count {
         runner.step(&drive(step))?;
     }

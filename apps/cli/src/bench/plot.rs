@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use serde::Deserialize;
 use strandline::{
     Error,
-    base::{WholeFile, read_plain},
+    low_level::base::{WholeFile, read_plain},
 };
 
 use super::chart::{Chart, Line, svg};

@@ -1,6 +1,9 @@
 //! The thesis's tables 1 to 4 beside ours [Chen2011 §4.2.3, §6].
 
-use strandline::{Backend, Devices, Event, Player, Scene, sim::Preconditioner};
+use strandline::{
+    Backend, Event, Player, Scene,
+    low_level::{Devices, sim::Preconditioner},
+};
 
 use super::gpu::Device;
 use super::measure::measure;

@@ -7,8 +7,10 @@ use glam::Vec3;
 use serde::Serialize;
 use strandline::{
     Backend, Camera, Event, Player, Scene,
-    gpu::Gpu,
-    render::{FrameReport, LevelOfDetail, PictureSettings},
+    low_level::{
+        gpu::Gpu,
+        render::{FrameReport, LevelOfDetail, PictureSettings},
+    },
 };
 
 use super::gpu::Device;

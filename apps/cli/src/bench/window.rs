@@ -4,7 +4,10 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use strandline::{Backend, Camera, Command, Live, News, Ray, Scene, Shown};
+use strandline::{
+    Backend, Camera, Live, Scene,
+    low_level::{Command, News, Ray, Shown},
+};
 
 use super::gpu::Device;
 use super::machine::peak_memory_mb;

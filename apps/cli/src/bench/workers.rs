@@ -5,8 +5,11 @@ use std::time::Instant;
 
 use serde::Serialize;
 use strandline::{
-    Backend, Devices, Event, Player, Scene,
-    gpu::{Crossed, Gpu},
+    Backend, Event, Player, Scene,
+    low_level::{
+        Devices,
+        gpu::{Crossed, Gpu},
+    },
 };
 
 use super::gpu::Device;

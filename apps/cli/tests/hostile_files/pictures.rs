@@ -34,8 +34,11 @@ fn surroundings_that_unpack_to_much() {
     }
     // The tests of the reader hold flat ones of OpenEXR; here every number of the header is a very large one.
     let channel = |name: &str| (name.to_owned(), vec![0.5_f32; 128]);
-    let layers =
-        strandline::render::Layers { width: 16, height: 8, channels: ["R", "G", "B"].map(channel).to_vec() };
+    let layers = strandline::low_level::render::Layers {
+        width: 16,
+        height: 8,
+        channels: ["R", "G", "B"].map(channel).to_vec(),
+    };
     let small = layers.encode().unwrap();
     give("small.exr", &small);
     for at in (4..small.len().min(360)).step_by(12) {

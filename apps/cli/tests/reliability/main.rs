@@ -97,7 +97,7 @@ fn is_whole(path: &Path) -> bool {
         Some("png") => bytes.ends_with(b"IEND\xaeB`\x82") && image::load_from_memory(&bytes).is_ok(),
         Some("gif") => bytes.starts_with(b"GIF") && bytes.ends_with(b";"),
         Some("mp4") => boxes(&bytes).is_some_and(|names| names.contains(b"moov".as_slice())),
-        Some("npz") => strandline::check_cache(&bytes).is_ok(),
+        Some("npz") => strandline::low_level::check_cache(&bytes).is_ok(),
         Some("usda") => bytes.starts_with(b"#usda 1.0\n") && bytes.ends_with(b"\n}\n"),
         Some("hair" | "tfx") => strandline::Groom::load(path).is_ok(),
         Some("toml") | None => true,

@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use strandline::body::Random;
-use strandline::groom::StyleSettings;
+use strandline::low_level::body::Random;
+use strandline::low_level::groom::StyleSettings;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ConfigureWindowAux, ConnectionExt};
 

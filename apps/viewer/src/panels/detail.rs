@@ -1,7 +1,7 @@
 //! How much is drawn.
 
 use eframe::egui::Ui;
-use strandline::{
+use strandline::low_level::{
     Command,
     base::Group,
     render::{Background, LevelOfDetail, PictureSettings, ToneMap},

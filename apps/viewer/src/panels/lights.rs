@@ -4,9 +4,12 @@
 use eframe::egui::{self, Color32, Sense, Stroke, Ui, Vec2};
 use glam::Vec3;
 use strandline::{
-    Camera, Command,
-    base::Group,
-    render::{Light, LightKind},
+    Camera,
+    low_level::{
+        Command,
+        base::Group,
+        render::{Light, LightKind},
+    },
 };
 
 use crate::{

@@ -3,10 +3,12 @@
 use eframe::egui::Ui;
 use strandline::{
     Look,
-    base::Group,
-    render::{
-        Clump, Environment, Highlight, Preset,
-        fibre::{Chiang, Fibre, FibreModel, Pigment},
+    low_level::{
+        base::Group,
+        render::{
+            Clump, Environment, Highlight, Preset,
+            fibre::{Chiang, Fibre, FibreModel, Pigment},
+        },
     },
 };
 

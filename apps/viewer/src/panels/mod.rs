@@ -9,7 +9,7 @@ mod scene;
 mod simulation;
 
 use eframe::egui::{self, Ui};
-use strandline::Command;
+use strandline::low_level::Command;
 
 use crate::{
     App,

@@ -2,8 +2,7 @@
 
 use eframe::egui::{DragValue, Ui};
 use strandline::{
-    Command,
-    base::Group,
+    low_level::{Command, base::Group},
     scene::{GroomSection, KeyframeSection, MotionName, MotionSection, WindSection},
 };
 

@@ -1,7 +1,7 @@
 //! How hair moves.
 
 use eframe::egui::Ui;
-use strandline::{
+use strandline::low_level::{
     Command,
     base::Group,
     sim::{

@@ -4,12 +4,15 @@
 mod lost;
 
 use strandline::{
-    Backend, Devices, Event, Hair, Picture, Player, Pose, Scene,
-    gpu::Gpu,
-    groom::{LANES, Vec3Lanes},
-    render::Preset,
+    Backend, Event, Hair, Picture, Player, Pose, Scene,
+    low_level::{
+        Devices,
+        gpu::Gpu,
+        groom::{LANES, Vec3Lanes},
+        render::Preset,
+        sim::State,
+    },
     scene::MotionName,
-    sim::State,
 };
 
 /// Any adapter, with a device of its own: these tests spoil it.
@@ -43,7 +46,7 @@ fn scene() -> Scene {
 
 fn hair(gpu: &Gpu) -> Hair {
     let scene = scene();
-    let prepared = strandline::Prepared::new(&scene).unwrap();
+    let prepared = strandline::low_level::Prepared::new(&scene).unwrap();
     let hair = Hair::with_device(gpu, prepared.guides, None, prepared.colliders, &scene.simulation);
     let mut hair = hair.unwrap();
     // Two lights with shadow and one without, each shining from one place.
@@ -203,13 +206,15 @@ fn a_second_picture_asks_for_no_more_memory() {
         hair.picture(&camera, &look).unwrap();
         assert_eq!(gpu.memory_used(), used);
     }
-    let wider = strandline::render::PictureSettings::sized(4096, 4096);
+    let wider = strandline::low_level::render::PictureSettings::sized(4096, 4096);
     let error = hair.set_picture(&wider).unwrap_err().to_string();
     assert!(error.contains("out of memory"), "{error}");
     assert!(hair.picture(&camera, &look).is_ok(), "the old size stays");
     gpu.set_memory_limit(u64::MAX);
-    let error =
-        hair.set_picture(&strandline::render::PictureSettings::sized(8192, 64)).unwrap_err().to_string();
+    let error = hair
+        .set_picture(&strandline::low_level::render::PictureSettings::sized(8192, 64))
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("samples") && error.contains("8192"), "{error}");
 }
 
@@ -291,8 +296,8 @@ fn a_hand_holds_on_a_gpu_and_when_it_goes_away() {
 fn mic0_is_for_the_cpu_and_auto_takes_it_there() {
     let Some(gpu) = gpu() else { return };
     let mut scene = scene();
-    scene.simulation.volume.preconditioner = strandline::sim::Preconditioner::Mic0;
-    let prepared = strandline::Prepared::new(&scene).unwrap();
+    scene.simulation.volume.preconditioner = strandline::low_level::sim::Preconditioner::Mic0;
+    let prepared = strandline::low_level::Prepared::new(&scene).unwrap();
     let made = Hair::with_device(&gpu, prepared.guides, None, Vec::new(), &scene.simulation);
     let error = made.err().unwrap().to_string();
     assert!(error.contains("mic0") && error.contains("chebyshev"), "{error}");

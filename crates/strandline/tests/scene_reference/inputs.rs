@@ -2,9 +2,11 @@
 
 use strandline::{
     Scene,
-    base::Group,
-    groom::format,
-    render::{memory::MAX_LIGHTS, surroundings::Panorama},
+    low_level::{
+        base::Group,
+        groom::format,
+        render::{memory::MAX_LIGHTS, surroundings::Panorama},
+    },
     scene,
 };
 

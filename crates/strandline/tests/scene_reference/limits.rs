@@ -2,8 +2,11 @@
 //! is no number are refused by its key, in every component, before anything is grown.
 
 use strandline::{
-    Error, Prepared, Scene,
-    base::{Group, Kind, Row, Table},
+    Error, Scene,
+    low_level::{
+        Prepared,
+        base::{Group, Kind, Row, Table},
+    },
 };
 
 /// Every number with the key that a file names it by and the lines that have to stand before it.

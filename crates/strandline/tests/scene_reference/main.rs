@@ -7,7 +7,10 @@ mod page;
 
 use std::path::Path;
 
-use strandline::{Backend, Scene, Style, groom::StyleSettings, sim::StrandMethod};
+use strandline::{
+    Backend, Scene, Style,
+    low_level::{groom::StyleSettings, sim::StrandMethod},
+};
 
 /// docs/scene.md as it is; recorded anew with STRANDLINE_BLESS=1, as `cargo xtask docs` does.
 fn page() -> String {
@@ -124,7 +127,7 @@ fn devices_of_older_files_are_taken_and_newer_ones_win() {
 
 #[test]
 fn colours_and_looks_that_a_file_gives_are_meant() {
-    use strandline::render::{
+    use strandline::low_level::render::{
         Look, ToneMap,
         fibre::{FibreModel, Pigment},
     };

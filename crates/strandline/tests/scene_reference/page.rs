@@ -5,10 +5,12 @@ use std::fmt::Write;
 use glam::Vec3;
 use strandline::{
     Scene, Style,
-    base::{Group, Kind, Row, Table},
-    render::{GroupLook, Light},
+    low_level::{
+        base::{Group, Kind, Row, Table},
+        render::{GroupLook, Light},
+        sim::rods::GroupSettings,
+    },
     scene::{BodyPart, CapsuleSection, ColliderSection, GroomPart, KeyframeSection, SphereSection},
-    sim::rods::GroupSettings,
 };
 
 const HEAD: &str = r#"# Scene files
