@@ -8,7 +8,7 @@ use strandline_base::math;
 use strandline_base::par::prelude::*;
 
 use super::light_field;
-use crate::fibre::chiang::{Lobes, Pigments, Seen, Table};
+use crate::fibre::chiang::{Lobes, Met, Pigments, Seen, Table};
 
 /// Directions along which light is carried.
 pub const DIRECTIONS: usize = 26;
@@ -95,7 +95,7 @@ impl Lattice {
         let seen = self.seen(sine);
         let paths = self.ways.map(|(way, share)| {
             let solid = 4.0 * std::f32::consts::PI * share;
-            self.paths(t, u, &seen, -way).map(|path| path * solid)
+            self.paths(u, &seen, &Arriving::new(t, -way)).map(|path| path * solid)
         });
         let shares = self.table.shares(sine, self.pigment);
         let mut sums = [Vec3::ZERO; 3];
@@ -112,25 +112,37 @@ impl Lattice {
     }
 
     #[inline]
-    fn paths(&self, t: Vec3, u: Vec3, seen: &Seen, to_light: Vec3) -> [Vec3; 3] {
-        let sine_light = t.dot(to_light);
-        let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();
-        let turn = (u.dot(to_light) / flat).clamp(-1.0, 1.0);
-        self.table.by_path(seen, sine_light, turn, 0.0)
+    fn paths(&self, u: Vec3, seen: &Seen, light: &Arriving) -> [Vec3; 3] {
+        let turn = (u.dot(light.to_light) / light.flat).clamp(-1.0, 1.0);
+        self.table.by_path(seen, &light.met, turn, 0.0)
+    }
+
+    /// How hair of unit tangent `t` is seen along every direction.
+    pub fn shows(&self, t: Vec3) -> [Shows; DIRECTIONS] {
+        self.ways.map(|(way, share)| {
+            let sine = t.dot(way);
+            let weight = 4.0 * std::f32::consts::PI * share * flat(sine);
+            Shows { u: light_field::across(t, way), seen: self.seen(sine), weight }
+        })
     }
 
     /// Adds what hair of unit tangent `t` shows along every direction of light of the given radiance (of a white
     /// surface that faces it) from a unit direction; what is shown all around is what meets the hair.
-    pub fn add_light(&self, t: Vec3, to_light: Vec3, light: Vec3, shown: &mut Rays) {
-        let flat = |sine: f32| (1.0 - sine * sine).max(0.0).sqrt();
-        let paths = self
-            .ways
-            .map(|(way, _)| self.paths(t, light_field::across(t, way), &self.seen(t.dot(way)), to_light));
+    pub fn add_light(
+        &self,
+        t: Vec3,
+        shows: &[Shows; DIRECTIONS],
+        to_light: Vec3,
+        light: Vec3,
+        shown: &mut Rays,
+    ) {
+        let arriving = Arriving::new(t, to_light);
         let mut sums = [Vec3::ZERO; 3];
-        for (path, (way, share)) in paths.iter().zip(self.ways) {
-            let weight = 4.0 * std::f32::consts::PI * share * flat(t.dot(way));
-            sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += *path * weight);
-        }
+        let paths = shows.each_ref().map(|Shows { u, seen, weight }| {
+            let path = self.paths(*u, seen, &arriving);
+            sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += path * *weight);
+            path
+        });
         let sine = t.dot(to_light);
         let shares = self.table.shares(sine, self.pigment);
         let light = light * std::f32::consts::PI;
@@ -157,6 +169,38 @@ impl Lattice {
     pub fn albedo(&self) -> Vec4 {
         self.albedo
     }
+}
+
+/// How hair is seen along one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Shows {
+    /// A unit vector across the hair toward the eye.
+    u: Vec3,
+    seen: Seen,
+    /// What it weighs in the sum of all that is shown.
+    weight: f32,
+}
+
+/// Light that meets hair from one direction.
+struct Arriving {
+    to_light: Vec3,
+    /// Cosine of its inclination.
+    flat: f32,
+    met: Met,
+}
+
+impl Arriving {
+    #[inline]
+    fn new(t: Vec3, to_light: Vec3) -> Self {
+        let sine = t.dot(to_light);
+        Self { to_light, flat: (1.0 - sine * sine).max(1e-8).sqrt(), met: Met::new(sine) }
+    }
+}
+
+/// The cosine of a sine.
+#[inline]
+fn flat(sine: f32) -> f32 {
+    (1.0 - sine * sine).max(0.0).sqrt()
 }
 
 /// Unit vectors spread evenly over half of the sphere.
@@ -191,7 +235,7 @@ mod tests {
         let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], 1.0);
         let (t, to_light) = (Vec3::new(0.2, 0.9, 0.1).normalize(), Vec3::new(0.4, 0.7, 0.6).normalize());
         let mut shown = Rays::default();
-        lattice.add_light(t, to_light, Vec3::ONE, &mut shown);
+        lattice.add_light(t, &lattice.shows(t), to_light, Vec3::ONE, &mut shown);
         let leaves = |(shown, (way, share)): (&Vec4, &(Vec3, f32))| {
             shown.x * 4.0 * share * (1.0 - t.dot(*way).powi(2)).sqrt()
         };

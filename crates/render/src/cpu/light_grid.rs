@@ -159,9 +159,13 @@ fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usi
     if cell.hair == 0.0 {
         return shown;
     }
+    let shows = scene.lattice.shows(cell.tangent);
     let mut show = |beam: &Beam| {
+        if beam.light == Vec3::ZERO {
+            return;
+        }
         let (to_light, light) = (beam.way.normalize_or(Vec3::Y), beam.light);
-        scene.lattice.add_light(cell.tangent, to_light, light * cell.order, &mut shown);
+        scene.lattice.add_light(cell.tangent, &shows, to_light, light * cell.order, &mut shown);
         // Irradiance, pi times the radiance, over the whole sphere.
         let even = scene.lattice.albedo() * light.extend(0.0) * (0.25 * (1.0 - cell.order));
         shown.iter_mut().for_each(|shown| *shown += even);

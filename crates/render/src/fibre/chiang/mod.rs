@@ -12,7 +12,7 @@ use strandline_base::{choices, settings};
 
 pub use lobes::{LOBES, Lobes};
 pub use moments::MOMENTS;
-pub use table::{ENTRIES, LEVELS, Pigments, Seen, Table};
+pub use table::{ENTRIES, LEVELS, Met, Pigments, Seen, Table};
 
 /// Absorption per fibre radius of one unit of eumelanin and of pheomelanin \[d'Eon2011\].
 const EUMELANIN: DVec3 = DVec3::new(0.419, 0.697, 1.37);

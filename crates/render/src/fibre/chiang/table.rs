@@ -88,6 +88,22 @@ impl Seen {
     }
 }
 
+/// What all eyes share of light from one inclination.
+#[derive(Clone, Copy, Debug)]
+pub struct Met {
+    /// The inclination \[rad\], and one less the square of its sine.
+    angle: f32,
+    square: f32,
+}
+
+impl Met {
+    /// For the sine of the light's inclination.
+    #[inline]
+    pub fn new(sine: f32) -> Self {
+        Self { angle: arc_sine(sine), square: 1.0 - sine * sine }
+    }
+}
+
 impl Table {
     /// The tables of a fibre; absorption per fibre radius at the root.
     pub fn new(lobes: &Lobes, absorption: [f64; 3]) -> Self {
@@ -149,15 +165,15 @@ impl Table {
     /// [`Table::scatter`] of many lights that one point shows.
     #[inline]
     pub fn shown(&self, seen: &Seen, light: f32, turn: f32, shift: f32) -> Vec3 {
-        let [r, tt, trt] = self.by_path(seen, light, turn, shift);
+        let [r, tt, trt] = self.by_path(seen, &Met::new(light), turn, shift);
         r + tt + trt
     }
 
     /// [`Table::shown`] of R, TT and TRT.
     #[inline]
-    pub fn by_path(&self, seen: &Seen, light: f32, turn: f32, shift: f32) -> [Vec3; 3] {
-        let cosines = (seen.square * (1.0 - light * light)).max(0.0).sqrt();
-        let along = self.along(seen.angle, arc_sine(light), shift) / evened(cosines, self.floor);
+    pub fn by_path(&self, seen: &Seen, met: &Met, turn: f32, shift: f32) -> [Vec3; 3] {
+        let cosines = (seen.square * met.square).max(0.0).sqrt();
+        let along = self.along(seen.angle, met.angle, shift) / evened(cosines, self.floor);
         let turn = FRAC_PI_2 as f32 - arc_sine(turn);
         let turn = place(turn * std::f32::consts::FRAC_1_PI, TURNS);
         let [first, second] = if seen.even {
