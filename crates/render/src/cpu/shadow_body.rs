@@ -5,6 +5,9 @@ use glam::{Vec2, Vec3};
 use super::lanes::rounded_up;
 use super::shadow::{LightView, Window};
 
+/// Half a texel and more than rounding adds.
+const HALF: f32 = 0.501;
+
 /// Draws the nearest depth \[m\] of triangles into a square map that already holds depths.
 pub(crate) fn draw_depth(
     positions: &[Vec3],
@@ -39,8 +42,11 @@ fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32]) {
         return;
     }
     let inverse = 1.0 / area;
-    for row in min.y as i32..rounded_up(max.y) {
-        for column in min.x as i32..rounded_up(max.x) {
+    // Texels whose middles may lie inside: most triangles are as small as a texel.
+    let first = (min - HALF).max(Vec2::ZERO);
+    let end = max - (1.0 - HALF);
+    for row in rounded_up(first.y)..rounded_up(end.y) {
+        for column in rounded_up(first.x)..rounded_up(end.x) {
             let middle = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
             let from = |corner: Vec3| corner.truncate() - middle;
             let first = from(b).perp_dot(from(c)) * inverse;
