@@ -50,11 +50,11 @@ pub mod scene;
 
 pub mod low_level;
 
-use strandline_body as body;
-use strandline_gpu as gpu;
-use strandline_groom as groom;
-use strandline_render as render;
-use strandline_sim as sim;
+pub(crate) use strandline_body as body;
+pub(crate) use strandline_gpu as gpu;
+pub(crate) use strandline_groom as groom;
+pub(crate) use strandline_render as render;
+pub(crate) use strandline_sim as sim;
 
 pub use body::Pose;
 pub use error::Error;
@@ -68,10 +68,10 @@ pub use scene::Scene;
 pub use sim::{Backend, Settings};
 
 // Names of this crate's own modules.
-use bound::BoundStrands;
-use cache::{Cache, OutSettings, What, Written};
-use devices::Devices;
-use film::FilmFiles;
-use head::HeadMotion;
-use pick::Ray;
-use prepare::Prepared;
+pub(crate) use bound::BoundStrands;
+pub(crate) use cache::{Cache, OutSettings, What, Written};
+pub(crate) use devices::Devices;
+pub(crate) use film::FilmFiles;
+pub(crate) use head::HeadMotion;
+pub(crate) use pick::Ray;
+pub(crate) use prepare::Prepared;

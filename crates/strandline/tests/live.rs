@@ -2,19 +2,17 @@
 
 use std::time::{Duration, Instant};
 
+use strandline::low_level::render::PictureSettings;
+use strandline::low_level::{Command, News, Prepared, Ray, Shown};
 use strandline::scene::{MotionName, MotionSection};
-use strandline::{
-    Camera, Live, Look, Scene,
-    low_level::{Command, News, Shown},
-};
+use strandline::{Backend, Camera, Live, Look, Scene, Settings};
 
 fn scene() -> Scene {
     let mut scene = Scene::demo();
     scene.style.strand_count = 60;
     scene.body.spacing = 0.01;
     scene.simulation.volume.cells = [12; 3];
-    scene.devices.simulation = strandline::Backend::Cpu;
-    scene.devices.pictures = strandline::Backend::Cpu;
+    scene.devices = Backend::Cpu.into();
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
     (scene.picture.width, scene.picture.height) = (64, 48);
     scene
@@ -87,7 +85,7 @@ fn every_change_shows_in_the_next_pictures() {
         Command::Camera(Camera::back()),
         Command::Look(Box::new(Look { follow_strands: 2, ..scene().look })),
         Command::Lights(Vec::new()),
-        Command::Picture(strandline::low_level::render::PictureSettings { exposure: 1.0, ..scene().picture }),
+        Command::Picture(PictureSettings { exposure: 1.0, ..scene().picture }),
         Command::Length(0.5),
     ];
     for change in changes {
@@ -133,7 +131,7 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
     assert!(error(&live).contains("no-such.hair"));
     live.tell(Command::Camera(Camera { near: -1.0, ..Camera::front() }));
     assert!(error(&live).contains("camera.near"));
-    live.tell(Command::Settings(Box::new(strandline::Settings { time_step: -1.0, ..scene().simulation })));
+    live.tell(Command::Settings(Box::new(Settings { time_step: -1.0, ..scene().simulation })));
     assert!(error(&live).contains("time_step"));
     live.tell(Command::Length(7.0));
     assert!(error(&live).contains("7"));
@@ -157,7 +155,7 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
 
 /// The camera that the scene has for itself.
 fn first_camera() -> Camera {
-    strandline::low_level::Prepared::new(&scene()).unwrap().camera(64.0 / 48.0)
+    Prepared::new(&scene()).unwrap().camera(64.0 / 48.0)
 }
 
 #[test]
@@ -236,7 +234,7 @@ fn a_setting_shows_in_the_picture_after_that() {
 fn a_setting_that_is_refused_does_not_stop_it() {
     let live = Live::new(scene(), || ()).unwrap();
     next(&live);
-    live.tell(Command::Settings(Box::new(strandline::Settings { time_step: -1.0, ..scene().simulation })));
+    live.tell(Command::Settings(Box::new(Settings { time_step: -1.0, ..scene().simulation })));
     wait(|| live.take_news().into_iter().find(|news| matches!(news, News::Error(_))));
     let frame = next(&live).frame;
     wait(|| live.take_shown().filter(|shown| shown.frame > frame + 3 && shown.step.is_some()));
@@ -252,7 +250,7 @@ fn of_two_scenes_on_their_way_the_last_one_stays() {
     (slow.style.strand_count, fast.style.strand_count) = (300, 30);
     // How long the slow one takes by itself.
     let begin = Instant::now();
-    strandline::low_level::Prepared::new(&slow).unwrap();
+    Prepared::new(&slow).unwrap();
     let needed = begin.elapsed();
     let told = Instant::now();
     live.tell(Command::Load(Box::new(slow)));
@@ -292,7 +290,7 @@ fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
 #[test]
 fn hair_is_pulled_by_a_hand() {
     let mut long = scene();
-    long.motion.name = strandline::scene::MotionName::Still;
+    long.motion.name = MotionName::Still;
     long.look.width_scale = 60.0;
     let live = Live::new(long, || ()).unwrap();
     let camera = wait(|| {
@@ -301,7 +299,7 @@ fn hair_is_pulled_by_a_hand() {
             _ => None,
         })
     });
-    let ray = |x: f32, y: f32| strandline::low_level::Ray::new(&camera, glam::Vec2::new(x, y));
+    let ray = |x: f32, y: f32| Ray::new(&camera, glam::Vec2::new(x, y));
     // Beside the head, where there is nothing; then in the middle of the hair.
     live.tell(Command::Grab(ray(2.0, 0.9), 0.02));
     next(&live);
@@ -337,10 +335,7 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     };
     live.tell(Command::Record(folder.path().join("one")));
     // The size stays, whatever the window wants.
-    live.tell(Command::Picture(strandline::low_level::render::PictureSettings {
-        width: 96,
-        ..scene().picture
-    }));
+    live.tell(Command::Picture(PictureSettings { width: 96, ..scene().picture }));
     wait(|| live.take_shown().filter(|shown| shown.recorded >= Some(4)));
     live.tell(Command::StopRecording);
     wait(|| live.take_news().into_iter().find(|news| *news == News::Recorded));

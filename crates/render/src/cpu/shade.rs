@@ -12,6 +12,7 @@ use super::occlusion::{Occlusion, mean_radiance, toward};
 use super::{Shadows, Strands};
 use crate::fibre::scheuermann::Scheuermann;
 use crate::level_of_detail::is_drawn;
+use crate::lights::Shining;
 use crate::{Environment, Light, LightKind, Look};
 
 /// Fills the radiances of all strands \[linear RGB\] as seen from `eye` \[m\], world space.
@@ -153,17 +154,17 @@ impl Points {
 }
 
 /// A light for eight points at a time.
-enum Source {
+enum Source<'a> {
     /// Direction and radiance, the same everywhere.
     Distant(Vec3, Vec3),
     /// The light itself.
-    Near(Light),
+    Near(Shining<'a>),
 }
 
 /// What all strands have in common.
 struct Shared<'a> {
     shadows: &'a Shadows,
-    sources: Vec<Source>,
+    sources: Vec<Source<'a>>,
     look: &'a Look,
     environment: Environment,
     fibre: Scheuermann,
@@ -175,7 +176,7 @@ struct Shared<'a> {
 impl<'a> Shared<'a> {
     fn new(
         shadows: &'a Shadows,
-        lights: &[Light],
+        lights: &'a [Light],
         look: &'a Look,
         eye: Vec3,
         occlusion: &'a Occlusion,
@@ -185,7 +186,7 @@ impl<'a> Shared<'a> {
                 let light = light.at(Vec3::ZERO);
                 Source::Distant(light.to_light, light.radiance)
             }
-            _ => Source::Near(*light),
+            _ => Source::Near(light.shining()),
         });
         Self {
             shadows,
@@ -209,8 +210,11 @@ impl<'a> Shared<'a> {
         let to_eye = (self.eye - points.position).normalize_or(Vec3x8::splat(Vec3::Z));
         for (index, source) in self.sources.iter().enumerate() {
             let (to_light, radiance) = source.at(&points.places);
-            let scattered = self.fibre.scatter(points.tangent, to_light, to_eye, points.jitter);
             let (crossings, open) = self.shadow(index, points, &cubes, to_light);
+            if open.to_array() == [0.0; LANES] {
+                continue;
+            }
+            let scattered = self.fibre.scatter(points.tangent, to_light, to_eye, points.jitter);
             let extinction = crossings * f32x8::splat(self.log_transmission);
             let straight = open * exp_lanes(extinction);
             let highlights = points.tint * (scattered.second * points.sparkle * straight)
@@ -240,7 +244,10 @@ impl<'a> Shared<'a> {
         if let Some(map) = self.shadows.map(light) {
             for (lane, &place) in points.places.iter().enumerate() {
                 open[lane] = map.body_visibility(place);
-                crossings[lane] = map.crossings(place);
+                // Behind the body nothing is left that hair could take away.
+                if open[lane] > 0.0 {
+                    crossings[lane] = map.crossings(place);
+                }
             }
         } else {
             let mut directions = Vec3Lanes::default();
@@ -253,7 +260,7 @@ impl<'a> Shared<'a> {
     }
 }
 
-impl Source {
+impl Source<'_> {
     fn at(&self, places: &[Vec3; LANES]) -> (Vec3x8, Vec3x8) {
         match self {
             Self::Distant(to_light, radiance) => (Vec3x8::splat(*to_light), Vec3x8::splat(*radiance)),
