@@ -7,6 +7,9 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
+// `mirror!` names the crate.
+extern crate self as strandline_gpu;
+
 #[cfg(not(feature = "wgpu"))]
 mod absent;
 mod adapter;
@@ -14,6 +17,7 @@ mod backend;
 #[cfg(feature = "wgpu")]
 mod device;
 mod error;
+mod threads;
 
 #[cfg(not(feature = "wgpu"))]
 pub use absent::{Buffer, Gpu};
@@ -22,6 +26,7 @@ pub use backend::{Backend, UnknownBackend};
 #[cfg(feature = "wgpu")]
 pub use device::*;
 pub use error::GpuError;
+pub use threads::THREADS;
 
 /// The crate that the host's device and queue come from.
 #[cfg(feature = "wgpu")]

@@ -10,6 +10,7 @@ mod layout;
 mod linked;
 mod readback;
 mod recorder;
+mod rigid;
 mod scan;
 mod texture;
 mod timer;
@@ -22,6 +23,7 @@ pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Dispatches, Kern
 pub use layout::{Field, Layout, Mirror};
 pub use readback::{Copied, Download, Part, Readback};
 pub use recorder::{Amount, Recorder, Targets};
+pub use rigid::Rigid;
 pub use scan::Scan;
 pub use texture::Texture;
 pub use timer::Timer;

@@ -1,23 +1,13 @@
 //! The settings of a frame as the kernels read them.
 
-use glam::{Affine3A, Mat3, Vec3};
+use glam::Vec3;
 use strandline_base::math;
-use strandline_body::Pose;
-use strandline_gpu::mirror;
+use strandline_gpu::{Rigid, mirror};
 
 use super::scene::Scene;
 use crate::cpu::shadow::LightView;
 use crate::fibre::{FibreModel, Pigment, scheuermann::lobe};
 use crate::{LightKind, Look, ToneMap};
-
-mirror! {
-    /// Rows of a rotation, each with its component of the translation \[m\] behind it.
-    pub(super) struct Rigid {
-        pub x: [f32; 4],
-        pub y: [f32; 4],
-        pub z: [f32; 4],
-    }
-}
 
 mirror! {
     /// Light that changes slowly with direction: see cpu/light_field.rs. Last numbers: the share of its width that a
@@ -183,26 +173,6 @@ pub(super) fn body_stride(map_size: u32) -> u32 {
 /// No shadow.
 pub(super) const NO_MAP: u32 = u32::MAX;
 
-impl Rigid {
-    fn of_pose(pose: &Pose) -> Self {
-        Self::new(Mat3::from_quat(pose.rotation), pose.translation)
-    }
-
-    fn of_affine(affine: &Affine3A) -> Self {
-        Self::new(affine.matrix3.into(), affine.translation.into())
-    }
-
-    fn new(rotation: Mat3, translation: Vec3) -> Self {
-        let rows = rotation.transpose();
-        let row = |axis: Vec3, offset: f32| axis.extend(offset).to_array();
-        Self {
-            x: row(rows.x_axis, translation.x),
-            y: row(rows.y_axis, translation.y),
-            z: row(rows.z_axis, translation.z),
-        }
-    }
-}
-
 impl Frame {
     /// What a frame needs.
     pub fn new(scene: &Scene) -> Self {
@@ -210,8 +180,8 @@ impl Frame {
         let (width, height) = (settings.width as f32, settings.height as f32);
         let (scale, map_size) = (settings.supersampling as f32, input.look.hair_shadow().map_size);
         Self {
-            world_from_head: Rigid::of_pose(&input.world_from_head),
-            view_from_world: Rigid::of_affine(&input.camera.view_from_world()),
+            world_from_head: Rigid::from(&input.world_from_head),
+            view_from_world: Rigid::from(&input.camera.view_from_world()),
             eye: input.camera.position.to_array(),
             share: scene.share,
             size: [width * scale, height * scale],

@@ -41,7 +41,6 @@ pub const MAX_LIGHTS: usize = 32;
 /// Most lights with shadow among them.
 pub const MAX_SHADOWS: usize = 8;
 
-/// Threads of a workgroup, as in common.wesl.
-const THREADS: usize = 64;
+use strandline_gpu::THREADS;
 /// Places in the order of depth, as in sort.wesl.
 const ORDER_STEPS: usize = 65_536;

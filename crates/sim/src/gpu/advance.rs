@@ -1,10 +1,10 @@
 //! Measures the step: stretch, penetration, non-finite points.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
-use super::records::{PressureState, Report, THREADS};
+use super::records::{PressureState, Report};
 use super::stage::{StageKernels, Target};
 
 kernel! {

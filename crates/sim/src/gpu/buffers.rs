@@ -1,10 +1,10 @@
 //! What lies on the device.
 
-use strandline_gpu::{Buffer, Gpu};
+use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
 use super::inputs::Step;
-use super::records::{PressureState, Report, THREADS};
+use super::records::{PressureState, Report};
 use super::rod_buffers::{NUMBERS, RodBuffers};
 use super::solids;
 use super::volume::Volume;

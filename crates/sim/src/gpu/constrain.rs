@@ -1,9 +1,8 @@
 //! Lengths, bends and solids: all rounds of a strand in one thread.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::inputs::Step;
-use super::records::THREADS;
 use super::stage::{StageKernels, Target};
 
 kernel! {

@@ -1,23 +1,13 @@
 //! The settings of a step as the kernels read them.
 
-use glam::{Mat3, Vec3};
 use strandline_base::math;
 use strandline_body::Pose;
-use strandline_gpu::mirror;
+use strandline_gpu::{Rigid, mirror};
 
 use crate::cpu::angles::bend_share;
 use crate::cpu::contacts::Care;
 use crate::grab::Grab;
 use crate::{Drive, Model, Preconditioner, Spring};
-
-mirror! {
-    /// Rows of a rotation, each with its component of the translation \[m\] behind it.
-    pub(super) struct Rigid {
-        pub x: [f32; 4],
-        pub y: [f32; 4],
-        pub z: [f32; 4],
-    }
-}
 
 mirror! {
     /// What rods take of a step. Mirrors `RodStep` in common.wesl.
@@ -93,18 +83,6 @@ mirror! {
     }
 }
 
-impl Rigid {
-    fn new(pose: &Pose) -> Self {
-        let rows = Mat3::from_quat(pose.rotation).transpose();
-        let row = |axis: Vec3, offset: f32| axis.extend(offset).to_array();
-        Self {
-            x: row(rows.x_axis, pose.translation.x),
-            y: row(rows.y_axis, pose.translation.y),
-            z: row(rows.z_axis, pose.translation.z),
-        }
-    }
-}
-
 impl RodStep {
     fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32) -> Self {
         let rods = &model.settings.strands.rods;
@@ -143,10 +121,10 @@ impl Step {
         };
         let care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
         Self {
-            world_from_head: Rigid::new(&end),
-            head_from_world: Rigid::new(&end.inverse()),
-            end_from_start: Rigid::new(&from_start(&end, start.inverse())),
-            start_from_end: Rigid::new(&from_start(start, end.inverse())),
+            world_from_head: Rigid::from(&end),
+            head_from_world: Rigid::from(&end.inverse()),
+            end_from_start: Rigid::from(&from_start(&end, start.inverse())),
+            start_from_end: Rigid::from(&from_start(start, end.inverse())),
             head_rotation: end.rotation.to_array(),
             gravity: (settings.gravity * part_time).to_array(),
             time_step: settings.time_step,

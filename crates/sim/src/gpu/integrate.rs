@@ -1,9 +1,8 @@
 //! Forces, then a prediction.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::inputs::Step;
-use super::records::THREADS;
 use super::stage::{StageKernels, Target};
 
 kernel! {

@@ -1,9 +1,8 @@
 //! Every cell near hair is fluid, solid or air.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::inputs::Step;
-use super::records::THREADS;
 use super::stage::{StageKernels, Target};
 use super::volume::GridState;
 

@@ -1,9 +1,8 @@
 //! Rooted points follow the head.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::inputs::Step;
-use super::records::THREADS;
 use super::stage::{StageKernels, Target};
 
 kernel! {

@@ -4,8 +4,6 @@ use strandline_gpu::mirror;
 
 use crate::PressureReport;
 
-/// Threads of a workgroup, as in common.wesl.
-pub(super) const THREADS: usize = 64;
 /// Most workgroups of a round: each sums what all of them found.
 pub(super) const MOST_WORKGROUPS: usize = 256;
 

@@ -1,8 +1,6 @@
 //! What rods have on the device besides what all strands have.
 
-use strandline_gpu::{Buffer, Gpu, GpuError};
-
-use super::records::THREADS;
+use strandline_gpu::{Buffer, Gpu, GpuError, THREADS};
 
 /// Numbers of a node in the buffer of rods.
 pub(super) const NUMBERS: usize = 10;

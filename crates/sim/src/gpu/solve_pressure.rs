@@ -1,9 +1,9 @@
 //! The pressure that takes the divergence out of the hair's velocity, without a readback.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::pcg::Pcg;
-use super::records::{Gradient, PressureState, THREADS};
+use super::records::{Gradient, PressureState};
 use super::stage::{StageKernels, Target};
 use super::volume::{GridState, Volume};
 

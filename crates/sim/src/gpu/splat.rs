@@ -1,10 +1,9 @@
 //! Points become velocities on the faces of the staggered grid: sorted by cell, then gathered.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
-use super::records::THREADS;
 use super::stage::{StageKernels, Target};
 use super::volume::{GridState, SortedPoint};
 

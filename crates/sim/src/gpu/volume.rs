@@ -1,9 +1,9 @@
 //! The buffers of the fluid volume.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, Scan, mirror};
+use strandline_gpu::{Buffer, Gpu, GpuError, Scan, THREADS, mirror};
 use strandline_groom::LANES;
 
-use super::records::{Gradient, MOST_WORKGROUPS, PressureState, Spread, THREADS};
+use super::records::{Gradient, MOST_WORKGROUPS, PressureState, Spread};
 use crate::cpu::grid::{Grid, MIN_SPACING, ladder};
 
 mirror! {
