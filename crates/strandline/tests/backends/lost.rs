@@ -1,7 +1,7 @@
 //! What happens when the GPU goes away or has no memory left.
 
 use strandline::{
-    Backend, Event, Film, Hair, Player,
+    Backend, Event, Film, Hair, Player, Settings,
     low_level::{gpu::Gpu, sim::VolumeSettings},
 };
 
@@ -58,7 +58,7 @@ fn a_run_that_may_fall_back_goes_on_from_the_last_state() {
 #[test]
 fn steps_that_a_lost_gpu_had_made_are_made_again() {
     let Some(gpu) = gpu() else { return };
-    let play = |gpu: Option<&Gpu>, ask: bool| {
+    let play = |gpu: Option<&Gpu>, checkpoint_every: u32| {
         let mut hair = match gpu {
             Some(gpu) => hair(gpu),
             None => {
@@ -68,10 +68,8 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
             }
         };
         hair.set_fall_back(true);
+        hair.set_settings(&Settings { checkpoint_every, ..hair.settings().clone() }).unwrap();
         hair.step(0.1, &turned(0.2)).unwrap();
-        if ask {
-            hair.state().unwrap();
-        }
         hair.step(0.1, &turned(0.3)).unwrap();
         gpu.inspect(|gpu| gpu.destroy());
         hair.step(0.1, &turned(0.4)).unwrap();
@@ -79,11 +77,12 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
         assert_eq!(notes.contains("resuming from 0.200 s"), gpu.is_some(), "{notes}");
         hair.state().unwrap().clone()
     };
-    let expected = play(None, false);
+    let expected = play(None, 120);
     // Nothing was read from the device: all is made again.
-    assert_eq!(play(Some(&gpu), false).positions, expected.positions);
+    assert_eq!(play(Some(&gpu), 120).positions, expected.positions);
     let Some(gpu) = self::gpu() else { return };
-    let found = play(Some(&gpu), true);
+    // What was read is gone on from.
+    let found = play(Some(&gpu), 5);
     assert_eq!(found.time, expected.time);
     let distance = apart(&found.positions, &expected.positions);
     assert!(distance > 0.0 && distance < 1e-2, "{distance}");
