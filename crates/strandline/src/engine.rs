@@ -63,6 +63,11 @@ impl Engine {
         Ok(self.simulator.last_state())
     }
 
+    /// The state as it was last read.
+    pub fn last_state(&self) -> &State {
+        self.simulator.last_state()
+    }
+
     /// How far the hair lies from the groom as loaded, which the head carries.
     pub fn drift(&mut self) -> Result<Drift, SimError> {
         self.state()?;

@@ -331,8 +331,10 @@ impl Simulation {
         let share = self.share;
         moment.world_from_head = self.poses[0].toward(&self.poses[1], share);
         moment.device = None;
-        self.engine.state()?.interpolated(share, &mut moment.positions);
-        Ok(())
+        let read = self.engine.state().map(|_| ());
+        // After a failure it is that of the last state.
+        self.engine.last_state().interpolated(share, &mut moment.positions);
+        read
     }
 
     /// The points of the last two states, where they lie on a device.

@@ -1,9 +1,12 @@
+//! What the CPU's stages work in.
+
 use std::sync::Arc;
 
 use strandline_groom::{RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use super::Volume;
+use super::grid::Grid;
 use crate::masses::Masses;
 use crate::strands::rods::rod::Node;
 use crate::{Model, State};
@@ -72,17 +75,21 @@ impl Scratch {
             self.made_from = made;
         }
         self.predicted.resize(state.positions.len(), Vec3Lanes::default());
+        self.refresh_volume(model, state.volume_box);
+    }
+
+    /// Makes the volume fit its settings, and its box that of the state: one of other cells, or of a state that has
+    /// none yet, begins where hair is.
+    fn refresh_volume(&mut self, model: &Model, place: Option<[f32; 4]>) {
         let settings = &model.settings.volume;
         let old = self.volume.take();
-        // A box of other cells begins where hair is.
         let other_cells = old.as_ref().is_some_and(|old| old.settings.cells != settings.cells);
         self.volume = settings.enabled.then(|| {
             let mut volume = Volume::keep_or_new(old, settings, model.strand_count, model.points_per_strand);
-            state
-                .volume_box
-                .filter(|_| !other_cells)
-                .into_iter()
-                .for_each(|place| volume.grid.set_place(place));
+            match place.filter(|_| !other_cells) {
+                Some(place) => volume.grid.set_place(place),
+                None => volume.grid = Grid::new(settings.cells.map(|count| count as usize)),
+            }
             volume
         });
     }
@@ -135,20 +142,26 @@ mod tests {
     fn a_runner_takes_one_state_after_the_other() {
         let mut groom = Groom::empty(8e-5);
         groom.push([glam::Vec3::ZERO, glam::Vec3::new(0.2, -0.2, 0.0)]);
+        groom.push([glam::Vec3::Z * 0.02, glam::Vec3::new(0.2, -0.2, 0.1)]);
         let guides = Guides::resample(&groom, 7).unwrap();
         let model = Model::new(&guides, &Settings::default(), Vec::new()).unwrap();
-        let run = |shared: bool| {
-            let mut runner = CpuRunner::from(model.clone());
-            let (mut one, mut other) = (model.rest_state(Pose::IDENTITY), model.rest_state(Pose::IDENTITY));
-            other.set_length_scale(&model, &[0.6]).unwrap();
-            for _ in 0..5 {
-                runner.step(&mut one, &Drive::default());
-                if shared {
-                    runner.step(&mut other, &Drive::default());
-                }
-            }
-            one.positions
+        let begun = |scale: f32| {
+            let mut state = model.rest_state(Pose::IDENTITY);
+            state.set_length_scale(&model, &[scale; 2]).unwrap();
+            state
         };
-        assert_eq!(run(true), run(false));
+        let drive = Drive { wind: glam::Vec3::Z, ..Drive::default() };
+        // A box that larger hair left would be kept for hair that needs most of it.
+        let scales = [1.0, 0.9];
+        let mut shared = CpuRunner::from(model.clone());
+        let mut together = scales.map(begun);
+        for _ in 0..5 {
+            together.iter_mut().for_each(|state| drop(shared.step(state, &drive)));
+        }
+        for (scale, found) in scales.into_iter().zip(together) {
+            let (mut alone, mut expected) = (CpuRunner::from(model.clone()), begun(scale));
+            (0..5).for_each(|_| drop(alone.step(&mut expected, &drive)));
+            assert_eq!(found.positions, expected.positions, "{scale}");
+        }
     }
 }

@@ -25,6 +25,8 @@ pub struct GpuRunner {
     pub(super) gpu: Gpu,
     pub(super) model: Model,
     pub(super) kernels: Arc<Kernels>,
+    /// Segments of strands that can stretch.
+    segment_count: usize,
     pub(super) buffers: Buffers,
     /// Which of the two buffers of positions is the newer.
     pub(super) side: usize,
@@ -84,6 +86,7 @@ impl GpuRunner {
             gpu: gpu.clone(),
             kernels,
             buffers: Buffers::new(gpu, &model, state)?,
+            segment_count: segment_count(&model),
             model,
             side: 0,
             bound: None,
@@ -274,8 +277,8 @@ impl GpuRunner {
     /// Reads the reports that lie on the device.
     fn drain(&mut self) -> Result<(), SimError> {
         let found = self.pending.drain(&self.gpu, &self.buffers.reports)?;
-        let segments = segment_count(&self.model);
-        self.reports.extend(found.into_iter().map(|reported| step_report(reported, &self.model, segments)));
+        let (model, segments) = (&self.model, self.segment_count);
+        self.reports.extend(found.into_iter().map(|reported| step_report(reported, model, segments)));
         Ok(())
     }
 }

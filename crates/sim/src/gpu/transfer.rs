@@ -69,6 +69,9 @@ impl GpuRunner {
         self.length_scale.clone_from(&state.length_scale);
         self.lengths = Arc::clone(&state.lengths);
         self.volume_box = state.volume_box;
+        if let (Some(volume), None) = (&self.buffers.volume, state.volume_box) {
+            volume.put_at_start()?;
+        }
         self.world_from_head = state.world_from_head;
         self.time = state.time;
         self.write_grab(state)

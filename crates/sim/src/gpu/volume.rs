@@ -27,6 +27,16 @@ mirror! {
 }
 
 impl GridState {
+    /// That of a box which has not found the hair yet.
+    fn start(grid: &Grid) -> Self {
+        Self {
+            origin: [-1.0; 3],
+            spacing: grid.spacing(),
+            size: grid.size().map(|count| count as u32),
+            cell_count: grid.cell_count() as u32,
+        }
+    }
+
     /// Lower corner with the ring \[m\], world space, and spacing \[m\].
     pub fn place(&self) -> [f32; 4] {
         let [x, y, z] = self.origin;
@@ -71,19 +81,13 @@ impl Volume {
         let cell_count = grid.cell_count();
         let point_count = lane_count.next_multiple_of(LANES) * points;
         let steps: Vec<f32> = std::iter::once(MIN_SPACING).chain(ladder()).collect();
-        let start = GridState {
-            origin: [-1.0; 3],
-            spacing: grid.spacing(),
-            size: grid.size().map(|count| count as u32),
-            cell_count: cell_count as u32,
-        };
         let workgroups = cell_count.div_ceil(THREADS).min(MOST_WORKGROUPS);
         Ok(Self {
             cells,
             cell_count,
             gradient: Gradient::default(),
             spread: Spread::default(),
-            grid: Buffer::from_slice(gpu, "grid", &[start])?,
+            grid: Buffer::from_slice(gpu, "grid", &[GridState::start(&grid)])?,
             ladder: Buffer::from_slice(gpu, "spacings", &steps)?,
             start_index: Buffer::new(gpu, "start_index", cell_count + 1)?,
             totals: Scan::totals(gpu, cell_count + 1)?,
@@ -99,6 +103,12 @@ impl Volume {
             states: Buffer::new(gpu, "state of the pressure", 2)?,
             partials: Buffer::new(gpu, "partial sums", 2 * workgroups)?,
         })
+    }
+
+    /// Has the box find the hair anew.
+    pub fn put_at_start(&self) -> Result<(), GpuError> {
+        let grid = Grid::new(self.cells.map(|count| count as usize));
+        self.grid.write(&[GridState::start(&grid)])
     }
 
     /// Puts the box to a lower corner with the ring \[m\], with a spacing \[m\]; none below the finest.
