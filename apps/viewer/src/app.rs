@@ -6,7 +6,7 @@ use eframe::egui;
 use strandline::low_level::groom::format::{Format, endings};
 use strandline::{
     Backend, Camera, Error, Live, Scene,
-    low_level::{Command, Shown, base::SettingError, render::PictureSettings},
+    low_level::{Change, Command, Shown, base::SettingError, render::PictureSettings},
 };
 
 use crate::{export, files, messages, rescue, saves};
@@ -96,7 +96,7 @@ impl App {
             known.get().into_iter().for_each(|context| context.request_repaint_after(SOON));
         };
         let live = Live::new(scene.clone(), wake)?;
-        live.tell(Command::Adapt(true));
+        live.send(Command::Adapt(true));
         Ok(Self {
             live,
             context,
@@ -163,13 +163,13 @@ impl App {
     }
 
     pub(crate) fn send_look(&self) {
-        self.live.tell(Command::Look(Box::new(self.scene.look.clone())));
+        self.live.send(Change::Look(Box::new(self.scene.look.clone())));
     }
 
     /// Goes on, or stands still.
     pub(crate) fn play(&mut self, playing: bool) {
         self.playing = playing;
-        self.live.tell(Command::Play(playing));
+        self.live.send(Command::Play(playing));
     }
 
     /// Shows a line for a while.
@@ -179,20 +179,20 @@ impl App {
 
     /// Has pictures drawn as the scene says, with something behind them.
     pub(crate) fn send_picture(&self) {
-        self.live.tell(Command::Picture(PictureSettings { transparent: false, ..self.scene.picture }));
+        self.live.send(Change::Picture(PictureSettings { transparent: false, ..self.scene.picture }));
     }
 
     pub(crate) fn send_motion(&mut self) {
-        self.live.tell(Command::Motion(Box::new(self.scene.motion.clone())));
+        self.live.send(Change::Motion(Box::new(self.scene.motion.clone())));
         self.step_on();
     }
 
     /// Lets a frame of time pass where nothing plays, so that hair follows what is dragged; one at a time.
     pub(crate) fn step_on(&mut self) {
-        let heard = self.shown.as_ref().map_or(0, |shown| shown.heard);
+        let heard = self.shown.as_ref().map_or(0, |shown| shown.drawn_after_command);
         self.wants_step = !self.playing && self.stepped > heard;
         if !self.playing && !self.wants_step {
-            self.stepped = self.live.tell(Command::Step);
+            self.stepped = self.live.send(Command::Step);
         }
     }
 
@@ -231,7 +231,7 @@ impl App {
             }
         }
         let drawn = PictureSettings { transparent: false, ..scene.picture };
-        let number = self.live.tell(Command::Load(Box::new(Scene { picture: drawn, ..scene.clone() })));
+        let number = self.live.send(Command::Load(Box::new(Scene { picture: drawn, ..scene.clone() })));
         self.pending = Some((number, Box::new(scene)));
     }
 

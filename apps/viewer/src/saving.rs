@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use strandline::low_level::{Command, News};
+use strandline::low_level::{Command, LiveEvent};
 
 use crate::App;
 
@@ -19,8 +19,8 @@ impl Drop for App {
                 self.shown = Some(shown);
                 self.save_if_full();
             }
-            let fails = |news: &News| matches!(news, News::Paused | News::NotLoaded(..));
-            if self.live.take_news().iter().any(fails) {
+            let fails = |news: &LiveEvent| matches!(news, LiveEvent::Paused | LiveEvent::NotLoaded(..));
+            if self.live.take_events().iter().any(fails) {
                 break;
             }
             std::thread::sleep(Duration::from_millis(2));
@@ -55,7 +55,7 @@ impl App {
 
     /// Has pictures be simpler, unless one is to be saved.
     pub(crate) fn send_adapt(&self) {
-        self.live.tell(Command::Adapt(self.adapts && self.saves.waiting.is_empty()));
+        self.live.send(Command::Adapt(self.adapts && self.saves.waiting.is_empty()));
     }
 
     /// Saves the pictures that are wanted, if they are there.
@@ -87,7 +87,7 @@ impl App {
     /// Saves what is seen as a scene, or tells why not.
     pub fn save_scene(&mut self, path: Option<&Path>) {
         if let Some(path) = self.path_or_free(path, "view", "toml") {
-            self.live.tell(Command::Save(Box::new(self.seen()), self.loaded, path));
+            self.live.send(Command::Save(Box::new(self.seen()), self.loaded, path));
         }
     }
 
@@ -106,7 +106,7 @@ impl App {
         if self.recording {
             self.finishing += 1;
             self.recording = false;
-            self.live.tell(Command::StopRecording);
+            self.live.send(Command::StopRecording);
             return;
         }
         let folder = self.saves.free_path(&self.folder, "video", "").and_then(|folder| {
@@ -117,7 +117,7 @@ impl App {
         match folder {
             Ok(folder) => {
                 self.recording = true;
-                self.live.tell(Command::Record(folder));
+                self.live.send(Command::Record(folder));
                 self.play(true);
             }
             Err(error) => self.error = Some(error),

@@ -4,7 +4,7 @@ use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
 use glam::Vec2;
 use strandline::{
     Camera,
-    low_level::{Command, Ray, base::Group, render::PictureSettings},
+    low_level::{Change, Command, Ray, base::Group, render::PictureSettings},
     scene::MotionSection,
 };
 
@@ -57,10 +57,10 @@ fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
     }
     if pressed(Key::Period) {
         app.play(false);
-        app.live.tell(Command::Step);
+        app.live.send(Command::Step);
     }
     if pressed(Key::R) {
-        app.live.tell(Command::Reset);
+        app.live.send(Change::Reset);
     }
     if pressed(Key::G) {
         app.tool = if app.tool == Tool::Grab { Tool::Orbit } else { Tool::Grab };
@@ -81,7 +81,7 @@ fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
 
 fn look(app: &mut App, camera: Camera) {
     app.camera = camera;
-    app.live.tell(Command::Camera(camera));
+    app.live.send(Change::Camera(camera));
 }
 
 /// The camera moved across, in half heights of the picture.
@@ -161,7 +161,7 @@ fn mouse(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
     {
         let ray = ray(app, response.rect, press);
         app.grabs = true;
-        app.live.tell(Command::Grab(ray, app.radius));
+        app.live.send(Change::Grab(ray, app.radius));
     }
     if app.grabs {
         grab(app, ui, response);
@@ -174,14 +174,14 @@ fn mouse(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
 fn grab(app: &mut App, ui: &egui::Ui, response: &egui::Response) {
     if !response.dragged() {
         app.grabs = false;
-        app.live.tell(Command::Release);
+        app.live.send(Change::Release);
         return;
     }
     if response.drag_delta() != egui::Vec2::ZERO
         && let Some(pointer) = response.interact_pointer_pos()
     {
         let ray = ray(app, response.rect, pointer);
-        app.live.tell(Command::Drag(ray));
+        app.live.send(Change::Drag(ray));
         app.step_on();
     }
     if let Some(pointer) = response.interact_pointer_pos() {

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align2, Color32, Rect, Sense, Stroke, Vec2};
 use glam::Vec3;
-use strandline::low_level::Command;
+use strandline::low_level::Change;
 
 use crate::App;
 
@@ -36,7 +36,7 @@ pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     if response.dragged() || response.double_clicked() || scroll != 0.0 {
         let wind = view.inverse().transform_vector3(seen);
         app.scene.wind.velocity = wind.clamp_length_max(STRONGEST);
-        app.live.tell(Command::Wind(app.scene.wind));
+        app.live.send(Change::Wind(app.scene.wind));
     }
     response.on_hover_text(
         "the wind [m/s], seen from the camera\ndrag its tip; the wheel blows into the picture; a double click stops it\ndefault 0",

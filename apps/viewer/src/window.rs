@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::{
     Camera, Scene,
-    low_level::{Command, News, Shown, body::Aabb},
+    low_level::{Command, LiveEvent, Shown, body::Aabb},
 };
 
 use crate::{App, panels, stage, strip};
@@ -20,15 +20,15 @@ impl App {
         dropped.iter().for_each(|file| self.open_file(file.path()));
     }
 
-    fn take_news(&mut self) {
-        for news in self.live.take_news() {
+    fn take_events(&mut self) {
+        for news in self.live.take_events() {
             match news {
-                News::Loaded(number, scene, camera, bounds, notes) => {
+                LiveEvent::Loaded(number, scene, camera, bounds, notes) => {
                     self.take_scene(number, *scene, camera, bounds);
                     notes.into_iter().for_each(|note| self.note(note));
                 }
-                News::Note(note) => self.note(note),
-                News::NotLoaded(number, error) => {
+                LiveEvent::Note(note) => self.note(note),
+                LiveEvent::NotLoaded(number, error) => {
                     // What plays is still what played before.
                     self.pending.take_if(|(pending, _)| *pending == number);
                     self.error = Some(error);
@@ -36,14 +36,14 @@ impl App {
                         self.give_up_pictures();
                     }
                 }
-                News::Error(error) => self.error = Some(error),
-                News::Paused => {
+                LiveEvent::Error(error) => self.error = Some(error),
+                LiveEvent::Paused => {
                     self.playing = false;
                     self.give_up_pictures();
                 }
-                News::Saved(path) => self.note(format!("wrote {}", path.display())),
-                News::Recorded if self.finishing > 0 => self.finishing -= 1,
-                News::Recorded => self.recording = false,
+                LiveEvent::Saved(path) => self.note(format!("wrote {}", path.display())),
+                LiveEvent::Recorded if self.finishing > 0 => self.finishing -= 1,
+                LiveEvent::Recorded => self.recording = false,
             }
         }
     }
@@ -61,7 +61,7 @@ impl App {
         self.base = self.scene.clone();
         (self.camera, self.home, self.grabs) = (camera, camera, false);
         self.notes.clear();
-        self.live.tell(Command::Play(self.playing));
+        self.live.send(Command::Play(self.playing));
     }
 
     fn take_picture(&mut self, context: &egui::Context) {
@@ -98,7 +98,7 @@ impl App {
     /// Draws the window.
     pub fn show(&mut self, ui: &mut egui::Ui) {
         self.context.get_or_init(|| ui.ctx().clone());
-        self.take_news();
+        self.take_events();
         self.take_files(ui);
         self.take_picture(ui.ctx());
         self.take_answer();

@@ -1,7 +1,8 @@
 //! What stands for the runner on a GPU in a build without GPUs: nothing of it can be made.
 
 use strandline_body::Pose;
-use strandline_gpu::{Buffer, Gpu};
+use strandline_gpu::{Buffer, Gpu, GpuError};
+use strandline_groom::Vec3Lanes;
 
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 
@@ -12,6 +13,14 @@ pub enum GpuRunner {}
 /// No shader modules.
 pub fn modules() -> Vec<(&'static str, &'static str)> {
     Vec::new()
+}
+
+/// Positions between two states on a device.
+///
+/// # Errors
+/// None.
+pub fn read_between([before, _]: [&Buffer<f32>; 2], _: f32, _: &mut Vec<Vec3Lanes>) -> Result<(), GpuError> {
+    match *before.gpu() {}
 }
 
 #[expect(missing_docs, clippy::missing_errors_doc, reason = "none of it can be called")]

@@ -215,6 +215,19 @@ impl Simulator {
         }
     }
 
+    // STUB
+    pub fn steps(&self) -> u64 {
+        0
+    }
+    pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        Ok(Vec::new())
+    }
+    pub fn fall_back_seeing(&mut self, _: u64, see: impl FnOnce(&State)) -> bool {
+        self.fall_back();
+        see(&self.state);
+        true
+    }
+    // STUB END
     /// Goes on on the CPU: from the state that was last read, through the steps that the device had made since.
     pub fn fall_back(&mut self) {
         let mut runner = CpuRunner::from(self.model().clone());

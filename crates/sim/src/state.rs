@@ -71,16 +71,21 @@ pub struct State {
     pub(crate) volume_box: Option<[f32; 4]>,
 }
 
+/// Positions at a share of the way from one state to the next.
+pub(crate) fn between([before, after]: [&[Vec3Lanes]; 2], share: f32, positions: &mut Vec<Vec3Lanes>) {
+    positions.resize(after.len(), Vec3Lanes::default());
+    let pairs = before.par_iter().zip(after);
+    positions.par_iter_mut().zip(pairs).for_each(|(between, (before, after))| {
+        let before = Vec3x8::load(before);
+        (before + (Vec3x8::load(after) - before) * splat(share)).store(between);
+    });
+}
+
 impl State {
     /// Positions \[m\] between the last two steps, world space, shape `[block][point]` of lanes:
     /// `share` is 0 one step ago and 1 now. `positions` is made as long as needed.
     pub fn interpolated(&self, share: f32, positions: &mut Vec<Vec3Lanes>) {
-        positions.resize(self.positions.len(), Vec3Lanes::default());
-        let pairs = self.previous_positions.par_iter().zip(&self.positions);
-        positions.par_iter_mut().zip(pairs).for_each(|(between, (before, now))| {
-            let before = Vec3x8::load(before);
-            (before + (Vec3x8::load(now) - before) * splat(share)).store(between);
-        });
+        between([&self.previous_positions, &self.positions], share, positions);
     }
 
     /// Takes hair into a hand, and lets go of what it held: of every strand that comes within `radius`

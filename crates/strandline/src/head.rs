@@ -25,6 +25,11 @@ impl HeadMotion {
         Ok(Self { motion: section.motion(pivot)?, pivot, turn })
     }
 
+    /// A head that rests.
+    pub(crate) fn still() -> Self {
+        Self { motion: Motion::Still, pivot: Vec3::ZERO, turn: Quat::IDENTITY }
+    }
+
     /// The pose of the head at a time \[s\].
     pub fn pose(&self, time: f64) -> Pose {
         let pose = self.motion.pose(time, self.pivot);

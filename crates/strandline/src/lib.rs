@@ -25,9 +25,7 @@
 mod attributes;
 mod bound;
 mod cache;
-mod course;
 mod devices;
-mod engine;
 mod error;
 mod film;
 mod hair;
@@ -39,7 +37,7 @@ mod painter;
 mod pick;
 mod player;
 mod prepare;
-mod simulation;
+mod session;
 mod sync;
 mod tags;
 mod worker;
@@ -62,9 +60,10 @@ pub use film::Film;
 pub use groom::{Groom, Style};
 pub use hair::Hair;
 pub use live::Live;
-pub use player::{Event, Player};
+pub use player::Player;
 pub use render::{Camera, Light, Look, Picture};
 pub use scene::Scene;
+pub use session::Event;
 pub use sim::{Backend, Settings};
 
 // Names of this crate's own modules.

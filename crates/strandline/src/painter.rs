@@ -120,8 +120,8 @@ impl Painter {
     }
 
     /// Draws a picture. `points` are those of the input, where they lie on the same device; `None` where
-    /// the input holds them. When the GPU fails it is the caller's to draw again, if [`Painter::recover`]
-    /// can help.
+    /// the input holds them. When the GPU fails it is the caller's to draw again with points that the input holds, if
+    /// [`Painter::recover_from`] can help.
     pub fn draw(
         &mut self,
         input: &FrameInput,
@@ -136,7 +136,8 @@ impl Painter {
                 renderer.draw_into(input, points, &mut picture)
             }
         };
-        self.stands_in = self.fall_back && matches!(drawn, Err(RenderError::TooMany { .. }));
+        let too_many = matches!(drawn, Err(RenderError::TooMany { .. }));
+        self.stands_in = self.fall_back && too_many && points.is_none();
         let report = match drawn {
             Err(failure) if self.stands_in => {
                 self.stand_in(failure)?;
@@ -185,8 +186,12 @@ impl Painter {
         Ok(pair.0.zip(pair.1).map(|(opacity, depth)| [opacity, depth]))
     }
 
-    /// Goes on on the CPU, if that is wanted and the failure is the GPU's.
+    /// Falls back to the CPU, if that is allowed and the failure is the GPU's; for as long as a picture is more than
+    /// the GPU draws.
     pub fn recover_from(&mut self, failure: RenderError) -> Result<(), RenderError> {
+        if self.fall_back && self.gpu().is_some() && matches!(failure, RenderError::TooMany { .. }) {
+            return Ok(());
+        }
         let settings = self.settings;
         self.recover(failure, &settings)
     }

@@ -1,63 +1,37 @@
 use crate::{
-    Cache, Devices, Error, Hair, OutSettings, Scene, What, Written,
-    cache::{Leaving, Out, Snapshot, drawn},
-    course::Course,
+    Cache, Devices, Error, OutSettings, Scene, What, Written,
+    cache::{Leaving, Out, drawn},
+    devices::place,
     gpu::Gpu,
     groom::Guides,
-    hair::Studio,
     prepare::Prepared,
-    render::{Camera, FrameReport, Look, Picture, PictureSettings},
-    sim::{Drift, Settings, State, StepReport},
-    simulation::{Act, Done, Job, Moment, Simulation},
+    render::{Camera, Look, PictureSettings},
+    session::{Change, Event, Session, Simulation, Studio, Task, course::Course},
+    sim::{Drift, Settings, State},
     tags::Tags,
-    worker::{Gone, Worker},
+    worker::Worker,
 };
-
-/// What a [`Player`] tells while it plays.
-#[derive(Clone, Debug)]
-pub enum Event {
-    /// Something happened that a person should read; the film goes on.
-    Note(String),
-    /// A step of the simulation ended.
-    Stepped(StepReport),
-    /// A picture is finished.
-    Drawn {
-        /// Its number, from 0.
-        frame: u32,
-        /// The picture.
-        picture: Picture,
-        /// What it cost.
-        report: FrameReport,
-    },
-}
 
 /// Plays a scene: an iterator of events, frame after frame, until the film is over.
 ///
 /// Two workers share the work [Chen2011 §5]: while one frame is drawn the next one is simulated on a
 /// thread of its own, on another device or on the same.
 pub struct Player {
-    worker: Worker<Simulation>,
-    studio: Studio,
+    session: Session<Worker<Simulation>>,
     /// With what it leaves open chosen to fit its groom.
     scene: Scene,
     tags: Tags,
     /// Changed by [`Player::set_settings`] before the next frame is simulated.
     change: Option<Settings>,
     course: Course,
-    camera: Camera,
-    look: Look,
     draw: bool,
     overlap: bool,
     frames: u32,
     /// Frames whose simulation was started, and taken.
     started: u32,
     taken: u32,
-    /// Moments that nobody works on.
-    spare: Vec<Moment>,
-    /// The moment to be drawn.
-    shown: Option<Moment>,
-    waiting: std::vec::IntoIter<StepReport>,
-    told: std::vec::IntoIter<String>,
+    /// Whether a frame was taken that is to be drawn.
+    undrawn: bool,
     /// Whether the simulation cannot go on.
     failed: bool,
     notes: Vec<String>,
@@ -100,30 +74,21 @@ impl Player {
         let tags = std::mem::take(&mut prepared.tags);
         let fitted = prepared.scene.clone();
         let scene = &fitted;
-        let aspect = scene.picture.width as f32 / scene.picture.height as f32;
-        let camera = prepared.camera(aspect);
-        let mut hair = Hair::from_scene(scene, prepared, devices)?;
-        notes.extend(hair.take_notes());
-        let (simulation, studio) = hair.into_parts();
-        let here = simulation.end();
+        let mut session = Session::of_scene(scene, prepared, devices.into())?;
+        notes.extend(session.take_notes());
+        let here = session.place.simulation.end();
         Ok(Self {
-            worker: Worker::new(simulation).map_err(Error::Thread)?,
-            studio,
+            session: session.beside()?,
             scene: scene.clone(),
             tags,
             change: None,
             course: Course::new(scene, head, here),
-            camera,
-            look: scene.look.clone(),
             draw,
             overlap: true,
             frames: scene.film.frames,
             started: 0,
             taken: 0,
-            spare: vec![Moment::default(), Moment::default()],
-            shown: None,
-            waiting: Vec::new().into_iter(),
-            told: Vec::new().into_iter(),
+            undrawn: false,
             failed: false,
             notes,
             out: None,
@@ -142,7 +107,7 @@ impl Player {
             let message = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
             return Err(Error::Cache { path: settings.path.clone(), message });
         }
-        let Studio { guides, painter, .. } = &self.studio;
+        let Studio { guides, painter, .. } = &self.session.studio;
         let leaving = Leaving { guides, bound: painter.bound(), tags: &self.tags };
         self.out = Some(Out::new(settings, &self.scene, leaving)?);
         Ok(())
@@ -172,7 +137,7 @@ impl Player {
                 self.frames
             )));
         }
-        self.worker.work().restore(&state)?;
+        self.session.place.work().restore(&state)?;
         (self.started, self.taken) = (state.frame + 1, state.frame + 1);
         if let Some(out) = &mut self.out {
             out.copy(cache, &state)?;
@@ -187,11 +152,12 @@ impl Player {
     /// The file cannot be written; what was written before stays.
     pub fn close_out(&mut self) -> Result<Option<Written>, Error> {
         self.closing = true;
-        while self.out.is_some() && self.worker.started() > 0 && !self.failed {
+        while self.out.is_some() && self.session.place.started() > 0 && !self.failed {
             self.take()?;
         }
         let Some(out) = self.out.take() else { return Ok(None) };
-        let state = self.taken.checked_sub(1).map(|frame| self.worker.work().snapshot(frame)).transpose()?;
+        let state =
+            self.taken.checked_sub(1).map(|frame| self.session.place.work().snapshot(frame)).transpose()?;
         out.close(self.taken == self.frames, state.as_ref()).map(Some)
     }
 
@@ -211,22 +177,22 @@ impl Player {
     /// # Errors
     /// A setting outside its range, or more than the GPU holds; the settings then stay as they were.
     pub fn set_picture(&mut self, settings: &PictureSettings) -> Result<(), Error> {
-        Ok(self.studio.painter.set_picture(settings)?)
+        self.session.change(Change::Picture(*settings))
     }
 
     /// Changes the hair's look, from the next picture on.
     pub fn set_look(&mut self, look: Look) {
-        self.look = look;
+        self.session.studio.look = look;
     }
 
     /// Changes the view, from the next picture on.
     pub fn set_camera(&mut self, camera: Camera) {
-        self.camera = camera;
+        self.session.studio.camera = camera;
     }
 
     /// The simulated strands at rest.
     pub fn guides(&self) -> &Guides {
-        &self.studio.guides
+        &self.session.studio.guides
     }
 
     /// The state of the simulation: as long as a frame is on its way, before it or after.
@@ -234,7 +200,7 @@ impl Player {
     /// # Errors
     /// The GPU failed, and it was not to go on on the CPU.
     pub fn state(&self) -> Result<State, Error> {
-        Ok(self.worker.work().engine.state()?.clone())
+        Ok(self.session.place.work().engine.state()?.clone())
     }
 
     /// How far the hair lies from the groom as loaded, which the head carries.
@@ -242,34 +208,34 @@ impl Player {
     /// # Errors
     /// As [`Player::state`].
     pub fn drift(&self) -> Result<Drift, Error> {
-        Ok(self.worker.work().engine.drift()?)
+        Ok(self.session.place.work().engine.drift()?)
     }
 
     /// Strands of rods that had to be stiffer for their shape to be stable, and how many times stiffer the stiffest
     /// of them is; 0 without rods.
     pub fn stiffened(&self) -> (usize, f32) {
-        let work = self.worker.work();
+        let work = self.session.place.work();
         work.engine.model().rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest))
     }
 
     /// The device that the hair is simulated on; none on the CPU.
     pub fn gpu(&self) -> Option<Gpu> {
-        self.worker.work().engine.gpu().cloned()
+        self.session.place.work().engine.gpu().cloned()
     }
 
     /// The device that the pictures are drawn on, likewise.
     pub fn picture_gpu(&self) -> Option<Gpu> {
-        self.studio.painter.gpu().cloned()
+        self.session.studio.painter.gpu().cloned()
     }
 
     /// Where the hair is simulated: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
-        crate::devices::place(self.worker.work().engine.gpu())
+        place(self.session.place.work().engine.gpu())
     }
 
     /// Where pictures are drawn, likewise.
     pub fn drawn_on(&self) -> String {
-        self.studio.painter.drawn_on()
+        self.session.studio.painter.drawn_on()
     }
 
     /// Number of frames of the film.
@@ -279,7 +245,7 @@ impl Player {
 
     /// Frames of which every event was told.
     pub fn frames_done(&self) -> u32 {
-        self.taken - u32::from(self.shown.is_some())
+        self.taken - u32::from(self.undrawn)
     }
 
     /// What was mended or left out while loading.
@@ -292,81 +258,58 @@ impl Player {
         if self.started == self.frames || self.failed || self.closing {
             return Ok(());
         }
-        let (frame, course, change) = (self.started, self.course.clone(), self.change.take());
-        let simulate = move |simulation: &mut Simulation| {
-            change
-                .map_or(Ok(()), |settings| simulation.set_settings(&settings))
-                .and_then(|()| course.run(simulation, frame))
-        };
-        let act: Act = match &mut self.cache {
-            None => Box::new(simulate),
+        let frame = self.started;
+        let task = match &mut self.cache {
+            None => {
+                let settings = self.change.take().map(Box::new);
+                Task::Film { course: self.course.clone(), frame, settings }
+            }
             Some(cache) => {
-                let points = self.studio.guides.points_per_strand();
-                let mut lanes = self.studio.guides.positions().to_vec();
-                let pose = cache.read_lanes(frame as usize, points, &mut lanes)?;
-                Box::new(move |simulation: &mut Simulation| {
-                    simulation.show_cached(pose, |positions| positions.copy_from_slice(&lanes))?;
-                    Ok(Vec::new())
-                })
+                let guides = &self.session.studio.guides;
+                let mut positions = guides.positions().to_vec();
+                let points = guides.points_per_strand();
+                let world_from_head = cache.read_lanes(frame as usize, points, &mut positions)?;
+                Task::Cached { world_from_head, positions }
             }
         };
-        let gpu = self.studio.painter.gpu().cloned();
-        let moment = self.spare.pop().unwrap_or_default();
         self.started += 1;
-        let job = Job { act, gpu, moment, is_frame: true, heard: 0 };
-        self.worker.start(job).map_err(|Gone| Error::WorkerGone)
+        let home = self.out.as_ref().is_some_and(|out| out.takes(frame));
+        self.session.start(task, home, 0)
     }
 
     /// Takes the next frame from the worker and writes it, where frames are written.
-    fn take(&mut self) -> Result<Moment, Error> {
-        let Done { moment, reports, notes, .. } = self.worker.finish().map_err(|Gone| Error::WorkerGone)?;
-        self.told = notes.into_iter();
-        let reports = match reports {
-            Ok(reports) => reports,
-            Err(error) => {
-                self.spare.push(moment);
-                return Err(error.into());
-            }
-        };
+    fn take(&mut self) -> Result<(), Error> {
+        self.session.take()?;
         let frame = self.taken;
         self.taken += 1;
         let wanted = self.out.as_ref().is_some_and(|out| out.wants_state(frame));
         // Before the next frame begins.
-        let state: Option<Snapshot> = wanted.then(|| self.worker.work().snapshot(frame)).transpose()?;
+        let state = wanted.then(|| self.session.place.work().snapshot(frame)).transpose()?;
+        // A file has the reports of its frames.
+        if self.taken == self.frames || self.out.is_some() {
+            self.session.report_rest()?;
+        }
         if self.overlap {
             self.start()?;
         }
         let time = self.course.time(frame);
         if let Some(mut out) = self.out.take() {
+            let reports = self.session.reports();
             // What cannot go on is left as it is: it ends with the frame before.
-            out.add(frame, time, &moment, &reports, state.as_ref())?;
+            out.add(frame, time, self.session.shown(), &reports, state.as_ref())?;
             self.out = Some(out);
-        }
-        self.waiting = reports.into_iter();
-        Ok(moment)
-    }
-
-    /// Takes the next frame and starts the one after it.
-    fn advance(&mut self) -> Result<(), Error> {
-        if self.worker.started() == 0 {
-            self.start()?;
-        }
-        let moment = self.take()?;
-        if self.draw {
-            self.shown = Some(moment);
-        } else {
-            self.spare.push(moment);
         }
         Ok(())
     }
 
-    /// Draws a moment and hands it back.
-    fn picture(&mut self, moment: Moment) -> Result<Event, Error> {
-        let drawn = self.studio.draw(&moment, &self.camera, &self.look);
-        self.told = std::mem::take(&mut self.studio.painter.notes).into_iter();
-        self.spare.push(moment);
-        let (picture, report) = drawn?;
-        Ok(Event::Drawn { frame: self.taken - 1, picture, report })
+    /// Takes the next frame and starts the one after it.
+    fn advance(&mut self) -> Result<(), Error> {
+        if self.session.place.started() == 0 {
+            self.start()?;
+        }
+        self.take()?;
+        self.undrawn = self.draw;
+        Ok(())
     }
 }
 
@@ -375,21 +318,17 @@ impl Iterator for Player {
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {
-            if let Some(note) = self.told.next() {
-                return Some(Ok(Event::Note(note)));
+            if let Some(event) = self.session.next_event() {
+                return Some(Ok(event));
             }
-            if let Some(report) = self.waiting.next() {
-                return Some(Ok(Event::Stepped(report)));
-            }
-            if let Some(moment) = self.shown.take() {
-                let event = self.picture(moment);
-                self.failed |= event.is_err();
-                return Some(event);
-            }
-            if self.taken == self.frames || self.failed || self.closing {
+            let done = if std::mem::take(&mut self.undrawn) {
+                self.session.draw(false)
+            } else if self.taken == self.frames || self.failed || self.closing {
                 return None;
-            }
-            if let Err(error) = self.advance() {
+            } else {
+                self.advance()
+            };
+            if let Err(error) = done {
                 self.failed = true;
                 return Some(Err(error));
             }

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use strandline::{
     Camera, Live, Scene,
-    low_level::{Command, Ray, Shown},
+    low_level::{Change, Ray, Shown},
 };
 
 /// The system's allocator, counted.
@@ -66,16 +66,16 @@ fn play(live: &Live, pictures: u32) -> isize {
     for count in 0..pictures {
         let share = (0.7 * count as f32).sin();
         let ray = Ray::new(&Camera::front(), glam::Vec2::new(0.3 * share, 0.2));
-        live.tell(match count % 7 {
-            0 => Command::Grab(ray, 0.03),
-            1 | 2 => Command::Drag(ray),
-            3 => Command::Release,
-            4 => Command::Length(0.75 + 0.25 * share),
-            5 => Command::Settings(Box::new(scene().simulation)),
-            _ => Command::Camera(Camera::front().orbit(share, 0.0)),
+        live.send(match count % 7 {
+            0 => Change::Grab(ray, 0.03),
+            1 | 2 => Change::Drag(ray),
+            3 => Change::Release,
+            4 => Change::Length(0.75 + 0.25 * share),
+            5 => Change::Settings(Box::new(scene().simulation)),
+            _ => Change::Camera(Camera::front().orbit(share, 0.0)),
         });
         drop(next(live));
-        live.take_news();
+        live.take_events();
         least = least.min(HELD.load(Relaxed));
     }
     least

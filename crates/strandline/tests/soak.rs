@@ -8,7 +8,7 @@ use strandline::low_level::render::{BodyLook, LevelOfDetail, PictureSettings, fi
 use strandline::scene::{Model, MotionName, MotionSection, WindSection};
 use strandline::{
     Backend, Camera, Event, Light, Live, Look, Picture, Scene,
-    low_level::{Command, News, Ray, Shown, body},
+    low_level::{Change, Command, LiveEvent, Ray, Shown, body},
 };
 
 const PICTURES: u64 = 10_000;
@@ -71,12 +71,12 @@ impl Person {
         }
     }
 
-    fn tell(&mut self, command: Command) {
-        self.told = self.live.tell(command);
+    fn tell(&mut self, command: impl Into<Command>) {
+        self.told = self.live.send(command);
     }
 
     /// Tells what has to be refused.
-    fn refuse(&mut self, command: Command) {
+    fn refuse(&mut self, command: impl Into<Command>) {
         self.refused += 1;
         self.tell(command);
     }
@@ -89,18 +89,18 @@ impl Person {
         (self.share() * count as f32) as u32
     }
 
-    fn take_news(&mut self) {
-        for news in self.live.take_news() {
+    fn take_events(&mut self) {
+        for news in self.live.take_events() {
             match news {
-                News::Loaded(number, ..) => {
+                LiveEvent::Loaded(number, ..) => {
                     (self.loaded, self.loads) = (number, self.loads + 1);
                 }
-                News::NotLoaded(_, error) => assert!(error.contains("bad.hair"), "{error}"),
-                News::Error(error) if error.contains("save again") => self.saved += 1,
-                News::Error(_) => self.errors += 1,
-                News::Saved(_) => self.saved += 1,
-                News::Paused => panic!("it stopped by itself"),
-                News::Note(_) | News::Recorded => {}
+                LiveEvent::NotLoaded(_, error) => assert!(error.contains("bad.hair"), "{error}"),
+                LiveEvent::Error(error) if error.contains("save again") => self.saved += 1,
+                LiveEvent::Error(_) => self.errors += 1,
+                LiveEvent::Saved(_) => self.saved += 1,
+                LiveEvent::Paused => panic!("it stopped by itself"),
+                LiveEvent::Note(_) | LiveEvent::Recorded => {}
             }
         }
     }
@@ -111,11 +111,14 @@ impl Person {
         loop {
             let shown = self.live.take_shown();
             // What was told before a picture is heard before it.
-            self.take_news();
+            self.take_events();
             let came = shown.is_some();
             if let Some(shown) = shown {
                 assert!(shown.frame > self.last.frame, "pictures come in their order");
-                assert!(shown.heard >= self.last.heard && shown.heard <= self.told);
+                assert!(
+                    shown.drawn_after_command >= self.last.drawn_after_command
+                        && shown.drawn_after_command <= self.told
+                );
                 let Picture { width, height, pixels, .. } = &shown.picture;
                 assert_eq!(pixels.len() as u32, 3 * width * height);
                 self.last = shown;
@@ -123,9 +126,9 @@ impl Person {
             if wanted(self) {
                 return;
             }
-            let Shown { frame, heard, .. } = self.last;
+            let Shown { frame, drawn_after_command: drawn, .. } = self.last;
             let waited = begin.elapsed();
-            assert!(waited.as_secs() < 60, "nothing came: picture {frame}, {heard} of {} heard", self.told);
+            assert!(waited.as_secs() < 60, "nothing came: picture {frame}, {drawn} of {} drawn", self.told);
             if !came {
                 std::thread::sleep(Duration::from_micros(100));
             }
@@ -135,23 +138,26 @@ impl Person {
     /// Changes what is drawn and how.
     fn look_around(&mut self) {
         let (base, share, other) = (scene(), self.share(), self.share());
-        let command = match self.below(7) {
-            0 => Command::Camera(Camera::front().orbit(6.0 * share, other - 0.5)),
-            1 => Command::Look(Box::new(Look { follow_strands: 1 + (9.0 * share) as u32, ..base.look })),
-            2 => Command::BodyLook(BodyLook { color: Vec3::splat(share), ..base.body_look }),
-            3 => Command::Lights(Light::three_point(Vec3::splat(share))[..(4.0 * other) as usize].to_vec()),
+        let change = match self.below(7) {
+            0 => Change::Camera(Camera::front().orbit(6.0 * share, other - 0.5)),
+            1 => Change::Look(Box::new(Look { follow_strands: 1 + (9.0 * share) as u32, ..base.look })),
+            2 => Change::BodyLook(BodyLook { color: Vec3::splat(share), ..base.body_look }),
+            3 => Change::Lights(Light::three_point(Vec3::splat(share))[..(4.0 * other) as usize].to_vec()),
             4 => {
                 let segments_per_span = 1 + (4.0 * share) as u32;
-                Command::LevelOfDetail(LevelOfDetail { segments_per_span, ..base.level_of_detail })
+                Change::LevelOfDetail(LevelOfDetail { segments_per_span, ..base.level_of_detail })
             }
             5 => {
                 // Now and then large: the side that draws is the slow one.
                 let (width, height) = if share < 0.1 { (400, 300) } else { (16 + (60.0 * share) as u32, 24) };
-                Command::Picture(PictureSettings { width, height, ..base.picture })
+                Change::Picture(PictureSettings { width, height, ..base.picture })
             }
-            _ => Command::Adapt(share < 0.5),
+            _ => {
+                self.tell(Command::Adapt(share < 0.5));
+                return;
+            }
         };
-        self.tell(command);
+        self.tell(change);
     }
 
     /// Changes how hair and head move.
@@ -163,22 +169,22 @@ impl Person {
                 // Now and then the side that simulates is the slow one.
                 settings.iterations = if share < 0.2 { 2000 } else { 1 + (20.0 * share) as u32 };
                 settings.volume.enabled = other < 0.5;
-                Command::Settings(Box::new(settings))
+                Change::Settings(Box::new(settings))
             }
             1 => {
                 settings.time_step = [1.0 / 120.0, 1.0 / 60.0, 1.0 / 30.0][(3.0 * share) as usize];
-                Command::Settings(Box::new(settings))
+                Change::Settings(Box::new(settings))
             }
-            2 => Command::Length(0.05 + 1.95 * share),
-            3 => Command::Wind(WindSection { velocity: Vec3::X * 8.0 * share, ..WindSection::default() }),
+            2 => Change::Length(0.05 + 1.95 * share),
+            3 => Change::Wind(WindSection { velocity: Vec3::X * 8.0 * share, ..WindSection::default() }),
             4 => {
                 let names = [MotionName::Still, MotionName::Shake, MotionName::Nod, MotionName::Turn];
                 let name = names[(4.0 * share) as usize];
-                Command::Motion(Box::new(MotionSection { name, ..MotionSection::default() }))
+                Change::Motion(Box::new(MotionSection { name, ..MotionSection::default() }))
             }
             _ => {
                 let rotation = Vec3::new(0.0, 60.0 * (share - 0.5), 0.0);
-                Command::Motion(Box::new(MotionSection { rotation, ..MotionSection::default() }))
+                Change::Motion(Box::new(MotionSection { rotation, ..MotionSection::default() }))
             }
         };
         self.tell(command);
@@ -189,9 +195,9 @@ impl Person {
         let (share, other) = (self.share(), self.share());
         let ray = Ray::new(&Camera::front(), Vec2::new(share - 0.5, other - 0.5));
         let command = match self.below(6) {
-            0 | 1 => Command::Grab(ray, 0.1 * share),
-            2..=4 => Command::Drag(ray),
-            _ => Command::Release,
+            0 | 1 => Change::Grab(ray, 0.1 * share),
+            2..=4 => Change::Drag(ray),
+            _ => Change::Release,
         };
         self.tell(command);
     }
@@ -200,7 +206,7 @@ impl Person {
     fn play(&mut self) {
         let share = self.share();
         match self.below(5) {
-            0 => self.tell(Command::Reset),
+            0 => self.tell(Change::Reset),
             1 => {
                 self.tell(Command::Play(false));
                 (0..(4.0 * share) as u32).for_each(|_| self.tell(Command::Step));
@@ -234,11 +240,11 @@ impl Person {
         let mut settings = base.simulation.clone();
         settings.iterations = 0;
         self.refuse(match (5.0 * share) as u32 {
-            0 => Command::Length(2.5),
-            1 => Command::Camera(Camera { field_of_view: f32::NAN, ..Camera::front() }),
-            2 => Command::Wind(WindSection { gust: 7.0, ..WindSection::default() }),
-            3 => Command::Picture(PictureSettings { width: 0, ..base.picture }),
-            _ => Command::Settings(Box::new(settings)),
+            0 => Change::Length(2.5),
+            1 => Change::Camera(Camera { field_of_view: f32::NAN, ..Camera::front() }),
+            2 => Change::Wind(WindSection { gust: 7.0, ..WindSection::default() }),
+            3 => Change::Picture(PictureSettings { width: 0, ..base.picture }),
+            _ => Change::Settings(Box::new(settings)),
         });
     }
 
@@ -253,26 +259,26 @@ impl Person {
     fn keep(&mut self) {
         let base = scene();
         self.wait(|person| person.loaded >= person.load);
-        for command in [
-            Command::Play(false),
-            Command::Release,
-            Command::Adapt(false),
-            Command::Settings(Box::new(base.simulation.clone())),
-            Command::Length(1.0),
-            Command::Wind(base.wind),
-            Command::Look(Box::new(base.look.clone())),
-            Command::BodyLook(base.body_look),
-            Command::Lights(base.lights.clone()),
-            Command::LevelOfDetail(base.level_of_detail),
-            Command::Picture(base.picture),
-            Command::Camera(Camera::front()),
+        self.tell(Command::Play(false));
+        self.tell(Command::Adapt(false));
+        for change in [
+            Change::Release,
+            Change::Settings(Box::new(base.simulation.clone())),
+            Change::Length(1.0),
+            Change::Wind(base.wind),
+            Change::Look(Box::new(base.look.clone())),
+            Change::BodyLook(base.body_look),
+            Change::Lights(base.lights.clone()),
+            Change::LevelOfDetail(base.level_of_detail),
+            Change::Picture(base.picture),
+            Change::Camera(Camera::front()),
             // One that it cannot be at.
-            Command::Motion(Box::new(MotionSection { name: MotionName::Turn, ..base.motion.clone() })),
-            Command::Motion(Box::new(base.motion.clone())),
+            Change::Motion(Box::new(MotionSection { name: MotionName::Turn, ..base.motion.clone() })),
+            Change::Motion(Box::new(base.motion.clone())),
         ] {
-            self.tell(command);
+            self.tell(change);
         }
-        self.wait(|person| person.last.heard == person.told);
+        self.wait(|person| person.last.drawn_after_command == person.told);
         self.save("kept.toml");
         self.wait(|person| person.saved == person.saves);
         let saved = Scene::load(&self.folder.join("kept.toml")).unwrap();
@@ -286,13 +292,13 @@ impl Person {
 
     /// The picture at rest and the one some steps later.
     fn begin_again(&mut self) -> [Picture; 2] {
-        self.tell(Command::Reset);
-        self.wait(|person| person.last.heard == person.told);
+        self.tell(Change::Reset);
+        self.wait(|person| person.last.drawn_after_command == person.told);
         let rest = self.last.picture.clone();
         // A step at a time: of several the picture of the first may be the last that has to be waited for.
         for _ in 0..20 {
             self.tell(Command::Step);
-            self.wait(|person| person.last.heard == person.told);
+            self.wait(|person| person.last.drawn_after_command == person.told);
         }
         [rest, self.last.picture.clone()]
     }

@@ -4,7 +4,7 @@
 use glam::Vec3;
 use strandline::{
     Backend, Event, Live, Player, Pose, Scene,
-    low_level::{Command, News, groom::Vec3Lanes, sim::State},
+    low_level::{Change, Command, LiveEvent, groom::Vec3Lanes, sim::State},
     scene::{MotionName, WindSection},
 };
 
@@ -169,25 +169,17 @@ fn a_window_with_very_short_steps_slows_time_down_and_the_head_with_it() {
     slow.devices = Backend::Cpu.into();
     (slow.look.follow_strands, slow.look.hair_count) = (1, 0);
     let live = Live::new(slow.clone(), || ()).unwrap();
-    live.tell(Command::Play(false));
-    while live.take_shown().is_none() {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    live.tell(Command::Reset);
+    live.send(Command::Play(false));
+    live.wait_idle();
+    live.send(Change::Reset);
     for _ in 0..5 {
-        live.tell(Command::Step);
+        live.send(Command::Step);
     }
-    live.tell(Command::Save(Box::new(slow.clone()), 1, path.clone()));
-    let begin = std::time::Instant::now();
-    loop {
-        let news = live.take_news();
-        if news.iter().any(|news| matches!(news, News::Saved(_))) {
-            break;
-        }
-        let unsaved = news.iter().any(|news| matches!(news, News::Error(_)));
-        assert!(!unsaved && begin.elapsed().as_secs() < 60, "{news:?}");
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
+    live.send(Command::Save(Box::new(slow.clone()), 1, path.clone()));
+    live.wait_idle();
+    let events = live.take_events();
+    assert!(events.iter().any(|event| matches!(event, LiveEvent::Saved(_))), "{events:?}");
+    assert!(!events.iter().any(|event| matches!(event, LiveEvent::Error(_))), "{events:?}");
     drop(live);
     // Five frames of 16 steps, seen a step later; at the full rate the motion would be at 83 ms.
     let saved = Scene::load(&path).unwrap();

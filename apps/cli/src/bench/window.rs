@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use strandline::{
     Backend, Camera, Live, Scene,
-    low_level::{Command, News, Ray, Shown},
+    low_level::{Change, Command, LiveEvent, Ray, Shown},
 };
 
 use super::gpu::Device;
@@ -100,7 +100,7 @@ impl Play {
     fn begin(scene: Scene) -> anyhow::Result<Self> {
         let begin = Instant::now();
         let live = Live::new(scene.clone(), || ())?;
-        live.tell(Command::Adapt(true));
+        live.send(Command::Adapt(true));
         let mut play = Self {
             live,
             camera: Camera::front(),
@@ -118,10 +118,10 @@ impl Play {
     /// Waits for a picture of a kind.
     fn next(&mut self, is: impl Fn(&Shown) -> bool) -> anyhow::Result<()> {
         loop {
-            for news in self.live.take_news() {
+            for news in self.live.take_events() {
                 match news {
-                    News::Loaded(_, _, camera, ..) => self.camera = camera,
-                    News::NotLoaded(_, error) | News::Error(error) => anyhow::bail!("{error}"),
+                    LiveEvent::Loaded(_, _, camera, ..) => self.camera = camera,
+                    LiveEvent::NotLoaded(_, error) | LiveEvent::Error(error) => anyhow::bail!("{error}"),
                     _ => {}
                 }
             }
@@ -137,15 +137,21 @@ impl Play {
     }
 
     /// Does something and waits for the picture that shows it.
-    fn act(&mut self, command: Command) -> anyhow::Result<()> {
+    fn act(&mut self, change: Change) -> anyhow::Result<()> {
         // Whatever is finished is seen before.
         if let Some(shown) = self.live.take_shown() {
             self.shown = shown;
         }
         let (before, begin) = (self.shown.frame, Instant::now());
-        let moves_hair = !matches!(command, Command::Camera(_) | Command::Look(_));
-        let number = self.live.tell(command);
-        self.next(|shown| if moves_hair { shown.felt >= number } else { shown.heard >= number })?;
+        let moves_hair = !matches!(change, Change::Camera(_) | Change::Look(_));
+        let number = self.live.send(change);
+        self.next(|shown| {
+            if moves_hair {
+                shown.simulated_after_command >= number
+            } else {
+                shown.drawn_after_command >= number
+            }
+        })?;
         let moves = if moves_hair { &mut self.motion_moves } else { &mut self.picture_moves };
         moves.0.push(((self.shown.frame - before) as f64, 1e3 * begin.elapsed().as_secs_f64()));
         Ok(())
@@ -187,23 +193,23 @@ impl Play {
             0 => {
                 let mut settings = self.scene.simulation.clone();
                 settings.damping = 0.1 * (count / 8 % 2) as f32;
-                self.act(Command::Settings(Box::new(settings)))
+                self.act(Change::Settings(Box::new(settings)))
             }
             1 => {
                 let ray = Ray::new(&self.camera, glam::Vec2::new(-0.25, -0.4));
-                self.act(Command::Grab(ray, 0.012))
+                self.act(Change::Grab(ray, 0.012))
             }
             2 | 3 => {
                 let ray = Ray::new(&self.camera, glam::Vec2::new(-0.6 + 0.2 * share, -0.2));
-                self.act(Command::Drag(ray))
+                self.act(Change::Drag(ray))
             }
-            4 => self.act(Command::Release),
+            4 => self.act(Change::Release),
             5 => {
                 let look = strandline::Look { sparkle: 0.5 + 0.4 * share, ..self.scene.look.clone() };
-                self.act(Command::Look(Box::new(look)))
+                self.act(Change::Look(Box::new(look)))
             }
-            6 => self.act(Command::Length(0.75 + 0.25 * share)),
-            _ => self.act(Command::Camera(self.camera.orbit(0.5 * share, 0.0))),
+            6 => self.act(Change::Length(0.75 + 0.25 * share)),
+            _ => self.act(Change::Camera(self.camera.orbit(0.5 * share, 0.0))),
         }
     }
 }

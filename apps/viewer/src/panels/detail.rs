@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 use strandline::low_level::{
-    Command,
+    Change,
     base::Group,
     render::{Background, LevelOfDetail, PictureSettings, ToneMap},
 };
@@ -29,7 +29,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let tip = "fewer strands and samples while the hair moves, where a picture takes long";
     tick_of(ui, (&mut app.adapts, true), "simpler while it moves", tip);
     if app.scene.level_of_detail != before.0 {
-        app.live.tell(Command::LevelOfDetail(app.scene.level_of_detail));
+        app.live.send(Change::LevelOfDetail(app.scene.level_of_detail));
     }
     if app.scene.picture != before.1 {
         app.send_picture();

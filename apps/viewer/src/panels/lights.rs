@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline::{
     Camera,
     low_level::{
-        Command,
+        Change,
         base::Group,
         render::{Light, LightKind},
     },
@@ -48,7 +48,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         lights.push(Light { kind: LightKind::Spot, position, target, ..Light::default() });
     }
     if *lights != before {
-        app.live.tell(Command::Lights(app.scene.lights.clone()));
+        app.live.send(Change::Lights(app.scene.lights.clone()));
     }
 }
 

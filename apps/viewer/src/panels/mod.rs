@@ -9,7 +9,7 @@ mod scene;
 mod simulation;
 
 use eframe::egui::{self, Ui};
-use strandline::low_level::Command;
+use strandline::low_level::{Change, Command};
 
 use crate::{
     App,
@@ -37,10 +37,10 @@ fn play(app: &mut App, ui: &mut Ui) {
         }
         if button(ui, "Step", "one frame of 1/60 s: the full stop") {
             app.play(false);
-            app.live.tell(Command::Step);
+            app.live.send(Command::Step);
         }
         if button(ui, "Reset", "back to rest, and to the beginning of the motion: R") {
-            app.live.tell(Command::Reset);
+            app.live.send(Change::Reset);
         }
         let (name, tip) = match app.recording {
             true => ("Stop recording", "finishes the video: V"),

@@ -2,7 +2,7 @@
 
 use eframe::egui::{DragValue, Ui};
 use strandline::{
-    low_level::{Command, base::Group},
+    low_level::{Change, base::Group},
     scene::{GroomSection, KeyframeSection, MotionName, MotionSection, WindSection},
 };
 
@@ -29,7 +29,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     wind(app, ui);
     let length = (&mut app.scene.groom.length, app.base.groom.length);
     if slide(ui, length, &GroomSection::ROWS.length, "length") {
-        app.live.tell(Command::Length(app.scene.groom.length));
+        app.live.send(Change::Length(app.scene.groom.length));
     }
     slide_in(ui, (&mut app.radius, App::RADIUS), 0.002..=0.05, "hand", "its radius, for grabbing [m]");
 }
@@ -96,6 +96,6 @@ fn wind(app: &mut App, ui: &mut Ui) {
     slide(ui, (&mut wind.gust, base.gust), &WindSection::ROWS.gust, "gusts");
     slide(ui, (&mut wind.gust_period, base.gust_period), &WindSection::ROWS.gust_period, "gust period");
     if *wind != before {
-        app.live.tell(Command::Wind(app.scene.wind));
+        app.live.send(Change::Wind(app.scene.wind));
     }
 }

@@ -2,7 +2,7 @@
 
 use eframe::egui::Ui;
 use strandline::low_level::{
-    Command,
+    Change,
     base::Group,
     sim::{
         Angles, Drag, LengthPass, Settings, Spring, Springs, StrandMethod, StrandSettings, VolumeSettings,
@@ -31,7 +31,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         *settings = base.clone();
     }
     if app.scene.simulation != before {
-        app.live.tell(Command::Settings(Box::new(app.scene.simulation.clone())));
+        app.live.send(Change::Settings(Box::new(app.scene.simulation.clone())));
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod advance;
 mod alone;
+mod between;
 mod buffers;
 mod constrain;
 mod gather;
@@ -29,6 +30,7 @@ mod stage;
 mod transfer;
 mod volume;
 
+pub use between::read_between;
 pub use kernels::declarations;
 pub use lengths_alone::{LengthsForm, LengthsInput, lengths_alone};
 pub use linked::modules;

@@ -15,7 +15,7 @@ use super::{
     store::Store,
     usd::Usd,
 };
-use crate::{Error, Scene, sim::StepReport, simulation::Moment};
+use crate::{Error, Scene, session::moment::Moment, sim::StepReport};
 
 /// What is written and where.
 #[derive(Clone, Debug)]
@@ -128,7 +128,7 @@ impl Out {
     }
 
     /// Whether a frame is one of those that are written.
-    fn takes(&self, frame: u32) -> bool {
+    pub(crate) fn takes(&self, frame: u32) -> bool {
         frame.checked_sub(self.first).is_some_and(|frame| frame.is_multiple_of(self.every))
     }
 
@@ -140,7 +140,7 @@ impl Out {
         }
     }
 
-    /// Adds a frame of the film, where it is one of those that are written.
+    /// Adds a frame of the film, where it is one of those that are written: its points are on the host then.
     pub(crate) fn add(
         &mut self,
         number: u32,
@@ -156,7 +156,7 @@ impl Out {
             return Ok(());
         }
         let watch = Stopwatch::start();
-        self.shape.place(&moment.positions, &moment.world_from_head, &mut self.points);
+        self.shape.place(moment.positions(), &moment.world_from_head, &mut self.points);
         let points = std::mem::take(&mut self.points);
         let frame = Frame { number, time, points: &points, world_from_head: moment.world_from_head };
         let added = self.write(&frame, state);

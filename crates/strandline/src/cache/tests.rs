@@ -9,7 +9,7 @@ use super::{
 use crate::{
     Scene,
     groom::{Groom, Guides},
-    simulation::Moment,
+    session::moment::Moment,
     tags::Tags,
 };
 
@@ -44,8 +44,7 @@ fn write(settings: &OutSettings, guides: &Guides, frames: u32) -> (u64, f64, f64
     let mut scene = Scene::demo();
     scene.film.frames = frames;
     let mut out = Out::new(settings, &scene, leaving(guides)).unwrap();
-    let mut moment = Moment::default();
-    moment.positions = guides.positions().to_vec();
+    let mut positions = guides.positions().to_vec();
     let state = Snapshot {
         frame: 0,
         time: 0.0,
@@ -54,9 +53,10 @@ fn write(settings: &OutSettings, guides: &Guides, frames: u32) -> (u64, f64, f64
     };
     let (begin, ran) = (Instant::now(), processor());
     for frame in 0..frames {
-        for lanes in &mut moment.positions {
+        for lanes in &mut positions {
             lanes.x.iter_mut().for_each(|x| *x += 1e-4 * (0.3 * frame as f32).sin());
         }
+        let moment = Moment::of(positions.clone());
         out.add(frame, f64::from(frame) / 30.0, &moment, &[], Some(&state)).unwrap();
     }
     out.close(true, Some(&state)).unwrap();

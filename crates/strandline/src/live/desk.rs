@@ -6,21 +6,28 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use strandline_base::Stopwatch;
-
-use super::course::{Course, changes_cost, of_size};
-use super::messages::{Command, FRAME, News, Out, Shown};
+use super::clock::LiveClock;
+use super::loaded::Loaded;
+use super::messages::{Command, LiveEvent, Out, Shown};
+use super::playing::{Playing, changes_cost, of_size};
 use super::recorder::Recorder;
-use super::stage::Stage;
-use crate::{Error, FilmFiles, Scene, sim::StepReport, worker::Gone};
+use crate::{
+    Error, FilmFiles, Scene,
+    render::{FrameReport, Picture},
+    session::{Change, Event, FRAME},
+};
 
-/// What the drawing thread is told.
+/// What the drawing thread receives.
 pub(super) enum Message {
     Command(Command),
     /// The scene of the load with this number.
-    Loaded(u64, Result<Box<Stage>, Error>),
+    Loaded(u64, Result<Box<Loaded>, Error>),
     /// The film with this number is over.
     Recorded(u64, Result<FilmFiles, Error>),
+    /// Somebody waits until nothing is left to do.
+    Idle(Sender<()>),
+    /// A clock that stood still was moved on.
+    Advanced,
     /// Nobody looks any more.
     End,
 }
@@ -31,6 +38,7 @@ pub(super) struct Desk {
     own: Sender<Message>,
     out: Arc<Mutex<Out>>,
     wake: Box<dyn Fn() + Send>,
+    clock: LiveClock,
 }
 
 impl Desk {
@@ -39,274 +47,300 @@ impl Desk {
         own: Sender<Message>,
         out: Arc<Mutex<Out>>,
         wake: Box<dyn Fn() + Send>,
+        clock: LiveClock,
     ) -> Self {
-        Self { messages, own, out, wake }
+        let advanced = own.clone();
+        // Nobody is left to be told after the end.
+        clock.on_advance(move || drop(advanced.send(Message::Advanced)));
+        Self { messages, own, out, wake, clock }
     }
 
     pub fn run(self) {
-        let mut course = Course::START;
-        let played = catch_unwind(AssertUnwindSafe(|| self.play(&mut course)));
+        let mut playing = Playing::START;
+        let played = catch_unwind(AssertUnwindSafe(|| self.play(&mut playing)));
         if played.is_err() {
-            self.say(News::Error(Error::WorkerGone.to_string()));
-            self.say(News::Paused);
+            self.emit(LiveEvent::Error(Error::WorkerGone.to_string()));
+            self.emit(LiveEvent::Paused);
         }
         // Films under way are finished.
-        course.finishing.extend(course.recorder.take().map(Recorder::finish));
-        for film in course.finishing {
+        playing.finishing.extend(playing.recorder.take().map(Recorder::finish));
+        for film in playing.finishing {
             let _ = film.join();
         }
     }
 
-    fn play(&self, course: &mut Course) {
+    fn play(&self, playing: &mut Playing) {
         loop {
-            let mut next = self.messages.recv_timeout(course.patience());
+            let patience = playing.patience();
+            if playing.is_idle() {
+                // Who waits for it may be gone.
+                for idler in playing.idlers.drain(..) {
+                    let _ = idler.send(());
+                }
+            }
+            let mut next = self.next(patience);
             // Nothing happened for a moment: what was drawn simpler is drawn in full.
-            let rests = next.is_err() && !course.playing && course.steps == 0;
-            let mut full = rests && course.draft && !course.stale;
-            course.stale |= full;
+            let rests = next.is_err() && !playing.playing && playing.steps == 0;
+            let mut full = rests && playing.draft && !playing.stale;
+            playing.stale |= full;
             loop {
                 match next {
                     Ok(Message::End) | Err(RecvTimeoutError::Disconnected) => return,
                     Ok(message) => {
                         full = false;
-                        self.hear(course, message);
+                        self.receive(playing, message);
                     }
                     Err(RecvTimeoutError::Timeout) => break,
                 }
-                next = self.messages.recv_timeout(Duration::ZERO);
+                next = self.next(Duration::ZERO);
             }
-            let draft = course.adapts && course.slow && !full && course.recorder.is_none();
-            if let Err(error) = self.frame(course, draft) {
-                self.say(News::Error(error.to_string()));
-                self.say(News::Paused);
-                // What fails now fails again: it waits to be told something else.
-                (course.playing, course.steps, course.stale, course.draft) = (false, 0, false, false);
+            let draft = playing.adapts && playing.slow && !full && playing.recorder.is_none();
+            if let Err(error) = self.frame(playing, draft) {
+                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(LiveEvent::Paused);
+                // What fails now fails again: it waits for another command.
+                (playing.playing, playing.steps, playing.stale, playing.draft) = (false, 0, false, false);
             }
         }
     }
 
-    fn hear(&self, course: &mut Course, message: Message) {
+    fn next(&self, patience: Duration) -> Result<Message, RecvTimeoutError> {
+        self.clock.receive(&self.messages, patience, |message| matches!(message, Message::Advanced))
+    }
+
+    fn receive(&self, playing: &mut Playing, message: Message) {
         let command = match message {
             Message::Command(command) => command,
-            Message::Loaded(load, stage) => return self.take_stage(course, load, stage),
-            Message::Recorded(film, files) => return self.tell_film(course, film, files),
-            Message::End => return,
+            Message::Loaded(load, loaded) => return self.take_scene(playing, load, loaded),
+            Message::Recorded(film, files) => return self.tell_film(playing, film, files),
+            Message::Idle(idler) => return playing.idlers.push(idler),
+            Message::Advanced | Message::End => return,
         };
-        course.heard += 1;
+        playing.received += 1;
         match command {
             Command::Load(scene) => {
-                course.load = course.heard;
-                self.load(scene, course.load);
+                playing.load = playing.received;
+                self.load(playing, scene);
             }
             // Steps that were asked for before are among those it plays.
-            Command::Play(true) => (course.playing, course.steps) = (true, 0),
-            Command::Play(false) => course.playing = false,
-            Command::Step => course.steps += u32::from(!course.playing),
-            Command::Adapt(adapts) => course.adapts = adapts,
-            Command::Save(scene, load, path) => self.save(course, *scene, load, path),
-            Command::Record(folder) => self.record(course, &folder),
-            Command::StopRecording => course.finishing.extend(course.recorder.take().map(Recorder::finish)),
-            other => {
-                if matches!(other, Command::Reset) {
-                    // Steps before it lead to nothing.
-                    course.steps = 0;
-                }
-                course.stale = true;
-                course.tried &= !changes_cost(&other);
-                let fixed = course.recorder.is_some();
-                let Some(stage) = &mut course.stage else { return };
-                let other = if fixed { of_size(other, stage.picture()) } else { other };
-                self.change(stage, other);
-            }
+            Command::Play(true) => (playing.playing, playing.steps) = (true, 0),
+            Command::Play(false) => playing.playing = false,
+            Command::Step => playing.steps += u32::from(!playing.playing),
+            Command::Adapt(adapts) => playing.adapts = adapts,
+            Command::Save(scene, load, path) => self.save(playing, *scene, load, path),
+            Command::Record(folder) => self.record(playing, &folder),
+            Command::StopRecording => playing.finishing.extend(playing.recorder.take().map(Recorder::finish)),
+            Command::Change(change) => self.change(playing, change),
         }
     }
 
-    fn change(&self, stage: &mut Stage, command: Command) {
-        if let Err(error) = stage.change(command) {
-            self.say(News::Error(error.to_string()));
+    fn change(&self, playing: &mut Playing, change: Change) {
+        if matches!(change, Change::Reset) {
+            // Steps before it lead to nothing.
+            playing.steps = 0;
+        }
+        playing.stale = true;
+        playing.tried &= !changes_cost(&change);
+        let fixed = playing.recorder.is_some();
+        let Some(Loaded { session, .. }) = playing.scene.as_deref_mut() else { return };
+        let change = if fixed { of_size(change, session.settings()) } else { change };
+        if let Err(error) = session.change(change) {
+            self.emit(LiveEvent::Error(error.to_string()));
         }
     }
 
-    fn take_stage(&self, course: &mut Course, load: u64, loaded: Result<Box<Stage>, Error>) {
+    fn take_scene(&self, playing: &mut Playing, load: u64, loaded: Result<Box<Loaded>, Error>) {
+        playing.loading -= 1;
         match loaded {
             // Another scene was asked for since.
-            _ if load != course.load => {}
-            Ok(mut stage) => {
-                let Stage { scene, camera, bounds, notes, .. } = &*stage;
-                self.say(News::Loaded(load, scene.clone(), *camera, *bounds, notes.clone()));
-                if let (Some(old), Some(_)) = (&course.stage, &course.recorder) {
-                    let picture = Command::Picture(stage.picture());
-                    self.change(&mut stage, of_size(picture, old.picture()));
+            _ if load != playing.load => {}
+            Ok(mut loaded) => {
+                let Loaded { session, scene, notes } = &mut *loaded;
+                let (camera, bounds) = (session.studio.camera, session.studio.bounds);
+                self.emit(LiveEvent::Loaded(load, scene.clone(), camera, bounds, notes.clone()));
+                if let (Some(old), Some(_)) = (&playing.scene, &playing.recorder) {
+                    let picture = of_size(Change::Picture(session.settings()), old.session.settings());
+                    if let Err(error) = session.change(picture) {
+                        self.emit(LiveEvent::Error(error.to_string()));
+                    }
                 }
                 // Until one is drawn nobody knows how long it takes: the first is there sooner when simple.
-                (course.stale, course.tried) = (true, false);
-                course.slow = stage.studio.painter.gpu().is_none();
-                (course.stage, course.staged) = (Some(stage), load);
-                (course.step, course.is_frame) = (None, false);
+                (playing.stale, playing.tried) = (true, false);
+                playing.slow = session.studio.painter.gpu().is_none();
+                (playing.scene, playing.loaded) = (Some(loaded), load);
+                (playing.step, playing.is_frame) = (None, false);
             }
-            Err(error) => self.say(News::NotLoaded(load, error.to_string())),
+            Err(error) => self.emit(LiveEvent::NotLoaded(load, error.to_string())),
         }
     }
 
     /// Loads on a thread of its own, so that what plays goes on.
-    fn load(&self, scene: Box<Scene>, number: u64) {
-        let own = self.own.clone();
+    fn load(&self, playing: &mut Playing, scene: Box<Scene>) {
+        playing.loading += 1;
+        let (own, number) = (self.own.clone(), playing.load);
         let job = move || {
-            let loaded = catch_unwind(|| Stage::new(&scene)).unwrap_or(Err(Error::WorkerGone)).map(Box::new);
+            let loaded = catch_unwind(|| Loaded::new(&scene)).unwrap_or(Err(Error::WorkerGone)).map(Box::new);
             // Nobody waits for it any more when the window is closed.
             let _ = own.send(Message::Loaded(number, loaded));
         };
         if let Err(error) = std::thread::Builder::new().name("loading".to_owned()).spawn(job) {
-            self.say(News::NotLoaded(number, Error::Thread(error).to_string()));
+            playing.loading -= 1;
+            self.emit(LiveEvent::NotLoaded(number, Error::Thread(error).to_string()));
         }
     }
 
-    fn record(&self, course: &mut Course, folder: &Path) {
-        if course.recorder.is_some() {
+    fn record(&self, playing: &mut Playing, folder: &Path) {
+        if playing.recorder.is_some() {
             return;
         }
         let own = self.own.clone();
-        course.film += 1;
-        let film = course.film;
+        playing.film += 1;
+        let film = playing.film;
         let done = move |files| {
             let _ = own.send(Message::Recorded(film, files));
         };
         match Recorder::new(folder, (1.0 / FRAME) as f32, done) {
-            Ok(recorder) => course.recorder = Some(recorder),
+            Ok(recorder) => playing.recorder = Some(recorder),
             Err(error) => {
-                self.say(News::Error(error.to_string()));
-                self.say(News::Recorded);
+                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(LiveEvent::Recorded);
             }
         }
     }
 
-    fn tell_film(&self, course: &mut Course, number: u64, film: Result<FilmFiles, Error>) {
-        course.finishing.retain(|thread| !thread.is_finished());
+    fn tell_film(&self, playing: &mut Playing, number: u64, film: Result<FilmFiles, Error>) {
+        playing.finishing.retain(|thread| !thread.is_finished());
         match film {
             Ok(film) => {
                 let files = film.files.last().map(|path| format!("wrote {}", path.display()));
-                film.notes.into_iter().chain(files).for_each(|note| self.say(News::Note(note)));
+                film.notes.into_iter().chain(files).for_each(|note| self.emit(LiveEvent::Note(note)));
             }
             Err(error) => {
-                if number == course.film {
+                if number == playing.film {
                     // It may have ended by itself.
-                    course.finishing.extend(course.recorder.take().map(Recorder::finish));
+                    playing.finishing.extend(playing.recorder.take().map(Recorder::finish));
                 }
-                self.say(News::Error(error.to_string()));
+                self.emit(LiveEvent::Error(error.to_string()));
             }
         }
-        self.say(News::Recorded);
+        self.emit(LiveEvent::Recorded);
     }
 
     /// Saves a scene, with the hair as the commands before this one left it.
-    fn save(&self, course: &mut Course, scene: Scene, load: u64, path: PathBuf) {
-        if let Err(error) = self.catch_up(course).and_then(|()| self.make_steps(course)) {
+    fn save(&self, playing: &mut Playing, scene: Scene, load: u64, path: PathBuf) {
+        if let Err(error) = self.catch_up(playing).and_then(|()| self.make_steps(playing)) {
             // The last good state is still there.
-            self.say(News::Error(error.to_string()));
+            self.emit(LiveEvent::Error(error.to_string()));
         }
-        self.say(match &course.stage {
-            Some(stage) if course.staged == load => match stage.save(scene, &path) {
-                Ok(()) => News::Saved(path),
-                Err(error) => News::Error(error.to_string()),
+        self.emit(match &playing.scene {
+            Some(loaded) if playing.loaded == load => match loaded.save(scene, &path) {
+                Ok(()) => LiveEvent::Saved(path),
+                Err(error) => LiveEvent::Error(error.to_string()),
             },
-            Some(_) => News::Error("not saved, as another scene has just come: save again".to_owned()),
-            None => News::Error("there is no hair to save yet".to_owned()),
+            Some(_) => LiveEvent::Error("not saved, as another scene has just come: save again".to_owned()),
+            None => LiveEvent::Error("there is no hair to save yet".to_owned()),
         });
     }
 
     /// Waits for all that the simulation has begun.
-    fn catch_up(&self, course: &mut Course) -> Result<(), Error> {
-        let Some(stage) = &mut course.stage else { return Ok(()) };
-        while stage.worker.started() > 0 {
-            course.stale = true;
-            let (step, is_frame) = self.take(stage)?;
-            course.step = step.or(course.step.take());
-            course.is_frame |= is_frame;
+    fn catch_up(&self, playing: &mut Playing) -> Result<(), Error> {
+        while playing.scene.as_ref().is_some_and(|loaded| loaded.session.place.started() > 0) {
+            playing.stale = true;
+            self.take(playing)?;
         }
         Ok(())
     }
 
     /// Makes the steps that were asked for, without pictures between them unless they are recorded.
-    fn make_steps(&self, course: &mut Course) -> Result<(), Error> {
-        while course.steps > 0 && course.stage.is_some() {
-            if course.recorder.is_some() {
-                self.frame(course, false)?;
+    fn make_steps(&self, playing: &mut Playing) -> Result<(), Error> {
+        while playing.steps > 0 && playing.scene.is_some() {
+            if playing.recorder.is_some() {
+                self.frame(playing, false)?;
                 continue;
             }
-            course.steps -= 1;
-            let Some(stage) = &mut course.stage else { break };
-            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
-            self.catch_up(course)?;
+            playing.steps -= 1;
+            let Some(loaded) = &mut playing.scene else { break };
+            loaded.session.start_frame(playing.received)?;
+            self.catch_up(playing)?;
         }
         Ok(())
     }
 
     /// Simulates and draws one frame, as far as there is anything to do.
-    fn frame(&self, course: &mut Course, draft: bool) -> Result<(), Error> {
-        let Some(stage) = &mut course.stage else { return Ok(()) };
-        let moves = (course.playing || course.steps > 0) && !course.is_frame;
-        if moves && stage.worker.started() == 0 {
-            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
-            course.steps = course.steps.saturating_sub(1);
+    fn frame(&self, playing: &mut Playing, draft: bool) -> Result<(), Error> {
+        let Some(loaded) = &mut playing.scene else { return Ok(()) };
+        let moves = (playing.playing || playing.steps > 0) && !playing.is_frame;
+        if moves && loaded.session.place.started() == 0 {
+            loaded.session.start_frame(playing.received)?;
+            playing.steps = playing.steps.saturating_sub(1);
         }
-        self.catch_up(course)?;
-        let (step, is_frame) = (course.step.take(), std::mem::take(&mut course.is_frame));
-        let Some(stage) = course.stage.as_mut().filter(|_| course.stale) else { return Ok(()) };
-        if course.playing {
-            stage.start(course.heard).map_err(|Gone| Error::WorkerGone)?;
+        self.catch_up(playing)?;
+        let is_frame = std::mem::take(&mut playing.is_frame);
+        let Some(loaded) = playing.scene.as_mut().filter(|_| playing.stale) else { return Ok(()) };
+        if playing.playing {
+            loaded.session.start_frame(playing.received)?;
         }
-        let watch = Stopwatch::start();
-        let (picture, drawing) = stage.draw(draft)?;
-        std::mem::take(&mut stage.studio.painter.notes)
-            .into_iter()
-            .for_each(|note| self.say(News::Note(note)));
-        let seconds = watch.seconds();
-        if let Some(recorder) = course.recorder.as_mut().filter(|_| is_frame) {
-            recorder.add(&picture);
-        }
-        (course.stale, course.draft) = (false, draft);
-        course.frame += 1;
-        self.show(Shown {
-            picture,
-            frame: course.frame,
-            heard: course.heard,
-            felt: stage.felt,
-            draft,
-            recorded: course.recorder.as_ref().map(|recorder| recorder.frames),
-            drawing,
-            step,
-            grabbed: stage.grabbed,
-            places: [stage.simulated_on.clone(), stage.studio.painter.drawn_on()],
-        });
-        course.judge(seconds, draft);
+        let (drawn, seconds) = self.clock.timed(|| loaded.session.draw(draft));
+        drawn?;
+        (playing.stale, playing.draft) = (false, draft);
+        self.pass_on(playing, is_frame);
+        playing.judge(seconds, draft);
         Ok(())
     }
 
-    /// Takes a result of the simulation: a setting that was refused is told, a device that failed ends it.
-    fn take(&self, stage: &mut Stage) -> Result<(Option<StepReport>, bool), Error> {
-        let (reports, notes, is_frame) = stage.take().map_err(|Gone| Error::WorkerGone)?;
-        notes.into_iter().for_each(|note| self.say(News::Note(note)));
-        match reports {
-            Ok(mut reports) => Ok((reports.pop(), is_frame)),
-            Err(error) if error.gpu().is_none() => {
-                self.say(News::Error(error.to_string()));
-                Ok((None, false))
+    /// Takes a result of the simulation: a setting that was refused is reported, a device that failed ends it.
+    fn take(&self, playing: &mut Playing) -> Result<(), Error> {
+        let Some(loaded) = &mut playing.scene else { return Ok(()) };
+        match loaded.session.take() {
+            Ok(is_frame) => playing.is_frame |= is_frame,
+            Err(Error::Sim(error)) if error.gpu().is_none() => self.emit(LiveEvent::Error(error.to_string())),
+            Err(error) => return Err(error),
+        }
+        self.pass_on(playing, false);
+        Ok(())
+    }
+
+    /// Passes on what the session emitted: a picture, which is recorded where it is a frame.
+    fn pass_on(&self, playing: &mut Playing, is_frame: bool) {
+        while let Some(event) = playing.scene.as_mut().and_then(|loaded| loaded.session.next_event()) {
+            match event {
+                Event::Note(note) => self.emit(LiveEvent::Note(note)),
+                Event::Stepped(report) => playing.step = Some(report),
+                Event::Drawn { picture, report, .. } => {
+                    if let Some(recorder) = playing.recorder.as_mut().filter(|_| is_frame) {
+                        recorder.add(&picture);
+                    }
+                    self.show(playing, picture, report);
+                }
             }
-            Err(error) => Err(error.into()),
         }
     }
 
-    fn say(&self, news: News) {
-        self.out.lock().unwrap_or_else(PoisonError::into_inner).news.push_back(news);
-        (self.wake)();
-    }
-
-    fn show(&self, shown: Shown) {
+    fn show(&self, playing: &mut Playing, picture: Picture, drawing: FrameReport) {
+        let Some(Loaded { session, .. }) = playing.scene.as_deref() else { return };
+        playing.frame += 1;
+        let shown = Shown {
+            picture,
+            frame: playing.frame,
+            drawn_after_command: playing.received,
+            simulated_after_command: session.simulated_after,
+            draft: playing.draft,
+            recorded: playing.recorder.as_ref().map(|recorder| recorder.frames),
+            drawing,
+            step: playing.step.take(),
+            grabbed: session.grabbed,
+            places: [session.simulated_on.clone(), session.studio.painter.drawn_on()],
+        };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
-        // A step that nobody saw is still told.
+        // A step that nobody saw is still reported.
         let unseen = out.shown.take().and_then(|old| old.step);
         out.shown = Some(Shown { step: shown.step.clone().or(unseen), ..shown });
         drop(out);
+        (self.wake)();
+    }
+
+    fn emit(&self, event: LiveEvent) {
+        self.out.lock().unwrap_or_else(PoisonError::into_inner).events.push_back(event);
         (self.wake)();
     }
 }

@@ -1,17 +1,19 @@
-//! Hair that plays until it is told otherwise, for windows: nothing here makes its caller wait.
+//! Hair that plays on threads of its own, for windows: nothing here makes its caller wait.
 
-mod course;
+mod clock;
 mod desk;
+mod loaded;
 mod messages;
+mod playing;
 mod recorder;
-mod stage;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
-pub use messages::{Command, News, Shown};
+pub use clock::LiveClock;
+pub use messages::{Command, LiveEvent, Shown};
 
 use desk::{Desk, Message};
 use messages::Out;
@@ -21,7 +23,7 @@ use crate::{Error, Scene};
 /// A scene that plays on threads of its own: one simulates, one draws [Chen2011 §5].
 pub struct Live {
     commands: Option<Sender<Message>>,
-    told: AtomicU64,
+    sent: AtomicU64,
     out: Arc<Mutex<Out>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -32,24 +34,47 @@ impl Live {
     /// # Errors
     /// The system gives no thread.
     pub fn new(scene: Scene, wake: impl Fn() + Send + 'static) -> Result<Self, Error> {
+        Self::with_clock(scene, wake, LiveClock::default())
+    }
+
+    /// As [`Live::new`], by a clock of its own: see [`LiveClock::manual`].
+    ///
+    /// # Errors
+    /// As [`Live::new`].
+    pub fn with_clock(
+        scene: Scene,
+        wake: impl Fn() + Send + 'static,
+        clock: LiveClock,
+    ) -> Result<Self, Error> {
         let (commands, messages) = channel();
         let out = Arc::new(Mutex::new(Out::default()));
-        let desk = Desk::new(messages, commands.clone(), out.clone(), Box::new(wake));
+        let desk = Desk::new(messages, commands.clone(), out.clone(), Box::new(wake), clock);
         let thread = std::thread::Builder::new()
             .name("drawing".to_owned())
             .spawn(move || desk.run())
             .map_err(Error::Thread)?;
-        let live = Self { commands: Some(commands), told: AtomicU64::new(0), out, thread: Some(thread) };
-        live.tell(Command::Load(Box::new(scene)));
+        let live = Self { commands: Some(commands), sent: AtomicU64::new(0), out, thread: Some(thread) };
+        live.send(Command::Load(Box::new(scene)));
         Ok(live)
     }
 
-    /// Tells it something; never waits. Returns the command's number: pictures that were drawn after it was
-    /// heard have at least this [`Shown::heard`].
-    pub fn tell(&self, command: Command) -> u64 {
-        // Without a thread there is nobody to tell: its last words are in the news.
-        let _ = self.commands.as_ref().map(|commands| commands.send(Message::Command(command)));
-        self.told.fetch_add(1, Ordering::Relaxed) + 1
+    /// Sends a command; never waits. Returns its number: pictures that were drawn after it have at least this
+    /// [`Shown::drawn_after_command`].
+    pub fn send(&self, command: impl Into<Command>) -> u64 {
+        // Without a thread nobody receives it: its last event says why.
+        let _ = self.commands.as_ref().map(|commands| commands.send(Message::Command(command.into())));
+        self.sent.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    /// Waits until nothing is left to do but what only time brings: no scene is loaded, nothing plays or changes. What
+    /// was drawn until then is there.
+    pub fn wait_idle(&self) {
+        let (idler, idle) = channel();
+        let sent = self.commands.as_ref().is_some_and(|commands| commands.send(Message::Idle(idler)).is_ok());
+        if sent {
+            // Without an answer the thread has ended, and nothing is left either.
+            let _ = idle.recv();
+        }
     }
 
     /// The newest picture, if there is one that was not taken yet.
@@ -57,9 +82,9 @@ impl Live {
         self.out().shown.take()
     }
 
-    /// What happened since the last call.
-    pub fn take_news(&self) -> Vec<News> {
-        self.out().news.drain(..).collect()
+    /// What happened since the last call, in order.
+    pub fn take_events(&self) -> Vec<LiveEvent> {
+        self.out().events.drain(..).collect()
     }
 
     fn out(&self) -> std::sync::MutexGuard<'_, Out> {

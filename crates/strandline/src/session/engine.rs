@@ -18,6 +18,8 @@ pub(crate) struct Engine {
     pub fall_back: bool,
     /// What happened on the way, human-readable.
     pub notes: Vec<String>,
+    /// The state that the CPU went on from, after so many steps: what a picture under way shows.
+    left: Option<(u64, State)>,
 }
 
 impl Engine {
@@ -35,7 +37,7 @@ impl Engine {
             }
             (Err(error), None) => return Err(error),
         };
-        Ok(Self { simulator, fall_back, notes })
+        Ok(Self { simulator, fall_back, notes, left: None })
     }
 
     pub fn model(&self) -> &Model {
@@ -66,6 +68,44 @@ impl Engine {
     /// The state as it was last read.
     pub fn last_state(&self) -> &State {
         self.simulator.last_state()
+    }
+
+    /// Steps made since it began.
+    pub fn steps(&self) -> u64 {
+        self.simulator.steps()
+    }
+
+    /// The reports of all steps that were not returned yet; a device is waited for.
+    pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        self.guarded(Simulator::reports)
+    }
+
+    /// Shows the state after so many steps to who lost the device that had it. What the CPU cannot find again is the
+    /// last state, which lies a frame later.
+    ///
+    /// # Errors
+    /// The failure, where the CPU is not to go on.
+    pub fn find_again(
+        &mut self,
+        step: u64,
+        failure: SimError,
+        mut see: impl FnMut(&State),
+    ) -> Result<(), SimError> {
+        if !self.fall_back {
+            return Err(failure);
+        }
+        if self.gpu().is_some() {
+            let found = self.simulator.fall_back_seeing(step, &mut see);
+            self.note(&failure);
+            if found {
+                return Ok(());
+            }
+        }
+        match &self.left {
+            Some((left, state)) if *left == step => see(state),
+            _ => see(self.simulator.last_state()),
+        }
+        Ok(())
     }
 
     /// How far the hair lies from the groom as loaded, which the head carries.
@@ -145,12 +185,17 @@ impl Engine {
         match act(&mut self.simulator) {
             Err(failure) if self.fall_back && failure.gpu().is_some() && self.gpu().is_some() => {
                 self.simulator.fall_back();
-                let time = self.simulator.time();
-                self.notes.push(format!("falling back to the CPU, resuming from {time:.3} s: {failure}"));
+                self.left = Some((self.simulator.steps(), self.simulator.last_state().clone()));
+                self.note(&failure);
                 act(&mut self.simulator)
             }
             done => done,
         }
+    }
+
+    fn note(&mut self, failure: &SimError) {
+        let time = self.simulator.time();
+        self.notes.push(format!("falling back to the CPU, resuming from {time:.3} s: {failure}"));
     }
 }
 

@@ -1,12 +1,12 @@
 //! What the drawing thread goes on with from one message to the next.
 
+use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use super::messages::Command;
+use super::loaded::Loaded;
 use super::recorder::Recorder;
-use super::stage::Stage;
-use crate::{render::PictureSettings, sim::StepReport};
+use crate::{render::PictureSettings, session::Change, sim::StepReport};
 
 /// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
 const SLOW: f64 = 0.08;
@@ -14,8 +14,8 @@ const SLOW: f64 = 0.08;
 const MOMENT: Duration = Duration::from_millis(200);
 
 /// What the thread goes on with.
-pub(super) struct Course {
-    pub stage: Option<Box<Stage>>,
+pub(super) struct Playing {
+    pub scene: Option<Box<Loaded>>,
     pub playing: bool,
     /// Frames to be made while it stands still.
     pub steps: u32,
@@ -29,10 +29,11 @@ pub(super) struct Course {
     /// Whether the last picture was simpler.
     pub draft: bool,
     pub frame: u64,
-    pub heard: u64,
-    /// Number of the last load, and of the one that is on stage.
+    pub received: u64,
+    /// Number of the last load, and of the scene that plays; loads that are under way.
     pub load: u64,
-    pub staged: u64,
+    pub loaded: u64,
+    pub loading: usize,
     pub recorder: Option<Recorder>,
     /// The last step, and whether there is a frame, of which no picture was drawn yet.
     pub step: Option<StepReport>,
@@ -41,12 +42,14 @@ pub(super) struct Course {
     pub film: u64,
     /// Films that are being finished.
     pub finishing: Vec<JoinHandle<()>>,
+    /// Who waits until nothing is left to do.
+    pub idlers: Vec<Sender<()>>,
 }
 
-impl Course {
-    /// Nothing is on stage.
+impl Playing {
+    /// No scene is there.
     pub const START: Self = Self {
-        stage: None,
+        scene: None,
         playing: true,
         steps: 0,
         stale: false,
@@ -55,14 +58,16 @@ impl Course {
         tried: false,
         draft: false,
         frame: 0,
-        heard: 0,
+        received: 0,
         load: 0,
-        staged: 0,
+        loaded: 0,
+        loading: 0,
         recorder: None,
         step: None,
         is_frame: false,
         film: 0,
         finishing: Vec::new(),
+        idlers: Vec::new(),
     };
 
     /// Notes how long \[s\] a picture took.
@@ -76,11 +81,16 @@ impl Course {
         }
     }
 
+    /// Whether nothing is left to do but what only time brings.
+    pub fn is_idle(&self) -> bool {
+        self.loading == 0 && !self.patience().is_zero()
+    }
+
     /// How long to wait for a message before going on.
     pub fn patience(&self) -> Duration {
         // Every message wakes it.
         const LONG: Duration = Duration::from_secs(3600);
-        match self.stage {
+        match self.scene {
             Some(_) if self.playing || self.steps > 0 || self.stale => Duration::ZERO,
             Some(_) if self.draft => MOMENT,
             _ => LONG,
@@ -88,18 +98,18 @@ impl Course {
     }
 }
 
-/// Whether pictures may take another time after a command.
-pub(super) fn changes_cost(command: &Command) -> bool {
-    use Command::{LevelOfDetail, Lights, Look, Picture};
-    matches!(command, Look(_) | LevelOfDetail(_) | Lights(_) | Picture(_))
+/// Whether pictures may take another time after a change.
+pub(super) fn changes_cost(change: &Change) -> bool {
+    use Change::{LevelOfDetail, Lights, Look, Picture};
+    matches!(change, Look(_) | LevelOfDetail(_) | Lights(_) | Picture(_))
 }
 
-/// A command that leaves the pictures as large as they are.
-pub(super) fn of_size(command: Command, kept: PictureSettings) -> Command {
-    match command {
-        Command::Picture(settings) => {
+/// A change that leaves the pictures as large as they are.
+pub(super) fn of_size(change: Change, kept: PictureSettings) -> Change {
+    match change {
+        Change::Picture(settings) => {
             let PictureSettings { width, height, .. } = kept;
-            Command::Picture(PictureSettings { width, height, ..settings })
+            Change::Picture(PictureSettings { width, height, ..settings })
         }
         other => other,
     }

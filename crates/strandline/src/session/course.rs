@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::simulation::Simulation;
+
 use crate::{
     HeadMotion, Scene,
     body::Pose,
     sim::{SimError, StepReport},
-    simulation::Simulation,
 };
 
 /// Where the head and the wind are at every time.

@@ -4,18 +4,18 @@ use std::ops::Range;
 
 use glam::Vec3;
 use strandline_base::SettingError;
-use strandline_gpu::{Buffer, Gpu, GpuError};
+use strandline_gpu::Gpu;
 
+use super::{
+    engine::Engine,
+    moment::{Moment, When},
+};
 use crate::{
     body::Pose,
     cache::Snapshot,
-    devices::place,
-    engine::Engine,
     groom::Vec3Lanes,
     hair_pose::HairPose,
-    render::gpu::DevicePoints,
     sim::{Clock, Drive, Settings, SimError, StepReport, Ticks},
-    worker::Work,
 };
 
 /// Steps that settling hair makes in one run.
@@ -33,92 +33,11 @@ pub(crate) struct Simulation {
     poses: [Pose; 2],
     end: Pose,
     /// Time \[s\] of all runs that went well.
-    passed: f64,
+    pub passed: f64,
     /// Where the hand that holds hair is, and where it goes in the next run \[m\]; none holds nothing.
     hand: Option<[Vec3; 2]>,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
-    threads: Option<rayon::ThreadPool>,
-}
-
-/// What a picture is drawn from.
-#[derive(Default)]
-pub(crate) struct Moment {
-    /// Guide points \[m\], world space, shape `[block][point]` of lanes.
-    pub positions: Vec<Vec3Lanes>,
-    pub world_from_head: Pose,
-    device: Option<OnDevice>,
-}
-
-/// The two states around a moment, copied on their device.
-struct OnDevice {
-    before: Buffer<f32>,
-    after: Buffer<f32>,
-    share: f32,
-}
-
-impl Moment {
-    /// The guide points where they lie on a device.
-    pub fn device_points(&self) -> Option<DevicePoints<'_>> {
-        let OnDevice { before, after, share } = self.device.as_ref()?;
-        Some(DevicePoints { before, after, share: *share })
-    }
-}
-
-/// Something that is done to a simulation.
-pub(crate) type Act = Box<dyn FnOnce(&mut Simulation) -> Result<Vec<StepReport>, SimError> + Send>;
-
-/// Something to be done, and room for what it leads to.
-pub(crate) struct Job {
-    pub act: Act,
-    /// The device that the pictures are drawn on.
-    pub gpu: Option<Gpu>,
-    pub moment: Moment,
-    /// Whether it is a frame of the film.
-    pub is_frame: bool,
-    /// Commands that were heard before.
-    pub heard: u64,
-}
-
-/// What it led to; after a failure the moment is that of the last state.
-pub(crate) struct Done {
-    pub moment: Moment,
-    pub reports: Result<Vec<StepReport>, SimError>,
-    pub notes: Vec<String>,
-    /// Time that passed \[s\].
-    pub seconds: f64,
-    /// Strands in the hand.
-    pub grabbed: usize,
-    /// As in the job.
-    pub is_frame: bool,
-    pub heard: u64,
-    /// Where it was done: cpu, or the adapter.
-    pub place: String,
-}
-
-impl Work for Simulation {
-    type Job = Job;
-    type Done = Done;
-
-    fn run(&mut self, job: Job) -> Done {
-        let Job { act, gpu, mut moment, is_frame, heard } = job;
-        let threads = self.threads.take();
-        let before = self.passed;
-        let run = || {
-            let reports = act(self);
-            let shown = self.show_on(gpu.as_ref(), &mut moment);
-            reports.and_then(|reports| shown.map(|()| reports))
-        };
-        let reports = match &threads {
-            Some(threads) => threads.install(run),
-            None => run(),
-        };
-        self.threads = threads;
-        let place = place(self.engine.gpu());
-        let grabbed = self.engine.grabbed();
-        let seconds = self.passed - before;
-        let notes = self.engine.take_notes();
-        Done { moment, reports, notes, seconds, grabbed, is_frame, heard, place }
-    }
+    pub threads: Option<rayon::ThreadPool>,
 }
 
 impl Simulation {
@@ -133,12 +52,6 @@ impl Simulation {
             hand: None,
             threads: None,
         }
-    }
-
-    /// Prepares it to work beside a thread that draws; without threads of its own it shares them.
-    pub fn with_threads(self) -> Self {
-        let threads = rayon::ThreadPoolBuilder::new().thread_name(|_| "simulation".to_owned()).build();
-        Self { threads: threads.ok(), ..self }
     }
 
     /// Changes the settings; steps of another length take that long from now on.
@@ -204,10 +117,10 @@ impl Simulation {
     /// Where the hair of the moment that is shown is, and how it moves.
     pub fn hair_pose(&mut self) -> Result<HairPose, SimError> {
         let mut moment = Moment::default();
-        self.show(&mut moment)?;
+        self.show(None, &mut moment)?;
         let model = self.engine.model();
         let shape = [model.strand_count(), model.points_per_strand()];
-        Ok(HairPose::new(shape, &moment.positions, self.engine.state()?, &moment.world_from_head))
+        Ok(HairPose::new(shape, moment.positions(), self.engine.state()?, &moment.world_from_head))
     }
 
     /// Takes the hair within `radius` \[m\] of a place \[m\] into a hand; the number of strands.
@@ -326,50 +239,32 @@ impl Simulation {
         Ok(drives.collect())
     }
 
-    /// Fills a moment with what is to be shown now.
-    pub fn show(&mut self, moment: &mut Moment) -> Result<(), SimError> {
+    /// Fills a moment with what is to be shown now: with points on the device of the pictures where the simulation
+    /// runs there too, else on the host.
+    pub fn show(&mut self, gpu: Option<&Gpu>, moment: &mut Moment) -> Result<(), SimError> {
         let share = self.share;
         moment.world_from_head = self.poses[0].toward(&self.poses[1], share);
-        moment.device = None;
+        moment.at = When { step: self.engine.steps(), share };
+        if let (Some(points), Some(gpu)) = (self.engine.device_points(), gpu)
+            && gpu.is_same(points[0].gpu())
+            && moment.fill_on(gpu, points).is_ok()
+        {
+            return Ok(());
+        }
         let read = self.engine.state().map(|_| ());
         // After a failure it is that of the last state.
-        self.engine.last_state().interpolated(share, &mut moment.positions);
+        moment.fill(self.engine.last_state());
         read
     }
 
-    /// The points of the last two states, where they lie on a device.
-    pub fn device_points(&self, gpu: Option<&Gpu>) -> Option<DevicePoints<'_>> {
-        let [after, before] = self.engine.device_points()?;
-        gpu?.is_same(after.gpu()).then_some(DevicePoints { before, after, share: self.share })
+    /// Brings the points of a moment to the host. Where its device was lost the CPU goes on, and they are those that
+    /// it finds again, or those of its last state where it was further already.
+    pub fn bring_home(&mut self, moment: &mut Moment) -> Result<(), SimError> {
+        match moment.bring_home() {
+            Ok(()) => Ok(()),
+            Err(failure) => {
+                self.engine.find_again(moment.at.step, failure.into(), |state| moment.fill(state))
+            }
+        }
     }
-
-    /// As [`Simulation::show`]; on a device the points are copied there too, so that the next step may
-    /// begin while they are drawn.
-    pub fn show_on(&mut self, gpu: Option<&Gpu>, moment: &mut Moment) -> Result<(), SimError> {
-        let kept = moment.device.take();
-        self.show(moment)?;
-        let Some([after, before]) = self.engine.device_points() else { return Ok(()) };
-        let Some(gpu) = gpu.filter(|gpu| gpu.is_same(after.gpu())) else { return Ok(()) };
-        // What cannot be copied there is drawn from the host's copy.
-        moment.device = copied(gpu, [before, after], kept, self.share).ok();
-        Ok(())
-    }
-}
-
-fn copied(
-    gpu: &Gpu,
-    [before, after]: [&Buffer<f32>; 2],
-    kept: Option<OnDevice>,
-    share: f32,
-) -> Result<OnDevice, GpuError> {
-    let copy = match kept.filter(|kept| kept.after.len() == after.len()) {
-        Some(kept) => OnDevice { share, ..kept },
-        None => OnDevice {
-            before: Buffer::new(gpu, "points before", before.len())?,
-            after: Buffer::new(gpu, "points after", after.len())?,
-            share,
-        },
-    };
-    gpu.copy("copying points", [[before, &copy.before], [after, &copy.after]])?;
-    Ok(copy)
 }

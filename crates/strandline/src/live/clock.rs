@@ -1,0 +1,87 @@
+//! The time by which hair plays live.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use strandline_base::Stopwatch;
+
+/// The time by which a [`Live`](crate::Live) judges how long pictures take and how long nothing has happened: that of
+/// the machine by default, or one that a test moves on.
+#[derive(Clone, Default)]
+pub struct LiveClock(Option<Arc<Mutex<Manual>>>);
+
+/// A time that stands still until it is moved on.
+#[derive(Default)]
+struct Manual {
+    now: Duration,
+    /// What a picture takes \[s\].
+    picture_seconds: f64,
+    /// Called when time moves on.
+    wake: Option<Box<dyn Fn() + Send>>,
+}
+
+impl LiveClock {
+    /// A clock that stands still until it is moved on, by which pictures take no time.
+    pub fn manual() -> Self {
+        Self(Some(Arc::default()))
+    }
+
+    /// Moves a manual clock on.
+    pub fn advance(&self, by: Duration) {
+        let Some(mut manual) = self.manual_time() else { return };
+        manual.now += by;
+        manual.wake.iter().for_each(|wake| wake());
+    }
+
+    /// Sets how long \[s\] every picture takes by a manual clock.
+    pub fn set_picture_seconds(&self, seconds: f64) {
+        if let Some(mut manual) = self.manual_time() {
+            manual.picture_seconds = seconds;
+        }
+    }
+
+    fn manual_time(&self) -> Option<MutexGuard<'_, Manual>> {
+        self.0.as_ref().map(|manual| manual.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Has `wake` called whenever a manual clock moves on.
+    pub(super) fn on_advance(&self, wake: impl Fn() + Send + 'static) {
+        if let Some(mut manual) = self.manual_time() {
+            manual.wake = Some(Box::new(wake));
+        }
+    }
+
+    /// Draws a picture, and how long \[s\] that took.
+    pub(super) fn timed<T>(&self, draw: impl FnOnce() -> T) -> (T, f64) {
+        let watch = Stopwatch::start();
+        let drawn = draw();
+        let seconds = self.manual_time().map_or_else(|| watch.seconds(), |manual| manual.picture_seconds);
+        (drawn, seconds)
+    }
+
+    /// Waits for a message for so long; `is_advance` tells those that a manual clock's wake sends.
+    pub(super) fn receive<T>(
+        &self,
+        messages: &Receiver<T>,
+        patience: Duration,
+        is_advance: impl Fn(&T) -> bool,
+    ) -> Result<T, RecvTimeoutError> {
+        let Some(now) = self.manual_time().map(|manual| manual.now) else {
+            return messages.recv_timeout(patience);
+        };
+        if patience.is_zero() {
+            return messages.recv_timeout(patience);
+        }
+        let until = now + patience;
+        loop {
+            let message = messages.recv().map_err(|_| RecvTimeoutError::Disconnected)?;
+            if !is_advance(&message) {
+                return Ok(message);
+            }
+            if self.manual_time().is_some_and(|manual| manual.now >= until) {
+                return Err(RecvTimeoutError::Timeout);
+            }
+        }
+    }
+}

@@ -1,0 +1,40 @@
+use crate::{
+    Ray,
+    render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
+    scene::{MotionSection, WindSection},
+    sim::Settings,
+};
+
+/// A change of hair that plays. What changes the picture shows in the next one that is begun, what changes the motion
+/// in the one after it.
+pub enum Change {
+    /// Back to rest, and to the beginning of the motion.
+    Reset,
+    /// Another view.
+    Camera(Camera),
+    /// Another look of the hair.
+    Look(Box<Look>),
+    /// Another look of the body.
+    BodyLook(BodyLook),
+    /// Other lights.
+    Lights(Vec<Light>),
+    /// Another level of detail.
+    LevelOfDetail(LevelOfDetail),
+    /// Another size or finish of the pictures.
+    Picture(PictureSettings),
+    /// Other settings of the simulation.
+    Settings(Box<Settings>),
+    /// Another length of all strands, 0.05 to 2 of their own.
+    Length(f32),
+    /// Another wind.
+    Wind(WindSection),
+    /// Another motion of the head, from its beginning, or another turn besides the one that there is; the
+    /// pivot stays.
+    Motion(Box<MotionSection>),
+    /// Takes the hair that a line of sight meets first, and all within a distance \[m\] of it, into a hand.
+    Grab(Ray, f32),
+    /// Moves the hand to a line of sight, as far from the camera as it is.
+    Drag(Ray),
+    /// Lets go of the hair.
+    Release,
+}

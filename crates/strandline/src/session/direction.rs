@@ -1,0 +1,85 @@
+//! How a person directs hair that plays: where the head, the wind and the hand are.
+
+use glam::Vec3;
+use strandline_base::Group;
+
+use super::job::Live;
+use crate::{
+    Error, HeadMotion, Scene,
+    scene::{MotionName, MotionSection, WindSection},
+};
+
+/// Time that passes in a frame \[s\].
+pub(crate) const FRAME: f64 = 1.0 / 60.0;
+/// Steps of a frame at most, so that a window stays awake: with steps shorter than that time slows down.
+pub(crate) const MOST_STEPS: f64 = 16.0;
+
+/// How a person directs hair that plays.
+pub(crate) struct Direction {
+    pub wind: WindSection,
+    motion: MotionSection,
+    pub head: HeadMotion,
+    /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was taken.
+    begun: f64,
+    time: f64,
+    /// Whether the frame on its way moves that time on: not after it went back to its beginning.
+    counts: bool,
+    /// Where the hand is that holds hair \[m\], world space.
+    pub hand: Option<Vec3>,
+}
+
+impl Direction {
+    /// That of a scene whose head moves so.
+    pub fn new(scene: &Scene, head: HeadMotion) -> Self {
+        let start = scene.film.start;
+        let (wind, motion) = (scene.wind, scene.motion.clone());
+        Self { wind, motion, head, begun: start, time: start, counts: true, hand: None }
+    }
+
+    /// What the next frame does.
+    pub fn next(&mut self) -> Live {
+        self.counts = true;
+        let (head, wind) = (self.head.clone(), self.wind);
+        Live { begin: self.time, seconds: FRAME, most_steps: MOST_STEPS, head, wind, hand: self.hand }
+    }
+
+    /// Moves on by the time of a frame \[s\].
+    pub fn pass(&mut self, seconds: f64) {
+        if self.counts {
+            self.time += seconds;
+        }
+    }
+
+    /// Goes back to the beginning.
+    pub fn reset(&mut self) {
+        (self.hand, self.begun, self.time, self.counts) = (None, 0.0, 0.0, false);
+    }
+
+    /// Time at which a film begins with what is shown \[s\]: that lies a step \[s\] behind the end of a frame.
+    pub fn time_shown(&self, step: f64) -> f64 {
+        (self.time - step).max(self.begun)
+    }
+
+    /// Another motion of the head begins at its beginning; another turn does not disturb it.
+    ///
+    /// # Errors
+    /// A setting outside its range.
+    pub fn set_motion(&mut self, motion: MotionSection) -> Result<(), Error> {
+        motion.check_as("motion")?;
+        self.head = HeadMotion::new(&motion, self.head.pivot())?;
+        if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
+            (self.begun, self.time, self.counts) = (0.0, 0.0, false);
+        }
+        self.motion = motion;
+        Ok(())
+    }
+}
+
+impl Default for Direction {
+    /// A head and air that rest.
+    fn default() -> Self {
+        let motion = MotionSection { name: MotionName::Still, ..MotionSection::default() };
+        let head = HeadMotion::still();
+        Self { wind: WindSection::default(), motion, head, begun: 0.0, time: 0.0, counts: true, hand: None }
+    }
+}

@@ -1,0 +1,23 @@
+use crate::{
+    render::{FrameReport, Picture},
+    sim::StepReport,
+};
+
+/// What playing hair emits.
+#[derive(Clone, Debug)]
+pub enum Event {
+    /// Something happened that a person should read; the film goes on.
+    Note(String),
+    /// A step of the simulation ended. Steps on a GPU are reported when their reports have arrived, all of them before
+    /// the film ends.
+    Stepped(StepReport),
+    /// A picture is finished.
+    Drawn {
+        /// Its number, from 0.
+        frame: u32,
+        /// The picture.
+        picture: Picture,
+        /// What it cost.
+        report: FrameReport,
+    },
+}

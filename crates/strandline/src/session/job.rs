@@ -1,0 +1,200 @@
+//! What is asked of a simulation, as data, and where it is done: on the thread of the caller or beside it.
+
+use glam::Vec3;
+use std::collections::VecDeque;
+use strandline_gpu::Gpu;
+
+use super::{course::Course, moment::Moment, simulation::Simulation};
+use crate::{
+    HeadMotion,
+    body::Pose,
+    devices::place,
+    groom::Vec3Lanes,
+    scene::WindSection,
+    sim::{Settings, SimError, StepReport},
+    worker::{Gone, Work, Worker},
+};
+
+/// What is asked of a simulation.
+pub(crate) enum Task {
+    /// The frame of a film with this number, with settings that change before it.
+    Film { course: Course, frame: u32, settings: Option<Box<Settings>> },
+    /// A frame of a cache: guide points \[m\], world space, shape `[block][point]` of lanes.
+    Cached { world_from_head: Pose, positions: Vec<Vec3Lanes> },
+    /// A stretch of time that a person directs.
+    Live(Live),
+    /// Other settings.
+    Settings(Box<Settings>),
+    /// Another length of each strand, over that of the groom.
+    Lengths(Vec<f32>),
+    /// Back to rest under a pose of the head.
+    Reset(Pose),
+    /// Takes the hair about a point of a guide, wherever that is by then, into a hand of a radius \[m\].
+    Grab { index: usize, lane: usize, radius: f32 },
+    /// Lets go of it.
+    Release,
+}
+
+/// A stretch of time that a person directs.
+pub(crate) struct Live {
+    /// When it begins \[s\], in the time of motion and wind, and how long it is; no more than so many steps.
+    pub begin: f64,
+    pub seconds: f64,
+    pub most_steps: f64,
+    pub head: HeadMotion,
+    pub wind: WindSection,
+    /// Where the hand goes \[m\], world space.
+    pub hand: Option<Vec3>,
+}
+
+impl Task {
+    /// Whether a frame ends with it.
+    pub fn is_frame(&self) -> bool {
+        matches!(self, Self::Film { .. } | Self::Cached { .. } | Self::Live(_))
+    }
+
+    fn perform(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
+        let done = match self {
+            Self::Film { course, frame, settings } => {
+                settings.map_or(Ok(()), |settings| simulation.set_settings(&settings))?;
+                return course.run(simulation, frame);
+            }
+            Self::Live(live) => return live.run(simulation),
+            Self::Cached { world_from_head, positions } => {
+                simulation.show_cached(world_from_head, |places| places.copy_from_slice(&positions))
+            }
+            Self::Settings(settings) => simulation.set_settings(&settings),
+            Self::Lengths(scales) => simulation.engine.set_length_scale(&scales),
+            Self::Reset(pose) => simulation.reset(pose),
+            Self::Grab { index, lane, radius } => {
+                let now = simulation.engine.state()?.positions[index].get(lane);
+                simulation.grab(now, radius).map(drop)
+            }
+            Self::Release => simulation.release(),
+        };
+        done.map(|()| Vec::new())
+    }
+}
+
+impl Live {
+    fn run(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
+        let start = simulation.end();
+        self.hand.into_iter().for_each(|hand| simulation.move_hand(hand));
+        let seconds = self.seconds.min(self.most_steps * simulation.time_step());
+        // The head may have been turned since.
+        let end = self.head.pose(self.begin + seconds);
+        simulation.step_along(seconds, &|share| {
+            (start.toward(&end, share), self.wind.at(self.begin + seconds * f64::from(share)))
+        })
+    }
+}
+
+/// A task, and room for the moment that it leads to.
+pub(crate) struct Job {
+    pub task: Task,
+    pub moment: Moment,
+    /// The device that the pictures are drawn on.
+    pub gpu: Option<Gpu>,
+    /// Whether the points of the moment are wanted on the host too.
+    pub home: bool,
+    /// Commands that were received before.
+    pub commands: u64,
+}
+
+/// What it led to; after a failure the moment is that of the last state.
+pub(crate) struct Done {
+    pub moment: Moment,
+    pub reports: Result<Vec<StepReport>, SimError>,
+    pub notes: Vec<String>,
+    /// Time that passed \[s\].
+    pub seconds: f64,
+    /// Strands in the hand.
+    pub grabbed: usize,
+    pub is_frame: bool,
+    /// As in the job.
+    pub commands: u64,
+    /// Where it was done: cpu, or the adapter.
+    pub simulated_on: String,
+}
+
+impl Work for Simulation {
+    type Job = Job;
+    type Done = Done;
+
+    fn run(&mut self, job: Job) -> Done {
+        let Job { task, mut moment, gpu, home, commands } = job;
+        let is_frame = task.is_frame();
+        let threads = self.threads.take();
+        let before = self.passed;
+        let run = || {
+            let reports = task.perform(self);
+            let mut shown = self.show(gpu.as_ref(), &mut moment);
+            if home && shown.is_ok() {
+                shown = self.bring_home(&mut moment);
+            }
+            reports.and_then(|reports| shown.map(|()| reports))
+        };
+        let reports = match &threads {
+            Some(threads) => threads.install(run),
+            None => run(),
+        };
+        self.threads = threads;
+        let simulated_on = place(self.engine.gpu());
+        let (seconds, grabbed) = (self.passed - before, self.engine.grabbed());
+        let notes = self.engine.take_notes();
+        Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on }
+    }
+}
+
+/// Where a simulation does its jobs.
+pub(crate) trait Place {
+    /// Hands a job over.
+    fn start(&mut self, job: Job) -> Result<(), Gone>;
+
+    /// Waits for the oldest job that was started.
+    fn finish(&mut self) -> Result<Done, Gone>;
+
+    /// The simulation between two jobs: waits for the one that runs.
+    fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T;
+}
+
+/// A simulation on the thread of whoever asks.
+pub(crate) struct Here {
+    pub simulation: Simulation,
+    done: VecDeque<Done>,
+}
+
+impl Here {
+    pub fn new(simulation: Simulation) -> Self {
+        Self { simulation, done: VecDeque::new() }
+    }
+}
+
+impl Place for Here {
+    fn start(&mut self, job: Job) -> Result<(), Gone> {
+        self.done.push_back(self.simulation.run(job));
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<Done, Gone> {
+        self.done.pop_front().ok_or(Gone)
+    }
+
+    fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T {
+        act(&mut self.simulation)
+    }
+}
+
+impl Place for Worker<Simulation> {
+    fn start(&mut self, job: Job) -> Result<(), Gone> {
+        Worker::start(self, job)
+    }
+
+    fn finish(&mut self) -> Result<Done, Gone> {
+        Worker::finish(self)
+    }
+
+    fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T {
+        act(&mut self.work())
+    }
+}

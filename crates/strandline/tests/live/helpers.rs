@@ -1,0 +1,63 @@
+//! A scene that plays, and how to wait for what it shows.
+
+use std::time::{Duration, Instant};
+
+use strandline::low_level::{Command, LiveEvent, Shown};
+use strandline::{Backend, Live, Scene};
+
+pub fn scene() -> Scene {
+    let mut scene = Scene::demo();
+    scene.style.strand_count = 60;
+    scene.body.spacing = 0.01;
+    scene.simulation.volume.cells = [12; 3];
+    scene.devices = Backend::Cpu.into();
+    (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    (scene.picture.width, scene.picture.height) = (64, 48);
+    scene
+}
+
+/// Wakes this thread where it waits.
+pub fn waking() -> impl Fn() + Send {
+    let here = std::thread::current();
+    move || here.unpark()
+}
+
+/// Waits for what is wanted, for at most a minute.
+pub fn wait<T>(mut look: impl FnMut() -> Option<T>) -> T {
+    let begin = Instant::now();
+    loop {
+        if let Some(found) = look() {
+            return found;
+        }
+        let left = Duration::from_secs(60).checked_sub(begin.elapsed()).expect("nothing came");
+        std::thread::park_timeout(left);
+    }
+}
+
+pub fn next(live: &Live) -> Shown {
+    wait(|| live.take_shown())
+}
+
+/// The last picture before nothing comes any more.
+pub fn settled(live: &Live) -> Shown {
+    live.wait_idle();
+    live.take_shown().expect("a picture came")
+}
+
+/// A scene that stands still, and its first picture.
+pub fn still() -> (Live, Shown) {
+    let live = Live::new(scene(), waking()).unwrap();
+    live.send(Command::Play(false));
+    let first = next(&live);
+    (live, first)
+}
+
+/// The next error that is emitted.
+pub fn error(live: &Live) -> String {
+    wait(|| {
+        live.take_events().into_iter().find_map(|news| match news {
+            LiveEvent::Error(error) | LiveEvent::NotLoaded(_, error) => Some(error),
+            _ => None,
+        })
+    })
+}
