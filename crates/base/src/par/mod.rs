@@ -4,9 +4,14 @@
 pub mod serial;
 
 #[cfg(feature = "threads")]
+mod threads;
+
+#[cfg(feature = "threads")]
 pub use rayon::{current_num_threads, join, prelude};
 #[cfg(not(feature = "threads"))]
-pub use serial::{current_num_threads, join, prelude};
+pub use serial::{Pool, current_num_threads, join, prelude};
+#[cfg(feature = "threads")]
+pub use threads::Pool;
 
 #[cfg(all(test, feature = "threads"))]
 mod tests {

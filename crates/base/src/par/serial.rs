@@ -17,6 +17,22 @@ pub fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) 
     (one(), other())
 }
 
+/// Threads of their own for one piece of work: none, it runs on that of the caller.
+#[derive(Debug)]
+pub struct Pool;
+
+impl Pool {
+    /// No threads.
+    pub fn new(_: &'static str) -> Self {
+        Self
+    }
+
+    /// Runs something.
+    pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        work()
+    }
+}
+
 /// A loop over what an iterator gives.
 #[derive(Clone, Debug)]
 pub struct Serial<I>(I);

@@ -135,7 +135,7 @@ impl Work for Simulation {
             reports.and_then(|reports| shown.map(|()| reports))
         };
         let reports = match &threads {
-            Some(threads) => threads.install(run),
+            Some(threads) => threads.run(run),
             None => run(),
         };
         self.threads = threads;

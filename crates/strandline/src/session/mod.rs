@@ -11,8 +11,6 @@ pub(crate) mod moment;
 mod simulation;
 mod studio;
 
-use std::collections::VecDeque;
-
 pub use change::Change;
 pub(crate) use direction::FRAME;
 pub use event::Event;
@@ -20,7 +18,9 @@ pub(crate) use job::{Here, Place, Task};
 pub(crate) use simulation::Simulation;
 pub(crate) use studio::Studio;
 
-use strandline_base::Group;
+use std::collections::VecDeque;
+
+use strandline_base::{Group, par::Pool};
 
 use crate::{
     BoundStrands, Devices, Error, Prepared, Ray, Scene,
@@ -150,8 +150,7 @@ impl Session<Here> {
     /// The system gives no thread.
     pub fn beside(self) -> Result<Session<Worker<Simulation>>, Error> {
         let mut simulation = self.place.simulation;
-        let threads = rayon::ThreadPoolBuilder::new().thread_name(|_| "simulation".to_owned()).build();
-        simulation.threads = threads.ok();
+        simulation.threads = Some(Pool::new("simulation"));
         Ok(Session {
             place: Worker::new(simulation).map_err(Error::Thread)?,
             studio: self.studio,

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use glam::Vec3;
-use strandline_base::SettingError;
+use strandline_base::{SettingError, par::Pool};
 use strandline_gpu::Gpu;
 
 use super::{
@@ -37,7 +37,7 @@ pub(crate) struct Simulation {
     /// Where the hand that holds hair is, and where it goes in the next run \[m\]; none holds nothing.
     hand: Option<[Vec3; 2]>,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
-    pub threads: Option<rayon::ThreadPool>,
+    pub threads: Option<Pool>,
 }
 
 impl Simulation {
