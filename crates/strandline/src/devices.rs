@@ -20,7 +20,7 @@ impl From<Backend> for Devices {
     }
 }
 
-/// A device and whether the work goes on on the CPU without it; none is the CPU from the start.
+/// A device, and whether to fall back to the CPU when it fails; `None` is the CPU from the start.
 pub(crate) struct Opened {
     pub gpu: Option<Gpu>,
     pub fall_back: bool,

@@ -153,7 +153,7 @@ impl Hair {
         Ok(self.simulation().release()?)
     }
 
-    /// Whether the hair goes on on the CPU, from its last state, when the GPU fails; it does for
+    /// Whether the hair falls back to the CPU, resuming from its last state, when the GPU fails; it does for
     /// [`Backend::Auto`](crate::Backend::Auto).
     pub fn set_fall_back(&mut self, fall_back: bool) {
         self.simulation().engine.fall_back = fall_back;
@@ -188,7 +188,7 @@ impl Hair {
         Ok(self.simulation().engine.reports()?)
     }
 
-    /// Changes how the hair moves; it goes on as it is.
+    /// Changes how the hair moves; its state stays.
     ///
     /// # Errors
     /// A setting outside its range, then nothing changes; or the GPU failed.
@@ -269,7 +269,7 @@ impl Hair {
         &self.session.studio.guides
     }
 
-    /// The state of the simulation; a GPU is waited for where it has gone on since it was last asked.
+    /// The state of the simulation. On a GPU this waits, unless nothing has moved since the last call.
     ///
     /// # Errors
     /// The GPU failed and [`Hair::set_fall_back`] was not asked for.

@@ -32,7 +32,7 @@ pub struct Player {
     taken: u32,
     /// Whether a frame was taken that is to be drawn.
     undrawn: bool,
-    /// Whether the simulation cannot go on.
+    /// Whether the simulation failed.
     failed: bool,
     notes: Vec<String>,
     /// Where frames are written as they are made.
@@ -113,7 +113,7 @@ impl Player {
         Ok(())
     }
 
-    /// Goes on where the run of a cache stood; frames before that are not told. What is written has them too.
+    /// Resumes the run of a cache. Earlier frames emit no events; files that are written get them too.
     ///
     /// # Errors
     /// A cache of other hair, without a state, or of a film that was over; a file that cannot be written.
@@ -146,7 +146,7 @@ impl Player {
     }
 
     /// Ends what [`Player::set_out`] began; none without. A frame on its way is waited for and written, and a
-    /// film that is not over leaves a file that it can be gone on from.
+    /// film that is not over leaves a file that it can be resumed from.
     ///
     /// # Errors
     /// The file cannot be written; what was written before stays.
@@ -161,7 +161,7 @@ impl Player {
         out.close(self.taken == self.frames, state.as_ref()).map(Some)
     }
 
-    /// Whether a frame is simulated while the one before is drawn; it is unless told otherwise.
+    /// Whether a frame is simulated while the one before is drawn; on by default.
     pub fn set_overlap(&mut self, overlap: bool) {
         self.overlap = overlap;
     }
@@ -198,7 +198,7 @@ impl Player {
     /// The state of the simulation: as long as a frame is on its way, before it or after.
     ///
     /// # Errors
-    /// The GPU failed, and it was not to go on on the CPU.
+    /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn state(&self) -> Result<State, Error> {
         Ok(self.session.place.work().engine.state()?.clone())
     }
@@ -243,7 +243,7 @@ impl Player {
         self.frames
     }
 
-    /// Frames of which every event was told.
+    /// Frames whose events were all emitted.
     pub fn frames_done(&self) -> u32 {
         self.taken - u32::from(self.undrawn)
     }
@@ -295,7 +295,7 @@ impl Player {
         let time = self.course.time(frame);
         if let Some(mut out) = self.out.take() {
             let reports = self.session.reports();
-            // What cannot go on is left as it is: it ends with the frame before.
+            // A file that cannot be written ends with the frame before.
             out.add(frame, time, self.session.shown(), &reports, state.as_ref())?;
             self.out = Some(out);
         }

@@ -43,7 +43,7 @@ impl<W: Work> Worker<W> {
         let (done, results) = channel();
         let own = work.clone();
         let thread = Builder::new().name("simulation".to_owned()).spawn(move || {
-            // Ends with the senders, or when nobody takes results any more.
+            // Ends with the senders, or when the receiver of results is gone.
             for job in waiting {
                 let result = lock(&own).run(job);
                 if done.send(result).is_err() {
@@ -93,7 +93,7 @@ impl<W: Work> Drop for Worker<W> {
     fn drop(&mut self) {
         // The job that runs is waited for, and those behind it are not begun.
         drop((self.jobs.take(), self.results.take()));
-        // A panic of the thread was told as `Gone`.
+        // A panic of the thread was reported as `Gone`.
         let _ = self.thread.take().map(JoinHandle::join);
     }
 }

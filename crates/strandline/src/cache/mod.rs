@@ -1,7 +1,7 @@
 //! Hair that moved, as a file: the moving cache, text USD, and one groom file a frame. docs/cache.md is the page
 //! for users.
 //!
-//! An `Out` writes frames while a run goes on, [`Cache`] reads a moving cache. What leaves is decided in `shape`
+//! An `Out` writes frames during a run, [`Cache`] reads a moving cache. What leaves is decided in `shape`
 //! alone: strands, and whatever attributes they have; every writer takes them from there.
 
 mod arrays;

@@ -187,7 +187,7 @@ impl Out {
             return Err(Error::Cache {
                 path: cache.path().to_owned(),
                 message: format!(
-                    "it holds {what}, {frames}, and the run would write something else: go on with --what {what} \
+                    "it holds {what}, {frames}, and the run would write something else: resume it with --what {what} \
                      --every {every} --from {first}"
                 ),
             });

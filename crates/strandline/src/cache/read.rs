@@ -173,7 +173,7 @@ impl Cache {
     pub(crate) fn check_guides(&self, strands: usize, points: usize) -> Result<(), Error> {
         if self.what() != What::Guides {
             return Err(self.refuse(
-                "it holds drawn strands, expected guides, with which a run goes on: write it with --what guides",
+                "it holds drawn strands, expected guides, which a run resumes from: write it with --what guides",
             ));
         }
         let starts = self.starts();

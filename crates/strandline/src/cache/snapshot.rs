@@ -1,4 +1,4 @@
-//! Where a run stands: what going on needs to make the same bits.
+//! Where a run stands: what resuming it needs to make the same bits.
 
 use glam::{Quat, Vec3};
 use strandline_base::npz::Array;

@@ -89,7 +89,7 @@ impl Store {
         Ok(())
     }
 
-    /// Writes the state anew: from there a run that is ended without warning goes on.
+    /// Writes the state anew: a run that is killed resumes from there.
     pub fn set_state(&mut self, state: Option<&Snapshot>) -> Result<(), Error> {
         let Self { npz, meta, names, path, .. } = self;
         npz.set_tail(&tail(meta, names, state)).map_err(Error::write("the cache", path))

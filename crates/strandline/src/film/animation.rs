@@ -52,7 +52,7 @@ impl Animation {
 
     /// Closes it; the file is to be kept.
     pub fn finish(self) -> Result<WholeFile> {
-        // The encoder writes the end when it is dropped, and tells nobody whether it could.
+        // The encoder writes the end when it is dropped, and does not report whether it could.
         drop(self.encoder);
         let sink = Arc::into_inner(self.sink.0).ok_or_else(|| Error::other("the image is still written"))?;
         let (file, failed) = sink.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -29,7 +29,7 @@ const ANIMATION: &str = "animation.gif";
 /// there, and a note says so: what this run did not write is not its to remove.
 pub struct Film {
     folder: PathBuf,
-    /// Number of frames; none while nobody knows it.
+    /// Number of frames; none while it is not known.
     frames: Option<u32>,
     frames_per_second: f32,
     files: Vec<PathBuf>,
@@ -67,7 +67,7 @@ impl Film {
         Self::open(folder, Some(frames), frames_per_second)
     }
 
-    /// A film that goes on until it is finished; without a contact sheet.
+    /// A film of any length, which `finish` ends; without a contact sheet.
     ///
     /// # Errors
     /// As [`Film::new`].

@@ -54,15 +54,16 @@ impl Video {
             Err(error) => return Ok(Err(error)),
         };
         let (pictures, waiting) = channel();
-        let (tell, taken) = channel();
+        let (written, taken) = channel();
         let pipe = child.stdin.take();
         thread::Builder::new()
             .name("feeding ffmpeg".to_owned())
-            .spawn(move || feed(pipe, &waiting, &tell))?;
-        let (said, heard) = (Arc::default(), child.stderr.take());
+            .spawn(move || feed(pipe, &waiting, &written))?;
+        let (said, stderr) = (Arc::default(), child.stderr.take());
         let words = Arc::clone(&said);
-        let hearing =
-            thread::Builder::new().name("hearing ffmpeg".to_owned()).spawn(move || hear(heard, &words))?;
+        let hearing = thread::Builder::new()
+            .name("messages of ffmpeg".to_owned())
+            .spawn(move || collect(stderr, &words))?;
         let (pictures, file) = (Some(pictures), Some(file));
         Ok(Ok(Self { child, pictures, taken, under_way: 0, said, hearing, patience, failed: None, file }))
     }
@@ -179,18 +180,18 @@ fn start(program: &Path, picture: &Picture, frames_per_second: f32, part: &Path)
     command.spawn()
 }
 
-fn feed(pipe: Option<ChildStdin>, waiting: &Receiver<Vec<u8>>, tell: &Sender<()>) {
+fn feed(pipe: Option<ChildStdin>, waiting: &Receiver<Vec<u8>>, written: &Sender<()>) {
     let Some(mut pipe) = pipe else { return };
     for picture in waiting {
         // A broken pipe means that ffmpeg ended; `finish` says how.
-        if pipe.write_all(&picture).is_err() || tell.send(()).is_err() {
+        if pipe.write_all(&picture).is_err() || written.send(()).is_err() {
             return;
         }
     }
 }
 
 /// Reads to the end, so that ffmpeg never waits, and keeps the beginning.
-fn hear(from: Option<impl Read>, said: &Mutex<Vec<u8>>) {
+fn collect(from: Option<impl Read>, said: &Mutex<Vec<u8>>) {
     let Some(mut from) = from else { return };
     let mut bytes = [0; 1024];
     while let Ok(count @ 1..) = from.read(&mut bytes) {

@@ -60,7 +60,7 @@ impl LiveClock {
         (drawn, seconds)
     }
 
-    /// Waits for a message for so long; `is_advance` tells those that a manual clock's wake sends.
+    /// Waits for a message for so long; `is_advance` recognizes those that a manual clock's wake sends.
     pub(super) fn receive<T>(
         &self,
         messages: &Receiver<T>,

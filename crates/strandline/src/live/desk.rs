@@ -50,7 +50,7 @@ impl Desk {
         clock: LiveClock,
     ) -> Self {
         let advanced = own.clone();
-        // Nobody is left to be told after the end.
+        // After the end no thread receives it.
         clock.on_advance(move || drop(advanced.send(Message::Advanced)));
         Self { messages, own, out, wake, clock }
     }
@@ -164,7 +164,7 @@ impl Desk {
                         self.emit(LiveEvent::Error(error.to_string()));
                     }
                 }
-                // Until one is drawn nobody knows how long it takes: the first is there sooner when simple.
+                // How long one takes is known once it is drawn: the first is there sooner when simple.
                 (playing.stale, playing.tried) = (true, false);
                 playing.slow = session.studio.painter.gpu().is_none();
                 (playing.scene, playing.loaded) = (Some(loaded), load);
@@ -174,7 +174,7 @@ impl Desk {
         }
     }
 
-    /// Loads on a thread of its own, so that what plays goes on.
+    /// Loads on a thread of its own, so that what plays continues.
     fn load(&self, playing: &mut Playing, scene: Box<Scene>) {
         playing.loading += 1;
         let (own, number) = (self.own.clone(), playing.load);
@@ -332,7 +332,7 @@ impl Desk {
             places: [session.simulated_on.clone(), session.studio.painter.drawn_on()],
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
-        // A step that nobody saw is still reported.
+        // A step that was not seen is still reported.
         let unseen = out.shown.take().and_then(|old| old.step);
         out.shown = Some(Shown { step: shown.step.clone().or(unseen), ..shown });
         drop(out);

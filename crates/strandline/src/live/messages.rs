@@ -13,7 +13,7 @@ use crate::{
 
 /// A command to a [`Live`](crate::Live).
 pub enum Command {
-    /// Loads a scene; what plays goes on until it is there, and stays when it cannot be loaded.
+    /// Loads a scene; what plays continues until it is there, and stays when it cannot be loaded.
     Load(Box<Scene>),
     /// Plays, or stands still.
     Play(bool),

@@ -61,7 +61,7 @@ impl Live {
     /// Sends a command; never waits. Returns its number: pictures that were drawn after it have at least this
     /// [`Shown::drawn_after_command`].
     pub fn send(&self, command: impl Into<Command>) -> u64 {
-        // Without a thread nobody receives it: its last event says why.
+        // Without a thread it is lost: the last event says why.
         let _ = self.commands.as_ref().map(|commands| commands.send(Message::Command(command.into())));
         self.sent.fetch_add(1, Ordering::Relaxed) + 1
     }

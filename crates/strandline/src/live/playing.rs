@@ -1,4 +1,4 @@
-//! What the drawing thread goes on with from one message to the next.
+//! What the drawing thread remembers from one message to the next.
 
 use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
@@ -13,7 +13,7 @@ const SLOW: f64 = 0.08;
 /// How long \[s\] nothing may happen before what stands still is drawn in full.
 const MOMENT: Duration = Duration::from_millis(200);
 
-/// What the thread goes on with.
+/// What the drawing thread remembers.
 pub(super) struct Playing {
     pub scene: Option<Box<Loaded>>,
     pub playing: bool,
@@ -86,7 +86,7 @@ impl Playing {
         self.loading == 0 && !self.patience().is_zero()
     }
 
-    /// How long to wait for a message before going on.
+    /// How long to wait for a message before the next frame.
     pub fn patience(&self) -> Duration {
         // Every message wakes it.
         const LONG: Duration = Duration::from_secs(3600);

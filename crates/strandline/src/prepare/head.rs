@@ -1,4 +1,4 @@
-//! What a mesh alone tells of a head: which way it stands and looks, and how wide it is.
+//! The pose of a head estimated from its mesh alone: which way it stands and looks, and how wide it is.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 

@@ -44,7 +44,7 @@ pub(super) fn dress(scene: &Scene, groom: &mut Groom) -> Result<(), Error> {
     let has = |which: usize| of_all[which].is_some() || of_groups.iter().any(|maps| maps[which].is_some());
     if (has(0) || has(1)) && groom.root_uvs.is_none() {
         let found = "a groom without root coordinates";
-        let expected = "one whose strands say where on the scalp they grow (`strandline info` tells)";
+        let expected = "one whose strands say where on the scalp they grow (`strandline info` says)";
         return Err(SettingError::new("look.color_map or look.width_map", found, expected).into());
     }
     let pigments: Vec<Option<Look>> = look.group.iter().map(|group| group.own_pigment(look)).collect();

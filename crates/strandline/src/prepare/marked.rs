@@ -23,7 +23,7 @@ const LISTED: usize = 12;
 const DIRECTIONS: usize = 72;
 /// Places along the edge of a triangle that are looked at.
 const PLACES: usize = 6;
-/// Roots of the built-in scalp that tell where its rim is.
+/// Roots of the built-in scalp that show where its rim is.
 const ROOTS: usize = 4000;
 /// Times that a root is looked for on it again, from as far as it was found.
 const LOOKS: usize = 3;

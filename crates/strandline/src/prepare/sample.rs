@@ -1,4 +1,4 @@
-//! What roots, tips and vertices tell of how a groom and its body lie.
+//! How a groom and its body lie, estimated from roots, tips and vertices.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 

@@ -16,7 +16,7 @@ use crate::{
 
 use super::placing::Placing;
 
-/// Depth \[m\] up to which nobody is told: less than what samples of a body err by.
+/// Depth \[m\] up to which no note is made: less than the error of a sampled body.
 const WORTH_A_NOTE: f32 = 1e-4;
 /// Strands of a file above which some stand for all, when nothing else is said, and how many then do.
 const MANY: usize = 3000;

@@ -1,4 +1,4 @@
-//! The simulation, which goes on on the CPU where its GPU fails, if that is wanted.
+//! The simulation, which falls back to the CPU when its GPU fails, if allowed.
 
 use glam::Vec3;
 use strandline_gpu::{Buffer, Gpu};
@@ -14,11 +14,11 @@ use crate::{
 /// A simulator that outlives its device.
 pub(crate) struct Engine {
     simulator: Simulator,
-    /// Whether the run goes on on the CPU when the GPU fails.
+    /// Whether the run falls back to the CPU when the GPU fails.
     pub fall_back: bool,
     /// What happened on the way, human-readable.
     pub notes: Vec<String>,
-    /// The state that the CPU went on from, after so many steps: what a picture under way shows.
+    /// The state that the CPU resumed from, and the number of steps before it: a picture under way may show it.
     left: Option<(u64, State)>,
 }
 
@@ -84,7 +84,7 @@ impl Engine {
     /// last state, which lies a frame later.
     ///
     /// # Errors
-    /// The failure, where the CPU is not to go on.
+    /// The failure, where falling back is not allowed.
     pub fn find_again(
         &mut self,
         step: u64,

@@ -6,7 +6,7 @@ use crate::{
 /// What playing hair emits.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// Something happened that a person should read; the film goes on.
+    /// Something happened that a person should read; the film continues.
     Note(String),
     /// A step of the simulation ended. Steps on a GPU are reported when their reports have arrived, all of them before
     /// the film ends.

@@ -95,7 +95,7 @@ pub(crate) struct Job {
     pub moment: Moment,
     /// The device that the pictures are drawn on.
     pub gpu: Option<Gpu>,
-    /// Whether the points of the moment are wanted on the host too.
+    /// Whether the host needs the points of the moment too.
     pub home: bool,
     /// Commands that were received before.
     pub commands: u64,

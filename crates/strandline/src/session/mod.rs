@@ -56,7 +56,7 @@ pub(crate) struct Session<P> {
     pub grabbed: usize,
     /// Commands that the moment that is shown has received.
     pub simulated_after: u64,
-    /// Moments that nobody works on, and the one that is shown.
+    /// Moments free for the next job, and the one that is shown.
     spare: Vec<Moment>,
     shown: Moment,
     events: VecDeque<Event>,
@@ -170,7 +170,7 @@ impl Session<Here> {
     /// Takes the hair as it is now for the next picture.
     ///
     /// # Errors
-    /// The GPU failed, and the CPU is not to go on.
+    /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn show(&mut self) -> Result<(), Error> {
         Ok(self.place.simulation.show(self.studio.painter.gpu(), &mut self.shown)?)
     }
@@ -216,7 +216,7 @@ impl<P: Place> Session<P> {
     /// Emits the reports of all steps that are still on their way from a GPU.
     ///
     /// # Errors
-    /// The GPU failed, and the CPU is not to go on.
+    /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn report_rest(&mut self) -> Result<(), Error> {
         let reports = self.place.with(|simulation| simulation.engine.reports())?;
         self.events.extend(reports.into_iter().map(Event::Stepped));
@@ -226,7 +226,7 @@ impl<P: Place> Session<P> {
     /// Draws what is shown, simpler where `draft`, and emits the picture.
     ///
     /// # Errors
-    /// A setting outside its range; the GPU failed, and the CPU is not to draw.
+    /// A setting outside its range; the GPU failed, and falling back to the CPU is not allowed.
     pub fn draw(&mut self, draft: bool) -> Result<(), Error> {
         let (picture, report) = self.picture(draft)?;
         self.events.push_back(Event::Drawn { frame: self.drawn, picture, report });
@@ -322,7 +322,7 @@ impl<P: Place> Session<P> {
     /// The hair that a line of sight meets first in what is shown, before the body, within a radius \[m\] of it.
     ///
     /// # Errors
-    /// The GPU that had its points failed, and the CPU is not to go on.
+    /// The GPU that had its points failed, and falling back to the CPU is not allowed.
     pub fn pick(&mut self, ray: &Ray, radius: f32) -> Result<Option<Picked>, Error> {
         let Self { place, shown, studio, .. } = self;
         place.with(|simulation| simulation.bring_home(shown))?;

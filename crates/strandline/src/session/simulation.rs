@@ -257,8 +257,8 @@ impl Simulation {
         read
     }
 
-    /// Brings the points of a moment to the host. Where its device was lost the CPU goes on, and they are those that
-    /// it finds again, or those of its last state where it was further already.
+    /// Brings the points of a moment to the host. Where their device was lost the simulation falls back to the CPU, and
+    /// they are those that it computes again, or those of its last state where that lies later.
     pub fn bring_home(&mut self, moment: &mut Moment) -> Result<(), SimError> {
         match moment.bring_home() {
             Ok(()) => Ok(()),

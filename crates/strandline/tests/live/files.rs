@@ -50,8 +50,12 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     let live = Live::new(scene(), waking()).unwrap();
     std::fs::write(folder.path().join("file"), b"x").unwrap();
     live.send(Command::Record(folder.path().join("file/three")));
-    let news = wait(|| Some(live.take_events()).filter(|news| news.contains(&LiveEvent::Recorded)));
-    assert!(news.iter().any(|news| matches!(news, LiveEvent::Error(text) if text.contains("three"))));
+    let mut events = Vec::new();
+    wait(|| {
+        events.extend(live.take_events());
+        events.contains(&LiveEvent::Recorded).then_some(())
+    });
+    assert!(events.iter().any(|event| matches!(event, LiveEvent::Error(text) if text.contains("three"))));
     assert_eq!(next(&live).recorded, None);
 }
 

@@ -225,8 +225,8 @@ fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
     clock.advance(Duration::from_millis(190));
     live.wait_idle();
     assert!(live.take_shown().is_none(), "too early");
-    clock.advance(Duration::from_millis(190));
-    let full = wait(|| live.take_shown());
+    clock.advance(Duration::from_millis(210));
+    let full = next(&live);
     assert_eq!((full.draft, full.picture.width, full.picture.height), (false, 64, 48));
     assert_eq!(full.drawing.strands, 8 * draft.drawing.strands);
     live.send(Change::Camera(Camera::back()));
