@@ -35,8 +35,8 @@ fn drawn_to_host(
         wgpu::TexelCopyBufferInfo { buffer: download.raw(), layout },
         texture.size(),
     );
-    gpu.queue().submit([encoder.finish()]);
-    let pixels = download.read(|bytes| {
+    let submission = gpu.queue().submit([encoder.finish()]);
+    let pixels = download.read(Some(submission), |bytes| {
         let (texels, _) = bytes.as_chunks::<4>();
         texels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect()
     });

@@ -9,6 +9,7 @@ mod host;
 mod picture;
 mod rods;
 mod shaders;
+mod simulator;
 mod strands;
 mod volume;
 mod whole;

@@ -63,6 +63,11 @@ impl Gpu {
         match *self {}
     }
 
+    /// Times that the host waited.
+    pub fn waits(&self) -> u64 {
+        match *self {}
+    }
+
     /// Bytes per second that a copy reads and writes.
     ///
     /// # Errors

@@ -10,6 +10,21 @@ use crate::{Drive, Model, Settings, SimError, State, StepReport};
 #[derive(Debug)]
 pub enum GpuRunner {}
 
+/// A state on its way to the host.
+#[derive(Debug)]
+pub enum ComingState {}
+
+#[expect(missing_docs, clippy::missing_errors_doc, reason = "none of it can be called")]
+impl ComingState {
+    pub fn has_arrived(&self) -> Result<bool, SimError> {
+        match *self {}
+    }
+
+    pub fn write(self, _: &mut State) -> Result<(), SimError> {
+        match self {}
+    }
+}
+
 /// No shader modules.
 pub fn modules() -> Vec<(&'static str, &'static str)> {
     Vec::new()
@@ -54,6 +69,18 @@ impl GpuRunner {
     }
 
     pub fn step(&mut self, _: &Drive) -> Result<(), SimError> {
+        match *self {}
+    }
+
+    pub fn arrived_reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        match *self {}
+    }
+
+    pub fn forget_reports(&mut self) {
+        match *self {}
+    }
+
+    pub fn begin_read(&self) -> Result<ComingState, SimError> {
         match *self {}
     }
 

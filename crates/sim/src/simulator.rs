@@ -1,25 +1,41 @@
 //! A simulation on whichever backend runs it.
 
 use glam::Vec3;
-use strandline_base::Stopwatch;
 use strandline_body::Pose;
 use strandline_gpu::{Buffer, Gpu};
 
-use crate::gpu::GpuRunner;
+use crate::gpu::{ComingState, GpuRunner};
 use crate::{CpuRunner, Drive, Model, Settings, SimError, State, StepReport};
 
 /// A model, a state and the runner that advances it.
 ///
-/// A state on a device stays there; it is read when somebody asks for it, and every
-/// `simulation.checkpoint_every` steps, so that it can go on without the device.
+/// A state on a device stays there. It is read when it is asked for; and every `simulation.checkpoint_every` steps
+/// without a wait, so that the CPU can resume from it where the device fails. Reports of steps on a device come when
+/// they have arrived.
 pub struct Simulator {
     runner: Runner,
     /// The state on the CPU; of a device as it was when it was last read.
     state: State,
     /// What drove the steps that the device has made since then.
     ahead: Vec<Drive>,
+    /// The state read before that one: a picture under way may still show steps after it.
+    older: Option<Older>,
+    /// A state on its way from the device, after so many of the steps `ahead`.
+    coming: Option<(ComingState, usize)>,
     /// Whether a run of the device failed, so that nothing is known of its state.
     lost: bool,
+    /// Steps made, steps reported, and the step of the next report that comes from the device.
+    steps: u64,
+    reported: u64,
+    next_report: u64,
+    /// Reports of steps that the CPU made again for a device that failed.
+    remade: Vec<StepReport>,
+}
+
+/// A state, and what drove the steps from it to the next one that was read.
+struct Older {
+    state: State,
+    drives: Vec<Drive>,
 }
 
 enum Runner {
@@ -47,7 +63,18 @@ impl Simulator {
             Some(gpu) => Runner::Gpu(GpuRunner::new(gpu, model)?.into()),
             None => Runner::Cpu(Box::new(model.into())),
         };
-        Ok(Self { runner, state, ahead: Vec::new(), lost: false })
+        Ok(Self {
+            runner,
+            state,
+            ahead: Vec::new(),
+            older: None,
+            coming: None,
+            lost: false,
+            steps: 0,
+            reported: 0,
+            next_report: 0,
+            remade: Vec::new(),
+        })
     }
 
     /// The model.
@@ -79,19 +106,88 @@ impl Simulator {
         }
     }
 
+    /// Steps made since the simulator was.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
     /// The state; of a device it is waited for where it has gone on since it was last read.
     ///
     /// # Errors
     /// The device was lost.
     pub fn state(&mut self) -> Result<&State, SimError> {
-        if let Runner::Gpu(runner) = &mut self.runner
+        if let Runner::Gpu(_) = &self.runner
             && !self.ahead.is_empty()
         {
-            find(runner, &self.state, &self.ahead, &mut self.lost)?;
-            runner.read_into(&mut self.state)?;
-            self.ahead.clear();
+            self.find()?;
+            let count = self.ahead.len();
+            self.checkpoint(count, GpuRunner::read_into)?;
         }
         Ok(&self.state)
+    }
+
+    /// Makes the state after so many of the steps `ahead` the one to resume from, once it is read.
+    fn checkpoint(
+        &mut self,
+        count: usize,
+        read: impl FnOnce(&GpuRunner, &mut State) -> Result<(), SimError>,
+    ) -> Result<(), SimError> {
+        let Runner::Gpu(runner) = &self.runner else { return Ok(()) };
+        // The state before the last one makes room.
+        let (mut state, drives) = match self.older.take() {
+            Some(Older { state, drives }) => (state, Some(drives)),
+            None => (self.state.clone(), None),
+        };
+        if let Err(failure) = read(runner, &mut state) {
+            self.older = drives.map(|drives| Older { state, drives });
+            return Err(failure);
+        }
+        let state = std::mem::replace(&mut self.state, state);
+        self.older = Some(Older { state, drives: self.ahead.drain(..count).collect() });
+        self.coming = None;
+        Ok(())
+    }
+
+    /// Resumes from the state that is on its way from now on, if it has arrived; sends one on its way where many
+    /// steps were made since. What fails here fails in the next run, and these steps are made.
+    fn renew_checkpoint(&mut self, has_arrived: bool) {
+        if has_arrived && let Some((coming, count)) = self.coming.take() {
+            self.checkpoint(count, |_, state| coming.write(state)).ok();
+        }
+        let Runner::Gpu(runner) = &self.runner else { return };
+        if self.coming.is_none() && self.ahead.len() >= runner.model().settings().checkpoint_every as usize {
+            self.coming = runner.begin_read().ok().map(|coming| (coming, self.ahead.len()));
+        }
+    }
+
+    /// Takes reports from the device that were not returned yet.
+    fn collect(
+        &mut self,
+        take: impl FnOnce(&mut GpuRunner) -> Result<Vec<StepReport>, SimError>,
+    ) -> Result<Vec<StepReport>, SimError> {
+        let Runner::Gpu(runner) = &mut self.runner else { return Ok(Vec::new()) };
+        let mut found = take(runner)?;
+        let known = self.reported.saturating_sub(self.next_report).min(found.len() as u64);
+        self.next_report += found.len() as u64;
+        self.reported = self.reported.max(self.next_report);
+        found.drain(..known as usize);
+        Ok(found)
+    }
+
+    /// Brings a device of which nothing is known to where the simulation is.
+    fn find(&mut self) -> Result<(), SimError> {
+        let Runner::Gpu(runner) = &mut self.runner else { return Ok(()) };
+        if self.lost {
+            runner.forget_reports();
+            runner.write(&self.state)?;
+            self.next_report = self.steps - self.ahead.len() as u64;
+            self.coming = None;
+            for drive in &self.ahead {
+                runner.step(drive)?;
+            }
+            self.lost = false;
+        }
+        Ok(())
     }
 
     /// The state as it was last read: what a lost device leaves.
@@ -104,41 +200,47 @@ impl Simulator {
         self.state.grabbed()
     }
 
-    /// Advances by a step for each drive; a device is waited for at the end, for its reports.
+    /// Advances by a step for each drive, and reports the steps that are done: on a device those whose reports have
+    /// arrived, also of earlier runs; [`Simulator::reports`] waits for the others.
     ///
     /// # Errors
     /// The device has no memory left or was lost.
     pub fn run(&mut self, drives: &[Drive]) -> Result<Vec<StepReport>, SimError> {
-        let runner = match &mut self.runner {
-            Runner::Cpu(runner) => {
-                return Ok(drives.iter().map(|drive| runner.step(&mut self.state, drive)).collect());
-            }
-            Runner::Gpu(runner) => runner,
-        };
-        if drives.is_empty() {
-            return Ok(Vec::new());
+        if let Runner::Cpu(runner) = &mut self.runner {
+            let mut reports = std::mem::take(&mut self.remade);
+            reports.extend(drives.iter().map(|drive| runner.step(&mut self.state, drive)));
+            self.steps += drives.len() as u64;
+            self.reported = self.steps;
+            return Ok(reports);
         }
-        find(runner, &self.state, &self.ahead, &mut self.lost)?;
-        let watch = Stopwatch::start();
+        self.find()?;
+        // Seen first: what comes before it has arrived too.
+        let has_arrived =
+            self.coming.as_ref().is_some_and(|(coming, _)| coming.has_arrived().unwrap_or(false));
         self.lost = true;
-        for drive in drives {
-            runner.step(drive)?;
+        if let Runner::Gpu(runner) = &mut self.runner {
+            for drive in drives {
+                runner.step(drive)?;
+            }
         }
-        let mut reports = runner.reports()?;
+        let reports = self.collect(GpuRunner::arrived_reports)?;
         self.lost = false;
-        let each = watch.seconds() / drives.len() as f64;
-        // A device without timestamps: the wait for it is all that is known.
-        for report in reports.iter_mut().filter(|report| report.seconds.is_empty()) {
-            report.seconds.push(("step", each));
-        }
         self.ahead.extend_from_slice(drives);
-        if self.ahead.len() >= self.model().settings().checkpoint_every as usize {
-            // A device that fails here fails in the next run too: these steps are made.
-            self.state().ok();
-        }
+        self.steps += drives.len() as u64;
+        self.renew_checkpoint(has_arrived);
         Ok(reports)
     }
 
+    /// The reports of all steps that were not returned yet; a device is waited for.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        let mut reports = std::mem::take(&mut self.remade);
+        self.find()?;
+        reports.extend(self.collect(GpuRunner::reports)?);
+        Ok(reports)
+    }
     /// Changes the settings between two steps.
     ///
     /// # Errors
@@ -146,6 +248,7 @@ impl Simulator {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         // Steps that were made with the old settings are made again with none other.
         self.state()?;
+        self.older = None;
         match &mut self.runner {
             Runner::Cpu(runner) => runner.set_settings(settings),
             Runner::Gpu(runner) => runner.set_settings(settings),
@@ -178,6 +281,7 @@ impl Simulator {
     /// Brings the state to the device.
     fn write(&mut self) -> Result<(), SimError> {
         self.ahead.clear();
+        (self.older, self.coming) = (None, None);
         if let Runner::Gpu(runner) = &mut self.runner {
             self.lost = true;
             runner.write(&self.state)?;
@@ -209,44 +313,50 @@ impl Simulator {
 
     /// Holds on the device what the state's hand holds.
     fn hold(&mut self) -> Result<(), SimError> {
+        self.older = None;
         match &mut self.runner {
             Runner::Cpu(_) => Ok(()),
             Runner::Gpu(runner) => runner.write_grab(&self.state),
         }
     }
 
-    // STUB
-    pub fn steps(&self) -> u64 {
-        0
-    }
-    pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
-        Ok(Vec::new())
-    }
-    pub fn fall_back_seeing(&mut self, _: u64, see: impl FnOnce(&State)) -> bool {
-        self.fall_back();
-        see(&self.state);
-        true
-    }
-    // STUB END
-    /// Goes on on the CPU: from the state that was last read, through the steps that the device had made since.
+    /// Falls back to the CPU: from the state that was last read, through the steps that the device had made since.
     pub fn fall_back(&mut self) {
-        let mut runner = CpuRunner::from(self.model().clone());
-        for drive in std::mem::take(&mut self.ahead) {
-            runner.step(&mut self.state, &drive);
-        }
-        self.runner = Runner::Cpu(runner.into());
+        self.fall_back_seeing(self.steps, |_| ());
     }
-}
 
-/// Brings a device of which nothing is known to where the simulation is.
-fn find(runner: &mut GpuRunner, state: &State, ahead: &[Drive], lost: &mut bool) -> Result<(), SimError> {
-    if *lost {
-        runner.write(state)?;
-        for drive in ahead {
-            runner.step(drive)?;
+    /// Falls back to the CPU and shows the state after so many steps when it comes by: one of the last runs before the
+    /// device failed. Returns whether it did; never on the CPU.
+    pub fn fall_back_seeing(&mut self, step: u64, mut see: impl FnMut(&State)) -> bool {
+        if let Runner::Cpu(_) = &self.runner {
+            return false;
         }
-        runner.reports()?;
-        *lost = false;
+        let mut runner = CpuRunner::from(self.model().clone());
+        let mut drives = std::mem::take(&mut self.ahead);
+        let mut at = self.steps - drives.len() as u64;
+        if let Some(Older { state, drives: before }) = self.older.take()
+            && (at - before.len() as u64..at).contains(&step)
+        {
+            at -= before.len() as u64;
+            drives.splice(0..0, before);
+            self.state = state;
+        }
+        let mut seen = at == step;
+        if seen {
+            see(&self.state);
+        }
+        for drive in drives {
+            let report = runner.step(&mut self.state, &drive);
+            at += 1;
+            self.remade.extend((at > self.reported).then_some(report));
+            if at == step {
+                see(&self.state);
+                seen = true;
+            }
+        }
+        self.reported = self.steps;
+        self.runner = Runner::Cpu(runner.into());
+        (self.coming, self.lost) = (None, false);
+        seen
     }
-    Ok(())
 }

@@ -3,6 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::wanted::Wanted;
 use crate::{Adapter, Crossed, GpuError};
 
 /// How long a submission may take before the device counts as hung: a software adapter on a busy
@@ -25,6 +26,8 @@ struct Shared {
     memory: Mutex<Memory>,
     /// Bytes that went to the device and came from it.
     crossed: [AtomicU64; 2],
+    /// Times that the host waited for the device.
+    waits: AtomicU64,
     kernels: Mutex<HashMap<String, Compiled>>,
 }
 
@@ -48,7 +51,7 @@ impl Gpu {
     /// # Errors
     /// There is none, or it does not offer WebGPU's default limits.
     pub fn auto() -> Result<Self, GpuError> {
-        Self::choose("hardware GPU", |adapter| !adapter.software)
+        pollster::block_on(Self::request(Wanted::Hardware))
     }
 
     /// The first adapter of any kind, hardware before software.
@@ -56,7 +59,7 @@ impl Gpu {
     /// # Errors
     /// There is none, or it does not offer WebGPU's default limits.
     pub fn any() -> Result<Self, GpuError> {
-        Self::choose("GPU", |_| true)
+        pollster::block_on(Self::request(Wanted::Any))
     }
 
     /// An adapter by its number in [`Gpu::list`].
@@ -64,12 +67,30 @@ impl Gpu {
     /// # Errors
     /// There is none of that number, or it does not offer WebGPU's default limits.
     pub fn open(index: usize) -> Result<Self, GpuError> {
-        Self::choose(&format!("GPU of number {index}"), |adapter| adapter.index == index)
+        pollster::block_on(Self::request(Wanted::Number(index)))
     }
 
     /// All adapters, hardware before software.
     pub fn list() -> Vec<Adapter> {
-        adapters().into_iter().map(|(_, adapter)| adapter).collect()
+        pollster::block_on(adapters()).into_iter().map(|(_, adapter)| adapter).collect()
+    }
+
+    /// The first wanted adapter that starts, for hosts that cannot block, as in a browser page.
+    ///
+    /// # Errors
+    /// There is none, or it does not offer WebGPU's default limits: why the first of them did not start.
+    pub async fn request(wanted: Wanted) -> Result<Self, GpuError> {
+        let adapters = adapters().await;
+        let offered: Vec<Adapter> = adapters.iter().map(|(_, adapter)| adapter.clone()).collect();
+        let mut refused = GpuError::NoAdapter { wanted: wanted.to_string(), offered };
+        for (found, adapter) in adapters.into_iter().filter(|(_, adapter)| wanted.is(adapter)) {
+            match Self::start(&found, adapter).await {
+                Ok(gpu) => return Ok(gpu),
+                Err(error) if matches!(refused, GpuError::NoAdapter { .. }) => refused = error,
+                Err(_) => {}
+            }
+        }
+        Err(refused)
     }
 
     /// A host's own device and queue. The host keeps its error handlers and its callback, so that the
@@ -87,26 +108,11 @@ impl Gpu {
         lost: Arc<Mutex<Option<String>>>,
     ) -> Self {
         let memory = Mutex::new(Memory { used: 0, most: u64::MAX });
-        let (crossed, kernels) = Default::default();
-        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory, crossed, kernels }) }
+        let (crossed, waits, kernels) = Default::default();
+        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory, crossed, waits, kernels }) }
     }
 
-    /// The first that suits and starts; else why the first of them did not.
-    fn choose(wanted: &str, suits: impl Fn(&Adapter) -> bool) -> Result<Self, GpuError> {
-        let adapters = adapters();
-        let offered: Vec<Adapter> = adapters.iter().map(|(_, adapter)| adapter.clone()).collect();
-        let mut refused = GpuError::NoAdapter { wanted: wanted.to_owned(), offered };
-        for (found, adapter) in adapters.into_iter().filter(|(_, adapter)| suits(adapter)) {
-            match Self::start(&found, adapter) {
-                Ok(gpu) => return Ok(gpu),
-                Err(error) if matches!(refused, GpuError::NoAdapter { .. }) => refused = error,
-                Err(_) => {}
-            }
-        }
-        Err(refused)
-    }
-
-    fn start(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
+    async fn start(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
         let limits = wgpu::Limits::default();
         let mut refused = None;
         limits.check_limits_with_fail_fn(&found.limits(), false, |what, needed, limit| {
@@ -126,7 +132,7 @@ impl Gpu {
             required_limits: limits,
             ..Default::default()
         };
-        let (device, queue) = pollster::block_on(found.request_device(&descriptor)).map_err(|error| {
+        let (device, queue) = found.request_device(&descriptor).await.map_err(|error| {
             let what = "starting the device".to_owned();
             GpuError::Refused { adapter: adapter.to_string(), what, message: error.to_string() }
         })?;
@@ -180,6 +186,11 @@ impl Gpu {
         Crossed { to_device, from_device }
     }
 
+    /// Times that the host has waited for the device since it was opened.
+    pub fn waits(&self) -> u64 {
+        self.shared.waits.load(Relaxed)
+    }
+
     pub(crate) fn count_to_device(&self, bytes: usize) {
         self.shared.crossed[0].fetch_add(bytes as u64, Relaxed);
     }
@@ -210,16 +221,21 @@ impl Gpu {
     /// # Errors
     /// The device is lost, has no memory left, or finds a mistake.
     pub fn guarded<T>(&self, what: &str, run: impl FnOnce() -> T) -> Result<T, GpuError> {
+        // A native device answers at once.
+        pollster::block_on(self.scoped(what, run))
+    }
+
+    /// As [`Gpu::guarded`], for hosts that cannot block.
+    ///
+    /// # Errors
+    /// As [`Gpu::guarded`].
+    pub async fn scoped<T>(&self, what: &str, run: impl FnOnce() -> T) -> Result<T, GpuError> {
         self.check()?;
         let memory = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.device().push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
         let ran = self.surviving(run);
-        let pops = [
-            pollster::block_on(validation.pop()),
-            pollster::block_on(internal.pop()),
-            pollster::block_on(memory.pop()),
-        ];
+        let pops = [validation.pop().await, internal.pop().await, memory.pop().await];
         match pops.into_iter().flatten().next().filter(|_| ran.is_ok()) {
             None => ran.and_then(|result| self.check().map(|()| result)),
             Some(error) => Err(self.refusal(what, &error)),
@@ -253,9 +269,23 @@ impl Gpu {
     /// # Errors
     /// The device was lost or does not answer.
     pub fn wait(&self) -> Result<(), GpuError> {
+        self.wait_for(None)
+    }
+
+    /// Waits until a submission is done, or everything that was submitted.
+    pub(crate) fn wait_for(&self, submission_index: Option<wgpu::SubmissionIndex>) -> Result<(), GpuError> {
         self.check()?;
-        let patience = wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) };
+        self.shared.waits.fetch_add(1, Relaxed);
+        let patience = wgpu::PollType::Wait { submission_index, timeout: Some(PATIENCE) };
         let polled = self.surviving(|| self.device().poll(patience))?;
+        self.check()?;
+        polled.map(drop).map_err(|error| GpuError::Lost { adapter: self.name(), reason: error.to_string() })
+    }
+
+    /// Sees what is done by now.
+    pub(crate) fn poll(&self) -> Result<(), GpuError> {
+        self.check()?;
+        let polled = self.surviving(|| self.device().poll(wgpu::PollType::Poll))?;
         self.check()?;
         polled.map(drop).map_err(|error| GpuError::Lost { adapter: self.name(), reason: error.to_string() })
     }
@@ -320,13 +350,13 @@ fn note(slot: &Mutex<Option<String>>, reason: String) {
 }
 
 /// All adapters, the fastest kind first.
-fn adapters() -> Vec<(wgpu::Adapter, Adapter)> {
+async fn adapters() -> Vec<(wgpu::Adapter, Adapter)> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
     // The validation layers of old drivers report errors where there are none.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
-    let mut found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let mut found = instance.enumerate_adapters(wgpu::Backends::all()).await;
     found.sort_by_key(|adapter| match adapter.get_info().device_type {
         wgpu::DeviceType::DiscreteGpu => 0,
         wgpu::DeviceType::IntegratedGpu => 1,

@@ -14,6 +14,8 @@ mod rigid;
 mod scan;
 mod texture;
 mod timer;
+mod transfer;
+mod wanted;
 
 pub use buffer::Buffer;
 pub use check::check;
@@ -27,3 +29,5 @@ pub use rigid::Rigid;
 pub use scan::Scan;
 pub use texture::Texture;
 pub use timer::Timer;
+pub use transfer::Transfer;
+pub use wanted::Wanted;

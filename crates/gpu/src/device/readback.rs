@@ -1,11 +1,12 @@
-//! Copies from the device: several buffers with one submission and one wait.
+//! Copies from the device: several buffers with one submission.
 
 use std::marker::PhantomData;
 use std::ops::Range;
 
 use bytemuck::Pod;
 
-use crate::{Buffer, Gpu, GpuError};
+use super::transfer::{Held, Mapping, mapped};
+use crate::{Buffer, Gpu, GpuError, Transfer};
 
 /// Buffers to be copied back together.
 #[derive(Debug, Default)]
@@ -24,7 +25,7 @@ pub struct Part<T> {
 /// What was copied.
 #[derive(Debug)]
 pub struct Copied {
-    bytes: Vec<u8>,
+    pub(super) bytes: Vec<u8>,
 }
 
 impl<'a> Readback<'a> {
@@ -45,22 +46,24 @@ impl<'a> Readback<'a> {
         Part { bytes, element: PhantomData }
     }
 
-    /// Waits for the device and copies.
+    /// Waits for the copies and takes them.
     ///
     /// # Errors
     /// The device was lost or has no memory left.
     pub fn read(self, gpu: &Gpu) -> Result<Copied, GpuError> {
-        if self.bytes == 0 {
-            return Ok(Copied { bytes: Vec::new() });
-        }
-        gpu.take_memory("the copy back", self.bytes as u64)?;
-        let copied = self.copy(gpu);
-        gpu.give_memory_back(self.bytes as u64);
-        copied
+        self.begin(gpu)?.wait()
     }
 
-    fn copy(&self, gpu: &Gpu) -> Result<Copied, GpuError> {
-        let staging = gpu.guarded("readback", || {
+    /// Submits the copies, after everything that was submitted before.
+    ///
+    /// # Errors
+    /// The device was lost or has no memory left.
+    pub fn begin(self, gpu: &Gpu) -> Result<Transfer, GpuError> {
+        let held = Held::new(gpu, self.bytes as u64)?;
+        if self.bytes == 0 {
+            return Ok(Transfer::new(held, None));
+        }
+        gpu.guarded("readback", || {
             let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),
                 size: self.bytes as u64,
@@ -72,18 +75,9 @@ impl<'a> Readback<'a> {
                 let (start, size) = (bytes.start as u64, bytes.len() as u64);
                 encoder.copy_buffer_to_buffer(buffer, 0, &staging, start, size);
             }
-            gpu.queue().submit([encoder.finish()]);
-            staging.slice(..).map_async(wgpu::MapMode::Read, |_| ());
-            staging
-        })?;
-        gpu.wait()?;
-        let view = staging.slice(..).get_mapped_range().map_err(|error| GpuError::Refused {
-            adapter: gpu.name(),
-            what: "reading back".to_owned(),
-            message: error.to_string(),
-        })?;
-        gpu.count_from_device(view.len());
-        Ok(Copied { bytes: view.to_vec() })
+            let submission = gpu.queue().submit([encoder.finish()]);
+            Transfer::new(held, Some((staging, submission)))
+        })
     }
 }
 
@@ -97,7 +91,7 @@ impl Copied {
 /// Memory of the host's that copies go to again and again.
 #[derive(Debug)]
 pub struct Download {
-    gpu: Gpu,
+    held: Held,
     staging: wgpu::Buffer,
 }
 
@@ -107,22 +101,16 @@ impl Download {
     /// # Errors
     /// The device was lost or has no memory left.
     pub fn new(gpu: &Gpu, bytes: u64) -> Result<Self, GpuError> {
-        gpu.take_memory("the copy back", bytes)?;
-        let made = gpu.guarded("readback", || {
+        let held = Held::new(gpu, bytes)?;
+        let staging = gpu.guarded("readback", || {
             gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),
                 size: bytes,
                 usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             })
-        });
-        match made {
-            Ok(staging) => Ok(Self { gpu: gpu.clone(), staging }),
-            Err(error) => {
-                gpu.give_memory_back(bytes);
-                Err(error)
-            }
-        }
+        })?;
+        Ok(Self { held, staging })
     }
 
     /// Where copies are to go.
@@ -130,28 +118,22 @@ impl Download {
         &self.staging
     }
 
-    /// Waits for the device and shows what was copied.
+    /// Waits for the submission that copied, none for all of them, and shows what was copied.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn read<T>(&self, look: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
-        self.gpu.guarded("readback", || self.staging.slice(..).map_async(wgpu::MapMode::Read, |_| ()))?;
-        self.gpu.wait()?;
-        let view = self.staging.slice(..).get_mapped_range().map_err(|error| GpuError::Refused {
-            adapter: self.gpu.name(),
-            what: "reading back".to_owned(),
-            message: error.to_string(),
-        })?;
-        self.gpu.count_from_device(view.len());
+    pub fn read<T>(
+        &self,
+        submission: Option<wgpu::SubmissionIndex>,
+        look: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, GpuError> {
+        let gpu = &self.held.gpu;
+        let mut mapping = gpu.guarded("readback", || Mapping::new(&self.staging, submission))?;
+        mapping.wait(gpu)?;
+        let view = mapped(gpu, &self.staging)?;
         let result = look(&view);
         drop(view);
         self.staging.unmap();
         Ok(result)
-    }
-}
-
-impl Drop for Download {
-    fn drop(&mut self) {
-        self.gpu.give_memory_back(self.staging.size());
     }
 }

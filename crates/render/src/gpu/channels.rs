@@ -110,7 +110,7 @@ fn texels<T: bytemuck::Pod>(
     let own_bytes = width as usize * size_of::<T>();
     let row_bytes = own_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
     let download = Download::new(gpu, row_bytes as u64 * u64::from(height))?;
-    gpu.guarded("channels", || {
+    let submission = gpu.guarded("channels", || {
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(row_bytes as u32),
@@ -123,9 +123,9 @@ fn texels<T: bytemuck::Pod>(
                 texture.raw().size(),
             );
         });
-        gpu.queue().submit([commands]);
+        gpu.queue().submit([commands])
     })?;
-    download.read(|bytes| {
+    download.read(Some(submission), |bytes| {
         let rows = bytes.chunks_exact(row_bytes);
         rows.flat_map(|row| bytemuck::pod_collect_to_vec::<u8, T>(&row[..own_bytes])).collect()
     })

@@ -182,8 +182,8 @@ impl GpuRenderer {
         };
         let drawn = self.submit(input, points, own.texture.view(), PICTURE, Some(&own));
         let own = self.own.insert(own);
-        let report = drawn?;
-        let seconds = own.read(self.timer.as_ref(), self.settings.transparent, picture)?;
+        let (report, submission) = drawn?;
+        let seconds = own.read(submission, self.timer.as_ref(), self.settings.transparent, picture)?;
         let layers = if self.settings.layers { Some(Arc::new(self.channels(input)?)) } else { None };
         Ok(FrameReport { seconds, layers, ..report })
     }
@@ -206,7 +206,7 @@ impl GpuRenderer {
             let expected = "the width and height of the picture";
             return Err(SettingError::new("the target texture", found, expected).into());
         }
-        self.submit(input, points, target, format, None)
+        Ok(self.submit(input, points, target, format, None)?.0)
     }
 
     fn submit(
@@ -216,7 +216,7 @@ impl GpuRenderer {
         target: &wgpu::TextureView,
         format: wgpu::TextureFormat,
         own: Option<&Own>,
-    ) -> Result<FrameReport, RenderError> {
+    ) -> Result<(FrameReport, wgpu::SubmissionIndex), RenderError> {
         input.validate()?;
         let (given, lights) = (input.lights, at_samples(input.lights, input.look.suns()));
         let input = &FrameInput { lights: &lights, ..*input };
@@ -255,12 +255,13 @@ impl GpuRenderer {
                     own.copy(encoder, self.timer.as_ref());
                 }
             });
-            self.gpu.queue().submit([commands]);
+            self.gpu.queue().submit([commands])
         });
-        submitted?;
+        let submission = submitted?;
         self.note(&scene);
         let strands = scene.level.drawn_strands(scene.guide_count);
-        Ok(FrameReport { strands, segments: strands * (scene.curve_points() - 1), ..FrameReport::default() })
+        let segments = strands * (scene.curve_points() - 1);
+        Ok((FrameReport { strands, segments, ..FrameReport::default() }, submission))
     }
 
     /// Remembers what a frame drew.

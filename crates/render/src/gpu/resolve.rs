@@ -84,16 +84,17 @@ impl Own {
         }
     }
 
-    /// Waits for the picture; returns the seconds of the stages.
+    /// Waits for the picture of a submission; returns the seconds of the stages.
     pub fn read(
         &self,
+        submission: wgpu::SubmissionIndex,
         timer: Option<&Timer>,
         transparent: bool,
         picture: &mut Picture,
     ) -> Result<Vec<(&'static str, f64)>, GpuError> {
         let [width, height] = self.texture.size();
         let offset = self.marks_offset() as usize;
-        self.download.read(|bytes| {
+        self.download.read(Some(submission), |bytes| {
             picture.width = width;
             picture.height = height;
             picture.pixels.clear();

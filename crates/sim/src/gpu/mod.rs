@@ -37,3 +37,4 @@ pub use linked::modules;
 pub use probe::Probe;
 pub use records::{Gradient, PressureState, Spread};
 pub use runner::{Costs, GpuRunner};
+pub use transfer::ComingState;

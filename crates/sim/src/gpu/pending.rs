@@ -1,9 +1,15 @@
-//! Reports of steps, which lie on the device until they are asked for.
+//! Reports of steps: they lie on the device, are on their way, or have arrived.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, Readback, Timer};
+use std::collections::VecDeque;
+
+use strandline_base::Stopwatch;
+use strandline_gpu::{Buffer, Gpu, GpuError, Part, Readback, Timer, Transfer};
 
 use super::buffers::REPORTS;
 use super::records::Report;
+
+/// Most copies on their way: who makes more steps than these report waits for the oldest.
+const ON_WAY: usize = 32;
 
 pub(super) struct Pending {
     /// None where the device has no timestamps.
@@ -11,6 +17,16 @@ pub(super) struct Pending {
     pub marks: Buffer<u64>,
     /// Steps whose reports lie on the device.
     pub count: usize,
+    on_way: VecDeque<OnWay>,
+}
+
+/// Reports on their way, and the times of the stages of their steps.
+struct OnWay {
+    transfer: Transfer,
+    reports: Part<Report>,
+    marks: Part<u64>,
+    count: usize,
+    watch: Stopwatch,
 }
 
 /// What a step did, and the times of its stages \[s\].
@@ -19,25 +35,67 @@ pub(super) type Reported = (Report, Vec<(&'static str, f64)>);
 impl Pending {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let marks = Buffer::new(gpu, "times of stages", REPORTS * Timer::BYTES as usize / size_of::<u64>())?;
-        Ok(Self { timer: Timer::new(gpu)?, marks, count: 0 })
+        Ok(Self { timer: Timer::new(gpu)?, marks, count: 0, on_way: VecDeque::new() })
     }
 
-    /// Waits for the device and reads the reports that lie on it.
-    pub fn drain(&mut self, gpu: &Gpu, reports: &Buffer<Report>) -> Result<Vec<Reported>, GpuError> {
+    /// Marks of a step.
+    fn stride(&self) -> usize {
+        if self.timer.is_some() { Timer::BYTES as usize / size_of::<u64>() } else { 0 }
+    }
+
+    /// Sends the reports that lie on the device on their way: there is room for others.
+    pub fn send(&mut self, gpu: &Gpu, reports: &Buffer<Report>) -> Result<(), GpuError> {
         if self.count == 0 {
-            return Ok(Vec::new());
+            return Ok(());
         }
-        let stride = if self.timer.is_some() { Timer::BYTES as usize / size_of::<u64>() } else { 0 };
         let mut batch = Readback::new();
         let reports = batch.add(reports, self.count);
-        let marks = batch.add(&self.marks, self.count * stride);
-        let copied = batch.read(gpu)?;
-        let (found, marks) = (copied.take(reports), copied.take(marks));
+        let marks = batch.add(&self.marks, self.count * self.stride());
+        let transfer = batch.begin(gpu)?;
+        let count = std::mem::take(&mut self.count);
+        self.on_way.push_back(OnWay { transfer, reports, marks, count, watch: Stopwatch::start() });
+        Ok(())
+    }
+
+    /// Takes the reports that have arrived, in the order of their steps.
+    pub fn arrived(&mut self) -> Result<Vec<Reported>, GpuError> {
+        let mut found = Vec::new();
+        while let Some(first) = self.on_way.pop_front() {
+            if self.on_way.len() < ON_WAY && !first.transfer.has_arrived()? {
+                self.on_way.push_front(first);
+                break;
+            }
+            found.extend(self.take(first)?);
+        }
+        Ok(found)
+    }
+
+    /// Waits for all reports.
+    pub fn drain(&mut self, gpu: &Gpu, reports: &Buffer<Report>) -> Result<Vec<Reported>, GpuError> {
+        self.send(gpu, reports)?;
+        let mut found = Vec::new();
+        while let Some(first) = self.on_way.pop_front() {
+            found.extend(self.take(first)?);
+        }
+        Ok(found)
+    }
+
+    /// Forgets reports of steps of which nothing is known.
+    pub fn forget(&mut self) {
+        self.count = 0;
+        self.on_way.clear();
+    }
+
+    /// Waits for reports. Without timestamps a step took at most the time until its report was there.
+    fn take(&self, on_way: OnWay) -> Result<Vec<Reported>, GpuError> {
+        let OnWay { transfer, reports, marks, count, watch } = on_way;
+        let copied = transfer.wait()?;
+        let (reports, marks, stride) = (copied.take(reports), copied.take(marks), self.stride());
+        let until_here = watch.seconds() / count as f64;
         let seconds = |slot: usize| match &self.timer {
             Some(timer) => timer.seconds(&marks[slot * stride..(slot + 1) * stride]),
-            None => Vec::new(),
+            None => vec![("step", until_here)],
         };
-        self.count = 0;
-        Ok(found.into_iter().enumerate().map(|(slot, report)| (report, seconds(slot))).collect())
+        Ok(reports.into_iter().enumerate().map(|(slot, report)| (report, seconds(slot))).collect())
     }
 }

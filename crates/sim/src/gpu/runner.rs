@@ -176,7 +176,7 @@ impl GpuRunner {
     }
 
     /// Advances the state by one step of `settings.time_step`: one submission, which is not waited
-    /// for. Now and then, when the device holds as many reports as it can, they are read.
+    /// for. When the device holds as many reports as it can, they are sent on their way.
     ///
     /// # Errors
     /// The device has no memory left or was lost; then nothing is known of the state until
@@ -190,13 +190,31 @@ impl GpuRunner {
         Ok(())
     }
 
-    /// Waits for the device and reports all steps since the last call.
+    /// Waits for the device and reports all steps that were not reported yet.
     ///
     /// # Errors
     /// The device was lost.
     pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
         self.drain()?;
         Ok(std::mem::take(&mut self.reports))
+    }
+
+    /// The reports that have arrived by now, in the order of their steps; those of the last steps are sent on their
+    /// way. Waits only where many runs are on their way.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn arrived_reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        self.pending.send(&self.gpu, &self.buffers.reports)?;
+        let found = self.pending.arrived()?;
+        self.keep(found);
+        Ok(std::mem::take(&mut self.reports))
+    }
+
+    /// Forgets the reports of steps that are made again.
+    pub fn forget_reports(&mut self) {
+        self.pending.forget();
+        self.reports.clear();
     }
 
     /// Records and submits the stages of a step that are wanted.
@@ -207,7 +225,7 @@ impl GpuRunner {
         let uniform = Step::new(&self.model, &self.world_from_head, &drive, &self.grab, self.pending.count);
         self.buffers.step.write(&[uniform])?;
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
-        let Pending { timer, marks, count } = &self.pending;
+        let Pending { timer, marks, count, .. } = &self.pending;
         self.gpu.guarded("a step", || {
             let mut recorder = Recorder::new(&self.gpu, timer.as_ref());
             timer.iter().for_each(Timer::restart);
@@ -261,7 +279,7 @@ impl GpuRunner {
             self.bound = Some([self.bind(0)?, self.bind(1)?]);
         }
         if self.pending.count == REPORTS {
-            self.drain()?;
+            self.pending.send(&self.gpu, &self.buffers.reports)?;
         }
         Ok(())
     }
@@ -274,12 +292,16 @@ impl GpuRunner {
         stages(&self.model.settings).map(bind).collect()
     }
 
-    /// Reads the reports that lie on the device.
+    /// Waits for all reports.
     fn drain(&mut self) -> Result<(), SimError> {
         let found = self.pending.drain(&self.gpu, &self.buffers.reports)?;
+        self.keep(found);
+        Ok(())
+    }
+
+    fn keep(&mut self, found: Vec<Reported>) {
         let (model, segments) = (&self.model, self.segment_count);
         self.reports.extend(found.into_iter().map(|reported| step_report(reported, model, segments)));
-        Ok(())
     }
 }
 

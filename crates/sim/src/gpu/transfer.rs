@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use strandline_gpu::Readback;
+use glam::Vec3;
+use strandline_body::Pose;
+use strandline_gpu::{Copied, Part, Readback, Transfer};
 use strandline_groom::Vec3Lanes;
 
 use super::buffers::{floats, floats_mut, speeds};
@@ -24,37 +26,36 @@ impl GpuRunner {
         Ok(state)
     }
 
-    /// Waits for the device and copies what a picture needs into a state of the host: positions,
-    /// those of one step ago, the head's pose and the time; and the velocities with their corrections, of rods
-    /// how their sections are turned.
+    /// Waits for the device and copies what time changes into a state of the host: positions, those of one step ago,
+    /// the head's pose and the time; and the velocities with their corrections, of rods how their sections are
+    /// turned.
     ///
     /// # Errors
     /// The device was lost; the state is then as it was.
     pub fn read_into(&self, state: &mut State) -> Result<(), SimError> {
+        self.begin_read()?.write(state)
+    }
+
+    /// Sends the state as it is now on its way to the host: see [`ComingState`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn begin_read(&self) -> Result<ComingState, SimError> {
         let [positions, previous] = self.positions();
         let velocities = &self.buffers.velocities;
         let mut batch = Readback::new();
         let parts = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
         let grid = self.buffers.volume.as_ref().map(|volume| batch.add(&volume.grid, 1));
-        let copied = batch.read(velocities.gpu())?;
-        state.volume_box = grid.and_then(|grid| copied.take(grid).first().map(GridState::place));
-        let [positions, previous, velocities] = parts.map(|part| copied.take(part));
-        floats_mut(&mut state.positions).copy_from_slice(&positions);
-        floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
-        let count = self.buffers.point_count();
-        let (velocities, others) = velocities.split_at(3 * count);
-        floats_mut(&mut state.velocities).copy_from_slice(velocities);
-        if self.buffers.rods.is_some() {
-            state.corrections.fill(Vec3Lanes::default());
-            floats_mut(&mut state.sections).copy_from_slice(&others[..3 * count]);
-            bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
-        } else {
-            floats_mut(&mut state.corrections).copy_from_slice(others);
-        }
-        state.world_from_head = self.world_from_head;
-        state.time = self.time;
-        state.grab.hand = self.grab.hand;
-        Ok(())
+        let transfer = batch.begin(velocities.gpu())?;
+        let content = Content {
+            parts,
+            grid,
+            has_rods: self.buffers.rods.is_some(),
+            world_from_head: self.world_from_head,
+            time: self.time,
+            hand: self.grab.hand,
+        };
+        Ok(ComingState { transfer, content })
     }
 
     /// Replaces the state on the device by one of the host.
@@ -85,5 +86,65 @@ impl GpuRunner {
         self.buffers.write_grips(&state.grab)?;
         self.grab.clone_from(&state.grab);
         Ok(())
+    }
+}
+
+/// A state on its way to the host.
+#[derive(Debug)]
+pub struct ComingState {
+    transfer: Transfer,
+    content: Content,
+}
+
+/// Where its parts are, and what the host knows of it.
+#[derive(Debug)]
+struct Content {
+    parts: [Part<f32>; 3],
+    grid: Option<Part<GridState>>,
+    has_rods: bool,
+    world_from_head: Pose,
+    time: f64,
+    hand: Vec3,
+}
+
+impl ComingState {
+    /// Whether it has arrived; never waits.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn has_arrived(&self) -> Result<bool, SimError> {
+        Ok(self.transfer.has_arrived()?)
+    }
+
+    /// Writes what time changes into a state of the same strands; waits where it has not arrived.
+    ///
+    /// # Errors
+    /// The device was lost; the state is then as it was.
+    pub fn write(self, state: &mut State) -> Result<(), SimError> {
+        self.content.write(&self.transfer.wait()?, state);
+        Ok(())
+    }
+}
+
+impl Content {
+    fn write(&self, copied: &Copied, state: &mut State) {
+        let grid = self.grid.clone();
+        state.volume_box = grid.and_then(|grid| copied.take(grid).first().map(GridState::place));
+        let [positions, previous, velocities] = self.parts.clone().map(|part| copied.take(part));
+        floats_mut(&mut state.positions).copy_from_slice(&positions);
+        floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
+        let count = positions.len() / 3;
+        let (velocities, others) = velocities.split_at(3 * count);
+        floats_mut(&mut state.velocities).copy_from_slice(velocities);
+        if self.has_rods {
+            state.corrections.fill(Vec3Lanes::default());
+            floats_mut(&mut state.sections).copy_from_slice(&others[..3 * count]);
+            bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
+        } else {
+            floats_mut(&mut state.corrections).copy_from_slice(others);
+        }
+        state.world_from_head = self.world_from_head;
+        state.time = self.time;
+        state.grab.hand = self.hand;
     }
 }

@@ -1,0 +1,139 @@
+//! A simulator on a device: reports and checkpoints come by themselves, and a device may fail at any time.
+
+use strandline_body::Pose;
+use strandline_checks::{gpu, own_gpu};
+use strandline_sim::{CpuRunner, Drive, Settings, Simulator, State, StepReport};
+
+use crate::heads::{Head, drive, heads};
+
+/// Steps of each run.
+const RUNS: [usize; 6] = [2, 1, 3, 0, 4, 2];
+const STEPS: usize = 12;
+
+fn runs() -> impl Iterator<Item = Vec<Drive>> {
+    let mut step = 0;
+    RUNS.into_iter().map(move |count| {
+        step += count;
+        (step - count + 1..=step).map(drive).collect()
+    })
+}
+
+fn simulator(head: &Head, gpu: &strandline_gpu::Gpu, checkpoint_every: u32) -> Simulator {
+    let mut simulator = Simulator::new(Some(gpu), head.model()).unwrap();
+    let settings = Settings { checkpoint_every, ..simulator.model().settings().clone() };
+    simulator.set_settings(&settings).unwrap();
+    simulator
+}
+
+/// What tells steps apart.
+fn numbers(reports: &[StepReport]) -> Vec<[f32; 3]> {
+    reports.iter().map(|report| [report.speed_mean, report.stretch_mean, report.stretch_max]).collect()
+}
+
+/// The states on the CPU after each step.
+fn on_cpu(head: &Head) -> Vec<State> {
+    let mut runner = CpuRunner::from(head.model());
+    let mut state = head.model().rest_state(Pose::IDENTITY);
+    let mut states = vec![state.clone()];
+    for step in 1..=STEPS {
+        runner.step(&mut state, &drive(step));
+        states.push(state.clone());
+    }
+    states
+}
+
+#[test]
+fn every_step_is_reported_once_and_in_order() {
+    let Some(gpu) = gpu() else { return };
+    let head = &heads()[0];
+    let mut runner = head.gpu_runner(&gpu);
+    (1..=STEPS).for_each(|step| runner.step(&drive(step)).unwrap());
+    let expected = numbers(&runner.reports().unwrap());
+    assert!(expected.windows(2).all(|pair| pair[0] != pair[1]), "steps cannot be told apart");
+    for checkpoint_every in [1, 3, 120] {
+        let mut simulator = simulator(head, &gpu, checkpoint_every);
+        let mut reports = Vec::new();
+        for drives in runs() {
+            reports.extend(simulator.run(&drives).unwrap());
+        }
+        reports.extend(simulator.reports().unwrap());
+        assert_eq!(numbers(&reports), expected, "a checkpoint every {checkpoint_every}");
+        assert!(simulator.reports().unwrap().is_empty());
+        assert_eq!(simulator.steps(), STEPS as u64);
+    }
+}
+
+#[test]
+fn steps_are_not_waited_for() {
+    let Some(gpu) = own_gpu() else { return };
+    let mut simulator = simulator(&heads()[0], &gpu, 2);
+    let before = gpu.waits();
+    for drives in runs() {
+        simulator.run(&drives).unwrap();
+    }
+    assert_eq!(gpu.waits(), before);
+    simulator.state().unwrap();
+    simulator.reports().unwrap();
+    // What has arrived already is not waited for.
+    assert!((before..=before + 2 + RUNS.len() as u64).contains(&gpu.waits()));
+}
+
+#[test]
+fn a_device_may_fail_after_any_run() {
+    let head = &heads()[0];
+    let expected = on_cpu(head);
+    for (failing, checkpoint_every) in (0..RUNS.len()).flat_map(|run| [(run, 1), (run, 120)]) {
+        let Some(gpu) = own_gpu() else { return };
+        let mut simulator = simulator(head, &gpu, checkpoint_every);
+        let mut reports = Vec::new();
+        for (run, drives) in runs().enumerate() {
+            if run == failing {
+                gpu.destroy();
+            }
+            let ran = simulator.run(&drives);
+            reports.extend(
+                ran.or_else(|failure| {
+                    assert!(run >= failing && failure.gpu().is_some(), "{failure}");
+                    simulator.fall_back();
+                    simulator.run(&drives)
+                })
+                .unwrap(),
+            );
+        }
+        reports.extend(simulator.reports().unwrap());
+        assert_eq!(reports.len(), STEPS, "after run {failing}");
+        let state = simulator.state().unwrap();
+        assert_eq!(state.time, expected[STEPS].time);
+        if checkpoint_every == 120 {
+            assert_eq!(state.positions, expected[STEPS].positions, "all is made again");
+        }
+    }
+}
+
+#[test]
+fn a_state_of_the_last_runs_is_seen_again_when_the_device_fails() {
+    let head = &heads()[0];
+    let expected = on_cpu(head);
+    for step in [3, 6, 10] {
+        let Some(gpu) = own_gpu() else { return };
+        let mut simulator = simulator(head, &gpu, 120);
+        runs().for_each(|drives| drop(simulator.run(&drives).unwrap()));
+        gpu.destroy();
+        let mut seen = None;
+        assert!(simulator.fall_back_seeing(step, |state| seen = Some(state.positions.clone())));
+        assert_eq!(seen.unwrap(), expected[step as usize].positions);
+        assert!(!simulator.fall_back_seeing(step, |_| panic!("it is on the CPU")));
+        assert_eq!(simulator.state().unwrap().positions, expected[STEPS].positions);
+    }
+    // A state that was read meanwhile does not hide those of the run before.
+    let Some(gpu) = own_gpu() else { return };
+    let mut simulator = simulator(head, &gpu, 120);
+    for drives in runs() {
+        simulator.run(&drives).unwrap();
+        simulator.state().unwrap();
+    }
+    gpu.destroy();
+    let mut seen = None;
+    assert!(simulator.fall_back_seeing(STEPS as u64 - 1, |state| seen = Some(state.time)));
+    assert_eq!(seen, Some(expected[STEPS - 1].time));
+}

@@ -1,0 +1,163 @@
+//! Copies from the device on their way to the host, which nobody has to wait for.
+
+use std::future::Future;
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll, Waker};
+
+use crate::{Copied, Gpu, GpuError};
+
+/// A copy on its way from the device: looked for now and then, waited for, or awaited.
+#[derive(Debug)]
+pub struct Transfer {
+    held: Held,
+    /// Where it arrives; none where nothing is copied.
+    staging: Option<(wgpu::Buffer, Mapping)>,
+}
+
+impl Transfer {
+    /// The copy that a submission makes into a staging buffer; none copies nothing.
+    pub(super) fn new(held: Held, staging: Option<(wgpu::Buffer, wgpu::SubmissionIndex)>) -> Self {
+        let staging = staging.map(|(staging, submission)| {
+            let mapping = Mapping::new(&staging, Some(submission));
+            (staging, mapping)
+        });
+        Self { held, staging }
+    }
+
+    /// Whether it has arrived; never waits.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn has_arrived(&self) -> Result<bool, GpuError> {
+        self.staging.as_ref().map_or(Ok(true), |(_, mapping)| mapping.is_there(&self.held.gpu))
+    }
+
+    /// What was copied, if it has arrived; never waits.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn try_take(&self) -> Result<Option<Copied>, GpuError> {
+        if !self.has_arrived()? {
+            return Ok(None);
+        }
+        let Some((staging, _)) = &self.staging else { return Ok(Some(Copied { bytes: Vec::new() })) };
+        let view = mapped(&self.held.gpu, staging)?;
+        Ok(Some(Copied { bytes: view.to_vec() }))
+    }
+
+    /// Waits until it arrives, and for nothing that was submitted later.
+    ///
+    /// # Errors
+    /// The device was lost or does not answer.
+    pub fn wait(mut self) -> Result<Copied, GpuError> {
+        if let Some((_, mapping)) = &mut self.staging {
+            mapping.wait(&self.held.gpu)?;
+        }
+        let copied = self.try_take()?;
+        copied.ok_or_else(|| refused(&self.held.gpu, "it did not arrive"))
+    }
+}
+
+impl Future for Transfer {
+    type Output = Result<Copied, GpuError>;
+
+    /// Is woken when the copy arrives: in a page by the browser, in a native program by whoever polls the device.
+    fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
+        if let Some((_, mapping)) = &self.staging {
+            lock(&mapping.arrival).waker = Some(context.waker().clone());
+        }
+        match self.try_take() {
+            Ok(None) => Poll::Pending,
+            Ok(Some(copied)) => Poll::Ready(Ok(copied)),
+            Err(error) => Poll::Ready(Err(error)),
+        }
+    }
+}
+
+/// Memory that a copy takes, given back with this.
+#[derive(Debug)]
+pub(super) struct Held {
+    pub gpu: Gpu,
+    bytes: u64,
+}
+
+impl Held {
+    /// Takes so much.
+    pub fn new(gpu: &Gpu, bytes: u64) -> Result<Self, GpuError> {
+        gpu.take_memory("the copy back", bytes)?;
+        Ok(Self { gpu: gpu.clone(), bytes })
+    }
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.gpu.give_memory_back(self.bytes);
+    }
+}
+
+/// A buffer that becomes readable when a submission is done.
+#[derive(Debug)]
+pub(super) struct Mapping {
+    /// None is everything that was submitted.
+    submission: Option<wgpu::SubmissionIndex>,
+    arrival: Arc<Mutex<Arrival>>,
+}
+
+#[derive(Debug, Default)]
+struct Arrival {
+    mapped: Option<Result<(), String>>,
+    waker: Option<Waker>,
+}
+
+impl Mapping {
+    pub fn new(staging: &wgpu::Buffer, submission: Option<wgpu::SubmissionIndex>) -> Self {
+        let arrival: Arc<Mutex<Arrival>> = Arc::default();
+        let arrived = Arc::clone(&arrival);
+        staging.slice(..).map_async(wgpu::MapMode::Read, move |mapped| {
+            let mut arrival = lock(&arrived);
+            arrival.mapped = Some(mapped.map_err(|error| error.to_string()));
+            arrival.waker.take().into_iter().for_each(Waker::wake);
+        });
+        Self { submission, arrival }
+    }
+
+    /// Whether it is readable by now.
+    pub fn is_there(&self, gpu: &Gpu) -> Result<bool, GpuError> {
+        if lock(&self.arrival).mapped.is_none() {
+            gpu.poll()?;
+        }
+        match &lock(&self.arrival).mapped {
+            None => Ok(false),
+            Some(Ok(())) => Ok(true),
+            Some(Err(message)) => Err(refused(gpu, message)),
+        }
+    }
+
+    /// Waits until it is.
+    pub fn wait(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
+        if self.is_there(gpu)? {
+            return Ok(());
+        }
+        gpu.wait_for(self.submission.take())?;
+        if self.is_there(gpu)? { Ok(()) } else { Err(refused(gpu, "it did not arrive")) }
+    }
+}
+
+/// What lies in a mapped buffer.
+pub(super) fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<wgpu::BufferView, GpuError> {
+    let view = staging.slice(..).get_mapped_range().map_err(|error| refused(gpu, &error.to_string()))?;
+    gpu.count_from_device(view.len());
+    Ok(view)
+}
+
+fn refused(gpu: &Gpu, message: &str) -> GpuError {
+    if let Err(lost) = gpu.check() {
+        return lost;
+    }
+    GpuError::Refused { adapter: gpu.name(), what: "reading back".to_owned(), message: message.to_owned() }
+}
+
+fn lock(arrival: &Mutex<Arrival>) -> MutexGuard<'_, Arrival> {
+    arrival.lock().unwrap_or_else(PoisonError::into_inner)
+}
