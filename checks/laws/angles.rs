@@ -4,7 +4,8 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 use strandline_checks::{On, Rig, law};
-use strandline_sim::{Angles, Drive, Settings};
+use strandline_sim::constrain::Angles;
+use strandline_sim::{Drive, Settings};
 
 use crate::strands::{bare, chain, first, line};
 
@@ -16,12 +17,8 @@ fn hanging(on: &On, settings: &Settings) -> Rig {
 
 /// The bend \[rad\] of one free segment after 3 s in a strong pull to the side.
 fn pulled_aside(on: &On, limit: f32) -> f32 {
-    let settings = Settings {
-        gravity: Vec3::X * 9.81,
-        damping: 5.0,
-        angles: Angles { limit, stiffness: 0.0 },
-        ..bare(1.0 / 60.0, 20)
-    };
+    let settings = Settings { gravity: Vec3::X * 9.81, damping: 5.0, ..bare(1.0 / 60.0, 20) }
+        .with_constrain(|constrain| constrain.angles = Angles { limit, stiffness: 0.0 });
     let mut rig = hanging(on, &settings);
     rig.steps(&[Drive::default(); 180]);
     let points = first(rig.state());
@@ -43,8 +40,8 @@ law! {
 
 /// Angular frequency \[1/s\] at which one free segment swings, by two passages through rest.
 fn swing(on: &On, stiffness: f32, time_step: f32) -> f32 {
-    let settings =
-        Settings { gravity: Vec3::ZERO, angles: Angles { limit: PI, stiffness }, ..bare(time_step, 20) };
+    let settings = Settings { gravity: Vec3::ZERO, ..bare(time_step, 20) }
+        .with_constrain(|constrain| constrain.angles = Angles { limit: PI, stiffness });
     let mut rig = hanging(on, &settings);
     rig.change(|state| {
         let joint = state.positions[2].get(0);

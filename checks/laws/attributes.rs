@@ -4,7 +4,8 @@ use glam::{Quat, Vec3};
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides, RestShape, Vec3Lanes};
-use strandline_sim::{Angles, Drive, Model, Settings, Springs};
+use strandline_sim::constrain::{Angles, Springs};
+use strandline_sim::{Drive, Model, Settings};
 
 use crate::strands::{bare, first};
 
@@ -41,11 +42,14 @@ fn mean_velocity(rig: &mut Rig, mass: fn(usize) -> f32) -> Vec3 {
 /// How much a loose strand's mean velocity changes, with its own masses and with even ones.
 fn drift(on: &On) -> [f32; 2] {
     let guides = guides();
-    let settings = Settings { springs: Springs::default(), angles: Angles::default(), ..settings() };
-    let rest = RestShape::new(&guides, settings.mass_per_length);
+    let settings = settings().with_constrain(|constrain| {
+        constrain.springs = Springs::default();
+        constrain.angles = Angles::default();
+    });
+    let rest = RestShape::new(&guides, settings.strands.constrain.mass_per_length);
     let mut model = Model::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
     // A mass per length is for hair that has no masses.
-    model.set_settings(&Settings { mass_per_length: 1e-3, ..settings }).unwrap();
+    model.set_settings(&settings.with_constrain(|constrain| constrain.mass_per_length = 1e-3)).unwrap();
     assert!((model.rest().mass[4].0[0] / mass(4) - 1.0).abs() < 1e-5);
     let mut rig = Rig::new(on, model);
     let kinds: [fn(usize) -> f32; 2] = [mass, |_| 1.0];
@@ -66,7 +70,7 @@ law! {
 
 law! {
     fn hair_begins_with_the_velocities_that_it_has(on) {
-        let settings = Settings { iterations: 1, ..settings() };
+        let settings = settings().with_constrain(|constrain| constrain.iterations = 1);
         let model = Model::new(&guides(), &settings, Vec::new()).unwrap();
         let mut rig = Rig::new(on, model.clone());
         let turned = Pose { rotation: Quat::from_rotation_y(1.0), ..Pose::IDENTITY };

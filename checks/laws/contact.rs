@@ -43,7 +43,7 @@ law! {
 /// Strands by how they are solved, none with a volume: as rods, of constraints with exact lengths, and without.
 fn ways() -> [Settings; 3] {
     let mut loose = Settings::constrained();
-    loose.length_pass.enabled = false;
+    loose.strands.constrain.length_pass.enabled = false;
     [Settings::default(), Settings::constrained(), loose].map(|settings| Settings {
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
         ..settings

@@ -4,7 +4,8 @@ use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::RestShape;
-use strandline_sim::{Angles, Drag, Drive, LengthPass, Model, Settings, Spring, Springs, State};
+use strandline_sim::constrain::{Angles, LengthPass, Spring, Springs};
+use strandline_sim::{Drag, Drive, Model, Settings, State};
 
 use crate::strands::{bare, first, line, one_strand};
 
@@ -78,12 +79,18 @@ fn drift(on: &On, settings: &Settings) -> f32 {
 
 law! {
     fn what_acts_within_a_strand_keeps_its_momentum(on) {
-        let all = Settings { springs: Springs::default(), angles: Angles::default(), ..bare(1.0 / 60.0, 20) };
+        let all = bare(1.0 / 60.0, 20).with_constrain(|constrain| {
+constrain.springs = Springs::default();
+constrain.angles = Angles::default();
+});
         // Velocities are differences of rounded positions: 2e-8 m * 60 / 0.3 m/s, summed over 30 steps.
         let drifted = drift(on, &all);
         assert!(drifted < 2e-4, "{drifted}");
         let pass = LengthPass { enabled: true, correction: 0.0 };
-        let one_sided = Settings { length_pass: pass, iterations: 1, ..all };
+        let one_sided = all.with_constrain(|constrain| {
+constrain.length_pass = pass;
+constrain.iterations = 1;
+});
         assert!(drift(on, &one_sided) > 1e-2, "a pass that pushes one end only is not noticed");
     }
 }
@@ -91,12 +98,10 @@ law! {
 law! {
     fn springs_and_bends_at_rest_stay_at_rest(on) {
         let stiff = Spring { enabled: true, stiffness: 1e3, damping: 0.0 };
-        let settings = Settings {
-            gravity: Vec3::ZERO,
-            springs: Springs { stretch: stiff, bend: stiff, torsion: stiff },
-            angles: Angles { limit: 0.1, stiffness: 100.0 },
-            ..bare(1.0 / 60.0, 20)
-        };
+        let settings = Settings { gravity: Vec3::ZERO, ..bare(1.0 / 60.0, 20) }.with_constrain(|constrain| {
+constrain.springs = Springs { stretch: stiff, bend: stiff, torsion: stiff };
+constrain.angles = Angles { limit: 0.1, stiffness: 100.0 };
+});
         let model = Model::new(&one_strand(&helix(12)), &settings, Vec::new()).unwrap();
         let mut rig = Rig::new(on, model);
         let before = first(rig.state());
@@ -119,7 +124,7 @@ law! {
     fn springs_of_any_stiffness_stay_stable(on) {
         let stiff = Spring { enabled: true, stiffness: 1e30, damping: 1e30 };
         let settings =
-            Settings { springs: Springs { stretch: stiff, bend: stiff, torsion: stiff }, ..bare(1.0 / 60.0, 20) };
+            bare(1.0 / 60.0, 20).with_constrain(|constrain| constrain.springs = Springs { stretch: stiff, bend: stiff, torsion: stiff });
         let guides = one_strand(&helix(16));
         let model = Model::new(&guides, &settings, Vec::new()).unwrap();
         let mut rig = Rig::new(on, model);

@@ -44,7 +44,7 @@ law! {
 
 law! {
     fn a_hand_out_of_reach_pulls_straight_and_stretches_nothing(on) {
-        let settings = Settings { length_pass: Default::default(), ..bare(1.0 / 60.0, 20) };
+        let settings = bare(1.0 / 60.0, 20).with_constrain(|constrain| constrain.length_pass = Default::default());
         let mut rig = rope(on, &settings);
         let place = Vec3::new(3.0, 0.0, 4.0);
         carry(&mut rig, place, 240);

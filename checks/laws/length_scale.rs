@@ -3,7 +3,8 @@
 use glam::{Vec3, vec3};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::RestShape;
-use strandline_sim::{Angles, Drive, Model, Settings, Springs, StrandMethod};
+use strandline_sim::constrain::{Angles, Springs};
+use strandline_sim::{Drive, Model, Settings, StrandMethod};
 
 use crate::strands::{bare, first, line, one_strand};
 
@@ -15,7 +16,10 @@ fn loose(on: &On, scale: f32) -> Rig {
         |index: usize| Vec3::new(0.01 * (index % 2) as f32, -0.02 * index as f32, 0.002 * index as f32);
     let guides = one_strand(&(0..POINTS).map(zigzag).collect::<Vec<_>>());
     let rest = RestShape::new(&guides, 6.5e-6);
-    let within = Settings { springs: Springs::default(), angles: Angles::default(), ..bare(1.0 / 60.0, 20) };
+    let within = bare(1.0 / 60.0, 20).with_constrain(|constrain| {
+        constrain.springs = Springs::default();
+        constrain.angles = Angles::default();
+    });
     let settings = Settings { gravity: Vec3::ZERO, ..within };
     let model = Model::with_rest(&guides, rest, |_, _| false, &settings, Vec::new()).unwrap();
     let mut rig = Rig::new(on, model.clone());

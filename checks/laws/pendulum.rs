@@ -4,7 +4,8 @@ use std::f32::consts::PI;
 
 use glam::Vec3;
 use strandline_checks::{On, Rig, law};
-use strandline_sim::{Drive, LengthPass, Settings};
+use strandline_sim::constrain::LengthPass;
+use strandline_sim::{Drive, Settings};
 
 use crate::strands::{bare, chain, first, line};
 
@@ -199,7 +200,7 @@ law! {
     fn the_length_pass_keeps_the_period_of_a_pendulum(on) {
         let length = 0.25;
         let small = 2.0 * PI * (length / GRAVITY).sqrt();
-        let exact = |settings: Settings| Settings { length_pass: LengthPass::default(), ..settings };
+        let exact = |settings: Settings| settings.with_constrain(|constrain| constrain.length_pass = LengthPass::default());
         let found = period(on, 0.1, length, small / 500.0, exact);
         assert!((found / small / 1.000_6 - 1.0).abs() < 0.01, "{}", found / small);
     }

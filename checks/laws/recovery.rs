@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 use strandline_checks::{On, Rig, law};
-use strandline_sim::{Drive, Model, Settings, Spring, Springs, VolumeSettings};
+use strandline_sim::constrain::{Spring, Springs};
+use strandline_sim::{Drive, Model, Settings, VolumeSettings};
 
 use crate::strands::{bare, chain, first, line, one_strand};
 
@@ -10,10 +11,12 @@ use crate::strands::{bare, chain, first, line, one_strand};
 fn strand(on: &On) -> Rig {
     let spring = Spring { enabled: true, ..Spring::default() };
     let settings = Settings {
-        springs: Springs { stretch: spring, bend: spring, torsion: spring },
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
         ..Settings::constrained()
-    };
+    }
+    .with_constrain(|constrain| {
+        constrain.springs = Springs { stretch: spring, bend: spring, torsion: spring }
+    });
     let guides = one_strand(&line(Vec3::ZERO, Vec3::X * 0.3, 11));
     Rig::new(on, Model::new(&guides, &settings, Vec::new()).unwrap())
 }
@@ -44,7 +47,7 @@ law! {
 
 law! {
     fn a_hand_at_a_joint_holds_like_any_other(on) {
-        let settings = Settings { length_pass: Default::default(), ..bare(1.0 / 60.0, 20) };
+        let settings = bare(1.0 / 60.0, 20).with_constrain(|constrain| constrain.length_pass = Default::default());
         let mut rig = Rig::new(on, chain(&line(Vec3::ZERO, Vec3::NEG_Y, 16), 1.0, |point| point == 0, &settings));
         assert_eq!(rig.grab(Vec3::NEG_Y, 0.01), 1);
         for step in 1..=120 {

@@ -6,7 +6,8 @@ use glam::Vec3;
 use strandline_body::{Carrier, Collider, Pose, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Lanes, RestShape};
-use strandline_sim::{Drive, LengthPass, Model, Settings};
+use strandline_sim::constrain::LengthPass;
+use strandline_sim::{Drive, Model, Settings};
 
 use crate::strands::{bare, chain, first, line, one_strand};
 
@@ -53,7 +54,8 @@ fn ropes_of_the_law_are_those_of_the_reference() {
 
 /// Damped, so that it hangs still soon; everything else as hair has it.
 fn settings() -> Settings {
-    Settings { damping: 4.0, length_pass: LengthPass::default(), ..bare(1.0 / 60.0, 20) }
+    Settings { damping: 4.0, ..bare(1.0 / 60.0, 20) }
+        .with_constrain(|constrain| constrain.length_pass = LengthPass::default())
 }
 
 /// A rope of a length between two places, bent down at its middle where it is longer than their distance.

@@ -6,9 +6,10 @@ use glam::{DVec3, Vec3, vec3};
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, Lanes, RestShape};
+use strandline_sim::constrain::{Spring, Springs};
 use strandline_sim::cpu::{Scratch, integrate::integrate};
 use strandline_sim::gpu::{GpuRunner, Probe};
-use strandline_sim::{Drive, Model, Settings, Spring, Springs, Stage};
+use strandline_sim::{Drive, Model, Settings, Stage};
 
 use crate::strands::{bare, chain, first, one_strand};
 
@@ -112,11 +113,7 @@ const DAMPED: Spring = Spring { enabled: true, stiffness: 0.0, damping: 0.004 };
 law! {
     fn every_spring_pulls_with_its_stiffness_and_damping(on) {
         for spring in [ELASTIC, DAMPED] {
-            let settings = |kind| Settings {
-                gravity: Vec3::ZERO,
-                springs: only(kind, spring),
-                ..bare(1.0 / 60.0, 1)
-            };
+            let settings = |kind| Settings { gravity: Vec3::ZERO, ..bare(1.0 / 60.0, 1) }.with_constrain(|constrain| constrain.springs = only(kind, spring));
             let mut all = vec![DVec3::ZERO; 8];
             for (kind, stride) in STRIDES.into_iter().enumerate() {
                 let expected = expected_kicks(stride, spring, 1.0 / 60.0);
@@ -134,13 +131,13 @@ law! {
 law! {
     fn a_spring_leaves_rooted_points_alone_and_pulls_their_partners(on) {
         let settings =
-            Settings { gravity: Vec3::ZERO, springs: only(Some(2), ELASTIC), ..bare(1.0 / 60.0, 1) };
+            Settings { gravity: Vec3::ZERO, ..bare(1.0 / 60.0, 1) }.with_constrain(|constrain| constrain.springs = only(Some(2), ELASTIC));
         let expected = expected_kicks(3, ELASTIC, 1.0 / 60.0);
         let found = kicks(on, &settings, 3);
         // Nothing is rooted away: points 3 to 5 are pulled by the three that the head carries.
         let off = off(&found[3..], &expected[3..]);
         assert!(off < 1e-3, "off by {off}");
-        let held = &kicks(on, &Settings { springs: Springs::OFF, ..settings }, 3)[3..];
+        let held = &kicks(on, &settings.with_constrain(|constrain| constrain.springs = Springs::OFF), 3)[3..];
         assert!(held.iter().all(|kick| kick.length() < 1e-5), "{held:?}");
     }
 }
@@ -153,7 +150,8 @@ const CORNER: [Vec3; 4] =
 
 /// Frequency \[Hz\] at which the fourth point swings after a push along `way`, by two passages through rest.
 fn frequency(on: &On, springs: Springs, way: Vec3, time_step: f32) -> f32 {
-    let settings = Settings { gravity: Vec3::ZERO, springs, ..bare(time_step, 4) };
+    let settings = Settings { gravity: Vec3::ZERO, ..bare(time_step, 4) }
+        .with_constrain(|constrain| constrain.springs = springs);
     let mut rig = Rig::new(on, chain(&CORNER, 1.0, |point| point < 3, &settings));
     let out = (Vec3::Z + 0.05 * way).normalize() * LENGTH;
     rig.change(|state| state.positions[3].set(0, CORNER[2] + out));

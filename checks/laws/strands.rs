@@ -5,20 +5,23 @@ use std::f32::consts::PI;
 use glam::Vec3;
 use strandline_body::{Carrier, Collider, Shape};
 use strandline_groom::{Groom, Guides, Lanes, RestShape};
-use strandline_sim::{Angles, Drag, LengthPass, Model, Settings, Springs, State, VolumeSettings};
+use strandline_sim::constrain::{Angles, LengthPass, Springs};
+use strandline_sim::{Drag, Model, Settings, State, VolumeSettings};
 
 /// Lengths only: no air, no springs, no shape, no pass and no volume.
 pub fn bare(time_step: f32, iterations: u32) -> Settings {
     Settings {
         time_step,
-        iterations,
         drag: Drag::OFF,
-        springs: Springs::OFF,
-        angles: Angles::OFF,
-        length_pass: LengthPass { enabled: false, ..LengthPass::default() },
         volume: VolumeSettings { enabled: false, ..VolumeSettings::default() },
         ..Settings::constrained()
     }
+    .with_constrain(|constrain| {
+        constrain.iterations = iterations;
+        constrain.springs = Springs::OFF;
+        constrain.angles = Angles::OFF;
+        constrain.length_pass = LengthPass { enabled: false, ..LengthPass::default() };
+    })
 }
 
 /// Guides along one polyline.

@@ -5,7 +5,8 @@ use std::f32::consts::PI;
 use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
-use strandline_sim::{Drive, LengthPass, Settings};
+use strandline_sim::constrain::LengthPass;
+use strandline_sim::{Drive, Settings};
 
 use crate::strands::{bare, chain, first, line};
 
@@ -74,7 +75,7 @@ law! {
 
 law! {
     fn the_length_pass_leaves_none(on) {
-        let exact = Settings { length_pass: LengthPass::default(), ..projection(20) };
+        let exact = projection(20).with_constrain(|constrain| constrain.length_pass = LengthPass::default());
         for (links, amplitude) in [(8, 0.0), (8, 0.2), (16, 0.2), (63, 0.2)] {
             let (segment, total) = stretch(on, links, amplitude, &exact);
             // Rounding of positions of 0.5 m over a segment of 5 mm: 6e-8 * 0.5 / 0.005.

@@ -178,7 +178,7 @@ pub fn heads() -> Vec<Head> {
             name: "the most points",
             guides: ball(33, 64),
             colliders: vec![skull(0.9)],
-            settings: with(|settings| settings.iterations = 7),
+            settings: with(|settings| settings.strands.constrain.iterations = 7),
         },
         Head {
             name: "the shortest step",

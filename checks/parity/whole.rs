@@ -130,7 +130,8 @@ fn more_points_than_a_row_of_workgroups_holds_all_move() {
     let guides = Guides::resample(&groom, 4).unwrap();
     drop(groom);
     let volume = VolumeSettings { enabled: false, ..VolumeSettings::default() };
-    let settings = Settings { volume, iterations: 2, ..Settings::constrained() };
+    let settings =
+        Settings { volume, ..Settings::constrained() }.with_constrain(|constrain| constrain.iterations = 2);
     let model = Model::new(&guides, &settings, Vec::new()).unwrap();
     let mut on_cpu = CpuRunner::from(model.clone());
     let mut expected = model.rest_state(Pose::IDENTITY);

@@ -3,7 +3,8 @@
 use strandline::Scene;
 use strandline_groom::Guides;
 use strandline_render::Light;
-use strandline_sim::{Angles, Settings};
+use strandline_sim::Settings;
+use strandline_sim::constrain::Angles;
 
 #[test]
 fn the_scene_has_as_many_points_segments_and_lights_as_printed() {
@@ -30,10 +31,16 @@ fn the_scene_has_as_many_points_segments_and_lights_as_printed() {
 fn the_simulation_is_the_one_printed() {
     let settings = Settings::thesis();
     assert_eq!(Scene::thesis().simulation, settings);
-    assert_eq!((settings.iterations, settings.volume.cells), (20, [32; 3]));
+    assert_eq!((settings.strands.constrain.iterations, settings.volume.cells), (20, [32; 3]));
     assert_eq!((settings.volume.enabled, settings.volume.tolerance), (true, 1e-5));
-    let springs = [settings.springs.stretch, settings.springs.bend, settings.springs.torsion];
+    let springs = [
+        settings.strands.constrain.springs.stretch,
+        settings.strands.constrain.springs.bend,
+        settings.strands.constrain.springs.torsion,
+    ];
     assert!(springs.iter().all(|spring| spring.enabled && spring.stiffness > 0.0));
     // What the thesis does not have.
-    assert!(settings.angles == Angles::OFF && !settings.length_pass.enabled);
+    assert!(
+        settings.strands.constrain.angles == Angles::OFF && !settings.strands.constrain.length_pass.enabled
+    );
 }

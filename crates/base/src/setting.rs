@@ -201,7 +201,7 @@ impl Table {
 /// What can be a setting: a number, a vector, a word, a section.
 pub trait Value: Sized {
     /// What a file gives of it: for a section only the settings that it names.
-    type Given: DeserializeOwned;
+    type Given: Clone + DeserializeOwned;
     /// What it may hold.
     const KIND: Kind;
 

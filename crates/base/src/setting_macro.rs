@@ -70,7 +70,7 @@ macro_rules! settings {
         const _: () = {
             /// What a file gives of the section.
             #[allow(missing_docs)]
-            #[derive(Default, ::serde::Deserialize)]
+            #[derive(Clone, Default, ::serde::Deserialize)]
             #[serde(deny_unknown_fields, default, expecting = "a section of settings")]
             pub struct Given {
                 $(pub $field: Option<<$Type as $crate::Value>::Given>,)*

@@ -111,7 +111,7 @@ free! {
     String: Kind::Text("a name");
 }
 
-impl<T: Value<Given = T> + DeserializeOwned> Value for Option<T> {
+impl<T: Value<Given = T> + Clone + DeserializeOwned> Value for Option<T> {
     type Given = T;
     const KIND: Kind = T::KIND;
 
@@ -128,7 +128,7 @@ impl<T: Value<Given = T> + DeserializeOwned> Value for Option<T> {
     }
 }
 
-impl<T: Group + DeserializeOwned> Value for Vec<T> {
+impl<T: Group + Clone + DeserializeOwned> Value for Vec<T> {
     type Given = Self;
     const KIND: Kind = Kind::List(&T::TABLE);
 

@@ -40,14 +40,16 @@ pub use cpu::CpuRunner;
 pub use error::SimError;
 pub use model::Model;
 pub use report::{Drift, PressureReport, RodReport, StepReport};
-pub use settings::{
-    Angles, Drag, LengthPass, Preconditioner, Settings, Spring, Springs, StrandMethod, StrandSettings,
-    VolumeSettings,
-};
+pub use settings::{Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeSettings};
 pub use simulator::Simulator;
 pub use state::{Drive, State};
 pub use step::Stage;
 pub use strandline_gpu::Backend;
+
+/// Settings of strands of springs and constraints.
+pub mod constrain {
+    pub use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass, Spring, Springs};
+}
 
 /// Settings of rods.
 pub mod rods {

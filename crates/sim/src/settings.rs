@@ -1,8 +1,9 @@
 use glam::Vec3;
-use strandline_base::{Group, SettingError, choices, gone, settings};
+use strandline_base::{Group, SettingError, Value, choices, settings};
 use strandline_gpu::Backend;
 
 use crate::SimError;
+use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass, Springs};
 use crate::strands::rods::settings::{GroupSettings, RodSettings};
 
 settings! {
@@ -11,15 +12,8 @@ settings! {
         /// Length of a step.
         time_step: f32 = 1.0 / 60.0, in [1e-5, 0.1] "s", slider [0.002, 0.05],
             more "faster, softer and less exact";
-        /// Rounds of the constraints in a step, where strands are no rods [Chen2011 §6].
-        iterations: u32 = 20, in [1, 10_000], slider [1, 100],
-            more "stiffer bends and firmer contacts, at a higher cost";
         /// Gravity, world space.
         gravity: Vec3 = Vec3::new(0.0, -9.81, 0.0), in [-1000.0, 1000.0] "m/s^2", slider [-20.0, 5.0];
-        /// Mass of hair per length where strands are no rods, whose mass is that of their material; the default is
-        /// that of a hair 80 um thick. Points with masses of their own keep them.
-        mass_per_length: f32 = 6.5e-6, in [1e-9, 1.0] "kg/m", slider [1e-6, 5e-5],
-            more "springs that move hair less";
         /// Steps after which a GPU's state is read, from which the CPU goes on where the GPU fails: so many it makes
         /// again.
         checkpoint_every: u32 = 120, in [1.0, 10_000.0] "steps",
@@ -32,27 +26,29 @@ settings! {
             more "less skin that shows through, hair that floats over it";
         /// Drag of the air.
         drag: Drag = Drag::default();
-        /// Elastic springs of strands that are no rods, each can be off.
-        springs: Springs = Springs::default();
-        /// Bends at the points of strands that are no rods.
-        angles: Angles = Angles::default();
-        /// The pass that makes lengths of strands exact that are no rods; those of rods always are.
-        length_pass: LengthPass = LengthPass::default();
         /// What moves a strand within a step.
         strands: StrandSettings = StrandSettings::default();
         /// Groups of the groom whose hair, as rods, is made of something else, at most 1,024.
         groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0];
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
-        moved { backend: Backend => "devices.simulation" }
+        moved {
+            backend: Backend => "devices.simulation",
+            iterations: u32 => "simulation.strands.constrain.iterations",
+            mass_per_length: f32 => "simulation.strands.constrain.mass_per_length",
+            springs: <Springs as Value>::Given => "simulation.strands.constrain.springs",
+            angles: <Angles as Value>::Given => "simulation.strands.constrain.angles",
+            length_pass: <LengthPass as Value>::Given => "simulation.strands.constrain.length_pass",
+        }
     }
+    prepare Settings::take_moved;
 }
 
 impl Settings {
     /// Mass of hair per length \[kg/m\]: that of the material of rods, or `mass_per_length`.
     pub fn line_density(&self) -> f32 {
         match self.strands.method {
-            StrandMethod::Constrain => self.mass_per_length,
+            StrandMethod::Constrain => self.strands.constrain.mass_per_length,
             StrandMethod::Rods => self.strands.rods.mass_per_length(),
         }
     }
@@ -70,14 +66,28 @@ impl Settings {
         settings
     }
 
+    /// The same with a change of springs and constraints.
+    pub fn with_constrain(mut self, change: impl FnOnce(&mut ConstrainSettings)) -> Self {
+        change(&mut self.strands.constrain);
+        self
+    }
+
     /// The thesis as printed: 20 rounds of distance constraints, springs, no shape and no length
     /// pass [Chen2011 §4, §6].
     pub fn thesis() -> Self {
-        Self {
-            angles: Angles::OFF,
-            length_pass: LengthPass { enabled: false, ..LengthPass::default() },
-            ..Self::constrained()
-        }
+        let mut settings = Self::constrained();
+        settings.strands.constrain = ConstrainSettings::thesis();
+        settings
+    }
+
+    /// Files of before had the settings of constrained strands beside those of all.
+    fn take_moved(&mut self, given: &<Self as Value>::Given) {
+        let constrain = &mut self.strands.constrain;
+        constrain.iterations = given.iterations.unwrap_or(constrain.iterations);
+        constrain.mass_per_length = given.mass_per_length.unwrap_or(constrain.mass_per_length);
+        given.springs.clone().into_iter().for_each(|springs| constrain.springs.take(springs));
+        given.angles.clone().into_iter().for_each(|angles| constrain.angles.take(angles));
+        given.length_pass.clone().into_iter().for_each(|pass| constrain.length_pass.take(pass));
     }
 
     /// Checks that every setting lies in its range.
@@ -96,6 +106,8 @@ settings! {
         method: StrandMethod = StrandMethod::default();
         /// Material and solve of rods.
         rods: RodSettings = RodSettings::default();
+        /// Springs and constraints of strands that are no rods.
+        constrain: ConstrainSettings = ConstrainSettings::default();
     }
 }
 
@@ -127,90 +139,6 @@ settings! {
 impl Drag {
     /// No air.
     pub const OFF: Self = Self { across: 0.0, along: 0.0 };
-}
-
-settings! {
-    /// Elastic springs along a strand [Chen2011 §4].
-    ///
-    /// They are integrated explicitly, so a step cannot carry more stiffness than `m / (12 dt^2)` nor
-    /// more damping than `m / (12 dt)`, where m is the smaller mass of the two ends; what is above is
-    /// cut off there.
-    pub struct Springs: Copy {
-        /// From point i to i + 1.
-        stretch: Spring = Spring { stiffness: 2e-5, ..Spring::default() };
-        /// From point i to i + 2.
-        bend: Spring = Spring { stiffness: 1e-5, ..Spring::default() };
-        /// From point i to i + 3.
-        torsion: Spring = Spring { stiffness: 5e-6, ..Spring::default() };
-    }
-}
-
-impl Springs {
-    /// No springs.
-    pub const OFF: Self = Self { stretch: Spring::OFF, bend: Spring::OFF, torsion: Spring::OFF };
-}
-
-settings! {
-    /// A damped elastic spring.
-    pub struct Spring: Copy {
-        /// Whether the spring pulls; false leaves it out.
-        enabled: bool = true;
-        /// Force over extension.
-        stiffness: f32 = 1e-5, in [0.0, 1e30] "N/m", slider [0.0, 2e-4],
-            more "a strand that springs back faster, up to what a step can carry";
-        /// Force over speed of extension.
-        damping: f32 = 2e-7, in [0.0, 1e30] "N s/m", slider [0.0, 2e-6],
-            more "springs that swing less, up to what a step can carry";
-    }
-}
-
-impl Spring {
-    /// No spring.
-    pub const OFF: Self = Self { enabled: false, stiffness: 0.0, damping: 0.0 };
-}
-
-settings! {
-    /// Bends at the points of a strand, measured from the rest direction that frames carry from the
-    /// head along the strand.
-    pub struct Angles: Copy {
-        /// Largest bend away from rest at a point; pi is no limit.
-        limit: f32 = 0.6, in [0.0, std::f32::consts::PI] "rad", slider [0.05, std::f32::consts::PI],
-            more "strands that may fold more sharply";
-        /// Angular frequency at which a lone bent segment would swing back to rest; 0 is off.
-        stiffness: f32 = 25.0, in [0.0, 10_000.0] "1/s", slider [0.0, 100.0],
-            more "hair that keeps its shape against gravity";
-        moved { hold: NoHold => "simulation.strands.rods" }
-    }
-}
-
-gone! {
-    /// The rate at which segments once turned back to their style.
-    NoHold, "`simulation.angles.hold` is gone: rods keep a style by the stiffness of hair. Leave it out, and set \
-             `simulation.strands.rods.youngs_modulus` or `radius` if hair is to be stiffer or softer; or take the \
-             strands without it, `simulation.strands.method = \"constrain\"`"
-}
-
-impl Angles {
-    /// Bends are free.
-    pub const OFF: Self = Self { limit: std::f32::consts::PI, stiffness: 0.0 };
-
-    /// Whether bends are free.
-    pub fn is_off(&self) -> bool {
-        self.limit >= std::f32::consts::PI && self.stiffness == 0.0
-    }
-}
-
-settings! {
-    /// The pass from root to tip that makes lengths exact \[Mueller2012\].
-    pub struct LengthPass: Copy {
-        /// Whether lengths are made exact; false lets strands stretch as in the thesis.
-        enabled: bool = true;
-        /// Share of the correction of a point that the next prediction of the point before it gives back
-        /// [Mueller2012 eq. 9]. It is the same share in a step of any length: what the pass corrects is an
-        /// acceleration times the square of the step, so that what it keeps back adds up to as much
-        /// velocity in a second.
-        correction: f32 = 0.9, in [0.0, 1.0], more "hair that swings on longer, 1 without loss";
-    }
 }
 
 settings! {
@@ -305,11 +233,14 @@ mod tests {
         let short = "simulation.time_step is 0, expected 1e-5 to 0.1 s";
         assert_eq!(name(|settings| settings.time_step = 0.0), short);
         assert!(name(|settings| settings.time_step = f32::NAN).contains("NaN"));
-        assert!(name(|settings| settings.iterations = 0).contains("iterations"));
+        assert!(name(|settings| settings.strands.constrain.iterations = 0).contains("iterations"));
         assert!(name(|settings| settings.gravity.y = f32::INFINITY).contains("gravity"));
         assert!(name(|settings| settings.gravity.z = 1e30).contains("gravity"));
-        assert!(name(|settings| settings.springs.bend.stiffness = -1.0).contains("springs.bend"));
-        assert!(name(|settings| settings.angles.limit = 4.0).contains("angles.limit"));
+        assert!(
+            name(|settings| settings.strands.constrain.springs.bend.stiffness = -1.0)
+                .contains("springs.bend")
+        );
+        assert!(name(|settings| settings.strands.constrain.angles.limit = 4.0).contains("angles.limit"));
         assert!(name(|settings| settings.volume.cells[1] = 3).contains("volume.cells"));
     }
 }

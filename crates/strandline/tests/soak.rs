@@ -22,7 +22,7 @@ fn scene() -> Scene {
     scene.body.model = Model::None;
     scene.groom.points_per_strand = 6;
     scene.simulation.volume.cells = [8; 3];
-    scene.simulation.iterations = 8;
+    scene.simulation.strands.constrain.iterations = 8;
     (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 60.0);
     scene.look.shadow.map_size = 32;
@@ -167,7 +167,8 @@ impl Person {
         let command = match self.below(6) {
             0 => {
                 // Now and then the side that simulates is the slow one.
-                settings.iterations = if share < 0.2 { 2000 } else { 1 + (20.0 * share) as u32 };
+                settings.strands.constrain.iterations =
+                    if share < 0.2 { 2000 } else { 1 + (20.0 * share) as u32 };
                 settings.volume.enabled = other < 0.5;
                 Change::Settings(Box::new(settings))
             }
@@ -238,7 +239,7 @@ impl Person {
     fn err(&mut self) {
         let (base, share) = (scene(), self.share());
         let mut settings = base.simulation.clone();
-        settings.iterations = 0;
+        settings.strands.constrain.iterations = 0;
         self.refuse(match (5.0 * share) as u32 {
             0 => Change::Length(2.5),
             1 => Change::Camera(Camera { field_of_view: f32::NAN, ..Camera::front() }),

@@ -17,6 +17,8 @@ use crate::output::print_line;
 use crate::progress::Progress;
 use crate::statistics::median;
 
+/// Bytes of the times of a picture: two marks of 8 bytes for each of 32 stages.
+const MARKS: u64 = 512;
 /// Frames of a run; on a software adapter; in a short run.
 const FRAMES: [u32; 3] = [60, 8, 3];
 
@@ -39,9 +41,14 @@ struct Pair {
     /// What crosses from the host to the GPUs in a frame, counted \[byte\]: points where only pictures are
     /// drawn there.
     bytes_to_gpus: u64,
-    /// And back: the picture, and where it is simulated there a copy of the state, from which it goes on
-    /// when the GPU fails.
+    /// And back: the picture; where it is simulated there reports, and every `simulation.checkpoint_every` steps the
+    /// state.
     bytes_from_gpus: u64,
+    /// Those without the picture.
+    bytes_home: u64,
+    /// Times in a frame that the host waits for a GPU, and those without the one for the picture.
+    waits: f64,
+    waits_beside_pictures: f64,
 }
 
 pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
@@ -62,7 +69,7 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let frames = if quick { FRAMES[2] } else { frames };
     print_line!("\nTwo workers: the thesis's scene, medians of {frames} frames [ms]");
     print_line!(
-        "{:<12}{:<12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>14}{:>14}",
+        "{:<12}{:<12}{:>10}{:>10}{:>10}{:>10}{:>12}{:>14}{:>14}{:>12}{:>8}",
         "simulated",
         "drawn",
         "simulate",
@@ -71,13 +78,15 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
         "of sum",
         "of greater",
         "bytes to GPU",
-        "from GPU"
+        "from GPU",
+        "but picture",
+        "waits"
     );
     let mut pairs = Vec::new();
     for (simulation, pictures) in chosen {
         let pair = measure(Devices { simulation, pictures }, frames)?;
         print_line!(
-            "{:<12}{:<12}{:>10.2}{:>10.2}{:>10.2}{:>10.2}{:>12.2}{:>14}{:>14}",
+            "{:<12}{:<12}{:>10.2}{:>10.2}{:>10.2}{:>10.2}{:>12.2}{:>14}{:>14}{:>12}{:>8.1}",
             simulation.to_string(),
             pictures.to_string(),
             pair.ms_to_simulate,
@@ -86,7 +95,9 @@ pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
             pair.of_sum,
             pair.of_greater,
             pair.bytes_to_gpus,
-            pair.bytes_from_gpus
+            pair.bytes_from_gpus,
+            pair.bytes_home,
+            pair.waits_beside_pictures
         );
         pairs.push(pair);
     }
@@ -116,6 +127,9 @@ fn measure(devices: Devices, frames: u32) -> anyhow::Result<Pair> {
         of_greater: ms_a_frame / ms_to_simulate.max(ms_to_draw),
         bytes_to_gpus: alone.crossed.to_device,
         bytes_from_gpus: alone.crossed.from_device,
+        bytes_home: alone.crossed.from_device.saturating_sub(alone.picture_bytes),
+        waits: alone.waits,
+        waits_beside_pictures: (alone.waits - f64::from(u8::from(alone.picture_bytes > 0))).max(0.0),
     })
 }
 
@@ -127,8 +141,10 @@ pub struct Run {
     pub frame: Vec<f64>,
     pub simulated_on: String,
     pub drawn_on: String,
-    /// Bytes of a frame.
+    /// Bytes of a frame, those of its picture where a GPU draws it, and waits for GPUs.
     crossed: Crossed,
+    picture_bytes: u64,
+    waits: f64,
 }
 
 /// Bytes that crossed to and from all devices so far.
@@ -154,7 +170,11 @@ pub fn play(scene: &Scene, devices: Devices, frames: u32, overlap: bool) -> anyh
     let mut progress = Progress::new(u64::from(frames) + 1, what, false);
     let mut gpus: Vec<Gpu> = player.gpu().into_iter().chain(player.picture_gpu()).collect();
     gpus.dedup_by(|one, other| one.is_same(other));
-    let mut before = Crossed::default();
+    let waits = |gpus: &[Gpu]| gpus.iter().map(Gpu::waits).sum::<u64>();
+    let (mut before, mut waits_before) = (Crossed::default(), 0);
+    // Rows of a picture begin at whole 256 bytes; the times of its stages come with it.
+    let row = (4 * u64::from(scene.picture.width)).next_multiple_of(256);
+    run.picture_bytes = player.picture_gpu().map_or(0, |_| row * u64::from(scene.picture.height) + MARKS);
     let (mut last, mut simulated) = (Instant::now(), None);
     for event in player {
         match event? {
@@ -163,7 +183,7 @@ pub fn play(scene: &Scene, devices: Devices, frames: u32, overlap: bool) -> anyh
             Event::Drawn { frame, .. } => {
                 let (now, between) = (Instant::now(), simulated.take().unwrap_or(last));
                 if frame == 0 {
-                    before = crossed(&gpus);
+                    (before, waits_before) = (crossed(&gpus), waits(&gpus));
                 } else {
                     let ms = |from: Instant, to: Instant| 1e3 * (to - from).as_secs_f64();
                     run.simulate.push(ms(last, between));
@@ -180,5 +200,6 @@ pub fn play(scene: &Scene, devices: Devices, frames: u32, overlap: bool) -> anyh
         to_device: (after.to_device - before.to_device) / frames,
         from_device: (after.from_device - before.from_device) / frames,
     };
+    run.waits = (waits(&gpus) - waits_before) as f64 / frames as f64;
     Ok(run)
 }

@@ -5,7 +5,8 @@ use strandline::low_level::{
     Change,
     base::Group,
     sim::{
-        Angles, Drag, LengthPass, Settings, Spring, Springs, StrandMethod, StrandSettings, VolumeSettings,
+        Drag, Settings, StrandMethod, StrandSettings, VolumeSettings,
+        constrain::{Angles, ConstrainSettings, LengthPass, Spring, Springs},
         rods::{HairKind, RodSettings},
     },
 };
@@ -22,8 +23,9 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     match settings.strands.method {
         StrandMethod::Rods => rods(&mut settings.strands.rods, &base.strands.rods, ui),
         StrandMethod::Constrain => {
-            bends(settings, base, ui);
-            springs(settings, base, ui);
+            let (constrain, base) = (&mut settings.strands.constrain, &base.strands.constrain);
+            bends(constrain, base, ui);
+            springs(&mut constrain.springs, &base.springs, ui);
         }
     }
     volume(settings, base, ui);
@@ -66,8 +68,8 @@ fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {
     slide(ui, (&mut rods.newton_steps, base.newton_steps), &rows.newton_steps, "Newton steps");
 }
 
-fn bends(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
-    let (rows, angles) = (&Settings::ROWS, &Angles::ROWS);
+fn bends(settings: &mut ConstrainSettings, base: &ConstrainSettings, ui: &mut Ui) {
+    let (rows, angles) = (&ConstrainSettings::ROWS, &Angles::ROWS);
     slide(ui, (&mut settings.iterations, base.iterations), &rows.iterations, "iterations");
     let (bends, base_bends) = (&mut settings.angles, &base.angles);
     slide(ui, (&mut bends.stiffness, base_bends.stiffness), &angles.stiffness, "bend stiffness");
@@ -76,12 +78,12 @@ fn bends(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
     tick(ui, enabled, &LengthPass::ROWS.enabled, "length pass");
 }
 
-fn springs(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
+fn springs(springs: &mut Springs, base: &Springs, ui: &mut Ui) {
     let rows = &Springs::ROWS;
     let springs = [
-        (&mut settings.springs.stretch, base.springs.stretch, "stretch springs", &rows.stretch),
-        (&mut settings.springs.bend, base.springs.bend, "bend springs", &rows.bend),
-        (&mut settings.springs.torsion, base.springs.torsion, "torsion springs", &rows.torsion),
+        (&mut springs.stretch, base.stretch, "stretch springs", &rows.stretch),
+        (&mut springs.bend, base.bend, "bend springs", &rows.bend),
+        (&mut springs.torsion, base.torsion, "torsion springs", &rows.torsion),
     ];
     for (spring, base, name, row) in springs {
         tick(ui, (&mut spring.enabled, base.enabled), row, name);

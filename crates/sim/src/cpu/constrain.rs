@@ -5,14 +5,14 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::advance::{Block, NonFinite, recover};
-use super::angles::{Bends, Joints, ROUNDS_PER_PASS};
 use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::length_pass::Follow;
-use super::lengths::Segments;
 use super::spans::Spans;
 use super::vec3x8::{Vec3x8, load, splat};
 use super::{Obstacles, Scratch};
 use crate::grab::Pinned;
+use crate::strands::constrain::angles::{Bends, Joints, ROUNDS_PER_PASS};
+use crate::strands::constrain::lengths::Segments;
 use crate::{Model, State};
 
 /// Projects the predicted positions onto the constraints and derives the velocities from them.
@@ -29,7 +29,12 @@ pub fn constrain(
     let points = model.points_per_strand;
     let settings = &model.settings;
     let solids = Solids::new(obstacles, points);
-    let bends = Bends::new(&settings.angles, settings.time_step, settings.iterations, obstacles.end.rotation);
+    let bends = Bends::new(
+        &settings.strands.constrain.angles,
+        settings.time_step,
+        settings.strands.constrain.iterations,
+        obstacles.end.rotation,
+    );
     let (lengths, masses, grab) = (&state.lengths.stretch, &scratch.masses, &state.grab);
     scratch
         .predicted
@@ -115,10 +120,10 @@ struct Strands<'a> {
 impl Strands<'_> {
     fn solve(&self, block: usize, hair: &mut Block, planes: &mut [Plane], work: &mut Workspace) {
         let Block { positions: predicted, previous: start, velocities, corrections } = hair;
-        let pass = &self.model.settings.length_pass;
+        let pass = &self.model.settings.strands.constrain.length_pass;
         work.spans.find(self.joints.inverse_mass, work.pinned.iter().map(|held| (held.lane, held.point)));
         let spanned = if pass.enabled { work.spans.held_behind } else { splat(0.0) };
-        for round in 0..self.model.settings.iterations {
+        for round in 0..self.model.settings.strands.constrain.iterations {
             if round % ROUNDS_PER_LOOK == 0 {
                 self.find_touches(block, round == 0, predicted, start, planes, work);
             }
@@ -131,7 +136,7 @@ impl Strands<'_> {
             }
             work.resolve_touches(predicted);
         }
-        if !self.model.settings.length_pass.enabled {
+        if !self.model.settings.strands.constrain.length_pass.enabled {
             // Nothing follows: what the rounds moved far has its last look here.
             self.find_touches(block, false, predicted, start, planes, work);
             work.resolve_touches(predicted);
@@ -177,7 +182,8 @@ impl Strands<'_> {
             return;
         }
         let settings = &self.model.settings;
-        let mut care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
+        let mut care =
+            if settings.strands.constrain.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
         if !is_first {
             // The planes that points have left are what this look is for, also those of where a solid
             // stopped them.

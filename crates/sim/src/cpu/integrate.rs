@@ -8,19 +8,15 @@ use wide::f32x8;
 
 use super::Scratch;
 use super::vec3x8::{Vec3x8, load, splat};
-use crate::{Model, Spring, State};
+use crate::strands::constrain::springs::{Elastic, Strand};
+use crate::{Model, State};
 
-/// Applies gravity, drag and springs to the velocities of free points and predicts their
-/// positions. `wind` is the velocity of the air \[m/s\], world space.
+/// Applies gravity, drag and the pull of springs to the velocities of free points and predicts their positions. `wind` is the velocity of the air \[m/s\], world space.
 pub fn integrate(model: &Model, state: &mut State, scratch: &mut Scratch, wind: Vec3) {
     let points = model.points_per_strand;
     let (lengths, masses) = (&state.lengths, &scratch.masses);
     let settings = &model.settings;
-    let springs = [
-        (1, settings.springs.stretch, &lengths.stretch),
-        (2, settings.springs.bend, &lengths.bend),
-        (3, settings.springs.torsion, &lengths.torsion),
-    ];
+    let springs = Elastic::new(&settings.strands.constrain.springs, lengths, settings.time_step);
     let fall = Fall::new(model, wind);
     scratch
         .predicted
@@ -35,52 +31,10 @@ pub fn integrate(model: &Model, state: &mut State, scratch: &mut Scratch, wind: 
                 let range = block * points..(block + 1) * points;
                 let inverse_mass = &masses.inverse_mass[range.clone()];
                 kicks.fill(Vec3x8::ZERO);
-                for (stride, spring, rest) in springs {
-                    if spring.enabled {
-                        let rest = &rest[range.clone()];
-                        let strand = Strand { positions, velocities, inverse_mass, rest };
-                        strand.pull(stride, &spring, settings.time_step, kicks);
-                    }
-                }
+                springs.pull(&Strand { positions, velocities, inverse_mass }, range, kicks);
                 fall.predict(positions, corrections, inverse_mass, kicks, velocities, predicted);
             },
         );
-}
-
-/// One block of strands as springs see it.
-struct Strand<'a> {
-    positions: &'a [Vec3Lanes],
-    velocities: &'a [Vec3Lanes],
-    inverse_mass: &'a [Lanes],
-    rest: &'a [Lanes],
-}
-
-impl Strand<'_> {
-    /// Adds what a kind of spring changes the velocities by \[m/s\] in a step.
-    ///
-    /// A point has at most six springs. With k <= m / (12 dt^2) and c <= m / (12 dt) for each, the
-    /// largest eigenvalues keep dt^2 w^2 <= 1 and c dt / m <= 2, inside the bound dt^2 w^2 + 2 c dt
-    /// / m < 4 of the semi-implicit Euler step.
-    fn pull(&self, stride: usize, spring: &Spring, time_step: f32, kicks: &mut [Vec3x8]) {
-        let stiffest = splat(1.0 / (12.0 * time_step * time_step));
-        let most_damped = splat(1.0 / (12.0 * time_step));
-        for lower in 0..self.positions.len() - stride {
-            let upper = lower + stride;
-            let (weight_lower, weight_upper) =
-                (load(&self.inverse_mass[lower]), load(&self.inverse_mass[upper]));
-            let lighter = splat(1.0) / weight_lower.fast_max(weight_upper).fast_max(splat(1e-30));
-            let stiffness = splat(spring.stiffness).fast_min(stiffest * lighter);
-            let damping = splat(spring.damping).fast_min(most_damped * lighter);
-            let across = Vec3x8::load(&self.positions[upper]) - Vec3x8::load(&self.positions[lower]);
-            let parting = Vec3x8::load(&self.velocities[upper]) - Vec3x8::load(&self.velocities[lower]);
-            let length = across.length();
-            let along = across * (splat(1.0) / length);
-            let force = stiffness * (length - load(&self.rest[lower])) + damping * parting.dot(along);
-            let impulse = along * (force * splat(time_step));
-            kicks[lower] += impulse * weight_lower;
-            kicks[upper] -= impulse * weight_upper;
-        }
-    }
 }
 
 /// What acts on every point alike.

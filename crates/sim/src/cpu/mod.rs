@@ -21,10 +21,8 @@ pub mod solve_rods;
 pub mod splat;
 pub mod volume;
 
-pub(crate) mod angles;
 pub(crate) mod contacts;
 pub(crate) mod length_pass;
-pub(crate) mod lengths;
 mod rod_pulls;
 pub(crate) mod spans;
 pub(crate) mod way;

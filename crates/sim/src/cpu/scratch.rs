@@ -128,7 +128,7 @@ mod tests {
             assert!((weight(&scratch) / whole - 0.5).abs() < 0.02, "{}", weight(&scratch) / whole);
             assert_eq!(scratch.nodes.is_some(), method == StrandMethod::Rods);
             let before = scratch.masses.clone();
-            settings.mass_per_length *= 2.0;
+            settings.strands.constrain.mass_per_length *= 2.0;
             settings.strands.rods.density *= 2.0;
             model.set_settings(&settings).unwrap();
             scratch.refresh(&model, &state);

@@ -4,10 +4,11 @@ use strandline_base::math;
 use strandline_body::Pose;
 use strandline_gpu::{Rigid, mirror};
 
-use crate::cpu::angles::bend_share;
+use crate::constrain::Spring;
 use crate::cpu::contacts::Care;
 use crate::grab::Grab;
-use crate::{Drive, Model, Preconditioner, Spring};
+use crate::strands::constrain::angles::bend_share;
+use crate::{Drive, Model, Preconditioner};
 
 mirror! {
     /// What rods take of a step. Mirrors `RodStep` in common.wesl.
@@ -119,7 +120,7 @@ impl Step {
             rotation: a.rotation * b.rotation,
             translation: a.point(b.translation),
         };
-        let care = if settings.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
+        let care = if settings.strands.constrain.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
         Self {
             world_from_head: Rigid::from(&end),
             head_from_world: Rigid::from(&end.inverse()),
@@ -130,20 +131,24 @@ impl Step {
             time_step: settings.time_step,
             wind: drive.wind.to_array(),
             margin: settings.collision_margin,
-            stretch_spring: spring(&settings.springs.stretch),
-            bend_spring: spring(&settings.springs.bend),
-            torsion_spring: spring(&settings.springs.torsion),
+            stretch_spring: spring(&settings.strands.constrain.springs.stretch),
+            bend_spring: spring(&settings.strands.constrain.springs.bend),
+            torsion_spring: spring(&settings.strands.constrain.springs.torsion),
             drag_across: taken(settings.drag.across),
             drag_along: taken(settings.drag.along),
             kept: 1.0 - taken(settings.damping),
             near: care.near,
-            cos_limit: math::cos(settings.angles.limit),
-            sin_limit: math::sin(settings.angles.limit),
-            bend_share: bend_share(&settings.angles, settings.time_step, settings.iterations),
-            bends: u32::from(!settings.angles.is_off()),
-            length_pass: u32::from(settings.length_pass.enabled),
-            correction: settings.length_pass.correction,
-            iterations: settings.iterations,
+            cos_limit: math::cos(settings.strands.constrain.angles.limit),
+            sin_limit: math::sin(settings.strands.constrain.angles.limit),
+            bend_share: bend_share(
+                &settings.strands.constrain.angles,
+                settings.time_step,
+                settings.strands.constrain.iterations,
+            ),
+            bends: u32::from(!settings.strands.constrain.angles.is_off()),
+            length_pass: u32::from(settings.strands.constrain.length_pass.enabled),
+            correction: settings.strands.constrain.length_pass.correction,
+            iterations: settings.strands.constrain.iterations,
             strand_count: model.strand_count as u32,
             lane_count: model.lane_count() as u32,
             points: model.points_per_strand as u32,

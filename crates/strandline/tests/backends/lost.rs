@@ -70,6 +70,8 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
         hair.set_fall_back(true);
         hair.set_settings(&Settings { checkpoint_every, ..hair.settings().clone() }).unwrap();
         hair.step(0.1, &turned(0.2)).unwrap();
+        // A state that was sent on its way has arrived then.
+        gpu.inspect(|gpu| gpu.wait().unwrap());
         hair.step(0.1, &turned(0.3)).unwrap();
         gpu.inspect(|gpu| gpu.destroy());
         hair.step(0.1, &turned(0.4)).unwrap();
@@ -81,7 +83,7 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
     // Nothing was read from the device: all is made again.
     assert_eq!(play(Some(&gpu), 120).positions, expected.positions);
     let Some(gpu) = self::gpu() else { return };
-    // What was read is gone on from.
+    // The CPU resumes from what was read.
     let found = play(Some(&gpu), 5);
     assert_eq!(found.time, expected.time);
     let distance = apart(&found.positions, &expected.positions);

@@ -164,7 +164,7 @@ fn what_passed_or_failed_once_does_not_again() {
         ("look.root_color = [nan, 0, 0]", "look.root_color is [NaN, 0, 0], expected 3 numbers of 0 to 1"),
         ("look.tip_color = [0.5, nan, 0.5]", "look.tip_color"),
         ("look.sparkle = 7", "look.sparkle is 7, expected 0 to 1"),
-        ("simulation.iterations = 0", "simulation.iterations is 0, expected 1 to 10,000"),
+        ("simulation.iterations = 0", "simulation.strands.constrain.iterations is 0, expected 1 to 10,000"),
         ("camera.field_of_view = 400", "camera.field_of_view is 400, expected 1 to 170 degrees"),
         ("body_look.roughness = 0", "body_look.roughness"),
         ("[[lights]]\n[[lights]]\ncone_angle = 0", "lights[1].cone_angle is 0, expected 1 to 85 degrees"),

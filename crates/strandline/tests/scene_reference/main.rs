@@ -75,11 +75,18 @@ fn what_rods_replace_is_refused_and_other_keys_of_older_files_are_taken() {
     assert!(refused.contains("simulation.strands.rods") && refused.contains("old.toml"), "{refused}");
     let alone = toml::from_str::<strandline::Settings>("angles.hold = 8").unwrap_err().to_string();
     assert!(alone.contains("simulation.strands.rods"), "{alone}");
-    let scene = Scene::parse("[simulation.angles]\nstiffness = 30.0\n", "scene").unwrap();
-    assert_eq!(
-        (scene.simulation.angles.stiffness, scene.simulation.strands.method),
-        (30.0, StrandMethod::Rods)
-    );
+    let old = "[simulation]\niterations = 7\nmass_per_length = 2e-6\nangles.stiffness = 30.0\n\
+               springs.bend.enabled = false\nlength_pass.correction = 0.5\n";
+    let scene = Scene::parse(old, "scene").unwrap();
+    let constrain = scene.simulation.strands.constrain;
+    assert_eq!((constrain.iterations, constrain.mass_per_length), (7, 2e-6));
+    assert_eq!((constrain.angles.stiffness, constrain.length_pass.correction), (30.0, 0.5));
+    assert!(!constrain.springs.bend.enabled && constrain.springs.stretch.enabled);
+    assert_eq!(scene.simulation.strands.method, StrandMethod::Rods);
+    assert_eq!(Scene::parse(&scene.to_toml(), "saved").unwrap(), scene, "it is saved under the new keys");
+    let both = format!("{old}[simulation.strands.constrain]\niterations = 9\n");
+    let scene = Scene::parse(&both, "scene").unwrap();
+    assert_eq!(scene.simulation.strands.constrain.iterations, 9, "the new key wins");
 }
 
 /// Strands of constraints sag at first, rods begin at rest.
@@ -95,9 +102,11 @@ fn only_hair_that_sags_settles_before_a_film() {
 #[test]
 fn a_part_of_a_section_leaves_the_rest_as_it_is() {
     let plain = Scene::demo();
-    let text = "[simulation.springs.stretch]\ndamping = 1e-7\n[look.second_highlight]\nwidth = 12\n";
+    let text = "[simulation.strands.constrain.springs.stretch]\ndamping = 1e-7\n\
+                [look.second_highlight]\nwidth = 12\n";
     let scene = Scene::parse(text, "scene").unwrap();
-    let (springs, default) = (scene.simulation.springs, plain.simulation.springs);
+    let (springs, default) =
+        (scene.simulation.strands.constrain.springs, plain.simulation.strands.constrain.springs);
     assert_eq!(springs.stretch.stiffness, default.stretch.stiffness);
     assert_eq!(springs.stretch.damping, 1e-7);
     assert_eq!((springs.bend, springs.torsion), (default.bend, default.torsion));
