@@ -51,7 +51,7 @@ fn look(chiang: Chiang) -> Look {
             wave_amplitude: 0.0,
             ..Clump::default()
         },
-        fibre: Fibre { model: FibreModel::Chiang, chiang },
+        fibre: Fibre { model: FibreModel::Chiang, chiang, ..Fibre::default() },
         environment: Environment { sky: Vec3::ZERO, ground: Vec3::ZERO },
         ..Look::brown()
     }

@@ -35,7 +35,10 @@ fn furnace(look: &Look, color: Vec3, tangent: Vec3, to_eye: Vec3) -> f32 {
     // A direction stands for 4 pi / count of solid angle, and lights are given over pi.
     let weight = 4.0 / count as f32;
     directions(count)
-        .map(|to_light| reflectance(look, color, Vec3::ONE, tangent, to_light, to_eye).max_element() * weight)
+        .map(|to_light| {
+            reflectance(&look.fibre.scheuermann, color, Vec3::ONE, tangent, to_light, to_eye).max_element()
+                * weight
+        })
         .sum()
 }
 
@@ -63,7 +66,8 @@ fn the_furnace_sees_a_hair_that_gives_back_more() {
     // Hair that sends back more diffuse light than it takes; highlights that take more than there is.
     assert!(shown(&Look::thesis(), 1.1) > 1.01, "{}", shown(&Look::thesis(), 1.1));
     let mut strong = Look::thesis();
-    (strong.first_highlight.strength, strong.second_highlight.strength) = (0.6, 0.6);
+    (strong.fibre.scheuermann.first_highlight.strength, strong.fibre.scheuermann.second_highlight.strength) =
+        (0.6, 0.6);
     assert!(shown(&strong, 1.0) > 1.05, "{}", shown(&strong, 1.0));
 }
 
@@ -148,21 +152,28 @@ fn highlights_lie_where_their_shifts_put_them() {
                 let at = |degrees: i32| {
                     let angle = (degrees as f32).to_radians();
                     let to_light = Vec3::new(angle.cos(), angle.sin(), 0.0);
-                    pick(reflectance(look, Vec3::ZERO, Vec3::X, Vec3::Y, to_light, Vec3::X))
+                    pick(reflectance(
+                        &look.fibre.scheuermann,
+                        Vec3::ZERO,
+                        Vec3::X,
+                        Vec3::Y,
+                        to_light,
+                        Vec3::X,
+                    ))
                 };
                 at(one).total_cmp(&at(other))
             })
             .unwrap() as f32
     };
     let mut one = look.clone();
-    one.second_highlight.strength = 0.0;
+    one.fibre.scheuermann.second_highlight.strength = 0.0;
     // Half way between light and eye lies the highlight's shift; cos(theta) draws it toward 0 a little.
     let first = brightest(|color| color.y, &one);
-    assert!((first - 2.0 * look.first_highlight.shift).abs() <= 2.0, "{first}");
+    assert!((first - 2.0 * look.fibre.scheuermann.first_highlight.shift).abs() <= 2.0, "{first}");
     let mut two = look.clone();
-    two.first_highlight.strength = 0.0;
+    two.fibre.scheuermann.first_highlight.strength = 0.0;
     let second = brightest(|color| color.x, &two);
-    assert!((second - 2.0 * look.second_highlight.shift).abs() <= 4.0, "{second}");
+    assert!((second - 2.0 * look.fibre.scheuermann.second_highlight.shift).abs() <= 4.0, "{second}");
 }
 
 #[test]

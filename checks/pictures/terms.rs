@@ -4,7 +4,8 @@
 use glam::Vec3;
 use strandline_checks::law;
 use strandline_render::cpu::Strands;
-use strandline_render::{Clump, Environment, Highlight, LevelOfDetail, Light, LightKind, Look, Shadow};
+use strandline_render::fibre::Highlight;
+use strandline_render::{Clump, Environment, LevelOfDetail, Light, LightKind, Look, Shadow};
 
 use crate::drawn::{Drawn, guides};
 
@@ -24,16 +25,18 @@ pub fn plain(color: Vec3) -> Look {
         tip_color: color,
         variation: 0.0,
         grey: 0.0,
-        first_highlight: none,
-        second_highlight: none,
         highlight_noise: 0.0,
-        sparkle: 0.0,
-        translucency: 0.0,
         environment: DARK,
         shadow: Shadow { opacity: 0.0, ..Shadow::default() },
         clump: Clump { wave_amplitude: 0.0, shorter: 0.0, ..Clump::default() },
         ..Look::thesis()
     }
+    .with_scheuermann(|fibre| {
+        fibre.first_highlight = none;
+        fibre.second_highlight = none;
+        fibre.sparkle = 0.0;
+        fibre.translucency = 0.0;
+    })
 }
 
 /// Light from a direction, of radiance 1, without shadow.
@@ -154,17 +157,19 @@ law! {
         // eye, a strand whose tip is nearer (which leans toward the eye) shows the second one.
         for look in [Look::brown(), Look::black(), Look::blonde(), Look::red(), Look::grey()] {
             let bare = plain(Vec3::ZERO);
-            let first = Look { first_highlight: look.first_highlight, second_highlight: AWAY, ..bare.clone() };
+            let first = bare.clone().with_scheuermann(|fibre| {
+fibre.first_highlight = look.fibre.scheuermann.first_highlight;
+fibre.second_highlight = AWAY;
+});
             let (mean, deviation) = moments(&profile(&straight(leans().map(leaning), first, vec![sun(Vec3::Z)]), on, 1));
             assert!((-10.0..-4.0).contains(&mean), "the first highlight leans by {mean} degrees");
-            let width = look.first_highlight.width;
+            let width = look.fibre.scheuermann.first_highlight.width;
             assert!((deviation / width - 1.0).abs() < 0.1, "it is {deviation} degrees wide, {width} by its setting");
             // No light is diffuse when both highlights take half of it each.
-            let second = Look {
-                first_highlight: AWAY,
-                second_highlight: Highlight { strength: 0.5, ..look.second_highlight },
-                ..plain(Vec3::new(0.81, 0.25, 0.04))
-            };
+            let second = plain(Vec3::new(0.81, 0.25, 0.04)).with_scheuermann(|fibre| {
+fibre.first_highlight = AWAY;
+fibre.second_highlight = Highlight { strength: 0.5, ..look.fibre.scheuermann.second_highlight };
+});
             let sweep = straight(leans().map(leaning), second, vec![sun(Vec3::Z)]);
             let (mean, _) = moments(&profile(&sweep, on, 0));
             // The sweep ends 30 degrees aside, 2.5 deviations.
@@ -178,7 +183,10 @@ law! {
         let color = Vec3::new(0.81, 0.25, 0.04);
         let here = Highlight { shift: 0.0, width: 5.0, strength: 0.5 };
         let lit = |first_highlight, second_highlight| {
-            let look = Look { first_highlight, second_highlight, ..plain(color) };
+            let look = plain(color).with_scheuermann(|fibre| {
+fibre.first_highlight = first_highlight;
+fibre.second_highlight = second_highlight;
+});
             of(&straight([Vec3::Y], look, vec![sun(Vec3::Z)]).strands(on), 0)[3]
         };
         let (first, second) = (lit(here, AWAY), lit(AWAY, here));
@@ -199,7 +207,10 @@ law! {
     fn noise_moves_both_highlights_by_up_to_its_angle(on) {
         let narrow = Highlight { shift: 0.0, width: 1.0, strength: 0.5 };
         let spread = |first_highlight, second_highlight, highlight_noise| {
-            let look = Look { first_highlight, second_highlight, highlight_noise, ..plain(Vec3::ONE) };
+            let look = Look { highlight_noise, ..plain(Vec3::ONE) }.with_scheuermann(|fibre| {
+fibre.first_highlight = first_highlight;
+fibre.second_highlight = second_highlight;
+});
             // Eight strands of each inclination, and eight points of each strand, for the noise to differ.
             let ways = leans().flat_map(|lean| [leaning(lean); 8]);
             let strands = straight(ways, look, vec![sun(Vec3::Z)]).strands(on);
@@ -232,7 +243,11 @@ law! {
     fn sparkle_breaks_up_the_second_highlight_only(on) {
         let here = Highlight { shift: 0.0, width: 20.0, strength: 0.5 };
         let lit = |first_highlight, second_highlight, sparkle| {
-            let look = Look { first_highlight, second_highlight, sparkle, ..plain(Vec3::ONE) };
+            let look = plain(Vec3::ONE).with_scheuermann(|fibre| {
+fibre.first_highlight = first_highlight;
+fibre.second_highlight = second_highlight;
+fibre.sparkle = sparkle;
+});
             let strands = straight([Vec3::Y; 100], look, vec![sun(Vec3::Z)]).strands(on);
             strands.radiances.iter().map(|radiance| radiance.y).collect::<Vec<f32>>()
         };
@@ -263,7 +278,7 @@ law! {
         let hair = guides(lines, 4);
         let lit = |opacity, translucency| {
             let shadow = Shadow { opacity, map_size: 64, ..Shadow::default() };
-            let look = Look { width_scale: 4.0, translucency, shadow, ..plain(Vec3::new(0.81, 0.25, 0.04)) };
+            let look = Look { width_scale: 4.0, shadow, ..plain(Vec3::new(0.81, 0.25, 0.04)) }.with_scheuermann(|fibre| fibre.translucency = translucency);
             let lights = vec![Light { shadow: true, ..sun(Vec3::Z) }];
             let detail = LevelOfDetail { segments_per_span: 1, ..LevelOfDetail::full() };
             let drawn = Drawn { guides: hair.clone(), look, lights, eye: Vec3::Z * 200.0, detail };

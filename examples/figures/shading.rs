@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline::{
     Camera, Hair, Light, Look, Picture, Style,
-    low_level::render::{Environment, Highlight},
+    low_level::render::{Environment, fibre::Highlight},
 };
 
 use crate::strip::joined;
@@ -68,8 +68,12 @@ pub fn highlights(studio: &Studio) -> Figure {
     let environment = Environment { sky: Vec3::splat(0.12), ground: Vec3::splat(0.06) };
     let both = Look { environment, ..Look::thesis() };
     let none = |highlight: Highlight| Highlight { strength: 0.0, ..highlight };
-    let first = Look { second_highlight: none(both.second_highlight), ..both.clone() };
-    let second = Look { first_highlight: none(both.first_highlight), ..both.clone() };
+    let first = both
+        .clone()
+        .with_scheuermann(|fibre| fibre.second_highlight = none(both.fibre.scheuermann.second_highlight));
+    let second = both
+        .clone()
+        .with_scheuermann(|fibre| fibre.first_highlight = none(both.fibre.scheuermann.first_highlight));
     with_looks(
         &mut hair,
         &close(Vec3::new(0.35, 0.3, -1.0), Vec3::new(0.0, -0.03, -0.02), 0.38),

@@ -176,7 +176,7 @@ fn bad_scenes_are_refused_by_key() {
         ("[simulation]\ngravitas = 1\n", vec!["unknown field `gravitas`", "gravity"]),
         ("[style]\nstrand_count = -4\n", vec!["-4"]),
         ("[film]\nframes = 0\n", vec!["film.frames is 0", "1 to"]),
-        ("[look]\nsparkle = 7\n", vec!["look.sparkle is 7, expected 0 to 1"]),
+        ("[look]\nsparkle = 7\n", vec!["look.fibre.scheuermann.sparkle is 7, expected 0 to 1"]),
         ("[simulation]\ngravity = [1e30, 0, 0]\n", vec!["simulation.gravity is [1e30, 0, 0]", "m/s^2"]),
         ("[motion]\npivot = [nan, 0, 0]\n", vec!["motion.pivot is [NaN, 0, 0]"]),
         ("[picture]\nwidth = \"wide\"\n", vec!["wide"]),

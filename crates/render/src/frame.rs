@@ -191,7 +191,7 @@ impl Renderer {
             shadows,
             occlusion,
             scalp: look.scalp(input.body_look.scalp, own_color),
-            grid: (look.fibre.model == FibreModel::Chiang).then(|| scattering.grid()),
+            grid: look.fibre.model.scatters_many_times().then(|| scattering.grid()),
             environment: &look.gradient(),
             eye,
         };

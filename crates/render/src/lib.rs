@@ -34,7 +34,7 @@ pub use frame::{FrameInput, FrameReport, Renderer};
 pub use layers::Layers;
 pub use level_of_detail::{DetailLevel, LevelOfDetail};
 pub use lights::{Environment, Illumination, Light, LightKind};
-pub use look::{Clump, GroupLook, Highlight, Look, Shadow};
+pub use look::{Clump, GroupLook, Look, Shadow};
 pub use picture::Picture;
 pub use picture_settings::{Background, PictureSettings, ToneMap};
 pub use preset::Preset;

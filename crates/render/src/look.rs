@@ -3,10 +3,10 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::math;
-use strandline_base::{Key, SettingError, settings};
+use strandline_base::{Key, SettingError, Value, settings};
 
 use crate::Environment;
-use crate::fibre::{Fibre, FibreModel, chiang::Pigment};
+use crate::fibre::{Fibre, FibreModel, Highlight, chiang::Pigment};
 use crate::preset::Preset;
 use crate::surroundings::Surroundings;
 
@@ -40,16 +40,8 @@ settings! {
         variation: f32 = 0.35, in [0.0, 1.0], more "strands that differ more";
         /// Share of strands that have turned white.
         grey: f32 = 0.0, in [0.0, 1.0], more "whiter hair";
-        /// The white highlight, from the surface of the hair.
-        first_highlight: Highlight = Highlight { shift: -5.0, width: 5.0, strength: 0.07 };
-        /// The coloured highlight, from light that crossed the hair.
-        second_highlight: Highlight = Highlight { shift: 7.0, width: 9.0, strength: 0.2 };
-        /// Noise along and among strands by which both highlights are moved.
+        /// Noise along and among strands by which highlights are moved.
         highlight_noise: f32 = 1.5, in [0.0, 45.0] "degrees", more "more ragged highlights";
-        /// How far a second noise breaks the second highlight up into sparkles.
-        sparkle: f32 = 0.7, in [0.0, 1.0], more "fewer, brighter sparkles";
-        /// How much further light goes through bright hair than through black.
-        translucency: f32 = 0.6, in [0.0, 1.0], more "brighter shadows in light hair";
         /// How the drawn strands lie about their guide.
         clump: Clump = Clump::default();
         /// How hair and body cast shadows.
@@ -69,6 +61,12 @@ settings! {
         plain {
             /// A picture of the surroundings in the place of `environment`.
             surroundings: Option<Arc<Surroundings>>,
+        }
+        moved {
+            first_highlight: <Highlight as Value>::Given => "look.fibre.scheuermann.first_highlight",
+            second_highlight: <Highlight as Value>::Given => "look.fibre.scheuermann.second_highlight",
+            sparkle: f32 => "look.fibre.scheuermann.sparkle",
+            translucency: f32 => "look.fibre.scheuermann.translucency",
         }
     }
     prepare Look::prepare;
@@ -122,18 +120,6 @@ impl GroupLook {
             look.fibre.chiang.pigment = Pigment::Melanin;
         }
         (has_melanin || self.variation.is_some() || self.grey.is_some()).then_some(look)
-    }
-}
-
-settings! {
-    /// A highlight on the hair \[Scheuermann2004\].
-    pub struct Highlight: Copy {
-        /// Angle by which it is moved toward the tip; below 0 toward the root.
-        shift: f32 = 0.0, in [-45.0, 45.0] "degrees", more "a highlight nearer to the tips";
-        /// Its standard deviation along the strand.
-        width: f32 = 5.0, in [0.5, 60.0] "degrees", more "a wider, duller highlight";
-        /// Share of the light that goes into it.
-        strength: f32 = 0.1, in [0.0, 0.5], more "a brighter highlight";
     }
 }
 

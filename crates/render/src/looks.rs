@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_base::{Group, Value};
 
 use crate::cpu::light_field::{self, Field};
-use crate::fibre::{FibreModel, chiang::Pigment};
+use crate::fibre::{FibreModel, Scheuermann, chiang::Pigment};
 use crate::{Environment, Light, Look, Preset, RenderError, Shadow};
 
 impl Look {
@@ -84,6 +84,12 @@ impl Look {
         }
     }
 
+    /// The same with a change of the thesis's fibre.
+    pub fn with_scheuermann(mut self, change: impl FnOnce(&mut Scheuermann)) -> Self {
+        change(&mut self.fibre.scheuermann);
+        self
+    }
+
     /// What is not given comes from the look that is named; colours that are given are meant.
     pub(crate) fn prepare(&mut self, given: &<Self as Value>::Given) {
         if let Some(preset) = given.preset {
@@ -92,6 +98,12 @@ impl Look {
         if given.root_color.is_some() || given.tip_color.is_some() {
             self.fibre.chiang.pigment = Pigment::Color;
         }
+        // Older files had these beside the settings of all fibres.
+        let old = &mut self.fibre.scheuermann;
+        given.first_highlight.clone().into_iter().for_each(|highlight| old.first_highlight.take(highlight));
+        given.second_highlight.clone().into_iter().for_each(|highlight| old.second_highlight.take(highlight));
+        old.sparkle = given.sparkle.unwrap_or(old.sparkle);
+        old.translucency = given.translucency.unwrap_or(old.translucency);
     }
 
     /// Light from all around, and none of its suns.
@@ -115,7 +127,7 @@ impl Look {
 
     /// What the colour of skin is multiplied with where roots are dense; hair is of `own` colour where it has one.
     pub(crate) fn scalp(&self, share: f32, own: Option<Vec3>) -> Vec3 {
-        if self.fibre.model == FibreModel::Scheuermann {
+        if !self.fibre.model.scatters_many_times() {
             return Vec3::ONE;
         }
         let color = own.unwrap_or_else(|| self.fibre.chiang.color(self.root_color));
@@ -129,19 +141,16 @@ impl Look {
         if self.surroundings.is_some() {
             return Vec::new();
         }
-        match self.fibre.model {
-            FibreModel::Scheuermann => Light::three_point(target).to_vec(),
-            FibreModel::Chiang => Light::studio(target).to_vec(),
+        if self.fibre.model.scatters_many_times() {
+            Light::studio(target).to_vec()
+        } else {
+            Light::three_point(target).to_vec()
         }
     }
 
-    /// How hair and body cast shadows with this fibre: what meets a hair of [`FibreModel::Chiang`] does not go
-    /// straight on.
+    /// How hair and body cast shadows with this fibre.
     pub fn hair_shadow(&self) -> Shadow {
-        match self.fibre.model {
-            FibreModel::Scheuermann => self.shadow,
-            FibreModel::Chiang => Shadow { solid: true, ..self.shadow },
-        }
+        Shadow { solid: self.fibre.model.scatters_many_times() || self.shadow.solid, ..self.shadow }
     }
 
     /// Checks every setting.

@@ -64,7 +64,7 @@ impl Drawn<'_> {
         let texel = TEXEL_BYTES + PART_BYTES * crate::cpu::shadow_hair::part_count() as u64;
         let PictureSettings { width, height, supersampling, .. } = self.picture;
         let picture = format!("a picture of {width} x {height} pixels at supersampling {supersampling}");
-        let scatters = self.look.fibre.model == FibreModel::Chiang;
+        let scatters = self.look.fibre.model.scatters_many_times();
         let (cells, known) = if scatters { (GRID_CELLS, shadows) } else { (0, 0) };
         vec![
             Need::new("scattered light (look.fibre.model = \"chiang\")", cells, CELL_BYTES),

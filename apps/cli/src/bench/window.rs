@@ -205,7 +205,8 @@ impl Play {
             }
             4 => self.act(Change::Release),
             5 => {
-                let look = strandline::Look { sparkle: 0.5 + 0.4 * share, ..self.scene.look.clone() };
+                let look =
+                    self.scene.look.clone().with_scheuermann(|fibre| fibre.sparkle = 0.5 + 0.4 * share);
                 self.act(Change::Look(Box::new(look)))
             }
             6 => self.act(Change::Length(0.75 + 0.25 * share)),

@@ -6,8 +6,8 @@ use strandline::{
     low_level::{
         base::Group,
         render::{
-            Clump, Environment, Highlight, Preset,
-            fibre::{Chiang, Fibre, FibreModel, Pigment},
+            Clump, Environment, Preset,
+            fibre::{Chiang, Fibre, FibreModel, Highlight, Pigment, Scheuermann},
         },
     },
 };
@@ -67,11 +67,12 @@ fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {
 /// How one hair scatters light.
 fn fibre(look: &mut Look, base: &Look, ui: &mut Ui) {
     if look.fibre.model == FibreModel::Scheuermann {
-        let rows = &Look::ROWS;
-        highlight(&mut look.first_highlight, &base.first_highlight, "first highlight", ui);
-        highlight(&mut look.second_highlight, &base.second_highlight, "second highlight", ui);
-        slide(ui, (&mut look.sparkle, base.sparkle), &rows.sparkle, "sparkle");
-        slide(ui, (&mut look.translucency, base.translucency), &rows.translucency, "translucency");
+        let (own, base) = (&mut look.fibre.scheuermann, &base.fibre.scheuermann);
+        let rows = &Scheuermann::ROWS;
+        highlight(&mut own.first_highlight, &base.first_highlight, "first highlight", ui);
+        highlight(&mut own.second_highlight, &base.second_highlight, "second highlight", ui);
+        slide(ui, (&mut own.sparkle, base.sparkle), &rows.sparkle, "sparkle");
+        slide(ui, (&mut own.translucency, base.translucency), &rows.translucency, "translucency");
         return;
     }
     let (own, base, rows) = (&mut look.fibre.chiang, &base.fibre.chiang, &Chiang::ROWS);

@@ -10,7 +10,7 @@ use wide::f32x8;
 use super::fast_math::exp_lanes;
 use super::occlusion::{Occlusion, mean_radiance, toward};
 use super::{Shadows, Strands};
-use crate::fibre::scheuermann::Scheuermann;
+use crate::fibre::scheuermann::Lobes;
 use crate::level_of_detail::is_drawn;
 use crate::lights::Shining;
 use crate::{Environment, Light, LightKind, Look};
@@ -91,7 +91,7 @@ impl StrandColor {
             root: color(look.root_color),
             tip: color(look.tip_color),
             jitters: std::array::from_fn(|_| jitter * (0.6 * whole + 0.8 * random.unit() - 0.4)),
-            sparkles: std::array::from_fn(|_| 1.0 - look.sparkle * random.unit()),
+            sparkles: std::array::from_fn(|_| 1.0 - look.fibre.scheuermann.sparkle * random.unit()),
         }
     }
 }
@@ -167,7 +167,7 @@ struct Shared<'a> {
     sources: Vec<Source<'a>>,
     look: &'a Look,
     environment: Environment,
-    fibre: Scheuermann,
+    fibre: Lobes,
     eye: Vec3x8,
     occlusion: &'a Occlusion,
     log_transmission: f32,
@@ -193,7 +193,7 @@ impl<'a> Shared<'a> {
             sources: sources.collect(),
             look,
             environment: look.gradient(),
-            fibre: Scheuermann::new(look),
+            fibre: Lobes::new(&look.fibre.scheuermann),
             eye: Vec3x8::splat(eye),
             occlusion,
             log_transmission: look.shadow.log_transmission(),
@@ -219,10 +219,7 @@ impl<'a> Shared<'a> {
             let straight = open * exp_lanes(extinction);
             let highlights = points.tint * (scattered.second * points.sparkle * straight)
                 + Vec3x8::same(scattered.first * straight);
-            // Bright hair passes on more of what meets it, in its own colour.
-            let dull = (Vec3x8::same(f32x8::splat(1.0)) - points.tint * f32x8::splat(self.look.translucency))
-                * extinction;
-            let passed = Vec3x8 { x: exp_lanes(dull.x), y: exp_lanes(dull.y), z: exp_lanes(dull.z) };
+            let passed = self.fibre.passed(points.tint, extinction);
             let diffuse = points.color.times(passed) * (scattered.diffuse * open);
             sum += (diffuse + highlights).times(radiance);
         }

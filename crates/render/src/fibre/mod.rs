@@ -6,6 +6,7 @@ pub mod scheuermann;
 use strandline_base::{choices, settings};
 
 pub use chiang::{Chiang, Pigment};
+pub use scheuermann::{Highlight, Scheuermann};
 
 settings! {
     /// How one hair scatters light.
@@ -14,6 +15,8 @@ settings! {
         model: FibreModel = FibreModel::default();
         /// The rough dielectric fibre, for `model = "chiang"`.
         chiang: Chiang = Chiang::default();
+        /// The thesis's fibre, for `model = "scheuermann"`.
+        scheuermann: Scheuermann = Scheuermann::default();
     }
 }
 
@@ -27,4 +30,25 @@ choices! {
         Chiang = "chiang",
     }
     default Chiang
+}
+
+impl FibreModel {
+    /// Whether light goes from fibre to fibre many times, carried through a grid of cells: then what meets a hair does
+    /// not go straight on.
+    pub fn scatters_many_times(self) -> bool {
+        match self {
+            Self::Scheuermann => false,
+            Self::Chiang => true,
+        }
+    }
+}
+
+impl Fibre {
+    /// Whether the look's colours are those of the hair; else its pigment is.
+    pub fn shows_colors(&self) -> bool {
+        match self.model {
+            FibreModel::Scheuermann => true,
+            FibreModel::Chiang => self.chiang.pigment == Pigment::Color,
+        }
+    }
 }

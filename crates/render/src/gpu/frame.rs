@@ -78,7 +78,7 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
 
 /// Scattered light, where the look has it.
 fn scattering<'a>(scene: &Scene, held: &Held<'a>) -> Option<(&'a LightGrid, &'a light_grid::Bounds)> {
-    let scatters = scene.input.look.fibre.model == FibreModel::Chiang;
+    let scatters = scene.input.look.fibre.model.scatters_many_times();
     let grid = held.light_grid.filter(|_| scatters)?;
     Some((grid, grid.bounds()?))
 }

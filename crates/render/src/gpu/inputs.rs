@@ -6,7 +6,7 @@ use strandline_gpu::{Rigid, mirror};
 
 use super::scene::Scene;
 use crate::cpu::shadow::LightView;
-use crate::fibre::{FibreModel, Pigment, scheuermann::lobe};
+use crate::fibre::{Pigment, scheuermann::Numbers};
 use crate::{LightKind, Look, ToneMap};
 
 mirror! {
@@ -215,7 +215,8 @@ impl Frame {
     fn of_looks(scene: &Scene) -> Self {
         let (look, body, shadow) = (scene.input.look, scene.input.body_look, &scene.input.look.hair_shadow());
         let gradient = look.gradient();
-        let share = look.first_highlight.strength + look.second_highlight.strength;
+        let Numbers { highlights: [first_lobe, second_lobe], diffuse, translucency } =
+            look.fibre.scheuermann.numbers();
         Self {
             around: Around::new(look, look.scalp(body.scalp, scene.own_color)),
             sky: gradient.sky.to_array(),
@@ -226,10 +227,10 @@ impl Frame {
             variation: look.variation,
             tip_color: look.tip_color.to_array(),
             grey: look.grey,
-            first_lobe: lobe(&look.first_highlight),
+            first_lobe,
             jitter: 2.0 * look.highlight_noise.to_radians(),
-            second_lobe: lobe(&look.second_highlight),
-            sparkle: look.sparkle,
+            second_lobe,
+            sparkle: look.fibre.scheuermann.sparkle,
             body_color: body.color.to_array(),
             body_wrap: body.wrap,
             body_specular: body.specular,
@@ -238,14 +239,14 @@ impl Frame {
             log_transmission: shadow.log_transmission(),
             body_bias: shadow.body_bias,
             inverse_softness: 1.0 / shadow.body_softness,
-            translucency: look.translucency,
-            diffuse: (1.0 - share).max(0.0),
+            translucency,
+            diffuse,
             wave_amplitude: look.clump.wave_amplitude,
             wave_length: look.clump.wave_length,
             shorter: look.clump.shorter,
             seed: look.seed,
             kinds: scene.own
-                | if look.fibre.model == FibreModel::Chiang { 4 } else { 0 }
+                | if look.fibre.model.scatters_many_times() { 4 } else { 0 }
                 | if look.fibre.chiang.pigment == Pigment::Color { 8 } else { 0 },
             ..bytemuck::Zeroable::zeroed()
         }

@@ -246,7 +246,7 @@ impl GpuRenderer {
             target,
             held: self.held(stages),
         };
-        let submitted = self.gpu.guarded("a frame", || {
+        let submission = self.gpu.guarded("a frame", || {
             let mut recorder = Recorder::new(&self.gpu, self.timer.as_ref());
             self.timer.iter().for_each(Timer::restart);
             record(&mut recorder, &scene, &bounds);
@@ -256,8 +256,7 @@ impl GpuRenderer {
                 }
             });
             self.gpu.queue().submit([commands])
-        });
-        let submission = submitted?;
+        })?;
         self.note(&scene);
         let strands = scene.level.drawn_strands(scene.guide_count);
         let segments = strands * (scene.curve_points() - 1);
@@ -347,7 +346,7 @@ impl GpuRenderer {
         {
             self.stages = Some(Stages::new(&self.gpu, &self.kernels, &self.groom, strands, maps)?);
         }
-        if scene.input.look.fibre.model == FibreModel::Chiang {
+        if scene.input.look.fibre.model.scatters_many_times() {
             self.prepare_light(Source::new(scene.input.look, self.own_color))?;
         }
         Ok(())

@@ -142,7 +142,7 @@ pub(super) fn gradient(look: &Look, groom: &Groom) -> Vec<[f32; 3]> {
 /// Colours at root and tip of a strand that nothing gives a colour but the look: its pigment, its white hair.
 fn of_look(look: &Look, strand: usize) -> [Vec3; 2] {
     let fibre = &look.fibre.chiang;
-    if look.fibre.model == FibreModel::Scheuermann || fibre.pigment == Pigment::Color {
+    if look.fibre.shows_colors() {
         return varied(look, strand, [look.root_color, look.tip_color]);
     }
     let mut random = Random::new(u64::from(look.seed), strand as u64);

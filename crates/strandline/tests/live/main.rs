@@ -84,7 +84,7 @@ fn what_cannot_be_done_is_told_and_what_is_there_stays() {
     live.send(Change::Motion(Box::new(bad_motion)));
     assert!(error(&live).contains("motion.rotation"));
     let mut undrawable = scene();
-    undrawable.look.sparkle = 7.0;
+    undrawable.look.fibre.scheuermann.sparkle = 7.0;
     live.send(Command::Load(Box::new(undrawable)));
     assert!(error(&live).contains("sparkle"));
     // After all that it still draws what it drew.

@@ -163,7 +163,7 @@ fn what_passed_or_failed_once_does_not_again() {
         ("simulation.gravity = [1e30, 0, 0]", "simulation.gravity"),
         ("look.root_color = [nan, 0, 0]", "look.root_color is [NaN, 0, 0], expected 3 numbers of 0 to 1"),
         ("look.tip_color = [0.5, nan, 0.5]", "look.tip_color"),
-        ("look.sparkle = 7", "look.sparkle is 7, expected 0 to 1"),
+        ("look.sparkle = 7", "look.fibre.scheuermann.sparkle is 7, expected 0 to 1"),
         ("simulation.iterations = 0", "simulation.strands.constrain.iterations is 0, expected 1 to 10,000"),
         ("camera.field_of_view = 400", "camera.field_of_view is 400, expected 1 to 170 degrees"),
         ("body_look.roughness = 0", "body_look.roughness"),
@@ -188,7 +188,7 @@ fn what_passed_or_failed_once_does_not_again() {
 fn a_scene_is_refused_before_anything_is_loaded() {
     let mut scene = Scene::demo();
     scene.groom.file = Some("absent.hair".into());
-    scene.look.sparkle = 7.0;
+    scene.look.fibre.scheuermann.sparkle = 7.0;
     let error = Prepared::new(&scene).err().unwrap().to_string();
-    assert!(error.starts_with("look.sparkle is 7"), "{error}");
+    assert!(error.starts_with("look.fibre.scheuermann.sparkle is 7"), "{error}");
 }

@@ -84,6 +84,9 @@ fn what_rods_replace_is_refused_and_other_keys_of_older_files_are_taken() {
     assert!(!constrain.springs.bend.enabled && constrain.springs.stretch.enabled);
     assert_eq!(scene.simulation.strands.method, StrandMethod::Rods);
     assert_eq!(Scene::parse(&scene.to_toml(), "saved").unwrap(), scene, "it is saved under the new keys");
+    let old = format!("{old}[look]\npreset = \"thesis\"\nsparkle = 0.1\nfirst_highlight.width = 9\n");
+    let fibre = Scene::parse(&old, "scene").unwrap().look.fibre.scheuermann;
+    assert_eq!((fibre.sparkle, fibre.first_highlight.width, fibre.first_highlight.shift), (0.1, 9.0, -5.0));
     let both = format!("{old}[simulation.strands.constrain]\niterations = 9\n");
     let scene = Scene::parse(&both, "scene").unwrap();
     assert_eq!(scene.simulation.strands.constrain.iterations, 9, "the new key wins");
@@ -103,15 +106,18 @@ fn only_hair_that_sags_settles_before_a_film() {
 fn a_part_of_a_section_leaves_the_rest_as_it_is() {
     let plain = Scene::demo();
     let text = "[simulation.strands.constrain.springs.stretch]\ndamping = 1e-7\n\
-                [look.second_highlight]\nwidth = 12\n";
+                [look.fibre.scheuermann.second_highlight]\nwidth = 12\n";
     let scene = Scene::parse(text, "scene").unwrap();
     let (springs, default) =
         (scene.simulation.strands.constrain.springs, plain.simulation.strands.constrain.springs);
     assert_eq!(springs.stretch.stiffness, default.stretch.stiffness);
     assert_eq!(springs.stretch.damping, 1e-7);
     assert_eq!((springs.bend, springs.torsion), (default.bend, default.torsion));
-    assert_eq!(scene.look.second_highlight.strength, plain.look.second_highlight.strength);
-    assert_eq!(scene.look.second_highlight.width, 12.0);
+    assert_eq!(
+        scene.look.fibre.scheuermann.second_highlight.strength,
+        plain.look.fibre.scheuermann.second_highlight.strength
+    );
+    assert_eq!(scene.look.fibre.scheuermann.second_highlight.width, 12.0);
 }
 
 /// Scenes saved before `[devices]` have these keys.

@@ -47,7 +47,7 @@ const OLD: &str = "\n## Keys of older files
 
 `simulation.backend` and `picture.backend` are read as `devices.simulation` and `devices.pictures`, which win where both are given.
 
-`iterations`, `mass_per_length`, `springs`, `angles` and `length_pass` of `[simulation]` are read as those of `[simulation.strands.constrain]`, likewise.
+`iterations`, `mass_per_length`, `springs`, `angles` and `length_pass` of `[simulation]` are read as those of `[simulation.strands.constrain]`, likewise; `first_highlight`, `second_highlight`, `sparkle` and `translucency` of `[look]` as those of `[look.fibre.scheuermann]`.
 
 `simulation.angles.hold`, a rate at which segments turned back to their style, is refused: rods keep a style by the stiffness of hair (`[simulation.strands.rods]`). Scenes that move hair by springs and rounds of constraints say `method = \"constrain\"` in `[simulation.strands]`.
 ";

@@ -3,6 +3,8 @@
 //! Diffuse light about the strand \[Kajiya1989\] and two highlights from shifted tangents, the second one
 //! coloured \[Scheuermann2004\]. Each part is scaled so that it never gives back more than it takes.
 
+mod settings;
+
 use std::f32::consts::PI;
 
 use glam::Vec3;
@@ -10,14 +12,36 @@ use strandline_base::math;
 use strandline_base::vec3x8::Vec3x8;
 use wide::f32x8;
 
+pub use settings::{Highlight, Scheuermann};
+
 use crate::cpu::fast_math::exp_lanes;
-use crate::{Highlight, Look};
 
 /// How much more a hair sends back toward the light than onward; 1 sends nothing straight on.
 const BACKWARD: f32 = 0.8;
 
-/// Shift, sharpness and peak of a highlight: see [`Lobe`].
-pub(crate) fn lobe(highlight: &Highlight) -> [f32; 3] {
+/// The model with its settings worked out, the same for both backends.
+#[derive(Clone, Copy)]
+pub(crate) struct Numbers {
+    /// Shift, sharpness and peak of both highlights: see [`Lobe`].
+    pub highlights: [[f32; 3]; 2],
+    /// Share of the light that highlights leave.
+    pub diffuse: f32,
+    pub translucency: f32,
+}
+
+impl Scheuermann {
+    /// What shading needs of the settings.
+    pub(crate) fn numbers(&self) -> Numbers {
+        let share = 1.0 - self.first_highlight.strength - self.second_highlight.strength;
+        Numbers {
+            highlights: [lobe(&self.first_highlight), lobe(&self.second_highlight)],
+            diffuse: share.max(0.0),
+            translucency: self.translucency,
+        }
+    }
+}
+
+fn lobe(highlight: &Highlight) -> [f32; 3] {
     // Both directions turn, so a sum of sines is twice as wide as the highlight.
     let deviation = 2.0 * math::sin(highlight.width.to_radians());
     [
@@ -29,7 +53,7 @@ pub(crate) fn lobe(highlight: &Highlight) -> [f32; 3] {
 
 /// A highlight as shading needs it.
 #[derive(Clone, Copy)]
-pub(crate) struct Lobe {
+struct Lobe {
     /// Sum of the sines of both directions with the strand at which the highlight is brightest.
     shift: f32x8,
     /// Factor of the squared sum in the exponent.
@@ -39,8 +63,8 @@ pub(crate) struct Lobe {
 }
 
 impl Lobe {
-    pub(crate) fn new(highlight: &Highlight) -> Self {
-        let [shift, sharpness, peak] = lobe(highlight).map(f32x8::splat);
+    fn new(numbers: [f32; 3]) -> Self {
+        let [shift, sharpness, peak] = numbers.map(f32x8::splat);
         Self { shift, sharpness, peak }
     }
 
@@ -52,12 +76,13 @@ impl Lobe {
     }
 }
 
-/// The model with its settings worked out.
+/// Light of eight points at a time.
 #[derive(Clone, Copy)]
-pub(crate) struct Scheuermann {
+pub(crate) struct Lobes {
     first: Lobe,
     second: Lobe,
-    pub(crate) diffuse: f32,
+    diffuse_over_pi: f32x8,
+    translucency: f32x8,
 }
 
 /// Radiance over that of a white surface that faces the light.
@@ -70,14 +95,23 @@ pub(crate) struct Scattered {
     pub(crate) second: f32x8,
 }
 
-impl Scheuermann {
-    pub(crate) fn new(look: &Look) -> Self {
-        let share = 1.0 - look.first_highlight.strength - look.second_highlight.strength;
+impl Lobes {
+    pub(crate) fn new(fibre: &Scheuermann) -> Self {
+        let Numbers { highlights: [first, second], diffuse, translucency } = fibre.numbers();
         Self {
-            first: Lobe::new(&look.first_highlight),
-            second: Lobe::new(&look.second_highlight),
-            diffuse: share.max(0.0),
+            first: Lobe::new(first),
+            second: Lobe::new(second),
+            diffuse_over_pi: f32x8::splat(diffuse / PI),
+            translucency: f32x8::splat(translucency),
         }
+    }
+
+    /// Share of the diffuse light that comes through hair of an extinction, a logarithm: bright hair passes on more of
+    /// what meets it, in its own colour.
+    #[inline]
+    pub(crate) fn passed(&self, tint: Vec3x8, extinction: f32x8) -> Vec3x8 {
+        let dull = (Vec3x8::same(f32x8::splat(1.0)) - tint * self.translucency) * extinction;
+        Vec3x8 { x: exp_lanes(dull.x), y: exp_lanes(dull.y), z: exp_lanes(dull.z) }
     }
 
     /// Light scattered from `to_light` to `to_eye` by strands of unit `tangent`, root to tip.
@@ -107,14 +141,14 @@ impl Scheuermann {
         // [Kajiya1989 eq. 14]: the sine between strand and light, over pi so that a hair in even light from
         // all around shows that light times its reflectance.
         let back = one + f32x8::splat(BACKWARD) * turn;
-        let diffuse = cosine_light * back * f32x8::splat(self.diffuse / PI);
+        let diffuse = cosine_light * back * self.diffuse_over_pi;
         Scattered { diffuse, first, second }
     }
 }
 
 /// Radiance of one point over that of a white surface, with `color` for diffuse light and `tint` for the second highlight.
 pub fn reflectance(
-    look: &Look,
+    fibre: &Scheuermann,
     color: Vec3,
     tint: Vec3,
     tangent: Vec3,
@@ -122,7 +156,7 @@ pub fn reflectance(
     to_eye: Vec3,
 ) -> Vec3 {
     let [tangent, to_light, to_eye] = [tangent, to_light, to_eye].map(Vec3x8::splat);
-    let scattered = Scheuermann::new(look).scatter(tangent, to_light, to_eye, f32x8::splat(0.0));
+    let scattered = Lobes::new(fibre).scatter(tangent, to_light, to_eye, f32x8::splat(0.0));
     let [diffuse, first, second] =
         [scattered.diffuse, scattered.first, scattered.second].map(|lanes| lanes.to_array()[0]);
     color * diffuse + Vec3::splat(first) + tint * second
