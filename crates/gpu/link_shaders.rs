@@ -39,13 +39,60 @@ fn beside_kit(folder: &str) -> PathBuf {
         let path = file.expect("a file of the folder").path();
         if path.extension().is_some_and(|ending| ending == "wesl") {
             let name = path.file_name().expect("it has an ending");
-            std::fs::copy(&path, package.join(name)).expect("a shader can be read");
+            let text = std::fs::read_to_string(&path).expect("a shader is text");
+            std::fs::write(package.join(name), with_constants(&text)).expect("cargo made the folder");
         }
     }
     let threads = threads::THREADS;
     let kit = format!("{KIT}\n// Threads of a workgroup: threads.rs.\nconst THREADS = {threads}u;\n");
     std::fs::write(package.join("kit.wesl"), kit).expect("cargo made the folder");
     package
+}
+
+/// A shader with the constants that Rust owns: `const NAME = rust("cpu/file.rs");` takes the value of `NAME` in that
+/// file of the crate, `rust("cpu/file.rs", f32)` as a number of that type.
+fn with_constants(shader: &str) -> String {
+    let line = |line: &str| match line.strip_prefix("const ").and_then(|rest| rest.split_once(" = rust(\"")) {
+        None => line.to_owned(),
+        Some((name, call)) => {
+            let call = call.strip_suffix(");").expect("rust(...) ends its line");
+            let (path, kind) = call.split_once('"').expect("rust(...) names a file");
+            let value = constant(&Path::new("src").join(path), name, kind.strip_prefix(", "));
+            format!("const {name} = {value};")
+        }
+    };
+    shader.lines().map(|text| line(text) + "\n").collect()
+}
+
+/// The value of a constant in a Rust file, as a shader writes it.
+fn constant(path: &Path, name: &str, kind: Option<&str>) -> String {
+    println!("cargo::rerun-if-changed={}", path.display());
+    let text = std::fs::read_to_string(path).expect("rust(...) names a file of the crate");
+    let stem = format!("const {name}: ");
+    let found = text.lines().find_map(|line| line.split_once(&stem)?.1.strip_suffix(';')?.split_once(" = "));
+    let (own, value) = found.unwrap_or_else(|| panic!("no constant {name} in {}", path.display()));
+    let value = value.replace('_', "");
+    match kind.unwrap_or(own) {
+        "f32" if !value.contains(['.', 'e']) => format!("{value}.0"),
+        "f32" | "i32" => value,
+        "u32" if value == "u32::MAX" => "0xffffffffu".to_owned(),
+        "u32" | "usize" => suffixed(&value),
+        other => panic!("{name} is a {other}, which a shader has not"),
+    }
+}
+
+/// An expression of whole numbers, each marked as one without sign.
+fn suffixed(expression: &str) -> String {
+    let mut written = String::new();
+    let mut before = ' ';
+    for character in expression.chars().chain([' ']) {
+        if before.is_ascii_alphanumeric() && !character.is_ascii_alphanumeric() {
+            written.push('u');
+        }
+        written.push(character);
+        before = character;
+    }
+    written.trim_end().to_owned()
 }
 
 /// The names of the modules with entry points, in order.

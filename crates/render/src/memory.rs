@@ -6,7 +6,6 @@ use strandline_base::{
 };
 
 use crate::cpu::ribbons::Segment;
-use crate::fibre::FibreModel;
 use crate::{DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
 /// Most lights of a picture: each point that is drawn asks every one of them.

@@ -165,7 +165,6 @@ enum Source<'a> {
 struct Shared<'a> {
     shadows: &'a Shadows,
     sources: Vec<Source<'a>>,
-    look: &'a Look,
     environment: Environment,
     fibre: Lobes,
     eye: Vec3x8,
@@ -177,7 +176,7 @@ impl<'a> Shared<'a> {
     fn new(
         shadows: &'a Shadows,
         lights: &'a [Light],
-        look: &'a Look,
+        look: &Look,
         eye: Vec3,
         occlusion: &'a Occlusion,
     ) -> Self {
@@ -191,7 +190,6 @@ impl<'a> Shared<'a> {
         Self {
             shadows,
             sources: sources.collect(),
-            look,
             environment: look.gradient(),
             fibre: Lobes::new(&look.fibre.scheuermann),
             eye: Vec3x8::splat(eye),

@@ -9,7 +9,6 @@ use super::scene::Scene;
 use super::stages::Stages;
 use super::{THREADS, buffers, draw, fit};
 use crate::cpu::lattice::DIRECTIONS;
-use crate::fibre::FibreModel;
 
 /// What a frame is recorded from.
 pub(super) struct Bounds<'a> {

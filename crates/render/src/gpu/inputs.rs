@@ -4,6 +4,7 @@ use glam::Vec3;
 use strandline_base::math;
 use strandline_gpu::{Rigid, mirror};
 
+use super::codes;
 use super::scene::Scene;
 use crate::cpu::shadow::LightView;
 use crate::fibre::{Pigment, scheuermann::Numbers};
@@ -112,8 +113,7 @@ mirror! {
         pub body_kind: u32,
         /// Middle of the hair at rest \[m\]: texels and cells keep their places beside it.
         pub middle: [f32; 3],
-        /// What is drawn, in bits: 1 the groom's colours, 2 its widths along strands, in place of the look's;
-        /// 4 light that is scattered many times, with the fibre of [Chiang2016], 8 the look's colours with it.
+        /// What is drawn, in bits: see codes.rs.
         pub kinds: u32,
         /// Of each eight guides, those whose strands are not drawn.
         pub left_out: f32,
@@ -126,9 +126,9 @@ mirror! {
 /// As resolve.wesl has it.
 fn tone_map_code(tone_map: ToneMap) -> u32 {
     match tone_map {
-        ToneMap::Off => 0,
-        ToneMap::Filmic => 1,
-        ToneMap::Aces => 2,
+        ToneMap::Off => codes::TONE_OFF,
+        ToneMap::Filmic => codes::TONE_FILMIC,
+        ToneMap::Aces => codes::TONE_ACES,
     }
 }
 
@@ -246,8 +246,8 @@ impl Frame {
             shorter: look.clump.shorter,
             seed: look.seed,
             kinds: scene.own
-                | if look.fibre.model.scatters_many_times() { 4 } else { 0 }
-                | if look.fibre.chiang.pigment == Pigment::Color { 8 } else { 0 },
+                | if look.fibre.model.scatters_many_times() { codes::SCATTERS } else { 0 }
+                | if look.fibre.chiang.pigment == Pigment::Color { codes::COLORED } else { 0 },
             ..bytemuck::Zeroable::zeroed()
         }
     }
@@ -269,10 +269,10 @@ impl LightSource {
             let mut source = Self {
                 position: light.position.to_array(),
                 kind: match light.kind {
-                    LightKind::Directional => 0,
-                    LightKind::Spot => 1,
-                    LightKind::Point => 2,
-                    LightKind::Rectangle | LightKind::Disc => 3,
+                    LightKind::Directional => codes::DIRECTIONAL,
+                    LightKind::Spot => codes::SPOT,
+                    LightKind::Point => codes::POINT,
+                    LightKind::Rectangle | LightKind::Disc => codes::SURFACE,
                 },
                 axis: axis.normalize_or(Vec3::Y).to_array(),
                 axis_square: axis.length_squared(),

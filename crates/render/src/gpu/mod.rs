@@ -10,6 +10,7 @@ mod bound;
 mod bound_solids;
 mod buffers;
 mod channels;
+mod codes;
 mod device_points;
 mod draw;
 mod fit;

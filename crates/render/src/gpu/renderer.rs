@@ -8,6 +8,7 @@ use strandline_groom::{Binding, Guides};
 
 use super::body::ball;
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
+use super::codes;
 use super::device_points::DevicePoints;
 use super::frame::{Bounds, Held, record};
 use super::inputs::{Frame, LightSource};
@@ -19,7 +20,6 @@ use super::shade::{LayerColoring, Numbers};
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
 use crate::cpu::shade_chiang::Source;
-use crate::fibre::FibreModel;
 use crate::frame::{mean_color, middle};
 use crate::lights::at_samples;
 use crate::{DetailLevel, FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
@@ -306,7 +306,7 @@ impl GpuRenderer {
             triangle_count: self.triangle_count,
             body_kind: self.body_kind,
             body_ball: self.body_ball,
-            own: u32::from(self.guides.colors().is_some()) | u32::from(self.guides.profiles().is_some()) << 1,
+            own: codes::own_kinds(&self.guides),
             middle,
             own_color: self.own_color,
         }

@@ -17,7 +17,7 @@ pub(super) struct Scene<'a> {
     /// 0 none, 1 open, 2 closed.
     pub body_kind: u32,
     pub body_ball: (Vec3, f32),
-    /// What of the groom is drawn: see common.wesl.
+    /// What of the groom is drawn: see codes.rs.
     pub own: u32,
     /// Middle of the hair \[m\], world space.
     pub middle: Vec3,

@@ -1,7 +1,7 @@
 //! The stages in plain Rust, public so that checks can run each alone.
 
 pub mod advance;
-mod cell_kind;
+pub(crate) mod cell_kind;
 mod cell_set;
 pub mod cell_sort;
 pub mod constrain;

@@ -10,6 +10,11 @@ use crate::grab::Grab;
 use crate::strands::constrain::angles::bend_share;
 use crate::{Drive, Model, Preconditioner};
 
+/// Codes of preconditioners, which shaders know from here.
+const PLAIN: u32 = 0;
+const JACOBI: u32 = 1;
+const CHEBYSHEV: u32 = 2;
+
 mirror! {
     /// What rods take of a step. Mirrors `RodStep` in common.wesl.
     pub(super) struct RodStep {
@@ -157,9 +162,9 @@ impl Step {
             tolerance: settings.volume.tolerance,
             max_iterations: settings.volume.max_iterations,
             preconditioner: match settings.volume.preconditioner {
-                Preconditioner::None => 0,
-                Preconditioner::Jacobi => 1,
-                Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => 2,
+                Preconditioner::None => PLAIN,
+                Preconditioner::Jacobi => JACOBI,
+                Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => CHEBYSHEV,
             },
             slot: slot as u32,
             holds: u32::from(!grab.grips.is_empty()),

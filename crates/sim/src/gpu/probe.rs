@@ -5,6 +5,7 @@ use strandline_groom::{Lanes, Vec3Lanes};
 use super::buffers::{floats, floats_mut};
 use super::runner::GpuRunner;
 use super::volume::GridState;
+use crate::cpu::cell_kind::{AIR, FLUID, SOLID};
 use crate::cpu::{Kind, Volume};
 use crate::step::Stage;
 use crate::{Drive, SimError, State, StepReport};
@@ -120,9 +121,9 @@ impl Probe {
         let faces: Vec<[f32; 2]> = (0..3 * count).map(|index| pair(index / count, index % count)).collect();
         device.faces.write(&faces)?;
         let number = |kind| match kind {
-            Kind::Air => 0,
-            Kind::Fluid => 1,
-            Kind::Solid => 2,
+            Kind::Air => AIR,
+            Kind::Fluid => FLUID,
+            Kind::Solid => SOLID,
         };
         let kinds: Vec<u32> = (0..count).map(|cell| number(volume.kind(cell))).collect();
         device.kinds.write(&kinds)?;
@@ -178,8 +179,8 @@ impl Probe {
     pub fn kinds(&self) -> Result<Vec<Kind>, SimError> {
         let Some(volume) = &self.runner.buffers.volume else { return Ok(Vec::new()) };
         let kind = |number| match number {
-            1 => Kind::Fluid,
-            2 => Kind::Solid,
+            FLUID => Kind::Fluid,
+            SOLID => Kind::Solid,
             _ => Kind::Air,
         };
         Ok(volume.kinds.read()?.into_iter().map(kind).collect())

@@ -13,13 +13,7 @@ use crate::{
     Error, Scene,
     body::Random,
     groom::{Groom, Widths},
-    render::{
-        GroupLook, Look,
-        fibre::{
-            FibreModel,
-            chiang::{Pigment, WHITE},
-        },
-    },
+    render::{GroupLook, Look, fibre::chiang::WHITE},
 };
 
 /// Most pixels of all maps of a scene: four of the largest.
