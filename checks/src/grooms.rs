@@ -63,7 +63,7 @@ fn not_tested(why: &str, required: Option<&OsStr>) {
     let thread = std::thread::current();
     let line = format!("NOT TESTED: {}: {why}\n", thread.name().unwrap_or("a test"));
     assert!(required.is_none(), "{REQUIRED} is set, but {line}");
-    // Where nobody reads stderr there is nobody to tell.
+    // Where stderr is closed there is no place to say it.
     std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).ok();
 }
 

@@ -30,7 +30,7 @@ pub fn own_gpu() -> Option<Gpu> {
     open()
 }
 
-#[allow(clippy::print_stderr)] // it tells what is not tested
+#[allow(clippy::print_stderr)] // it says what is not tested
 fn open() -> Option<Gpu> {
     match Gpu::any() {
         Ok(gpu) => Some(gpu),

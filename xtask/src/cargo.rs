@@ -27,7 +27,7 @@ pub fn example(name: &str) -> Option<Command> {
     Some(program)
 }
 
-/// The file of an example in what cargo tells line by line.
+/// The file of an example in the messages of cargo, a line each.
 fn executable(messages: &str, name: &str) -> Option<PathBuf> {
     let messages = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
     messages.filter(|message| message["target"]["name"] == name).find_map(|message| {

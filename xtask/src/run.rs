@@ -112,7 +112,7 @@ fn look() -> [(&'static str, bool); 6] {
     ]
 }
 
-/// What is left out where nobody has put the grooms.
+/// What is left out where the grooms are missing.
 const NO_GROOMS: &str = "grooms and heads that are not part of the project (STRANDLINE_GROOMS names their folder; with STRANDLINE_REQUIRE_GROOMS their tests fail without it)";
 
 /// Whether the folder of grooms that are not part of the project is where tests look for it.

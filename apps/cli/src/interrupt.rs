@@ -45,7 +45,7 @@ fn heeds_hangup() -> bool {
     ignored_signals(&status).is_some_and(|ignored| ignored & (1 << (SIGHUP - 1)) == 0)
 }
 
-/// The mask of ignored signals in what Linux tells of a process; signal 1 is its lowest bit.
+/// The mask of ignored signals in what Linux reports of a process; signal 1 is its lowest bit.
 fn ignored_signals(status: &str) -> Option<u64> {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
     u64::from_str_radix(mask.trim(), 16).ok()

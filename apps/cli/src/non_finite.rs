@@ -1,4 +1,4 @@
-//! Points that are not finite: the run goes on with their strands at rest, says so, and ends with code 3.
+//! Points that are not finite: the run continues with their strands at rest, reports it, and ends with code 3.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What the program prints, and what it does when nobody can read it.
+//! What the program prints, and what it does when its output is closed.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Result, Write, stderr, stdout};

@@ -1,4 +1,4 @@
-//! A progress bar for anything longer than a second; none when nobody watches.
+//! A progress bar for anything longer than a second; none without a terminal.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -64,11 +64,11 @@ impl Drop for Progress {
 /// What is said while hair and body are loaded or grown and the body's distances are found.
 pub const LOADING: &str = "loading hair and body";
 
-/// Says that something goes on of which nobody knows how far it has come.
+/// Shows that something is under way whose progress is not known.
 pub struct Waiting(Option<ProgressBar>);
 
 impl Waiting {
-    /// Begins; nothing is shown where nobody watches.
+    /// Begins; nothing is shown without a terminal.
     pub fn begin(what: &'static str) -> Self {
         if !std::io::stderr().is_terminal() {
             return Self(None);

@@ -226,7 +226,7 @@ fn play(
     Ok(())
 }
 
-/// Closes a film that cannot go on, and says what there is of it.
+/// Closes a film that failed, and says what there is of it.
 fn broken_off(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Error {
     let frames = film.len();
     let notes = if error.is::<Stopped>() {

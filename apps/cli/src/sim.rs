@@ -241,7 +241,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     Ok(report.non_finite.outcome()?)
 }
 
-/// What is written: what the command line names, or a cache that is gone on from.
+/// What is written: what the command line names, or a cache that is resumed.
 fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSettings> {
     let mut settings = OutSettings::new(options.out.as_ref().or(options.resume.as_ref())?);
     settings.what = options.what.or(former.map(Cache::what)).unwrap_or_default();

@@ -189,8 +189,8 @@ impl App {
 
     /// Lets a frame of time pass where nothing plays, so that hair follows what is dragged; one at a time.
     pub(crate) fn step_on(&mut self) {
-        let heard = self.shown.as_ref().map_or(0, |shown| shown.drawn_after_command);
-        self.wants_step = !self.playing && self.stepped > heard;
+        let drawn = self.shown.as_ref().map_or(0, |shown| shown.drawn_after_command);
+        self.wants_step = !self.playing && self.stepped > drawn;
         if !self.playing && !self.wants_step {
             self.stepped = self.live.send(Command::Step);
         }
@@ -219,7 +219,7 @@ impl App {
     /// Loads another scene; the old one stays, and is what the controls change, until it is there.
     pub(crate) fn load(&mut self, mut scene: Scene) {
         self.error = None;
-        // The window's size and the devices that the program was started with go on.
+        // The window's size and the devices that the program was started with stay.
         let PictureSettings { width, height, .. } = self.scene.picture;
         (scene.picture.width, scene.picture.height) = (width, height);
         for (new, old) in [

@@ -1,4 +1,4 @@
-//! The system's own dialogs for files. Each waits on a thread of its own, so that the window goes on.
+//! The system's own dialogs for files. Each waits on a thread of its own, so that the window stays awake.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};

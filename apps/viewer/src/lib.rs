@@ -74,7 +74,7 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
         Err(words) => ViewError::GaveUp(words),
     };
     let has_display = std::env::var_os("DISPLAY").is_some_and(|display| !display.is_empty());
-    // A library that cannot be loaded is told in many ways, none of them clear.
+    // A library that cannot be loaded is reported in many ways, none of them clear.
     Err(libraries::missing().filter(|_| has_display).map_or(error, ViewError::Missing))
 }
 

@@ -1,4 +1,4 @@
-//! What is seen, as files: written by threads of their own, so that the window goes on.
+//! What is seen, as files: written by threads of their own, so that the window stays awake.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -84,7 +84,7 @@ impl App {
         }
     }
 
-    /// Saves what is seen as a scene, or tells why not.
+    /// Saves what is seen as a scene, or says why not.
     pub fn save_scene(&mut self, path: Option<&Path>) {
         if let Some(path) = self.path_or_free(path, "view", "toml") {
             self.live.send(Command::Save(Box::new(self.seen()), self.loaded, path));
@@ -129,7 +129,7 @@ impl App {
         self.recording
     }
 
-    /// The path with its ending, or a free one; none after an error that was told.
+    /// The path with its ending, or a free one; none after an error that was shown.
     pub(crate) fn path_or_free(&mut self, path: Option<&Path>, stem: &str, ending: &str) -> Option<PathBuf> {
         let has_ending =
             |path: &Path| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));

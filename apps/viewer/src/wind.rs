@@ -32,7 +32,7 @@ pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     if response.double_clicked() {
         seen = Vec3::ZERO;
     }
-    // What nobody moved stays as it is, however strong.
+    // What was not moved stays as it is, however strong.
     if response.dragged() || response.double_clicked() || scroll != 0.0 {
         let wind = view.inverse().transform_vector3(seen);
         app.scene.wind.velocity = wind.clamp_length_max(STRONGEST);

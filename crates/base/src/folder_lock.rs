@@ -39,7 +39,7 @@ impl FolderLock {
                 }
             }
             // Whoever held it before may have removed it after it was opened here, and a third may have made
-            // another: then this one locks nobody out.
+            // another: then this lock keeps nothing out.
             if is_there(&mut file, &path) {
                 parts::hold().add(&path);
                 mark(&mut file)?;

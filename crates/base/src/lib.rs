@@ -1,5 +1,5 @@
 //! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
-//! that one run writes at a time, arrays in a zip that grow while a run goes on, vectors of eight
+//! that one run writes at a time, arrays in a zip that grow during a run, vectors of eight
 //! strands, poses, random numbers, clocks, parallel loops, text that is safe to
 //! print, the settings table. No hair, no GPU, nothing of ours below it.
 

@@ -139,7 +139,7 @@ pub(crate) fn clear(folder: &Path, writer: Writer) {
             continue;
         }
         let part = entry.path();
-        // One that cannot be opened or locked may be somebody's.
+        // One that cannot be opened or locked may be in use.
         let Ok(file) = OpenOptions::new().write(true).open(&part) else { continue };
         if file.try_lock().is_ok() {
             // Removed before the lock is given back.

@@ -136,7 +136,7 @@ impl<T: Group + Clone + DeserializeOwned> Value for Vec<T> {
         *self = given;
     }
 
-    /// A row with a range tells how many items there may be.
+    /// The range of a row is that of the number of items.
     fn check(&self, row: &Row, key: &Key) -> Result<(), SettingError> {
         if !self.len().is_within(row.range) {
             return Err(SettingError::new(key, format!("{} of them", self.len()), row.limits()));

@@ -11,7 +11,7 @@ use crate::layers::Corners;
 pub(crate) fn nearer(corners: &Corners, point: DVec3, known: f64) -> Option<f64> {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);
-    // The distance from its plane is no more, and soon told.
+    // The distance from its plane is a lower bound, and cheap.
     let height = (point - a).dot(normal);
     let area = normal.length_squared();
     if height * height > known * area {

@@ -47,7 +47,7 @@ impl Node {
         (point - point.clamp(self.min, self.max)).length_squared()
     }
 
-    /// By which the nearer of two children is told: boxes that both hold the point by their middles.
+    /// What decides which of two children is nearer: boxes that both hold the point by their middles.
     fn key(&self, point: DVec3) -> (f64, f64) {
         (self.distance_squared(point), (0.5 * (self.min + self.max) - point).length_squared())
     }

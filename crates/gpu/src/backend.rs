@@ -19,7 +19,7 @@ pub struct UnknownBackend {
 #[serde(try_from = "String", into = "String")]
 pub enum Backend {
     /// A hardware GPU when there is one, else the CPU; never a software adapter. When the GPU fails
-    /// in the middle of a run, the run goes on on the CPU.
+    /// in the middle of a run, the run falls back to the CPU.
     #[default]
     Auto,
     /// Plain Rust on every core.

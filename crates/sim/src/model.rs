@@ -201,7 +201,7 @@ impl Model {
         &self.settings
     }
 
-    /// Changes the settings between two steps; states go on as they are. Guides with masses of their own keep
+    /// Changes the settings between two steps; states stay as they are. Guides with masses of their own keep
     /// them.
     ///
     /// # Errors

@@ -14,8 +14,8 @@ settings! {
             more "faster, softer and less exact";
         /// Gravity, world space.
         gravity: Vec3 = Vec3::new(0.0, -9.81, 0.0), in [-1000.0, 1000.0] "m/s^2", slider [-20.0, 5.0];
-        /// Steps after which a GPU's state is read, from which the CPU goes on where the GPU fails: so many it makes
-        /// again.
+        /// Steps after which a GPU's state is read. Where the GPU fails the CPU resumes from the last one and makes
+        /// the steps since then again.
         checkpoint_every: u32 = 120, in [1.0, 10_000.0] "steps",
             more "fewer waits for the GPU, a longer one where it fails";
         /// Share of the velocity that is lost per second.

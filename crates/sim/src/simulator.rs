@@ -111,7 +111,7 @@ impl Simulator {
         self.steps
     }
 
-    /// The state; of a device it is waited for where it has gone on since it was last read.
+    /// The state. A device is waited for, unless it has made no step since it was last read.
     ///
     /// # Errors
     /// The device was lost.

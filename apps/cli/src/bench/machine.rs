@@ -10,9 +10,9 @@ use crate::output::print_line;
 /// What the measurements were made on.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
-    /// Name of the processor, where the system tells it.
+    /// Name of the processor, where the system reports it.
     pub cpu: String,
-    /// Cores of the processor, where the system tells them; a virtual machine may be shown threads as cores.
+    /// Cores of the processor, where the system reports them; a virtual machine may be shown threads as cores.
     pub cores: Option<usize>,
     /// Threads that can run at once.
     pub threads: usize,
@@ -22,7 +22,7 @@ pub struct Machine {
     pub multiply_adds_per_second: Rates,
     /// Bytes that a copy of 64 MiB reads and writes \[1/s\].
     pub copy_bytes_per_second: Rates,
-    /// Largest memory that this process held \[MB\], where the system tells it.
+    /// Largest memory that this process held \[MB\], where the system reports it.
     pub peak_memory_mb: Option<f64>,
 }
 
@@ -65,7 +65,7 @@ impl Machine {
     }
 }
 
-/// Largest memory that this process held \[MB\], where the system tells it.
+/// Largest memory that this process held \[MB\], where the system reports it.
 pub fn peak_memory_mb() -> Option<f64> {
     peak_memory_mb_of("self")
 }

@@ -1,4 +1,4 @@
-//! What a window on the demo sees while somebody plays: how soon there is a picture, how fast pictures come,
+//! What a window on the demo shows under use: how soon there is a picture, how fast pictures come,
 //! how many pass from a hand's move to the one that shows it, and whether memory grows.
 
 use std::time::{Duration, Instant};
@@ -20,7 +20,7 @@ use crate::statistics::{median, quantile};
 const SECONDS: [u64; 2] = [600, 6];
 /// The picture of a window of 1280 x 800 points.
 const SIZE: [u32; 2] = [960, 752];
-/// How long nobody does anything.
+/// How long nothing is done.
 const REST: Duration = Duration::from_millis(300);
 
 #[derive(Debug, Serialize)]
@@ -34,7 +34,7 @@ pub struct Results {
     picture_moves: Shows,
     /// What changes the motion: settings, length, a hand.
     motion_moves: Shows,
-    /// Largest memory \[MB\] after a tenth of the time and at the end, where the system tells it.
+    /// Largest memory \[MB\] after a tenth of the time and at the end, where the system reports it.
     peak_memory_mb: [Option<f64>; 2],
 }
 

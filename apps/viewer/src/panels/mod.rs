@@ -32,7 +32,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 
 fn play(app: &mut App, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
-        if button(ui, if app.playing { "Pause" } else { "Play" }, "stands still or goes on: space") {
+        if button(ui, if app.playing { "Pause" } else { "Play" }, "stand still or play on: space") {
             app.play(!app.playing);
         }
         if button(ui, "Step", "one frame of 1/60 s: the full stop") {

@@ -1,6 +1,6 @@
 //! Arrays in a zip of .npy members, as numpy's `savez` writes and `load` reads them: little endian, C order.
 //!
-//! [`GrowingNpz`] writes rows while a run goes on and leaves a sound file at every moment; [`Npz`] reads stored
+//! [`GrowingNpz`] writes rows during a run and leaves a sound file at every moment; [`Npz`] reads stored
 //! and deflated members and takes no memory that the file does not have the bytes for.
 //!
 //! Layouts: the zip format's application note (APPNOTE 6.3.10, PKWARE) and the .npy format 1.0 to 3.0

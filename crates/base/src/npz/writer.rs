@@ -1,4 +1,4 @@
-//! A zip of arrays to which rows are added while a run goes on.
+//! A zip of arrays to which rows are added during a run.
 //!
 //! ```text
 //! arrays that stay | arrays of few bytes a row, with room for all | the array of most bytes, growing -> ... | tail | directory

@@ -311,7 +311,7 @@ impl Gpu {
         Ok(())
     }
 
-    /// The kernel of a key, compiled if nobody asked for it before.
+    /// The kernel of a key, compiled at its first use.
     pub(crate) fn kernel(
         &self,
         key: String,

@@ -208,7 +208,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         _ if Part::Widths.is_in(groom) => {
             files.push(("strand_widths.npy", npy::floats(&[strands], groom.root_widths())))
         }
-        // What was taken because a file had none is nobody's width.
+        // What was taken because a file had none is no width of its own.
         _ => {}
     }
     let mut add = |name, array: Option<Vec<u8>>| files.extend(array.map(|array| (name, array)));

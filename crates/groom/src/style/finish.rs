@@ -12,7 +12,7 @@ use super::comb::smooth;
 use super::strand::{CLEARANCE, Strand, outside};
 use crate::arcs::equal_arcs;
 
-/// Shapes the strands; also tells the clump of each.
+/// Shapes the strands and returns the clump of each.
 pub fn finish(
     settings: &StyleSettings,
     mannequin: &Mannequin,

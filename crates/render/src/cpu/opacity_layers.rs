@@ -37,7 +37,7 @@ fn sum_parts(map: &mut ShadowMap, strands: &Strands) {
             let behind = piece.depth - f32::from_bits(texel[3]);
             let layer = usize::from(behind > second) + usize::from(behind > third);
             let hidden = piece.coverage * hiding.of(piece.width);
-            // Without a branch that nobody could foresee.
+            // Without a branch, which could not be predicted.
             let hidden = if behind > end { 0.0 } else { hidden };
             texel[layer] = texel[layer].saturating_add((hidden * UNITS) as u32);
         });

@@ -128,7 +128,7 @@ impl<'a> Filter<'a> {
     }
 
     fn sum_rows(&mut self, row: usize) {
-        // Outside the picture the outermost samples go on.
+        // Outside the picture the outermost samples are repeated.
         let inside = |row: isize| row.clamp(0, self.samples.height() as isize - 1) as usize;
         let first = 2 * row as isize - 1;
         let [a, b, c, d] = [0, 1, 2, 3].map(|offset| self.samples.row(inside(first + offset)));

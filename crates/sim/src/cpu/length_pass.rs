@@ -24,7 +24,7 @@ pub struct Follow<'a> {
 }
 
 impl Follow<'_> {
-    /// Moves each point to its length from the one before and tells how far \[m\] that moved it.
+    /// Moves each point to its length from the one before and returns how far \[m\] that moved it.
     ///
     /// Solids push points out last, which is no correction of a length that gives velocity back.
     pub fn place(&self, positions: &mut [Vec3Lanes], planes: &mut [Plane], corrections: &mut [Vec3x8]) {

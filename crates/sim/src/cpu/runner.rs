@@ -33,7 +33,7 @@ impl CpuRunner {
         &self.model
     }
 
-    /// Changes the settings between two steps; states go on as they are.
+    /// Changes the settings between two steps; states stay as they are.
     ///
     /// # Errors
     /// As [`Model::set_settings`].

@@ -153,7 +153,7 @@ impl Buffers {
         Ok(buffers.nodes.write(&numbers)?)
     }
 
-    /// Writes what a hand holds; with an empty hand nobody reads it.
+    /// Writes what a hand holds; with an empty hand it is not read.
     pub fn write_grips(&self, grab: &Grab) -> Result<(), SimError> {
         if grab.grips.is_empty() {
             return Ok(());

@@ -35,7 +35,7 @@ impl Probe {
         self.runner.run(drive, |stage| stages.contains(&stage))
     }
 
-    /// What `advance` told of the last run.
+    /// The report of the last run of `advance`.
     ///
     /// # Errors
     /// The device was lost.

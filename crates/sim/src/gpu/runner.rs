@@ -41,7 +41,7 @@ pub struct GpuRunner {
     pub(super) volume_box: Option<[f32; 4]>,
     pub(super) grab: Grab,
     pub(super) pending: Pending,
-    /// Reports that were read before somebody asked for them.
+    /// Reports that were read but not returned yet.
     reports: Vec<StepReport>,
     gradient: Gradient,
     spread: Spread,

@@ -8,7 +8,7 @@ use super::rod::Node;
 use super::stability::stiffening;
 
 /// Segments along points \[m\]: the first section is turned towards `across`, the others follow
-/// without twist. Points that coincide go on in the direction before.
+/// without twist. Points that coincide keep the direction before them.
 pub fn segments(points: &[Vector<f64>], across: Vector<f64>) -> Vec<Segment<f64>> {
     let mut segments: Vec<Segment<f64>> = Vec::with_capacity(points.len() - 1);
     for pair in points.windows(2) {
