@@ -1,6 +1,6 @@
 //! The kit on a device: what it does, and how it refuses.
 
-use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, Recorder, Timer, groups, kernel, wgpu};
+use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, Readback, Recorder, Timer, groups, kernel, wgpu};
 
 const NUMBERS: &str = "
 override FACTOR: u32 = 1u;
@@ -236,4 +236,30 @@ fn what_crosses_is_counted() {
     buffer.read_first(10).unwrap();
     let after = gpu.crossed();
     assert_eq!([after.to_device - before.to_device, after.from_device - before.from_device], [240, 40]);
+}
+
+/// Callbacks run on whichever thread polled the device, one after the other: the news that a copy has arrived may be
+/// late, though the device is done.
+#[test]
+fn a_copy_whose_news_another_thread_holds_is_waited_for() {
+    let Some(gpu) = gpu() else { return };
+    // Large, so that the copy is not done when it is submitted.
+    let numbers = Buffer::<u32>::new(&gpu, "numbers", 1 << 23).unwrap();
+    let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+    let descriptor = wgpu::BufferDescriptor { label: None, size: 4, usage, mapped_at_creation: false };
+    let unused = gpu.device().create_buffer(&descriptor);
+    let mut batch = Readback::new();
+    let part = batch.add(&numbers, 1 << 23);
+    let transfer = batch.begin(&gpu).unwrap();
+    // No submission uses this one, so that its callback comes before that of the copy.
+    let (tell, told) = std::sync::mpsc::channel();
+    unused.slice(..).map_async(wgpu::MapMode::Read, move |_| {
+        tell.send(()).unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(300));
+    });
+    std::thread::scope(|scope| {
+        scope.spawn(|| gpu.wait().unwrap());
+        told.recv().unwrap();
+        assert_eq!(transfer.wait().unwrap().take(part).len(), 1 << 23);
+    });
 }

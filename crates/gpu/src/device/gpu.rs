@@ -8,7 +8,7 @@ use crate::{Adapter, Crossed, GpuError};
 
 /// How long a submission may take before the device counts as hung: a software adapter on a busy
 /// machine takes seconds.
-const PATIENCE: Duration = Duration::from_secs(120);
+pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A device and its queue. Clones share them.
 #[derive(Clone, Debug)]

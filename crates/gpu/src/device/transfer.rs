@@ -2,10 +2,15 @@
 
 use std::future::Future;
 use std::pin::Pin;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::task::{Context, Poll, Waker};
+use std::time::Duration;
 
+use super::gpu::PATIENCE;
 use crate::{Copied, Gpu, GpuError};
+
+/// How often a host that waits looks whether the device was lost.
+const LOOK: Duration = Duration::from_millis(10);
 
 /// A copy on its way from the device: looked for now and then, waited for, or awaited.
 #[derive(Debug)]
@@ -65,7 +70,7 @@ impl Future for Transfer {
     /// Is woken when the copy arrives: in a page by the browser, in a native program by whoever polls the device.
     fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
         if let Some((_, mapping)) = &self.staging {
-            lock(&mapping.arrival).waker = Some(context.waker().clone());
+            mapping.arrival.lock().waker = Some(context.waker().clone());
         }
         match self.try_take() {
             Ok(None) => Poll::Pending,
@@ -101,33 +106,53 @@ impl Drop for Held {
 pub(super) struct Mapping {
     /// None is everything that was submitted.
     submission: Option<wgpu::SubmissionIndex>,
-    arrival: Arc<Mutex<Arrival>>,
+    arrival: Arc<Arrival>,
 }
 
 #[derive(Debug, Default)]
 struct Arrival {
+    seen: Mutex<Seen>,
+    /// Signalled when it arrives.
+    arrived: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct Seen {
     mapped: Option<Result<(), String>>,
     waker: Option<Waker>,
 }
 
+impl Arrival {
+    fn lock(&self) -> MutexGuard<'_, Seen> {
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits until it arrives, but not longer than a time.
+    fn wait(&self, most: Duration) {
+        let absent = |seen: &mut Seen| seen.mapped.is_none();
+        self.arrived.wait_timeout_while(self.lock(), most, absent).map(drop).ok();
+    }
+}
+
 impl Mapping {
     pub fn new(staging: &wgpu::Buffer, submission: Option<wgpu::SubmissionIndex>) -> Self {
-        let arrival: Arc<Mutex<Arrival>> = Arc::default();
+        let arrival: Arc<Arrival> = Arc::default();
         let arrived = Arc::clone(&arrival);
         staging.slice(..).map_async(wgpu::MapMode::Read, move |mapped| {
-            let mut arrival = lock(&arrived);
-            arrival.mapped = Some(mapped.map_err(|error| error.to_string()));
-            arrival.waker.take().into_iter().for_each(Waker::wake);
+            let mut seen = arrived.lock();
+            seen.mapped = Some(mapped.map_err(|error| error.to_string()));
+            seen.waker.take().into_iter().for_each(Waker::wake);
+            arrived.arrived.notify_all();
         });
         Self { submission, arrival }
     }
 
     /// Whether it is readable by now.
     pub fn is_there(&self, gpu: &Gpu) -> Result<bool, GpuError> {
-        if lock(&self.arrival).mapped.is_none() {
+        if self.arrival.lock().mapped.is_none() {
             gpu.poll()?;
         }
-        match &lock(&self.arrival).mapped {
+        match &self.arrival.lock().mapped {
             None => Ok(false),
             Some(Ok(())) => Ok(true),
             Some(Err(message)) => Err(refused(gpu, message)),
@@ -140,7 +165,14 @@ impl Mapping {
             return Ok(());
         }
         gpu.wait_for(self.submission.take())?;
-        if self.is_there(gpu)? { Ok(()) } else { Err(refused(gpu, "it did not arrive")) }
+        // Another thread that polled the device may hold the news, and is about to deliver it.
+        for _ in 0..PATIENCE.as_millis() / LOOK.as_millis() {
+            if self.is_there(gpu)? {
+                return Ok(());
+            }
+            self.arrival.wait(LOOK);
+        }
+        Err(refused(gpu, "it did not arrive"))
     }
 }
 
@@ -156,8 +188,4 @@ fn refused(gpu: &Gpu, message: &str) -> GpuError {
         return lost;
     }
     GpuError::Refused { adapter: gpu.name(), what: "reading back".to_owned(), message: message.to_owned() }
-}
-
-fn lock(arrival: &Mutex<Arrival>) -> MutexGuard<'_, Arrival> {
-    arrival.lock().unwrap_or_else(PoisonError::into_inner)
 }
