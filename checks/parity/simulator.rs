@@ -110,6 +110,32 @@ fn a_device_may_fail_after_any_run() {
     }
 }
 
+/// Reading a state makes it the one to resume from: what was reported before it is not made again.
+#[test]
+fn a_device_may_fail_after_its_state_was_read() {
+    let (head, every) = (&heads()[0], 120);
+    let read = |simulator: &mut Simulator| drop(simulator.state().unwrap().clone());
+    let set = |simulator: &mut Simulator| {
+        let settings = simulator.model().settings().clone();
+        simulator.set_settings(&settings).unwrap();
+    };
+    let put = |simulator: &mut Simulator| simulator.change(|_, _| Ok(())).unwrap();
+    for between in [read, set, put] as [fn(&mut Simulator); 3] {
+        let Some(gpu) = own_gpu() else { return };
+        let mut simulator = simulator(head, &gpu, every);
+        let mut reports = Vec::new();
+        for drives in runs() {
+            reports.extend(simulator.run(&drives).unwrap());
+        }
+        between(&mut simulator);
+        gpu.destroy();
+        simulator.fall_back();
+        reports.extend(simulator.reports().unwrap());
+        assert_eq!(reports.len(), STEPS);
+        assert_eq!(simulator.steps(), STEPS as u64);
+    }
+}
+
 #[test]
 fn a_state_of_the_last_runs_is_seen_again_when_the_device_fails() {
     let head = &heads()[0];

@@ -28,8 +28,9 @@ pub struct Simulator {
     steps: u64,
     reported: u64,
     next_report: u64,
-    /// Reports of steps that the CPU made again for a device that failed.
-    remade: Vec<StepReport>,
+    /// Reports to be returned next: of steps before a state that was read, and of those that the CPU made again for a
+    /// device that failed.
+    kept: Vec<StepReport>,
 }
 
 /// A state, and what drove the steps from it to the next one that was read.
@@ -73,7 +74,7 @@ impl Simulator {
             steps: 0,
             reported: 0,
             next_report: 0,
-            remade: Vec::new(),
+            kept: Vec::new(),
         })
     }
 
@@ -120,8 +121,12 @@ impl Simulator {
             && !self.ahead.is_empty()
         {
             self.find()?;
-            let count = self.ahead.len();
-            self.checkpoint(count, GpuRunner::read_into)?;
+            let Runner::Gpu(runner) = &self.runner else { return Ok(&self.state) };
+            let coming = runner.begin_read()?;
+            // Steps before the state are not made again: their reports are kept.
+            let reports = self.collect(GpuRunner::reports)?;
+            self.kept.extend(reports);
+            self.checkpoint(self.ahead.len(), |state| coming.write(state))?;
         }
         Ok(&self.state)
     }
@@ -130,15 +135,14 @@ impl Simulator {
     fn checkpoint(
         &mut self,
         count: usize,
-        read: impl FnOnce(&GpuRunner, &mut State) -> Result<(), SimError>,
+        read: impl FnOnce(&mut State) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
-        let Runner::Gpu(runner) = &self.runner else { return Ok(()) };
         // The state before the last one makes room.
         let (mut state, drives) = match self.older.take() {
             Some(Older { state, drives }) => (state, Some(drives)),
             None => (self.state.clone(), None),
         };
-        if let Err(failure) = read(runner, &mut state) {
+        if let Err(failure) = read(&mut state) {
             self.older = drives.map(|drives| Older { state, drives });
             return Err(failure);
         }
@@ -150,9 +154,17 @@ impl Simulator {
 
     /// Resumes from the state that is on its way from now on, if it has arrived; sends one on its way where many
     /// steps were made since. What fails here fails in the next run, and these steps are made.
-    fn renew_checkpoint(&mut self, has_arrived: bool) {
-        if has_arrived && let Some((coming, count)) = self.coming.take() {
-            self.checkpoint(count, |_, state| coming.write(state)).ok();
+    fn renew_checkpoint(&mut self) {
+        let before = self.steps - self.ahead.len() as u64;
+        // Steps before it are not made again, so that their reports come first.
+        if let Some((coming, count)) =
+            self.coming.take_if(|(_, count)| self.reported >= before + *count as u64)
+        {
+            match coming.has_arrived() {
+                Ok(true) => self.checkpoint(count, |state| coming.write(state)).unwrap_or_default(),
+                Ok(false) => self.coming = Some((coming, count)),
+                Err(_) => {}
+            }
         }
         let Runner::Gpu(runner) = &self.runner else { return };
         if self.coming.is_none() && self.ahead.len() >= runner.model().settings().checkpoint_every as usize {
@@ -207,27 +219,26 @@ impl Simulator {
     /// The device has no memory left or was lost.
     pub fn run(&mut self, drives: &[Drive]) -> Result<Vec<StepReport>, SimError> {
         if let Runner::Cpu(runner) = &mut self.runner {
-            let mut reports = std::mem::take(&mut self.remade);
+            let mut reports = std::mem::take(&mut self.kept);
             reports.extend(drives.iter().map(|drive| runner.step(&mut self.state, drive)));
             self.steps += drives.len() as u64;
             self.reported = self.steps;
             return Ok(reports);
         }
         self.find()?;
-        // Seen first: what comes before it has arrived too.
-        let has_arrived =
-            self.coming.as_ref().is_some_and(|(coming, _)| coming.has_arrived().unwrap_or(false));
         self.lost = true;
         if let Runner::Gpu(runner) = &mut self.runner {
             for drive in drives {
                 runner.step(drive)?;
             }
         }
-        let reports = self.collect(GpuRunner::arrived_reports)?;
+        let arrived = self.collect(GpuRunner::arrived_reports)?;
+        let mut reports = std::mem::take(&mut self.kept);
+        reports.extend(arrived);
         self.lost = false;
         self.ahead.extend_from_slice(drives);
         self.steps += drives.len() as u64;
-        self.renew_checkpoint(has_arrived);
+        self.renew_checkpoint();
         Ok(reports)
     }
 
@@ -236,11 +247,13 @@ impl Simulator {
     /// # Errors
     /// The device was lost.
     pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
-        let mut reports = std::mem::take(&mut self.remade);
         self.find()?;
-        reports.extend(self.collect(GpuRunner::reports)?);
+        let found = self.collect(GpuRunner::reports)?;
+        let mut reports = std::mem::take(&mut self.kept);
+        reports.extend(found);
         Ok(reports)
     }
+
     /// Changes the settings between two steps.
     ///
     /// # Errors
@@ -348,7 +361,7 @@ impl Simulator {
         for drive in drives {
             let report = runner.step(&mut self.state, &drive);
             at += 1;
-            self.remade.extend((at > self.reported).then_some(report));
+            self.kept.extend((at > self.reported).then_some(report));
             if at == step {
                 see(&self.state);
                 seen = true;
