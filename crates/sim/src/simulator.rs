@@ -293,6 +293,17 @@ impl Simulator {
 
     /// Brings the state to the device.
     fn write(&mut self) -> Result<(), SimError> {
+        if self.lost {
+            // Of steps that do not count.
+            if let Runner::Gpu(runner) = &mut self.runner {
+                runner.forget_reports();
+            }
+            self.next_report = self.steps;
+        } else {
+            // A device that failed shows below.
+            let reports = self.collect(GpuRunner::reports).unwrap_or_default();
+            self.kept.extend(reports);
+        }
         self.ahead.clear();
         (self.older, self.coming) = (None, None);
         if let Runner::Gpu(runner) = &mut self.runner {
