@@ -60,28 +60,37 @@ impl LiveClock {
         (drawn, seconds)
     }
 
-    /// Waits for a message for so long; `is_advance` recognizes those that a manual clock's wake sends.
+    /// The end of a time that begins now.
+    pub(super) fn after(&self, patience: Duration) -> Deadline {
+        Deadline { patience, manual: self.manual_time().map(|manual| manual.now + patience) }
+    }
+
+    /// Waits for a message, no longer than until a deadline; `is_advance` recognizes those that a manual clock's wake
+    /// sends.
     pub(super) fn receive<T>(
         &self,
         messages: &Receiver<T>,
-        patience: Duration,
+        deadline: &Deadline,
         is_advance: impl Fn(&T) -> bool,
     ) -> Result<T, RecvTimeoutError> {
-        let Some(now) = self.manual_time().map(|manual| manual.now) else {
-            return messages.recv_timeout(patience);
-        };
-        if patience.is_zero() {
-            return messages.recv_timeout(patience);
-        }
-        let until = now + patience;
+        let Some(until) = deadline.manual else { return messages.recv_timeout(deadline.patience) };
         loop {
-            let message = messages.recv().map_err(|_| RecvTimeoutError::Disconnected)?;
+            let is_over = self.manual_time().is_some_and(|manual| manual.now >= until);
+            let message = if is_over {
+                messages.recv_timeout(Duration::ZERO)?
+            } else {
+                messages.recv().map_err(|_| RecvTimeoutError::Disconnected)?
+            };
             if !is_advance(&message) {
                 return Ok(message);
             }
-            if self.manual_time().is_some_and(|manual| manual.now >= until) {
-                return Err(RecvTimeoutError::Timeout);
-            }
         }
     }
+}
+
+/// The end of a time.
+pub(super) struct Deadline {
+    patience: Duration,
+    /// By a manual clock.
+    manual: Option<Duration>,
 }

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use super::clock::LiveClock;
+use super::clock::{Deadline, LiveClock};
 use super::loaded::Loaded;
 use super::messages::{Command, LiveEvent, Out, Shown};
 use super::playing::{Playing, changes_cost, of_size};
@@ -71,14 +71,14 @@ impl Desk {
 
     fn play(&self, playing: &mut Playing) {
         loop {
-            let patience = playing.patience();
+            let deadline = self.clock.after(playing.patience());
             if playing.is_idle() {
                 // Who waits for it may be gone.
                 for idler in playing.idlers.drain(..) {
                     let _ = idler.send(());
                 }
             }
-            let mut next = self.next(patience);
+            let mut next = self.next(&deadline);
             // Nothing happened for a moment: what was drawn simpler is drawn in full.
             let rests = next.is_err() && !playing.playing && playing.steps == 0;
             let mut full = rests && playing.draft && !playing.stale;
@@ -92,7 +92,7 @@ impl Desk {
                     }
                     Err(RecvTimeoutError::Timeout) => break,
                 }
-                next = self.next(Duration::ZERO);
+                next = self.next(&self.clock.after(Duration::ZERO));
             }
             let draft = playing.adapts && playing.slow && !full && playing.recorder.is_none();
             if let Err(error) = self.frame(playing, draft) {
@@ -104,8 +104,8 @@ impl Desk {
         }
     }
 
-    fn next(&self, patience: Duration) -> Result<Message, RecvTimeoutError> {
-        self.clock.receive(&self.messages, patience, |message| matches!(message, Message::Advanced))
+    fn next(&self, deadline: &Deadline) -> Result<Message, RecvTimeoutError> {
+        self.clock.receive(&self.messages, deadline, |message| matches!(message, Message::Advanced))
     }
 
     fn receive(&self, playing: &mut Playing, message: Message) {

@@ -36,12 +36,12 @@ fn a_run_that_may_fall_back_goes_on_from_the_last_state() {
     let notes = hair.take_notes();
     assert_eq!(notes.len(), usize::from(gpu.adapter().software), "{notes:?}");
     hair.set_fall_back(true);
-    hair.step(0.1, &turned(0.2)).unwrap();
+    let mut reports = hair.step(0.1, &turned(0.2)).unwrap();
     let before = hair.state().unwrap().clone();
     assert!(hair.simulated_on().starts_with("gpu:"));
     gpu.destroy();
-    let reports = hair.step(1.0 / 60.0, &turned(0.23)).unwrap();
-    assert_eq!(reports.len(), 1);
+    reports.extend(hair.step(1.0 / 60.0, &turned(0.23)).unwrap());
+    assert_eq!(reports.len(), 7, "each step once");
     assert_eq!(hair.simulated_on(), "cpu");
     let notes = hair.take_notes();
     assert!(
