@@ -139,6 +139,7 @@ impl Player {
         }
         self.session.place.work().restore(&state)?;
         (self.started, self.taken) = (state.frame + 1, state.frame + 1);
+        self.session.drawn = self.taken;
         if let Some(out) = &mut self.out {
             out.copy(cache, &state)?;
         }

@@ -139,6 +139,22 @@ fn a_film_that_goes_on_makes_the_same_file_as_one_that_never_stopped() {
 }
 
 #[test]
+fn pictures_of_a_resumed_film_keep_their_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, path) = (scene(), folder.path().join("short.npz"));
+    let film = strandline::scene::FilmSection { frames: 8, ..scene.film };
+    whole(&Scene { film, ..scene.clone() }, &OutSettings::new(&path));
+    let mut rest = Player::new(&scene, Backend::Cpu, true).unwrap();
+    rest.resume(&mut Cache::open(&path).unwrap()).unwrap();
+    let number = |event| match event {
+        Ok(Event::Drawn { frame, .. }) => Some(frame),
+        Ok(_) => None,
+        Err(error) => panic!("{error}"),
+    };
+    assert_eq!(rest.filter_map(number).collect::<Vec<u32>>(), (8..FRAMES).collect::<Vec<u32>>());
+}
+
+#[test]
 fn rods_go_on_too() {
     let folder = tempfile::tempdir().unwrap();
     goes_on(&rods(), 1, folder.path());
