@@ -52,7 +52,9 @@ impl Rig {
     /// # Panics
     /// The device refuses.
     pub fn steps(&mut self, drives: &[Drive]) -> Vec<StepReport> {
-        self.0.run(drives).unwrap()
+        let mut reports = self.0.run(drives).unwrap();
+        reports.extend(self.0.reports().unwrap());
+        reports
     }
 
     /// The state as it is now.

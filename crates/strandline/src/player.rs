@@ -280,6 +280,7 @@ impl Player {
 
     /// Takes the next frame from the worker and writes it, where frames are written.
     fn take(&mut self) -> Result<(), Error> {
+        let earlier = self.session.event_count();
         self.session.take()?;
         let frame = self.taken;
         self.taken += 1;
@@ -295,7 +296,7 @@ impl Player {
         }
         let time = self.course.time(frame);
         if let Some(mut out) = self.out.take() {
-            let reports = self.session.reports();
+            let reports = self.session.reports_after(earlier);
             // A file that cannot be written ends with the frame before.
             out.add(frame, time, self.session.shown(), &reports, state.as_ref())?;
             self.out = Some(out);

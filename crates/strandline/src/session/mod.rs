@@ -339,9 +339,14 @@ impl<P: Place> Session<P> {
         notes
     }
 
-    /// The reports among the events that were not taken yet.
-    pub fn reports(&self) -> Vec<StepReport> {
-        let reports = self.events.iter().filter_map(|event| match event {
+    /// Events that were not taken yet.
+    pub fn event_count(&self) -> usize {
+        self.events.len()
+    }
+
+    /// The reports among these events, but for the first so many of them.
+    pub fn reports_after(&self, event_count: usize) -> Vec<StepReport> {
+        let reports = self.events.iter().skip(event_count).filter_map(|event| match event {
             Event::Stepped(report) => Some(report.clone()),
             Event::Note(_) | Event::Drawn { .. } => None,
         });

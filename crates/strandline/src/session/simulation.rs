@@ -162,6 +162,8 @@ impl Simulation {
             self.engine.run(&vec![drive; count])?;
             left -= count;
         }
+        // These steps are not reported, however late their reports come.
+        self.engine.reports()?;
         self.poses = [self.end; 2];
         Ok(())
     }
