@@ -1,5 +1,6 @@
 //! The window in which a person plays with hair: panels only, all else is the library's.
 
+#![recursion_limit = "256"] // the documentation follows types down into the device
 #![forbid(unsafe_code)]
 
 mod app;
