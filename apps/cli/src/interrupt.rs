@@ -3,7 +3,7 @@
 //! Where pictures or steps follow each other the program stops between two of them, closes what it writes and
 //! ends; a second request, or one at any other time, ends it at once, with its half-written files removed.
 
-use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 use std::time::Duration;
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -21,6 +21,8 @@ static CAME: AtomicUsize = AtomicUsize::new(0);
 static ASKED: AtomicUsize = AtomicUsize::new(0);
 /// How many look for it.
 static LOOKING: AtomicUsize = AtomicUsize::new(0);
+/// Whether what was to be stopped has ended by itself: the program has but to say so.
+static FINISHED: AtomicBool = AtomicBool::new(false);
 
 /// Begins to listen. Where the system has no signals or no thread to give, its own way of ending stays.
 pub fn listen() {
@@ -58,8 +60,12 @@ fn watch() {
         if signal == 0 {
             continue;
         }
-        if LOOKING.load(SeqCst) == 0 || ASKED.swap(signal, SeqCst) != 0 {
+        let heard = LOOKING.load(SeqCst) > 0 || FINISHED.load(SeqCst);
+        if !heard || ASKED.swap(signal, SeqCst) != 0 {
             exit::end_now(exit::SIGNAL + signal as i32);
+        }
+        if FINISHED.load(SeqCst) {
+            continue;
         }
         output::note("stopping after this frame; once more stops at once");
     }
@@ -72,6 +78,12 @@ impl Stoppable {
     pub fn begin() -> Self {
         LOOKING.fetch_add(1, SeqCst);
         Self(())
+    }
+
+    /// The work is done and written: a request that comes now finds nothing to stop, and the program ends as it
+    /// would without.
+    pub fn finish(self) {
+        FINISHED.store(true, SeqCst);
     }
 
     /// The request to stop, if there was one.

@@ -98,8 +98,8 @@ fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow
         output::note(&format!("the {} files already written are whole: {}", film.len(), path.display()));
     }
     let (files, notes) = film.finish();
-    drop(stoppable);
     let non_finite = non_finite?;
+    stoppable.finish();
     notes.iter().for_each(|note| output::note(note));
     if json {
         output::program(&format!("{}\n", serde_json::json!({ "frames": files.len(), "files": files })));
@@ -159,7 +159,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
         return Err(broken_off(film, folder, error));
     }
     let written = film.finish()?;
-    drop(stoppable);
+    stoppable.finish();
     for note in &written.notes {
         output::note(note);
     }

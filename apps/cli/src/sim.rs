@@ -223,7 +223,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let mut steps = Steps::default();
     let played = play(&mut player, &mut steps, &stoppable, inputs.json);
     let written = close(&mut player, played)?;
-    drop(stoppable);
+    stoppable.finish();
     let mut report = steps.report(Ended::of(&player, &scene)?);
     report.out = written.map(|written| OutReport {
         path: written.place,

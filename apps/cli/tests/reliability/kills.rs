@@ -106,7 +106,7 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
     let whole = std::fs::read(at("whole.npz")).unwrap();
     let mut random = strandline::low_level::body::Random::new(3, 0);
     let (mut short, mut frames) = (0, Vec::new());
-    for turn in 0..9 {
+    for turn in 0..13 {
         let (name, number) = SIGNALS[turn % SIGNALS.len()];
         let mut child = heeding(folder.path(), &sim("part.npz"))
             .stdout(Stdio::null())
@@ -114,10 +114,13 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
             .spawn()
             .unwrap();
         wait_until("a cache", || at("part.npz").exists());
-        // The first requests come before the first frame, the others at some time: a faster machine is no reason to
-        // be late.
-        let is_request = turn < SIGNALS.len() && name != "KILL";
-        let share = if is_request { 0.0 } else { 0.6 * random.unit() };
+        // The first requests come before the first frame, the last about the end, the others at some time: a
+        // faster machine is no reason to be late.
+        let share = match turn {
+            0..4 if name != "KILL" => 0.0,
+            0..9 => 0.6 * random.unit(),
+            _ => 0.9 + 0.15 * random.unit(),
+        };
         std::thread::sleep(whole_time.mul_f32(share));
         send(name, child.id());
         wait_until("ended", || child.try_wait().unwrap().is_some());
