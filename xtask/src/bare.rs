@@ -1,8 +1,9 @@
-//! The program without GPUs and window: what may not be in it.
+//! The program without GPUs and window: what may not be in it, and that it simulates and draws.
 
+use std::path::Path;
 use std::process::Command;
 
-use crate::cargo::root;
+use crate::cargo::{cargo_command, root};
 
 /// Crates that only GPUs and windows need.
 const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];
@@ -10,8 +11,59 @@ const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];
 /// The words for cargo that choose it.
 pub const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
 
-/// Whether it is built from none of the crates that it can do without.
+/// What it is run with, in a folder of its own: a step of hair, and a picture of it.
+const RUNS: [&[&str]; 2] = [
+    &["sim", "--scene", "bare.toml", "--frames", "2", "--json"],
+    &["render", "--scene", "bare.toml", "--frames", "1", "--out", "bare.png", "--json"],
+];
+/// Hair that takes no time.
+const SCENE: &str = "[style]\nstrand_count = 40\n[body]\nspacing = 0.02\n[film]\nsettle = 0.0\n\
+                     [picture]\nwidth = 64\nheight = 48\n[simulation]\nvolume.cells = [8, 8, 8]\n";
+
+/// Whether it is built from none of the crates that it can do without, and then does what it is for.
 pub fn check() -> bool {
+    is_built_from_what_it_needs() && runs()
+}
+
+/// Builds it, our crates without optimization, and runs it in a folder of its own.
+fn runs() -> bool {
+    let target = root().join("target/bare");
+    let mut build = cargo_command(&["build", "--quiet", "--config", "profile.dev.opt-level=0"]);
+    let built = build.arg("--target-dir").arg(&target).args(CHOICE).status();
+    if !built.is_ok_and(|status| status.success()) {
+        println!("the program without GPUs and window is not built");
+        return false;
+    }
+    let folder = target.join("run");
+    let written =
+        std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(folder.join("bare.toml"), SCENE));
+    if let Err(error) = written {
+        println!("no scene for the program without GPUs and window: {error}");
+        return false;
+    }
+    let picture = folder.join("bare.png");
+    // Of an earlier run.
+    let _ = std::fs::remove_file(&picture);
+    let program = target.join("debug").join(format!("strandline{}", std::env::consts::EXE_SUFFIX));
+    let works = RUNS.iter().all(|words| run(&program, words, &folder));
+    if works && !picture.is_file() {
+        println!("the program without GPUs and window drew no {}", picture.display());
+    }
+    works && picture.is_file()
+}
+
+fn run(program: &Path, words: &[&str], folder: &Path) -> bool {
+    let output = Command::new(program).args(words).current_dir(folder).output();
+    let said = match output {
+        Ok(output) if output.status.success() => return true,
+        Ok(output) => String::from_utf8_lossy(&output.stderr).into_owned(),
+        Err(error) => error.to_string(),
+    };
+    println!("the program without GPUs and window, {}: {said}", words.join(" "));
+    false
+}
+
+fn is_built_from_what_it_needs() -> bool {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let tree = ["tree", "--edges", "normal,build", "--prefix", "none"];
     let output = Command::new(cargo).args(tree).args(CHOICE).current_dir(root()).output();

@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | deny | licences`.
+//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | bare | deny | licences`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
@@ -29,10 +29,12 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   names    check that every stage has one name everywhere
   house    check the plan of the house: arrows between crates, circles of files, sizes
   faults   plant the faults of checks/faults in a copy of the tree, one after the other, and run
-           the tests that have to see each. Results are kept: a run that was broken off goes on,
+           the tests that have to see each. Results are kept: a run that was stopped early resumes,
            and a fault with a result for the tree as it is is not run again unless it is named.
            [NAME..] these only, --cpu without the tests on a GPU, --list names and meanings,
            --table the page docs/faults.md
+  bare     build the program without GPUs and window, look what it is built from, simulate and draw
+           with it
   deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
            faults where their list can be had; `test` does the first three where it is installed
   licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";
@@ -46,6 +48,7 @@ enum Chore {
     Names,
     House,
     Faults(faults::Wish),
+    Bare,
     Deny,
     Licences(Option<String>),
     Help,
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         Some(Chore::Names) => names::check(),
         Some(Chore::House) => house::check(),
         Some(Chore::Faults(wish)) => faults::faults(&wish),
+        Some(Chore::Bare) => bare::check(),
         Some(Chore::Deny) => licences::deny(),
         Some(Chore::Licences(texts)) => licences::write(texts.as_deref()),
         Some(Chore::Help) => {
@@ -88,6 +92,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["names"] => Some(Chore::Names),
         ["house"] => Some(Chore::House),
         ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
+        ["bare"] => Some(Chore::Bare),
         ["deny"] => Some(Chore::Deny),
         ["licences"] => Some(Chore::Licences(None)),
         ["licences", file] => Some(Chore::Licences(Some((*file).to_owned()))),
