@@ -1,6 +1,6 @@
 //! Kernels against their shaders, without an adapter.
 
-use strandline_gpu::{Access, Declaration, Field, Layout, Scan, check};
+use strandline_gpu::{Access, Declaration, Field, Layout, Scan, Tail, check};
 use strandline_render::gpu as render;
 use strandline_sim::gpu as sim;
 
@@ -85,6 +85,46 @@ fn a_wrong_access_name_number_or_type_is_found() {
     wrong.bindings[4].layout = Layout::Scalar("u32");
     let found = complaints(&wrong);
     assert!(found.contains("elements of 8 bytes, declared 4"), "{found}");
+}
+
+#[test]
+fn other_workgroups_are_found() {
+    let wrong = Declaration { threads: Some(128), ..declaration("gather") };
+    assert!(complaints(&wrong).contains("workgroups of 64 x 1 x 1 threads, declared 128"));
+    let wrong = Declaration { threads: None, ..declaration("gather") };
+    assert!(complaints(&wrong).contains("workgroups of 64 threads, declared as chosen by a constant"));
+    let wrong = Declaration { threads: Some(64), ..declaration("constrain") };
+    assert!(complaints(&wrong).contains("a constant chooses the threads of workgroups, declared 64"));
+}
+
+#[test]
+fn another_tail_is_found() {
+    let with_tail = |entry, change: fn(&mut Option<Box<Tail>>)| {
+        let mut wrong = declaration(entry);
+        let Layout::Struct { tail, .. } = &mut wrong.bindings[0].layout else { panic!("a struct") };
+        change(tail);
+        complaints(&wrong)
+    };
+    let found = with_tail("mark", |tail| *tail = None);
+    assert!(found.contains("step ends in solids, declared nothing"), "{found}");
+    let found = with_tail("mark", |tail| tail.iter_mut().for_each(|tail| tail.name = "walls"));
+    assert!(found.contains("step.walls is called solids"), "{found}");
+    let found =
+        with_tail("mark", |tail| tail.iter_mut().for_each(|tail| tail.layout = Layout::Scalar("u32")));
+    assert!(found.contains("step.solids: elements of 16 bytes, declared 4"), "{found}");
+}
+
+#[test]
+fn an_array_of_another_length_is_found() {
+    let mut wrong = declaration("fit");
+    let Layout::Struct { fields, .. } = &mut wrong.bindings[0].layout else { panic!("a struct") };
+    let fitted = fields.iter_mut().find(|field| field.name == "fitted").unwrap();
+    let Layout::Struct { fields, .. } = &mut fitted.layout else { panic!("a struct") };
+    let windows = fields.iter_mut().find(|field| field.name == "windows").unwrap();
+    let Layout::Array { count, .. } = &mut windows.layout else { panic!("an array") };
+    *count += 1;
+    let found = complaints(&wrong);
+    assert!(found.contains("frame.fitted.windows has 16 elements, declared 17"), "{found}");
 }
 
 #[test]

@@ -43,14 +43,16 @@ fn beside_kit(folder: &str) -> PathBuf {
             std::fs::write(package.join(name), with_constants(&text)).expect("cargo made the folder");
         }
     }
-    let threads = threads::THREADS;
-    let kit = format!("{KIT}\n// Threads of a workgroup: threads.rs.\nconst THREADS = {threads}u;\n");
+    let (threads, many) = (threads::THREADS, threads::MANY);
+    let sizes = format!("const THREADS = {threads}u;\nconst MANY = {many}u;\n");
+    let kit = format!("{KIT}\n// Threads of a workgroup: threads.rs.\n{sizes}");
     std::fs::write(package.join("kit.wesl"), kit).expect("cargo made the folder");
     package
 }
 
 /// A shader with the constants that Rust owns: `const NAME = rust("cpu/file.rs");` takes the value of `NAME` in that
-/// file of the crate, `rust("cpu/file.rs", f32)` as a number of that type.
+/// file of the crate (or of another, as in `../../groom/src/file.rs`), `rust("cpu/file.rs", f32)` as a number of that
+/// type. Names in the value are constants of the shader.
 fn with_constants(shader: &str) -> String {
     let line = |line: &str| match line.strip_prefix("const ").and_then(|rest| rest.split_once(" = rust(\"")) {
         None => line.to_owned(),
@@ -67,32 +69,46 @@ fn with_constants(shader: &str) -> String {
 /// The value of a constant in a Rust file, as a shader writes it.
 fn constant(path: &Path, name: &str, kind: Option<&str>) -> String {
     println!("cargo::rerun-if-changed={}", path.display());
-    let text = std::fs::read_to_string(path).expect("rust(...) names a file of the crate");
+    let text = std::fs::read_to_string(path).expect("rust(...) names a file of a crate");
     let stem = format!("const {name}: ");
     let found = text.lines().find_map(|line| line.split_once(&stem)?.1.strip_suffix(';')?.split_once(" = "));
     let (own, value) = found.unwrap_or_else(|| panic!("no constant {name} in {}", path.display()));
-    let value = value.replace('_', "");
-    match kind.unwrap_or(own) {
-        "f32" if !value.contains(['.', 'e']) => format!("{value}.0"),
-        "f32" | "i32" => value,
-        "u32" if value == "u32::MAX" => "0xffffffffu".to_owned(),
-        "u32" | "usize" => suffixed(&value),
-        other => panic!("{name} is a {other}, which a shader has not"),
+    match own.strip_prefix('[').and_then(|own| own.split_once(';')) {
+        None if value == "u32::MAX" => "0xffffffffu".to_owned(),
+        None => expression(value, kind.unwrap_or(own)),
+        Some((own, _)) => {
+            let kind = kind.unwrap_or(own);
+            format!("array({})", expression(value.trim_matches(['[', ']']), kind))
+        }
     }
 }
 
-/// An expression of whole numbers, each marked as one without sign.
-fn suffixed(expression: &str) -> String {
+/// An expression with its numbers as a shader writes those of a type.
+fn expression(text: &str, kind: &str) -> String {
     let mut written = String::new();
-    let mut before = ' ';
-    for character in expression.chars().chain([' ']) {
-        if before.is_ascii_alphanumeric() && !character.is_ascii_alphanumeric() {
-            written.push('u');
+    let mut word = String::new();
+    for character in text.chars().chain([' ']) {
+        let begins_with_digit = word.starts_with(|first: char| first.is_ascii_digit());
+        let of_exponent = begins_with_digit && word.ends_with('e') && character == '-';
+        if character.is_ascii_alphanumeric() || ['.', '_'].contains(&character) || of_exponent {
+            word.push(character);
+            continue;
         }
+        written.push_str(&if begins_with_digit { number(&word, kind) } else { word.clone() });
         written.push(character);
-        before = character;
+        word.clear();
     }
     written.trim_end().to_owned()
+}
+
+fn number(digits: &str, kind: &str) -> String {
+    let digits = digits.replace('_', "");
+    match kind {
+        "f32" if !digits.contains(['.', 'e']) => format!("{digits}.0"),
+        "f32" | "i32" => digits,
+        "u32" | "usize" => format!("{digits}u"),
+        other => panic!("a {other}, which a shader has not"),
+    }
 }
 
 /// The names of the modules with entry points, in order.

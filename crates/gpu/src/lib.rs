@@ -26,7 +26,7 @@ pub use backend::{Backend, UnknownBackend};
 #[cfg(feature = "wgpu")]
 pub use device::*;
 pub use error::GpuError;
-pub use threads::THREADS;
+pub use threads::{MANY, THREADS};
 
 /// The crate that the host's device and queue come from.
 #[cfg(feature = "wgpu")]

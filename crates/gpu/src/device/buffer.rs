@@ -34,7 +34,24 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// It is larger than WebGPU's default limits allow, or the device has no memory left.
     pub fn new(gpu: &Gpu, name: &'static str, len: usize) -> Result<Self, GpuError> {
-        let bytes = (len.max(1) * size_of::<T>()).next_multiple_of(4) as u64;
+        Self::with_bytes(gpu, name, len, len.max(1) * size_of::<T>())
+    }
+
+    /// As [`Buffer::new`], with room for so many elements of another type behind the last; for one, where there is none.
+    ///
+    /// # Errors
+    /// As [`Buffer::new`].
+    pub fn with_tail<U: Pod>(
+        gpu: &Gpu,
+        name: &'static str,
+        len: usize,
+        tail: usize,
+    ) -> Result<Self, GpuError> {
+        Self::with_bytes(gpu, name, len, len.max(1) * size_of::<T>() + tail.max(1) * size_of::<U>())
+    }
+
+    fn with_bytes(gpu: &Gpu, name: &'static str, len: usize, bytes: usize) -> Result<Self, GpuError> {
+        let bytes = bytes.next_multiple_of(4) as u64;
         gpu.check_size(name, bytes)?;
         gpu.take_memory(name, bytes)?;
         let lease = Arc::new(Lease { gpu: gpu.clone(), bytes });
@@ -113,13 +130,23 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// As [`Buffer::write`].
     pub fn write_at(&self, first: usize, elements: &[T]) -> Result<(), GpuError> {
-        let bytes: &[u8] = bytemuck::cast_slice(elements);
+        self.write_bytes(first * size_of::<T>(), bytemuck::cast_slice(elements))
+    }
+
+    /// Replaces the first elements behind the last of the buffer's own: see [`Buffer::with_tail`].
+    ///
+    /// # Errors
+    /// As [`Buffer::write`].
+    pub fn write_tail<U: Pod>(&self, elements: &[U]) -> Result<(), GpuError> {
+        self.write_bytes(self.len * size_of::<T>(), bytemuck::cast_slice(elements))
+    }
+
+    fn write_bytes(&self, first: usize, bytes: &[u8]) -> Result<(), GpuError> {
         if bytes.is_empty() {
             return Ok(());
         }
         self.gpu().count_to_device(bytes.len());
-        let offset = (first * size_of::<T>()) as u64;
-        self.gpu().guarded(self.name, || self.gpu().queue().write_buffer(&self.raw, offset, bytes))
+        self.gpu().guarded(self.name, || self.gpu().queue().write_buffer(&self.raw, first as u64, bytes))
     }
 
     /// Waits for the device and copies all elements back.

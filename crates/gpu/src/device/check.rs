@@ -1,13 +1,13 @@
 //! Holds a kernel's declaration to the shader that was linked: names, offsets, sizes, access.
 
 use wgpu::naga::{
-    AddressSpace, Handle, ImageClass, Module, ScalarKind, ShaderStage, StorageAccess, Type, TypeInner,
-    VectorSize,
+    AddressSpace, ArraySize, Handle, ImageClass, Module, ScalarKind, ShaderStage, StorageAccess,
+    StructMember, Type, TypeInner, VectorSize,
     front::wgsl,
     valid::{Capabilities, ValidationFlags, Validator},
 };
 
-use crate::{Access, Binding, Declaration, Layout};
+use crate::{Access, Binding, Declaration, Layout, Tail};
 
 /// Compares a declaration with its linked shader, without a device. Returns what differs; nothing
 /// when the two agree.
@@ -37,7 +37,7 @@ fn problems(declaration: &Declaration) -> Vec<String> {
             None => return vec!["there is no such entry point".to_owned()],
         }
     }
-    let mut problems = Vec::new();
+    let mut problems = threads(&module, declaration);
     let mut found = Vec::new();
     for (handle, variable) in module.global_variables.iter() {
         let Some(binding) = &variable.binding else { continue };
@@ -78,6 +78,27 @@ fn entries(declaration: &Declaration) -> Vec<(ShaderStage, &'static str)> {
     std::iter::once((ShaderStage::Vertex, declaration.entry)).chain(fragment).collect()
 }
 
+/// What differs between the workgroups that are declared and the shader's.
+fn threads(module: &Module, declaration: &Declaration) -> Vec<String> {
+    if declaration.draws {
+        return Vec::new();
+    }
+    let of_entry = module.entry_points.iter().find(|entry| entry.name == declaration.entry);
+    let Some(entry) = of_entry else { return Vec::new() };
+    let is_chosen = entry.workgroup_size_overrides.is_some();
+    let [x, y, z] = entry.workgroup_size;
+    match declaration.threads {
+        None if !is_chosen => vec![format!("workgroups of {x} threads, declared as chosen by a constant")],
+        Some(declared) if is_chosen => {
+            vec![format!("a constant chooses the threads of workgroups, declared {declared}")]
+        }
+        Some(declared) if [x as usize, y as usize, z as usize] != [declared, 1, 1] => {
+            vec![format!("workgroups of {x} x {y} x {z} threads, declared {declared}")]
+        }
+        None | Some(_) => Vec::new(),
+    }
+}
+
 fn compare_variable(
     module: &Module,
     declared: &Binding,
@@ -114,7 +135,11 @@ fn compare_variable(
             };
             return compare_scalar(scalar, *kind, declared.name, problems);
         }
-        _ => ty,
+        TypeInner::Struct { .. } => ty,
+        other => {
+            problems.push(format!("{} is {other:?}, which is neither an array nor a struct", declared.name));
+            return;
+        }
     };
     compare_type(module, &declared.layout, element, declared.name, problems);
 }
@@ -143,6 +168,7 @@ fn size_of_layout(layout: &Layout) -> usize {
     match layout {
         Layout::Scalar(_) => 4,
         Layout::Vector { count, .. } => 4 * count,
+        Layout::Array { element, count } => size_of_layout(element) * count,
         Layout::Struct { size, .. } => *size,
     }
 }
@@ -164,17 +190,32 @@ fn compare_type(module: &Module, layout: &Layout, ty: Handle<Type>, path: &str, 
                 problems.push(format!("{path} has {lanes} components, declared {count}"));
             }
         }
-        (Layout::Struct { name, size, fields }, TypeInner::Struct { members, span }) => {
+        (Layout::Array { element, count }, TypeInner::Array { base, size, stride }) => {
+            let found = if let ArraySize::Constant(found) = size { found.get() as usize } else { 0 };
+            if found != *count {
+                problems.push(format!("{path} has {found} elements, declared {count}"));
+            }
+            let bytes = size_of_layout(element);
+            if *stride as usize != bytes {
+                problems.push(format!("{path}: elements of {stride} bytes, declared {bytes}"));
+            }
+            compare_type(module, element, *base, path, problems);
+        }
+        (Layout::Struct { name, size, fields, tail }, TypeInner::Struct { members, span }) => {
             let called = found.name.as_deref().unwrap_or_default();
             if !is_named(called, name) {
                 problems.push(format!("{path} is a {called}, declared {name}"));
             }
-            if *span as usize != *size {
-                problems.push(format!("{path} has {span} bytes, declared {size}"));
+            let last = members.last().filter(|last| is_unsized(module, last.ty));
+            let bytes = last.map_or(*span, |last| last.offset);
+            if bytes as usize != *size {
+                problems.push(format!("{path} has {bytes} bytes, declared {size}"));
             }
+            let members = &members[..members.len() - usize::from(last.is_some())];
             if members.len() != fields.len() {
                 problems.push(format!("{path} has {} fields, declared {}", members.len(), fields.len()));
             }
+            compare_tail(module, tail.as_deref(), last, path, problems);
             for (member, field) in members.iter().zip(fields) {
                 let path = format!("{path}.{}", field.name);
                 if member.name.as_deref() != Some(field.name) {
@@ -189,6 +230,42 @@ fn compare_type(module: &Module, layout: &Layout, ty: Handle<Type>, path: &str, 
         }
         (declared, found) => problems.push(format!("{path} is {found:?}, declared {declared:?}")),
     }
+}
+
+fn is_unsized(module: &Module, ty: Handle<Type>) -> bool {
+    matches!(module.types[ty].inner, TypeInner::Array { size: ArraySize::Dynamic, .. })
+}
+
+/// Compares what a struct ends in with the array without a length that a shader has there.
+fn compare_tail(
+    module: &Module,
+    declared: Option<&Tail>,
+    found: Option<&StructMember>,
+    path: &str,
+    problems: &mut Vec<String>,
+) {
+    let (declared, found) = match (declared, found) {
+        (None, None) => return,
+        (Some(declared), Some(found)) => (declared, found),
+        (declared, found) => {
+            let name = |of: Option<&str>| of.unwrap_or("nothing").to_owned();
+            let found = name(found.and_then(|found| found.name.as_deref()));
+            problems
+                .push(format!("{path} ends in {found}, declared {}", name(declared.map(|tail| tail.name))));
+            return;
+        }
+    };
+    let path = format!("{path}.{}", declared.name);
+    if found.name.as_deref() != Some(declared.name) {
+        problems
+            .push(format!("{path} is called {} in the shader", found.name.as_deref().unwrap_or_default()));
+    }
+    let TypeInner::Array { base, stride, .. } = module.types[found.ty].inner else { return };
+    let size = size_of_layout(&declared.layout);
+    if stride as usize != size {
+        problems.push(format!("{path}: elements of {stride} bytes, declared {size}"));
+    }
+    compare_type(module, &declared.layout, base, &path, problems);
 }
 
 fn compare_scalar(declared: &str, found: ScalarKind, path: &str, problems: &mut Vec<String>) {

@@ -23,7 +23,7 @@ macro_rules! drawing {
         $($index:literal $name:ident: $access:ident $kind:ty,)*
     }) => {
         $crate::declare! {
-            $(#[$attribute])* $visibility struct $drawing in $module ($source), $vertex, $fragment, true {
+            $(#[$attribute])* $visibility struct $drawing in $module ($source), $vertex, $fragment, true, None, {
                 $($index $name: $access $kind,)*
             }
         }

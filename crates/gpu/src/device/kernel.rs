@@ -43,6 +43,9 @@ pub struct Declaration {
     pub fragment: Option<&'static str>,
     /// Whether it draws.
     pub draws: bool,
+    /// Threads of a workgroup, along its first axis; none where a constant of the pipeline chooses them, and for a
+    /// drawing.
+    pub threads: Option<usize>,
     /// Its buffers.
     pub bindings: Vec<Binding>,
 }
@@ -88,7 +91,7 @@ macro_rules! field_type {
 #[macro_export]
 macro_rules! declare {
     ($(#[$attribute:meta])* $visibility:vis struct $kernel:ident in $module:literal ($source:expr),
-     $entry:expr, $fragment:expr, $draws:literal {
+     $entry:expr, $fragment:expr, $draws:literal, $threads:expr, {
         $($index:literal $name:ident: $access:ident $kind:ty,)*
     }) => {
         $(#[$attribute])*
@@ -107,6 +110,7 @@ macro_rules! declare {
                     entry: $entry,
                     fragment: $fragment,
                     draws: $draws,
+                    threads: $threads,
                     bindings: vec![$($crate::Binding {
                         index: $index,
                         name: stringify!($name),
@@ -123,7 +127,9 @@ macro_rules! declare {
     };
 }
 
-/// Declares a kernel: a struct of the buffers that it is bound to.
+/// Declares a kernel: a struct of the buffers that it is bound to. Its workgroups have [`THREADS`](crate::THREADS) threads
+/// where it does not say `threads` behind its entry point: `threads (Some(MANY))`, `threads (None)` where a constant of
+/// the pipeline chooses.
 ///
 /// ```text
 /// kernel! {
@@ -138,10 +144,21 @@ macro_rules! declare {
 #[macro_export]
 macro_rules! kernel {
     ($(#[$attribute:meta])* $visibility:vis struct $kernel:ident in $module:literal ($source:expr), entry $entry:literal {
+        $($bindings:tt)*
+    }) => {
+        $crate::kernel! {
+            $(#[$attribute])*
+            $visibility struct $kernel in $module ($source), entry $entry, threads (Some($crate::THREADS)) {
+                $($bindings)*
+            }
+        }
+    };
+    ($(#[$attribute:meta])* $visibility:vis struct $kernel:ident in $module:literal ($source:expr), entry $entry:literal,
+     threads ($threads:expr) {
         $($index:literal $name:ident: $access:ident $kind:ty,)*
     }) => {
         $crate::declare! {
-            $(#[$attribute])* $visibility struct $kernel in $module ($source), $entry, None, false {
+            $(#[$attribute])* $visibility struct $kernel in $module ($source), $entry, None, false, $threads, {
                 $($index $name: $access $kind,)*
             }
         }
@@ -174,7 +191,7 @@ impl<B: Bindings<Kernel = B>> Kernel<B> {
     /// A buffer does not fit, or the device was lost.
     pub fn bind<C: Bindings<Kernel = B>>(&self, gpu: &Gpu, buffers: &C) -> Result<Bound, GpuError> {
         let group = bind_group(gpu, &self.compiled.layout, buffers)?;
-        Ok(Bound { pipeline: self.compiled.pipeline.clone(), group })
+        Ok(Bound { pipeline: self.compiled.pipeline.clone(), group, threads: C::declaration().threads })
     }
 }
 
@@ -280,6 +297,21 @@ fn entry_of(binding: &Binding, declaration: &Declaration) -> wgpu::BindGroupLayo
 pub struct Bound {
     pub(crate) pipeline: wgpu::ComputePipeline,
     pub(crate) group: wgpu::BindGroup,
+    /// Of a workgroup; none where a constant of the pipeline chose them.
+    threads: Option<usize>,
+}
+
+impl Bound {
+    /// Workgroups for so many threads; where a constant of the pipeline chose their size, for so many workgroups.
+    pub fn groups(&self, count: usize) -> [u32; 3] {
+        groups(count, self.threads.unwrap_or(1))
+    }
+
+    /// The kernel over so many threads, counted as [`Bound::groups`] counts them.
+    pub fn over(self, count: usize) -> (Self, [u32; 3]) {
+        let groups = self.groups(count);
+        (self, groups)
+    }
 }
 
 /// Kernels with their buffers and their numbers of workgroups, in order.

@@ -14,6 +14,13 @@ pub enum Layout {
         /// 2 to 4.
         count: usize,
     },
+    /// So many vectors one after the other, within a struct.
+    Array {
+        /// An element.
+        element: Box<Layout>,
+        /// How many.
+        count: usize,
+    },
     /// Fields one after the other.
     Struct {
         /// Its name.
@@ -22,6 +29,8 @@ pub enum Layout {
         size: usize,
         /// Its fields.
         fields: Vec<Field>,
+        /// Elements of any number behind them.
+        tail: Option<Box<Tail>>,
     },
 }
 
@@ -33,6 +42,15 @@ pub struct Field {
     /// Bytes from the start of the struct.
     pub offset: usize,
     /// What it is.
+    pub layout: Layout,
+}
+
+/// What lies behind a struct in its buffer: a shader's array without a length.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tail {
+    /// Its name, the same on both sides.
+    pub name: &'static str,
+    /// An element; elements begin where the struct ends.
     pub layout: Layout,
 }
 
@@ -64,11 +82,23 @@ macro_rules! scalar {
 
 scalar!(f32 u32 i32);
 
-/// Declares a struct that a shader declares too, field by field under the same names.
+impl<const COUNT: usize> Mirror for [[f32; 4]; COUNT]
+where
+    Self: Pod,
+{
+    fn layout() -> Layout {
+        Layout::Array { element: Box::new(<[f32; 4]>::layout()), count: COUNT }
+    }
+}
+
+/// Declares a struct that a shader declares too, field by field under the same names. `then NAME: TYPE,` behind the
+/// fields is a shader's array without a length that ends the struct: [`Buffer::with_tail`](crate::Buffer::with_tail)
+/// makes room for it.
 #[macro_export]
 macro_rules! mirror {
     ($(#[$attribute:meta])* $visibility:vis struct $name:ident {
         $($(#[$note:meta])* pub $field:ident: $kind:ty,)*
+        $(then $tail:ident: $element:ty,)?
     }) => {
         $(#[$attribute])*
         #[repr(C)]
@@ -88,8 +118,16 @@ macro_rules! mirror {
                         offset: std::mem::offset_of!($name, $field),
                         layout: <$kind as $crate::Mirror>::layout(),
                     },)*],
+                    tail: $crate::mirror!(@tail $($tail $element)?),
                 }
             }
         }
+    };
+    (@tail) => { None };
+    (@tail $tail:ident $element:ty) => {
+        Some(Box::new($crate::Tail {
+            name: stringify!($tail),
+            layout: <$element as $crate::Mirror>::layout(),
+        }))
     };
 }

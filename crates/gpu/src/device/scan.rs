@@ -1,6 +1,6 @@
 //! Prefix sums: where the things of each cell begin in a counting sort, how many lie before each.
 
-use crate::{Bindings, Buffer, Declaration, Dispatches, Gpu, GpuError, Kernel, groups, kernel};
+use crate::{Bindings, Buffer, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, groups, kernel};
 
 /// The text of its module; it imports nothing.
 const SCAN: &str = include_str!("scan.wgsl");
@@ -18,7 +18,7 @@ kernel! {
 
 kernel! {
     /// Sums over the totals of the blocks.
-    pub struct ScanTotals in "scan" (SCAN), entry "scan_totals" {
+    pub struct ScanTotals in "scan" (SCAN), entry "scan_totals", threads (Some(MANY)) {
         1 totals: ReadWrite u32,
     }
 }
@@ -78,7 +78,7 @@ impl Scan {
         Ok(vec![
             (self.blocks.bind(gpu, &ScanBlocks { values, totals })?, groups(values.len(), BLOCK)),
             (self.totals.bind(gpu, &ScanTotals { totals })?, [1; 3]),
-            (self.add.bind(gpu, &ScanAdd { values, totals })?, groups(values.len(), 64)),
+            self.add.bind(gpu, &ScanAdd { values, totals })?.over(values.len()),
         ])
     }
 }

@@ -11,7 +11,7 @@ use crate::{Light, LightKind, Shadow};
 /// Depth \[m\] of a texel that holds nothing.
 pub(crate) const NOTHING: f32 = 1e30;
 /// Nearest depth \[m\] that a spot or point light sees.
-const NEAR: f32 = 1e-2;
+const NEAR_LIGHT: f32 = 1e-2;
 
 /// Where a light looks from, and how it maps points to its plane.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,7 +49,7 @@ impl LightView {
         let (x, y) = (way.dot(self.right), way.dot(self.up));
         if self.parallel {
             Some(Vec3::new(x, y, depth))
-        } else if depth > NEAR {
+        } else if depth > NEAR_LIGHT {
             let inverse = 1.0 / depth;
             Some(Vec3::new(x * inverse, y * inverse, depth))
         } else {

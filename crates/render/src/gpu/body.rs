@@ -4,14 +4,12 @@ use glam::Vec3;
 use strandline_body::Mesh;
 use strandline_gpu::drawing;
 
-use super::inputs::{Frame, LightSource};
+use super::inputs::Frame;
 
 drawing! {
     /// Three vertices are one triangle.
     pub(super) struct Body in "body" (super::linked::BODY), vertex "body_vertex", fragment Some("body"), {
         0 frame: Read Frame,
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: Read [u32; 4],
         5 body_depths: Read f32,
         6 cubes: Read [f32; 4],

@@ -1,13 +1,13 @@
 //! Bound strands: where the guides have them that they are bound to, as `Binding::follow` and `Binding::place` say.
 
 use strandline_body::Solids;
-use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, groups, kernel, wgpu};
+use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, kernel, wgpu};
 use strandline_groom::Binding;
 
+use super::bound_solids;
 use super::buffers::{Strands, floats};
 use super::device_points::DevicePoints;
 use super::inputs::Frame;
-use super::{THREADS, bound_solids};
 use crate::RenderError;
 
 kernel! {
@@ -150,10 +150,7 @@ impl BoundStrands {
                 bound
             }
         };
-        Ok([
-            (follow, groups(self.guide_count, THREADS)),
-            (self.place.clone(), groups(self.strand_count, THREADS)),
-        ])
+        Ok([follow.over(self.guide_count), self.place.clone().over(self.strand_count)])
     }
 
     /// What keeps so many drawn strands out of the solids.
@@ -176,6 +173,6 @@ impl BoundStrands {
             }
         };
         self.kept = Some((raw, bound.clone()));
-        Ok((bound, groups(count, THREADS)))
+        Ok(bound.over(count))
     }
 }

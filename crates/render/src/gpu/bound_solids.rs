@@ -29,6 +29,12 @@ struct Header {
     unused_too: u32,
 }
 
+/// Kinds of solids, and what carries them.
+const SPHERE: u32 = 0;
+const CAPSULE: u32 = 1;
+const GRID: u32 = 2;
+const WORLD: u32 = 0;
+const HEAD: u32 = 1;
 /// Numbers before the headers, and of one.
 const COUNTS: usize = 2;
 const HEADER: usize = size_of::<Header>() / size_of::<u32>();
@@ -44,12 +50,15 @@ pub(super) fn upload(
     let mut distances: Vec<u32> = Vec::new();
     for (collider, clearance) in solids {
         let mut header = Header {
-            carried: u32::from(collider.carrier == Carrier::Head),
+            carried: match collider.carrier {
+                Carrier::World => WORLD,
+                Carrier::Head => HEAD,
+            },
             clearance: *clearance,
             ..Header::default()
         };
         let mut grid = |grid: &DistanceGrid| {
-            header.kind = 2;
+            header.kind = GRID;
             header.start = grid.origin().to_array();
             header.size = grid.spacing();
             header.node_counts = (grid.cells() + 1).to_array();
@@ -65,10 +74,10 @@ pub(super) fn upload(
             }
             Shape::Grid(shape) => grid(shape),
             Shape::Sphere { center, radius } => {
-                (header.start, header.size) = (center.to_array(), *radius);
+                (header.kind, header.start, header.size) = (SPHERE, center.to_array(), *radius);
             }
             Shape::Capsule { start, end, radius } => {
-                (header.kind, header.start, header.size) = (1, start.to_array(), *radius);
+                (header.kind, header.start, header.size) = (CAPSULE, start.to_array(), *radius);
                 header.end = end.to_array();
             }
         }

@@ -5,7 +5,9 @@ use strandline_body::Mesh;
 use strandline_gpu::{Buffer, Gpu, GpuError, Scan, Texture, wgpu};
 use strandline_groom::Guides;
 
+use super::fit::BOX;
 use super::inputs::{Frame, LightSource, body_stride};
+use super::scene::Scene;
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
 use crate::cpu::scalp::root_densities;
 use crate::cpu::tessellate::skin_axes;
@@ -16,15 +18,15 @@ pub(super) const SAMPLES: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float
 /// Format of depths.
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Numbers of the box around the hair, and of what each shadow light sees.
-const BOUNDS: usize = 6 + 8 * MAX_SHADOWS;
-/// Cells of the grid of the surroundings: 44 along each side.
-pub(super) const CELLS: usize = 44 * 44 * 44;
+const BOUNDS: usize = BOX + 8 * MAX_SHADOWS;
+/// Cells of a plane and of the grid of the surroundings, at most.
+pub(super) const PLANE: usize = 44 * 44;
+pub(super) const CELLS: usize = 44 * PLANE;
 
 /// The buffers that depend on nothing but the groom and the body.
 pub(super) struct Groom {
+    /// With the lights behind it.
     pub frame: Buffer<Frame>,
-    pub lights: Buffer<LightSource>,
-    pub fitted: Buffer<[f32; 4]>,
     pub bounds: Buffer<u32>,
     /// Eight numbers a cell, of which six are used: see surroundings.wesl.
     pub cubes: Buffer<[f32; 4]>,
@@ -71,9 +73,7 @@ impl Groom {
             })
             .collect();
         Ok(Self {
-            frame: Buffer::new(gpu, "frame", 1)?,
-            lights: Buffer::new(gpu, "lights", MAX_LIGHTS)?,
-            fitted: Buffer::new(gpu, "fitted", 3 + 2 * MAX_SHADOWS)?,
+            frame: Buffer::with_tail::<LightSource>(gpu, "frame and lights", 1, MAX_LIGHTS)?,
             bounds: Buffer::new(gpu, "bounds", BOUNDS)?,
             cubes: Buffer::new(gpu, "surroundings", 2 * CELLS)?,
             areas: Buffer::new(gpu, "areas", CELLS)?,
@@ -85,6 +85,14 @@ impl Groom {
             starts: Buffer::new(gpu, "starts", ORDER_STEPS)?,
             start_totals: Scan::totals(gpu, ORDER_STEPS)?,
         })
+    }
+
+    /// Writes what the host knows of a frame; what the device found for the last one stays.
+    pub fn write_frame(&self, scene: &Scene) -> Result<(), GpuError> {
+        let frame = [Frame::new(scene)];
+        let words: &[u32] = bytemuck::cast_slice(&frame);
+        self.frame.viewed_as().write(&words[..std::mem::offset_of!(Frame, fitted) / size_of::<u32>()])?;
+        self.frame.write_tail(&LightSource::all(scene))
     }
 
     /// What the bounds start from: nothing.

@@ -1,20 +1,20 @@
 //! A picture as channels: the twin of frame/channels.rs.
 
 use glam::Vec4;
-use strandline_gpu::{Download, Gpu, GpuError, Kernel, Recorder, Texture, groups, wgpu};
+use strandline_gpu::{Download, Gpu, GpuError, Kernel, Recorder, Texture, wgpu};
 
+use super::GpuRenderer;
 use super::frame::samples;
 use super::inputs::Frame;
 use super::probe::from_half;
 use super::shade::Numbers;
-use super::{GpuRenderer, THREADS};
 use crate::cpu::Samples;
 use crate::cpu::known::{body_depths, nearest_strands};
 use crate::cpu::resolve_linear;
 use crate::frame::channels::{BLACK, Known};
 use crate::{FrameInput, Layers, PictureSettings, RenderError};
 
-/// Kinds of numbers, as in shade.wesl.
+/// Kinds of numbers.
 const COVERAGE_AND_DEPTH: usize = 0;
 const TANGENT: usize = 1;
 
@@ -66,10 +66,10 @@ impl GpuRenderer {
         frame.write(&[Frame::new(&scene)])?;
         let buffers = Numbers { frame, points: &strands.points, radiances: &strands.radiances };
         let numbers = kernels[kind].bind(&self.gpu, &buffers)?;
-        let threads = groups(scene.strand_count() * scene.curve_points(), THREADS);
+        let points = scene.strand_count() * scene.curve_points();
         self.gpu.guarded("channels", || {
             let mut recorder = Recorder::new(&self.gpu, None);
-            recorder.stage("shade", &[(numbers, threads)]);
+            recorder.stage("shade", &[numbers.over(points)]);
             samples(&mut recorder, &scene, &self.held(stages));
             self.gpu.queue().submit([recorder.finish(|_| ())]);
         })?;

@@ -15,6 +15,11 @@ pub const SPOT: u32 = 1;
 pub const POINT: u32 = 2;
 pub const SURFACE: u32 = 3;
 
+/// Bodies: none, one that light passes between its edges, and one of which every edge joins two triangles.
+pub const NO_BODY: u32 = 0;
+pub const OPEN: u32 = 1;
+pub const CLOSED: u32 = 2;
+
 /// Tone maps.
 pub const TONE_OFF: u32 = 0;
 pub const TONE_FILMIC: u32 = 1;

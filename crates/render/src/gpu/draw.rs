@@ -16,7 +16,7 @@ drawing! {
     }
 }
 
-/// Segments that share the indices of one instance, as in draw.wesl.
+/// Segments that share the indices of one instance.
 pub(super) const BATCH: usize = 16_384;
 
 /// Two triangles for each segment of a batch.

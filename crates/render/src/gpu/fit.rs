@@ -2,26 +2,26 @@
 
 use strandline_gpu::kernel;
 
-use super::inputs::{Frame, LightSource};
+use super::inputs::Frame;
 
-/// Points that one thread looks at, as in fit.wesl.
+/// Points that one thread looks at.
 pub(super) const RUN: usize = 32;
+/// Numbers of the box around the hair, behind which those of the lights lie.
+pub(super) const BOX: usize = 6;
 
 kernel! {
     /// The box around the hair, and what each shadow light sees of it.
-    pub(super) struct MeasureHair in "fit" (super::linked::FIT), entry "measure_hair" {
+    pub(super) struct MeasureHair in "measure" (super::linked::MEASURE), entry "measure_hair" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        2 lights: Read LightSource,
         7 bounds: ReadWrite u32,
     }
 }
 
 kernel! {
     /// What each shadow light sees of the body.
-    pub(super) struct MeasureBody in "fit" (super::linked::FIT), entry "measure_body" {
+    pub(super) struct MeasureBody in "measure" (super::linked::MEASURE), entry "measure_body" {
         0 frame: Read Frame,
-        2 lights: Read LightSource,
         7 bounds: ReadWrite u32,
         8 vertices: Read [f32; 4],
     }
@@ -29,10 +29,8 @@ kernel! {
 
 kernel! {
     /// Windows of the maps, the grid of the surroundings, the range of depths.
-    pub(super) struct Fit in "fit" (super::linked::FIT), entry "fit" {
-        0 frame: Read Frame,
-        2 lights: Read LightSource,
-        3 fitted: ReadWrite [f32; 4],
+    pub(super) struct Fit in "fit" (super::linked::FIT), entry "fit", threads (Some(1)) {
+        0 frame: ReadWrite Frame,
         7 bounds: ReadWrite u32,
     }
 }

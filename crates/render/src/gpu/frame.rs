@@ -7,7 +7,7 @@ use super::inputs::body_stride;
 use super::light_grid::{self, LightGrid};
 use super::scene::Scene;
 use super::stages::Stages;
-use super::{THREADS, buffers, draw, fit};
+use super::{buffers, draw, fit};
 use crate::cpu::lattice::DIRECTIONS;
 
 /// What a frame is recorded from.
@@ -42,7 +42,7 @@ pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
     let Held { stages, groom, .. } = bounds.held;
     let (strands, segments) = (scene.strand_count(), scene.strand_count() * (scene.curve_points() - 1));
     let points = scene.strand_count() * scene.curve_points();
-    let one = |bound: &Bound, threads: usize| [(bound.clone(), groups(threads, THREADS))];
+    let one = |bound: &Bound, threads: usize| [bound.clone().over(threads)];
 
     if !bounds.bound.is_empty() {
         recorder.stage("bind", &bounds.bound);
@@ -84,28 +84,27 @@ fn scattering<'a>(scene: &Scene, held: &Held<'a>) -> Option<(&'a LightGrid, &'a 
 
 /// Hair and skin summed into cells, and light carried through them.
 fn light_stages(scene: &Scene, light: &light_grid::Bounds, segments: usize) -> Vec<(Bound, [u32; 3])> {
-    let cells = groups(CELLS, THREADS);
-    let mut list = vec![(light.sum_hair.clone(), groups(segments, THREADS))];
+    let mut list = vec![light.sum_hair.clone().over(segments)];
     if scene.triangle_count > 0 {
-        list.push((light.sum_skin.clone(), groups(scene.triangle_count, THREADS)));
+        list.push(light.sum_skin.clone().over(scene.triangle_count));
     }
-    list.push((light.prepare.clone(), cells));
-    let [x, y, _] = groups(light_grid::LINES, THREADS);
+    list.push(light.prepare.clone().over(CELLS));
+    let [x, y, _] = light.carry.groups(light_grid::LINES);
     let carry = (light.carry.clone(), [x, y, DIRECTIONS as u32]);
     for _ in 0..scene.input.look.fibre.chiang.scatterings {
         list.push(carry.clone());
         list.push((light.scatter.clone(), groups(CELLS, 1)));
     }
     list.push(carry);
-    list.push((light.gather.clone(), cells));
+    list.push(light.gather.clone().over(CELLS));
     list
 }
 
 /// Records the deep opacity maps of every light with shadow.
 pub(super) fn record_opacity(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &Maps) {
     let strands = scene.strand_count();
-    let segments = groups(strands * (scene.curve_points() - 1), THREADS);
-    let lit = |bound: &Bound| [(bound.clone(), for_each_light(segments, scene))];
+    let segments = strands * (scene.curve_points() - 1);
+    let lit = |bound: &Bound| [for_each_light(bound, segments, scene)];
     recorder.stage("opacity_depth", &fitting(scene, stages, strands * scene.curve_points()));
     if scene.shadow_count() > 0 {
         body_depths(recorder, scene, stages, maps);
@@ -114,21 +113,22 @@ pub(super) fn record_opacity(recorder: &mut Recorder, scene: &Scene, stages: &St
     }
 }
 
-/// The same workgroups for every light with shadow.
-fn for_each_light([x, y, _]: [u32; 3], scene: &Scene) -> [u32; 3] {
-    [x, y, scene.shadow_count().max(1) as u32]
+/// So many threads for every light with shadow.
+fn for_each_light(bound: &Bound, threads: usize, scene: &Scene) -> (Bound, [u32; 3]) {
+    let [x, y, _] = bound.groups(threads);
+    (bound.clone(), [x, y, scene.shadow_count().max(1) as u32])
 }
 
 /// Where everything lies, and empty maps.
 fn fitting(scene: &Scene, stages: &Stages, points: usize) -> Vec<(Bound, [u32; 3])> {
-    let measured = |count: usize| for_each_light(groups(count.div_ceil(fit::RUN), THREADS), scene);
+    let measured = |bound: &Bound, count: usize| for_each_light(bound, count.div_ceil(fit::RUN), scene);
     let texels = scene.shadow_count() * (scene.input.look.shadow.map_size as usize).pow(2);
-    let mut list = vec![(stages.measure_hair.clone(), measured(points))];
+    let mut list = vec![measured(&stages.measure_hair, points)];
     if scene.vertex_count > 0 && scene.shadow_count() > 0 {
-        list.push((stages.measure_body.clone(), measured(scene.vertex_count)));
+        list.push(measured(&stages.measure_body, scene.vertex_count));
     }
     list.push((stages.fit.clone(), [1; 3]));
-    list.push((stages.clear_maps.clone(), groups(texels, THREADS)));
+    list.push(stages.clear_maps.clone().over(texels));
     list
 }
 

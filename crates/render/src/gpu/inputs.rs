@@ -4,8 +4,8 @@ use glam::Vec3;
 use strandline_base::math;
 use strandline_gpu::{Rigid, mirror};
 
-use super::codes;
 use super::scene::Scene;
+use super::{MAX_SHADOWS, codes};
 use crate::cpu::shadow::LightView;
 use crate::fibre::{Pigment, scheuermann::Numbers};
 use crate::{LightKind, Look, ToneMap};
@@ -37,7 +37,7 @@ impl Around {
 }
 
 mirror! {
-    /// Mirrors `Frame` in common.wesl.
+    /// Mirrors `Frame` in common.wesl; the lights lie behind it.
     pub(super) struct Frame {
         pub world_from_head: Rigid,
         pub view_from_world: Rigid,
@@ -109,7 +109,7 @@ mirror! {
         pub supersampling: u32,
         /// 0 off, 1 filmic, 2 of ACES.
         pub tone_map: u32,
-        /// 0 none, 1 open, 2 closed: every edge joins two triangles.
+        /// See codes.rs.
         pub body_kind: u32,
         /// Middle of the hair at rest \[m\]: texels and cells keep their places beside it.
         pub middle: [f32; 3],
@@ -120,6 +120,32 @@ mirror! {
         pub unused: u32,
         pub unused_too: u32,
         pub unused_last: u32,
+        pub fitted: Fitted,
+        then lights: LightSource,
+    }
+}
+
+/// Windows of maps: two for each light with shadow.
+const WINDOWS: usize = 2 * MAX_SHADOWS;
+
+mirror! {
+    /// Where things lie in a frame: the device finds it. Mirrors `Fitted` in common.wesl.
+    pub(super) struct Fitted {
+        /// Least corner of the grid of `occlude` \[m\].
+        pub low: [f32; 3],
+        /// Size of a cell \[m\].
+        pub cell: f32,
+        /// Cells along x, y and z.
+        pub counts: [f32; 3],
+        /// Bits of the least inverse depth of the hair \[1/m\].
+        pub farthest: f32,
+        /// Places in the order of depth in one of these bits.
+        pub places: f32,
+        pub unused_a: f32,
+        pub unused_b: f32,
+        pub unused_c: f32,
+        /// Of the maps of each shadow light, of hair and of the body: least plane coordinates, texels in a plane unit.
+        pub windows: [[f32; 4]; WINDOWS],
     }
 }
 
@@ -133,7 +159,7 @@ fn tone_map_code(tone_map: ToneMap) -> u32 {
 }
 
 mirror! {
-    /// Mirrors `LightSource` in light.wesl.
+    /// Mirrors `LightSource` in common.wesl.
     pub(super) struct LightSource {
         /// \[m\]
         pub position: [f32; 3],

@@ -5,29 +5,29 @@ use strandline_gpu::{
 };
 
 use super::body::Body;
-use super::buffers::{CELLS, Groom, Maps, Strands};
-use super::inputs::{Frame, LightSource};
+use super::buffers::{CELLS, Groom, Maps, PLANE, Strands};
+use super::inputs::Frame;
 use super::{MAX_SHADOWS, draw};
 use crate::RenderError;
 use crate::cpu::lattice::DIRECTIONS;
 use crate::cpu::shade_chiang::{Made, Source};
 use crate::fibre::chiang::Table;
 
-/// Sums of a cell, as in light_sums.wesl.
+/// Sums of a cell: see light_sums.wesl.
 const SUMS: usize = 10 + MAX_SHADOWS;
-/// Vectors of a cell behind the fibre's tables, and where they begin, as in light_cells.wesl.
+/// Vectors of a cell behind the fibre's tables, and where they begin.
 const GLOW: usize = 13;
 const FIRST_GLOW: usize = 28_672;
-/// Lines that begin on one of three faces of the grid, as in light_grid.wesl.
-pub(super) const LINES: usize = 3 * 44 * 44;
+/// Lines that begin on one of three faces of the grid.
+pub(super) const LINES: usize = 3 * PLANE;
+/// Threads of a cell that scatters: directions, rounded up.
+const SCATTERERS: usize = 32;
 
 kernel! {
     /// One thread is one segment.
     pub(super) struct SumHair in "light_sums" (super::linked::LIGHT_SUMS), entry "sum_hair" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: Read [u32; 4],
         5 body_depths: Read f32,
         9 sums: ReadWrite u32,
@@ -38,8 +38,6 @@ kernel! {
     /// One thread is one triangle.
     pub(super) struct SumSkin in "light_sums" (super::linked::LIGHT_SUMS), entry "sum_skin" {
         0 frame: Read Frame,
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: Read [u32; 4],
         5 body_depths: Read f32,
         7 triangles: Read u32,
@@ -52,8 +50,6 @@ kernel! {
     /// One thread is one cell.
     pub(super) struct Prepare in "light_prepare" (super::linked::LIGHT_PREPARE), entry "prepare" {
         0 frame: Read Frame,
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 open: Read [f32; 4],
         6 cubes: Read [f32; 4],
         9 sums: ReadWrite u32,
@@ -66,7 +62,6 @@ kernel! {
     /// One thread is one line of cells along one direction.
     pub(super) struct Carry in "light_grid" (super::linked::LIGHT_GRID), entry "carry" {
         0 frame: Read Frame,
-        3 fitted: Read [f32; 4],
         10 cells: ReadWrite [f32; 4],
         11 rays: ReadWrite [f32; 4],
     }
@@ -74,9 +69,8 @@ kernel! {
 
 kernel! {
     /// One workgroup is one cell.
-    pub(super) struct Scatter in "light_grid" (super::linked::LIGHT_GRID), entry "scatter" {
+    pub(super) struct Scatter in "light_grid" (super::linked::LIGHT_GRID), entry "scatter", threads (Some(SCATTERERS)) {
         0 frame: Read Frame,
-        3 fitted: Read [f32; 4],
         6 cubes: Read [f32; 4],
         10 cells: ReadWrite [f32; 4],
         11 rays: ReadWrite [f32; 4],
@@ -87,7 +81,6 @@ kernel! {
     /// One thread is one cell.
     pub(super) struct Gather in "light_gather" (super::linked::LIGHT_GATHER), entry "gather" {
         0 frame: Read Frame,
-        3 fitted: Read [f32; 4],
         4 open: Read [f32; 4],
         6 cubes: Read [f32; 4],
         7 glow: ReadWrite [f32; 4],
@@ -101,8 +94,6 @@ kernel! {
     pub(super) struct ShadeChiang in "shade_chiang" (super::linked::SHADE_CHIANG), entry "shade_chiang" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: Read [u32; 4],
         5 body_depths: Read f32,
         6 cubes: Read [f32; 4],
@@ -225,32 +216,25 @@ impl LightGrid {
 
     /// Binds the kernels.
     fn bind(&self, gpu: &Gpu, groom: &Groom, strands: &Strands, maps: &Maps) -> Result<Bounds, GpuError> {
-        let Groom { frame, lights, fitted, cubes: open, triangles, vertices, .. } = groom;
+        let Groom { frame, cubes: open, triangles, vertices, .. } = groom;
         let Strands { points, radiances, .. } = strands;
         let Maps { texels: maps, body: body_depths, .. } = maps;
         let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
         Ok(Bounds {
-            sum_hair: self
-                .sum_hair
-                .bind(gpu, &SumHair { frame, points, lights, fitted, maps, body_depths, sums })?,
-            sum_skin: self.sum_skin.bind(
-                gpu,
-                &SumSkin { frame, lights, fitted, maps, body_depths, triangles, vertices, sums },
-            )?,
-            prepare: self
-                .prepare
-                .bind(gpu, &Prepare { frame, lights, fitted, open, cubes, sums, cells, rays })?,
-            carry: self.carry.bind(gpu, &Carry { frame, fitted, cells, rays })?,
-            scatter: self.scatter.bind(gpu, &Scatter { frame, fitted, cubes, cells, rays })?,
-            gather: self.gather.bind(gpu, &Gather { frame, fitted, open, cubes, glow, cells, rays })?,
-            shade: self.shade.bind(
-                gpu,
-                &ShadeChiang { frame, points, lights, fitted, maps, body_depths, cubes: glow, radiances },
-            )?,
-            body: self.body.bind(
-                gpu,
-                &Body { frame, lights, fitted, maps, body_depths, cubes: glow, triangles, vertices },
-            )?,
+            sum_hair: self.sum_hair.bind(gpu, &SumHair { frame, points, maps, body_depths, sums })?,
+            sum_skin: self
+                .sum_skin
+                .bind(gpu, &SumSkin { frame, maps, body_depths, triangles, vertices, sums })?,
+            prepare: self.prepare.bind(gpu, &Prepare { frame, open, cubes, sums, cells, rays })?,
+            carry: self.carry.bind(gpu, &Carry { frame, cells, rays })?,
+            scatter: self.scatter.bind(gpu, &Scatter { frame, cubes, cells, rays })?,
+            gather: self.gather.bind(gpu, &Gather { frame, open, cubes, glow, cells, rays })?,
+            shade: self
+                .shade
+                .bind(gpu, &ShadeChiang { frame, points, maps, body_depths, cubes: glow, radiances })?,
+            body: self
+                .body
+                .bind(gpu, &Body { frame, maps, body_depths, cubes: glow, triangles, vertices })?,
         })
     }
 }

@@ -42,6 +42,5 @@ pub const MAX_LIGHTS: usize = 32;
 /// Most lights with shadow among them.
 pub const MAX_SHADOWS: usize = 8;
 
-use strandline_gpu::THREADS;
-/// Places in the order of depth, as in sort.wesl.
+/// Places in the order of depth.
 const ORDER_STEPS: usize = 65_536;

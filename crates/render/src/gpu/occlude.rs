@@ -1,6 +1,6 @@
 //! How much of the surroundings hair hides, for `shade` and `draw`.
 
-use strandline_gpu::kernel;
+use strandline_gpu::{MANY, kernel};
 
 use super::inputs::Frame;
 
@@ -9,16 +9,14 @@ kernel! {
     pub(super) struct SumAreas in "occlude" (super::linked::OCCLUDE), entry "sum_areas" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        3 fitted: Read [f32; 4],
         7 areas: ReadWrite u32,
     }
 }
 
 kernel! {
     /// One workgroup is one direction.
-    pub(super) struct Sweep in "occlude" (super::linked::OCCLUDE), entry "sweep" {
+    pub(super) struct Sweep in "occlude" (super::linked::OCCLUDE), entry "sweep", threads (Some(MANY)) {
         0 frame: Read Frame,
-        3 fitted: Read [f32; 4],
         6 cubes: ReadWrite f32,
         7 areas: ReadWrite u32,
     }

@@ -2,7 +2,7 @@
 
 use strandline_gpu::{drawing, kernel};
 
-use super::inputs::{Frame, LightSource};
+use super::inputs::Frame;
 
 kernel! {
     /// One thread is one texel.
@@ -17,8 +17,6 @@ kernel! {
     pub(super) struct OpacityDepth in "opacity_depth" (super::linked::OPACITY_DEPTH), entry "opacity_depth" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: ReadWrite u32,
     }
 }
@@ -28,8 +26,6 @@ drawing! {
     pub(super) struct BodyDepth in "opacity_depth" (super::linked::OPACITY_DEPTH),
     vertex "body_depth_vertex", fragment None, {
         0 frame: Read Frame,
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         7 triangles: Read u32,
         8 vertices: Read [f32; 4],
     }

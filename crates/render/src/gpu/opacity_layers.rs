@@ -2,15 +2,13 @@
 
 use strandline_gpu::kernel;
 
-use super::inputs::{Frame, LightSource};
+use super::inputs::Frame;
 
 kernel! {
     /// One thread is one segment for one light.
     pub(super) struct OpacityLayers in "opacity_layers" (super::linked::OPACITY_LAYERS), entry "opacity_layers" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: ReadWrite u32,
     }
 }

@@ -114,8 +114,7 @@ impl GpuRenderer {
             if light.shadow {
                 map.set(settings);
                 map.texels = self.opacity_texels(slot)?;
-                let at = 3 + 2 * slot;
-                let [x, y, density, _] = Self::first(&self.groom.fitted, at + 1)?[at];
+                let [x, y, density, _] = Self::first(&self.groom.frame, 1)?[0].fitted.windows[2 * slot];
                 map.hair_window = Window { min: Vec2::new(x, y), density };
                 slot += 1;
             }

@@ -11,7 +11,6 @@ use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::codes;
 use super::device_points::DevicePoints;
 use super::frame::{Bounds, Held, record};
-use super::inputs::{Frame, LightSource};
 use super::light_grid::LightGrid;
 use super::points::GuidePoints;
 use super::resolve::{Own, PICTURE, ToFormat};
@@ -86,7 +85,8 @@ impl GpuRenderer {
             body_ball: ball(body),
             vertex_count: body.map_or(0, |mesh| mesh.positions.len()),
             triangle_count: body.map_or(0, |mesh| mesh.triangles.len()),
-            body_kind: body.map_or(0, |mesh| 1 + u32::from(mesh.is_closed())),
+            body_kind: body
+                .map_or(codes::NO_BODY, |mesh| if mesh.is_closed() { codes::CLOSED } else { codes::OPEN }),
             settings: *settings,
             kernels: Kernels::new(gpu)?,
             groom: Groom::new(gpu, guides, body)?,
@@ -382,8 +382,7 @@ impl GpuRenderer {
     pub(super) fn write(&self, scene: &Scene, host_points: bool) -> Result<(), RenderError> {
         let Some(strands) = &self.strands else { unreachable!("made before") };
         let groom = &self.groom;
-        groom.frame.write(&[Frame::new(scene)])?;
-        groom.lights.write(&LightSource::all(scene))?;
+        groom.write_frame(scene)?;
         groom.bounds.write(&Groom::no_bounds())?;
         strands.tables.write(&tessellate::tables(
             scene.guide_points,

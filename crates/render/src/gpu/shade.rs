@@ -3,7 +3,7 @@
 use strandline_gpu::{Bound, Gpu, Kernel, kernel};
 
 use super::buffers::{Groom, Maps, Strands};
-use super::inputs::{Frame, LightSource};
+use super::inputs::Frame;
 use crate::lights::first_sample;
 use crate::{Light, RenderError};
 
@@ -12,8 +12,6 @@ kernel! {
     pub(super) struct LayerColors in "shade" (super::linked::SHADE), entry "layer_colors" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: Read [u32; 4],
         7 radiances: ReadWrite [u32; 2],
     }
@@ -33,8 +31,6 @@ kernel! {
     pub(super) struct Shade in "shade" (super::linked::SHADE), entry "shade" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        2 lights: Read LightSource,
-        3 fitted: Read [f32; 4],
         4 maps: Read [u32; 4],
         5 body_depths: Read f32,
         6 cubes: Read [f32; 4],
@@ -66,9 +62,9 @@ impl LayerColoring {
         if self.compiled.as_ref().is_none_or(|(compiled, _)| *compiled != light) {
             self.compiled = Some((light, Kernel::new(gpu, &[("LAYERS_OF", light as f64)])?));
         }
-        let Groom { frame, lights, fitted, .. } = groom;
+        let Groom { frame, .. } = groom;
         let Strands { points, radiances, .. } = strands;
-        let buffers = LayerColors { frame, points, lights, fitted, maps: &maps.texels, radiances };
+        let buffers = LayerColors { frame, points, maps: &maps.texels, radiances };
         let bind = |(_, kernel): &(usize, Kernel<LayerColors>)| kernel.bind(gpu, &buffers);
         Ok(self.compiled.as_ref().map(bind).transpose()?)
     }

@@ -9,7 +9,6 @@ kernel! {
     pub(super) struct ListSegments in "sort" (super::linked::SORT), entry "list_segments" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
-        3 fitted: Read [f32; 4],
         7 keys: ReadWrite u32,
         8 starts: ReadWrite u32,
     }

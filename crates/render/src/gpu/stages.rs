@@ -75,7 +75,7 @@ macro_rules! stages {
 
 stages! {
     |groom, strands, maps| {
-        let Groom { frame, lights, fitted, bounds, cubes, areas, roots, clumps, .. } = groom;
+        let Groom { frame, bounds, cubes, areas, roots, clumps, .. } = groom;
         let Groom { triangles, vertices, starts, .. } = groom;
         let Strands { tables, scales, curves, points, radiances, keys, order, .. } = strands;
         let Maps { texels, body: body_depths, .. } = maps;
@@ -86,23 +86,23 @@ stages! {
         interpolate: interpolate::Interpolate {
             frame, points, radiances, roots, tables, curves, clumps, scales
         }
-        measure_hair: fit::MeasureHair { frame, points, lights, bounds }
-        measure_body: fit::MeasureBody { frame, lights, bounds, vertices }
-        fit: fit::Fit { frame, lights, fitted, bounds }
+        measure_hair: fit::MeasureHair { frame, points, bounds }
+        measure_body: fit::MeasureBody { frame, bounds, vertices }
+        fit: fit::Fit { frame, bounds }
         clear_maps: opacity_depth::ClearMaps { frame, maps: texel_numbers }
-        opacity_depth: opacity_depth::OpacityDepth { frame, points, lights, fitted, maps: texel_numbers }
-        opacity_layers: opacity_layers::OpacityLayers { frame, points, lights, fitted, maps: texel_numbers }
-        sum_areas: occlude::SumAreas { frame, points, fitted, areas }
-        sweep: occlude::Sweep { frame, fitted, cubes: cube_numbers, areas }
-        shade: shade::Shade { frame, points, lights, fitted, maps: texels, body_depths, cubes, radiances }
-        list_segments: sort::ListSegments { frame, points, fitted, keys, starts }
+        opacity_depth: opacity_depth::OpacityDepth { frame, points, maps: texel_numbers }
+        opacity_layers: opacity_layers::OpacityLayers { frame, points, maps: texel_numbers }
+        sum_areas: occlude::SumAreas { frame, points, areas }
+        sweep: occlude::Sweep { frame, cubes: cube_numbers, areas }
+        shade: shade::Shade { frame, points, maps: texels, body_depths, cubes, radiances }
+        list_segments: sort::ListSegments { frame, points, keys, starts }
         order_segments: sort::OrderSegments { frame, keys, starts, order }
     }
     drawings {
-        body_depth: opacity_depth::BodyDepth, body_depth_output { frame, lights, fitted, triangles, vertices }
+        body_depth: opacity_depth::BodyDepth, body_depth_output { frame, triangles, vertices }
         hair: draw::Hair, hair_output { frame, points, radiances, starts, order }
         body: body::Body, body_output {
-            frame, lights, fitted, maps: texels, body_depths, cubes, triangles, vertices
+            frame, maps: texels, body_depths, cubes, triangles, vertices
         }
         backdrop: background::Backdrop, background_output { frame }
     }

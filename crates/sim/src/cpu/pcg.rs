@@ -15,9 +15,10 @@ const SIGMA: f32 = 0.25;
 /// thesis two halve the iterations of the diagonal for an eighth more products; more steps save
 /// nothing further.
 pub(crate) const CHEBYSHEV_STEPS: usize = 2;
-/// Eigenvalues of the scaled matrix that the polynomial is made for. None is above 2 (Gershgorin);
+/// Least and greatest eigenvalue of the scaled matrix that the polynomial is made for. None is above 2 (Gershgorin);
 /// below the least one it stays positive, only less helpful.
-pub(crate) const CHEBYSHEV_RANGE: [f32; 2] = [0.1, 2.0];
+const CHEBYSHEV_LEAST: f32 = 0.1;
+const CHEBYSHEV_MOST: f32 = 2.0;
 
 /// When to stop, and how to get there fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,8 +175,8 @@ impl Pcg {
 
     /// Steps of the Chebyshev iteration from zero \[Saad2003 alg. 12.1\].
     fn smooth(&mut self, system: &Poisson, residual: &[f32]) {
-        let [least, most] = CHEBYSHEV_RANGE;
-        let (theta, delta) = (0.5 * (most + least), 0.5 * (most - least));
+        let theta = 0.5 * (CHEBYSHEV_MOST + CHEBYSHEV_LEAST);
+        let delta = 0.5 * (CHEBYSHEV_MOST - CHEBYSHEV_LEAST);
         let Self { better, carried: change, forward: image, scale, .. } = self;
         for unknown in 0..system.len() {
             change[unknown] = residual[unknown] * scale[unknown] / theta;

@@ -1,6 +1,6 @@
 //! Measures the step: stretch, penetration, non-finite points.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
@@ -11,7 +11,6 @@ kernel! {
     /// One thread is one strand.
     pub(super) struct Advance in "advance" (super::linked::ADVANCE), entry "advance" {
         0 step: Read Step,
-        1 solids: Read [u32; 4],
         2 rest_positions: Read f32,
         3 rest: Read f32,
         4 predicted: ReadWrite f32,
@@ -23,7 +22,7 @@ kernel! {
 
 kernel! {
     /// One workgroup.
-    pub(super) struct Gathered in "advance" (super::linked::ADVANCE), entry "report" {
+    pub(super) struct Gathered in "advance" (super::linked::ADVANCE), entry "report", threads (Some(MANY)) {
         0 step: Read Step,
         7 outcomes: ReadWrite [f32; 4],
         8 pressure: Read PressureState,
@@ -47,13 +46,13 @@ impl StageKernels for Stage {
 
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
         let Target { gpu, buffers, side, .. } = *to;
-        let Buffers { step, solids, rest_positions, rest, velocities, outcomes, .. } = buffers;
+        let Buffers { step, rest_positions, rest, velocities, outcomes, .. } = buffers;
         let (positions, predicted) = (&buffers.places[side], &buffers.places[1 - side]);
-        let hair = Advance { step, solids, rest_positions, rest, predicted, velocities, positions, outcomes };
+        let hair = Advance { step, rest_positions, rest, predicted, velocities, positions, outcomes };
         let advance = self.advance.bind(gpu, &hair)?;
         let pressure = buffers.volume.as_ref().map_or(&buffers.no_pressure, |volume| &volume.states);
         let reports = &buffers.reports;
         let report = self.report.bind(gpu, &Gathered { step, outcomes, pressure, reports })?;
-        Ok(vec![(advance, groups(buffers.lane_count, THREADS)), (report, [1; 3])])
+        Ok(vec![advance.over(buffers.lane_count), (report, [1; 3])])
     }
 }

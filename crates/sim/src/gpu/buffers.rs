@@ -14,6 +14,8 @@ use crate::{Model, SimError, State};
 
 /// Steps whose reports the device keeps until they are read.
 pub(super) const REPORTS: usize = 64;
+/// Numbers of a point in the buffer of rest shapes.
+const REST: usize = 6;
 
 /// The buffers of a state. Numbers of points lie as on the CPU, `[block][point]` of lanes; where a
 /// point has several they lie `[block][point][number]` of lanes.
@@ -22,16 +24,18 @@ pub(super) struct Buffers {
     /// Strands and what fills up the last block.
     pub lane_count: usize,
     pub points: usize,
+    /// With the colliders behind it: see solids.wesl.
     pub step: Buffer<Step>,
     /// Head space \[m\].
     pub rest_positions: Buffer<f32>,
-    /// Six numbers: rest direction (with rods the first axis of the section), rest length \[m\], inverse mass \[1/kg\], clearance at rest \[m\].
+    /// Six numbers: rest direction (with rods the first axis of the section), rest length \[m\], inverse mass
+    /// \[1/kg\], clearance at rest \[m\]. Behind those of all points, without rods, per strand from the hand to the
+    /// point \[m\] that it holds, and its number; below 0 for none.
     pub rest: Buffer<f32>,
     /// Two numbers: rest lengths of the bend and the torsion spring \[m\].
     pub springs: Buffer<f32>,
     /// \[kg\]
     pub mass: Buffer<f32>,
-    pub solids: Buffer<[u32; 4]>,
     /// Positions \[m\] of the last two steps; which is the newer changes with every step.
     pub places: [Buffer<f32>; 2],
     /// Velocities of all points \[m/s\], and behind them what the next prediction adds to them; with rods
@@ -39,8 +43,6 @@ pub(super) struct Buffers {
     pub velocities: Buffer<f32>,
     /// Five numbers: see strand.wesl.
     pub planes: Buffer<f32>,
-    /// Per strand, from the hand to the point \[m\] that it holds, and its number; below 0 for none.
-    pub grips: Buffer<[f32; 4]>,
     /// Per workgroup of strands: see splat.wesl.
     pub boxes: Buffer<[f32; 4]>,
     /// Per workgroup of strands: see advance.wesl.
@@ -65,19 +67,17 @@ impl Buffers {
             strand_count: model.strand_count,
             lane_count,
             points,
-            step: Buffer::new(gpu, "step", 1)?,
+            step: solids::behind_step(gpu, &model.colliders)?,
             rest_positions: vectors("rest positions", &model.positions)?,
-            rest: Buffer::new(gpu, "rest shape", 6 * count)?,
+            rest: Buffer::new(gpu, "rest shape", REST * count + 4 * lane_count)?,
             springs: Buffer::new(gpu, "springs", 2 * count)?,
             mass: Buffer::new(gpu, "masses", count)?,
-            solids: solids::upload(gpu, &model.colliders)?,
             places: [
                 vectors("positions", &state.positions)?,
                 vectors("predicted positions", &state.previous_positions)?,
             ],
             velocities: Buffer::from_slice(gpu, "velocities", &speeds(state))?,
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
-            grips: Buffer::new(gpu, "grips", lane_count)?,
             boxes: Buffer::new(gpu, "boxes", 2 * model.strand_count.div_ceil(THREADS))?,
             outcomes: Buffer::new(gpu, "outcomes", 3 * workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
@@ -119,7 +119,7 @@ impl Buffers {
     /// Writes what follows from the settings and the lengths of the strands.
     pub fn write_rest(&self, model: &Model, lengths: &RestShape) -> Result<(), SimError> {
         let masses = Masses::new(model, lengths);
-        let mut rest = Vec::with_capacity(6 * LANES * model.positions.len());
+        let mut rest = Vec::with_capacity(REST * LANES * model.positions.len());
         let mut springs = Vec::with_capacity(2 * LANES * model.positions.len());
         let axes = model.rods.as_ref().map_or(&model.directions, |rods| &rods.sections);
         for index in 0..model.positions.len() {
@@ -164,7 +164,7 @@ impl Buffers {
             Some(rods) => {
                 Ok(rods.nodes.write_at(NUMBERS * self.point_count(), bytemuck::cast_slice(&grips))?)
             }
-            None => Ok(self.grips.write(&grips)?),
+            None => Ok(self.rest.write_at(REST * self.point_count(), bytemuck::cast_slice(&grips))?),
         }
     }
 }

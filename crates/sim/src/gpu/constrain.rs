@@ -7,15 +7,13 @@ use super::stage::{StageKernels, Target};
 
 kernel! {
     /// One thread is one strand.
-    pub(super) struct Constrain in "constrain" (super::linked::CONSTRAIN), entry "constrain" {
+    pub(super) struct Constrain in "constrain" (super::linked::CONSTRAIN), entry "constrain", threads (None) {
         0 step: Read Step,
-        1 solids: Read [u32; 4],
         3 rest: Read f32,
         4 positions: Read f32,
         5 predicted: ReadWrite f32,
         6 velocities: ReadWrite f32,
         7 planes: ReadWrite f32,
-        8 grips: Read [f32; 4],
     }
 }
 
@@ -42,13 +40,11 @@ impl StageKernels for Stage {
             gpu,
             &Constrain {
                 step: &buffers.step,
-                solids: &buffers.solids,
                 rest: &buffers.rest,
                 positions: &buffers.places[side],
                 predicted: &buffers.places[1 - side],
                 velocities: &buffers.velocities,
                 planes: &buffers.planes,
-                grips: &buffers.grips,
             },
         )?;
         Ok(vec![(bound, groups(buffers.lane_count, self.strands_per_workgroup))])

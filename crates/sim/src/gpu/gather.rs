@@ -1,6 +1,6 @@
 //! Points take their velocities from the faces.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
@@ -43,6 +43,6 @@ impl StageKernels for Stage {
                 rest: &buffers.rest,
             },
         )?;
-        Ok(vec![(bound, groups(buffers.point_count(), THREADS))])
+        Ok(vec![bound.over(buffers.point_count())])
     }
 }

@@ -40,7 +40,7 @@ mirror! {
 }
 
 mirror! {
-    /// Mirrors `Step` in common.wesl.
+    /// Mirrors `Step` in common.wesl; the colliders lie behind it.
     pub(super) struct Step {
         pub world_from_head: Rigid,
         pub head_from_world: Rigid,
@@ -86,6 +86,7 @@ mirror! {
         /// Whether a hand holds hair.
         pub holds: u32,
         pub rods: RodStep,
+        then solids: [u32; 4],
     }
 }
 
@@ -125,7 +126,8 @@ impl Step {
             rotation: a.rotation * b.rotation,
             translation: a.point(b.translation),
         };
-        let care = if settings.strands.constrain.length_pass.enabled { Care::ROUGH } else { Care::ROUNDS };
+        let is_last = !settings.has_rods() && !settings.strands.constrain.length_pass.enabled;
+        let care = if is_last { Care::ROUNDS } else { Care::ROUGH };
         Self {
             world_from_head: Rigid::from(&end),
             head_from_world: Rigid::from(&end.inverse()),

@@ -1,6 +1,6 @@
 //! Forces, then a prediction.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
@@ -41,6 +41,6 @@ impl StageKernels for Stage {
                 predicted: &buffers.places[1 - side],
             },
         )?;
-        Ok(vec![(bound, groups(buffers.point_count(), THREADS))])
+        Ok(vec![bound.over(buffers.point_count())])
     }
 }

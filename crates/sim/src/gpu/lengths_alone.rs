@@ -4,7 +4,7 @@ use strandline_gpu::{Bindings, Buffer, Gpu, GpuError, Kernel, Recorder, Timer, g
 
 kernel! {
     /// One thread is one strand.
-    pub(super) struct StrandAThread in "lengths_alone" (super::linked::LENGTHS_ALONE), entry "strand_a_thread" {
+    pub(super) struct StrandAThread in "lengths_alone" (super::linked::LENGTHS_ALONE), entry "strand_a_thread", threads (None) {
         0 points: Read [f32; 4],
         1 lengths: Read f32,
         2 placed: ReadWrite [f32; 4],
@@ -13,7 +13,7 @@ kernel! {
 
 kernel! {
     /// One thread is one point.
-    pub(super) struct PointAThread in "lengths_alone" (super::linked::LENGTHS_ALONE), entry "point_a_thread" {
+    pub(super) struct PointAThread in "lengths_alone" (super::linked::LENGTHS_ALONE), entry "point_a_thread", threads (None) {
         0 points: Read [f32; 4],
         1 lengths: Read f32,
         2 placed: ReadWrite [f32; 4],

@@ -1,6 +1,6 @@
 //! Every cell near hair is fluid, solid or air.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
@@ -10,7 +10,6 @@ kernel! {
     /// One thread is one cell.
     pub(super) struct Mark in "mark" (super::linked::MARK), entry "mark" {
         0 step: Read Step,
-        1 solids: Read [u32; 4],
         2 grid: Read GridState,
         3 start_index: Read u32,
         4 kinds: ReadWrite u32,
@@ -22,7 +21,6 @@ kernel! {
     /// Faces of solids take the solid's velocity; one thread is one cell.
     pub(super) struct CarryWalls in "mark" (super::linked::MARK), entry "carry_walls" {
         0 step: Read Step,
-        1 solids: Read [u32; 4],
         2 grid: Read GridState,
         4 kinds: ReadWrite u32,
         6 faces: ReadWrite [f32; 2],
@@ -46,12 +44,11 @@ impl StageKernels for Stage {
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
         let Target { gpu, buffers, .. } = *to;
         let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
-        let (step, solids) = (&buffers.step, &buffers.solids);
+        let step = &buffers.step;
         let (grid, start_index, kinds) = (&volume.grid, &volume.start_index, &volume.kinds);
         let (unknowns, faces) = (&volume.unknowns, &volume.faces);
-        let by_cell = groups(volume.cell_count, THREADS);
-        let mark = self.mark.bind(gpu, &Mark { step, solids, grid, start_index, kinds, unknowns })?;
-        let carry_walls = self.carry_walls.bind(gpu, &CarryWalls { step, solids, grid, kinds, faces })?;
-        Ok(vec![(mark, by_cell), (carry_walls, by_cell)])
+        let mark = self.mark.bind(gpu, &Mark { step, grid, start_index, kinds, unknowns })?;
+        let carry_walls = self.carry_walls.bind(gpu, &CarryWalls { step, grid, kinds, faces })?;
+        Ok(vec![mark.over(volume.cell_count), carry_walls.over(volume.cell_count)])
     }
 }

@@ -1,6 +1,6 @@
 //! Preconditioned conjugate gradients on the device.
 
-use strandline_gpu::{Bindings, Buffer, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
+use strandline_gpu::{Bindings, Buffer, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, kernel};
 
 use super::inputs::Step;
 use super::records::{PressureState, Spread};
@@ -48,7 +48,7 @@ kernel! {
 
 kernel! {
     /// All that is left; one workgroup.
-    pub(super) struct Finish in "pcg" (super::linked::PCG), entry "finish" {
+    pub(super) struct Finish in "pcg" (super::linked::PCG), entry "finish", threads (Some(MANY)) {
         0 step: Read Step,
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,

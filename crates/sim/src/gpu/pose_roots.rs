@@ -1,6 +1,6 @@
 //! Rooted points follow the head.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
@@ -41,6 +41,6 @@ impl StageKernels for Stage {
                 velocities: &buffers.velocities,
             },
         )?;
-        Ok(vec![(bound, groups(buffers.lane_count, THREADS))])
+        Ok(vec![bound.over(buffers.lane_count)])
     }
 }

@@ -4,6 +4,7 @@ use strandline_base::SettingError;
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Shape};
 use strandline_gpu::{Buffer, Gpu};
 
+use super::inputs::Step;
 use crate::SimError;
 
 /// Spacing at which the exact mannequin is sampled \[m\]: kernels know grids only.
@@ -29,26 +30,36 @@ struct Header {
     unused_too: u32,
 }
 
+/// Kinds of colliders, and what carries them.
+const SPHERE: u32 = 0;
+const CAPSULE: u32 = 1;
+const GRID: u32 = 2;
+const WORLD: u32 = 0;
+const HEAD: u32 = 1;
 /// Vectors of a header.
 const HEADER: usize = size_of::<Header>() / size_of::<[f32; 4]>();
 
-/// Headers of all colliders, then the nodes of the grids among them.
-pub(super) fn upload(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<[u32; 4]>, SimError> {
+/// Room for the settings of a step, and behind it the headers of all colliders, then the nodes of the grids among them.
+pub(super) fn behind_step(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<Step>, SimError> {
     let mut headers = Vec::new();
     let mut nodes: Vec<[f32; 4]> = Vec::new();
     for collider in colliders {
         let mut header = Header {
-            carried: u32::from(collider.carrier == Carrier::Head),
+            carried: match collider.carrier {
+                Carrier::World => WORLD,
+                Carrier::Head => HEAD,
+            },
             friction: collider.friction,
             ..Header::default()
         };
         match &collider.shape {
             Shape::Sphere { center, radius } => {
+                header.kind = SPHERE;
                 header.start = center.to_array();
                 header.size = *radius;
             }
             Shape::Capsule { start, end, radius } => {
-                header.kind = 1;
+                header.kind = CAPSULE;
                 header.start = start.to_array();
                 header.end = end.to_array();
                 header.size = *radius;
@@ -60,7 +71,9 @@ pub(super) fn upload(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<[u32; 4
     }
     let mut all: Vec<[u32; 4]> = bytemuck::cast_slice(&headers).to_vec();
     all.extend(nodes.iter().map(|node| node.map(f32::to_bits)));
-    Ok(Buffer::from_slice(gpu, "solids", &all)?)
+    let buffer = Buffer::with_tail::<[u32; 4]>(gpu, "step and solids", 1, all.len())?;
+    buffer.write_tail(&all)?;
+    Ok(buffer)
 }
 
 fn sampled(mannequin: &Mannequin) -> Result<DistanceGrid, SimError> {
@@ -70,7 +83,7 @@ fn sampled(mannequin: &Mannequin) -> Result<DistanceGrid, SimError> {
 
 impl Header {
     fn add_grid(&mut self, grid: &DistanceGrid, collider_count: usize, nodes: &mut Vec<[f32; 4]>) {
-        self.kind = 2;
+        self.kind = GRID;
         self.start = grid.origin().to_array();
         self.size = grid.spacing();
         self.node_counts = (grid.cells() + 1).to_array();

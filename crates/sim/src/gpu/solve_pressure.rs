@@ -1,6 +1,6 @@
 //! The pressure that takes the divergence out of the hair's velocity, without a readback.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, kernel};
 
 use super::pcg::Pcg;
 use super::records::{Gradient, PressureState};
@@ -22,7 +22,7 @@ kernel! {
 
 kernel! {
     /// Rooms without a way to air; one workgroup.
-    pub(super) struct LevelRooms in "rooms" (super::linked::ROOMS), entry "level_rooms" {
+    pub(super) struct LevelRooms in "rooms" (super::linked::ROOMS), entry "level_rooms", threads (Some(MANY)) {
         1 grid: Read GridState,
         2 vectors: ReadWrite f32,
         3 neighbours: ReadWrite u32,
@@ -73,11 +73,10 @@ impl StageKernels for Stage {
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
         let Target { gpu, buffers, scan, preconditioner, .. } = *to;
         let Some(volume) = &buffers.volume else { return Ok(Vec::new()) };
-        let by_cell = groups(volume.cell_count, THREADS);
         let Volume { grid, vectors, neighbours, states, kinds, unknowns, faces, rooms, .. } = volume;
         let mut dispatches = scan.bind(gpu, unknowns, &volume.totals)?;
         let assemble = Assemble { grid, vectors, neighbours, states, kinds, unknowns, faces };
-        dispatches.push((self.assemble.bind(gpu, &assemble)?, by_cell));
+        dispatches.push(self.assemble.bind(gpu, &assemble)?.over(volume.cell_count));
         let level = LevelRooms { grid, vectors, neighbours, unknowns, rooms };
         dispatches.push((self.level_rooms.bind(gpu, &level)?, [1; 3]));
         dispatches.extend(self.pcg.bind(gpu, &buffers.step, volume, preconditioner)?);
@@ -95,7 +94,6 @@ impl Stage {
             Gradient::Joint => std::slice::from_ref(&self.gradient),
             Gradient::Split => &self.gradient_along,
         };
-        let by_cell = groups(volume.cell_count, THREADS);
-        kernels.iter().map(|kernel| Ok((kernel.bind(gpu, &buffers)?, by_cell))).collect()
+        kernels.iter().map(|kernel| Ok(kernel.bind(gpu, &buffers)?.over(volume.cell_count))).collect()
     }
 }

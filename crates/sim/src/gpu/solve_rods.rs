@@ -9,7 +9,6 @@ kernel! {
     /// One thread is one strand after another.
     pub(super) struct SolveRods in "solve_rods" (super::linked::SOLVE_RODS), entry "solve_rods" {
         0 step: Read Step,
-        1 solids: Read [u32; 4],
         2 rods: Read f32,
         3 rest: Read f32,
         4 positions: Read f32,
@@ -38,7 +37,6 @@ impl StageKernels for Stage {
             gpu,
             &SolveRods {
                 step: &buffers.step,
-                solids: &buffers.solids,
                 rods: &rods.nodes,
                 rest: &buffers.rest,
                 positions: &buffers.places[side],

@@ -1,6 +1,6 @@
 //! Points become velocities on the faces of the staggered grid: sorted by cell, then gathered.
 
-use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
@@ -19,7 +19,7 @@ kernel! {
 
 kernel! {
     /// Moves the grid over the points; one workgroup.
-    pub(super) struct Follow in "follow" (super::linked::FOLLOW), entry "follow" {
+    pub(super) struct Follow in "follow" (super::linked::FOLLOW), entry "follow", threads (Some(MANY)) {
         1 grid: ReadWrite GridState,
         5 boxes: ReadWrite [f32; 4],
         6 ladder: Read f32,
@@ -127,7 +127,7 @@ impl StageKernels for Stage {
         let (counts, start_index) = (&volume.start_index, &volume.start_index);
         let (cell_ranks, faces) = (&volume.cell_ranks, &volume.faces);
         let (sorted_points, counted) = (&volume.sorted_points, &volume.counted);
-        let by_point = groups(buffers.point_count(), THREADS);
+        let points = buffers.point_count();
         let bounds = self.bounds.bind(gpu, &Bounds { step, predicted, mass, boxes })?;
         let follow = self.follow.bind(gpu, &Follow { grid, boxes, ladder })?;
         let find_cells =
@@ -142,10 +142,10 @@ impl StageKernels for Stage {
         )?;
         let sum_faces = self.sum_faces.bind(gpu, &SumFaces { grid, start_index, sorted_points, faces })?;
         let mut dispatches =
-            vec![(bounds, groups(buffers.strand_count, THREADS)), (follow, [1; 3]), (find_cells, by_point)];
+            vec![bounds.over(buffers.strand_count), (follow, [1; 3]), find_cells.over(points)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);
-        dispatches.extend([(list_points, by_point), (rank_points, by_point), (sort_points, by_point)]);
-        dispatches.push((sum_faces, groups(volume.cell_count, THREADS)));
+        dispatches.extend([list_points.over(points), rank_points.over(points), sort_points.over(points)]);
+        dispatches.push(sum_faces.over(volume.cell_count));
         Ok(dispatches)
     }
 }

@@ -23,19 +23,21 @@ pub const DIFFERENCES: usize = 49;
 pub const EYES: usize = 17;
 /// Nodes of the eye's inclination of the moments, -pi / 2 to pi / 2.
 pub const MOMENT_EYES: usize = 2 * EYES - 1;
+/// How many [`LEVELS`] there are.
+pub const LEVEL_COUNT: usize = 8;
 /// Multiples of the pigment at the root for which there are entries; the first is white hair.
-pub const LEVELS: [f32; 8] = [0.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0];
+pub const LEVELS: [f32; LEVEL_COUNT] = [0.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0];
 /// Offsets across the width that are summed.
 const OFFSETS: usize = 96;
 
 /// First entry of the terms around the fibre: two for each `[level][eye][turn]`.
 pub const AROUND: usize = SUMS * DIFFERENCES;
 /// First entry of the moments: [`MOMENTS`] for each `[level][eye]`.
-pub const FIRST_MOMENT: usize = AROUND + 2 * LEVELS.len() * EYES * TURNS;
+pub const FIRST_MOMENT: usize = AROUND + 2 * LEVEL_COUNT * EYES * TURNS;
 /// First entry of the shares of the kinds of paths: two for each `[level][eye]`, as those around the fibre.
-pub const FIRST_SHARE: usize = FIRST_MOMENT + MOMENTS * LEVELS.len() * MOMENT_EYES;
+pub const FIRST_SHARE: usize = FIRST_MOMENT + MOMENTS * LEVEL_COUNT * MOMENT_EYES;
 /// Number of entries.
-pub const ENTRIES: usize = FIRST_SHARE + 2 * LEVELS.len() * EYES;
+pub const ENTRIES: usize = FIRST_SHARE + 2 * LEVEL_COUNT * EYES;
 
 /// The tables of one fibre.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,11 +122,11 @@ impl Table {
                 entries.push(Vec4::new(r as f32, tt as f32, trt as f32, 0.0));
             }
         }
-        let rings: Vec<[Ring; LEVELS.len()]> = (0..EYES)
+        let rings: Vec<[Ring; LEVEL_COUNT]> = (0..EYES)
             .into_par_iter()
             .map(|eye| rings(lobes, FRAC_PI_2 * eye as f64 / (EYES - 1) as f64, absorption))
             .collect();
-        let levels = 0..LEVELS.len();
+        let levels = 0..LEVEL_COUNT;
         for level in levels.clone() {
             for &[r, tt, trt, rest] in rings.iter().flat_map(|rings| &rings[level]) {
                 entries.push(vector(tt).extend(r[0] as f32));
@@ -295,7 +297,7 @@ fn place(share: f32, count: usize) -> (usize, f32) {
 /// The level before a multiple of the pigment, and how far the next one is.
 #[inline]
 fn level_of(pigment: f32) -> (usize, f32) {
-    let level = LEVELS[1..LEVELS.len() - 1].iter().filter(|level| pigment >= **level).count();
+    let level = LEVELS[1..LEVEL_COUNT - 1].iter().filter(|level| pigment >= **level).count();
     let (low, high) = (LEVELS[level], LEVELS[level + 1]);
     (level, ((pigment - low) / (high - low)).clamp(0.0, 1.0))
 }
@@ -305,7 +307,7 @@ fn vector(channels: [f64; 3]) -> Vec3 {
 }
 
 /// The mean over the width of shares times densities of the turn, at every node of it, for each level of pigment.
-fn rings(lobes: &Lobes, eye: f64, absorption: [f64; 3]) -> [Ring; LEVELS.len()] {
+fn rings(lobes: &Lobes, eye: f64, absorption: [f64; 3]) -> [Ring; LEVEL_COUNT] {
     let absorptions = LEVELS.map(|level| absorption.map(|channel| channel * f64::from(level)));
     let mut rings = LEVELS.map(|_| vec![[[0.0; 3]; LOBES]; TURNS]);
     for offset in 0..OFFSETS {
