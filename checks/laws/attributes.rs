@@ -64,7 +64,7 @@ law! {
         let [own, even] = drift(on);
         // Velocities are differences of rounded positions: 2e-8 m * 60 / 0.3 m/s, summed over 30 steps.
         assert!(own < 3e-4, "{own}");
-        assert!(even > 1e-2, "even masses are not told apart: {even}");
+        assert!(even > 1e-2, "even masses are not distinguished: {even}");
     }
 }
 

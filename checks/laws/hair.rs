@@ -127,7 +127,7 @@ law! {
             assert!((droop / expected - 1.0).abs() < 0.03, "{droop}, expected {expected}");
             found.push(droop);
         }
-        assert!(found[1] < 0.9 * found[0] && found[2] < 0.9 * found[0], "shapes are not told apart: {found:?}");
+        assert!(found[1] < 0.9 * found[0] && found[2] < 0.9 * found[0], "shapes are not distinguished: {found:?}");
     }
 }
 

@@ -59,7 +59,7 @@ law! {
             let [scaled, even] = drift(on, scale);
             // Velocities are differences of rounded positions, as for a strand of its own length.
             assert!(scaled < 3e-4, "{scale}: {scaled}");
-            assert!(even > 1e-2, "{scale}: masses at rest are not told apart, {even}");
+            assert!(even > 1e-2, "{scale}: masses at rest are not distinguished, {even}");
         }
     }
 }

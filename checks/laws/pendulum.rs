@@ -76,7 +76,7 @@ law! {
 }
 
 law! {
-    fn a_pendulum_in_weaker_gravity_is_told_apart(on) {
+    fn a_pendulum_in_weaker_gravity_is_distinguished(on) {
         let length = 0.25;
         let small = 2.0 * PI * (length / GRAVITY).sqrt();
         let weaker = |settings: Settings| Settings { gravity: settings.gravity * 0.97, ..settings };

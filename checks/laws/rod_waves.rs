@@ -50,7 +50,7 @@ law! {
         let period = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f32;
         // The bound of the law. Found: 1.0004 on both, what implicit Euler takes of it (1 + (2 pi / 200)^2 / 3).
         assert!((period / 200.0 - 1.0).abs() < 0.02, "{} of its period", period / 200.0);
-        // It moved nothing but its sections.
+        // It moved its sections only.
         let aside = first(rig.state()).iter().zip(first(&rest)).map(|(now, rest)| now.distance(rest)).fold(0.0, f32::max);
         assert!(aside < 1e-6, "{aside} m aside");
     }

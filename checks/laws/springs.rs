@@ -50,7 +50,7 @@ fn moved(guides: &Guides) -> Vec<(Vec3, Vec3)> {
         .collect()
 }
 
-/// What `integrate` changes the velocities by \[m/s\] where nothing but springs acts.
+/// What `integrate` changes the velocities by \[m/s\] where only springs act.
 fn kicks(on: &On, settings: &Settings, rooted: usize) -> Vec<Vec3> {
     let guides = helix();
     let mut rest = RestShape::new(&guides, 1.0);

@@ -67,7 +67,7 @@ law! {
 }
 
 law! {
-    fn a_round_less_is_told_apart(on) {
+    fn a_round_less_is_distinguished(on) {
         let (segment, _) = stretch(on, 8, 0.0, &projection(17));
         assert!((segment / 0.028_484_53 - 1.0).abs() > 0.1, "{segment}");
     }

@@ -49,7 +49,7 @@ fn every_step_is_reported_once_and_in_order() {
     let mut runner = head.gpu_runner(&gpu);
     (1..=STEPS).for_each(|step| runner.step(&drive(step)).unwrap());
     let expected = numbers(&runner.reports().unwrap());
-    assert!(expected.windows(2).all(|pair| pair[0] != pair[1]), "steps cannot be told apart");
+    assert!(expected.windows(2).all(|pair| pair[0] != pair[1]), "steps cannot be distinguished");
     for checkpoint_every in [1, 3, 120] {
         let mut simulator = simulator(head, &gpu, checkpoint_every);
         let mut reports = Vec::new();

@@ -22,10 +22,10 @@ fn short_runs_agree_by_points() {
             reports.push(on_cpu.step(&mut expected, &drive(step)));
             runner.step(&drive(step)).unwrap();
         }
-        let told = runner.reports().unwrap();
+        let reported = runner.reports().unwrap();
         let found = runner.state().unwrap();
         let name = head.name;
-        assert_eq!(told.len(), 4, "{name}");
+        assert_eq!(reported.len(), 4, "{name}");
         assert_eq!(found.world_from_head, expected.world_from_head);
         assert_eq!(found.time, expected.time);
         let distance = apart(&expected.positions, &found.positions, &head.guides);
@@ -36,7 +36,7 @@ fn short_runs_agree_by_points() {
         assert!(mean < 5e-5, "{name}: {mean}");
         let before = mean_apart(&expected.previous_positions, &found.previous_positions, &head.guides);
         assert!(before < 5e-5, "{name}: {before}");
-        for (expected, found) in reports.iter().zip(&told) {
+        for (expected, found) in reports.iter().zip(&reported) {
             assert_eq!(found.non_finite, 0);
             let fluid = expected.pressure.fluid_cells.abs_diff(found.pressure.fluid_cells);
             assert!(fluid <= 2 + expected.pressure.fluid_cells / 20, "{name}: {expected:?}, {found:?}");

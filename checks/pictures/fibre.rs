@@ -128,7 +128,7 @@ fn highlights_stand_where_they_should() {
     assert!((at + 8.25).abs() > 1.0);
 }
 
-/// Shares of light that go on and that come back, of three channels.
+/// Shares of light that pass through and that come back, of three channels.
 fn attenuation(eye: f64, absorption: [f64; 3]) -> [[f64; 3]; 2] {
     let table = Table::new(&lobes(0.3, 2.0), absorption);
     let count = 360;

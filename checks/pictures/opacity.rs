@@ -157,10 +157,10 @@ law! {
             crossings.push(numbers[3] as u32);
         }
         assert_eq!((lines.len(), points.len()), (4000, 3000));
-        let told = |travels| accuracy(&shadows_on(on, &strands, &sun(travels)), &points, &crossings);
-        let found = told(TRAVELS);
+        let accuracy_of = |travels| accuracy(&shadows_on(on, &strands, &sun(travels)), &points, &crossings);
+        let found = accuracy_of(TRAVELS);
         assert!(found.sound(), "{found:?}");
-        let wrong = told(-TRAVELS);
+        let wrong = accuracy_of(-TRAVELS);
         assert!(!wrong.sound(), "light from the wrong side must be seen: {wrong:?}");
     }
 }

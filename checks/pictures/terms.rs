@@ -1,5 +1,5 @@
 //! Each term of the light that hair sends to the eye, through `shade` on both backends: diffuse light, both
-//! highlights, their noise, the light that goes on through hair, and light from all around.
+//! highlights, their noise, the light that passes through hair, and light from all around.
 
 use glam::Vec3;
 use strandline_checks::law;

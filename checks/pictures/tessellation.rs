@@ -157,7 +157,7 @@ fn joints_are_smooth_to_the_second_derivative() {
 }
 
 #[test]
-fn a_curve_with_a_kink_in_curvature_is_told_apart() {
+fn a_curve_with_a_kink_in_curvature_is_distinguished() {
     // Piecewise y = x^2 sign(x): smooth to the first derivative only.
     let points: Vec<DVec3> = (0..=8)
         .map(|index| {

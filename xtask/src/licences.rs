@@ -142,7 +142,7 @@ pub fn check() -> bool {
             for name in locked.symmetric_difference(&listed) {
                 println!("docs/licences.md and Cargo.lock differ in {name}");
             }
-            println!("`cargo xtask licences` writes the page anew");
+            println!("`cargo xtask licences` writes the page again");
             false
         }
         Err(error) => {
@@ -159,7 +159,7 @@ fn locked(lock: &str) -> Result<BTreeSet<String>> {
     Ok(others.map(|package| format!("{} {}", package.name, package.version)).collect())
 }
 
-/// The packages that the page names, likewise.
+/// The packages that the page names, the same way.
 fn listed(page: &str) -> BTreeSet<String> {
     let row = |line: &str| {
         let cells: Vec<&str> = line.strip_prefix("| ")?.split(" | ").collect();

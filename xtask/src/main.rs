@@ -24,7 +24,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            with STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1. It also puts numpy
            and usd-core into target/python where python3 has none, and says so where it cannot
   ci       test --setup
-  bless    record the golden pictures anew; look at each before you commit it
+  bless    record the golden pictures again; look at each before you commit it
   docs     write docs/scene.md from the settings table
   names    check that every stage has one name everywhere
   house    check the plan of the house: arrows between crates, circles of files, sizes

@@ -121,14 +121,14 @@ fn grooms_are_there() -> bool {
     std::env::var_os("STRANDLINE_GROOMS").map_or_else(beside, PathBuf::from).join("sintel").is_dir()
 }
 
-/// Records the golden pictures anew.
+/// Records the golden pictures again.
 pub fn bless() -> bool {
     let mut tally = Tally::default();
     let pictures = ["test", "--workspace", "--test", "pictures", "golden"];
     cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 
-/// Writes docs/scene.md anew from the settings table.
+/// Writes docs/scene.md again from the settings table.
 pub fn docs() -> bool {
     let mut tally = Tally::default();
     let page = ["test", "--workspace", "--test", "scene_reference", "the_page"];

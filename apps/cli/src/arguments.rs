@@ -270,7 +270,7 @@ pub struct BenchOptions {
     /// A short run that shows that everything works; its figures mean little.
     #[arg(long)]
     pub quick: bool,
-    /// A groom whose first picture `groom` waits for besides.
+    /// A groom whose first picture `groom` waits for too.
     #[arg(long, value_name = "FILE")]
     pub groom: Option<PathBuf>,
     /// The body that goes with it.

@@ -11,7 +11,7 @@ use signal_hook::flag;
 
 use crate::{exit, output};
 
-/// How often is looked for a signal. The handlers themselves may do nothing but note it, and a thread that
+/// How often is looked for a signal. The handlers themselves may only note it, and a thread that
 /// sleeps between looks works on every system.
 const LOOK: Duration = Duration::from_millis(20);
 

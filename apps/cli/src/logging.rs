@@ -1,4 +1,4 @@
-//! Messages of the libraries, wgpu's above all, for whoever looks for a fault.
+//! Messages of the libraries, wgpu's above all, for finding faults.
 
 use std::io::{Write, stderr};
 

@@ -156,7 +156,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
     let mut film = Film::new(folder, player.frames(), scene.film.frames_per_second / every as f32)?;
     let mut drawn = Drawn::default();
     if let Err(error) = play(&mut player, &mut film, &mut drawn, &stoppable, json) {
-        return Err(broken_off(film, folder, error));
+        return Err(stopped_early(film, folder, error));
     }
     let written = film.finish()?;
     stoppable.finish();
@@ -227,10 +227,10 @@ fn play(
 }
 
 /// Closes a film that failed, and says what there is of it.
-fn broken_off(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Error {
+fn stopped_early(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Error {
     let frames = film.len();
     let notes = if error.is::<Stopped>() {
-        film.break_off().map_or_else(|error| vec![error.to_string()], |left| left.notes)
+        film.stop_early().map_or_else(|error| vec![error.to_string()], |left| left.notes)
     } else {
         Vec::new()
     };

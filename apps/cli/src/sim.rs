@@ -294,7 +294,7 @@ fn play(player: &mut Player, steps: &mut Steps, stoppable: &Stoppable, quiet: bo
     Ok(())
 }
 
-/// Closes what was written, also where the run was broken off, and then says what there is of it.
+/// Closes what was written, also where the run was stopped early, and then says what there is of it.
 fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Option<Written>> {
     let written = player.close_out();
     let Err(error) = played else {
@@ -306,7 +306,7 @@ fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Opti
     };
     match written {
         Ok(Some(written)) if written.frames > 0 => output::note(&format!(
-            "the {} frames so far are whole; `sim --resume` goes on from a cache: {}",
+            "the {} frames so far are whole; `sim --resume` resumes from a cache: {}",
             written.frames,
             written.place.display()
         )),

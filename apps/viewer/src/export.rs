@@ -1,4 +1,4 @@
-//! Moving hair as a file: a range of the film, simulated anew from its beginning on a thread of its own.
+//! Moving hair as a file: a range of the film, simulated again from its beginning on a thread of its own.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};

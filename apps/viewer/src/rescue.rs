@@ -40,7 +40,7 @@ impl Kept {
 type Hook = Arc<dyn Fn(&PanicHookInfo) + Send + Sync>;
 
 /// Runs a window. A panic before anything of the scene was seen is handed back as its words; one after that
-/// saves the scene, says where, and goes on as a panic.
+/// saves the scene, says where, and continues as a panic.
 pub fn run<T>(kept: &Kept, window: impl FnOnce() -> T) -> Result<T, String> {
     let former: Hook = panic::take_hook().into();
     // What a panic said before anything was seen.
@@ -86,14 +86,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_is_told_before_the_window_is_there_and_saves_the_scene_after_it() {
+    fn a_panic_is_reported_before_the_window_is_there_and_saves_the_scene_after_it() {
         let kept = Kept::default();
         assert_eq!(run(&kept, || 3), Ok(3));
         assert_eq!(run(&kept, || -> u8 { panic!("no {}", "library") }), Err("no library".to_owned()));
         let folder = tempfile::tempdir().unwrap();
         kept.keep(Scene { folder: folder.path().to_owned(), ..Scene::demo() });
         let stopped = panic::catch_unwind(AssertUnwindSafe(|| run(&kept, || -> u8 { panic!("late") })));
-        assert!(stopped.is_err(), "it goes on as a panic");
+        assert!(stopped.is_err(), "it continues as a panic");
         let saved = folder.path().join("strandline-rescued-0.toml");
         assert_eq!(Scene::load(&saved).unwrap().style, Scene::demo().style);
     }

@@ -15,14 +15,14 @@ pub struct Saves {
     /// Those that wait for a picture in full: paths, or none for one in the folder.
     pub waiting: Vec<Option<PathBuf>>,
     threads: Vec<JoinHandle<()>>,
-    told: (Sender<Saved>, Receiver<Saved>),
+    finished: (Sender<Saved>, Receiver<Saved>),
     taken: HashSet<PathBuf>,
 }
 
 impl Default for Saves {
     fn default() -> Self {
         let (waiting, threads, taken) = Default::default();
-        Self { waiting, threads, told: channel(), taken }
+        Self { waiting, threads, finished: channel(), taken }
     }
 }
 
@@ -37,11 +37,11 @@ impl Saves {
         path: PathBuf,
         done: impl FnOnce() + Send + 'static,
     ) -> std::io::Result<()> {
-        let told = self.told.0.clone();
+        let finished = self.finished.0.clone();
         let write = move || {
             let saved = picture.save(&path).map(|()| path).map_err(|error| error.to_string());
             // The window may be gone.
-            let _ = told.send(saved);
+            let _ = finished.send(saved);
             done();
         };
         self.threads.push(std::thread::Builder::new().name("saving".to_owned()).spawn(write)?);
@@ -51,7 +51,7 @@ impl Saves {
     /// What came of pictures that are written since.
     pub fn written(&mut self) -> Vec<Saved> {
         self.threads.retain(|thread| !thread.is_finished());
-        self.told.1.try_iter().collect()
+        self.finished.1.try_iter().collect()
     }
 
     /// Waits for all that is being written.

@@ -51,7 +51,7 @@ fn scribe<P: Page>() -> (Worker<Scribe<P>>, Arc<AtomicU64>) {
 /// Ends a worker and looks whether its thread has let go of everything.
 fn end<P: Page>(worker: Worker<Scribe<P>>, ended: &AtomicU64) {
     drop(worker);
-    assert!(ended.load(Relaxed) > 0, "the thread goes on");
+    assert!(ended.load(Relaxed) > 0, "the thread continues");
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn it_ends_whatever_was_not_finished() {
 }
 
 #[test]
-fn a_panic_is_told_and_it_ends_all_the_same() {
+fn a_panic_is_reported_and_it_ends_all_the_same() {
     explore(|| {
         let (mut worker, ended) = scribe::<Moved>();
         worker.start(Order::Write(Page::blank())).unwrap();

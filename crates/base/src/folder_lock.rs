@@ -38,7 +38,7 @@ impl FolderLock {
                     return Ok(Self { path, file: None });
                 }
             }
-            // Whoever held it before may have removed it after it was opened here, and a third may have made
+            // The holder before may have removed it after it was opened here, and a third may have made
             // another: then this lock keeps nothing out.
             if is_there(&mut file, &path) {
                 parts::hold().add(&path);

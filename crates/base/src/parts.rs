@@ -45,7 +45,7 @@ impl Held {
         self.parts().written.push(path.to_owned());
     }
 
-    /// A file has its own name, or is no more.
+    /// A file has its own name, or is gone.
     pub fn forget(&mut self, path: &Path) {
         self.parts().written.retain(|part| part != path);
     }
@@ -131,7 +131,7 @@ fn clear_once(folder: &Path) {
 }
 
 /// Removes what runs that were ended left in a folder. A part whose writer lives is locked; the system frees
-/// the lock of a process that is no more, whatever ended it. Parts that another program writes have no lock:
+/// the lock of a process that has ended, whatever ended it. Parts that another program writes have no lock:
 /// `Writer::Foreign` is for those who hold the folder's.
 pub(crate) fn clear(folder: &Path, writer: Writer) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {

@@ -27,7 +27,7 @@ impl Mesh {
     }
 
     /// The mesh without triangles that are there before, between the same places and wound the same way: they
-    /// add nothing but work.
+    /// only add work.
     pub(crate) fn without_repeats(&self) -> Cow<'_, Self> {
         let welded = welded_vertices(&self.positions);
         let mut known = HashSet::with_capacity(self.triangles.len());

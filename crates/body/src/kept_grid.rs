@@ -28,7 +28,7 @@ impl DistanceGrid {
     /// the next where it took long to build.
     ///
     /// A file is found by all that the grid depends on. One that is broken, cut or of other content is built
-    /// anew; a folder that cannot be read or written changes nothing but the time.
+    /// again; a folder that cannot be read or written changes the time only.
     ///
     /// # Errors
     /// As [`Self::of_mesh`].

@@ -162,7 +162,7 @@ mod tests {
         }
         for i in 0..400 {
             let time = i as f64 / 100.0;
-            // A shift by the period changes nothing but rounding.
+            // A shift by the period changes rounding only.
             let apart = degrees(&Motion::Turn, time, Vec3::Y) - degrees(&Motion::Turn, time + 4.0, Vec3::Y);
             assert!(apart.abs() < 1e-4);
         }

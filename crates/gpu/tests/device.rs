@@ -97,7 +97,7 @@ fn a_wrong_shader_is_refused_with_its_module_and_line() {
     assert!(matches!(error, GpuError::Shader { .. }), "{error:?}");
     let text = error.to_string();
     assert!(text.contains("module broken") && text.contains(":3:"), "{text}");
-    assert_eq!(count(&gpu, 2, 1).unwrap(), [0, 1], "the device goes on");
+    assert_eq!(count(&gpu, 2, 1).unwrap(), [0, 1], "the device continues");
 }
 
 #[test]
@@ -252,14 +252,14 @@ fn a_copy_whose_news_another_thread_holds_is_waited_for() {
     let part = batch.add(&numbers, 1 << 23);
     let transfer = batch.begin(&gpu).unwrap();
     // No submission uses this one, so that its callback comes before that of the copy.
-    let (tell, told) = std::sync::mpsc::channel();
+    let (send, received) = std::sync::mpsc::channel();
     unused.slice(..).map_async(wgpu::MapMode::Read, move |_| {
-        tell.send(()).unwrap();
+        send.send(()).unwrap();
         std::thread::sleep(std::time::Duration::from_millis(300));
     });
     std::thread::scope(|scope| {
         scope.spawn(|| gpu.wait().unwrap());
-        told.recv().unwrap();
+        received.recv().unwrap();
         assert_eq!(transfer.wait().unwrap().take(part).len(), 1 << 23);
     });
 }

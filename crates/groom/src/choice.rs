@@ -15,7 +15,7 @@ const PLACES: usize = 3;
 /// How much a difference in shape counts beside a distance of roots: strands a centimetre apart that end three
 /// centimetres apart are as far from each other as parallel ones 1.3 cm apart.
 const SHAPE: f32 = 0.3;
-/// Distance \[m\] that strands of different groups are apart besides: more than a body is large.
+/// Distance \[m\] added between strands of different groups: more than a body is large.
 const GROUP: f32 = 10.0;
 
 /// A strand as a place where near means alike: its root, and what leads from there to places along it.

@@ -15,7 +15,7 @@ pub enum GroomError {
     /// A groom without a strand.
     #[error("the groom has no strand that could be used")]
     Empty,
-    /// The bytes are not what the format asks for.
+    /// The bytes are not what the format requires.
     #[error("not a sound {format} file: {found}, expected {expected}; {mend}")]
     Malformed {
         /// The format.

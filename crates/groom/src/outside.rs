@@ -6,7 +6,7 @@ use strandline_body::turned_out;
 
 use crate::{Groom, Guides, LANES};
 
-/// Times that a point is placed anew at most when the surface under it curves.
+/// Times that a point is placed again at most when the surface under it curves.
 const PLACINGS: usize = 16;
 /// Tangent of the angle by which a segment turns at most to come back to its place.
 const GENTLE: f32 = 0.25;
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_segment_reaches_is_told() {
+    fn what_no_segment_reaches_is_reported() {
         let mut groom = Groom::empty(8e-5);
         groom.push([Vec3::ZERO, Vec3::X * 0.03]);
         let mut guides = Guides::resample(&groom, 4).unwrap();

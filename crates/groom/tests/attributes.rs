@@ -1,4 +1,4 @@
-//! What a groom has besides points: kept by a format to the bit, or named as lost.
+//! What a groom has beyond points: kept by a format to the bit, or named as lost.
 
 use std::path::PathBuf;
 

@@ -32,7 +32,7 @@ settings! {
         root_width: f32 = 0.4, in [0.0, 1.0], more "blunter roots";
         /// Reflectance at the root, linear RGB; of a mass of hair with `fibre.chiang.pigment = "color"`.
         root_color: Vec3 = Vec3::new(0.115, 0.056, 0.027), in [0.0, 1.0];
-        /// Reflectance at the tip, linear RGB, likewise.
+        /// Reflectance at the tip, linear RGB, the same way.
         tip_color: Vec3 = Vec3::new(0.22, 0.115, 0.058), in [0.0, 1.0];
         /// How one hair scatters light.
         fibre: Fibre = Fibre::default();
@@ -82,7 +82,7 @@ settings! {
         root_color: Option<Vec3> = None, in [0.0, 1.0];
         /// Reflectance at the tip, linear RGB; without it that at the root.
         tip_color: Option<Vec3> = None, in [0.0, 1.0];
-        /// Brown to black pigment, as `look.fibre.chiang.eumelanin`; a colour or a map of the group has the last word.
+        /// Brown to black pigment, as `look.fibre.chiang.eumelanin`; a colour or a map of the group wins.
         eumelanin: Option<f32> = None, in [0.0, 100.0];
         /// Red to yellow pigment, as `look.fibre.chiang.pheomelanin`.
         pheomelanin: Option<f32> = None, in [0.0, 100.0];
@@ -92,7 +92,7 @@ settings! {
         variation: Option<f32> = None, in [0.0, 1.0];
         /// Share of strands that have turned white.
         grey: Option<f32> = None, in [0.0, 1.0];
-        /// Multiple of the groom's root diameters, besides that of all.
+        /// Multiple of the groom's root diameters, on top of that of all.
         width_scale: f32 = 1.0, in [0.0, 1000.0], slider [0.1, 5.0], more "wider strands";
         /// Multiple of `look.clump`'s radii and of the waves of drawn strands. Without it one that fits groups whose
         /// roots stand closer than those of most hair, where the radii are fitted too.

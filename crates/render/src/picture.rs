@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_disk_is_told_with_its_remedy() {
+    fn a_full_disk_is_reported_with_its_remedy() {
         assert!(reason(&ErrorKind::StorageFull.into()).contains("disk is full"));
     }
 }

@@ -224,7 +224,7 @@ mod tests {
         needs(StrandMethod::Rods, 9, &[VELOCITIES, SECTIONS, SPINS, CONTACTS, VOLUME, LENGTH_SCALE]);
     }
 
-    /// Saves hair in its swing, with so many parts, and goes on from what was saved, whole and with each of these
+    /// Saves hair in its swing, with so many parts, and resumes from what was saved, whole and with each of these
     /// parts changed.
     fn needs(method: StrandMethod, count: usize, parts: &[&str]) {
         let (model, mut state) = hair(method);

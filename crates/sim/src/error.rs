@@ -16,7 +16,7 @@ pub enum SimError {
         expected: &'static str,
     },
     /// A checkpoint of other hair, or one that is damaged.
-    #[error("the state that was saved has {found}, expected {expected}: begin anew")]
+    #[error("the state that was saved has {found}, expected {expected}: start again")]
     Checkpoint {
         /// What it has.
         found: String,

@@ -7,7 +7,7 @@ use crate::Settings;
 /// Bytes of a simulated point: its rest shape in guides and model, its state in both halves of a step,
 /// what it remembers of the solids of two carriers, what it brings to the volume and where, and the copies that are drawn.
 const POINT_BYTES: u64 = 296;
-/// Bytes of a point of a rod besides: its node, its section and spin, and the copies of them that a change of settings
+/// Further bytes of a point of a rod: its node, its section and spin, and the copies of them that a change of settings
 /// or a device holds.
 const ROD_BYTES: u64 = 192;
 /// Bytes of a cell: velocities and their changes on three faces, points, kind, distance and unknown.

@@ -54,7 +54,7 @@ pub struct StepReport {
     pub penetration_max: f32,
     /// Mean speed of all points \[m/s\]: of what moved in the step, whatever the stored velocities say.
     pub speed_mean: f32,
-    /// Largest speed of a point \[m/s\], likewise.
+    /// Largest speed of a point \[m/s\], the same way.
     pub speed_max: f32,
     /// Points whose position or velocity is not finite.
     pub non_finite: usize,

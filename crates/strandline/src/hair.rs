@@ -170,7 +170,7 @@ impl Hair {
         place(self.gpu())
     }
 
-    /// Where pictures are drawn, likewise.
+    /// Where pictures are drawn, the same way.
     pub fn drawn_on(&self) -> String {
         self.session.studio.painter.drawn_on()
     }

@@ -7,7 +7,7 @@ use crate::{
     scene::MotionSection,
 };
 
-/// Where a head is at every time: a motion about a pivot, and a turn besides it.
+/// Where a head is at every time: a motion about a pivot, and a turn added to it.
 #[derive(Clone, Debug)]
 pub struct HeadMotion {
     motion: Motion,

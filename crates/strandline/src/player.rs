@@ -167,7 +167,7 @@ impl Player {
         self.overlap = overlap;
     }
 
-    /// Changes how the hair moves, from the next frame on whose simulation starts. The hair goes on as it
+    /// Changes how the hair moves, from the next frame on whose simulation starts. The hair continues as it
     /// is; a setting outside its range ends the film with its error.
     pub fn set_settings(&mut self, settings: Settings) {
         self.change = Some(settings);
@@ -224,7 +224,7 @@ impl Player {
         self.session.place.work().engine.gpu().cloned()
     }
 
-    /// The device that the pictures are drawn on, likewise.
+    /// The device that the pictures are drawn on, the same way.
     pub fn picture_gpu(&self) -> Option<Gpu> {
         self.session.studio.painter.gpu().cloned()
     }
@@ -234,7 +234,7 @@ impl Player {
         place(self.session.place.work().engine.gpu())
     }
 
-    /// Where pictures are drawn, likewise.
+    /// Where pictures are drawn, the same way.
     pub fn drawn_on(&self) -> String {
         self.session.studio.painter.drawn_on()
     }

@@ -1,4 +1,4 @@
-//! What a groom says of its strands besides their points: for files, not for pictures.
+//! What a groom says of its strands beyond their points: for files, not for pictures.
 
 use crate::groom::Groom;
 
@@ -19,7 +19,7 @@ pub struct Tags {
 }
 
 impl Tags {
-    /// Those of a groom. Groups of large numbers are numbered anew, in the order of their numbers.
+    /// Those of a groom. Groups of large numbers are numbered again, in the order of their numbers.
     pub(crate) fn new(groom: &Groom, guides: Option<&[usize]>) -> Self {
         let mut numbers: Vec<u32> = groom.groups.clone().unwrap_or_default();
         numbers.sort_unstable();

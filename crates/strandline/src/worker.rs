@@ -22,7 +22,7 @@ pub(crate) trait Work: Send + 'static {
     fn run(&mut self, job: Self::Job) -> Self::Done;
 }
 
-/// The worker's thread is no more: a job panicked.
+/// The worker's thread has ended: a job panicked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Gone;
 

@@ -121,7 +121,7 @@ fn ending_in_the_middle_waits_for_the_job_and_no_longer() {
 }
 
 #[test]
-fn a_panic_is_told_and_the_last_state_stays() {
+fn a_panic_is_reported_and_the_last_state_stays() {
     let (work, _) = scribe();
     let mut worker = Worker::new(work).unwrap();
     worker.start(order(Vec::new())).unwrap();

@@ -1,4 +1,4 @@
-//! Hair that moved, in files: the same pictures, the same bits when a run goes on, and what is refused.
+//! Hair that moved, in files: the same pictures, the same bits when a run resumes, and what is refused.
 
 use std::path::Path;
 
@@ -107,7 +107,7 @@ fn a_cache_of_drawn_strands_is_drawn_as_it_is() {
     }
 }
 
-/// Breaks a film off after some events, goes on, and compares the files.
+/// Breaks a film off after some events, resumes it, and compares the files.
 fn goes_on(scene: &Scene, every: u32, folder: &Path) {
     let at = |name: &str| OutSettings { every, ..OutSettings::new(folder.join(name)) };
     let bytes = |name: &str| std::fs::read(folder.join(name)).unwrap();

@@ -94,7 +94,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     let fast = apart(there, &vec![Vec3Lanes::default(); there.len()]);
     assert!(fast > 0.1, "nothing moved: {fast} m/s");
     assert_eq!(begun.length_scale(7), 0.8);
-    // It goes on without a jerk: gravity and the volume change no velocity by 3 m/s in a step.
+    // It continues without a jerk: gravity and the volume change no velocity by 3 m/s in a step.
     let before = again.state().unwrap().positions.clone();
     again.step(STEP, &turned).unwrap();
     let moved = apart(&before, &again.state().unwrap().positions);

@@ -1,6 +1,6 @@
 //! Every built-in scene has the bits that it had: step and picture, on the CPU, against `same_bits.txt`.
 //!
-//! A change that is not meant to change what comes out is held to it. One that is writes the file anew
+//! A change that is not meant to change what comes out is held to it. One that is writes the file again
 //! (`STRANDLINE_WRITE_BITS=1`) in a commit of its own that says why.
 
 use std::fmt::Write;

@@ -40,7 +40,7 @@ struct Person {
     live: Live,
     random: body::Random,
     folder: PathBuf,
-    told: u64,
+    sent: u64,
     last: Shown,
     /// Commands that cannot be done, and errors that came.
     refused: u64,
@@ -59,7 +59,7 @@ impl Person {
             live: Live::new(scene(), || ()).unwrap(),
             random: body::Random::new(5, 0),
             folder,
-            told: 1,
+            sent: 1,
             last: Shown::default(),
             refused: 0,
             errors: 0,
@@ -72,7 +72,7 @@ impl Person {
     }
 
     fn tell(&mut self, command: impl Into<Command>) {
-        self.told = self.live.send(command);
+        self.sent = self.live.send(command);
     }
 
     /// Tells what has to be refused.
@@ -110,14 +110,14 @@ impl Person {
         let begin = Instant::now();
         loop {
             let shown = self.live.take_shown();
-            // What was told before a picture is heard before it.
+            // Commands before a picture act before it.
             self.take_events();
             let came = shown.is_some();
             if let Some(shown) = shown {
                 assert!(shown.frame > self.last.frame, "pictures come in their order");
                 assert!(
                     shown.drawn_after_command >= self.last.drawn_after_command
-                        && shown.drawn_after_command <= self.told
+                        && shown.drawn_after_command <= self.sent
                 );
                 let Picture { width, height, pixels, .. } = &shown.picture;
                 assert_eq!(pixels.len() as u32, 3 * width * height);
@@ -128,7 +128,7 @@ impl Person {
             }
             let Shown { frame, drawn_after_command: drawn, .. } = self.last;
             let waited = begin.elapsed();
-            assert!(waited.as_secs() < 60, "nothing came: picture {frame}, {drawn} of {} drawn", self.told);
+            assert!(waited.as_secs() < 60, "nothing came: picture {frame}, {drawn} of {} drawn", self.sent);
             if !came {
                 std::thread::sleep(Duration::from_micros(100));
             }
@@ -215,7 +215,7 @@ impl Person {
             }
             2 if share < 0.1 => {
                 self.tell(Command::Load(Box::new(scene())));
-                self.load = self.told;
+                self.load = self.sent;
             }
             2 if share < 0.2 => {
                 let mut bad = scene();
@@ -226,7 +226,7 @@ impl Person {
             }
             3 if share < 0.2 => self.save("any.toml"),
             3 if share < 0.25 => {
-                let folder = self.folder.join(format!("film{}", self.told));
+                let folder = self.folder.join(format!("film{}", self.sent));
                 self.tell(Command::Record(folder));
                 self.tell(Command::Step);
                 self.tell(Command::StopRecording);
@@ -279,7 +279,7 @@ impl Person {
         ] {
             self.tell(change);
         }
-        self.wait(|person| person.last.drawn_after_command == person.told);
+        self.wait(|person| person.last.drawn_after_command == person.sent);
         self.save("kept.toml");
         self.wait(|person| person.saved == person.saves);
         let saved = Scene::load(&self.folder.join("kept.toml")).unwrap();
@@ -294,12 +294,12 @@ impl Person {
     /// The picture at rest and the one some steps later.
     fn begin_again(&mut self) -> [Picture; 2] {
         self.tell(Change::Reset);
-        self.wait(|person| person.last.drawn_after_command == person.told);
+        self.wait(|person| person.last.drawn_after_command == person.sent);
         let rest = self.last.picture.clone();
         // A step at a time: of several the picture of the first may be the last that has to be waited for.
         for _ in 0..20 {
             self.tell(Command::Step);
-            self.wait(|person| person.last.drawn_after_command == person.told);
+            self.wait(|person| person.last.drawn_after_command == person.sent);
         }
         [rest, self.last.picture.clone()]
     }
@@ -340,7 +340,7 @@ fn ten_thousand_pictures_with_changes_at_random() {
             let now = person.begin_again();
             assert_eq!(apart(&now[0], &first[0]), 0, "at rest it is what it was");
             assert_eq!(apart(&now[1], &first[1]), 0, "it moves as it did the first time");
-            // What is refused is told once, and nothing else; a scene that goes away takes its last errors along.
+            // What is refused is reported once, and nothing else; a scene that goes away takes its last errors along.
             let untold = person.refused - person.errors;
             assert!(untold <= 3 * person.loads, "{untold} of {}, {} loads", person.refused, person.loads);
             person.tell(Command::Play(true));

@@ -16,7 +16,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Brings a copy up to date; files that are the same are left alone, so that little is built anew.
+    /// Brings a copy up to date; files that are the same are left alone, so that little is built again.
     pub fn copy(from: &Path, to: &Path) -> Result<Self> {
         let files = listed(from)?;
         let mut hasher = DefaultHasher::new();

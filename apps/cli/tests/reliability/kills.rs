@@ -94,7 +94,7 @@ fn sim_leaves_whole_usd() {
     end_often(&["sim", "--scene", "small.toml", "--out", "a.usda"], &[], &["a.usda", "small.toml"], "");
 }
 
-/// Whatever ends it, a run that writes a cache leaves what was done, and goes on from there to the same bytes.
+/// Whatever ends it, a run that writes a cache leaves what was done, and resumes from there to the same bytes.
 #[test]
 fn a_cache_is_gone_on_from_whatever_ended_its_run() {
     let folder = folder();

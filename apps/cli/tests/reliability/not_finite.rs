@@ -10,7 +10,7 @@ fn masses(of_first: f32) -> Vec<u8> {
     length.into_iter().chain(header.bytes()).chain(numbers).collect()
 }
 
-/// Such a run says where, goes on to its end, and ends with 3: what is there is not to be trusted by a script.
+/// Such a run says where, continues to its end, and ends with 3: what is there is not to be trusted by a script.
 #[test]
 fn a_run_says_where_goes_on_and_ends_with_3() {
     let folder = folder();

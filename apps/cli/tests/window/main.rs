@@ -145,8 +145,8 @@ fn files_are_dropped_and_a_bad_one_says_so_while_the_old_hair_stays() {
     std::fs::write(&bad, b"PK nothing").unwrap();
     person.drop_file(&bad);
     let red = |screen: &Screen| screen.count(MESSAGES, |pixel| pixel == [255, 128, 128]);
-    let told = person.see("the error", |screen| red(screen) > 50);
-    assert!(told.changed(&still, STAGE) < 3000, "the old hair stays");
+    let shown = person.see("the error", |screen| red(screen) > 50);
+    assert!(shown.changed(&still, STAGE) < 3000, "the old hair stays");
 
     let groom = folder.join("pixie.hair");
     let style = StyleSettings::new(strandline::Style::Pixie);
@@ -246,8 +246,8 @@ fn a_library_that_is_missing_is_named_with_its_package() {
     // Without a command the demo takes over.
     let mut demo = run(&[]).stdout(std::process::Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(demo.stdout.take().unwrap()).lines();
-    let told = lines.find(|line| line.as_ref().is_ok_and(|line| line.contains("strandline demo:")));
+    let shown = lines.find(|line| line.as_ref().is_ok_and(|line| line.contains("strandline demo:")));
     demo.kill().unwrap();
     demo.wait().unwrap();
-    assert!(told.is_some(), "the demo does not take over");
+    assert!(shown.is_some(), "the demo does not take over");
 }

@@ -141,7 +141,7 @@ pub enum NpzError {
     /// The system could not read it.
     #[error(transparent)]
     Read(#[from] std::io::Error),
-    /// Its bytes are not what the format asks for.
+    /// Its bytes are not what the format requires.
     #[error("{found}, expected {expected}")]
     Malformed {
         /// What was found, and where.

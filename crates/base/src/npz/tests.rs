@@ -120,7 +120,7 @@ fn a_file_is_sound_at_every_moment() {
 }
 
 #[test]
-fn a_run_that_is_broken_off_leaves_its_rows_and_one_of_more_than_4_gib_has_large_numbers() {
+fn a_run_that_is_stopped_early_leaves_its_rows_and_one_of_more_than_4_gib_has_large_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.npz");
     // Room for all rows of a small array is a hole in the file.

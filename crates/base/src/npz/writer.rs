@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The last growing array has the free end of the file before it; the tail, arrays that change with time, and the
-//! directory lie ahead of it. Before it reaches them they are written anew farther ahead. So there is a sound
+//! directory lie ahead of it. Before it reaches them they are written again farther ahead. So there is a sound
 //! directory at the end of the file at every moment, and what it names is not overwritten as long as it names it.
 //! A row is first data, then the directory in place, then the headers of the arrays: between the last two
 //! `numpy.load` still reads one row less.
@@ -21,7 +21,7 @@ use super::{
 };
 use crate::GrowingFile;
 
-/// Room between the growing array and the tail, over the size of the tail: the tail is written anew that seldom.
+/// Room between the growing array and the tail, over the size of the tail: the tail is written again that rarely.
 const ROOM: u64 = 8;
 /// Files that may become larger than this \[byte\] have sizes of 64 bits: 4 GiB without what records take.
 const SMALL: u64 = (4 << 30) - (64 << 20);
@@ -292,7 +292,7 @@ impl GrowingNpz {
         self.file.finish()
     }
 
-    /// As [`GrowingNpz::finish`] for a run that was broken off: the file stays where it lies, which is returned.
+    /// As [`GrowingNpz::finish`] for a run that was stopped early: the file stays where it lies, which is returned.
     ///
     /// # Errors
     /// Whatever the system reports.

@@ -31,7 +31,7 @@ struct Shared {
     kernels: Mutex<HashMap<String, Compiled>>,
 }
 
-/// A compiled kernel, kept for whoever asks for the same again.
+/// A compiled kernel, kept for later requests of the same.
 #[derive(Clone, Debug)]
 pub(crate) struct Compiled {
     pub pipeline: wgpu::ComputePipeline,

@@ -7,7 +7,7 @@ use crate::{Bound, BoundDrawing, Buffer, Gpu, Timer};
 pub struct Targets<'a> {
     /// A texture for colours, and whether it is cleared first.
     pub color: Option<(&'a wgpu::TextureView, wgpu::LoadOp<wgpu::Color>)>,
-    /// A texture for depths, likewise.
+    /// A texture for depths, the same way.
     pub depth: Option<(&'a wgpu::TextureView, wgpu::LoadOp<f32>)>,
 }
 

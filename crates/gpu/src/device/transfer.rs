@@ -67,7 +67,7 @@ impl Transfer {
 impl Future for Transfer {
     type Output = Result<Copied, GpuError>;
 
-    /// Is woken when the copy arrives: in a page by the browser, in a native program by whoever polls the device.
+    /// Is woken when the copy arrives: in a page by the browser, in a native program by the code that polls the device.
     fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Self::Output> {
         if let Some((_, mapping)) = &self.staging {
             mapping.arrival.lock().waker = Some(context.waker().clone());

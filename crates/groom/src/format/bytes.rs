@@ -18,7 +18,7 @@ impl<'a> Source<'a> {
             format: self.format,
             found: found.into(),
             expected: expected.into(),
-            mend: "the file may be cut off or of another format: export it anew",
+            mend: "the file may be cut off or of another format: export it again",
         }
     }
 

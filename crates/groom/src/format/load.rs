@@ -130,7 +130,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Loaded, GroomError> {
 }
 
 /// Loads several files as one groom: each is a group of the name of its file, or has groups of its own, which are
-/// numbered anew and keep their names. Their units are the same.
+/// numbered again and keep their names. Their units are the same.
 ///
 /// # Errors
 /// As [`load`]; no file.

@@ -68,7 +68,7 @@ struct StrandColor {
     tip: Vec3,
     /// Shift of the highlights along the strand, as a sum of sines, at even distances from root to tip.
     jitters: [f32; NODES],
-    /// Brightness of the second highlight, likewise.
+    /// Brightness of the second highlight, the same way.
     sparkles: [f32; NODES],
 }
 

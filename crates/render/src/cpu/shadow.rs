@@ -83,7 +83,7 @@ fn across(forward: Vec3) -> (Vec3, Vec3) {
     (Vec3::X - forward.x * turned, Vec3::Z - forward.z * turned)
 }
 
-/// A number rounded down to so many bits behind the first: steps that small changes seldom cross.
+/// A number rounded down to so many bits behind the first: steps that small changes rarely cross.
 pub(crate) fn stepped_down(number: f32, bits: u32) -> f32 {
     f32::from_bits(number.to_bits() & (u32::MAX << (23 - bits)))
 }

@@ -23,7 +23,7 @@ const BOUNDS: usize = BOX + 8 * MAX_SHADOWS;
 pub(super) const PLANE: usize = 44 * 44;
 pub(super) const CELLS: usize = 44 * PLANE;
 
-/// The buffers that depend on nothing but the groom and the body.
+/// The buffers that depend only on the groom and the body.
 pub(super) struct Groom {
     /// With the lights behind it.
     pub frame: Buffer<Frame>,

@@ -184,7 +184,7 @@ impl LightGrid {
         Ok(())
     }
 
-    /// The buffers that the kernels were bound to are no more.
+    /// The buffers that the kernels were bound to are gone.
     pub fn forget(&mut self) {
         self.bounds = None;
     }

@@ -121,7 +121,7 @@ impl GuidePoints {
         Ok(bound)
     }
 
-    /// The buffers of the strands are no more.
+    /// The buffers of the strands are gone.
     pub fn forget(&mut self) {
         self.tessellates.clear();
     }

@@ -18,9 +18,9 @@ pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Width, height and pixels of the first layer with channels R, G and B.
 pub(super) fn read(bytes: &[u8]) -> Result<(usize, usize, Vec<Vec3>), String> {
-    let told = |error: exr::error::Error| strandline_base::printable(&error.to_string()).into_owned();
+    let as_text = |error: exr::error::Error| strandline_base::printable(&error.to_string()).into_owned();
     // Sizes are looked at before anything is taken for them.
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).map_err(told)?;
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), true).map_err(as_text)?;
     for header in &meta.headers {
         let size = header.layer_size;
         if size.0.saturating_mul(size.1) > MAX_PIXELS {
@@ -59,7 +59,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(usize, usize, Vec<Vec3>), String> {
         .all_attributes()
         .non_parallel()
         .from_buffered(Cursor::new(bytes))
-        .map_err(told)?;
+        .map_err(as_text)?;
     let (width, pixels) = picture.layer_data.channel_data.pixels;
     let height = pixels.len() / width.max(1);
     check_size(width, height)?;
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn other_shapes_and_damage_are_told() {
+    fn other_shapes_and_damage_are_reported() {
         assert!(read(&written(4, 4)).unwrap_err().contains("twice as wide as high"));
         let whole = written(8, 4);
         for end in [5, 40, whole.len() / 2, whole.len() - 1] {

@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_told() {
+    fn damage_is_reported() {
         let refused = |bytes: &[u8]| read(bytes).unwrap_err();
         assert!(refused(&file(&[0; 20])).contains("ends before"));
         assert!(refused(&file(&[1; 64])).contains("beyond its row"));

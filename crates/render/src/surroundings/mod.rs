@@ -109,7 +109,7 @@ fn suns(rays: &mut [Ray]) -> Vec<Light> {
             let part = ray.light * ray.share;
             way += ray.way * part.element_sum();
             light += part;
-            // What lies around it goes on below.
+            // What lies around it continues below.
             taken.push(ray);
         }
         if light.element_sum() < LEAST_SHARE * whole {

@@ -189,7 +189,7 @@ impl<'a> Solids<'a> {
     }
 
     /// Depth \[m\] of points of one index inside the solids, 0 outside: the lanes in `counted`, looked up
-    /// anew, so that it also sees what the remembered planes may have missed.
+    /// again, so that it also sees what the remembered planes may have missed.
     pub fn depth(&self, position: Vec3x8, counted: impl Fn(usize) -> bool) -> f32 {
         let mut deepest = 0.0_f32;
         for group in &self.groups {
@@ -206,7 +206,7 @@ impl<'a> Solids<'a> {
         deepest
     }
 
-    /// Signed distance \[m\] to the nearest solid and its unit gradient, world space, looked up anew.
+    /// Signed distance \[m\] to the nearest solid and its unit gradient, world space, looked up again.
     pub fn nearest(&self, point: Vec3) -> (f32, Vec3) {
         self.obstacles
             .nearest(point)

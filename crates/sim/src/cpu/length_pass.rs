@@ -8,7 +8,7 @@ use wide::f32x8;
 use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::vec3x8::{Vec3x8, load, splat};
 
-/// Times that a point is placed anew at most when the solid under it curves: enough for an ear.
+/// Times that a point is placed again at most when the solid under it curves: enough for an ear.
 const PLACINGS: usize = 8;
 /// How much nearer \[m\] than its margin a point may be left by that.
 const TOLERATED: f32 = 2e-4;

@@ -33,7 +33,7 @@ impl Strands<'_> {
             space.margins[point] = margin;
             let free = node.free.simd_gt(f32x8::ZERO);
             if free.any() && !self.parts.solids.is_empty() {
-                // Where it goes on as it went: where it would fall alone, millimetres deeper, a crease of the skin
+                // Where it keeps its velocity: where it would fall alone, millimetres deeper, a crease of the skin
                 // has another plane, which would throw hair at rest.
                 let position = space.carried[point] + space.coast[point];
                 let query =

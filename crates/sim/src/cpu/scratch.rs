@@ -66,7 +66,7 @@ impl Scratch {
         }
     }
 
-    /// Makes anew what follows from lengths, masses or rods that have changed, and the volume from its settings.
+    /// Makes again what follows from lengths, masses or rods that have changed, and the volume from its settings.
     pub(crate) fn refresh(&mut self, model: &Model, state: &State) {
         let made = Made::new(model, state);
         if !made.is(&self.made_from) {

@@ -176,7 +176,7 @@ impl Strands<'_> {
             let fallen = self.parts.fall.weighted(space.velocities[point], tangent);
             let coast = here + space.velocities[point] * step - space.carried[point];
             space.coast[point] = coast;
-            // Hairs that rub take a speed off what goes on, not more than there is.
+            // Hairs that rub take a speed off what moves on, not more than there is.
             let rubbed = (rubbing / coast.length()).or_less(f32x8::of(1.0));
             let wanted = here + fallen * step - space.carried[point] - coast * rubbed;
             space.wanted[point] = wanted;
@@ -193,7 +193,7 @@ impl Strands<'_> {
         self.guess(space, step);
     }
 
-    /// Newton's method begins with hair that goes on as it went beside its root.
+    /// Newton's method begins with hair that keeps its velocity beside its root.
     fn guess(&self, space: &mut Workspace, step: f32x8) {
         let (first, second) = (self.nodes[0].free, self.nodes[1].free);
         let held = Vector::choose(second, space.coast[0], space.coast[1]);

@@ -70,7 +70,7 @@ impl Volume {
         }
     }
 
-    /// Takes over settings; the box is made anew when its cells change.
+    /// Takes over settings; the box is made again when its cells change.
     pub fn keep_or_new(
         old: Option<Self>,
         settings: &VolumeSettings,

@@ -18,7 +18,7 @@ impl GpuRunner {
         let (Some(volume), Some(timer)) = (&self.buffers.volume, Timer::new(&self.gpu)?) else {
             return Ok(None);
         };
-        // The next step gathers the velocities of faces anew, so nothing depends on what is left on them.
+        // The next step gathers the velocities of faces again, so nothing depends on what is left on them.
         let once = self.kernels.solve_pressure.bind_gradient(&self.gpu, volume, gradient)?;
         let repeated: Vec<_> = (0..count).flat_map(|_| once.iter().cloned()).collect();
         let marks =

@@ -1,4 +1,4 @@
-//! What rods have on the device besides what all strands have.
+//! What rods have on the device beyond what all strands have.
 
 use strandline_gpu::{Buffer, Gpu, GpuError, THREADS};
 

@@ -269,7 +269,7 @@ impl GpuRunner {
             volume.put(place)?;
         }
         if changed || self.bound.is_none() {
-            // Times of stages that are no longer there cannot be told apart later.
+            // Times of stages that are no longer there cannot be distinguished later.
             self.drain()?;
             if let Some(volume) = &mut self.buffers.volume {
                 volume.gradient = self.gradient;

@@ -105,7 +105,7 @@ impl Volume {
         })
     }
 
-    /// Has the box find the hair anew.
+    /// Has the box find the hair again.
     pub fn put_at_start(&self) -> Result<(), GpuError> {
         let grid = Grid::new(self.cells.map(|count| count as usize));
         self.grid.write(&[GridState::start(&grid)])

@@ -78,7 +78,7 @@ pub(super) fn starts<R: Read + Seek>(npz: &mut Npz<R>) -> Result<Vec<u32>, Strin
     Ok(starts)
 }
 
-/// Most bytes of `meta` besides its report: a scene of the longest kind, spelled as JSON.
+/// Most bytes of `meta` beyond its report: a scene of the longest kind, spelled as JSON.
 const SCENE: u64 = 2 * MAX_FILE_BYTES;
 /// Most bytes that the report has of a frame.
 const REPORT: u64 = 160;

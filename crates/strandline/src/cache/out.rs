@@ -35,7 +35,7 @@ pub struct OutSettings {
 /// What is there at the end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Where it lies: beside the name that was asked for when a run was broken off and an earlier file is there.
+    /// Where it lies: beside the name that was asked for when a run was stopped early and an earlier file is there.
     pub place: PathBuf,
     /// Frames in it, strands of each and points of all of them.
     pub frames: usize,
@@ -213,7 +213,7 @@ impl Out {
         Ok(())
     }
 
-    /// Ends the file of a whole film, or of one that was broken off.
+    /// Ends the file of a whole film, or of one that was stopped early.
     pub(crate) fn close(self, whole: bool, state: Option<&Snapshot>) -> Result<Written, Error> {
         let (strands, points) = (self.shape.strand_count(), self.shape.point_count());
         let watch = Stopwatch::start();

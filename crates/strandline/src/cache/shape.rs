@@ -39,7 +39,7 @@ choices! {
     default Any
 }
 
-/// What the strands of a file have besides places; each where the groom has it.
+/// What the strands of a file have beyond places; each where the groom has it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Attributes {
     /// Diameters \[m\], shape `[point]`.

@@ -89,7 +89,7 @@ impl Store {
         Ok(())
     }
 
-    /// Writes the state anew: a run that is killed resumes from there.
+    /// Writes the state again: a run that is killed resumes from there.
     pub fn set_state(&mut self, state: Option<&Snapshot>) -> Result<(), Error> {
         let Self { npz, meta, names, path, .. } = self;
         npz.set_tail(&tail(meta, names, state)).map_err(Error::write("the cache", path))
@@ -107,7 +107,7 @@ impl Store {
         Ok(path)
     }
 
-    /// Ends the file of a run that was broken off; where it lies.
+    /// Ends the file of a run that was stopped early; where it lies.
     pub fn leave(self, state: Option<&Snapshot>) -> Result<PathBuf, Error> {
         let Self { npz, meta, names, path, .. } = self;
         npz.leave(&tail(&meta, &names, state)).map_err(Error::write("the cache", &path))

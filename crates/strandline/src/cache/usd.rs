@@ -207,7 +207,7 @@ impl Usd {
         Ok(())
     }
 
-    /// Ends the file of a whole film, or of one that was broken off; where it lies.
+    /// Ends the file of a whole film, or of one that was stopped early; where it lies.
     pub fn finish(mut self, whole: bool) -> Result<PathBuf, Error> {
         let mut text = "        }\n        float3[] extent.timeSamples = {\n".to_owned();
         for (code, corners) in &self.boxes {
@@ -240,7 +240,7 @@ impl Usd {
     }
 }
 
-/// What Unreal asks besides: which strands are guides, numbers, and three guides and weights of each.
+/// What Unreal needs too: which strands are guides, numbers, and three guides and weights of each.
 fn of_unreal(shape: &Shape) -> Vec<Primvar> {
     let Attributes { guide_flags, binding, .. } = &shape.attributes;
     let mut all = Vec::new();

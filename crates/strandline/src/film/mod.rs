@@ -52,7 +52,7 @@ enum Moving {
 pub struct FilmFiles {
     /// Every file, in the order of writing.
     pub files: Vec<PathBuf>,
-    /// What could not be made and why, and what lies in the folder besides; human-readable.
+    /// What could not be made and why, and what else lies in the folder; human-readable.
     pub notes: Vec<String>,
     /// Whether ffmpeg began a video and there is none.
     pub video_failed: bool,
@@ -141,12 +141,12 @@ impl Film {
         Ok(self.into_files(frames, video_failed))
     }
 
-    /// Closes a film that was broken off: no contact sheet, and a moving picture of the frames so far where none
+    /// Closes a film that was stopped early: no contact sheet, and a moving picture of the frames so far where none
     /// of an earlier film would be replaced by it.
     ///
     /// # Errors
     /// As [`Film::finish`].
-    pub fn break_off(mut self) -> Result<FilmFiles, Error> {
+    pub fn stop_early(mut self) -> Result<FilmFiles, Error> {
         let frames = self.files.len();
         if let Some(Ok(file)) = self.close().filter(|_| frames > 1)
             && !file.path().exists()
@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_film_that_fails_or_is_broken_off_leaves_the_former_moving_picture() {
+    fn a_film_that_fails_or_is_stopped_early_leaves_the_former_moving_picture() {
         let folder = tempfile::tempdir().unwrap();
         let moving = film(folder.path(), 4).files.pop().unwrap();
         let former = fs::read(&moving).unwrap();
@@ -305,14 +305,14 @@ mod tests {
         assert_eq!(fs::read(&moving).unwrap(), former);
         let mut broken = Film::new(folder.path(), 4, 30.0).unwrap();
         (0..2).for_each(|_| broken.add(&filled(32, 8)).unwrap());
-        let left = broken.break_off().unwrap();
+        let left = broken.stop_early().unwrap();
         assert_eq!((fs::read(&moving).unwrap(), left.files.len()), (former, 2));
         assert!(left.notes.iter().any(|note| note.contains("of an earlier film there are still 4 files")));
         // Where there is none, the frames so far make one.
         fs::remove_file(&moving).unwrap();
         let mut broken = Film::new(folder.path(), 4, 30.0).unwrap();
         (0..2).for_each(|_| broken.add(&filled(32, 8)).unwrap());
-        assert_eq!(broken.break_off().unwrap().files.last(), Some(&moving));
+        assert_eq!(broken.stop_early().unwrap().files.last(), Some(&moving));
         assert!(moving.is_file());
     }
 

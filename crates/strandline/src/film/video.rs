@@ -152,7 +152,7 @@ impl Video {
 }
 
 impl Drop for Video {
-    /// One that is broken off leaves nothing.
+    /// One that is stopped early leaves nothing.
     fn drop(&mut self) {
         if self.file.is_some() {
             self.end();

@@ -55,7 +55,7 @@ fn groups_have_pigments_of_their_own() {
     assert_eq!([colors[6], colors[8]], black.reflectances(1.0).map(|color| color.to_array()));
     let white = scene.look.fibre.chiang.reflectances(WHITE).map(|color| color.to_array());
     assert_eq!([colors[0], colors[2]], white);
-    // A colour has the last word.
+    // A colour wins.
     scene.look.group[0].root_color = Some(Vec3::X);
     dress(&scene, &mut groom).unwrap();
     assert_eq!(groom.colors.unwrap()[6], [0.99, 0.0, 0.0]);

@@ -37,7 +37,7 @@ pub struct Prepared {
     pub guides: Guides,
     /// All strands, where some are not simulated.
     pub bound: Option<BoundStrands>,
-    /// What the groom says of its strands besides their points.
+    /// What the groom says of its strands beyond their points.
     pub tags: Tags,
     /// The drawn body.
     pub mesh: Option<Mesh>,

@@ -35,7 +35,7 @@ settings! {
     /// One run: groom, body, motion, colliders, simulation, look, camera, lights, picture and film.
     ///
     /// Every key has a default; unknown keys are refused by name. Paths are relative to the file. Without a
-    /// groom file, [`Scene::set_style`] says what the style sets besides strands.
+    /// groom file, [`Scene::set_style`] says what the style sets beside strands.
     pub struct Scene {
         /// Where hair is simulated and drawn.
         devices: Devices = Devices::default();

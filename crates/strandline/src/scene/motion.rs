@@ -44,7 +44,7 @@ settings! {
         /// Point about which the head turns, head space; without one it is the mannequin's neck, or a
         /// point low in the body's or the groom's box.
         pivot: Option<Vec3> = None, in [-1e4, 1e4] "m";
-        /// Rotation of the head besides its motion, about the pivot: pitch (about x), yaw (about y),
+        /// Rotation of the head added to its motion, about the pivot: pitch (about x), yaw (about y),
         /// roll (about z).
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-70.0, 70.0];
         /// Poses, in the order of their times; used by "keyframes".

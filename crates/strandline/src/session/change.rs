@@ -28,7 +28,7 @@ pub enum Change {
     Length(f32),
     /// Another wind.
     Wind(WindSection),
-    /// Another motion of the head, from its beginning, or another turn besides the one that there is; the
+    /// Another motion of the head, from its beginning, or a further turn added to it; the
     /// pivot stays.
     Motion(Box<MotionSection>),
     /// Takes the hair that a line of sight meets first, and all within a distance \[m\] of it, into a hand.

@@ -158,7 +158,7 @@ pub(crate) trait Place {
     fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T;
 }
 
-/// A simulation on the thread of whoever asks.
+/// A simulation on the thread of the caller.
 pub(crate) struct Here {
     pub simulation: Simulation,
     done: VecDeque<Done>,

@@ -180,7 +180,7 @@ impl<P: Place> Session<P> {
     /// Hands a task over, whose points the host needs too where `home`.
     ///
     /// # Errors
-    /// The simulation's thread is no more.
+    /// The simulation's thread has ended.
     pub fn start(&mut self, task: Task, home: bool, commands: u64) -> Result<(), Error> {
         let (gpu, moment) = (self.studio.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
         self.place.start(Job { task, moment, gpu, home, commands }).map_err(|_| Error::WorkerGone)
@@ -198,7 +198,7 @@ impl<P: Place> Session<P> {
     /// Takes the oldest result, which is shown from now on; whether it is a frame.
     ///
     /// # Errors
-    /// What the task failed with; the simulation's thread is no more.
+    /// What the task failed with; the simulation's thread has ended.
     pub fn take(&mut self) -> Result<bool, Error> {
         let Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on } =
             self.place.finish().map_err(|_| Error::WorkerGone)?;
@@ -255,7 +255,7 @@ impl<P: Place> Session<P> {
     /// Does what a change says; what concerns the simulation becomes a task of its own.
     ///
     /// # Errors
-    /// It cannot be done, and nothing has changed; or the simulation's thread is no more.
+    /// It cannot be done, and nothing has changed; or the simulation's thread has ended.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
         let studio = &mut self.studio;
         match change {

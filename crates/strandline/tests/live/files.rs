@@ -32,7 +32,7 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     wait(|| live.take_shown().filter(|shown| shown.recorded >= Some(2)));
     drop(live);
     assert!(files("two").iter().any(|name| name.starts_with("video.") || name == "animation.gif"));
-    // Steps before a scene is saved are frames of it, however fast they are told.
+    // Steps before a scene is saved are frames of it, however fast their events come.
     let (live, _) = still();
     live.send(Command::Record(folder.path().join("steps")));
     for _ in 0..3 {
@@ -46,7 +46,7 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     let start = Scene::load(&folder.path().join("saved.toml")).unwrap().film.start;
     // Three frames, seen a step later.
     assert!((start - 2.0 / 60.0).abs() < 1e-6, "{start}");
-    // Where nothing can be written it is told, and it plays on.
+    // Where nothing can be written, that is reported, and it plays on.
     let live = Live::new(scene(), waking()).unwrap();
     std::fs::write(folder.path().join("file"), b"x").unwrap();
     live.send(Command::Record(folder.path().join("file/three")));
@@ -69,7 +69,7 @@ fn a_scene_is_saved_even_when_nobody_waits_for_it() {
     let refused = error(&live);
     assert!(refused.starts_with("cannot save the hair"), "{refused}");
     live.send(Command::Save(Box::new(scene()), 1, path.clone()));
-    // What comes behind it does not count, in whatever heap it is heard.
+    // What comes behind it does not count, in whatever batch it arrives.
     live.send(Change::Reset);
     drop(live);
     let saved = Scene::load(&path).unwrap();

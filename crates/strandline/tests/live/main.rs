@@ -67,7 +67,7 @@ fn every_change_shows_in_the_next_pictures() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told_and_what_is_there_stays() {
+fn what_cannot_be_done_is_reported_and_what_is_there_stays() {
     let (live, first) = still();
     live.take_events();
     let mut missing = scene();
@@ -130,7 +130,7 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
     }
 }
 
-/// How often of twenty times something told shows within so many pictures that come after it. The machine
+/// How often of twenty times a command shows within so many pictures that come after it. The machine
 /// may be busy: then pictures pass that this thread does not see.
 fn in_time(pictures: u64, tell: impl Fn(&Live, u64) -> u64, shows: impl Fn(&Shown, u64) -> bool) -> usize {
     let live = Live::new(scene(), waking()).unwrap();
@@ -169,7 +169,7 @@ fn a_setting_shows_in_the_picture_after_that() {
     };
     let set = |live: &Live, turn: u64| live.send(Change::Settings(Box::new(settings(turn))));
     assert!(in_time(3, set, |shown, number| shown.simulated_after_command >= number) > 12);
-    // The step that has felt it is one with the setting.
+    // The step that used it is one with the setting.
     let live = Live::new(scene(), waking()).unwrap();
     for turn in 0..6 {
         let number = set(&live, turn);

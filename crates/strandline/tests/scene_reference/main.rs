@@ -12,7 +12,7 @@ use strandline::{
     low_level::{groom::StyleSettings, sim::StrandMethod},
 };
 
-/// docs/scene.md as it is; recorded anew with STRANDLINE_BLESS=1, as `cargo xtask docs` does.
+/// docs/scene.md as it is; recorded again with STRANDLINE_BLESS=1, as `cargo xtask docs` does.
 fn page() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scene.md");
     if std::env::var_os("STRANDLINE_BLESS").is_some_and(|bless| bless == "1") {

@@ -1,5 +1,5 @@
 //! `.ply`: vertices with `strand` and `edge` elements, as hairutil has them, or bare ones. What a groom has
-//! besides stands in further properties, which other readers skip.
+//! else stands in further properties, which other readers skip.
 
 mod header;
 mod rows;

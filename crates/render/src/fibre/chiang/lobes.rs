@@ -1,7 +1,7 @@
 //! The fibre of \[Chiang2016\]: rough dielectric cylinder with absorption, in double precision.
 //!
 //! Directions are given by their inclination toward the tip and by the turn about the fibre between light and
-//! eye; `h` is how far beside the axis the eye looks, -1 to 1. Four kinds of paths are told apart: R is reflected
+//! eye; `h` is how far beside the axis the eye looks, -1 to 1. Four kinds of paths are distinguished: R is reflected
 //! at the surface, TT goes through, TRT is reflected once inside, and what is left is the rest.
 
 use std::f64::consts::{PI, TAU};

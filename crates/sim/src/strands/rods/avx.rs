@@ -294,15 +294,15 @@ mod tests {
             let one = plain.solve(&rod, &pulls, &settings());
             let other = avx.solve(&mut fast, &rod, &pulls, &settings());
             assert_eq!(one.steps, other.steps, "{seed}");
-            let told = |solved: &Solved<f32x8>| bits(&[solved.unsolved, solved.residual, solved.pressed]);
-            assert_eq!(told(&one), told(&other), "{seed}");
+            let bits_of = |solved: &Solved<f32x8>| bits(&[solved.unsolved, solved.residual, solved.pressed]);
+            assert_eq!(bits_of(&one), bits_of(&other), "{seed}");
             assert_eq!(bits(plain.moved.as_flattened()), bits(fast.moved.as_flattened()), "{seed}");
             for (one, other) in plain.segments.iter().zip(&fast.segments) {
-                let told = |segment: &Segment<f32x8>| {
+                let bits_of = |segment: &Segment<f32x8>| {
                     [segment.tangent.array(), segment.across.array(), [segment.length; 3]]
                         .map(|part| bits(&part))
                 };
-                assert_eq!(told(one), told(other), "{seed}");
+                assert_eq!(bits_of(one), bits_of(other), "{seed}");
             }
             assert_eq!(other.unsolved.simd_gt(f32x8::ZERO).any(), spoilt || one.steps == 4);
         }

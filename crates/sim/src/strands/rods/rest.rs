@@ -96,7 +96,7 @@ pub fn sag_free(
     stiffer
 }
 
-/// Moment that each joint is taken to carry besides its own, over that of the whole load at the length of the strand:
+/// Moment that each joint is taken to carry beyond its own, over that of the whole load at the length of the strand:
 /// a strand that stands upright carries none, and is stiffened evenly.
 const EVEN: f64 = 0.01;
 

@@ -284,7 +284,7 @@ pub struct Solved<R> {
 const LONGEST_TURN: f64 = 1.0;
 
 /// Where the guess turns a segment farther \[rad\], a strand begins at the shape that the head carried: what goes so
-/// fast does not go on as it went.
+/// fast does not keep its velocity.
 const FARTHEST_GUESS: f64 = 0.5;
 
 #[cfg(test)]

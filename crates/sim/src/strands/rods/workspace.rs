@@ -44,7 +44,7 @@ pub(crate) struct Workspace {
     pub carried: Vec<Vector<f32x8>>,
     /// How far forces alone would take the points from there.
     pub wanted: Vec<Vector<f32x8>>,
-    /// How far they would go on from there as they went.
+    /// How far they would go from there at their velocity.
     pub coast: Vec<Vector<f32x8>>,
     pub pulls: Vec<Pull<f32x8>>,
     pub margins: Vec<f32x8>,
