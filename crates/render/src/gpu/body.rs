@@ -5,6 +5,7 @@ use strandline_body::Mesh;
 use strandline_gpu::drawing;
 
 use super::inputs::Frame;
+use super::records::Vertex;
 
 drawing! {
     /// Three vertices are one triangle.
@@ -14,7 +15,7 @@ drawing! {
         5 body_depths: Read f32,
         6 cubes: Read [f32; 4],
         7 triangles: Read u32,
-        8 vertices: Read [f32; 4],
+        8 vertices: Read Vertex,
     }
 }
 

@@ -8,6 +8,7 @@ use super::bound_solids;
 use super::buffers::{Strands, floats};
 use super::device_points::DevicePoints;
 use super::inputs::Frame;
+use super::records::Tap;
 use crate::RenderError;
 
 kernel! {
@@ -40,7 +41,7 @@ kernel! {
         0 frame: Read Frame,
         1 points: ReadWrite [f32; 4],
         4 solids: Read u32,
-        10 tables: Read [f32; 4],
+        10 tables: Read Tap,
     }
 }
 

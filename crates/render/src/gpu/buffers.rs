@@ -7,6 +7,7 @@ use strandline_groom::Guides;
 
 use super::fit::BOX;
 use super::inputs::{Frame, LightSource, body_stride};
+use super::records::{Curve, Root, Tap, Vertex};
 use super::scene::Scene;
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
 use crate::cpu::scalp::root_densities;
@@ -33,14 +34,12 @@ pub(super) struct Groom {
     pub areas: Buffer<u32>,
     /// Guide points \[m\], world space, `[block][point][component][lane]`.
     pub places: Buffer<f32>,
-    /// Three vectors a guide: see tessellate.wesl. Behind them, where the groom has colours or widths along
-    /// strands, one of each guide's points: colour and share of the largest width.
-    pub roots: Buffer<[f32; 4]>,
-    /// Per guide: see tessellate.wesl.
+    pub roots: Buffer<Root>,
+    /// Per guide: see tessellate.wesl. Behind them, where the groom has colours or widths along strands, one of each
+    /// guide's points: colour and share of the largest width.
     pub clumps: Buffer<[f32; 4]>,
     pub triangles: Buffer<u32>,
-    /// Two vectors a vertex, head space: position \[m\] with the density of roots, unit normal.
-    pub vertices: Buffer<[f32; 4]>,
+    pub vertices: Buffer<Vertex>,
     /// Per place in the order of depth: see sort.wesl.
     pub starts: Buffer<u32>,
     pub start_totals: Buffer<u32>,
@@ -49,27 +48,29 @@ pub(super) struct Groom {
 impl Groom {
     pub fn new(gpu: &Gpu, guides: &Guides, body: Option<&Mesh>) -> Result<Self, GpuError> {
         let spread = |guide: usize| guides.spreads().map_or(1.0, |spreads| spreads[guide]);
-        let roots: Vec<[f32; 4]> = guides
+        let roots: Vec<Root> = guides
             .root_normals()
             .iter()
             .zip(guides.widths())
             .enumerate()
-            .flat_map(|(guide, (&normal, &width))| {
-                let [first, second] = skin_axes(normal);
-                [normal.extend(width), first.extend(spread(guide)), second.extend(0.0)]
-                    .map(|vector| vector.to_array())
+            .map(|(guide, (&normal, &width))| {
+                let [first, second] = skin_axes(normal).map(|axis| axis.to_array());
+                Root { normal: normal.to_array(), width, first, spread: spread(guide), second, unused: 0.0 }
             })
-            .chain(own(guides))
             .collect();
+        let own: Vec<[f32; 4]> = own(guides).collect();
+        let clumps = Buffer::new(gpu, "clumps", guides.strand_count() + own.len())?;
+        clumps.write_at(guides.strand_count(), &own)?;
         let empty = Mesh::default();
         let mesh = body.unwrap_or(&empty);
-        let vertices: Vec<[f32; 4]> = mesh
+        let vertices: Vec<Vertex> = mesh
             .positions
             .iter()
             .zip(&mesh.normals)
             .zip(root_densities(&mesh.positions, guides))
-            .flat_map(|((position, normal), roots): ((&Vec3, &Vec3), f32)| {
-                [position.extend(roots).to_array(), normal.extend(0.0).to_array()]
+            .map(|((position, normal), roots): ((&Vec3, &Vec3), f32)| {
+                let (position, normal) = (position.to_array(), normal.to_array());
+                Vertex { position, roots, normal, unused: 0.0 }
             })
             .collect();
         Ok(Self {
@@ -79,7 +80,7 @@ impl Groom {
             areas: Buffer::new(gpu, "areas", CELLS)?,
             places: Buffer::from_slice(gpu, "guide points", floats(guides.positions()))?,
             roots: Buffer::from_slice(gpu, "roots", &roots)?,
-            clumps: Buffer::new(gpu, "clumps", guides.strand_count())?,
+            clumps,
             triangles: Buffer::from_slice(gpu, "triangles", mesh.triangles.as_flattened())?,
             vertices: Buffer::from_slice(gpu, "vertices", &vertices)?,
             starts: Buffer::new(gpu, "starts", ORDER_STEPS)?,
@@ -123,10 +124,9 @@ pub(super) struct Strands {
     /// Strands of a guide and points of a strand that there is room for.
     pub strands_per_guide: usize,
     pub curve_points: usize,
-    /// Three vectors a curve point: see tessellate.wesl.
-    pub tables: Buffer<[f32; 4]>,
+    pub tables: Buffer<Tap>,
     pub scales: Buffer<f32>,
-    pub curves: Buffer<[f32; 4]>,
+    pub curves: Buffer<Curve>,
     /// Position \[m\] and diameter \[m\], shape `[strand][point]`.
     pub points: Buffer<[f32; 4]>,
     /// Half floats, shape `[strand][point]`.
@@ -152,9 +152,9 @@ impl Strands {
             strands_per_guide,
             curve_points,
             points: Buffer::new(gpu, "points of all drawn strands", points)?,
-            tables: Buffer::new(gpu, "curve tables", 3 * curve_points)?,
+            tables: Buffer::new(gpu, "curve tables", curve_points)?,
             scales: Buffer::new(gpu, "widths of follow strands", strands_per_guide)?,
-            curves: Buffer::new(gpu, "curves", 3 * guide_count * curve_points)?,
+            curves: Buffer::new(gpu, "curves", guide_count * curve_points)?,
             radiances: Buffer::new(gpu, "radiances", points)?,
             keys: Buffer::new(gpu, "keys of segments", segments)?,
             order: Buffer::new(gpu, "order of segments", segments)?,

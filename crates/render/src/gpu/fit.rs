@@ -3,6 +3,7 @@
 use strandline_gpu::kernel;
 
 use super::inputs::Frame;
+use super::records::Vertex;
 
 /// Points that one thread looks at.
 pub(super) const RUN: usize = 32;
@@ -23,7 +24,7 @@ kernel! {
     pub(super) struct MeasureBody in "measure" (super::linked::MEASURE), entry "measure_body" {
         0 frame: Read Frame,
         7 bounds: ReadWrite u32,
-        8 vertices: Read [f32; 4],
+        8 vertices: Read Vertex,
     }
 }
 

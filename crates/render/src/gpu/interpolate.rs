@@ -3,6 +3,7 @@
 use strandline_gpu::kernel;
 
 use super::inputs::Frame;
+use super::records::{Curve, Root, Tap};
 
 kernel! {
     /// One thread is one point of a drawn strand.
@@ -10,9 +11,9 @@ kernel! {
         0 frame: Read Frame,
         1 points: ReadWrite [f32; 4],
         7 radiances: ReadWrite [u32; 2],
-        9 roots: Read [f32; 4],
-        10 tables: Read [f32; 4],
-        11 curves: Read [f32; 4],
+        9 roots: Read Root,
+        10 tables: Read Tap,
+        11 curves: Read Curve,
         12 clumps: Read [f32; 4],
         13 scales: Read f32,
     }

@@ -7,6 +7,7 @@ use strandline_gpu::{
 use super::body::Body;
 use super::buffers::{CELLS, Groom, Maps, PLANE, Strands};
 use super::inputs::Frame;
+use super::records::{LightCell, Vertex};
 use super::{MAX_SHADOWS, draw};
 use crate::RenderError;
 use crate::cpu::lattice::DIRECTIONS;
@@ -41,7 +42,7 @@ kernel! {
         4 maps: Read [u32; 4],
         5 body_depths: Read f32,
         7 triangles: Read u32,
-        8 vertices: Read [f32; 4],
+        8 vertices: Read Vertex,
         9 sums: ReadWrite u32,
     }
 }
@@ -53,7 +54,7 @@ kernel! {
         4 open: Read [f32; 4],
         6 cubes: Read [f32; 4],
         9 sums: ReadWrite u32,
-        10 cells: ReadWrite [f32; 4],
+        10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
     }
 }
@@ -62,7 +63,7 @@ kernel! {
     /// One thread is one line of cells along one direction.
     pub(super) struct Carry in "light_grid" (super::linked::LIGHT_GRID), entry "carry" {
         0 frame: Read Frame,
-        10 cells: ReadWrite [f32; 4],
+        10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
     }
 }
@@ -72,7 +73,7 @@ kernel! {
     pub(super) struct Scatter in "light_grid" (super::linked::LIGHT_GRID), entry "scatter", threads (Some(SCATTERERS)) {
         0 frame: Read Frame,
         6 cubes: Read [f32; 4],
-        10 cells: ReadWrite [f32; 4],
+        10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
     }
 }
@@ -84,7 +85,7 @@ kernel! {
         4 open: Read [f32; 4],
         6 cubes: Read [f32; 4],
         7 glow: ReadWrite [f32; 4],
-        10 cells: ReadWrite [f32; 4],
+        10 cells: ReadWrite LightCell,
         11 rays: ReadWrite [f32; 4],
     }
 }
@@ -125,7 +126,7 @@ pub(super) struct LightGrid {
     shade: Kernel<ShadeChiang<'static>>,
     body: Drawing<Body<'static>>,
     sums: Buffer<u32>,
-    cells: Buffer<[f32; 4]>,
+    cells: Buffer<LightCell>,
     rays: Buffer<[f32; 4]>,
     /// The fibre's tables with its scattering among directions.
     lattice: Buffer<[f32; 4]>,
@@ -159,7 +160,7 @@ impl LightGrid {
             shade: Kernel::new(gpu, &[])?,
             body: Drawing::new(gpu, &draw::body_output(), &[])?,
             sums: Buffer::new(gpu, "sums of cells", SUMS * CELLS)?,
-            cells: Buffer::new(gpu, "cells", 4 * CELLS)?,
+            cells: Buffer::new(gpu, "cells", CELLS)?,
             rays: Buffer::new(gpu, "light along directions", 2 * DIRECTIONS * CELLS)?,
             lattice: Buffer::new(gpu, "scattering among directions", Made::lattice_len())?,
             glow: Buffer::new(gpu, "scattered light", FIRST_GLOW + GLOW * CELLS)?,

@@ -24,6 +24,7 @@ mod opacity_depth;
 mod opacity_layers;
 mod points;
 mod probe;
+mod records;
 mod renderer;
 mod resolve;
 mod scene;

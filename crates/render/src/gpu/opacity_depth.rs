@@ -3,6 +3,7 @@
 use strandline_gpu::{drawing, kernel};
 
 use super::inputs::Frame;
+use super::records::Vertex;
 
 kernel! {
     /// One thread is one texel.
@@ -27,6 +28,6 @@ drawing! {
     vertex "body_depth_vertex", fragment None, {
         0 frame: Read Frame,
         7 triangles: Read u32,
-        8 vertices: Read [f32; 4],
+        8 vertices: Read Vertex,
     }
 }

@@ -6,6 +6,7 @@ use strandline_groom::Vec3Lanes;
 
 use super::GpuRenderer;
 use super::frame::record_opacity;
+use super::records::Curve;
 use super::renderer::Drawn;
 use super::scene::Scene;
 use crate::cpu::shadow::{LightView, ShadowMap, Shadows, Window};
@@ -52,9 +53,10 @@ impl GpuRenderer {
     /// # Panics
     /// Nothing was drawn yet.
     pub fn curves(&self) -> Result<[Vec<Vec3>; 3], RenderError> {
-        let count = 3 * self.guides.strand_count() * self.drawn.curve_points;
-        let all = vectors(&Self::first(&self.room().curves, count)?);
-        Ok([0, 1, 2].map(|which| all.iter().skip(which).step_by(3).copied().collect()))
+        let count = self.guides.strand_count() * self.drawn.curve_points;
+        let all = Self::first(&self.room().curves, count)?;
+        let part = |of: fn(&Curve) -> [f32; 4]| vectors(&all.iter().map(of).collect::<Vec<_>>());
+        Ok([part(|at| at.position), part(|at| at.tangent), part(|at| at.normal)])
     }
 
     /// The strands of the last frame; tangents are worked out where they are needed and left out here.

@@ -3,6 +3,7 @@
 use strandline_gpu::kernel;
 
 use super::inputs::Frame;
+use super::records::{Curve, Root, Tap};
 use crate::cpu::interpolate::tapers;
 use crate::cpu::tessellate::taps;
 use crate::{Clump, DetailLevel};
@@ -13,21 +14,26 @@ kernel! {
         0 frame: Read Frame,
         7 before: Read f32,
         8 after: Read f32,
-        9 roots: Read [f32; 4],
-        10 tables: Read [f32; 4],
-        11 curves: ReadWrite [f32; 4],
+        9 roots: Read Root,
+        10 tables: Read Tap,
+        11 curves: ReadWrite Curve,
         12 clumps: ReadWrite [f32; 4],
         13 scales: Read f32,
     }
 }
 
-/// Three vectors for each point of a curve, as tessellate.wesl reads them.
-pub(super) fn tables(points_per_strand: usize, level: &DetailLevel, clump: &Clump) -> Vec<[f32; 4]> {
+/// What all curves have at each of their points.
+pub(super) fn tables(points_per_strand: usize, level: &DetailLevel, clump: &Clump) -> Vec<Tap> {
     let (taps, parameters): (Vec<_>, Vec<_>) = taps(points_per_strand, level).unzip();
     let tapers = tapers(&parameters, clump);
     let rows = taps.iter().zip(parameters).zip(tapers);
-    rows.flat_map(|((tap, parameter), taper)| {
-        [tap.position, tap.tangent, [tap.first as f32, parameter, taper, 0.0]]
+    rows.map(|((tap, parameter), radius)| Tap {
+        position: tap.position,
+        tangent: tap.tangent,
+        first: tap.first as f32,
+        parameter,
+        radius,
+        unused: 0.0,
     })
     .collect()
 }

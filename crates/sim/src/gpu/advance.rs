@@ -4,7 +4,7 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, M
 
 use super::buffers::Buffers;
 use super::inputs::Step;
-use super::records::{PressureState, Report};
+use super::records::{Outcome, PressureState, Report};
 use super::stage::{StageKernels, Target};
 
 kernel! {
@@ -16,7 +16,7 @@ kernel! {
         4 predicted: ReadWrite f32,
         5 velocities: ReadWrite f32,
         6 positions: ReadWrite f32,
-        7 outcomes: ReadWrite [f32; 4],
+        7 outcomes: ReadWrite Outcome,
     }
 }
 
@@ -24,7 +24,7 @@ kernel! {
     /// One workgroup.
     pub(super) struct Gathered in "advance" (super::linked::ADVANCE), entry "report", threads (Some(MANY)) {
         0 step: Read Step,
-        7 outcomes: ReadWrite [f32; 4],
+        7 outcomes: ReadWrite Outcome,
         8 pressure: Read PressureState,
         9 reports: ReadWrite Report,
     }

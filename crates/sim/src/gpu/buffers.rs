@@ -4,7 +4,7 @@ use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
 use super::inputs::Step;
-use super::records::{PressureState, Report};
+use super::records::{Outcome, PointBox, PressureState, Report};
 use super::rod_buffers::{NUMBERS, RodBuffers};
 use super::solids;
 use super::volume::Volume;
@@ -43,10 +43,10 @@ pub(super) struct Buffers {
     pub velocities: Buffer<f32>,
     /// Five numbers: see strand.wesl.
     pub planes: Buffer<f32>,
-    /// Per workgroup of strands: see splat.wesl.
-    pub boxes: Buffer<[f32; 4]>,
-    /// Per workgroup of strands: see advance.wesl.
-    pub outcomes: Buffer<[f32; 4]>,
+    /// Per workgroup of strands.
+    pub boxes: Buffer<PointBox>,
+    /// Per workgroup of strands.
+    pub outcomes: Buffer<Outcome>,
     pub reports: Buffer<Report>,
     /// What a step without a volume reports.
     pub no_pressure: Buffer<PressureState>,
@@ -78,8 +78,8 @@ impl Buffers {
             ],
             velocities: Buffer::from_slice(gpu, "velocities", &speeds(state))?,
             planes: Buffer::new(gpu, "contact planes", 5 * count)?,
-            boxes: Buffer::new(gpu, "boxes", 2 * model.strand_count.div_ceil(THREADS))?,
-            outcomes: Buffer::new(gpu, "outcomes", 3 * workgroups)?,
+            boxes: Buffer::new(gpu, "boxes", model.strand_count.div_ceil(THREADS))?,
+            outcomes: Buffer::new(gpu, "outcomes", workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,

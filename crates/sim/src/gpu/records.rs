@@ -29,6 +29,26 @@ mirror! {
 }
 
 mirror! {
+    /// What the strands of a workgroup came to. Mirrors `Outcome` in advance.wesl.
+    pub(super) struct Outcome {
+        /// Sum of stretch, largest stretch, deepest point \[m\], points that are not finite.
+        pub found: [f32; 4],
+        /// Of rods the largest residual \[rad\], strands not solved, strands at rest.
+        pub solved: [f32; 4],
+        /// Sum and largest of the speeds \[m/s\].
+        pub speed: [f32; 4],
+    }
+}
+
+mirror! {
+    /// A box around the points of a workgroup. Mirrors `PointBox` in follow.wesl.
+    pub(super) struct PointBox {
+        pub low: [f32; 4],
+        pub high: [f32; 4],
+    }
+}
+
+mirror! {
     /// Where the solve stands. Mirrors `PressureState` in pressure.wesl.
     pub struct PressureState {
         /// Residual in the preconditioner's norm.

@@ -4,6 +4,7 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, M
 
 use super::buffers::Buffers;
 use super::inputs::Step;
+use super::records::PointBox;
 use super::stage::{StageKernels, Target};
 use super::volume::{GridState, SortedPoint};
 
@@ -13,7 +14,7 @@ kernel! {
         0 step: Read Step,
         2 predicted: Read f32,
         4 mass: Read f32,
-        5 boxes: ReadWrite [f32; 4],
+        5 boxes: ReadWrite PointBox,
     }
 }
 
@@ -21,7 +22,7 @@ kernel! {
     /// Moves the grid over the points; one workgroup.
     pub(super) struct Follow in "follow" (super::linked::FOLLOW), entry "follow", threads (Some(MANY)) {
         1 grid: ReadWrite GridState,
-        5 boxes: ReadWrite [f32; 4],
+        5 boxes: ReadWrite PointBox,
         6 ladder: Read f32,
     }
 }
