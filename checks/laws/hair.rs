@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Groom, Guides};
-use strandline_sim::rods::{GroupSettings, HairKind, Rest};
+use strandline_sim::rods::{GroupSettings, HairKind, Rest, RodSettings};
 use strandline_sim::{Drive, Model, Settings};
 
 use crate::strands::line;
@@ -56,6 +56,63 @@ law! {
             // The same arithmetic, on a device in other lanes beside it.
             let apart = (found[0] - expected[0]).abs().max((found[1] - expected[1]).abs());
             assert!(apart < 1e-5, "{found:?}, expected {expected:?}");
+        }
+    }
+}
+
+/// Settings of a group, as they would be of all hair, and of the group alone.
+type Own = (fn(&mut RodSettings), fn(&mut GroupSettings));
+
+/// A level hair that is bent and twisted at rest, so that each of its stiffnesses counts.
+fn curled() -> Guides {
+    let mut groom = Groom::empty(8e-5);
+    for aside in [Vec3::ZERO, Vec3::Z * 0.05] {
+        let place = |index: u32| {
+            let turn = 0.9 * index as f32;
+            aside + Vec3::new(0.006 * index as f32, 0.006 * turn.sin(), 0.006 * (1.0 - turn.cos()))
+        };
+        groom.push((0..12).map(place));
+    }
+    groom.groups = Some(vec![3, 7]);
+    Guides::resample(&groom, 12).unwrap()
+}
+
+law! {
+    fn all_that_hair_is_made_of_may_be_a_groups_own(on) {
+        let guides = curled();
+        let base = Settings { damping: 0.0, ..sagging() };
+        // In mid-swing, where damping shows.
+        let tips = |settings: &Settings| {
+            let mut rig = Rig::new(on, Model::new(&guides, settings, Vec::new()).unwrap());
+            rig.steps(&[Drive::default(); 5]);
+            let tip = &rig.state().positions[guides.points_per_strand() - 1];
+            [0, 1].map(|lane| tip.get(lane))
+        };
+        let own: [Own; 7] = [
+            (|all| all.damping = 0.1, |group| group.damping = Some(0.1)),
+            (|all| all.poisson_ratio = 0.0, |group| group.poisson_ratio = Some(0.0)),
+            (|all| all.shear_modulus = Some(0.2), |group| group.shear_modulus = Some(0.2)),
+            (|all| all.ellipticity = 0.5, |group| group.ellipticity = Some(0.5)),
+            (
+                |all| (all.tip_radius, all.taper_start) = (0.3, 0.1),
+                |group| (group.tip_radius, group.taper_start) = (Some(0.3), Some(0.1)),
+            ),
+            (|all| all.profile = [4.0, 1.0, 0.1], |group| group.profile = Some([4.0, 1.0, 0.1])),
+            (|all| all.set_hair(HairKind::Wet), |group| group.hair = Some(HairKind::Wet)),
+        ];
+        let [first, _] = tips(&base);
+        for (index, (of_all, of_group)) in own.into_iter().enumerate() {
+            let mut all = base.clone();
+            of_all(&mut all.strands.rods);
+            let [_, expected] = tips(&all);
+            let mut group = GroupSettings { group: "7".to_owned(), ..GroupSettings::default() };
+            of_group(&mut group);
+            let [other, found] = tips(&Settings { groups: vec![group], ..base.clone() });
+            // The same arithmetic, on a device in other lanes beside it.
+            let apart = found.distance(expected).max(other.distance(first));
+            assert!(apart < 1e-6, "{index}: {found} and {other}, expected {expected} and {first}");
+            let changed = found.distance(first + Vec3::Z * 0.05);
+            assert!(changed > 1e-4, "{index}: the setting changes nothing, {changed} m");
         }
     }
 }

@@ -12,6 +12,7 @@ use super::integrate::Fall;
 use super::length_pass::Follow;
 use super::{Obstacles, Scratch};
 use crate::grab::Pinned;
+use crate::strands::rods::hairs::Traits;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::{Node, Solved, StepSettings};
 use crate::strands::rods::settings::RodSettings;
@@ -77,6 +78,7 @@ pub fn solve_rods(
                     rest: &model.positions[range.clone()],
                     clearance: &model.rest_clearance[range.clone()],
                     rest_sections: &rods.sections[range],
+                    viscous: parts.viscous(&rods.traits[block * LANES..]),
                     live: model.live_lanes(block),
                 };
                 let pinned: Vec<Pinned> =
@@ -129,6 +131,12 @@ impl<'a> Parts<'a> {
             moved: obstacles.start != obstacles.end,
         }
     }
+
+    /// Relaxation times of a block's strands over the length of a part.
+    fn viscous(&self, strands: &[Traits]) -> f32x8 {
+        let of = |lane: usize| (f64::from(strands[lane].damping) / self.time_step) as f32;
+        f32x8::from(std::array::from_fn::<f32, LANES, _>(of))
+    }
 }
 
 /// One block of strands.
@@ -141,6 +149,8 @@ pub(super) struct Strands<'a> {
     rest: &'a [Vec3Lanes],
     pub(super) clearance: &'a [Lanes],
     rest_sections: &'a [Vec3Lanes],
+    /// Relaxation time of bends and twists over the length of a part.
+    viscous: f32x8,
     /// Lanes that hold strands.
     live: usize,
 }
@@ -211,7 +221,7 @@ impl Strands<'_> {
             time_step: self.parts.time_step,
             newton_steps: self.parts.settings.newton_steps,
             tolerance: f64::from(self.parts.settings.tolerance),
-            damping: f64::from(self.parts.settings.damping),
+            viscous: self.viscous,
         };
         let solved = space.solve(self.nodes, &settings);
         for (point, carried) in space.carried.iter_mut().enumerate() {

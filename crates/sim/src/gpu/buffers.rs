@@ -150,7 +150,12 @@ impl Buffers {
                 numbers.extend(lanes.to_array());
             }
         }
-        Ok(buffers.nodes.write(&numbers)?)
+        buffers.nodes.write(&numbers)?;
+        let traits = model.rods.iter().flat_map(|rods| &rods.traits);
+        let traits: Vec<f32> =
+            traits.flat_map(|one| [one.bend_ratio, one.twist_ratio, one.damping, 0.0]).collect();
+        // The grips lie before them.
+        Ok(buffers.nodes.write_at(numbers.len() + 4 * self.lane_count, &traits)?)
     }
 
     /// Writes what a hand holds; with an empty hand it is not read.

@@ -24,18 +24,13 @@ mirror! {
         pub start_translation: [f32; 3],
         pub part_time: f32,
         pub part_translation: [f32; 3],
-        pub viscous: f32,
+        /// A strand is solved when a Newton step turns none of its segments farther \[rad\].
+        pub tolerance: f32,
         pub parts: u32,
         pub newton_steps: u32,
         pub head_moves: u32,
-        /// Second bending stiffness over the first, twisting stiffness over the first.
-        pub bend_ratio: f32,
-        pub twist_ratio: f32,
         /// What hairs that rub take off the way of a part \[m\].
         pub rubbing: f32,
-        /// A strand is solved when a Newton step turns none of its segments farther \[rad\].
-        pub tolerance: f32,
-        pub unused_a: u32,
     }
 }
 
@@ -94,21 +89,16 @@ impl RodStep {
     fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32) -> Self {
         let rods = &model.settings.strands.rods;
         let part = start.toward(end, 1.0 / rods.substeps as f32);
-        let section = rods.material().section();
         Self {
             part_rotation: (part.rotation * start.rotation.inverse()).to_array(),
             start_translation: start.translation.to_array(),
             part_time,
             part_translation: ((end.translation - start.translation) / rods.substeps as f32).to_array(),
-            viscous: rods.damping / part_time,
             parts: rods.substeps,
             newton_steps: rods.newton_steps,
             head_moves: u32::from(start != end),
-            bend_ratio: (section.bend[1] / section.bend[0]) as f32,
-            twist_ratio: (section.twist / section.bend[0]) as f32,
             rubbing: rods.rubbing * part_time * part_time,
             tolerance: rods.tolerance,
-            ..Self::default()
         }
     }
 }

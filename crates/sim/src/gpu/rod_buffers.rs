@@ -17,11 +17,11 @@ pub(super) struct RodBuffers {
 }
 
 impl RodBuffers {
-    /// Room for the nodes and the grips of so many strands, and for those that are solved at a time.
+    /// Room for the nodes, the grips and the traits of so many strands, and for those that are solved at a time.
     pub fn new(gpu: &Gpu, lane_count: usize, points: usize) -> Result<Self, GpuError> {
         let groups = groups_at_once(lane_count, points);
         Ok(Self {
-            nodes: Buffer::new(gpu, "rods", lane_count * (NUMBERS * points + 4))?,
+            nodes: Buffer::new(gpu, "rods", lane_count * (NUMBERS * points + 4 + 4))?,
             work: Buffer::new(gpu, "work of rods", groups * THREADS * points * SLOTS)?,
             groups,
         })

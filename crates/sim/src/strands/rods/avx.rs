@@ -157,7 +157,7 @@ impl Avx {
         work: &mut Work<f32x8>,
         rod: &[Node<f32x8>],
         pulls: &[Pull<f32x8>],
-        settings: &StepSettings,
+        settings: &StepSettings<f32x8>,
     ) -> Solved<f32x8> {
         // SAFETY: there is no Avx where the processor has no AVX.
         unsafe { self.solve_there(work, rod, pulls, settings) }
@@ -169,10 +169,12 @@ impl Avx {
         work: &mut Work<f32x8>,
         rod: &[Node<f32x8>],
         pulls: &[Pull<f32x8>],
-        settings: &StepSettings,
+        settings: &StepSettings<f32x8>,
     ) -> Solved<f32x8> {
         self.take(work, rod, pulls);
-        let solved = self.work.solve(&self.rod, &self.pulls, settings);
+        let StepSettings { time_step, newton_steps, tolerance, viscous } = *settings;
+        let settings = StepSettings { time_step, newton_steps, tolerance, viscous: Eight::from(viscous) };
+        let solved = self.work.solve(&self.rod, &self.pulls, &settings);
         for (to, from) in work.moved.iter_mut().zip(&self.work.moved) {
             *to = from.map(Eight::wide);
         }
@@ -277,8 +279,8 @@ mod tests {
         (rod, pulls, work)
     }
 
-    fn settings() -> StepSettings {
-        StepSettings { time_step: 1.0 / 60.0, newton_steps: 4, tolerance: 1e-4, damping: 0.002 }
+    fn settings() -> StepSettings<f32x8> {
+        StepSettings { time_step: 1.0 / 60.0, newton_steps: 4, tolerance: 1e-4, viscous: f32x8::of(0.12) }
     }
 
     #[test]

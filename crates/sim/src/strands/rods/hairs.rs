@@ -6,17 +6,41 @@ use strandline_base::SettingError;
 use strandline_groom::Guides;
 
 use super::material::Section;
+use super::settings::RodSettings;
 use crate::{Settings, SimError};
 
-/// The section of each strand.
+/// What of a hair is the same all along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Traits {
+    /// Second bending stiffness and twisting stiffness over the first bending stiffness.
+    pub bend_ratio: f32,
+    pub twist_ratio: f32,
+    /// Relaxation time of bends and twists \[s\].
+    pub damping: f32,
+}
+
+/// What a strand is made of.
+#[derive(Clone, Copy)]
+struct Hair {
+    section: Section,
+    damping: f32,
+}
+
+impl Hair {
+    fn new(rods: &RodSettings) -> Self {
+        Self { section: rods.material().section(), damping: rods.damping }
+    }
+}
+
+/// What each strand is made of.
 #[derive(Clone)]
 pub(crate) struct Hairs {
     /// Group of each strand, shape `[strand]`; empty where the groom has none.
     groups: Vec<u32>,
     names: BTreeMap<u32, String>,
-    section: Section,
-    /// Sections of groups that have one of their own.
-    own: BTreeMap<u32, Section>,
+    hair: Hair,
+    /// Of groups that have one of their own.
+    own: BTreeMap<u32, Hair>,
 }
 
 impl Hairs {
@@ -25,9 +49,9 @@ impl Hairs {
     /// # Errors
     /// Settings of a group that the guides do not have.
     pub fn new(guides: &Guides, settings: &Settings) -> Result<Self, SimError> {
-        let section = settings.strands.rods.material().section();
+        let hair = Hair::new(&settings.strands.rods);
         let groups = guides.groups().map_or_else(Vec::new, <[u32]>::to_vec);
-        Self { groups, names: guides.group_names().clone(), section, own: BTreeMap::new() }.changed(settings)
+        Self { groups, names: guides.group_names().clone(), hair, own: BTreeMap::new() }.changed(settings)
     }
 
     /// The same strands under other settings.
@@ -43,23 +67,37 @@ impl Hairs {
                 let key = format!("simulation.groups[{index}].group");
                 return Err(SettingError::new(key, format!("`{}`", group.group), self.expected()).into());
             }
-            let section = rods.of_group(group).material().section();
+            let hair = Hair::new(&rods.of_group(group));
             // Of two that name one group the first holds, as of looks.
-            numbers.into_iter().for_each(|number| _ = own.entry(number).or_insert(section));
+            numbers.into_iter().for_each(|number| _ = own.entry(number).or_insert(hair));
         }
-        Ok(Self { section: rods.material().section(), own, ..self.clone() })
+        Ok(Self { hair: Hair::new(rods), own, ..self.clone() })
     }
 
     /// The section of a strand.
     pub fn section(&self, strand: usize) -> Section {
-        *self.groups.get(strand).and_then(|group| self.own.get(group)).unwrap_or(&self.section)
+        self.hair(strand).section
+    }
+
+    /// What of a strand's hair is the same all along it.
+    pub fn traits(&self, strand: usize) -> Traits {
+        let Hair { section, damping } = self.hair(strand);
+        Traits {
+            bend_ratio: (section.bend[1] / section.bend[0]) as f32,
+            twist_ratio: (section.twist / section.bend[0]) as f32,
+            damping,
+        }
+    }
+
+    fn hair(&self, strand: usize) -> Hair {
+        *self.groups.get(strand).and_then(|group| self.own.get(group)).unwrap_or(&self.hair)
     }
 
     /// Mass of a point over that of the same lengths of even hair of the settings' own material. `length` gives
     /// the length \[m\] behind each of the strand's points.
     pub fn weight(&self, strand: usize, point: usize, points: usize, length: impl Fn(usize) -> f32) -> f32 {
         let section = self.section(strand);
-        let of_group = section.mass / self.section.mass;
+        let of_group = section.mass / self.hair.section.mass;
         if section.along.tip == 1.0 {
             return of_group as f32;
         }
@@ -81,11 +119,11 @@ impl Hairs {
         let own = self
             .own
             .iter()
-            .flat_map(|(group, section)| std::iter::once(u64::from(*group)).chain(numbers(section)));
+            .flat_map(|(group, hair)| std::iter::once(u64::from(*group)).chain(numbers(&hair.section)));
         let first = [u64::from(settings.line_density().to_bits()), u64::from(settings.has_rods())];
         // Of Fowler, Noll and Vo, over whole numbers.
         let mix = |key: u64, number: u64| (key ^ number).wrapping_mul(0x0100_0000_01b3);
-        first.into_iter().chain(numbers(&self.section)).chain(own).fold(0xcbf2_9ce4_8422_2325, mix)
+        first.into_iter().chain(numbers(&self.hair.section)).chain(own).fold(0xcbf2_9ce4_8422_2325, mix)
     }
 
     /// The numbers of the groups of a name, or the one that it is as it is written.

@@ -7,7 +7,7 @@ use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::hairs::Hairs;
+use super::hairs::{Hairs, Traits};
 use super::material::{Section, nodes};
 use super::real::Vector;
 use super::rest;
@@ -35,6 +35,8 @@ pub struct Rods {
     pub(crate) nodes: Vec<Node<f32x8>>,
     /// First axis of each segment's section at rest, head space, shape `[block][point]` of lanes.
     pub(crate) sections: Vec<Vec3Lanes>,
+    /// Shape `[block][lane]`.
+    pub(crate) traits: Vec<Traits>,
     /// Strands that had to be stiffer for their shape to be stable.
     pub stiffened: usize,
     /// How many times stiffer the stiffest of them is; 1 with none.
@@ -59,11 +61,14 @@ impl Rods {
                 Block::new(positions, inverse_mass, mass, live, section, rest, strands.gravity)
             })
             .collect();
+        // Lanes beyond the last strand move with it.
+        let last = strands.strand_count.saturating_sub(1);
         let stiffening = || blocks.iter().flat_map(|block| block.stiffening).filter(|times| *times > 1.0);
         Self {
             stiffened: stiffening().count(),
             stiffest: stiffening().fold(1.0, f64::max) as f32,
             key: Arc::default(),
+            traits: (0..blocks.len() * LANES).map(|lane| hairs.traits(lane.min(last))).collect(),
             nodes: blocks.iter().flat_map(|block| block.nodes.iter().copied()).collect(),
             sections: blocks.iter().flat_map(|block| block.sections.iter().copied()).collect(),
         }

@@ -19,7 +19,7 @@ impl Avx {
         _work: &mut Work<f32x8>,
         _rod: &[Node<f32x8>],
         _pulls: &[Pull<f32x8>],
-        _settings: &StepSettings,
+        _settings: &StepSettings<f32x8>,
     ) -> Solved<f32x8> {
         match *self {}
     }

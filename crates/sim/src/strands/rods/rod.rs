@@ -89,15 +89,16 @@ impl<R: Real> Pull<R> {
 
 /// How a step is made.
 #[derive(Clone, Copy, Debug)]
-pub struct StepSettings {
+pub struct StepSettings<R> {
     /// Length of the step \[s\].
     pub time_step: f64,
     /// Most Newton steps.
     pub newton_steps: u32,
     /// A strand is solved when a Newton step turns none of its segments farther than this \[rad\].
     pub tolerance: f64,
-    /// Relaxation time \[s\] of bends and twists: moment over stiffness and strain rate, as of Kelvin and Voigt.
-    pub damping: f64,
+    /// Relaxation time of bends and twists, which is moment over stiffness and strain rate as of Kelvin and Voigt, over
+    /// the length of the step.
+    pub viscous: R,
 }
 
 /// What a step works in.
@@ -163,8 +164,8 @@ impl<R: Real> Work<R> {
     /// of the strand by Newton's method. A strand that is solved
     /// stays, whatever the others of its block need.
     #[inline(always)]
-    pub fn solve(&mut self, rod: &[Node<R>], pulls: &[Pull<R>], settings: &StepSettings) -> Solved<R> {
-        let viscous = R::of(settings.damping / settings.time_step);
+    pub fn solve(&mut self, rod: &[Node<R>], pulls: &[Pull<R>], settings: &StepSettings<R>) -> Solved<R> {
+        let viscous = settings.viscous;
         let share = R::of(1.0) / (R::of(1.0) + viscous);
         for (index, node) in rod.iter().enumerate().take(rod.len() - 1).skip(1) {
             let strains = Joint::new(&self.segments[index - 1], &self.segments[index]).strains;
@@ -295,7 +296,7 @@ mod tests {
 
     #[test]
     fn a_step_of_a_system_without_a_least_energy_is_not_taken() {
-        let settings = StepSettings { time_step: 0.01, newton_steps: 3, tolerance: 1e-3, damping: 0.0 };
+        let settings = StepSettings { time_step: 0.01, newton_steps: 3, tolerance: 1e-3, viscous: 0.0 };
         // Four free points 0.1 m apart behind one that is held, which would fall 1 mm.
         let solved = |change: Change| {
             let moves = Node {

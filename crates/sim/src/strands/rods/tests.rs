@@ -96,7 +96,7 @@ impl<R: Seen> Strand<R> {
         self.work.solve(
             &self.rod,
             &[],
-            &StepSettings { time_step, newton_steps, tolerance: 1e-5, damping: 0.0 },
+            &StepSettings { time_step, newton_steps, tolerance: 1e-5, viscous: R::of(0.0) },
         );
         let mut moved: Vec<Vector<R>> = (0..self.points.len())
             .map(|point| {

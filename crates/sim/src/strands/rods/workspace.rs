@@ -86,7 +86,7 @@ impl Workspace {
     }
 
     /// An implicit Euler step of the rods, in the way that is the fastest here: bits are the same.
-    pub fn solve(&mut self, rod: &[Node<f32x8>], settings: &StepSettings) -> Solved<f32x8> {
+    pub fn solve(&mut self, rod: &[Node<f32x8>], settings: &StepSettings<f32x8>) -> Solved<f32x8> {
         match &mut self.avx {
             Some(avx) => avx.solve(&mut self.work, rod, &self.pulls, settings),
             None => self.work.solve(rod, &self.pulls, settings),
