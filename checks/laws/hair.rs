@@ -108,9 +108,9 @@ law! {
             let mut group = GroupSettings { group: "7".to_owned(), ..GroupSettings::default() };
             of_group(&mut group);
             let [other, found] = tips(&Settings { groups: vec![group], ..base.clone() });
-            // The same arithmetic, on a device in other lanes beside it.
+            // The mass of a group is rounded once more, so that a Newton step may be more or less: 3e-6 m.
             let apart = found.distance(expected).max(other.distance(first));
-            assert!(apart < 1e-6, "{index}: {found} and {other}, expected {expected} and {first}");
+            assert!(apart < 1e-5, "{index}: {found} and {other}, expected {expected} and {first}");
             let changed = found.distance(first + Vec3::Z * 0.05);
             assert!(changed > 1e-4, "{index}: the setting changes nothing, {changed} m");
         }
