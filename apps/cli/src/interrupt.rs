@@ -21,7 +21,7 @@ static CAME: AtomicUsize = AtomicUsize::new(0);
 static ASKED: AtomicUsize = AtomicUsize::new(0);
 /// How many look for it.
 static LOOKING: AtomicUsize = AtomicUsize::new(0);
-/// Whether what was to be stopped has ended by itself: the program has but to say so.
+/// Whether what was to be stopped has ended by itself: the program only has to say so.
 static FINISHED: AtomicBool = AtomicBool::new(false);
 
 /// Begins to listen. Where the system has no signals or no thread to give, its own way of ending stays.
@@ -60,11 +60,13 @@ fn watch() {
         if signal == 0 {
             continue;
         }
-        let heard = LOOKING.load(SeqCst) > 0 || FINISHED.load(SeqCst);
-        if !heard || ASKED.swap(signal, SeqCst) != 0 {
+        // In this order: who finishes says so before nobody looks any more.
+        let looking = LOOKING.load(SeqCst) > 0;
+        let finished = FINISHED.load(SeqCst);
+        if !(looking || finished) || ASKED.swap(signal, SeqCst) != 0 {
             exit::end_now(exit::SIGNAL + signal as i32);
         }
-        if FINISHED.load(SeqCst) {
+        if finished {
             continue;
         }
         output::note("stopping after this frame; once more stops at once");

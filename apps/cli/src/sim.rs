@@ -306,7 +306,7 @@ fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Opti
     };
     match written {
         Ok(Some(written)) if written.frames > 0 => output::note(&format!(
-            "the {} frames so far are whole; `sim --resume` resumes from a cache: {}",
+            "the {} frames so far are whole; `sim --resume` continues from a cache: {}",
             written.frames,
             written.place.display()
         )),
