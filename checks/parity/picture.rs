@@ -46,7 +46,7 @@ impl Both {
             look: Look { grey: 0.2, ..Look::thesis() },
             lights,
             camera,
-            detail: LevelOfDetail::default(),
+            detail: LevelOfDetail { by_pixel: false, ..LevelOfDetail::default() },
             settings: PictureSettings::sized(256, 256),
         }
     }

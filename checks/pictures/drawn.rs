@@ -9,7 +9,8 @@ use strandline_render::cpu::{
 };
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
-    BodyLook, Camera, DetailLevel, FrameInput, LevelOfDetail, Light, Look, Picture, PictureSettings, Renderer,
+    BodyLook, Camera, DetailLevel, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture,
+    PictureSettings, Renderer,
 };
 
 /// What is drawn.
@@ -30,7 +31,8 @@ pub fn guides(lines: impl IntoIterator<Item = Vec<Vec3>>, points: usize) -> Guid
 }
 
 impl Drawn {
-    fn middle(&self) -> Vec3 {
+    /// Middle of the box around the guides [m].
+    pub fn middle(&self) -> Vec3 {
         let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
         for strand in 0..self.guides.strand_count() {
             for point in 0..self.guides.points_per_strand() {
@@ -98,11 +100,14 @@ impl Drawn {
 
     /// The whole picture.
     pub fn picture(&self, on: &On, settings: &PictureSettings) -> Picture {
+        self.reported(on, settings).0
+    }
+
+    /// The whole picture, and what was drawn for it.
+    pub fn reported(&self, on: &On, settings: &PictureSettings) -> (Picture, FrameReport) {
         self.input(&self.guides, |input| match on {
-            On::Cpu => Renderer::new(&self.guides, None, settings).unwrap().draw(input).unwrap().0,
-            On::Gpu(gpu) => {
-                GpuRenderer::new(gpu, &self.guides, None, settings).unwrap().draw(input).unwrap().0
-            }
+            On::Cpu => Renderer::new(&self.guides, None, settings).unwrap().draw(input).unwrap(),
+            On::Gpu(gpu) => GpuRenderer::new(gpu, &self.guides, None, settings).unwrap().draw(input).unwrap(),
         })
     }
 

@@ -74,7 +74,8 @@ impl Sitting {
             look: &self.look,
             body_look: &BodyLook::default(),
             lights: &self.lights,
-            level_of_detail: &LevelOfDetail::default(),
+            // Of a picture of common size: these are small to take little room.
+            level_of_detail: &LevelOfDetail { by_pixel: false, ..LevelOfDetail::default() },
         })
     }
 

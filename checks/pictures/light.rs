@@ -132,8 +132,14 @@ impl Scene {
     }
 }
 
-const FULL: LevelOfDetail =
-    LevelOfDetail { segments_per_span: 1, full_distance: 1e3, least_strands: 1.0, least_segments: 1.0 };
+const FULL: LevelOfDetail = LevelOfDetail {
+    segments_per_span: 1,
+    full_distance: 1e3,
+    least_strands: 1.0,
+    least_segments: 1.0,
+    most_segments: 1.0,
+    by_pixel: false,
+};
 
 /// The groom on a ball.
 fn sphere(light: Option<Light>, around: f32) -> Scene {

@@ -5,7 +5,7 @@ use strandline_body::Pose;
 use strandline_checks::law;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::{Curves, Strands, interpolate, tessellate};
-use strandline_render::{DetailLevel, LevelOfDetail, Look};
+use strandline_render::{DetailLevel, LevelOfDetail, Look, PictureSettings};
 
 use crate::drawn::Drawn;
 use crate::grooms::arcs;
@@ -44,14 +44,15 @@ fn de_boor(controls: &[DVec3], parameter: f64) -> DVec3 {
 }
 
 fn controls(guides: &Guides, strand: usize) -> Vec<DVec3> {
-    let points: Vec<DVec3> = (0..=SPANS).map(|point| guides.position(strand, point).as_dvec3()).collect();
+    let spans = guides.points_per_strand() - 1;
+    let points: Vec<DVec3> = (0..=spans).map(|point| guides.position(strand, point).as_dvec3()).collect();
     // The quasi-interpolant of cubics: (-1, 8, -1) / 6, and the ends themselves.
     let mut controls = points.clone();
-    for point in 1..SPANS {
+    for point in 1..spans {
         controls[point] = (8.0 * points[point] - points[point - 1] - points[point + 1]) / 6.0;
     }
     controls.insert(0, 2.0 * controls[0] - controls[1]);
-    controls.push(2.0 * controls[SPANS + 1] - controls[SPANS]);
+    controls.push(2.0 * controls[spans + 1] - controls[spans]);
     controls
 }
 
@@ -305,6 +306,67 @@ fn levels_change_without_a_jump() {
     assert!(borders > 15, "the way must cross many levels");
     let coarse = strands(&guides, &look, &DetailLevel { segments_per_span: 1.0, ..DetailLevel::full(4, 16) });
     assert!(greatest_shift(&at(1.0), &coarse) > 0.5 * 5e-4 * 1.4, "a jump must be seen");
+}
+
+law! {
+    fn detail_follows_the_size_of_a_pixel(on) {
+        let look = Look { follow_strands: 16, ..Look::thesis() };
+        let drawn = |distance: f32, rows: u32| {
+            let (detail, guides) = (LevelOfDetail::default(), guides(40));
+            let mut drawn = Drawn { guides, look: look.clone(), lights: Vec::new(), eye: Vec3::ZERO, detail };
+            // A little farther, lest the last digit makes another strand.
+            drawn.eye = drawn.middle() + 1.0001 * distance * Vec3::Z;
+            let report = drawn.reported(on, &PictureSettings::sized(8, rows)).1;
+            (report.strands, report.segments)
+        };
+        let full = drawn(1.5, 600);
+        assert_eq!(full, (40 * 16, 40 * 16 * 4 * SPANS));
+        assert_eq!([drawn(1.0, 600), drawn(3.0, 1200), drawn(0.75, 300)], [full; 3]);
+        // Twice as far, or half as many rows: half the strands, and segments by the square root.
+        let (strands, segments) = drawn(3.0, 600);
+        assert_eq!(strands, 40 * 8);
+        assert!(segments < full.1 * 2 / 5, "{segments} of {}", full.1);
+        assert_eq!([drawn(6.0, 1200), drawn(1.5, 300)], [(strands, segments); 2]);
+        // Close up by nearness or by rows: twice the segments.
+        assert_eq!([drawn(0.125, 600), drawn(0.5, 2400)], [(full.0, 2 * full.1); 2]);
+    }
+}
+
+law! {
+    fn close_up_strands_are_as_round_in_pixels(on) {
+        // Three turns of 5 mm.
+        let curl = (0..=400).map(|step| {
+            let turn = 3.0 * std::f32::consts::TAU * step as f32 / 400.0;
+            Vec3::new(5e-3 * turn.cos(), -5e-4 * step as f32, 5e-3 * turn.sin())
+        });
+        let guides = crate::drawn::guides([curl.collect::<Vec<Vec3>>()], 28);
+        let controls = controls(&guides, 0);
+        // Greatest way from a segment's middle to the curve [m], at a distance from the middle of the hair.
+        let stray = |distance: f32, detail: LevelOfDetail| {
+            let detail = LevelOfDetail { by_pixel: false, ..detail };
+            let (guides, look) = (guides.clone(), Look { follow_strands: 1, ..Look::thesis() });
+            let eye = Vec3::new(0.0, -0.1, distance);
+            let [points, ..] = Drawn { guides, look, lights: Vec::new(), eye, detail }.curves(on);
+            let per_span = f64::from(detail.level(distance, 1).segments_per_span);
+            assert_eq!(points.len() - 1, (per_span * 27.0 - 1e-3).ceil() as usize);
+            // The last segment is shorter.
+            (0..points.len() - 2).map(|point| {
+                let middle = 0.5 * (points[point] + points[point + 1]).as_dvec3();
+                middle.distance(de_boor(&controls, (point as f64 + 0.5) / per_span))
+            }).fold(0.0, f64::max)
+        };
+        let detail = LevelOfDetail::default();
+        let pixels = |distance: f32| stray(distance, detail) / f64::from(distance);
+        let usual = pixels(0.5);
+        for distance in [0.3, 0.125, 0.06, 0.04] {
+            let found = pixels(distance) / usual;
+            // Finer segments find the sharpest bend between the points, which coarse ones miss (0.04 m: 1.13).
+            assert!((0.5..1.25).contains(&found), "at {distance} m segments stray {found} times as far");
+        }
+        let without = LevelOfDetail { most_segments: 1.0, ..detail };
+        let found = stray(0.06, without) / 0.06 / usual;
+        assert!(found > 7.0, "{found}: with as many segments as from 0.5 m they stray eight times as far");
+    }
 }
 
 #[test]

@@ -149,8 +149,7 @@ impl Renderer {
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
         let input = &FrameInput { lights: &lights, ..*input };
         let middle = input.world_from_head.point(self.middle);
-        let distance = input.camera.position.distance(middle);
-        let level = input.level_of_detail.level(distance, input.look.follow_strands);
+        let level = input.level(self.middle, self.settings.height, &self.guides);
         let (guides, pose, own_color) = (&self.guides, &input.world_from_head, self.own_color);
         // It counts the places of the lights itself.
         given.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;

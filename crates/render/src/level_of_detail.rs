@@ -1,11 +1,15 @@
+use glam::Vec3;
 use strandline_base::{Group, settings};
 
-use crate::RenderError;
+use crate::{Camera, RenderError};
 
 settings! {
-    /// How detail falls with viewing distance [Chen2011 table 5].
+    /// How detail follows viewing distance [Chen2011 table 5] and the size of a pixel.
     ///
-    /// Up to `full_distance` everything is drawn. Beyond it the share of follow strands falls in inverse
+    /// Distances are those of a picture of 600 rows and a field of view of 30 degrees: where more rows or a
+    /// narrower view make pixels smaller, hair counts as nearer (`by_pixel`). Up to `full_distance` everything is
+    /// drawn, and below a third of it segments become more with the square root of the nearness, up to
+    /// `most_segments`. Beyond it the share of follow strands falls in inverse
     /// proportion to the distance, and that of segments with its square root (a segment strays from the
     /// curve by the square of its length, so it strays by the same number of pixels), down to their least shares. Both
     /// numbers are continuous, so nothing jumps: the last follow strand fades by its width while the
@@ -21,19 +25,32 @@ settings! {
         least_strands: f32 = 0.125, in [0.0, 1.0], more "more, thinner strands from afar";
         /// Least share of the segments that is drawn from afar.
         least_segments: f32 = 0.5, in [0.0, 1.0], more "rounder strands from afar";
+        /// Most segments close up, as a multiple of `segments_per_span`, while all strands together have no more
+        /// than 4,000,000 points.
+        most_segments: f32 = 4.0, in [1.0, 16.0], more "rounder strands close up";
+        /// Whether more rows and a narrower field of view make detail, as nearness does; without it distance
+        /// alone does.
+        by_pixel: bool = true;
     }
 }
 
 impl LevelOfDetail {
     /// Full detail at any distance.
     pub fn full() -> Self {
-        Self { least_strands: 1.0, least_segments: 1.0, ..Self::default() }
+        Self { least_strands: 1.0, least_segments: 1.0, most_segments: 1.0, ..Self::default() }
     }
 
     /// Detail that falls from 0.2 m on, as the thesis measured it [Chen2011 table 5]: at 3 m a fifteenth of
     /// the follow strands, with a quarter of their segments.
     pub fn thesis() -> Self {
-        Self { segments_per_span: 4, full_distance: 0.2, least_strands: 0.05, least_segments: 0.25 }
+        Self {
+            segments_per_span: 4,
+            full_distance: 0.2,
+            least_strands: 0.05,
+            least_segments: 0.25,
+            most_segments: 1.0,
+            by_pixel: false,
+        }
     }
 
     /// Checks the settings.
@@ -44,15 +61,42 @@ impl LevelOfDetail {
         Ok(self.check_as("level_of_detail")?)
     }
 
-    /// The level for hair at a `distance` \[m\] from the camera, of a look with `follow_strands`
+    /// The distance \[m\] that counts for hair about a place in a picture of so many rows: that from which its
+    /// pixels would be as large in a picture of 600 rows and 30 degrees.
+    pub fn view_distance(&self, camera: &Camera, place: Vec3, rows: u32) -> f32 {
+        let distance = camera.position.distance(place);
+        if !self.by_pixel {
+            return distance;
+        }
+        distance * (ROWS / rows.max(1) as f32) * (Camera::default().focal() / camera.focal())
+    }
+
+    /// The level for hair of `guide_count` guides of so many points, at a view distance \[m\]: close up, segments
+    /// become more only as far as memory is meant for them.
+    pub(crate) fn level_of(
+        &self,
+        distance: f32,
+        follow_strands: u32,
+        [guide_count, points_per_strand]: [usize; 2],
+    ) -> DetailLevel {
+        let level = self.level(distance, follow_strands);
+        let strands = (guide_count * level.strand_count()).max(1) as f32;
+        let spans = points_per_strand.saturating_sub(1).max(1) as f32;
+        let most = ((MOST_CLOSE / strands - 1.0) / spans).max(self.segments_per_span as f32);
+        DetailLevel { segments_per_span: level.segments_per_span.min(most), ..level }
+    }
+
+    /// The level for hair at a view distance \[m\] from the camera, of a look with `follow_strands`
     /// strands to a guide.
     pub fn level(&self, distance: f32, follow_strands: u32) -> DetailLevel {
         let share = self.full_distance / distance.max(self.full_distance);
+        let nearness = CLOSE * self.full_distance / distance.max(f32::MIN_POSITIVE);
+        let more = nearness.sqrt().clamp(1.0, self.most_segments);
         let follow_strands = follow_strands.max(1) as f32;
         let drawn = share.max(self.least_strands);
         let left_out = if follow_strands > 1.0 { 0.0 } else { EIGHT - (EIGHT * drawn).max(1.0) };
         DetailLevel {
-            segments_per_span: (self.segments_per_span as f32 * share.sqrt().max(self.least_segments))
+            segments_per_span: (self.segments_per_span as f32 * share.sqrt().max(self.least_segments) * more)
                 .max(1.0),
             follow_strands: (follow_strands * drawn).max(1.0),
             full_follow_strands: follow_strands,
@@ -74,6 +118,12 @@ pub struct DetailLevel {
     pub left_out: f32,
 }
 
+/// Rows of the picture whose distances are as they are.
+const ROWS: f32 = 600.0;
+/// Share of the full distance below which segments become more.
+const CLOSE: f32 = 1.0 / 3.0;
+/// Points up to which segments become more: some 0.6 GB on a processor, buffers within WebGPU's limits on a GPU.
+const MOST_CLOSE: f32 = 4e6;
 /// Strands of which some are left out.
 const EIGHT: f32 = 8.0;
 /// The order in which strands of eight stay: each half of them is spread over all.
@@ -188,8 +238,12 @@ mod tests {
     #[test]
     fn detail_never_rises_with_distance() {
         let settings = LevelOfDetail::default();
-        let mut last = settings.level(0.1, 16);
-        assert_eq!(last, DetailLevel::full(4, 16));
+        let mut last = settings.level(0.01, 16);
+        assert_eq!(last, DetailLevel::full(16, 16));
+        assert_eq!(
+            [0.5, 1.0, 1.5].map(|distance| settings.level(distance, 16)),
+            [DetailLevel::full(4, 16); 3]
+        );
         for step in 1..200 {
             let level = settings.level(0.1 * step as f32, 16);
             assert!(level.follow_strands <= last.follow_strands);
@@ -197,6 +251,34 @@ mod tests {
             last = level;
         }
         assert_eq!((last.follow_strands, last.segments_per_span), (2.0, 2.0));
+    }
+
+    #[test]
+    fn what_counts_is_the_size_of_a_pixel() {
+        let (by_pixel, far) =
+            (LevelOfDetail::default(), Camera { position: 3.0 * Vec3::Z, ..Camera::front() });
+        let by_distance = LevelOfDetail { by_pixel: false, ..by_pixel };
+        let counts =
+            |detail: LevelOfDetail, camera: &Camera, rows| detail.view_distance(camera, Vec3::ZERO, rows);
+        assert_eq!(counts(by_pixel, &far, 600), 3.0, "as it is at 600 rows and 30 degrees");
+        assert_eq!([300, 1200].map(|rows| counts(by_pixel, &far, rows)), [6.0, 1.5]);
+        // A lens that shows a tenth of the height.
+        let slope = 0.1 * 15f32.to_radians().tan();
+        let long = Camera { field_of_view: 2.0 * slope.atan().to_degrees(), ..far };
+        assert!((counts(by_pixel, &long, 600) - 0.3).abs() < 1e-4);
+        assert_eq!([300, 1200].map(|rows| counts(by_distance, &long, rows)), [3.0; 2]);
+    }
+
+    #[test]
+    fn close_up_segments_become_more_as_far_as_memory_is_meant_for_them() {
+        let detail = LevelOfDetail::default();
+        let segments = |distance, guides| detail.level_of(distance, 16, [guides, 28]).segments_per_span;
+        assert_eq!([0.5, 0.125, 0.02].map(|distance| segments(distance, 100)), [4.0, 8.0, 16.0]);
+        let level = detail.level_of(0.02, 16, [1500, 28]);
+        let points = 1500 * level.strand_count() * (level.segment_count(28) + 1);
+        assert!(level.segments_per_span > 5.0 && (3_900_000..=4_024_000).contains(&points), "{points}");
+        assert_eq!(segments(0.02, 50_000), 4.0, "what full detail has stays");
+        assert_eq!(LevelOfDetail::full().level(0.02, 16), DetailLevel::full(4, 16));
     }
 
     #[test]

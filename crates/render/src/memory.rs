@@ -41,9 +41,10 @@ pub struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// What drawing takes at full detail, an upper estimate.
+    /// What drawing takes close up, an upper estimate.
     pub fn memory(&self, level_of_detail: &LevelOfDetail) -> Vec<Need> {
-        self.needs(&level_of_detail.level(0.0, self.look.follow_strands))
+        let of = [self.guide_count, self.points_per_strand];
+        self.needs(&level_of_detail.level_of(0.0, self.look.follow_strands, of))
     }
 
     fn points(&self, level: &DetailLevel) -> u64 {

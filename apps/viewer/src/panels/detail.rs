@@ -19,6 +19,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     slide(ui, (&mut level.segments_per_span, base.segments_per_span), &rows.segments_per_span, "segments");
     slide(ui, (&mut level.full_distance, base.full_distance), &rows.full_distance, "full to");
     slide(ui, (&mut level.least_strands, base.least_strands), &rows.least_strands, "least strands");
+    slide(ui, (&mut level.most_segments, base.most_segments), &rows.most_segments, "close up");
     let (picture, base, rows) = (&mut app.scene.picture, &app.base.picture, &PictureSettings::ROWS);
     slide(ui, (&mut picture.supersampling, base.supersampling), &rows.supersampling, "samples");
     slide(ui, (&mut picture.exposure, base.exposure), &rows.exposure, "exposure");

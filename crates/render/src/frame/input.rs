@@ -1,5 +1,6 @@
+use glam::Vec3;
 use strandline_body::Pose;
-use strandline_groom::Vec3Lanes;
+use strandline_groom::{Guides, Vec3Lanes};
 
 use crate::memory::{Drawn, check_lights};
 
@@ -35,6 +36,14 @@ impl FrameInput<'_> {
         self.body_look.validate()?;
         self.level_of_detail.validate()?;
         check_lights(self.lights)
+    }
+
+    /// What is drawn of guides whose middle at rest \[m\], head space, is given, in a picture of so many rows.
+    pub(crate) fn level(&self, middle: Vec3, rows: u32, guides: &Guides) -> DetailLevel {
+        let detail = self.level_of_detail;
+        let distance = detail.view_distance(self.camera, self.world_from_head.point(middle), rows);
+        let of = [guides.strand_count(), guides.points_per_strand()];
+        detail.level_of(distance, self.look.follow_strands, of)
     }
 
     /// Refuses more than can be drawn, before anything is allocated for it.

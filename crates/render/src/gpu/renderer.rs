@@ -294,11 +294,10 @@ impl GpuRenderer {
         share: f32,
     ) -> Scene<'a> {
         let middle = input.world_from_head.point(self.middle);
-        let distance = input.camera.position.distance(middle);
         Scene {
             input,
             settings,
-            level: input.level_of_detail.level(distance, input.look.follow_strands),
+            level: input.level(self.middle, settings.height, &self.guides),
             share,
             guide_count: self.guides.strand_count(),
             guide_points: self.guides.points_per_strand(),
@@ -320,9 +319,13 @@ impl GpuRenderer {
         let shadows = scene.shadow_count();
         limit("lights", scene.input.lights.len(), MAX_LIGHTS)?;
         limit("lights with shadow", shadows, MAX_SHADOWS)?;
-        // Room for full detail, so that a change of distance never asks for memory.
-        let full =
-            DetailLevel::full(scene.input.level_of_detail.segments_per_span, scene.input.look.follow_strands);
+        // Room for full detail, so that a change of distance asks for memory once: the first time that hair is close.
+        let detail = scene.input.level_of_detail;
+        let mut full = DetailLevel::full(detail.segments_per_span, scene.input.look.follow_strands);
+        if scene.level.segments_per_span > full.segments_per_span {
+            let of = [scene.guide_count, scene.guide_points];
+            full = detail.level_of(0.0, scene.input.look.follow_strands, of);
+        }
         let curve_points = (full.segment_count(scene.guide_points) + 1).max(scene.curve_points());
         let strands_per_guide = full.strand_count().max(scene.level.strand_count());
         let points = scene.guide_count * strands_per_guide * curve_points;

@@ -33,6 +33,7 @@ pub(crate) fn prepared(scene: &Scene, cache: &mut Cache) -> Result<Prepared, Err
     scene.simulation.volume.enabled = false;
     scene.level_of_detail.segments_per_span = 1;
     scene.level_of_detail.full_distance = FAR;
+    scene.level_of_detail.most_segments = 1.0;
     let look = &mut scene.look;
     (look.follow_strands, look.hair_count, look.width_scale) = (1, groom.strand_count() as u32, 1.0);
     look.group.clear();

@@ -21,7 +21,7 @@ pub(crate) fn smaller(picture: PictureSettings) -> PictureSettings {
 pub(crate) fn simplified<T>(studio: &mut Studio, act: impl FnOnce(&mut Studio) -> T) -> T {
     let level = studio.level_of_detail;
     let segments_per_span = level.segments_per_span.min(FEW_SEGMENTS);
-    studio.level_of_detail = LevelOfDetail { segments_per_span, ..level };
+    studio.level_of_detail = LevelOfDetail { segments_per_span, most_segments: 1.0, ..level };
     let mut look = studio.look.clone();
     look.follow_strands = look.follow_strands.min(FEW_STRANDS);
     look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
