@@ -46,6 +46,15 @@ impl FrameInput<'_> {
         detail.level_of(distance, self.look.follow_strands, of)
     }
 
+    /// The most detail of pictures like one that is drawn: full detail, or that from nearby where it is close up.
+    pub(crate) fn fullest(&self, drawn: &DetailLevel, guides: &Guides) -> DetailLevel {
+        let (detail, follow_strands) = (self.level_of_detail, self.look.follow_strands);
+        if drawn.segments_per_span <= detail.segments_per_span as f32 {
+            return DetailLevel::full(detail.segments_per_span, follow_strands);
+        }
+        detail.level_of(0.0, follow_strands, [guides.strand_count(), guides.points_per_strand()])
+    }
+
     /// Refuses more than can be drawn, before anything is allocated for it.
     pub(crate) fn check_memory(
         &self,

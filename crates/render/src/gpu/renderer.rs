@@ -21,7 +21,7 @@ use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
 use crate::cpu::shade_chiang::Source;
 use crate::frame::{mean_color, middle};
 use crate::lights::at_samples;
-use crate::{DetailLevel, FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
+use crate::{FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
 /// Draws frames of one groom on one body on a GPU; keeps its buffers from frame to frame.
 pub struct GpuRenderer {
@@ -320,12 +320,7 @@ impl GpuRenderer {
         limit("lights", scene.input.lights.len(), MAX_LIGHTS)?;
         limit("lights with shadow", shadows, MAX_SHADOWS)?;
         // Room for full detail, so that a change of distance asks for memory once: the first time that hair is close.
-        let detail = scene.input.level_of_detail;
-        let mut full = DetailLevel::full(detail.segments_per_span, scene.input.look.follow_strands);
-        if scene.level.segments_per_span > full.segments_per_span {
-            let of = [scene.guide_count, scene.guide_points];
-            full = detail.level_of(0.0, scene.input.look.follow_strands, of);
-        }
+        let full = scene.input.fullest(&scene.level, &self.guides);
         let curve_points = (full.segment_count(scene.guide_points) + 1).max(scene.curve_points());
         let strands_per_guide = full.strand_count().max(scene.level.strand_count());
         let points = scene.guide_count * strands_per_guide * curve_points;
