@@ -33,6 +33,11 @@ pub fn guides(lines: impl IntoIterator<Item = Vec<Vec3>>, points: usize) -> Guid
 impl Drawn {
     /// Middle of the box around the guides [m].
     pub fn middle(&self) -> Vec3 {
+        0.5 * self.bounds().into_iter().sum::<Vec3>()
+    }
+
+    /// Least and greatest of the guides' coordinates [m].
+    pub fn bounds(&self) -> [Vec3; 2] {
         let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
         for strand in 0..self.guides.strand_count() {
             for point in 0..self.guides.points_per_strand() {
@@ -40,7 +45,7 @@ impl Drawn {
                 (low, high) = (low.min(place), high.max(place));
             }
         }
-        0.5 * (low + high)
+        [low, high]
     }
 
     /// The curves of all guides: position \[m\], tangent and normal, shape `[guide][point]`.
@@ -65,7 +70,9 @@ impl Drawn {
     }
 
     fn level(&self) -> DetailLevel {
-        self.detail.level(self.eye.distance(self.middle()), self.look.follow_strands)
+        let ([low, high], eye) = (self.bounds(), self.eye);
+        let nearest = (low - eye).max(eye - high).max(Vec3::ZERO).length();
+        self.detail.level_from(eye.distance(self.middle()), nearest, self.look.follow_strands)
     }
 
     /// The drawn strands with their radiances.

@@ -311,14 +311,19 @@ fn levels_change_without_a_jump() {
 law! {
     fn detail_follows_the_size_of_a_pixel(on) {
         let look = Look { follow_strands: 16, ..Look::thesis() };
-        let drawn = |distance: f32, rows: u32| {
+        // From the middle of the hair, or from the near side of its box.
+        let draw = |from_middle: bool, distance: f32, rows: u32| {
             let (detail, guides) = (LevelOfDetail::default(), guides(40));
             let mut drawn = Drawn { guides, look: look.clone(), lights: Vec::new(), eye: Vec3::ZERO, detail };
             // A little farther, lest the last digit makes another strand.
             drawn.eye = drawn.middle() + 1.0001 * distance * Vec3::Z;
+            if !from_middle {
+                drawn.eye.z += drawn.bounds()[1].z - drawn.middle().z;
+            }
             let report = drawn.reported(on, &PictureSettings::sized(8, rows)).1;
             (report.strands, report.segments)
         };
+        let drawn = |distance, rows| draw(true, distance, rows);
         let full = drawn(1.5, 600);
         assert_eq!(full, (40 * 16, 40 * 16 * 4 * SPANS));
         assert_eq!([drawn(1.0, 600), drawn(3.0, 1200), drawn(0.75, 300)], [full; 3]);
@@ -328,7 +333,7 @@ law! {
         assert!(segments < full.1 * 2 / 5, "{segments} of {}", full.1);
         assert_eq!([drawn(6.0, 1200), drawn(1.5, 300)], [(strands, segments); 2]);
         // Close up by nearness or by rows: twice the segments.
-        assert_eq!([drawn(0.125, 600), drawn(0.5, 2400)], [(full.0, 2 * full.1); 2]);
+        assert_eq!([draw(false, 0.125, 600), draw(false, 0.5, 2400)], [(full.0, 2 * full.1); 2]);
     }
 }
 
@@ -341,12 +346,13 @@ law! {
         });
         let guides = crate::drawn::guides([curl.collect::<Vec<Vec3>>()], 28);
         let controls = controls(&guides, 0);
-        // Greatest way from a segment's middle to the curve [m], at a distance from the middle of the hair.
+        // Greatest way from a segment's middle to the curve [m], at a distance from the near side of the hair.
         let stray = |distance: f32, detail: LevelOfDetail| {
             let detail = LevelOfDetail { by_pixel: false, ..detail };
             let (guides, look) = (guides.clone(), Look { follow_strands: 1, ..Look::thesis() });
-            let eye = Vec3::new(0.0, -0.1, distance);
-            let [points, ..] = Drawn { guides, look, lights: Vec::new(), eye, detail }.curves(on);
+            let mut drawn = Drawn { guides, look, lights: Vec::new(), eye: Vec3::ZERO, detail };
+            drawn.eye = Vec3::new(0.0, -0.1, drawn.bounds()[1].z + distance);
+            let [points, ..] = drawn.curves(on);
             let per_span = f64::from(detail.level(distance, 1).segments_per_span);
             assert_eq!(points.len() - 1, (per_span * 27.0 - 1e-3).ceil() as usize);
             // The last segment is shorter.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 use strandline_base::timed;
-use strandline_body::{Mesh, Solids};
+use strandline_body::{Aabb, Mesh, Solids};
 use strandline_groom::Guides;
 
 use crate::cpu::scalp::root_densities;
@@ -39,8 +39,8 @@ pub struct Renderer {
     guides: Guides,
     /// What curves stay out of.
     solids: Solids,
-    /// Middle of the guides at rest [m], head space.
-    middle: Vec3,
+    /// Box around the guides at rest [m], head space.
+    bounds: Aabb,
     settings: PictureSettings,
     curves: Curves,
     strands: Strands,
@@ -68,7 +68,7 @@ impl Renderer {
         let mut renderer = Self {
             guides: guides.clone(),
             solids: Solids::default(),
-            middle: middle(guides),
+            bounds: bounds(guides),
             curves: Curves::default(),
             settings: *settings,
             strands: Strands::default(),
@@ -148,8 +148,8 @@ impl Renderer {
         let (given, lights) = (input, at_samples(input.lights, input.look.suns()));
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
         let input = &FrameInput { lights: &lights, ..*input };
-        let middle = input.world_from_head.point(self.middle);
-        let level = input.level(self.middle, self.settings.height, &self.guides);
+        let middle = input.world_from_head.point(middle(self.bounds));
+        let level = input.level(self.bounds, self.settings.height, &self.guides);
         let (guides, pose, own_color) = (&self.guides, &input.world_from_head, self.own_color);
         // It counts the places of the lights itself.
         given.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
@@ -234,13 +234,18 @@ fn shade_by_model(strands: &mut Strands, lit: &Lit, occlusion: &mut Occlusion, s
     }
 }
 
-/// Middle of the box around all guide points \[m\].
-pub(crate) fn middle(guides: &Guides) -> Vec3 {
+/// Middle of a box \[m\].
+pub(crate) fn middle(bounds: Aabb) -> Vec3 {
+    0.5 * (bounds.min + bounds.max)
+}
+
+/// The box around all guide points \[m\].
+pub(crate) fn bounds(guides: &Guides) -> Aabb {
     let points = (0..guides.strand_count())
         .flat_map(|strand| (0..guides.points_per_strand()).map(move |point| guides.position(strand, point)));
     let (min, max) =
         points.fold((Vec3::MAX, Vec3::MIN), |(min, max), point| (min.min(point), max.max(point)));
-    0.5 * (min + max)
+    Aabb { min, max }
 }
 
 /// Mean of the colours of the guides' points, linear RGB, where they have some.

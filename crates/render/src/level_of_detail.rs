@@ -1,4 +1,3 @@
-use glam::Vec3;
 use strandline_base::{Group, settings};
 
 use crate::{Camera, RenderError};
@@ -8,8 +7,8 @@ settings! {
     ///
     /// Distances are those of a picture of 600 rows and a field of view of 30 degrees: where more rows or a
     /// narrower view make pixels smaller, hair counts as nearer (`by_pixel`). Up to `full_distance` everything is
-    /// drawn, and below a third of it segments become more with the square root of the nearness, up to
-    /// `most_segments`. Beyond it the share of follow strands falls in inverse
+    /// drawn, and where the nearest hair is nearer than a third of it, segments become more with the square root of
+    /// the nearness, up to `most_segments`. Beyond it the share of follow strands falls in inverse
     /// proportion to the distance, and that of segments with its square root (a segment strays from the
     /// curve by the square of its length, so it strays by the same number of pixels), down to their least shares. Both
     /// numbers are continuous, so nothing jumps: the last follow strand fades by its width while the
@@ -61,36 +60,41 @@ impl LevelOfDetail {
         Ok(self.check_as("level_of_detail")?)
     }
 
-    /// The distance \[m\] that counts for hair about a place in a picture of so many rows: that from which its
-    /// pixels would be as large in a picture of 600 rows and 30 degrees.
-    pub fn view_distance(&self, camera: &Camera, place: Vec3, rows: u32) -> f32 {
-        let distance = camera.position.distance(place);
+    /// What distances are multiplied by in a picture of so many rows: pixels are as large as from there in a picture
+    /// of 600 rows and 30 degrees.
+    pub fn view_scale(&self, camera: &Camera, rows: u32) -> f32 {
         if !self.by_pixel {
-            return distance;
+            return 1.0;
         }
-        distance * (ROWS / rows.max(1) as f32) * (Camera::default().focal() / camera.focal())
+        (ROWS / rows.max(1) as f32) * (Camera::default().focal() / camera.focal())
     }
 
-    /// The level for hair of `guide_count` guides of so many points, at a view distance \[m\]: close up, segments
-    /// become more only as far as memory is meant for them.
+    /// The level for hair of `guide_count` guides of so many points, at view distances \[m\] as for
+    /// [`LevelOfDetail::level_from`]: close up, segments become more only as far as memory is meant for them.
     pub(crate) fn level_of(
         &self,
-        distance: f32,
+        [distance, nearest]: [f32; 2],
         follow_strands: u32,
         [guide_count, points_per_strand]: [usize; 2],
     ) -> DetailLevel {
-        let level = self.level(distance, follow_strands);
+        let level = self.level_from(distance, nearest, follow_strands);
         let strands = (guide_count * level.strand_count()).max(1) as f32;
         let spans = points_per_strand.saturating_sub(1).max(1) as f32;
         let most = ((MOST_CLOSE / strands - 1.0) / spans).max(self.segments_per_span as f32);
         DetailLevel { segments_per_span: level.segments_per_span.min(most), ..level }
     }
 
-    /// The level for hair at a view distance \[m\] from the camera, of a look with `follow_strands`
+    /// The level for hair that is all at one view distance \[m\] from the camera, of a look with `follow_strands`
     /// strands to a guide.
     pub fn level(&self, distance: f32, follow_strands: u32) -> DetailLevel {
+        self.level_from(distance, distance, follow_strands)
+    }
+
+    /// The level for hair whose middle is at a view distance \[m\] from the camera, and whose box at rest comes as
+    /// near as `nearest`.
+    pub fn level_from(&self, distance: f32, nearest: f32, follow_strands: u32) -> DetailLevel {
         let share = self.full_distance / distance.max(self.full_distance);
-        let nearness = CLOSE * self.full_distance / distance.max(f32::MIN_POSITIVE);
+        let nearness = CLOSE * self.full_distance / nearest.max(f32::MIN_POSITIVE);
         let more = nearness.sqrt().clamp(1.0, self.most_segments);
         let follow_strands = follow_strands.max(1) as f32;
         let drawn = share.max(self.least_strands);
@@ -255,28 +259,26 @@ mod tests {
 
     #[test]
     fn what_counts_is_the_size_of_a_pixel() {
-        let (by_pixel, far) =
-            (LevelOfDetail::default(), Camera { position: 3.0 * Vec3::Z, ..Camera::front() });
+        let (by_pixel, front) = (LevelOfDetail::default(), Camera::front());
         let by_distance = LevelOfDetail { by_pixel: false, ..by_pixel };
-        let counts =
-            |detail: LevelOfDetail, camera: &Camera, rows| detail.view_distance(camera, Vec3::ZERO, rows);
-        assert_eq!(counts(by_pixel, &far, 600), 3.0, "as it is at 600 rows and 30 degrees");
-        assert_eq!([300, 1200].map(|rows| counts(by_pixel, &far, rows)), [6.0, 1.5]);
+        assert_eq!([300, 600, 1200].map(|rows| by_pixel.view_scale(&front, rows)), [2.0, 1.0, 0.5]);
         // A lens that shows a tenth of the height.
         let slope = 0.1 * 15f32.to_radians().tan();
-        let long = Camera { field_of_view: 2.0 * slope.atan().to_degrees(), ..far };
-        assert!((counts(by_pixel, &long, 600) - 0.3).abs() < 1e-4);
-        assert_eq!([300, 1200].map(|rows| counts(by_distance, &long, rows)), [3.0; 2]);
+        let long = Camera { field_of_view: 2.0 * slope.atan().to_degrees(), ..front };
+        assert!((by_pixel.view_scale(&long, 600) - 0.1).abs() < 1e-5);
+        assert_eq!([300, 1200].map(|rows| by_distance.view_scale(&long, rows)), [1.0; 2]);
     }
 
     #[test]
     fn close_up_segments_become_more_as_far_as_memory_is_meant_for_them() {
         let detail = LevelOfDetail::default();
-        let segments = |distance, guides| detail.level_of(distance, 16, [guides, 28]).segments_per_span;
+        let segments = |distance, guides| detail.level_of([distance; 2], 16, [guides, 28]).segments_per_span;
         assert_eq!([0.5, 0.125, 0.02].map(|distance| segments(distance, 100)), [4.0, 8.0, 16.0]);
-        let level = detail.level_of(0.02, 16, [1500, 28]);
+        let level = detail.level_of([0.02; 2], 16, [1500, 28]);
         let points = 1500 * level.strand_count() * (level.segment_count(28) + 1);
         assert!(level.segments_per_span > 5.0 && (3_900_000..=4_024_000).contains(&points), "{points}");
+        let around = detail.level_of([0.5, 0.0], 16, [100, 28]);
+        assert_eq!(around.segments_per_span, 16.0, "a camera within the hair");
         assert_eq!(segments(0.02, 50_000), 4.0, "what full detail has stays");
         assert_eq!(LevelOfDetail::full().level(0.02, 16), DetailLevel::full(4, 16));
     }

@@ -44,7 +44,7 @@ impl Drawn<'_> {
     /// What drawing takes close up, an upper estimate.
     pub fn memory(&self, level_of_detail: &LevelOfDetail) -> Vec<Need> {
         let of = [self.guide_count, self.points_per_strand];
-        self.needs(&level_of_detail.level_of(0.0, self.look.follow_strands, of))
+        self.needs(&level_of_detail.level_of([0.0; 2], self.look.follow_strands, of))
     }
 
     fn points(&self, level: &DetailLevel) -> u64 {

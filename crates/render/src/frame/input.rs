@@ -1,7 +1,8 @@
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_body::{Aabb, Pose};
 use strandline_groom::{Guides, Vec3Lanes};
 
+use super::middle;
 use crate::memory::{Drawn, check_lights};
 
 use crate::{BodyLook, Camera, DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
@@ -38,12 +39,15 @@ impl FrameInput<'_> {
         check_lights(self.lights)
     }
 
-    /// What is drawn of guides whose middle at rest \[m\], head space, is given, in a picture of so many rows.
-    pub(crate) fn level(&self, middle: Vec3, rows: u32, guides: &Guides) -> DetailLevel {
-        let detail = self.level_of_detail;
-        let distance = detail.view_distance(self.camera, self.world_from_head.point(middle), rows);
+    /// What is drawn of guides that lie in a box at rest \[m\], head space, in a picture of so many rows.
+    pub(crate) fn level(&self, bounds: Aabb, rows: u32, guides: &Guides) -> DetailLevel {
+        let (detail, eye) =
+            (self.level_of_detail, self.world_from_head.inverse().point(self.camera.position));
+        let outside = (bounds.min - eye).max(eye - bounds.max).max(Vec3::ZERO).length();
+        let distances = [eye.distance(middle(bounds)), outside];
+        let scale = detail.view_scale(self.camera, rows);
         let of = [guides.strand_count(), guides.points_per_strand()];
-        detail.level_of(distance, self.look.follow_strands, of)
+        detail.level_of(distances.map(|distance| scale * distance), self.look.follow_strands, of)
     }
 
     /// The most detail of pictures like one that is drawn: full detail, or that from nearby where it is close up.
@@ -52,7 +56,7 @@ impl FrameInput<'_> {
         if drawn.segments_per_span <= detail.segments_per_span as f32 {
             return DetailLevel::full(detail.segments_per_span, follow_strands);
         }
-        detail.level_of(0.0, follow_strands, [guides.strand_count(), guides.points_per_strand()])
+        detail.level_of([0.0; 2], follow_strands, [guides.strand_count(), guides.points_per_strand()])
     }
 
     /// Refuses more than can be drawn, before anything is allocated for it.

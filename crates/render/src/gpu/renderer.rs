@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::SettingError;
-use strandline_body::{Mesh, Solids};
+use strandline_body::{Aabb, Mesh, Solids};
 use strandline_gpu::{Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
 use strandline_groom::{Binding, Guides};
 
@@ -19,7 +19,7 @@ use super::shade::{LayerColoring, Numbers};
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
 use crate::cpu::shade_chiang::Source;
-use crate::frame::{mean_color, middle};
+use crate::frame::{bounds, mean_color, middle};
 use crate::lights::at_samples;
 use crate::{FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
@@ -27,8 +27,8 @@ use crate::{FrameInput, FrameReport, Light, Picture, PictureSettings, RenderErro
 pub struct GpuRenderer {
     pub(super) gpu: Gpu,
     pub(super) guides: Guides,
-    /// Middle of the guides at rest \[m\], head space.
-    pub(super) middle: Vec3,
+    /// Box around the guides at rest \[m\], head space.
+    pub(super) bounds: Aabb,
     /// A ball around the body: middle \[m\], head space, and radius \[m\].
     body_ball: (Vec3, f32),
     vertex_count: usize,
@@ -81,7 +81,7 @@ impl GpuRenderer {
     ) -> Result<Self, RenderError> {
         settings.validate()?;
         Ok(Self {
-            middle: middle(guides),
+            bounds: bounds(guides),
             body_ball: ball(body),
             vertex_count: body.map_or(0, |mesh| mesh.positions.len()),
             triangle_count: body.map_or(0, |mesh| mesh.triangles.len()),
@@ -293,11 +293,11 @@ impl GpuRenderer {
         settings: &'a PictureSettings,
         share: f32,
     ) -> Scene<'a> {
-        let middle = input.world_from_head.point(self.middle);
+        let middle = input.world_from_head.point(middle(self.bounds));
         Scene {
             input,
             settings,
-            level: input.level(self.middle, settings.height, &self.guides),
+            level: input.level(self.bounds, settings.height, &self.guides),
             share,
             guide_count: self.guides.strand_count(),
             guide_points: self.guides.points_per_strand(),
