@@ -51,6 +51,7 @@ impl FrameInput<'_> {
     }
 
     /// The most detail of pictures like one that is drawn: full detail, or that from nearby where it is close up.
+    #[cfg(feature = "gpu")]
     pub(crate) fn fullest(&self, drawn: &DetailLevel, guides: &Guides) -> DetailLevel {
         let (detail, follow_strands) = (self.level_of_detail, self.look.follow_strands);
         if drawn.segments_per_span <= detail.segments_per_span as f32 {
