@@ -32,7 +32,7 @@ fn fails(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
 
 /// A scene that takes a moment.
 const SMALL: &str = "[style]\nstrand_count = 40\n[look]\nfollow_strands = 2\n[film]\nframes = 2\nsettle = 0.0\n\
-                     [picture]\nwidth = 64\nheight = 48\n";
+                     [level_of_detail]\nby_pixel = false\n[picture]\nwidth = 64\nheight = 48\n";
 
 fn small(folder: &Path) {
     std::fs::write(folder.join("small.toml"), SMALL).unwrap();

@@ -24,6 +24,8 @@ fn scene() -> Scene {
     (scene.film.frames, scene.film.settle) = (3, 0.1);
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 8.0);
     (scene.picture.width, scene.picture.height) = (96, 96);
+    // Small pictures of all strands.
+    scene.level_of_detail.by_pixel = false;
     // Light that is scattered many times takes a software adapter long.
     scene.look.dress(Preset::Thesis);
     scene

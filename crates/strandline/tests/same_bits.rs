@@ -17,6 +17,8 @@ fn small(mut scene: Scene) -> Scene {
     scene.motion.name = MotionName::Shake;
     (scene.film.frames, scene.film.settle) = (3, 0.0);
     (scene.picture.width, scene.picture.height) = (96, 128);
+    // Small pictures of all strands.
+    scene.level_of_detail.by_pixel = false;
     scene
 }
 

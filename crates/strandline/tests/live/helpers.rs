@@ -13,6 +13,8 @@ pub fn scene() -> Scene {
     scene.devices = Backend::Cpu.into();
     (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
     (scene.picture.width, scene.picture.height) = (64, 48);
+    // Small pictures of all strands.
+    scene.level_of_detail.by_pixel = false;
     scene
 }
 
