@@ -46,6 +46,7 @@ impl Both {
             look: Look { grey: 0.2, ..Look::thesis() },
             lights,
             camera,
+            // All that a picture of common size draws: these are small.
             detail: LevelOfDetail { by_pixel: false, ..LevelOfDetail::default() },
             settings: PictureSettings::sized(256, 256),
         }

@@ -143,6 +143,7 @@ fn widths(on: &On, look: Look, distance: f32, detail: LevelOfDetail) -> (f32, Ve
 law! {
     fn fewer_strands_are_wider_and_cover_the_same(on) {
         let look = Look { follow_strands: 16, hair_count: 50_000, clump: STRAIGHT, ..Look::thesis() };
+        // A GPU draws a picture of 16 rows to ask for its strands.
         let detail = LevelOfDetail { by_pixel: false, ..LevelOfDetail::default() };
         // All hairs that the strands stand for, side by side.
         let expected = 50_000.0 * 8e-5;

@@ -1,7 +1,11 @@
 //! Figures of what is drawn: detail, samples, segments and follow strands.
 
 use glam::Vec3;
-use strandline::{Camera, Look, Picture, Style, low_level::render::PictureSettings, scene::MotionName};
+use strandline::{
+    Camera, Look, Picture, Style,
+    low_level::render::{LevelOfDetail, PictureSettings},
+    scene::MotionName,
+};
 
 use crate::strip::{joined, magnified};
 use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
@@ -9,6 +13,8 @@ use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
 /// The same hair from 1, 2, 4 and 8 times as far: as large as it is, then the far ones magnified.
 pub fn level_of_detail(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 240, 240)?;
+    // What distance does, not that these pictures are small.
+    hair.level_of_detail.by_pixel = false;
     let (mut natural, mut large) = (Vec::new(), Vec::new());
     for times in [1, 2, 4, 8] {
         let near = bust(THREE_QUARTER);
@@ -41,7 +47,9 @@ pub fn tessellation(studio: &Studio) -> Figure {
     scene.groom.points_per_strand = 12;
     let mut hair = studio.settled(&scene, 360, 240)?.hair;
     let mut draw = |segments| -> Figure {
-        hair.level_of_detail.segments_per_span = segments;
+        // So many, although it is close up.
+        let level = hair.level_of_detail;
+        hair.level_of_detail = LevelOfDetail { segments_per_span: segments, most_segments: 1.0, ..level };
         let camera = close(THREE_QUARTER, Vec3::new(0.1, -0.1, 0.06), 0.08);
         Ok(hair.picture(&camera, &Look::red())?)
     };

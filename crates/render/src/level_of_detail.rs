@@ -27,8 +27,8 @@ settings! {
         /// Most segments close up, as a multiple of `segments_per_span`, while all strands together have no more
         /// than 4,000,000 points.
         most_segments: f32 = 4.0, in [1.0, 16.0], more "rounder strands close up";
-        /// Whether more rows and a narrower field of view make detail, as nearness does; without it distance
-        /// alone does.
+        /// Whether distances are those of a picture of 600 rows and a field of view of 30 degrees, so that more rows or
+        /// a narrower view count as nearness; without it distance alone counts.
         by_pixel: bool = true;
     }
 }
@@ -95,7 +95,7 @@ impl LevelOfDetail {
     pub fn level_from(&self, distance: f32, nearest: f32, follow_strands: u32) -> DetailLevel {
         let share = self.full_distance / distance.max(self.full_distance);
         let nearness = CLOSE * self.full_distance / nearest.max(f32::MIN_POSITIVE);
-        let more = nearness.sqrt().clamp(1.0, self.most_segments);
+        let more = nearness.sqrt().min(self.most_segments).max(1.0);
         let follow_strands = follow_strands.max(1) as f32;
         let drawn = share.max(self.least_strands);
         let left_out = if follow_strands > 1.0 { 0.0 } else { EIGHT - (EIGHT * drawn).max(1.0) };
@@ -288,6 +288,7 @@ mod tests {
         assert!(LevelOfDetail::default().validate().is_ok());
         assert!(LevelOfDetail { segments_per_span: 0, ..Default::default() }.validate().is_err());
         assert!(LevelOfDetail { full_distance: f32::NAN, ..Default::default() }.validate().is_err());
+        assert!(LevelOfDetail { most_segments: f32::NAN, ..Default::default() }.validate().is_err());
         assert!(LevelOfDetail { least_strands: 1.5, ..Default::default() }.validate().is_err());
     }
 }

@@ -26,7 +26,7 @@ pub struct Hair {
     pub lights: Vec<Light>,
     /// Colour of the body.
     pub body_look: BodyLook,
-    /// How detail falls with distance.
+    /// How detail follows distance and the size of a pixel.
     pub level_of_detail: LevelOfDetail,
 }
 

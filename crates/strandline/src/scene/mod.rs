@@ -58,8 +58,8 @@ settings! {
         look: Look = Look::default();
         /// Colour of the drawn body.
         body_look: BodyLook = BodyLook::default();
-        /// How detail falls with distance. Without a groom file the default of `segments_per_span` is that
-        /// of the style.
+        /// How detail follows distance and the size of a pixel. Without a groom file the default of
+        /// `segments_per_span` is that of the style.
         level_of_detail: LevelOfDetail = LevelOfDetail::default();
         /// Where the picture is taken from.
         camera: CameraSection = CameraSection::default();
