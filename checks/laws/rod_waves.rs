@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, TAU};
 use glam::{Vec3, vec3};
 use strandline_body::Pose;
 use strandline_checks::{Rig, law};
-use strandline_sim::{Drive, Model, Settings, State, VolumeSettings};
+use strandline_sim::{Drive, MOST_SPIN, Model, Settings, State, VolumeSettings};
 
 use crate::rod_mechanics::{model, rods};
 use crate::strands::{first, line, one_strand};
@@ -53,6 +53,28 @@ law! {
         // It moved its sections only.
         let aside = first(rig.state()).iter().zip(first(&rest)).map(|(now, rest)| now.distance(rest)).fold(0.0, f32::max);
         assert!(aside < 1e-6, "{aside} m aside");
+    }
+}
+
+law! {
+    fn no_section_spins_faster_than_a_file_holds(on) {
+        let mut settings = Settings { gravity: Vec3::ZERO, ..rods(1e-3) };
+        let material = &mut settings.strands.rods;
+        // As soft and heavy as the shaft above: what spins goes on.
+        (material.damping, material.substeps) = (0.0, 1);
+        (material.shear_modulus, material.density) = (Some(1e-3), 20_000.0);
+        settings.time_step = 1e-5;
+        let points = line(Vec3::NEG_X * 0.003, Vec3::X * 0.1, 33);
+        let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |point| point < 2, Vec::new()));
+        let fastest = |state: &State| state.spins.iter().map(|lanes| lanes.0[0].abs()).fold(0.0, f32::max);
+        rig.change(|state| (8..33).for_each(|segment| state.spins[segment].0[0] = 50.0 * MOST_SPIN));
+        let report = rig.step(&Drive::default());
+        assert_eq!((report.non_finite, fastest(rig.state())), (0, MOST_SPIN));
+        // A tenth of it is nothing to hold back.
+        rig.change(|state| (8..33).for_each(|segment| state.spins[segment].0[0] = 0.1 * MOST_SPIN));
+        rig.step(&Drive::default());
+        let now = fastest(rig.state());
+        assert!((0.05..0.11).contains(&(now / MOST_SPIN)), "{now}");
     }
 }
 

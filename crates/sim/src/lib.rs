@@ -42,7 +42,7 @@ pub use model::Model;
 pub use report::{Drift, PressureReport, RodReport, StepReport};
 pub use settings::{Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeSettings};
 pub use simulator::Simulator;
-pub use state::{Drive, State};
+pub use state::{Drive, MOST_SPIN, State};
 pub use step::Stage;
 pub use strandline_gpu::Backend;
 

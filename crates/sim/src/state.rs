@@ -37,6 +37,10 @@ impl Drive {
     }
 }
 
+/// Most that a section of a rod spins \[rad/s\]: more than a hair can, and its turn in a step is still exact to
+/// hundredths of a radian.
+pub const MOST_SPIN: f32 = 1e6;
+
 /// All that changes with time.
 #[derive(Clone, Debug)]
 pub struct State {
@@ -53,7 +57,8 @@ pub struct State {
     /// First axis of the section of each segment of a rod, world space, shape `[block][point]` of
     /// lanes; empty without rods.
     pub sections: Vec<Vec3Lanes>,
-    /// How fast each section turns beside its segment \[rad/s\], shape as above.
+    /// How fast each section turns beside its segment \[rad/s\], shape as above; a step leaves no more than
+    /// [`MOST_SPIN`].
     pub spins: Vec<Lanes>,
     /// Pose of the head now.
     pub world_from_head: Pose,

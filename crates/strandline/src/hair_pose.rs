@@ -15,7 +15,7 @@ use crate::{
     Error,
     body::Pose,
     groom::{LANES, Vec3Lanes},
-    sim::State,
+    sim::{MOST_SPIN, State},
 };
 
 /// Where guides are, how they move, and where the head is.
@@ -42,7 +42,7 @@ pub(crate) struct HairPose {
 
 /// Room for the names and shapes in a file \[byte\]; ours take some 200.
 const HEADER: u64 = 65_536;
-/// Farther than this \[m\], or faster \[m/s\], is no hair.
+/// Farther than this \[m\], or faster \[m/s\], is no hair. Its sections spin faster: no more than [`MOST_SPIN`].
 const MOST: f32 = 1e4;
 
 impl HairPose {
@@ -210,8 +210,9 @@ fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Vec<f32
 }
 
 fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
-    match numbers.iter().find(|number| !(number.abs() <= MOST)) {
-        Some(number) => Err(format!("{name} hold {number}, expected no more than {MOST}")),
+    let most = if name == "spins" { MOST_SPIN } else { MOST };
+    match numbers.iter().find(|number| !(number.abs() <= most)) {
+        Some(number) => Err(format!("{name} hold {number}, expected no more than {most}")),
         None => Ok(()),
     }
 }
@@ -302,6 +303,12 @@ mod tests {
         // The last number is one of the last tensor in the file.
         wild[end - 4..].copy_from_slice(&f32::NAN.to_le_bytes());
         assert!(refused(&wild, SHAPE).contains("hold NaN"));
+        let count = SHAPE[0] * SHAPE[1];
+        let spun = |spin| HairPose { sections: vec![Vec3::X; count], spins: vec![spin; count], ..pose() };
+        // What the simulation can come to can be kept.
+        let fast = spun(MOST_SPIN);
+        assert_eq!(HairPose::parse(&fast.to_bytes().unwrap(), SHAPE).unwrap(), fast);
+        assert!(spun(2.0 * MOST_SPIN).to_bytes().unwrap_err().to_string().contains("spins hold 2000000"));
         let unheard = HairPose { velocities: vec![Vec3::splat(1e9); 55], ..pose() };
         assert!(unheard.to_bytes().unwrap_err().to_string().contains("velocities hold 1000000000"));
         let squeezed = Pose { rotation: Quat::from_xyzw(0.0, 0.0, 0.0, 0.5), ..Pose::IDENTITY };

@@ -97,7 +97,12 @@ impl Person {
                 }
                 LiveEvent::NotLoaded(_, error) => assert!(error.contains("bad.hair"), "{error}"),
                 LiveEvent::Error(error) if error.contains("save again") => self.saved += 1,
-                LiveEvent::Error(_) => self.errors += 1,
+                LiveEvent::Error(error) => {
+                    // Of all that it does only settings outside their ranges may be refused.
+                    assert!(error.contains(", expected "), "{error}");
+                    assert!(!error.contains("cannot"), "{error}");
+                    self.errors += 1;
+                }
                 LiveEvent::Saved(_) => self.saved += 1,
                 LiveEvent::Paused => panic!("it stopped by itself"),
                 LiveEvent::Note(_) | LiveEvent::Recorded => {}

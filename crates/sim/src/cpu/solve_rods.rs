@@ -17,7 +17,7 @@ use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::{Node, Solved, StepSettings};
 use crate::strands::rods::settings::RodSettings;
 use crate::strands::rods::workspace::{Carry, Workspace};
-use crate::{Model, RodReport, State};
+use crate::{MOST_SPIN, Model, RodReport, State};
 
 /// Rounds of the projection onto lengths.
 const LENGTH_ROUNDS: u32 = 2;
@@ -263,6 +263,7 @@ impl Strands<'_> {
         let last = self.nodes.len() - 1;
         let per_step = f32x8::of(1.0 / self.parts.time_step);
         let step = f32x8::of(self.parts.time_step);
+        let most_spin = f32x8::splat(MOST_SPIN);
         let (mut largest, mut change, mut nothing) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
         let (mut size, mut turn, mut turn_change) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
         for point in 0..=last {
@@ -277,7 +278,8 @@ impl Strands<'_> {
             change = change.fast_max(other.dot(other));
             size = size.fast_max(space.points[point].dot(space.points[point]));
             // 0 for finite numbers, else not a number.
-            nothing += (square + space.velocities[point].dot(space.velocities[point])) * f32x8::ZERO;
+            let speed = space.velocities[point].dot(space.velocities[point]);
+            nothing += (square + speed + angle) * f32x8::ZERO;
         }
         let bad = nothing.is_nan();
         space.bad |= bad;
@@ -303,7 +305,8 @@ impl Strands<'_> {
             space.velocities[point] = velocity + Vector::new(none, none, none);
             space.points[point] = Vector::choose(moves, space.carried[point], space.points[point]);
             let [.., angle] = space.work.moved[point];
-            space.spins[point] = moves.choose(angle * per_step, f32x8::ZERO);
+            let spin = (angle * per_step).fast_min(most_spin).fast_max(-most_spin);
+            space.spins[point] = moves.choose(spin, f32x8::ZERO);
             if point < last {
                 let section = space.work.segments[point].across;
                 space.sections[point] = Vector::choose(moves, section, space.sections[point]);
