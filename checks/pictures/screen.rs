@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline_body::{Mesh, Pose};
 use strandline_render::cpu::skin::Skin;
-use strandline_render::cpu::{Draw, DrawInput, Occlusion, Samples, Shadows, Strands};
+use strandline_render::cpu::{Draw, DrawInput, Occlusion, Radiances, Samples, Shadows, Strands};
 use strandline_render::{BodyLook, Camera, Environment};
 
 /// Distance \[m\] of the plane z = 0 from the camera.
@@ -41,6 +41,7 @@ impl Screen {
         samples.resize(side, side);
         let input = DrawInput {
             strands,
+            light: Radiances::Known(strands),
             camera: &Self::camera(),
             background: None,
             supersampling: self.supersampling,

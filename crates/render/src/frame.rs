@@ -13,12 +13,16 @@ use strandline_groom::Guides;
 use crate::cpu::scalp::root_densities;
 use crate::cpu::skin::Skin;
 use crate::cpu::{
-    Curves, Draw, DrawInput, Lit, Occlusion, Resolve, Samples, Scattering, Shadows, Strands, interpolate,
-    keep_outside, layer_colors, opacity_depth, opacity_layers, shade, tessellate,
+    Curves, Draw, DrawInput, Found, Lit, Occlusion, Radiances, Resolve, Samples, Scattering, Scheuermann,
+    Seen, Shading, Shadows, Strands, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers,
+    tessellate,
 };
 use crate::fibre::FibreModel;
 use crate::lights::{at_samples, first_sample};
-use crate::{Layers, Picture, PictureSettings, RenderError};
+use crate::{DetailLevel, Layers, Picture, PictureSettings, RenderError};
+
+/// Wall-clock seconds of each stage.
+type Seconds = Vec<(&'static str, f64)>;
 
 /// What a picture cost.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,6 +51,7 @@ pub struct Renderer {
     shadows: Shadows,
     occlusion: Occlusion,
     scattering: Scattering,
+    found: Found,
     layers_of: Option<usize>,
     /// Mean of the guides' colours.
     own_color: Option<Vec3>,
@@ -75,6 +80,7 @@ impl Renderer {
             shadows: Shadows::default(),
             occlusion: Occlusion::default(),
             scattering: Scattering::default(),
+            found: Found::default(),
             layers_of: None,
             own_color: mean_color(guides),
             samples: Samples::default(),
@@ -150,36 +156,33 @@ impl Renderer {
         let input = &FrameInput { lights: &lights, ..*input };
         let middle = input.world_from_head.point(middle(self.bounds));
         let level = input.level(self.bounds, self.settings.height, &self.guides);
-        let (guides, pose, own_color) = (&self.guides, &input.world_from_head, self.own_color);
         // It counts the places of the lights itself.
-        given.check_memory(guides.strand_count(), guides.points_per_strand(), &level, &self.settings)?;
-        let Self { solids, curves, strands, shadows, occlusion, scattering, draw, samples, settings, .. } =
-            self;
+        let (strand_count, points) = (self.guides.strand_count(), self.guides.points_per_strand());
+        given.check_memory(strand_count, points, &level, &self.settings)?;
         let mut times = Vec::new();
         let seconds = &mut times;
-        timed(seconds, "tessellate", || tessellate(input.positions, guides, pose, &level, curves));
-        timed(seconds, "interpolate", || {
-            interpolate(curves, guides, pose, input.look, &level, strands);
-            keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(*pose));
-        });
-        timed(seconds, "opacity_depth", || {
-            draw.place_body(*pose);
-            let (body, shadow) = (draw.shadow_body(), &input.look.hair_shadow());
-            opacity_depth(strands, body, input.lights, middle, shadow, shadows);
-        });
-        timed(seconds, "opacity_layers", || opacity_layers(strands, shadows));
+        self.lay_strands(input, &level, middle, seconds);
+        let own_color = self.own_color;
+        let Self { strands, shadows, occlusion, scattering, found, draw, samples, settings, .. } = self;
         occlusion.set_middle(middle);
         let (lights, look, eye) = (input.lights, input.look, input.camera.position);
+        let map = layers_of.and_then(|light| shadows.map(light));
+        let layered = map.map(|map| layer_colors(strands, map)).is_some();
+        let (strands, shadows) = (&*strands, &*shadows);
+        let lit = Lit { lights, shadows, body: None, look, own_color, eye };
         timed(seconds, "shade", || {
             let body = draw.shadow_body().map(|body| (body, input.body_look.color));
-            let lit = Lit { lights, shadows, body, look, own_color, eye };
-            shade_by_model(strands, &lit, occlusion, scattering);
-            if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
-                layer_colors(strands, map);
-            }
+            prepare_light(strands, &Lit { body, ..lit }, occlusion, scattering);
+            found.begin(strands);
         });
+        let shading = shading(strands, &lit, occlusion, scattering);
+        let light = match shading.as_deref() {
+            Some(shading) if !layered => Radiances::Seen(Seen::new(strands, found, shading)),
+            _ => Radiances::Known(strands),
+        };
         let draw_input = DrawInput {
             strands,
+            light,
             camera: input.camera,
             background: (!settings.transparent).then_some(settings.background),
             supersampling: settings.supersampling,
@@ -195,9 +198,26 @@ impl Renderer {
             eye,
         };
         timed(seconds, "draw", || draw.draw(&draw_input, &skin, samples));
-        let count = level.drawn_strands(guides.strand_count());
+        let count = level.drawn_strands(strand_count);
         let segments = count * (strands.points_per_strand - 1);
         Ok(FrameReport { strands: count, segments, seconds: times, layers: None })
+    }
+
+    /// Finds all drawn strands, and what every light sees of them; `middle` is the middle of their box \[m\].
+    fn lay_strands(&mut self, input: &FrameInput, level: &DetailLevel, middle: Vec3, seconds: &mut Seconds) {
+        let Self { guides, solids, curves, strands, shadows, draw, .. } = self;
+        let pose = &input.world_from_head;
+        timed(seconds, "tessellate", || tessellate(input.positions, guides, pose, level, curves));
+        timed(seconds, "interpolate", || {
+            interpolate(curves, guides, pose, input.look, level, strands);
+            keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(*pose));
+        });
+        timed(seconds, "opacity_depth", || {
+            draw.place_body(*pose);
+            let (body, shadow) = (draw.shadow_body(), &input.look.hair_shadow());
+            opacity_depth(strands, body, input.lights, middle, shadow, shadows);
+        });
+        timed(seconds, "opacity_layers", || opacity_layers(strands, shadows));
     }
 
     /// Colours hair by the layer of a light's opacity map in which it lies instead of lighting it, from the
@@ -226,11 +246,27 @@ impl Renderer {
     }
 }
 
-/// Light at every point of the hair, by the model of its fibre.
-fn shade_by_model(strands: &mut Strands, lit: &Lit, occlusion: &mut Occlusion, scattering: &mut Scattering) {
+/// What the light of every point needs of all the others, by the model of its fibre.
+fn prepare_light(strands: &Strands, lit: &Lit, occlusion: &mut Occlusion, scattering: &mut Scattering) {
     match lit.look.fibre.model {
-        FibreModel::Scheuermann => shade(strands, lit.shadows, lit.lights, lit.look, lit.eye, occlusion),
-        FibreModel::Chiang => scattering.shade(strands, lit, occlusion),
+        FibreModel::Scheuermann => occlusion.fill(strands, &lit.look.shadow),
+        FibreModel::Chiang => scattering.prepare(strands, lit, occlusion),
+    }
+}
+
+/// How the light of a point is found then.
+fn shading<'a>(
+    strands: &'a Strands,
+    lit: &'a Lit,
+    occlusion: &'a Occlusion,
+    scattering: &'a Scattering,
+) -> Option<Box<dyn Shading + 'a>> {
+    let Lit { shadows, lights, look, eye, .. } = *lit;
+    match look.fibre.model {
+        FibreModel::Scheuermann => {
+            Some(Box::new(Scheuermann::new(strands, shadows, lights, look, eye, occlusion)))
+        }
+        FibreModel::Chiang => Some(Box::new(scattering.shading(strands, lit, occlusion)?)),
     }
 }
 

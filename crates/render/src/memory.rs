@@ -13,9 +13,9 @@ pub const MAX_LIGHTS: usize = 64;
 
 /// Points left to segments that are cut by the near plane.
 const CUT_POINTS: u64 = 1 << 22;
-/// Bytes of a drawn point: position, tangent, width and radiance; its place on the screen; its segment,
-/// sorted and listed in tiles.
-const POINT_BYTES: u64 = 40 + 16 + 80;
+/// Bytes of a drawn point: position, tangent, width, radiance, and that with those beside it; its place on the screen;
+/// its segment, sorted and listed in tiles.
+const POINT_BYTES: u64 = 60 + 16 + 80;
 /// Bytes of a guide's point: the smooth curve with its frame.
 const CURVE_BYTES: u64 = 36;
 /// Bytes of a shadow map's texel: layers and the body's depth, and the sums and depths that each of the threads fills.

@@ -8,6 +8,7 @@ use super::ShadowBody;
 use super::body::{Body, Occluders};
 use super::coverage::{End, Joint, OPAQUE, TileSamples};
 use super::projection::Projection;
+use super::radiances::Radiances;
 use super::ribbons::{Ribbons, Segment};
 use super::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
 use super::skin::Skin;
@@ -25,8 +26,10 @@ const BATCH: usize = 48;
 /// What is drawn.
 #[derive(Clone, Copy)]
 pub struct DrawInput<'a> {
-    /// The hair, lit.
+    /// The hair.
     pub strands: &'a Strands,
+    /// Its light.
+    pub light: Radiances<'a>,
     /// The camera.
     pub camera: &'a Camera,
     /// What is behind everything; `None` leaves it transparent.
@@ -107,7 +110,7 @@ impl Draw {
                 let corner = Vec2::new((tile % columns * TILE) as f32, (tile / columns * TILE) as f32);
                 let bare = triangles.iter().all(|&triangle| triangle == NO_TRIANGLE);
                 let hair = TileSamples { colors, depths: (!bare).then_some(depths) };
-                self.hair(tile, corner, input.strands, hair);
+                self.hair(tile, corner, &input.light, hair);
                 if let Some(body) = &self.body
                     && !bare
                 {
@@ -121,7 +124,7 @@ impl Draw {
     }
 
     /// The segments of one tile, nearest first.
-    fn hair(&self, tile: usize, corner: Vec2, strands: &Strands, mut samples: TileSamples) {
+    fn hair(&self, tile: usize, corner: Vec2, light: &Radiances, mut samples: TileSamples) {
         let corner = corner.extend(0.0).extend(0.0);
         let mut opaque = 0_u16;
         let mut batch = [Fetched::default(); BATCH];
@@ -132,15 +135,18 @@ impl Draw {
             let mut count = 0;
             for (fetched, segment) in batch.iter_mut().zip(&mut things) {
                 let [first, last] = self.ribbons.ends(segment);
-                let radiances = self.ribbons.radiances(segment, strands);
+                let radiances = self.ribbons.radiances(segment, |point| light.known_pair(point));
                 *fetched = Fetched { segment, ends: [first - corner, last - corner], radiances };
                 count += 1;
             }
             for fetched in &batch[..count] {
-                if blocks(reach(fetched.ends)) & !opaque != 0
-                    && fetched.radiances.iter().all(|radiance| radiance.is_finite())
-                {
-                    let [first, last] = fetched.ends(&self.ribbons);
+                if blocks(reach(fetched.ends)) & !opaque == 0 {
+                    continue;
+                }
+                let found = || self.ribbons.radiances(fetched.segment, |point| Some(light.pair(point)));
+                let Some(radiances) = fetched.radiances.or_else(found) else { continue };
+                if radiances.iter().all(|radiance| radiance.is_finite()) {
+                    let [first, last] = fetched.ends(&self.ribbons, radiances);
                     samples.add(&first, &last, fetched.segment.is(Segment::ALONG_Y));
                 }
             }
@@ -157,11 +163,12 @@ impl Draw {
 struct Fetched {
     segment: Segment,
     ends: [Vec4; 2],
-    radiances: [Vec3; 2],
+    /// None where nobody asked for it yet.
+    radiances: Option<[Vec3; 2]>,
 }
 
 impl Fetched {
-    fn ends(&self, ribbons: &Ribbons) -> [End; 2] {
+    fn ends(&self, ribbons: &Ribbons, radiances: [Vec3; 2]) -> [End; 2] {
         let segment = self.segment;
         let joint = |end: u32, turns: u32, point: usize| {
             if segment.is(end) {
@@ -177,11 +184,7 @@ impl Fetched {
             joint(Segment::FIRST_IS_END, Segment::FIRST_TURNS, point),
             joint(Segment::LAST_IS_END, Segment::LAST_TURNS, point + 1),
         ];
-        [0, 1].map(|end| End {
-            point: self.ends[end],
-            color: self.radiances[end].extend(1.0),
-            joint: joints[end],
-        })
+        [0, 1].map(|end| End { point: self.ends[end], color: radiances[end].extend(1.0), joint: joints[end] })
     }
 }
 

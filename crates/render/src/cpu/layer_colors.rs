@@ -16,6 +16,7 @@ pub const LAYER_COLORS: [Vec3; 4] = [
 
 /// Replaces the radiances of all strands by the colour of their layer in a light's map.
 pub fn layer_colors(strands: &mut Strands, map: &ShadowMap) {
+    strands.radiances.resize(strands.positions.len(), Vec3::ZERO);
     strands
         .radiances
         .par_iter_mut()

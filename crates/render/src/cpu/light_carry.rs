@@ -26,6 +26,8 @@ type Block = [[Vec4; BLOCK]; DIRECTIONS];
 pub(super) struct Carried {
     /// The slot of each cell.
     slots: Vec<u32>,
+    /// Whether each row of cells holds something, shape `[layer][row]`.
+    holds: Vec<bool>,
     /// What hair of each slot shows (between `scatter` and `carry`) or mean radiance within it (behind `carry`).
     rays: Vec<Block>,
     /// What it shows of straight light.
@@ -73,6 +75,8 @@ impl Carried {
         self.slots.clear();
         self.slots.resize(grid.cell_count(), NONE);
         cells.iter().enumerate().for_each(|(slot, cell)| self.slots[cell.index] = slot as u32);
+        self.holds.clear();
+        self.holds.extend(self.slots.chunks(grid.counts[0]).map(|row| row.iter().any(|slot| *slot != NONE)));
         let blocks = cells.len().div_ceil(BLOCK);
         let empty = || [[Vec4::ZERO; BLOCK]; DIRECTIONS];
         self.rays.resize_with(blocks, empty);
@@ -100,7 +104,7 @@ impl Carried {
 
     /// Carries light along every direction through what the cells hold.
     pub(super) fn carry(&mut self, grid: &GridBox, around: &Field) {
-        let Self { slots, rays, skins, ways, .. } = self;
+        let Self { slots, holds, rays, skins, ways, .. } = self;
         let mut parts: Vec<Vec<&mut [Vec4; BLOCK]>> = (0..DIRECTIONS).map(|_| Vec::new()).collect();
         for block in rays {
             parts.iter_mut().zip(block).for_each(|(part, rays)| part.push(rays));
@@ -114,6 +118,10 @@ impl Carried {
             for z in (0..layers).map(|z| turned(z, layers, step.z)) {
                 for y in (0..rows).map(|y| turned(y, rows, step.y)) {
                     let known = inside(z - step.z, layers) && inside(y - step.y, rows);
+                    if !holds[(z * rows + y) as usize] {
+                        way.pass((z * rows + y) * columns, columns, known.then_some(back), outside);
+                        continue;
+                    }
                     for x in (0..columns).map(|x| turned(x, columns, step.x)) {
                         let index = (z * rows + y) * columns + x;
                         let arrived = if known && inside(x - step.x, columns) {
@@ -181,6 +189,29 @@ fn on_skin(skin: Vec3, rays: &Rays, scene: &Scene) -> Vec4 {
         whole += weight;
     }
     met / whole
+}
+
+impl Way {
+    /// Carries light through a row that holds nothing, of so many cells from `first` on; `back` leads from a cell to the
+    /// one behind, unless all of them lie outside the grid.
+    fn pass(&mut self, first: i32, columns: i32, back: Option<i32>, outside: Vec4) {
+        let row = first as usize..(first + columns) as usize;
+        let aside = self.step.x;
+        match back {
+            Some(back) if (self.step.y, self.step.z) != (0, 0) => {
+                let from = (first - back).max(first - back + aside);
+                let count = columns - aside.abs();
+                let to = first + aside.max(0);
+                self.leaving.copy_within(from as usize..(from + count) as usize, to as usize);
+                match aside {
+                    1 => self.leaving[row.start] = outside,
+                    -1 => self.leaving[row.end - 1] = outside,
+                    _ => {}
+                }
+            }
+            _ => self.leaving[row].fill(outside),
+        }
+    }
 }
 
 impl Crossing {

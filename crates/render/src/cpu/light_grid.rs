@@ -5,10 +5,12 @@
 //! matte surface does, once more with every round. What is found holds all light but that which comes straight from
 //! a light.
 
+use std::sync::{Arc, OnceLock};
+
 use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
-use super::lattice::Rays;
+use super::lattice::{Lattice, Rays};
 use super::light_carry::Carried;
 use super::light_field::{self, Field};
 use super::light_scene::{Cell, Scene};
@@ -29,10 +31,22 @@ pub struct LightGrid {
     /// The cells that hold something, in order.
     cells: Vec<Cell>,
     carried: Carried,
-    /// All light but the straight one; what hair of each cell's tangent shows toward the eye of it, and what the field
-    /// alone says of that.
-    found: Vec<(Field, [Vec4; 2])>,
+    toward: Option<Toward>,
+    /// Of each cell, found when a place beside it is looked at: much hair is behind other hair.
+    found: Vec<OnceLock<Found>>,
 }
+
+/// Whom light is found for, and how hair scatters it.
+#[derive(Clone, Debug)]
+struct Toward {
+    lattice: Arc<Lattice>,
+    eye: Vec3,
+    pigment: f32,
+}
+
+/// All light but the straight one in a cell; what hair of its tangent shows toward the eye of it, and what the field
+/// alone says of that.
+type Found = (Field, [Vec4; 2]);
 
 impl LightGrid {
     /// Sums hair and skin, and carries light through them.
@@ -45,7 +59,9 @@ impl LightGrid {
             self.carried.scatter(&self.cells, scene);
         }
         self.carried.carry(&self.grid, &scene.around);
-        self.gather(scene);
+        self.toward = Some(Toward { lattice: scene.lattice.clone(), eye: scene.eye, pigment: scene.pigment });
+        self.found.clear();
+        self.found.resize_with(self.grid.cell_count(), OnceLock::new);
     }
 
     /// Scattered light at a place \[m\], and by how much more of it hair shows toward the eye than the field says.
@@ -63,7 +79,7 @@ impl LightGrid {
             let side = |part: f32, upper: usize| if upper == 1 { part } else { 1.0 - part };
             let weight = side(part.x, dx) * side(part.y, dy) * side(part.z, dz);
             let cell = first + (dz * rows + dy) * columns + dx;
-            let (field, toward_eye) = &self.found[cell];
+            let (field, toward_eye) = self.found[cell].get_or_init(|| self.gather(cell));
             for (sum, field) in sum.iter_mut().zip(field) {
                 *sum += *field * weight;
             }
@@ -124,33 +140,33 @@ impl LightGrid {
         self.carried.begin(&grid, &self.cells, even, straight, skin);
     }
 
-    /// Sums what was carried into fields, and finds what hair shows toward the eye.
-    fn gather(&mut self, scene: &Scene) {
-        let (grid, cells, carried) = (self.grid, &self.cells, &self.carried);
-        self.found.resize(grid.cell_count(), Default::default());
-        self.found.par_iter_mut().enumerate().for_each(|(index, found)| {
-            let rays = carried.rays(index);
-            let mut field = Field::default();
-            for (light, (way, share)) in rays.iter().zip(scene.lattice.ways()) {
-                light_field::add(&mut field, -*way, *light * *share);
-            }
-            let cell = carried.slot(index).map(|slot| &cells[slot]).filter(|cell| cell.hair > 0.0);
-            *found =
-                (field, cell.map_or([Vec4::ZERO; 2], |cell| toward_eye(cell, &grid, &rays, &field, scene)));
-        });
+    /// Sums what was carried through a cell into a field, and finds what its hair shows toward the eye.
+    #[cold]
+    fn gather(&self, index: usize) -> Found {
+        let rays = self.carried.rays(index);
+        let mut field = Field::default();
+        let Some(toward) = &self.toward else { return Found::default() };
+        for (light, (way, share)) in rays.iter().zip(toward.lattice.ways()) {
+            light_field::add(&mut field, -*way, *light * *share);
+        }
+        let cell = self.carried.slot(index).map(|slot| &self.cells[slot]).filter(|cell| cell.hair > 0.0);
+        let middle = self.grid.middle(index);
+        (field, cell.map_or([Vec4::ZERO; 2], |cell| toward.shown(cell, middle, &rays, &field)))
     }
 }
 
-/// What a cell's hair shows toward the eye of light along every direction, and what the field alone says of that.
-fn toward_eye(cell: &Cell, grid: &GridBox, rays: &Rays, field: &Field, scene: &Scene) -> [Vec4; 2] {
-    let to_eye = (scene.eye - grid.middle(cell.index)).normalize_or(Vec3::Z);
-    let weights = scene.lattice.weights(cell.tangent, to_eye);
-    let shown = rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
-    let moments = scene.lattice.table().moments(cell.tangent.dot(to_eye), Pigments::Even(scene.pigment));
-    let u = light_field::across(cell.tangent, to_eye);
-    let known = light_field::shown(field, &moments, cell.tangent, u);
-    // Weighted with the cell's hair: empty cells have no say.
-    [shown * cell.hair, known * cell.hair]
+impl Toward {
+    /// What a cell's hair shows toward the eye of light along every direction, and what the field alone says of that.
+    fn shown(&self, cell: &Cell, middle: Vec3, rays: &Rays, field: &Field) -> [Vec4; 2] {
+        let to_eye = (self.eye - middle).normalize_or(Vec3::Z);
+        let weights = self.lattice.weights(cell.tangent, to_eye);
+        let shown = rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
+        let moments = self.lattice.table().moments(cell.tangent.dot(to_eye), Pigments::Even(self.pigment));
+        let u = light_field::across(cell.tangent, to_eye);
+        let known = light_field::shown(field, &moments, cell.tangent, u);
+        // Weighted with the cell's hair: empty cells have no say.
+        [shown * cell.hair, known * cell.hair]
+    }
 }
 
 /// What a cell's hair shows along every direction of straight light, a share of which reaches it of each light.
@@ -159,13 +175,14 @@ fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usi
     if cell.hair == 0.0 {
         return shown;
     }
-    let shows = scene.lattice.shows(cell.tangent);
+    let mut shows = None;
     let mut show = |beam: &Beam| {
         if beam.light == Vec3::ZERO {
             return;
         }
+        let shows = shows.get_or_insert_with(|| scene.lattice.shows(cell.tangent));
         let (to_light, light) = (beam.way.normalize_or(Vec3::Y), beam.light);
-        scene.lattice.add_light(cell.tangent, &shows, to_light, light * cell.order, &mut shown);
+        scene.lattice.add_light(cell.tangent, shows, to_light, light * cell.order, &mut shown);
         // Irradiance, pi times the radiance, over the whole sphere.
         let even = scene.lattice.albedo() * light.extend(0.0) * (0.25 * (1.0 - cell.order));
         shown.iter_mut().for_each(|shown| *shown += even);

@@ -1,5 +1,7 @@
 //! What scattered light is made of: what it comes from, and what lies in a cell of its grid.
 
+use std::sync::Arc;
+
 use glam::{Vec3, Vec4};
 
 use super::lattice::Lattice;
@@ -26,7 +28,7 @@ pub struct Scene<'a> {
     /// Light from all around.
     pub around: Field,
     /// The fibre's scattering among directions.
-    pub lattice: &'a Lattice,
+    pub lattice: &'a Arc<Lattice>,
     /// Where the camera stands \[m\], world space.
     pub eye: Vec3,
     /// Mean multiple of the pigment.

@@ -63,12 +63,22 @@ pub struct Ribbons {
     /// Screen points (see [`Projection`]), shape `[strand][point]`, then pairs of points for the
     /// segments cut by the near plane.
     points: Vec<Vec4>,
-    /// Radiances of the pairs.
-    cut_radiances: Vec<Vec3>,
+    /// What the pairs are parts of.
+    cuts: Vec<Cut>,
     /// Sorted front to back: key and segment.
     order: Vec<u64>,
     spare: Vec<u64>,
     runs: Vec<Run>,
+}
+
+/// A segment that the near plane cuts.
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    /// Its first point.
+    point: u32,
+    /// Where it is cut, as a share of the way to its last point, and whether what is seen lies behind that.
+    share: f32,
+    ahead: bool,
 }
 
 /// What one thread finds in a run of strands.
@@ -77,7 +87,7 @@ struct Run {
     /// Mean inverse depth \[1/m\] and segment.
     segments: Vec<(f32, Segment)>,
     cut_points: Vec<Vec4>,
-    cut_radiances: Vec<Vec3>,
+    cuts: Vec<Cut>,
     nearest: f32,
     farthest: f32,
 }
@@ -105,7 +115,7 @@ impl Ribbons {
 
     fn join(&mut self, run_count: usize) {
         self.order.clear();
-        self.cut_radiances.clear();
+        self.cuts.clear();
         let runs = &self.runs[..run_count];
         let nearest = runs.iter().fold(f32::MIN, |nearest, run| nearest.max(run.nearest));
         let farthest = runs.iter().fold(f32::MAX, |farthest, run| farthest.min(run.farthest));
@@ -120,7 +130,7 @@ impl Ribbons {
             });
             self.order.extend(keyed);
             self.points.extend_from_slice(&run.cut_points);
-            self.cut_radiances.extend_from_slice(&run.cut_radiances);
+            self.cuts.extend_from_slice(&run.cuts);
         }
     }
 
@@ -142,14 +152,21 @@ impl Ribbons {
         [self.points[point], self.points[point + 1]]
     }
 
-    /// The radiances at the two ends of a segment.
+    /// The radiances at the two ends of a segment, from those of a point and the next one.
     #[inline]
-    pub fn radiances(&self, segment: Segment, strands: &Strands) -> [Vec3; 2] {
+    pub fn radiances(
+        &self,
+        segment: Segment,
+        pair: impl FnOnce(usize) -> Option<[Vec3; 2]>,
+    ) -> Option<[Vec3; 2]> {
         let point = segment.point();
-        match point.checked_sub(strands.radiances.len()) {
-            None => [strands.radiances[point], strands.radiances[point + 1]],
-            Some(cut) => [self.cut_radiances[cut], self.cut_radiances[cut + 1]],
-        }
+        let Some(cut) = point.checked_sub(self.points.len() - 2 * self.cuts.len()) else {
+            return pair(point);
+        };
+        let Cut { point, share, ahead } = self.cuts[cut / 2];
+        let [first, last] = pair(point as usize)?;
+        let between = first.lerp(last, share);
+        Some(if ahead { [between, last] } else { [first, between] })
     }
 
     /// The direction across the line that divides two segments at a joint, root to tip.
@@ -183,7 +200,7 @@ impl Run {
     ) {
         self.segments.clear();
         self.cut_points.clear();
-        self.cut_radiances.clear();
+        self.cuts.clear();
         self.nearest = f32::MIN;
         self.farthest = f32::MAX;
         let positions = &strands.positions[first..first + points.len()];
@@ -241,18 +258,17 @@ impl Run {
             }
             let widths = [strands.widths[first], strands.widths[last]];
             let (share, screen) = projection.near_crossing(ends[0], ends[1], widths);
-            let radiance = strands.radiances[first].lerp(strands.radiances[last], share);
-            let (points, radiances, end) = if near_first {
-                ([screen, pair[1]], [radiance, strands.radiances[last]], Segment::FIRST_IS_END)
+            let (points, end) = if near_first {
+                ([screen, pair[1]], Segment::FIRST_IS_END)
             } else {
-                ([pair[0], screen], [strands.radiances[first], radiance], Segment::LAST_IS_END)
+                ([pair[0], screen], Segment::LAST_IS_END)
             };
             let along_y = is_longer_in_y(points[0], points[1], 1.0);
             let axis = if along_y { Segment::ALONG_Y } else { 0 };
             let point = self.cut_points.len() as u32;
             self.push(0.5 * (points[0].z + points[1].z), point | axis | end | Segment::CUT);
             self.cut_points.extend(points);
-            self.cut_radiances.extend(radiances);
+            self.cuts.push(Cut { point: first as u32, share, ahead: near_first });
         }
     }
 

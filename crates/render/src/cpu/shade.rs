@@ -1,7 +1,6 @@
 //! `shade`: light from every point of the hair toward the camera [Chen2011 §3.4].
 
 use glam::Vec3;
-use strandline_base::par::prelude::*;
 use strandline_base::random::{HashStream, hash_pair, unit};
 use strandline_base::vec3x8::Vec3x8;
 use strandline_groom::{LANES, Vec3Lanes};
@@ -9,9 +8,9 @@ use wide::f32x8;
 
 use super::fast_math::exp_lanes;
 use super::occlusion::{Occlusion, mean_radiance, toward};
+use super::radiances::{Shading, fill_all};
 use super::{Shadows, Strands};
 use crate::fibre::scheuermann::Lobes;
-use crate::level_of_detail::is_drawn;
 use crate::lights::Shining;
 use crate::{Environment, Light, LightKind, Look};
 
@@ -27,34 +26,9 @@ pub fn shade(
     occlusion: &mut Occlusion,
 ) {
     occlusion.fill(strands, &look.shadow);
-    let count = strands.points_per_strand;
-    let (per_guide, left_out) = (strands.strands_per_guide, strands.left_out);
-    let shared = Shared::new(shadows, lights, look, eye, occlusion);
-    let colors = &strands.colors;
-    strands
-        .radiances
-        .par_chunks_mut(count * per_guide)
-        .zip_eq(strands.positions.par_chunks(count * per_guide))
-        .zip_eq(strands.tangents.par_chunks(count * per_guide))
-        .enumerate()
-        .filter(|(guide, _)| is_drawn(*guide, left_out))
-        .for_each(|(guide, ((radiances, positions), tangents))| {
-            let own = colors.get(guide * count..(guide + 1) * count).filter(|own| !own.is_empty());
-            let places = positions.chunks(count).zip(tangents.chunks(count));
-            for (index, (radiances, (positions, tangents))) in
-                radiances.chunks_mut(count).zip(places).enumerate()
-            {
-                let color = StrandColor::new(look, guide as u32, index as u32);
-                for first in (0..count).step_by(LANES) {
-                    let points = Points::load(positions, tangents, first, &color, own);
-                    let radiance = shared.radiance(&points);
-                    let lanes = (count - first).min(LANES);
-                    for (lane, slot) in radiances[first..first + lanes].iter_mut().enumerate() {
-                        *slot = radiance.get(lane);
-                    }
-                }
-            }
-        });
+    let mut radiances = std::mem::take(&mut strands.radiances);
+    fill_all(strands, &Scheuermann::new(strands, shadows, lights, look, eye, occlusion), &mut radiances);
+    strands.radiances = radiances;
 }
 
 /// Noise nodes along a strand.
@@ -161,8 +135,10 @@ enum Source<'a> {
     Near(Shining<'a>),
 }
 
-/// What all strands have in common.
-struct Shared<'a> {
+/// Shading of strands by \[Scheuermann2004\], and what they have in common.
+pub(crate) struct Scheuermann<'a> {
+    strands: &'a Strands,
+    look: &'a Look,
     shadows: &'a Shadows,
     sources: Vec<Source<'a>>,
     environment: Environment,
@@ -172,11 +148,27 @@ struct Shared<'a> {
     log_transmission: f32,
 }
 
-impl<'a> Shared<'a> {
-    fn new(
+impl Shading for Scheuermann<'_> {
+    fn fill(&self, strand: usize, first: usize, radiances: &mut [Vec3]) {
+        let Strands { positions, tangents, colors, points_per_strand: count, .. } = self.strands;
+        let (guide, index) =
+            (strand / self.strands.strands_per_guide, strand % self.strands.strands_per_guide);
+        let color = StrandColor::new(self.look, guide as u32, index as u32);
+        let own = colors.get(guide * count..(guide + 1) * count).filter(|own| !own.is_empty());
+        let of_strand = strand * count..(strand + 1) * count;
+        let (positions, tangents) = (&positions[of_strand.clone()], &tangents[of_strand]);
+        let radiance = self.radiance(&Points::load(positions, tangents, first, &color, own));
+        radiances.iter_mut().enumerate().for_each(|(lane, slot)| *slot = radiance.get(lane));
+    }
+}
+
+impl<'a> Scheuermann<'a> {
+    /// Of strands and of `occlusion` that was filled from them.
+    pub(crate) fn new(
+        strands: &'a Strands,
         shadows: &'a Shadows,
         lights: &'a [Light],
-        look: &Look,
+        look: &'a Look,
         eye: Vec3,
         occlusion: &'a Occlusion,
     ) -> Self {
@@ -188,6 +180,8 @@ impl<'a> Shared<'a> {
             _ => Source::Near(light.shining()),
         });
         Self {
+            strands,
+            look,
             shadows,
             sources: sources.collect(),
             environment: look.gradient(),

@@ -1,5 +1,7 @@
 //! `shade` with the fibre of \[Chiang2016\]: straight light from every light, and what hair and skin scatter.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 use strandline_base::math;
 use strandline_base::par::prelude::*;
@@ -10,10 +12,11 @@ use super::light_field;
 use super::light_grid::LightGrid;
 use super::light_scene::Scene;
 use super::occlusion::{Occlusion, toward};
+use super::radiances::{Shading, fill_all};
 use super::{ShadowBody, Shadows, Strands};
 use crate::fibre::chiang::{INK, Pigments, Seen, Table, WHITE};
 use crate::fibre::{Chiang, Pigment};
-use crate::level_of_detail::is_drawn;
+use crate::lights::Shining;
 use crate::{Light, Look};
 
 /// Noise nodes along a strand.
@@ -48,7 +51,7 @@ impl Source {
 pub(crate) struct Made {
     pub(crate) from: Source,
     pub(crate) table: Table,
-    pub(crate) lattice: Lattice,
+    pub(crate) lattice: Arc<Lattice>,
 }
 
 impl Made {
@@ -59,7 +62,7 @@ impl Made {
             None => fibre.absorption(Vec3::ZERO),
         };
         let of_table = if from.color.is_some() { [INK; 3] } else { mean };
-        let lattice = Lattice::new(&lobes, mean, from.pigment);
+        let lattice = Arc::new(Lattice::new(&lobes, mean, from.pigment));
         Self { from, table: Table::new(&lobes, of_table), lattice }
     }
 }
@@ -98,6 +101,16 @@ impl Scattering {
 
     /// Fills the radiances of all strands \[linear RGB\]; `occlusion` is filled here from the strands.
     pub fn shade(&mut self, strands: &mut Strands, lit: &Lit, occlusion: &mut Occlusion) {
+        self.prepare(strands, lit, occlusion);
+        let mut radiances = std::mem::take(&mut strands.radiances);
+        if let Some(shading) = self.shading(strands, lit, occlusion) {
+            fill_all(strands, &shading, &mut radiances);
+        }
+        strands.radiances = radiances;
+    }
+
+    /// Finds what reaches every point and what is scattered; `occlusion` is filled here from the strands.
+    pub(crate) fn prepare(&mut self, strands: &Strands, lit: &Lit, occlusion: &mut Occlusion) {
         let look = lit.look;
         if lit.lights.iter().all(|light| light.shadow) {
             // Nothing else asks how much of the surroundings hair hides: the grid alone is taken.
@@ -109,7 +122,7 @@ impl Scattering {
         if self.made.as_ref().is_none_or(|made| made.from != source) {
             self.made = Some(Made::new(source));
         }
-        let Some(Made { table, lattice, .. }) = &self.made else { return };
+        let Some(Made { lattice, .. }) = &self.made else { return };
         reach(strands, lit, &mut self.reached);
         self.grid.fill(&Scene {
             strands,
@@ -124,7 +137,18 @@ impl Scattering {
             pigment: source.pigment,
             rounds: look.fibre.chiang.scatterings,
         });
-        radiances(strands, lit, table, &self.reached, &self.grid, occlusion);
+    }
+
+    /// How the light of points is found, of what it was prepared for; none before that.
+    pub(crate) fn shading<'a>(
+        &'a self,
+        strands: &'a Strands,
+        lit: &'a Lit,
+        occlusion: &'a Occlusion,
+    ) -> Option<ChiangShading<'a>> {
+        let Made { table, .. } = self.made.as_ref()?;
+        let lights = lit.lights.iter().map(Light::shining).zip(&self.reached).collect();
+        Some(ChiangShading { strands, lit, table, lights, grid: &self.grid, occlusion })
     }
 }
 
@@ -199,52 +223,58 @@ impl<'a> Strand<'a> {
     }
 }
 
-fn radiances(
-    strands: &mut Strands,
-    lit: &Lit,
-    table: &Table,
-    reached: &[Vec<f32>],
-    grid: &LightGrid,
-    occlusion: &Occlusion,
-) {
-    let (count, per_guide) = (strands.points_per_strand, strands.strands_per_guide);
-    let (positions, tangents, colors) = (&strands.positions, &strands.tangents, &strands.colors);
-    let left_out = strands.left_out;
-    let lights: Vec<_> = lit.lights.iter().map(Light::shining).zip(reached).collect();
-    let drawn = |(strand, _): &(usize, &mut [Vec3])| is_drawn(strand / per_guide, left_out);
-    strands.radiances.par_chunks_mut(count).enumerate().filter(drawn).for_each(|(strand, radiances)| {
-        let guide = strand / per_guide;
+/// Shading of strands by \[Chiang2016\], with what is scattered among them.
+pub(crate) struct ChiangShading<'a> {
+    strands: &'a Strands,
+    lit: &'a Lit<'a>,
+    table: &'a Table,
+    /// The lights, and the share of each that reaches every point.
+    lights: Vec<(Shining<'a>, &'a Vec<f32>)>,
+    grid: &'a LightGrid,
+    occlusion: &'a Occlusion,
+}
+
+impl Shading for ChiangShading<'_> {
+    fn fill(&self, strand: usize, first: usize, radiances: &mut [Vec3]) {
+        let Strands { colors, points_per_strand: count, strands_per_guide, .. } = self.strands;
+        let (guide, index) = (strand / strands_per_guide, strand % strands_per_guide);
         let own = colors.get(guide * count..(guide + 1) * count);
-        let own = Strand::new(lit.look, own, guide as u32, (strand % per_guide) as u32);
-        for (index, radiance) in radiances.iter_mut().enumerate() {
-            let point = strand * count + index;
-            let (place, t) = (positions[point], tangents[point]);
-            let share = index as f32 / (count - 1) as f32;
-            let (pigments, shift) = (own.pigments(index, share), own.shift(share));
-            let to_eye = (lit.eye - place).normalize_or(Vec3::Z);
-            let sine = t.dot(to_eye);
-            let u = light_field::across(t, to_eye);
-            let (field, more) = grid.field(place);
-            let seen = Seen::new(sine, pigments);
-            let moments = table.seen_moments(&seen);
-            let mut sum = (light_field::shown(&field, &moments, t, u) * more).truncate();
-            for (source, reached) in &lights {
-                let known = reached.get(point);
-                // Most hair lies in shadow.
-                if known.is_some_and(|share| *share <= LEAST_SHARE) {
-                    continue;
-                }
-                let from = source.at(place);
-                let share = known.copied().unwrap_or_else(|| toward(&occlusion.cube(place), from.to_light));
-                if share > LEAST_SHARE {
-                    let sine_light = t.dot(from.to_light);
-                    let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();
-                    let turn = (u.dot(from.to_light) / flat).clamp(-1.0, 1.0);
-                    let shown = table.shown(&seen, sine_light, turn, shift);
-                    sum += shown * from.radiance * (share * std::f32::consts::PI);
-                }
-            }
-            *radiance = sum;
+        let own = Strand::new(self.lit.look, own, guide as u32, index as u32);
+        for (index, radiance) in (first..).zip(radiances) {
+            *radiance = self.radiance(&own, strand * count + index, index);
         }
-    });
+    }
+}
+
+impl ChiangShading<'_> {
+    /// Light of a point, which is the one of this index on its strand.
+    fn radiance(&self, own: &Strand, point: usize, index: usize) -> Vec3 {
+        let (place, t) = (self.strands.positions[point], self.strands.tangents[point]);
+        let share = index as f32 / (self.strands.points_per_strand - 1) as f32;
+        let (pigments, shift) = (own.pigments(index, share), own.shift(share));
+        let to_eye = (self.lit.eye - place).normalize_or(Vec3::Z);
+        let sine = t.dot(to_eye);
+        let u = light_field::across(t, to_eye);
+        let (field, more) = self.grid.field(place);
+        let seen = Seen::new(sine, pigments);
+        let moments = self.table.seen_moments(&seen);
+        let mut sum = (light_field::shown(&field, &moments, t, u) * more).truncate();
+        for (source, reached) in &self.lights {
+            let known = reached.get(point);
+            // Most hair lies in shadow.
+            if known.is_some_and(|share| *share <= LEAST_SHARE) {
+                continue;
+            }
+            let from = source.at(place);
+            let share = known.copied().unwrap_or_else(|| toward(&self.occlusion.cube(place), from.to_light));
+            if share > LEAST_SHARE {
+                let sine_light = t.dot(from.to_light);
+                let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();
+                let turn = (u.dot(from.to_light) / flat).clamp(-1.0, 1.0);
+                let shown = self.table.shown(&seen, sine_light, turn, shift);
+                sum += shown * from.radiance * (share * std::f32::consts::PI);
+            }
+        }
+        sum
+    }
 }

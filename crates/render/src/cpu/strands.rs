@@ -24,7 +24,7 @@ pub struct Strands {
     pub widths: Vec<f32>,
     /// Colours of the groom, linear RGB, shape `[guide][point]`; empty where it has none.
     pub colors: Vec<Vec3>,
-    /// Radiance toward the camera, linear RGB; filled by `shade`.
+    /// Radiance toward the camera, linear RGB; filled by `shade`. A renderer finds it where it is seen instead.
     pub radiances: Vec<Vec3>,
 }
 

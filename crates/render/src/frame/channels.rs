@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4};
 use super::Renderer;
 use crate::cpu::known::{body_depths, depths, nearest_strands};
 use crate::cpu::skin::Skin;
-use crate::cpu::{DrawInput, Strands, resolve_linear};
+use crate::cpu::{DrawInput, Radiances, Strands, resolve_linear};
 use crate::{BodyLook, Environment, FrameInput, Layers, PictureSettings};
 
 /// What is known of every pixel, on either backend; shape `[row][column]`.
@@ -79,6 +79,7 @@ impl Renderer {
         self.strands.radiances = numbers;
         let draw_input = DrawInput {
             strands: &self.strands,
+            light: Radiances::Known(&self.strands),
             camera: input.camera,
             background: None,
             supersampling: self.settings.supersampling,
