@@ -122,6 +122,7 @@ impl Contacts {
 pub struct Solids<'a> {
     groups: Vec<Group<'a>>,
     obstacles: Obstacles<'a>,
+    head_from_world: Pose,
     points: usize,
 }
 
@@ -152,7 +153,7 @@ impl<'a> Solids<'a> {
                 })
                 .filter(|group| !group.colliders.is_empty())
                 .collect();
-        Self { groups, obstacles: *obstacles, points }
+        Self { groups, obstacles: *obstacles, head_from_world: obstacles.end.inverse(), points }
     }
 
     /// Whether there is nothing to hit.
@@ -209,7 +210,7 @@ impl<'a> Solids<'a> {
     /// Signed distance \[m\] to the nearest solid and its unit gradient, world space, looked up again.
     pub fn nearest(&self, point: Vec3) -> (f32, Vec3) {
         self.obstacles
-            .nearest(point)
+            .nearest(point, &self.head_from_world)
             .map_or((f32::INFINITY, Vec3::Y), |(distance, gradient, _)| (distance, gradient))
     }
 }

@@ -1,9 +1,6 @@
 //! The staggered velocities: u, v and w on the faces between cells \[McAdams2009\].
 
-use glam::Vec3;
 use wide::f32x4;
-
-use super::grid::Place;
 
 /// Two numbers on the lower face of every cell, per component.
 ///
@@ -50,14 +47,17 @@ impl Faces {
 }
 
 /// What a point brings to the faces.
-#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Carried {
-    /// Where it is.
-    pub place: Place,
+    /// Its cell.
+    pub cell: u32,
+    /// Where it is in the cell \[cells\].
+    pub share: [f32; 3],
     /// Mass \[kg\].
     pub mass: f32,
     /// Velocity \[m/s\].
-    pub velocity: Vec3,
+    pub velocity: [f32; 3],
 }
 
 /// The trilinear weights of one component around a point: two faces along x in each of four rows.
@@ -72,11 +72,11 @@ impl Stencil {
     /// The weights of a point for the component along `AXIS`: faces of that axis lie on cell
     /// borders, in the other axes half a cell further [Chen2011 §4.2.2].
     #[inline]
-    pub fn new<const AXIS: usize>(place: &Place, strides: [usize; 3]) -> Self {
-        let mut base = place.cell;
+    pub fn new<const AXIS: usize>(cell: usize, share: [f32; 3], strides: [usize; 3]) -> Self {
+        let mut base = cell;
         let mut upper = [0.0; 3];
         for axis in 0..3 {
-            let share = place.share[axis];
+            let share = share[axis];
             if axis == AXIS {
                 upper[axis] = share;
             } else {
@@ -98,14 +98,18 @@ impl Stencil {
         [0, strides[1], strides[2], strides[1] + strides[2]].map(|offset| 2 * (self.base + offset))
     }
 
-    /// Adds a point's mass \[kg\] and momentum to the faces.
+    /// Adds a point's mass \[kg\] and momentum to those of its faces that a part of the component holds, which
+    /// begins at a cell `first` and consists of whole layers.
     #[inline]
-    pub fn add(&self, component: &mut [f32], strides: [usize; 3], mass: f32, velocity: f32) {
+    pub fn add(&self, component: &mut [f32], first: usize, strides: [usize; 3], mass: f32, velocity: f32) {
         let near = mass * self.along_x[0];
         let far = mass * self.along_x[1];
         let carried = f32x4::new([near * velocity, near, far * velocity, far]);
         for (start, weight) in self.row_starts(strides).into_iter().zip(self.rows) {
-            let row: &mut [f32; 4] = component[start..].first_chunk_mut().expect("the ring holds stencils");
+            // Rows before the part wrap around to far behind it.
+            let start = start.wrapping_sub(2 * first);
+            let row = component.get_mut(start..).and_then(|rest| rest.first_chunk_mut::<4>());
+            let Some(row) = row else { continue };
             *row = (f32x4::new(*row) + carried * f32x4::splat(weight)).to_array();
         }
     }

@@ -2,9 +2,11 @@
 
 use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use wide::f32x8;
 
+use super::cell_sort::NO_CELL;
 use super::faces::{Faces, Stencil};
-use super::grid::{Grid, Place};
+use super::vec3x8::Vec3x8;
 use super::volume::Volume;
 
 /// Updates the velocities of free points: `a` times (the velocity plus its change on the faces)
@@ -22,7 +24,7 @@ pub fn gather(
     velocities: &mut [Vec3Lanes],
 ) {
     let points = volume.points_per_strand;
-    let share = volume.settings.flip_share_in(time_step);
+    let (share, strides) = (volume.settings.flip_share_in(time_step), volume.grid.strides());
     velocities
         .par_chunks_mut(points)
         .zip(positions.par_chunks(points).zip(inverse_mass.par_chunks(points)))
@@ -30,13 +32,17 @@ pub fn gather(
         .enumerate()
         .for_each(|(block, (velocities, (positions, inverse_mass)))| {
             for ((velocity, position), weight) in velocities.iter_mut().zip(positions).zip(inverse_mass) {
-                let taken = |lane: &usize| volume.is_live(block, *lane) && weight.0[*lane] > 0.0;
+                let places = volume.grid.places(Vec3x8::load(position));
+                let taken = |lane: &usize| {
+                    volume.is_live(block, *lane) && weight.0[*lane] > 0.0 && places.cell[*lane] != NO_CELL
+                };
+                let places_within = places.share.map(f32x8::to_array);
                 for lane in (0..LANES).filter(taken) {
-                    let Some(place) = volume.grid.place(position.get(lane)) else { continue };
+                    let (cell, within) = (places.cell[lane] as usize, places_within.map(|axis| axis[lane]));
                     let old = velocity.get(lane);
-                    let (x, x_change) = at::<0>(&volume.grid, &volume.faces, &place);
-                    let (y, y_change) = at::<1>(&volume.grid, &volume.faces, &place);
-                    let (z, z_change) = at::<2>(&volume.grid, &volume.faces, &place);
+                    let (x, x_change) = at::<0>(&volume.faces, cell, within, strides);
+                    let (y, y_change) = at::<1>(&volume.faces, cell, within, strides);
+                    let (z, z_change) = at::<2>(&volume.faces, cell, within, strides);
                     let flip = old + glam::Vec3::new(x_change, y_change, z_change);
                     let pic = glam::Vec3::new(x, y, z);
                     velocity.set(lane, share * flip + (1.0 - share) * pic);
@@ -47,7 +53,6 @@ pub fn gather(
 
 /// Velocity and change of a component at a place.
 #[inline]
-fn at<const AXIS: usize>(grid: &Grid, faces: &Faces, place: &Place) -> (f32, f32) {
-    let strides = grid.strides();
-    Stencil::new::<AXIS>(place, strides).interpolate(&faces.components[AXIS], strides)
+fn at<const AXIS: usize>(faces: &Faces, cell: usize, within: [f32; 3], strides: [usize; 3]) -> (f32, f32) {
+    Stencil::new::<AXIS>(cell, within, strides).interpolate(&faces.components[AXIS], strides)
 }

@@ -2,6 +2,11 @@
 
 use glam::Vec3;
 use strandline_base::math;
+use strandline_groom::LANES;
+use wide::{f32x8, i32x8};
+
+use super::cell_sort::NO_CELL;
+use super::vec3x8::{Vec3x8, splat};
 
 /// Points further than this from the origin \[m\], or not finite, are left out of the volume: one
 /// stray point would stretch the cells until the hair sat in a single one.
@@ -23,13 +28,13 @@ const EDGE: f32 = 1e-6;
 /// How far outside the box a point may be by rounding \[cells\].
 const ROUNDING: f32 = 1e-3;
 
-/// Where a point lies: its cell and its place in it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// Index of the cell, `i + size.x (j + size.y k)`.
-    pub cell: usize,
-    /// Distance from the cell's lower corner \[cells\], inside 0 to 1.
-    pub share: [f32; 3],
+/// Where the points of eight strands lie: their cells and their places in them.
+#[derive(Clone, Copy, Debug)]
+pub struct Places {
+    /// Index of the cell, `i + size.x (j + size.y k)`; [`NO_CELL`] outside the cells that may hold hair.
+    pub cell: [u32; LANES],
+    /// Distance from the cell's lower corner \[cells\], inside 0 to 1, for each axis.
+    pub share: [f32x8; 3],
 }
 
 /// A box of `cells` cubic cells that may hold hair, and one ring of cells around it that never
@@ -136,24 +141,27 @@ impl Grid {
         }
     }
 
-    /// Finds the place of a point \[m\], world space; `None` outside the cells that may hold hair.
+    /// Finds the places of eight points \[m\], world space.
     #[inline]
-    pub fn place(&self, point: Vec3) -> Option<Place> {
-        let local = (point - self.origin) / self.spacing;
+    pub fn places(&self, points: Vec3x8) -> Places {
+        let (least, spacing) = (splat(1.0 - ROUNDING), splat(self.spacing));
         let strides = self.strides();
-        let mut place = Place { cell: 0, share: [0.0; 3] };
-        for axis in 0..3 {
+        let mut inside = !f32x8::ZERO;
+        let mut cell = i32x8::splat(0);
+        let mut share = [f32x8::ZERO; 3];
+        for (axis, coordinate) in points.array().into_iter().enumerate() {
             let count = self.cells[axis];
-            let along = local[axis];
+            let along = (coordinate - splat(self.origin[axis])) / spacing;
             // Written so that a coordinate that is not a number is outside.
-            if !(along > 1.0 - ROUNDING && along < (count + 1) as f32 + ROUNDING) {
-                return None;
-            }
-            let index = (along as usize).clamp(1, count);
-            place.cell += index * strides[axis];
-            place.share[axis] = (along - index as f32).clamp(EDGE, 1.0 - EDGE);
+            inside &= along.simd_gt(least) & along.simd_lt(splat((count + 1) as f32 + ROUNDING));
+            let index = along.fast_max(splat(1.0)).fast_min(splat(count as f32 + 0.5)).fast_trunc_int();
+            cell += index * i32x8::splat(strides[axis] as i32);
+            share[axis] = (along - index.round_float()).fast_max(splat(EDGE)).fast_min(splat(1.0 - EDGE));
         }
-        Some(place)
+        let inside = inside.to_bitmask();
+        let cell = cell.to_array();
+        let cell_of = |lane: usize| if inside & (1 << lane) != 0 { cell[lane] as u32 } else { NO_CELL };
+        Places { cell: std::array::from_fn(cell_of), share }
     }
 }
 
@@ -177,6 +185,14 @@ fn rung_above(needed: f32) -> f32 {
 mod tests {
     use super::*;
 
+    /// The cell of a point and its place in it; none outside.
+    fn place(grid: &Grid, point: Vec3) -> Option<(usize, Vec3)> {
+        let places = grid.places(Vec3x8::splat(point));
+        assert_eq!(places.cell, [places.cell[0]; LANES]);
+        let share = places.share.map(|share| share.to_array()[0]);
+        (places.cell[0] != NO_CELL).then_some((places.cell[0] as usize, share.into()))
+    }
+
     fn corners(low: [f32; 3], high: [f32; 3]) -> (Vec3, Vec3) {
         (Vec3::from(low), Vec3::from(high))
     }
@@ -194,9 +210,8 @@ mod tests {
                 for corner in 0..8 {
                     let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
                     let point = Vec3::new(pick(0), pick(1), pick(2));
-                    let place = grid.place(point).expect("a followed point is inside");
-                    let back = grid.center(place.cell)
-                        + (Vec3::from(place.share) - Vec3::splat(0.5)) * grid.spacing();
+                    let (cell, share) = place(&grid, point).expect("a followed point is inside");
+                    let back = grid.center(cell) + (share - Vec3::splat(0.5)) * grid.spacing();
                     // Rounding of coordinates of some metres, and the distance kept from borders.
                     assert!((back - point).abs().max_element() < 3e-6 + 2e-3 * grid.spacing());
                 }
@@ -208,13 +223,13 @@ mod tests {
     fn swaying_hair_keeps_the_cells_where_they_are() {
         let mut grid = Grid::new([32; 3]);
         grid.follow(Vec3::ZERO, Vec3::new(0.40, 0.30, 0.35));
-        let (spacing, cell) = (grid.spacing(), grid.place(Vec3::splat(0.2)).unwrap());
-        let wanted = grid.center(cell.cell);
+        let (spacing, cell) = (grid.spacing(), place(&grid, Vec3::splat(0.2)).unwrap().0);
+        let wanted = grid.center(cell);
         for step in 0..50 {
             let sway = 0.02 * (step as f32 * 0.3).sin();
             grid.follow(Vec3::new(sway, 0.0, 0.0), Vec3::new(0.39 + sway, 0.30, 0.35));
             assert_eq!(grid.spacing(), spacing);
-            let cell = grid.place(Vec3::splat(0.2)).unwrap().cell;
+            let cell = place(&grid, Vec3::splat(0.2)).unwrap().0;
             assert!((grid.center(cell) - wanted).length() < 1e-6);
         }
         grid.follow(Vec3::ZERO, Vec3::splat(0.1));
@@ -225,8 +240,8 @@ mod tests {
     fn points_outside_have_no_place() {
         let mut grid = Grid::new([4, 5, 6]);
         grid.follow(Vec3::ZERO, Vec3::ONE);
-        assert!(grid.place(Vec3::new(-0.3, 0.5, 0.5)).is_none());
-        assert!(grid.place(Vec3::new(0.5, 40.0, 0.5)).is_none());
-        assert!(grid.place(Vec3::new(0.5, f32::NAN, 0.5)).is_none());
+        assert!(place(&grid, Vec3::new(-0.3, 0.5, 0.5)).is_none());
+        assert!(place(&grid, Vec3::new(0.5, 40.0, 0.5)).is_none());
+        assert!(place(&grid, Vec3::new(0.5, f32::NAN, 0.5)).is_none());
     }
 }

@@ -38,7 +38,10 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
     let look_up = |cell: usize| {
         let center = volume.grid.center(cell);
         let least = obstacles.at_least(center, &head_from_world);
-        if least > depth { least } else { obstacles.nearest(center).map_or(f32::INFINITY, |near| near.0) }
+        if least > depth {
+            return least;
+        }
+        obstacles.nearest(center, &head_from_world).map_or(f32::INFINITY, |near| near.0)
     };
     let occupied: Vec<f32> =
         volume.sort.cells().par_iter().with_min_len(256).map(|&cell| look_up(cell as usize)).collect();
@@ -71,19 +74,26 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
 
 /// Sets faces between fluid and solid cells to the velocity of the solid.
 fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
-    let strides = volume.grid.strides();
-    for index in 0..volume.fluid.len() {
-        let cell = volume.fluid[index] as usize;
-        for (axis, stride) in strides.into_iter().enumerate() {
-            for (neighbour, face) in [(cell - stride, cell), (cell + stride, cell + stride)] {
-                if volume.kinds[neighbour] != Kind::Solid {
-                    continue;
-                }
-                let center = volume.grid.face_center(axis, face);
-                let velocity = obstacles
-                    .nearest(center)
-                    .map_or(0.0, |(_, _, collider)| obstacles.velocity(collider, center)[axis]);
-                volume.faces.set(axis, face, velocity);
+    let (strides, head_from_world) = (volume.grid.strides(), obstacles.end.inverse());
+    let sides =
+        strides.into_iter().enumerate().flat_map(|(axis, stride)| [(axis, stride, 0), (axis, stride, 1)]);
+    let sides: Vec<(usize, usize, usize)> = sides.collect();
+    let (grid, kinds) = (&volume.grid, &volume.kinds);
+    let wall = |cell: usize, (axis, stride, behind): (usize, usize, usize)| {
+        let neighbour = if behind == 1 { cell + stride } else { cell - stride };
+        (kinds[neighbour] == Kind::Solid).then(|| {
+            let center = grid.face_center(axis, cell + behind * stride);
+            let near = obstacles.nearest(center, &head_from_world);
+            near.map_or(0.0, |(_, _, solid)| obstacles.velocity(solid, center, &head_from_world)[axis])
+        })
+    };
+    let around =
+        |cell: &u32| -> [Option<f32>; 6] { std::array::from_fn(|side| wall(*cell as usize, sides[side])) };
+    let walls: Vec<_> = volume.fluid.par_iter().with_min_len(256).map(around).collect();
+    for (&cell, walls) in volume.fluid.iter().zip(&walls) {
+        for ((axis, stride, behind), wall) in sides.iter().zip(walls) {
+            if let Some(velocity) = wall {
+                volume.faces.set(*axis, cell as usize + behind * stride, *velocity);
             }
         }
     }

@@ -18,9 +18,8 @@ pub struct Obstacles<'a> {
 
 impl Obstacles<'_> {
     /// Signed distance \[m\] to the nearest solid at the end of the step, its unit gradient, and
-    /// the solid's index; `None` without colliders. World space.
-    pub fn nearest(&self, point: Vec3) -> Option<(f32, Vec3, usize)> {
-        let head_from_world = self.end.inverse();
+    /// the solid's index; `None` without colliders. World space; who asks often finds `head_from_world` once.
+    pub fn nearest(&self, point: Vec3, head_from_world: &Pose) -> Option<(f32, Vec3, usize)> {
         self.colliders
             .iter()
             .enumerate()
@@ -49,10 +48,10 @@ impl Obstacles<'_> {
     }
 
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
-    pub fn velocity(&self, collider: usize, point: Vec3) -> Vec3 {
+    pub fn velocity(&self, collider: usize, point: Vec3, head_from_world: &Pose) -> Vec3 {
         match self.colliders[collider].carrier {
             Carrier::World => Vec3::ZERO,
-            Carrier::Head => (point - self.start.point(self.end.inverse().point(point))) / self.time_step,
+            Carrier::Head => (point - self.start.point(head_from_world.point(point))) / self.time_step,
         }
     }
 }

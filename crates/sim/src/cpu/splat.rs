@@ -3,44 +3,45 @@
 use glam::Vec3;
 use strandline_base::par::{self, prelude::*};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use wide::f32x8;
 
 use super::cell_sort::NO_CELL;
 use super::faces::{Carried, Stencil};
 use super::grid::REACH;
+use super::vec3x8::{Vec3x8, load, splat as all};
 use super::volume::Volume;
 
 /// Sorts the points by cell [Chen2011 fig. 26-30] and gives every face that they reach their mean
 /// velocity, weighted by mass and trilinearly \[Zhu2005\]. Momentum is kept exactly.
 ///
 /// All shapes are `[block][point]` of lanes, world space. Lanes beyond the last strand and points
-/// without mass or too far away take no part. One task per component sums the points in the order
-/// of their cells, so that sums do not depend on the number of threads.
+/// without mass or too far away take no part. A task sums layers of cells of its own, each face in the order
+/// of the cells of its points, so that sums do not depend on the number of threads.
 pub fn splat(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lanes], mass: &[Lanes]) {
     follow(volume, positions, mass);
-    find_cells(volume, positions, mass);
+    bring(volume, positions, velocities, mass);
     volume.sort.sort(&volume.cell_of_point);
     clear(volume);
     touch(volume);
-    carry(volume, positions, velocities, mass);
-    let Volume { grid, carried, faces, touched, .. } = volume;
-    let strides = grid.strides();
-    let [u, v, w] = &mut faces.components;
-    par::join(
-        || component::<0>(strides, carried, touched, u),
-        || {
-            par::join(
-                || component::<1>(strides, carried, touched, v),
-                || component::<2>(strides, carried, touched, w),
-            )
-        },
-    );
+    let Volume { grid, sort, brought, carried, faces, touched, .. } = volume;
+    let sorted = sort.order().par_iter().with_min_len(1024).map(|&point| brought[point as usize]);
+    sorted.collect_into_vec(carried);
+    let components = faces.components.each_mut().map(Vec::as_mut_slice);
+    Layers { first: 0, components, carried, touched, strides: grid.strides() }
+        .sum(par::current_num_threads());
 }
 
-/// Whether a point takes part: it has a mass and lies somewhere.
+/// Mask of the points that take part: they have a mass and lie somewhere. False for coordinates that are not numbers.
 #[inline]
-fn takes_part(point: Vec3, mass: f32) -> bool {
-    // False for coordinates that are not numbers.
-    mass > 0.0 && point.abs().max_element() < REACH
+fn take_part(points: Vec3x8, mass: f32x8) -> f32x8 {
+    let [x, y, z] = points.array().map(|coordinate| coordinate.abs().simd_lt(all(REACH)));
+    mass.simd_gt(f32x8::ZERO) & x & y & z
+}
+
+/// Mask of the lanes of a block that are strands.
+fn live_lanes(volume: &Volume, block: usize) -> f32x8 {
+    let lane = |lane| if volume.is_live(block, lane) { 1.0 } else { 0.0 };
+    f32x8::from(std::array::from_fn::<f32, LANES, _>(lane)).simd_gt(f32x8::ZERO)
 }
 
 /// Moves the box over the points.
@@ -54,16 +55,19 @@ fn follow(volume: &mut Volume, positions: &[Vec3Lanes], mass: &[Lanes]) {
         .with_min_len(64)
         .enumerate()
         .map(|(block, (positions, mass))| {
-            let mut bounds = outside_in();
+            let live = live_lanes(volume_ref, block);
+            let (mut low, mut high) = (Vec3x8::splat(Vec3::INFINITY), Vec3x8::splat(Vec3::NEG_INFINITY));
             for (point, mass) in positions.iter().zip(mass) {
-                for lane in (0..LANES).filter(|lane| volume_ref.is_live(block, *lane)) {
-                    let place = point.get(lane);
-                    if takes_part(place, mass.0[lane]) {
-                        bounds = (bounds.0.min(place), bounds.1.max(place));
-                    }
-                }
+                let place = Vec3x8::load(point);
+                let counts = take_part(place, load(mass)) & live;
+                low = least(low, place.or(counts, low));
+                high = -least(-high, -place.or(counts, high));
             }
-            bounds
+            let lanes = |of: Vec3x8| of.array().map(f32x8::to_array);
+            let fold = |of: Vec3x8, pick: fn(f32, f32) -> f32, first: f32| {
+                Vec3::from(lanes(of).map(|lanes| lanes.into_iter().fold(first, pick)))
+            };
+            (fold(low, f32::min, f32::INFINITY), fold(high, f32::max, f32::NEG_INFINITY))
         })
         // Smallest and largest do not depend on the order.
         .reduce(outside_in, |a, b| (a.0.min(b.0), a.1.max(b.1)));
@@ -72,25 +76,40 @@ fn follow(volume: &mut Volume, positions: &[Vec3Lanes], mass: &[Lanes]) {
     }
 }
 
-fn find_cells(volume: &mut Volume, positions: &[Vec3Lanes], mass: &[Lanes]) {
-    let (points, strands) = (volume.points_per_strand, volume.strand_count);
-    volume.cell_of_point.resize(positions.len() * LANES, NO_CELL);
-    let grid = &volume.grid;
-    volume
-        .cell_of_point
+/// The smaller coordinates of two.
+#[inline]
+fn least(one: Vec3x8, other: Vec3x8) -> Vec3x8 {
+    Vec3x8::new(one.x.fast_min(other.x), one.y.fast_min(other.y), one.z.fast_min(other.z))
+}
+
+/// Finds the cells of the points, and what each brings there.
+fn bring(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lanes], mass: &[Lanes]) {
+    let mut cell_of_point = std::mem::take(&mut volume.cell_of_point);
+    let mut brought = std::mem::take(&mut volume.brought);
+    cell_of_point.resize(positions.len() * LANES, NO_CELL);
+    brought.resize(positions.len() * LANES, bytemuck::Zeroable::zeroed());
+    let (points, volume_ref) = (volume.points_per_strand, &*volume);
+    cell_of_point
         .par_chunks_mut(LANES)
-        .zip(positions)
+        .zip(brought.par_chunks_mut(LANES))
+        .zip(positions.par_iter().zip(velocities))
         .zip(mass)
         .with_min_len(512)
         .enumerate()
-        .for_each(|(index, ((cells, point), mass))| {
-            for (lane, cell) in cells.iter_mut().enumerate() {
-                let live =
-                    index / points * LANES + lane < strands && takes_part(point.get(lane), mass.0[lane]);
-                let place = if live { grid.place(point.get(lane)) } else { None };
-                *cell = place.map_or(NO_CELL, |place| place.cell as u32);
+        .for_each(|(index, (((cells, brought), (position, velocity)), mass))| {
+            let (position, velocity, mass) = (Vec3x8::load(position), Vec3x8::load(velocity), load(mass));
+            let counts = take_part(position, mass) & live_lanes(volume_ref, index / points);
+            let counts = counts.to_bitmask();
+            let places = volume_ref.grid.places(position);
+            let [a, b, c] = places.share;
+            let Vec3x8 { x, y, z } = velocity;
+            let numbers: [f32x8; LANES] = [bytemuck::cast(places.cell), a, b, c, mass, x, y, z];
+            for (lane, numbers) in f32x8::transpose(numbers).into_iter().enumerate() {
+                cells[lane] = if counts & (1 << lane) != 0 { places.cell[lane] } else { NO_CELL };
+                brought[lane] = bytemuck::cast(numbers);
             }
         });
+    (volume.cell_of_point, volume.brought) = (cell_of_point, brought);
 }
 
 /// Forgets what the last step summed.
@@ -113,29 +132,61 @@ fn touch(volume: &mut Volume) {
     touched_set.list_into(touched);
 }
 
-/// Gathers what the points bring in the order of their cells: the components read it three times in a row.
-fn carry(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lanes], mass: &[Lanes]) {
-    let Volume { grid, sort, carried, .. } = volume;
-    let bring = |&point: &u32| {
-        let (index, lane) = (point as usize / LANES, point as usize % LANES);
-        let place = grid.place(positions[index].get(lane)).expect("a point that is sorted has a cell");
-        Carried { place, mass: mass[index].0[lane], velocity: velocities[index].get(lane) }
-    };
-    sort.order().par_iter().with_min_len(1024).map(bring).collect_into_vec(carried);
+/// Faces on the lower sides of whole layers of cells along z, with the points that may reach them.
+struct Layers<'a> {
+    /// The first cell.
+    first: usize,
+    components: [&'a mut [f32]; 3],
+    /// The points in the order of their cells, some of which may reach other layers alone.
+    carried: &'a [Carried],
+    /// Cells of these layers whose lower faces points may reach, ascending.
+    touched: &'a [u32],
+    strides: [usize; 3],
 }
 
-fn component<const AXIS: usize>(
-    strides: [usize; 3],
-    carried: &[Carried],
-    touched: &[u32],
-    component: &mut [f32],
-) {
-    for Carried { place, mass, velocity } in carried {
-        Stencil::new::<AXIS>(place, strides).add(component, strides, *mass, velocity[AXIS]);
+impl Layers<'_> {
+    /// Sums what the points bring in so many tasks, as far as there are layers.
+    fn sum(self, tasks: usize) {
+        let layer = self.strides[2];
+        let middle = self.carried.get(self.carried.len() * (tasks / 2) / tasks.max(1));
+        let cut = middle.map_or(0, |middle| middle.cell as usize / layer * layer);
+        if tasks < 2 || cut <= self.first || cut >= self.first + self.components[0].len() / 2 {
+            return self.sum_alone();
+        }
+        let first = |cell: usize| self.carried.partition_point(|carried| (carried.cell as usize) < cell);
+        // A point reaches the layer of its cell, the one before and the one behind.
+        let (before, behind) = (first(cut - layer), first(cut + layer));
+        let touched = self.touched.split_at(self.touched.partition_point(|cell| (*cell as usize) < cut));
+        let ([mut near, mut far], strides) = (<[[&mut [f32]; 3]; 2]>::default(), self.strides);
+        for (axis, component) in self.components.into_iter().enumerate() {
+            (near[axis], far[axis]) = component.split_at_mut(2 * (cut - self.first));
+        }
+        let (carried, near_carried) = (&self.carried[before..], &self.carried[..behind]);
+        let near = Layers {
+            first: self.first,
+            components: near,
+            carried: near_carried,
+            touched: touched.0,
+            strides,
+        };
+        let far = Layers { first: cut, components: far, carried, touched: touched.1, strides };
+        par::join(|| near.sum(tasks / 2), || far.sum(tasks - tasks / 2));
     }
-    for &cell in touched {
-        let pair = &mut component[2 * cell as usize..][..2];
-        let velocity = if pair[1] > 0.0 { pair[0] / pair[1] } else { 0.0 };
-        pair.copy_from_slice(&[velocity, 0.0]);
+
+    fn sum_alone(self) {
+        let Self { first, components: [u, v, w], carried, touched, strides } = self;
+        for Carried { cell, share, mass, velocity: [x, y, z] } in carried {
+            let (cell, mass) = (*cell as usize, *mass);
+            Stencil::new::<0>(cell, *share, strides).add(u, first, strides, mass, *x);
+            Stencil::new::<1>(cell, *share, strides).add(v, first, strides, mass, *y);
+            Stencil::new::<2>(cell, *share, strides).add(w, first, strides, mass, *z);
+        }
+        for component in [u, v, w] {
+            for &cell in touched {
+                let pair = &mut component[2 * (cell as usize - first)..][..2];
+                let velocity = if pair[1] > 0.0 { pair[0] / pair[1] } else { 0.0 };
+                pair.copy_from_slice(&[velocity, 0.0]);
+            }
+        }
     }
 }

@@ -25,7 +25,9 @@ pub struct Volume {
     /// Velocities on the faces.
     pub faces: Faces,
     pub(super) cell_of_point: Vec<u32>,
-    /// The points in the order of their cells.
+    /// What each point brings, shape `[block][point]` of lanes.
+    pub(super) brought: Vec<Carried>,
+    /// The same in the order of their cells.
     pub(super) carried: Vec<Carried>,
     /// Cells whose lower faces points may reach, ascending.
     pub(super) touched: Vec<u32>,
@@ -55,6 +57,7 @@ impl Volume {
             sort: CellSort::new(count),
             faces: Faces::new(count),
             cell_of_point: Vec::new(),
+            brought: Vec::new(),
             carried: Vec::new(),
             touched: Vec::new(),
             touched_set: CellSet::new(count),
