@@ -81,7 +81,8 @@ impl Pcg {
         while report.relative_residual > settings.tolerance
             && report.iterations < settings.max_iterations as usize
         {
-            let curvature = system.multiply(&self.search, &mut self.image);
+            system.multiply(&self.search, &mut self.image);
+            let curvature = dot(&self.search, &self.image);
             // Rounding can leave a direction without curvature when nothing is left to gain.
             if curvature <= 0.0 {
                 break;
@@ -213,13 +214,31 @@ impl Pcg {
     }
 }
 
+/// Sums and largest values that are found side by side: one alone waits for the one before at every number.
+const SIDE_BY_SIDE: usize = 8;
+
 fn largest(vector: &[f32]) -> f32 {
-    vector.iter().fold(0.0, |most, value| value.abs().max(most))
+    let mut most = [0.0_f32; SIDE_BY_SIDE];
+    let (whole, rest) = vector.as_chunks::<SIDE_BY_SIDE>();
+    for numbers in whole {
+        for (most, value) in most.iter_mut().zip(numbers) {
+            *most = value.abs().max(*most);
+        }
+    }
+    most.into_iter().chain(rest.iter().map(|value| value.abs())).fold(0.0, |most, value| value.max(most))
 }
 
 /// Sum of products in double precision.
 fn dot(a: &[f32], b: &[f32]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum()
+    let mut sums = [0.0; SIDE_BY_SIDE];
+    let ((whole, rest), (other, other_rest)) = (a.as_chunks::<SIDE_BY_SIDE>(), b.as_chunks::<SIDE_BY_SIDE>());
+    for (a, b) in whole.iter().zip(other) {
+        for index in 0..SIDE_BY_SIDE {
+            sums[index] += f64::from(a[index] * b[index]);
+        }
+    }
+    let rest = rest.iter().zip(other_rest).map(|(a, b)| f64::from(a * b));
+    sums.into_iter().chain(rest).sum()
 }
 
 fn advance(vector: &mut [f32], step: f32, direction: &[f32]) {

@@ -114,16 +114,13 @@ impl Poisson {
         }
     }
 
-    /// Multiplies: `out` = A `vector`; returns their dot product.
-    pub fn multiply(&self, vector: &[f32], out: &mut [f32]) -> f64 {
-        let mut sum = 0.0;
+    /// Multiplies: `out` = A `vector`.
+    pub fn multiply(&self, vector: &[f32], out: &mut [f32]) {
         let rows = self.diagonal.iter().zip(&self.lower).zip(&self.upper).zip(vector).zip(out);
         for ((((diagonal, lower), upper), here), slot) in rows {
             let below = vector[lower[0] as usize] + vector[lower[1] as usize] + vector[lower[2] as usize];
             let above = vector[upper[0] as usize] + vector[upper[1] as usize] + vector[upper[2] as usize];
             *slot = diagonal * here - below - above;
-            sum += f64::from(*slot * here);
         }
-        sum
     }
 }
