@@ -84,14 +84,17 @@ impl<R: Real> Work<R> {
             holds = (limit - rate * size).choose(pull.stiffness, limit / size);
         }
         let (push, normal, slip) = (acts * missing, normal.array(), slip.array());
+        // What is not pulled keeps its bits: so does what -0 is added to.
+        let nothing = R::of(-0.0);
         for row in 0..3 {
-            front.add_right(row, normal[row] * push - holds * slip[row]);
+            let force = normal[row] * push - holds * slip[row];
+            front.add_right(row, pull.stiffness.choose(force, nothing));
             for column in 0..=row {
                 let mut value = normal[row] * (acts - holds) * normal[column];
                 if row == column {
                     value += holds;
                 }
-                front.add(row, column, value);
+                front.add(row, column, pull.stiffness.choose(value, nothing));
             }
         }
         solid

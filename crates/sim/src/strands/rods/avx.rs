@@ -310,6 +310,53 @@ mod tests {
         }
     }
 
+    /// A number of one lane, in all of them.
+    fn alike(numbers: f32x8) -> f32x8 {
+        f32x8::splat(numbers.to_array()[2])
+    }
+
+    fn alike_vector(vector: Vector<f32x8>) -> Vector<f32x8> {
+        Vector::new(alike(vector.x), alike(vector.y), alike(vector.z))
+    }
+
+    #[test]
+    fn a_strand_does_not_know_those_beside_it() {
+        let settings = StepSettings { newton_steps: 40, tolerance: 1e-3, ..settings() };
+        let mut steps = Vec::new();
+        for seed in 0..40 {
+            let (mut rod, mut pulls, mut among_others) = rods(seed, seed % 2 == 1);
+            let mut alone = among_others.clone();
+            steps.push(among_others.solve(&rod, &pulls, &settings).steps);
+            rod.iter_mut().for_each(|node| *node = node.map(alike));
+            for pull in &mut pulls {
+                let (reach, stiffness, friction) = (pull.reach, pull.stiffness, pull.friction);
+                (pull.reach, pull.stiffness, pull.friction) =
+                    (alike(reach), alike(stiffness), alike(friction));
+                (pull.normal, pull.stuck) = (alike_vector(pull.normal), alike_vector(pull.stuck));
+            }
+            for index in 0..POINTS {
+                alone.moved[index] = alone.moved[index].map(alike);
+                alone.wanted[index] = alone.wanted[index].map(alike);
+                alone.step[index] = alone.step[index].map(alike);
+                alone.edges[index] = alike_vector(alone.edges[index]);
+                let Segment { length, tangent, across } = alone.segments[index];
+                let (tangent, across) = (alike_vector(tangent), alike_vector(across));
+                alone.segments[index] = Segment { length: alike(length), tangent, across };
+            }
+            steps.push(alone.solve(&rod, &pulls, &settings).steps);
+            for (one, other) in alone.segments.iter().zip(&among_others.segments) {
+                let bits = |vector: Vector<f32x8>| vector.array().map(|of| of.to_array()[2].to_bits());
+                assert_eq!(bits(one.tangent), bits(other.tangent), "{seed}");
+                assert_eq!(bits(one.across), bits(other.across), "{seed}");
+            }
+            for (one, other) in alone.moved.as_flattened().iter().zip(among_others.moved.as_flattened()) {
+                assert_eq!(one.to_array()[2].to_bits(), other.to_array()[2].to_bits(), "{seed}");
+            }
+        }
+        // Some wait for others.
+        assert!(steps.chunks(2).any(|pair| pair[0] > pair[1]));
+    }
+
     /// What is not compiled into the loop is called for every addition, and then all is ten times slower.
     #[test]
     fn it_is_the_faster_way() {

@@ -20,6 +20,16 @@ impl<R: Real> Segment<R> {
         self.tangent.cross(self.across)
     }
 
+    /// `yes` where `mask` is above 0, else `no`.
+    #[inline(always)]
+    pub fn choose(mask: R, yes: Self, no: Self) -> Self {
+        Self {
+            length: mask.choose(yes.length, no.length),
+            tangent: Vector::choose(mask, yes.tangent, no.tangent),
+            across: Vector::choose(mask, yes.across, no.across),
+        }
+    }
+
     /// The segment with another edge \[m\]: its section is carried along by the smallest rotation
     /// between the tangents, then turned by `angle` \[rad\] about the new one.
     #[inline(always)]

@@ -252,7 +252,8 @@ impl<R: Real> Work<R> {
         let moves = unsolved.choose(sound, R::of(0.0));
         for index in 0..=last {
             for row in 0..UNKNOWNS {
-                self.step[index][row] = moves.choose(self.step[index][row] * share, R::of(0.0));
+                // A strand that is solved keeps its bits, whatever those beside it need: so does what -0 is added to.
+                self.step[index][row] = moves.choose(self.step[index][row] * share, R::of(-0.0));
                 self.moved[index][row] += self.step[index][row];
             }
         }
@@ -261,7 +262,8 @@ impl<R: Real> Work<R> {
             let [u, v, w, _] = self.step[index + 1];
             self.edges[index] += Vector::new(u - x, v - y, w - z);
             let angle = angle.or_less(R::of(LONGEST_TURN)).or_more(R::of(-LONGEST_TURN));
-            self.segments[index] = self.segments[index].moved(self.edges[index], angle);
+            let segment = self.segments[index].moved(self.edges[index], angle);
+            self.segments[index] = Segment::choose(moves, segment, self.segments[index]);
         }
         largest
     }
