@@ -91,21 +91,21 @@ impl Cloud {
     }
 
     /// The whole way through the volume on a backend: `flip_share`, and solids that the head carries to a pose
-    /// in 0.01 s.
-    pub fn flow_on(&mut self, on: &On, cells: [u32; 3], flip_share: f32, solids: &[Collider], end: Pose) {
-        let settings = VolumeSettings { cells, flip_share, ..VolumeSettings::default() };
+    /// in a step.
+    pub fn flow_on(&mut self, on: &On, time_step: f32, flip_share: f32, solids: &[Collider], end: Pose) {
+        let settings = VolumeSettings { cells: [32; 3], flip_share, ..VolumeSettings::default() };
         match on {
             On::Cpu => {
                 let mut volume = Volume::new(&settings, self.strands, POINTS);
                 let start = Pose::IDENTITY;
-                let obstacles = Obstacles { colliders: solids, start, end, time_step: 0.01 };
+                let obstacles = Obstacles { colliders: solids, start, end, time_step };
                 splat(&mut volume, &self.positions, &self.velocities, &self.mass);
                 mark(&mut volume, &obstacles);
                 solve_pressure(&mut volume);
-                self.gather(&volume, 0.01);
+                self.gather(&volume, time_step);
             }
             On::Gpu(gpu) => {
-                let runner = self.stand_in(gpu, settings, 0.01, solids.to_vec());
+                let runner = self.stand_in(gpu, settings, time_step, solids.to_vec());
                 let mut probe = self.probe(&runner);
                 let drive = Drive { world_from_head: end, ..Drive::default() };
                 probe.run(&drive, &[Stage::Splat, Stage::Mark, Stage::SolvePressure, Stage::Gather]).unwrap();
@@ -251,6 +251,29 @@ fn spin_after_a_quarter_second(on: &On, flip_share: f32, time_step: f32) -> f32 
         }
     }
     spin(&cloud) / before
+}
+
+law! {
+    fn pressure_takes_as_much_in_a_second_whatever_the_step(on) {
+        // A ball that closes up at 1/s everywhere.
+        let points: Vec<_> = ball(4.0, 64, 3).into_iter().map(|(at, _)| (at, -at)).collect();
+        let taken = |time_step: f32, flip_share: f32| {
+            let mut cloud = Cloud::new(&points);
+            let before = cloud.sum(|position, velocity| position * velocity);
+            cloud.flow_on(on, time_step, flip_share, &[], Pose::IDENTITY);
+            (cloud.sum(|position, velocity| position * velocity) - before).element_sum() / -before.element_sum()
+        };
+        let whole = taken(1.0 / 60.0, 1.0);
+        assert!(whole > 0.5, "{whole}");
+        // Of the same velocities; no step takes more than all.
+        for (time_step, share) in [(1.0 / 240.0, 0.25), (1.0 / 480.0, 0.125), (1.0 / 30.0, 1.0)] {
+            let found = taken(time_step, 1.0) / whole;
+            assert!((found - share).abs() < 1e-3, "a step of {time_step} s takes {found} of it");
+        }
+        // What is taken of PIC has as much of the pressure in it: with a quarter of the PIC share too.
+        let (long, short) = (taken(1.0 / 60.0, 0.5), taken(1.0 / 240.0, 0.5));
+        assert!(short < 0.5 * long, "a step of 1/240 s takes {short}, one of 1/60 s {long}");
+    }
 }
 
 law! {

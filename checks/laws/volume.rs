@@ -29,9 +29,8 @@ fn share_of_the_flow(on: &On, carrier: Carrier, way: Vec3, drift: f32, speed: f3
     let mut cloud = Cloud::new(&points);
     let shape = Shape::sphere(Vec3::ZERO, SOLID).unwrap();
     let solid = Collider::new(shape, carrier, 0.0).unwrap();
-    // In a step of 0.01 s.
-    let end = Pose { translation: way * speed * 0.01, ..Pose::IDENTITY };
-    cloud.flow_on(on, [32; 3], 0.95, &[solid], end);
+    let end = Pose { translation: way * speed / 60.0, ..Pose::IDENTITY };
+    cloud.flow_on(on, 1.0 / 60.0, 0.95, &[solid], end);
     [1.0, -1.0].map(|side| {
         let (mut found, mut ideal, mut count) = (0.0, 0.0, 0);
         for (index, (at, _)) in points.iter().enumerate() {
@@ -58,9 +57,9 @@ fn potential_flow(distance: f32, cosine: f32) -> f32 {
 law! {
     fn a_wall_that_moves_carries_hair_along(on) {
         for way in [Vec3::X, Vec3::NEG_Y, Vec3::Z] {
-            // 0.2 mm in a step of 0.01 s, so that the cells are those of a ball that rests. It pushes the hair before it
+            // 0.2 mm in a step, so that the cells are those of a ball that rests. It pushes the hair before it
             // and draws the hair behind it.
-            for share in share_of_the_flow(on, Carrier::Head, way, 0.0, 0.02) {
+            for share in share_of_the_flow(on, Carrier::Head, way, 0.0, 0.012) {
                 // A ball of five cells is made of steps: its wall lies up to half a cell off, which is 0.75 to 1.3 of
                 // the flow, and points between the faces take the mean of some.
                 assert!((0.6..1.4).contains(&share), "{way}: {share} of the flow");

@@ -170,6 +170,14 @@ impl VolumeSettings {
     pub(crate) fn flip_share_in(&self, time_step: f32) -> f32 {
         1.0 - ((1.0 - self.flip_share) * 60.0 * time_step).min(1.0)
     }
+
+    /// Share that a step of a length \[s\] takes of what the pressure would change.
+    ///
+    /// All of it, however short the step, would let hair close up again only by what it gains within a step: the
+    /// slower, the shorter. So it is a rate too: all in 1/60 s.
+    pub(crate) fn pressure_share_in(time_step: f32) -> f32 {
+        (60.0 * time_step).min(1.0)
+    }
 }
 
 choices! {

@@ -8,10 +8,11 @@ use super::cell_sort::NO_CELL;
 use super::faces::{Faces, Stencil};
 use super::vec3x8::Vec3x8;
 use super::volume::Volume;
+use crate::VolumeSettings;
 
 /// Updates the velocities of free points: `a` times (the velocity plus its change on the faces)
 /// plus (1 - `a`) times the velocity on the faces, with `a` the FLIP share of a step
-/// of `time_step` \[s\] [Chen2011 eq. 5].
+/// of `time_step` \[s\] [Chen2011 eq. 5]. A short step takes a part of the change.
 ///
 /// Every face in the stencil of a point carries weight, at least its own. Points outside the box
 /// and those that the head moves, whose inverse mass is 0, keep their velocities. Shapes are
@@ -25,6 +26,7 @@ pub fn gather(
 ) {
     let points = volume.points_per_strand;
     let (share, strides) = (volume.settings.flip_share_in(time_step), volume.grid.strides());
+    let taken_share = VolumeSettings::pressure_share_in(time_step);
     velocities
         .par_chunks_mut(points)
         .zip(positions.par_chunks(points).zip(inverse_mass.par_chunks(points)))
@@ -43,8 +45,9 @@ pub fn gather(
                     let (x, x_change) = at::<0>(&volume.faces, cell, within, strides);
                     let (y, y_change) = at::<1>(&volume.faces, cell, within, strides);
                     let (z, z_change) = at::<2>(&volume.faces, cell, within, strides);
-                    let flip = old + glam::Vec3::new(x_change, y_change, z_change);
-                    let pic = glam::Vec3::new(x, y, z);
+                    let change = glam::Vec3::new(x_change, y_change, z_change);
+                    let flip = old + change * taken_share;
+                    let pic = glam::Vec3::new(x, y, z) - change * (1.0 - taken_share);
                     velocity.set(lane, share * flip + (1.0 - share) * pic);
                 }
             }

@@ -8,7 +8,7 @@ use crate::constrain::Spring;
 use crate::cpu::contacts::Care;
 use crate::grab::Grab;
 use crate::strands::constrain::angles::bend_share;
-use crate::{Drive, Model, Preconditioner};
+use crate::{Drive, Model, Preconditioner, VolumeSettings};
 
 /// Codes of preconditioners, which shaders know from here.
 const PLAIN: u32 = 0;
@@ -75,7 +75,9 @@ mirror! {
         pub preconditioner: u32,
         /// Where the report goes.
         pub slot: u32,
-        pub unused_a: [u32; 2],
+        /// Share of what the pressure changes that a step takes.
+        pub pressure_share: f32,
+        pub unused_a: u32,
         /// Where the hand is \[m\].
         pub hand: [f32; 3],
         /// Whether a hand holds hair.
@@ -106,8 +108,7 @@ impl RodStep {
 impl Step {
     /// What a step needs that starts at a pose of the head.
     pub fn new(model: &Model, start: &Pose, drive: &Drive, grab: &Grab, slot: usize) -> Self {
-        let settings = &model.settings;
-        let end = drive.world_from_head;
+        let (settings, end) = (&model.settings, drive.world_from_head);
         // What acts on all points alike acts in each part of a step of rods.
         let parts = if settings.has_rods() { settings.strands.rods.substeps } else { 1 };
         let part_time = settings.time_step / parts as f32;
@@ -159,6 +160,7 @@ impl Step {
                 Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => CHEBYSHEV,
             },
             slot: slot as u32,
+            pressure_share: VolumeSettings::pressure_share_in(settings.time_step),
             holds: u32::from(!grab.grips.is_empty()),
             hand: grab.hand.to_array(),
             rods: RodStep::new(model, start, &end, part_time),
