@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_groom::Style;
 use strandline_render::Look;
 use strandline_render::cpu::{
-    Curves, Lit, Occlusion, Scattering, ShadowBody, Shadows, Strands, interpolate, opacity_depth,
+    Curves, Lit, Occlusion, OwnColors, Scattering, ShadowBody, Shadows, Strands, interpolate, opacity_depth,
     opacity_layers, tessellate,
 };
 use strandline_render::fibre::Pigment;
@@ -12,11 +12,6 @@ use strandline_render::fibre::Pigment;
 use crate::picture::{Both, drawn_on_gpu};
 
 impl Both {
-    fn own_color(&self) -> Option<Vec3> {
-        let colors = self.guides.colors()?;
-        Some(colors.iter().map(|&color| Vec3::from(color)).sum::<Vec3>() / colors.len() as f32)
-    }
-
     /// The strands on the CPU with light that is scattered many times.
     fn scattered_on_cpu(
         &self,
@@ -33,12 +28,13 @@ impl Both {
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
         occlusion.set_middle(self.middle());
+        let own_colors = OwnColors::of(&self.guides);
         let lit = Lit {
             lights: &self.lights,
             shadows: &shadows,
             body: body.map(|body| (body, Vec3::splat(0.3))),
             look: &self.look,
-            own_color: self.own_color(),
+            own_colors: own_colors.as_ref(),
             eye: self.camera.position,
         };
         Scattering::default().shade(&mut strands, &lit, &mut occlusion);

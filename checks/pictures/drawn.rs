@@ -5,8 +5,10 @@ use strandline_body::Pose;
 use strandline_checks::On;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::{
-    Curves, Occlusion, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade, tessellate,
+    Curves, Lit, Occlusion, OwnColors, Scattering, Shadows, Strands, interpolate, opacity_depth,
+    opacity_layers, shade, tessellate,
 };
+use strandline_render::fibre::FibreModel;
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, DetailLevel, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture,
@@ -97,11 +99,20 @@ impl Drawn {
         let (mut strands, mut shadows) = (Strands::default(), Shadows::default());
         let (middle, look) = (self.middle(), &self.look);
         interpolate(&curves, &self.guides, &Pose::IDENTITY, look, &self.level(), &mut strands);
-        opacity_depth(&strands, None, &self.lights, middle, &look.shadow, &mut shadows);
+        opacity_depth(&strands, None, &self.lights, middle, &look.hair_shadow(), &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
         occlusion.set_middle(middle);
-        shade(&mut strands, &shadows, &self.lights, look, self.eye, &mut occlusion);
+        let (lights, eye) = (&self.lights, self.eye);
+        match look.fibre.model {
+            FibreModel::Scheuermann => shade(&mut strands, &shadows, lights, look, eye, &mut occlusion),
+            FibreModel::Chiang => {
+                let own_colors = OwnColors::of(&self.guides);
+                let own_colors = own_colors.as_ref();
+                let lit = Lit { lights, shadows: &shadows, body: None, look, own_colors, eye };
+                Scattering::default().shade(&mut strands, &lit, &mut occlusion);
+            }
+        }
         strands
     }
 

@@ -36,7 +36,7 @@ fn guides(groom: &Groom, width: f32, points: usize) -> Guides {
 }
 
 /// Hair of the references.
-fn look(chiang: Chiang) -> Look {
+pub fn look(chiang: Chiang) -> Look {
     Look {
         follow_strands: 1,
         hair_count: 0,

@@ -9,6 +9,7 @@ mod golden;
 mod grooms;
 mod light;
 mod linear;
+mod mixture;
 mod opacity;
 mod resolve;
 mod screen;

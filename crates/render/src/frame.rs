@@ -5,7 +5,7 @@ pub use input::FrameInput;
 
 use std::sync::Arc;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use strandline_base::timed;
 use strandline_body::{Aabb, Mesh, Solids};
 use strandline_groom::Guides;
@@ -13,9 +13,9 @@ use strandline_groom::Guides;
 use crate::cpu::scalp::root_densities;
 use crate::cpu::skin::Skin;
 use crate::cpu::{
-    Curves, Draw, DrawInput, Found, Lit, Occlusion, Radiances, Resolve, Samples, Scattering, Scheuermann,
-    Seen, Shading, Shadows, Strands, interpolate, keep_outside, layer_colors, opacity_depth, opacity_layers,
-    tessellate,
+    Curves, Draw, DrawInput, Found, Lit, Occlusion, OwnColors, Radiances, Resolve, Samples, Scattering,
+    Scheuermann, Seen, Shading, Shadows, Strands, interpolate, keep_outside, layer_colors, opacity_depth,
+    opacity_layers, tessellate,
 };
 use crate::fibre::FibreModel;
 use crate::lights::{at_samples, first_sample};
@@ -53,8 +53,8 @@ pub struct Renderer {
     scattering: Scattering,
     found: Found,
     layers_of: Option<usize>,
-    /// Mean of the guides' colours.
-    own_color: Option<Vec3>,
+    /// The guides' colours.
+    own_colors: Option<OwnColors>,
     samples: Samples,
     draw: Draw,
     resolve: Resolve,
@@ -82,7 +82,7 @@ impl Renderer {
             scattering: Scattering::default(),
             found: Found::default(),
             layers_of: None,
-            own_color: mean_color(guides),
+            own_colors: OwnColors::of(guides),
             samples: Samples::default(),
             draw: Draw::new(body.cloned()),
             resolve: Resolve::default(),
@@ -162,14 +162,14 @@ impl Renderer {
         let mut times = Vec::new();
         let seconds = &mut times;
         self.lay_strands(input, &level, middle, seconds);
-        let own_color = self.own_color;
+        let own_colors = self.own_colors;
         let Self { strands, shadows, occlusion, scattering, found, draw, samples, settings, .. } = self;
         occlusion.set_middle(middle);
         let (lights, look, eye) = (input.lights, input.look, input.camera.position);
         let map = layers_of.and_then(|light| shadows.map(light));
         let layered = map.map(|map| layer_colors(strands, map)).is_some();
         let (strands, shadows) = (&*strands, &*shadows);
-        let lit = Lit { lights, shadows, body: None, look, own_color, eye };
+        let lit = Lit { lights, shadows, body: None, look, own_colors: own_colors.as_ref(), eye };
         timed(seconds, "shade", || {
             let body = draw.shadow_body().map(|body| (body, input.body_look.color));
             prepare_light(strands, &Lit { body, ..lit }, occlusion, scattering);
@@ -192,7 +192,7 @@ impl Renderer {
             lights,
             shadows,
             occlusion,
-            scalp: look.scalp(input.body_look.scalp, own_color),
+            scalp: look.scalp(input.body_look.scalp, own_colors.map(|own| own.mean)),
             grid: look.fibre.model.scatters_many_times().then(|| scattering.grid()),
             environment: &look.gradient(),
             eye,
@@ -282,13 +282,6 @@ pub(crate) fn bounds(guides: &Guides) -> Aabb {
     let (min, max) =
         points.fold((Vec3::MAX, Vec3::MIN), |(min, max), point| (min.min(point), max.max(point)));
     Aabb { min, max }
-}
-
-/// Mean of the colours of the guides' points, linear RGB, where they have some.
-pub(crate) fn mean_color(guides: &Guides) -> Option<Vec3> {
-    let colors = guides.colors().filter(|colors| !colors.is_empty())?;
-    let sum: DVec3 = colors.iter().map(|&color| Vec3::from(color).as_dvec3()).sum();
-    Some((sum / colors.len() as f64).as_vec3())
 }
 
 #[cfg(test)]

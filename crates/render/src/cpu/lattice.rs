@@ -2,34 +2,58 @@
 //!
 //! The fibre is looked up between single directions and scaled, for each kind of path, so that the sum over the
 //! directions is the share of light that goes that way: even light stays even whatever the directions resolve.
+//!
+//! Hair that is not all alike scatters as a mixture of its darkest and its lightest does: what many hairs show is the
+//! mean of what each shows, never what hair of their mean pigment would.
 
 use glam::{IVec3, Vec3, Vec4};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
 
 use super::light_field;
-use crate::fibre::chiang::{Lobes, Met, Pigments, Seen, Table};
+use crate::fibre::chiang::{Lobes, MOMENTS, Met, Pigments, Seen, Table};
 
 /// Directions along which light is carried.
 pub const DIRECTIONS: usize = 26;
 /// Directions of hair for which scattering is known, on half of the sphere.
 pub const TANGENTS: usize = 256;
+/// Least by which albedos of two kinds of hair differ, for a third to lie between them.
+const LEAST_APART: f32 = 1e-6;
 /// Variance of the inclination \[rad^2\] by which lobes are widened: directions stand for all around them.
 const SPREAD: f64 = 0.005;
 
 /// Radiance of every direction.
 pub type Rays = [Vec4; DIRECTIONS];
 
-/// Scattering of one fibre.
+/// Most kinds of hair that are mixed.
+pub const MOST_ENDS: usize = 2;
+/// Sine of the inclination at which a fibre's albedo is near its mean over all of them.
+const MEAN_SINE: f32 = 0.5;
+
+/// Shares of the darkest and of the lightest hair, by channel.
+pub type Mix = [Vec4; MOST_ENDS];
+/// Hair that is all the same.
+pub const ALL_DARK: Mix = [Vec4::ONE, Vec4::ZERO];
+
+/// Scattering of a fibre.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     table: Table,
-    pigment: f32,
     /// Unit directions in which light goes, and their shares of the sphere.
     ways: [(Vec3, f32); DIRECTIONS],
     tangents: Vec<Vec3>,
-    /// What hair shows toward where light goes, of light that goes some way: shape `[tangent][shown][arriving]`.
+    /// The darkest hair; the lightest, where there is another.
+    ends: Vec<End>,
+}
+
+/// Scattering of one kind of hair.
+#[derive(Clone, Debug)]
+struct End {
+    /// How it is seen from some inclination.
+    seen: Seen,
+    /// What it shows toward where light goes, of light that goes some way: shape `[tangent][shown][arriving]`.
     shown: Vec<[Rays; DIRECTIONS]>,
+    /// Share of even light that it gives back, as a mean over its directions.
     albedo: Vec4,
 }
 
@@ -53,16 +77,39 @@ pub fn directions() -> [(IVec3, f32); DIRECTIONS] {
 }
 
 impl Lattice {
-    /// The scattering of a fibre; absorption per fibre radius, times `pigment`.
-    pub fn new(lobes: &Lobes, absorption: [f64; 3], pigment: f32) -> Self {
+    /// The scattering of hair with the darkest's absorption per fibre radius, and of the lightest, whose pigment is a
+    /// share of that; none where all hair is the same.
+    pub fn new(lobes: &Lobes, absorption: [f64; 3], lightest: Option<Pigments>) -> Self {
         let table = Table::new(&lobes.spread(SPREAD), absorption);
         let ways = directions().map(|(step, share)| (step.as_vec3().normalize(), share));
         let tangents: Vec<Vec3> = (0..TANGENTS).map(tangent).collect();
-        let albedo = table.moments(0.5, Pigments::Even(pigment))[0];
-        let mut lattice = Self { table, pigment, ways, tangents, shown: Vec::new(), albedo };
-        lattice.shown =
-            lattice.tangents.par_iter().map(|&t| ways.map(|(way, _)| lattice.weights(t, way))).collect();
+        let mut lattice = Self { table, ways, tangents, ends: Vec::new() };
+        let kinds = [Some(Pigments::Even(1.0)), lightest];
+        lattice.ends = kinds.into_iter().flatten().map(|pigments| lattice.end(pigments)).collect();
         lattice
+    }
+
+    fn end(&self, pigments: Pigments) -> End {
+        let seen = Seen::new(MEAN_SINE, pigments);
+        let albedo = self.table.seen_moments(&seen)[0];
+        let shown = |&t: &Vec3| self.ways.map(|(way, _)| self.weights_of(&seen, t, way));
+        End { seen, shown: self.tangents.par_iter().map(shown).collect(), albedo }
+    }
+
+    /// Whether not all hair is the same.
+    pub fn is_mixed(&self) -> bool {
+        self.ends.len() > 1
+    }
+
+    /// How much of the lightest hair, by channel, mixed with the darkest gives back as much light as hair with shares of
+    /// the darkest's pigment.
+    pub fn lightness(&self, pigments: Vec3) -> Vec3 {
+        let [End { albedo: dark, .. }, End { albedo: light, .. }] = *self.ends.as_slice() else {
+            return Vec3::ZERO;
+        };
+        let albedo = self.table.moments(MEAN_SINE, Pigments::Channels(pigments))[0];
+        let share = (albedo - dark) / (light - dark).max(Vec4::splat(LEAST_APART));
+        share.truncate().clamp(Vec3::ZERO, Vec3::ONE)
     }
 
     /// The tables that scattering is looked up in.
@@ -70,10 +117,10 @@ impl Lattice {
         &self.table
     }
 
-    /// The entries of the tables; known directions of hair; what hair shows, shape `[tangent][shown][arriving]`.
+    /// The entries of the tables; known directions of hair; what hair shows, shape `[end][tangent][shown][arriving]`.
     pub fn entries(&self) -> Vec<Vec4> {
         let tangents = self.tangents.iter().map(|tangent| tangent.extend(0.0));
-        let shown = self.shown.iter().flatten().flatten().copied();
+        let shown = self.ends.iter().flat_map(|end| end.shown.iter().flatten().flatten().copied());
         self.table.entries.iter().copied().chain(tangents).chain(shown).collect()
     }
 
@@ -88,27 +135,30 @@ impl Lattice {
         dots.enumerate().fold((0, -1.0), |best, next| if next.1 > best.1 { next } else { best }).0
     }
 
-    /// What hair of unit tangent `t` shows toward where `to_eye` points of light along each direction.
-    pub fn weights(&self, t: Vec3, to_eye: Vec3) -> Rays {
-        let sine = t.dot(to_eye);
+    /// What each kind of hair of unit tangent `t` shows toward where `to_eye` points of light along each direction, and
+    /// its moments.
+    pub fn weights(&self, t: Vec3, to_eye: Vec3) -> impl Iterator<Item = (Rays, [Vec4; MOMENTS])> {
+        let of = move |end: &End| {
+            let moments = self.table.seen_moments(&end.seen.at(t.dot(to_eye)));
+            (self.weights_of(&end.seen, t, to_eye), moments)
+        };
+        self.ends.iter().map(of)
+    }
+
+    fn weights_of(&self, seen: &Seen, t: Vec3, to_eye: Vec3) -> Rays {
         let u = light_field::across(t, to_eye);
-        let seen = self.seen(sine);
+        let seen = seen.at(t.dot(to_eye));
         let paths = self.ways.map(|(way, share)| {
             let solid = 4.0 * std::f32::consts::PI * share;
             self.paths(u, &seen, &Arriving::new(t, -way)).map(|path| path * solid)
         });
-        let shares = self.table.shares(sine, self.pigment);
+        let shares = self.table.shares(&seen);
         let mut sums = [Vec3::ZERO; 3];
         for path in &paths {
             sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += *path);
         }
         let scales: [Vec3; 3] = std::array::from_fn(|path| shares[path] / sums[path].max(Vec3::splat(1e-20)));
         paths.map(|[r, tt, trt]| (r * scales[0] + tt * scales[1] + trt * scales[2]).extend(0.0))
-    }
-
-    /// What is seen by the sine of the eye's inclination.
-    fn seen(&self, sine: f32) -> Seen {
-        Seen::new(sine, Pigments::Even(self.pigment))
     }
 
     #[inline]
@@ -122,52 +172,75 @@ impl Lattice {
         self.ways.map(|(way, share)| {
             let sine = t.dot(way);
             let weight = 4.0 * std::f32::consts::PI * share * flat(sine);
-            Shows { u: light_field::across(t, way), seen: self.seen(sine), weight }
+            let seen = self.ends[0].seen.at(sine);
+            Shows { u: light_field::across(t, way), seen, weight }
         })
     }
 
-    /// Adds what hair of unit tangent `t` shows along every direction of light of the given radiance (of a white
-    /// surface that faces it) from a unit direction; what is shown all around is what meets the hair.
+    /// Adds what a mixture of hair of unit tangent `t` shows along every direction of light of the given radiance (of a
+    /// white surface that faces it) from a unit direction; what is shown all around is what meets the hair.
     pub fn add_light(
         &self,
         t: Vec3,
         shows: &[Shows; DIRECTIONS],
-        to_light: Vec3,
-        light: Vec3,
+        mix: &Mix,
+        (to_light, light): (Vec3, Vec3),
         shown: &mut Rays,
     ) {
         let arriving = Arriving::new(t, to_light);
+        for (end, share) in self.ends.iter().zip(mix) {
+            if *share != Vec4::ZERO {
+                self.add_light_of(end, &arriving, shows, light * share.truncate(), shown);
+            }
+        }
+    }
+
+    fn add_light_of(
+        &self,
+        end: &End,
+        arriving: &Arriving,
+        shows: &[Shows; DIRECTIONS],
+        light: Vec3,
+        shown: &mut Rays,
+    ) {
         let mut sums = [Vec3::ZERO; 3];
         let paths = shows.each_ref().map(|Shows { u, seen, weight }| {
-            let path = self.paths(*u, seen, &arriving);
+            let path = self.paths(*u, &seen.of(&end.seen), arriving);
             sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += path * *weight);
             path
         });
-        let sine = t.dot(to_light);
-        let shares = self.table.shares(sine, self.pigment);
-        let light = light * std::f32::consts::PI;
-        let scales: [Vec3; 3] = std::array::from_fn(|path| {
-            light * shares[path] * flat(sine) / sums[path].max(Vec3::splat(1e-20))
-        });
+        let shares = self.table.shares(&end.seen.at(arriving.sine));
+        let light = light * (std::f32::consts::PI * flat(arriving.sine));
+        let scales: [Vec3; 3] =
+            std::array::from_fn(|path| light * shares[path] / sums[path].max(Vec3::splat(1e-20)));
         for (shown, [r, tt, trt]) in shown.iter_mut().zip(paths) {
             *shown += (r * scales[0] + tt * scales[1] + trt * scales[2]).extend(0.0);
         }
     }
 
-    /// Adds what hair near tangent number `tangent` shows of light along every direction; a share `order` of the hair
-    /// has that tangent, the rest lies every way and shows the same all around.
-    pub fn add_shown(&self, tangent: usize, order: f32, light: &Rays, shown: &mut Rays) {
+    /// Adds what a mixture of hair near tangent number `tangent` shows of light along every direction; a share `order`
+    /// of the hair has that tangent, the rest lies every way and shows the same all around.
+    pub fn add_shown(&self, tangent: usize, order: f32, mix: &Mix, light: &Rays, shown: &mut Rays) {
         let mean: Vec4 = light.iter().zip(&self.ways).map(|(light, (_, share))| *light * *share).sum();
-        let unordered = self.albedo * mean * (1.0 - order);
-        for (weights, shown) in self.shown[tangent].iter().zip(shown) {
-            let ordered: Vec4 = weights.iter().zip(light).map(|(weight, light)| *weight * *light).sum();
-            *shown += ordered * order + unordered;
+        let unordered = self.albedo(mix) * mean * (1.0 - order);
+        shown.iter_mut().for_each(|shown| *shown += unordered);
+        for (end, share) in self.ends.iter().zip(mix).filter(|(_, share)| **share != Vec4::ZERO) {
+            let ordered_share = *share * order;
+            for (weights, shown) in end.shown[tangent].iter().zip(shown.iter_mut()) {
+                let ordered: Vec4 = weights.iter().zip(light).map(|(weight, light)| *weight * *light).sum();
+                *shown += ordered * ordered_share;
+            }
         }
     }
 
-    /// Share of even light that hair gives back, as a mean over its directions.
-    pub fn albedo(&self) -> Vec4 {
-        self.albedo
+    /// Share of even light that a mixture of hair gives back, as a mean over its directions.
+    pub fn albedo(&self, mix: &Mix) -> Vec4 {
+        self.albedos().zip(mix).map(|(albedo, share)| albedo * *share).sum()
+    }
+
+    /// That of each kind of hair.
+    pub fn albedos(&self) -> impl Iterator<Item = Vec4> {
+        self.ends.iter().map(|end| end.albedo)
     }
 }
 
@@ -184,6 +257,7 @@ pub struct Shows {
 /// Light that meets hair from one direction.
 struct Arriving {
     to_light: Vec3,
+    sine: f32,
     /// Cosine of its inclination.
     flat: f32,
     met: Met,
@@ -193,7 +267,7 @@ impl Arriving {
     #[inline]
     fn new(t: Vec3, to_light: Vec3) -> Self {
         let sine = t.dot(to_light);
-        Self { to_light, flat: (1.0 - sine * sine).max(1e-8).sqrt(), met: Met::new(sine) }
+        Self { to_light, sine, flat: (1.0 - sine * sine).max(1e-8).sqrt(), met: Met::new(sine) }
     }
 }
 
@@ -218,11 +292,11 @@ mod tests {
 
     #[test]
     fn even_light_stays_even_about_white_hair() {
-        let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], 1.0);
+        let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], None);
         for tangent in 0..TANGENTS {
             for order in [0.0, 0.3, 1.0] {
                 let mut shown = Rays::default();
-                lattice.add_shown(tangent, order, &[Vec4::ONE; DIRECTIONS], &mut shown);
+                lattice.add_shown(tangent, order, &ALL_DARK, &[Vec4::ONE; DIRECTIONS], &mut shown);
                 for shown in shown {
                     assert!((shown.x - 1.0).abs() < 1e-3, "{tangent}: {shown}");
                 }
@@ -232,10 +306,10 @@ mod tests {
 
     #[test]
     fn what_meets_white_hair_is_shown_all_around() {
-        let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], 1.0);
+        let lattice = Lattice::new(&Chiang::default().lobes(), [0.0; 3], None);
         let (t, to_light) = (Vec3::new(0.2, 0.9, 0.1).normalize(), Vec3::new(0.4, 0.7, 0.6).normalize());
         let mut shown = Rays::default();
-        lattice.add_light(t, &lattice.shows(t), to_light, Vec3::ONE, &mut shown);
+        lattice.add_light(t, &lattice.shows(t), &ALL_DARK, (to_light, Vec3::ONE), &mut shown);
         let leaves = |(shown, (way, share)): (&Vec4, &(Vec3, f32))| {
             shown.x * 4.0 * share * (1.0 - t.dot(*way).powi(2)).sqrt()
         };

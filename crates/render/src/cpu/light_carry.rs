@@ -68,7 +68,7 @@ impl Carried {
         &mut self,
         grid: &GridBox,
         cells: &[Cell],
-        even: Vec4,
+        even: impl Fn(&Cell) -> Vec4 + Sync + Send,
         straight: impl Fn(&Cell) -> Rays + Sync + Send,
         skin: impl Fn(&Cell) -> Vec4 + Sync + Send,
     ) {
@@ -84,6 +84,7 @@ impl Carried {
         let both = self.rays.par_iter_mut().zip(&mut self.direct).zip(cells.par_chunks(BLOCK));
         both.for_each(|((rays, direct), cells)| {
             for (at, cell) in cells.iter().enumerate() {
+                let even = even(cell);
                 for (way, shown) in straight(cell).into_iter().enumerate() {
                     (direct[way][at], rays[way][at]) = (shown, shown + even);
                 }
@@ -154,7 +155,7 @@ impl Carried {
                 let carried: Rays = std::array::from_fn(|way| rays[way][at]);
                 if cell.hair > 0.0 {
                     let mut shown: Rays = std::array::from_fn(|way| direct[way][at]);
-                    scene.lattice.add_shown(cell.nearest, cell.order, &carried, &mut shown);
+                    scene.lattice.add_shown(cell.nearest, cell.order, &cell.mix, &carried, &mut shown);
                     rays.iter_mut().zip(shown).for_each(|(rays, shown)| rays[at] = shown);
                 }
                 if cell.skin != Vec3::ZERO {

@@ -10,13 +10,12 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
-use super::lattice::{Lattice, Rays};
+use super::lattice::{ALL_DARK, Lattice, Rays};
 use super::light_carry::Carried;
 use super::light_field::{self, Field};
 use super::light_scene::{Cell, Scene};
 use super::light_sums::{HAIR_SUMS, SKIN_SUMS, UNITS, sum};
 use super::occlusion::{GridBox, toward};
-use crate::fibre::chiang::Pigments;
 
 /// Cosine of the angle between lights that are taken for one where straight light enters the grid.
 const ONE_BEAM: f32 = 0.985;
@@ -41,7 +40,6 @@ pub struct LightGrid {
 struct Toward {
     lattice: Arc<Lattice>,
     eye: Vec3,
-    pigment: f32,
 }
 
 /// All light but the straight one in a cell; what hair of its tangent shows toward the eye of it, and what the field
@@ -59,7 +57,7 @@ impl LightGrid {
             self.carried.scatter(&self.cells, scene);
         }
         self.carried.carry(&self.grid, &scene.around);
-        self.toward = Some(Toward { lattice: scene.lattice.clone(), eye: scene.eye, pigment: scene.pigment });
+        self.toward = Some(Toward { lattice: scene.lattice.clone(), eye: scene.eye });
         self.found.clear();
         self.found.resize_with(self.grid.cell_count(), OnceLock::new);
     }
@@ -100,7 +98,7 @@ impl LightGrid {
     /// What each cell holds, from the sums; the straight light that its hair meets.
     fn prepare(&mut self, scene: &Scene) {
         let (grid, parts) = (self.grid, &self.parts);
-        let width = HAIR_SUMS + scene.lights.len() + SKIN_SUMS;
+        let width = HAIR_SUMS + scene.reached.len() + SKIN_SUMS;
         let scale = 1.0 / (UNITS * grid.cell * grid.cell);
         let skin_sums = width - SKIN_SUMS;
         let around = scene.around[0];
@@ -122,6 +120,13 @@ impl LightGrid {
                 cell.tangent = mean.normalize_or(Vec3::Y);
                 cell.order = mean.length_squared().min(1.0);
                 cell.nearest = scene.lattice.nearest(cell.tangent);
+                cell.mix = ALL_DARK;
+                if scene.lattice.is_mixed() {
+                    // Behind the sums of the lights.
+                    let light = vector(index, HAIR_SUMS + scene.lights.len()) / hair;
+                    let light = light.clamp(Vec3::ZERO, Vec3::ONE).extend(0.0);
+                    cell.mix = [Vec4::ONE - light, light];
+                }
             }
             if area > 0.0 {
                 cell.skin_light = vector(index, skin_sums + 3).extend(0.0) / area;
@@ -135,7 +140,7 @@ impl LightGrid {
             straight_light(cell, grid.middle(cell.index), scene, &reached)
         };
         // As if the surroundings reached every hair: even light is found at once.
-        let even = around * scene.lattice.albedo();
+        let even = |cell: &Cell| around * scene.lattice.albedo(&cell.mix);
         let skin = |cell: &Cell| (cell.skin_light + around) * color;
         self.carried.begin(&grid, &self.cells, even, straight, skin);
     }
@@ -159,13 +164,16 @@ impl Toward {
     /// What a cell's hair shows toward the eye of light along every direction, and what the field alone says of that.
     fn shown(&self, cell: &Cell, middle: Vec3, rays: &Rays, field: &Field) -> [Vec4; 2] {
         let to_eye = (self.eye - middle).normalize_or(Vec3::Z);
-        let weights = self.lattice.weights(cell.tangent, to_eye);
-        let shown = rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
-        let moments = self.lattice.table().moments(cell.tangent.dot(to_eye), Pigments::Even(self.pigment));
         let u = light_field::across(cell.tangent, to_eye);
-        let known = light_field::shown(field, &moments, cell.tangent, u);
-        // Weighted with the cell's hair: empty cells have no say.
-        [shown * cell.hair, known * cell.hair]
+        let mut sums = [Vec4::ZERO; 2];
+        for ((weights, moments), share) in self.lattice.weights(cell.tangent, to_eye).zip(&cell.mix) {
+            let shown = rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
+            let known = light_field::shown(field, &moments, cell.tangent, u);
+            // Weighted with the cell's hair: empty cells have no say.
+            let weight = *share * cell.hair;
+            sums = [sums[0] + shown * weight, sums[1] + known * weight];
+        }
+        sums
     }
 }
 
@@ -182,9 +190,10 @@ fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usi
         }
         let shows = shows.get_or_insert_with(|| scene.lattice.shows(cell.tangent));
         let (to_light, light) = (beam.way.normalize_or(Vec3::Y), beam.light);
-        scene.lattice.add_light(cell.tangent, shows, to_light, light * cell.order, &mut shown);
+        let ordered = (to_light, light * cell.order);
+        scene.lattice.add_light(cell.tangent, shows, &cell.mix, ordered, &mut shown);
         // Irradiance, pi times the radiance, over the whole sphere.
-        let even = scene.lattice.albedo() * light.extend(0.0) * (0.25 * (1.0 - cell.order));
+        let even = scene.lattice.albedo(&cell.mix) * light.extend(0.0) * (0.25 * (1.0 - cell.order));
         shown.iter_mut().for_each(|shown| *shown += even);
     };
     let mut beam = Beam::default();

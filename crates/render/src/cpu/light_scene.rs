@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Vec3, Vec4};
 
-use super::lattice::Lattice;
+use super::lattice::{Lattice, Mix};
 use super::light_field::Field;
 use super::occlusion::Occlusion;
 use super::{ShadowBody, Shadows, Strands};
@@ -15,7 +15,8 @@ use crate::Light;
 pub struct Scene<'a> {
     /// All drawn hair.
     pub strands: &'a Strands,
-    /// Share of each shadow light that reaches every point of it, shape `[light][point]`; empty for the others.
+    /// Share of each shadow light that reaches every point of it, shape `[light][point]`, empty for the others; behind
+    /// these, where the hair is mixed, how much of the lightest it is, by channel.
     pub reached: &'a [Vec<f32>],
     /// The body and the reflectance of its skin.
     pub body: Option<(ShadowBody<'a>, Vec3)>,
@@ -31,8 +32,6 @@ pub struct Scene<'a> {
     pub lattice: &'a Arc<Lattice>,
     /// Where the camera stands \[m\], world space.
     pub eye: Vec3,
-    /// Mean multiple of the pigment.
-    pub pigment: f32,
     /// How many times light is scattered.
     pub rounds: u32,
 }
@@ -54,4 +53,6 @@ pub(super) struct Cell {
     pub(super) skin_light: Vec4,
     /// The lattice's number of the tangent.
     pub(super) nearest: usize,
+    /// Shares of the darkest and the lightest hair.
+    pub(super) mix: Mix,
 }

@@ -26,7 +26,7 @@ pub(super) const SKIN_SUMS: usize = 6;
 /// Sums both in parts, shape `[part][cell][sum]`.
 pub(super) fn sum(grid: &GridBox, scene: &Scene, parts: &mut Vec<Vec<i64>>) {
     let (cells, strands) = (grid.cell_count(), scene.strands);
-    let width = HAIR_SUMS + scene.lights.len() + SKIN_SUMS;
+    let width = HAIR_SUMS + scene.reached.len() + SKIN_SUMS;
     let count_of_parts = par::current_num_threads().clamp(1, PARTS);
     parts.resize_with(count_of_parts, Vec::new);
     parts.par_iter_mut().enumerate().for_each(|(part, sums)| {

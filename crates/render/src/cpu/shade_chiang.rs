@@ -3,19 +3,17 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_base::math;
 use strandline_base::par::prelude::*;
-use strandline_base::random::{HashStream, hash_pair, unit};
 
 use super::lattice::Lattice;
 use super::light_field;
 use super::light_grid::LightGrid;
 use super::light_scene::Scene;
+use super::mixture::{Chance, OwnColors, Source, lightness, pigments};
 use super::occlusion::{Occlusion, toward};
 use super::radiances::{Shading, fill_all};
 use super::{ShadowBody, Shadows, Strands};
-use crate::fibre::chiang::{INK, Pigments, Seen, Table, WHITE};
-use crate::fibre::{Chiang, Pigment};
+use crate::fibre::chiang::{Pigments, Seen, Table};
 use crate::lights::Shining;
 use crate::{Light, Look};
 
@@ -23,28 +21,6 @@ use crate::{Light, Look};
 const NODES: usize = 8;
 /// A share of a light of which nothing is seen.
 const LEAST_SHARE: f32 = 1e-5;
-
-/// What the tables of a look are made from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Source {
-    pub(crate) fibre: Chiang,
-    /// Mean colour of the hair, where its points have colours in place of pigment.
-    pub(crate) color: Option<Vec3>,
-    /// Mean pigment as a multiple of that of the look, or of hair of that colour.
-    pub(crate) pigment: f32,
-}
-
-impl Source {
-    /// Of a look, and the mean colour of a groom that has colours.
-    pub(crate) fn new(look: &Look, own: Option<Vec3>) -> Self {
-        let fibre = look.fibre.chiang;
-        let of_look = (fibre.pigment == Pigment::Color).then(|| 0.5 * (look.root_color + look.tip_color));
-        let color = own.or(of_look);
-        let white = if own.is_some() { 0.0 } else { look.grey };
-        let tip = if color.is_some() { 1.0 } else { fibre.tip_pigment };
-        Self { fibre, color, pigment: (1.0 - white) * 0.5 * (1.0 + tip) + white * WHITE }
-    }
-}
 
 /// Tables of a look's fibre.
 #[derive(Clone, Debug)]
@@ -56,14 +32,11 @@ pub(crate) struct Made {
 
 impl Made {
     pub(crate) fn new(from: Source) -> Self {
-        let (fibre, lobes) = (from.fibre, from.fibre.lobes());
-        let mean = match from.color {
-            Some(color) => fibre.absorption_of_color(color),
-            None => fibre.absorption(Vec3::ZERO),
-        };
-        let of_table = if from.color.is_some() { [INK; 3] } else { mean };
-        let lattice = Arc::new(Lattice::new(&lobes, mean, from.pigment));
-        Self { from, table: Table::new(&lobes, of_table), lattice }
+        let (lobes, unit) = (from.fibre.lobes(), from.absorption());
+        let darkest = from.darkest.to_array();
+        let absorption = std::array::from_fn(|channel| unit[channel] * f64::from(darkest[channel]));
+        let lattice = Arc::new(Lattice::new(&lobes, absorption, from.lightest_of_darkest()));
+        Self { from, table: Table::new(&lobes, unit), lattice }
     }
 }
 
@@ -73,6 +46,8 @@ pub struct Scattering {
     made: Option<Made>,
     /// Share of each shadow light that reaches every point, shape `[light][point]`.
     reached: Vec<Vec<f32>>,
+    /// How much of the lightest hair every point is, where hair is mixed, shape `[channel][point]`.
+    lightness: Vec<Vec<f32>>,
     grid: LightGrid,
 }
 
@@ -87,8 +62,8 @@ pub struct Lit<'a> {
     pub body: Option<(ShadowBody<'a>, Vec3)>,
     /// The hair's look.
     pub look: &'a Look,
-    /// Mean of the groom's colours, where it has some.
-    pub own_color: Option<Vec3>,
+    /// The groom's colours, where it has some.
+    pub own_colors: Option<&'a OwnColors>,
     /// Where the camera stands \[m\], world space.
     pub eye: Vec3,
 }
@@ -118,12 +93,16 @@ impl Scattering {
         } else {
             occlusion.fill(strands, &look.hair_shadow());
         }
-        let source = Source::new(look, lit.own_color);
+        let source = Source::new(look, lit.own_colors);
         if self.made.as_ref().is_none_or(|made| made.from != source) {
             self.made = Some(Made::new(source));
         }
         let Some(Made { lattice, .. }) = &self.made else { return };
         reach(strands, lit, &mut self.reached);
+        if lattice.is_mixed() {
+            lightness(strands, look, &source, lattice, &mut self.lightness);
+            self.reached.append(&mut self.lightness);
+        }
         self.grid.fill(&Scene {
             strands,
             reached: &self.reached,
@@ -134,9 +113,9 @@ impl Scattering {
             around: look.around(),
             lattice,
             eye: lit.eye,
-            pigment: source.pigment,
             rounds: look.fibre.chiang.scatterings,
         });
+        self.lightness.extend(self.reached.drain(lit.lights.len()..));
     }
 
     /// How the light of points is found, of what it was prepared for; none before that.
@@ -184,13 +163,7 @@ struct Strand<'a> {
 
 impl<'a> Strand<'a> {
     fn new(look: &'a Look, own: Option<&'a [Vec3]>, guide: u32, index: u32) -> Self {
-        let seed = hash_pair(look.seed ^ 0x10_5e, guide);
-        // Half of the variation belongs to the whole clump, as in real locks.
-        let clump = unit(seed) - 0.5;
-        let mut random = HashStream::new(hash_pair(seed, index));
-        let apart = random.unit() - 0.5;
-        let darker = math::exp2(-look.variation * (clump + apart));
-        let darker = if random.unit() < look.grey { WHITE } else { darker };
+        let Chance { darker, mut random, .. } = Chance::new(look, guide, index);
         let noise = 2.0 * look.highlight_noise.to_radians();
         let whole = 2.0 * random.unit() - 1.0;
         let shifts = std::array::from_fn(|_| noise * (0.6 * whole + 0.8 * random.unit() - 0.4));
@@ -200,17 +173,7 @@ impl<'a> Strand<'a> {
     /// Pigment of a point at a share of the way to the tip.
     #[inline]
     fn pigments(&self, point: usize, share: f32) -> Pigments {
-        let fibre = &self.look.fibre.chiang;
-        match (self.own, fibre.pigment) {
-            (Some(own), _) => Pigments::Channels(fibre.inks(own[point])),
-            (None, Pigment::Color) => {
-                let color = self.look.root_color.lerp(self.look.tip_color, share);
-                Pigments::Channels(fibre.inks(color) * self.darker)
-            }
-            (None, Pigment::Melanin) => {
-                Pigments::Even(self.darker * (1.0 + (fibre.tip_pigment - 1.0) * share))
-            }
-        }
+        pigments(self.look, self.own, self.darker, point, share)
     }
 
     /// Shift of the highlights at a share of the way to the tip.

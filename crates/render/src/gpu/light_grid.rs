@@ -1,5 +1,6 @@
 //! Light that hair and skin scatter many times, and `shade` with it.
 
+use glam::{Vec3, Vec4};
 use strandline_gpu::{
     Bindings, Bound, BoundDrawing, Buffer, Declaration, Drawing, Gpu, GpuError, Kernel, kernel,
 };
@@ -10,12 +11,13 @@ use super::inputs::Frame;
 use super::records::{LightCell, Vertex};
 use super::{MAX_SHADOWS, draw};
 use crate::RenderError;
-use crate::cpu::lattice::DIRECTIONS;
-use crate::cpu::shade_chiang::{Made, Source};
+use crate::cpu::lattice::{DIRECTIONS, MOST_ENDS, TANGENTS};
+use crate::cpu::mixture::Source;
+use crate::cpu::shade_chiang::Made;
 use crate::fibre::chiang::Table;
 
 /// Sums of a cell: see light_sums.wesl.
-const SUMS: usize = 10 + MAX_SHADOWS;
+const SUMS: usize = 13 + MAX_SHADOWS;
 /// Vectors of a cell behind the fibre's tables, and where they begin.
 const GLOW: usize = 13;
 const FIRST_GLOW: usize = 28_672;
@@ -29,8 +31,10 @@ kernel! {
     pub(super) struct SumHair in "light_sums" (super::linked::LIGHT_SUMS), entry "sum_hair" {
         0 frame: Read Frame,
         1 points: Read [f32; 4],
+        2 colors: Read [u32; 2],
         4 maps: Read [u32; 4],
         5 body_depths: Read f32,
+        6 cubes: Read [f32; 4],
         9 sums: ReadWrite u32,
     }
 }
@@ -202,8 +206,7 @@ impl LightGrid {
         }
         let made = Made::new(source);
         let table = made.device_table();
-        let numbers =
-            |entries: Vec<glam::Vec4>| entries.iter().map(|entry| entry.to_array()).collect::<Vec<_>>();
+        let numbers = |entries: Vec<Vec4>| entries.iter().map(|entry| entry.to_array()).collect::<Vec<_>>();
         self.glow.write(&numbers(table))?;
         self.lattice.write(&numbers(made.device_lattice()))?;
         self.made = Some(made);
@@ -222,7 +225,9 @@ impl LightGrid {
         let Maps { texels: maps, body: body_depths, .. } = maps;
         let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
         Ok(Bounds {
-            sum_hair: self.sum_hair.bind(gpu, &SumHair { frame, points, maps, body_depths, sums })?,
+            sum_hair: self
+                .sum_hair
+                .bind(gpu, &SumHair { frame, points, colors: radiances, maps, body_depths, cubes, sums })?,
             sum_skin: self
                 .sum_skin
                 .bind(gpu, &SumSkin { frame, maps, body_depths, triangles, vertices, sums })?,
@@ -244,30 +249,32 @@ const _: () = assert!(crate::fibre::chiang::ENTRIES <= FIRST_GLOW);
 
 impl Made {
     /// The tables as a device reads them.
-    fn device_table(&self) -> Vec<glam::Vec4> {
+    fn device_table(&self) -> Vec<Vec4> {
         let mut entries = self.table.entries.clone();
         self.note(&self.table, &mut entries);
         entries
     }
 
     /// Behind the tables directions of hair and what it shows.
-    fn device_lattice(&self) -> Vec<glam::Vec4> {
+    fn device_lattice(&self) -> Vec<Vec4> {
         let mut entries = self.lattice.entries();
         self.note(self.lattice.table(), &mut entries);
         entries
     }
 
     /// Single numbers, in the last lanes of the first entries.
-    fn note(&self, table: &Table, entries: &mut [glam::Vec4]) {
-        let albedo = self.lattice.albedo();
-        let Source { fibre, pigment, .. } = self.from;
+    fn note(&self, table: &Table, entries: &mut [Vec4]) {
+        let Source { fibre, darkest, lightest, .. } = self.from;
+        let albedos: Vec<Vec3> = self.lattice.albedos().map(Vec4::truncate).collect();
+        let [dark, light] = [albedos[0], albedos[albedos.len() - 1]];
         let scale = fibre.color_scale() as f32;
-        let numbers = [table.floor, albedo.x, albedo.y, albedo.z, pigment, fibre.tip_pigment, scale];
+        let single = [table.floor, albedos.len() as f32, fibre.tip_pigment, scale];
+        let vectors = [dark, light, darkest, self.from.of_darkest(lightest)];
+        let numbers = single.into_iter().chain(vectors.into_iter().flat_map(|vector| vector.to_array()));
         entries.iter_mut().zip(numbers).for_each(|(entry, number)| entry.w = number);
     }
 
     fn lattice_len() -> usize {
-        use crate::cpu::lattice::TANGENTS;
-        crate::fibre::chiang::ENTRIES + TANGENTS + TANGENTS * DIRECTIONS * DIRECTIONS
+        crate::fibre::chiang::ENTRIES + TANGENTS + MOST_ENDS * TANGENTS * DIRECTIONS * DIRECTIONS
     }
 }

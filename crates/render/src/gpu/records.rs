@@ -68,5 +68,8 @@ mirror! {
         pub number: f32,
         pub from_skin: [f32; 3],
         pub unused: f32,
+        /// How much of the lightest hair its hair is, by channel.
+        pub light: [f32; 3],
+        pub unused_too: f32,
     }
 }

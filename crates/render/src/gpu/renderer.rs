@@ -18,8 +18,8 @@ use super::scene::Scene;
 use super::shade::{LayerColoring, Numbers};
 use super::stages::{Kernels, Stages};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw, tessellate};
-use crate::cpu::shade_chiang::Source;
-use crate::frame::{bounds, mean_color, middle};
+use crate::cpu::mixture::{OwnColors, Source};
+use crate::frame::{bounds, middle};
 use crate::lights::at_samples;
 use crate::{FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
@@ -54,8 +54,8 @@ pub struct GpuRenderer {
     pub(super) drawn: Drawn,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
     pub(super) lit: (Vec<Light>, Shadow, Vec3),
-    /// Mean of the guides' colours.
-    own_color: Option<Vec3>,
+    /// The guides' colours.
+    own_colors: Option<OwnColors>,
 }
 
 /// What the last frame drew.
@@ -104,7 +104,7 @@ impl GpuRenderer {
             numbers: None,
             drawn: Drawn::default(),
             lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
-            own_color: mean_color(guides),
+            own_colors: OwnColors::of(guides),
             guides: guides.clone(),
             gpu: gpu.clone(),
         })
@@ -307,7 +307,7 @@ impl GpuRenderer {
             body_ball: self.body_ball,
             own: codes::own_kinds(&self.guides),
             middle,
-            own_color: self.own_color,
+            own_color: self.own_colors.map(|own| own.mean),
         }
     }
 
@@ -345,7 +345,7 @@ impl GpuRenderer {
             self.stages = Some(Stages::new(&self.gpu, &self.kernels, &self.groom, strands, maps)?);
         }
         if scene.input.look.fibre.model.scatters_many_times() {
-            self.prepare_light(Source::new(scene.input.look, self.own_color))?;
+            self.prepare_light(Source::new(scene.input.look, self.own_colors.as_ref()))?;
         }
         Ok(())
     }

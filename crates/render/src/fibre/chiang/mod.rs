@@ -62,7 +62,7 @@ choices! {
 }
 
 /// Pigment of white hair, as a multiple of that of the others.
-pub const WHITE: f32 = 0.02;
+pub const WHITE: f32 = 0.008;
 
 impl Chiang {
     /// Reflectances at root and tip of a mass of hair with so many times the melanin.

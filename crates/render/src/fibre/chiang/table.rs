@@ -75,13 +75,25 @@ impl Seen {
     /// For the sine of the eye's inclination and a multiple of the pigment.
     #[inline]
     pub fn new(sine: f32, pigments: Pigments) -> Self {
-        let angle = arc_sine(sine);
         let (levels, even) = match pigments {
             Pigments::Even(pigment) => ([level_of(pigment); 3], true),
             Pigments::Channels(pigments) => (pigments.to_array().map(level_of), false),
         };
+        Self { angle: 0.0, sine: 0.0, square: 1.0, row: (0, 0.0), levels, even }.at(sine)
+    }
+
+    /// The same where the inclination has another sine.
+    #[inline]
+    pub fn at(self, sine: f32) -> Self {
+        let angle = arc_sine(sine);
         let row = place(angle.abs() * std::f32::consts::FRAC_2_PI, EYES);
-        Self { angle, sine, square: 1.0 - sine * sine, row, levels, even }
+        Self { angle, sine, square: 1.0 - sine * sine, row, ..self }
+    }
+
+    /// The same of hair of another's pigment.
+    #[inline]
+    pub fn of(self, other: &Self) -> Self {
+        Self { levels: other.levels, even: other.even, ..self }
     }
 
     /// The sine of the eye's inclination.
@@ -215,19 +227,27 @@ impl Table {
         [low[0].lerp(high[0], between), low[1].lerp(high[1], between)]
     }
 
-    /// Shares of light that go as R, TT and TRT, for the sine of the eye's inclination.
+    /// Shares of light that go as R, TT and TRT.
     #[inline]
-    pub fn shares(&self, eye: f32, pigment: f32) -> [Vec3; 3] {
-        let (row, part) = place(arc_sine(eye).abs() * std::f32::consts::FRAC_2_PI, EYES);
-        let (level, between) = level_of(pigment);
-        let [first, second] = [0, 1].map(|half| {
+    pub fn shares(&self, seen: &Seen) -> [Vec3; 3] {
+        let [first, second] = if seen.even {
+            self.even_shares(seen.row, seen.levels[0])
+        } else {
+            let found = seen.levels.map(|level| self.even_shares(seen.row, level));
+            channels(found, [0, 1].map(|term| found[0][term].w))
+        };
+        [Vec3::splat(first.w), first.truncate(), second.truncate()]
+    }
+
+    #[inline]
+    fn even_shares(&self, (row, part): (usize, f32), (level, between): (usize, f32)) -> [Vec4; 2] {
+        [0, 1].map(|half| {
             let at = |level: usize| {
                 let first = FIRST_SHARE + 2 * (level * EYES + row) + half;
                 self.entries[first].lerp(self.entries[first + 2], part)
             };
             at(level).lerp(at(level + 1), between)
-        });
-        [Vec3::splat(first.w), first.truncate(), second.truncate()]
+        })
     }
 
     /// The fibre's moments (see `moments.rs`) for the sine of the eye's inclination and a multiple of the pigment.
