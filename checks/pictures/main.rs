@@ -11,6 +11,7 @@ mod light;
 mod linear;
 mod mixture;
 mod opacity;
+mod penumbra;
 mod resolve;
 mod screen;
 mod shading;

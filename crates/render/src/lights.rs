@@ -150,12 +150,31 @@ impl Light {
         }
     }
 
+    /// Directions of the sides of its surface.
+    fn sides(&self) -> [Vec3; 2] {
+        let forward = (self.target - self.position).normalize_or(Vec3::NEG_Y);
+        let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
+        [right, right.cross(forward)]
+    }
+
+    /// Sides \[m\] of the part of it that each of these places stands for: of a disc a square of the same area.
+    pub(crate) fn part(&self) -> [Vec3; 2] {
+        let [right, up] = self.sides();
+        let count = self.samples as f32;
+        match self.kind {
+            LightKind::Directional | LightKind::Spot | LightKind::Point => [Vec3::ZERO; 2],
+            LightKind::Rectangle => [right * (self.width / count), up * (self.height / count)],
+            LightKind::Disc => {
+                let side = 0.5 * std::f32::consts::PI.sqrt() * self.width / count;
+                [right * side, up * side]
+            }
+        }
+    }
+
     /// The lights at these places that stand for it.
     fn at_samples(self) -> impl Iterator<Item = Self> {
         let count = self.sample_count();
-        let forward = (self.target - self.position).normalize_or(Vec3::NEG_Y);
-        let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
-        let up = right.cross(forward);
+        let [right, up] = self.sides();
         (0..count).map(move |index| {
             let [x, y] = self.sample(index);
             let offset = if count == 1 { Vec3::ZERO } else { right * x + up * y };
@@ -171,14 +190,13 @@ impl Light {
     /// A place beside the middle \[m\].
     fn sample(&self, index: usize) -> [f32; 2] {
         let side = self.samples as usize;
-        if self.kind == LightKind::Disc {
-            // Even over the disc by the golden turn.
-            let distance = 0.5 * self.width * ((index as f32 + 0.5) / (side * side) as f32).sqrt();
-            let (y, x) = math::sin_cos(index as f32 * 2.399_963_2);
-            return [distance * x, distance * y];
-        }
         let middle = |at: usize| (at as f32 + 0.5) / side as f32 - 0.5;
-        [self.width * middle(index % side), self.height * middle(index / side)]
+        let place = [middle(index % side), middle(index / side)];
+        if self.kind == LightKind::Disc {
+            on_disc(place, self.samples as f32).map(|place| self.width * place)
+        } else {
+            [self.width * place[0], self.height * place[1]]
+        }
     }
 
     /// Cosines of a spot light's rim and of where it begins to fade.
@@ -186,6 +204,28 @@ impl Light {
         let rim = self.cone_angle.to_radians();
         let full = rim * (1.0 - self.cone_softness.clamp(1e-3, 1.0));
         [math::cos(rim), math::cos(full)]
+    }
+}
+
+/// Where the middle of one of so many squares along the sides of a square lies on a disc that the square is drawn onto,
+/// rings onto rings [Shirley1997]: the centroid of the square's image. Both have the side or diameter 1.
+fn on_disc([x, y]: [f32; 2], count: f32) -> [f32; 2] {
+    const QUARTER: f32 = std::f32::consts::FRAC_PI_4;
+    let most = x.abs().max(y.abs());
+    if most < 0.25 / count {
+        return [0.0; 2];
+    }
+    // Of a sector of a ring: both have their own factor.
+    let [outer, inner] = [2.0 * most + 1.0 / count, 2.0 * most - 1.0 / count];
+    let half_turn = QUARTER / (2.0 * most * count);
+    let radius = (outer.powi(3) - inner.powi(3)) / (3.0 * (outer * outer - inner * inner));
+    let radius = radius * math::sin(half_turn) / half_turn;
+    let aside = if x.abs() >= y.abs() { y / x } else { x / y };
+    let (sine, cosine) = math::sin_cos(QUARTER * aside);
+    if x.abs() >= y.abs() {
+        [radius * cosine * x.signum(), radius * sine * x.signum()]
+    } else {
+        [radius * sine * y.signum(), radius * cosine * y.signum()]
     }
 }
 

@@ -20,6 +20,7 @@ pub mod occlusion;
 pub mod opacity_depth;
 pub mod opacity_layers;
 mod outside;
+mod penumbra;
 mod projection;
 mod radiances;
 pub mod resolve;

@@ -23,6 +23,8 @@ pub(crate) struct LightView {
     parallel: bool,
     /// Greatest coordinate on the plane that the light reaches.
     pub(crate) reach: f32,
+    /// Sides \[m\], along `right` and `up`, of the part of a light with an area that this place of it stands for.
+    pub(crate) part: [Vec2; 2],
 }
 
 impl LightView {
@@ -38,7 +40,8 @@ impl LightView {
             LightKind::Point | LightKind::Rectangle | LightKind::Disc => 10.0,
         };
         let parallel = light.kind == LightKind::Directional;
-        Self { origin: light.position, right, up, forward, parallel, reach }
+        let part = light.part().map(|side| Vec2::new(side.dot(right), side.dot(up)));
+        Self { origin: light.position, right, up, forward, parallel, reach, part }
     }
 
     /// Plane coordinates and depth \[m\]; `None` behind the light.
@@ -153,8 +156,8 @@ pub struct ShadowMap {
     pub(crate) borders: [f32; 3],
     /// Logarithm of what one hair lets through.
     log_transmission: f32,
-    body_bias: f32,
-    inverse_softness: f32,
+    pub(super) body_bias: f32,
+    pub(super) inverse_softness: f32,
     /// Whether a hair hides all behind it.
     pub(crate) solid: bool,
 }
@@ -195,7 +198,7 @@ impl ShadowMap {
 
     /// [`ShadowMap::crossings`] of a point on the plane with its depth \[m\].
     #[inline]
-    fn crossed(&self, projected: Vec3) -> f32 {
+    pub(super) fn crossed(&self, projected: Vec3) -> f32 {
         let Some((index, weights)) = self.corners(self.hair_window.texel(projected.truncate())) else {
             return 0.0;
         };
@@ -260,7 +263,7 @@ impl ShadowMap {
 
     /// The first of the four texels whose middles surround texel coordinates, and the weights of the four.
     #[inline]
-    fn corners(&self, texel: Vec2) -> Option<(usize, [f32; 4])> {
+    pub(super) fn corners(&self, texel: Vec2) -> Option<(usize, [f32; 4])> {
         let texel = texel - Vec2::splat(0.5);
         let limit = self.size as f32 - 1.0;
         if !(texel.x >= 0.0 && texel.y >= 0.0 && texel.x < limit && texel.y < limit) {
@@ -272,7 +275,7 @@ impl ShadowMap {
     }
 
     #[inline]
-    fn quad(&self, first: usize) -> [usize; 4] {
+    pub(super) fn quad(&self, first: usize) -> [usize; 4] {
         [first, first + 1, first + self.size, first + self.size + 1]
     }
 }

@@ -46,7 +46,7 @@ impl Skin<'_> {
             if reflected == Vec3::ZERO || lit.radiance == Vec3::ZERO {
                 return sum;
             }
-            let passed = self.shadows.map(index).map_or(1.0, |map| map.transmittance(point));
+            let passed = self.shadows.map(index).map_or(1.0, |map| map.on_skin(point));
             sum + reflected * lit.radiance * (PI * passed)
         })
     }

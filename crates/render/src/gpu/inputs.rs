@@ -188,6 +188,8 @@ mirror! {
         pub caster: u32,
         /// One over `depth_range` \[1/m\].
         pub depth_scale: f32,
+        /// Sides of the part that it stands for, along right and up, of both \[m\].
+        pub part: [f32; 4],
     }
 }
 
@@ -314,6 +316,10 @@ impl LightSource {
                 depth_range: (2.0 * radius).max(1e-3),
                 caster: 0,
                 depth_scale: 1.0 / (2.0 * radius).max(1e-3),
+                part: {
+                    let [across, along] = view.part;
+                    [across.x, across.y, along.x, along.y]
+                },
             };
             if light.shadow {
                 source.slot = slot;

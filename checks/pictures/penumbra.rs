@@ -1,0 +1,189 @@
+//! Shadows of lights with an area on skin: past the edge of a body and of hair a floor gets the share of a light that
+//! is seen from there, without steps, on both backends.
+
+use glam::Vec3;
+use strandline_body::{Mesh, Pose};
+use strandline_checks::{On, law};
+use strandline_groom::{Groom, Guides};
+use strandline_render::gpu::GpuRenderer;
+use strandline_render::{
+    Background, BodyLook, Camera, Clump, Environment, FrameInput, LevelOfDetail, Light, LightKind, Look,
+    PictureSettings, Renderer, Shadow, ToneMap,
+};
+
+use crate::linear::Linear;
+
+/// Height \[m\] of what casts the shadow: all with x below 0.
+const EDGE: f32 = 0.3;
+/// Places on the floor that are looked at, and how far they reach to both sides \[m\].
+const PLACES: usize = 81;
+const REACH: f32 = 0.12;
+
+/// What casts the shadow.
+#[derive(Clone, Copy, PartialEq)]
+enum Caster {
+    Nothing,
+    Body,
+    Hair,
+}
+
+fn square(middle: Vec3, half: Vec3) -> [Vec3; 4] {
+    let (x, z) = (Vec3::X * half.x, Vec3::Z * half.z);
+    [middle - x - z, middle - x + z, middle + x + z, middle + x - z]
+}
+
+/// A floor of 4 m, and a half plane above it.
+fn body(caster: Caster) -> Mesh {
+    let mut corners = square(Vec3::ZERO, Vec3::splat(2.0)).to_vec();
+    if caster == Caster::Body {
+        corners.extend(square(Vec3::new(-0.5, EDGE, 0.0), Vec3::new(0.5, 0.0, 0.8)));
+    }
+    let triangles =
+        (0..corners.len() as u32).step_by(4).flat_map(|at| [[at, at + 1, at + 2], [at, at + 2, at + 3]]);
+    let triangles = triangles.collect();
+    Mesh::new(corners, triangles).unwrap()
+}
+
+/// A curtain of three layers of hair that lets next to nothing through, or one hair that is not seen.
+fn hair(caster: Caster) -> Guides {
+    let (count, width) = if caster == Caster::Hair { (3 * 600, 2e-3) } else { (1, 1e-7) };
+    let mut groom = Groom::empty(width);
+    for strand in 0..count {
+        let (across, layer) = ((strand / 3) as f32, (strand % 3) as f32);
+        let middle = Vec3::new(-1e-3 - 5e-4 * across, EDGE + 1e-3 * (layer - 1.0), 0.0);
+        groom.push([middle - Vec3::Z * 0.3, middle + Vec3::Z * 0.3]);
+    }
+    Guides::resample(&groom, 8).unwrap()
+}
+
+fn look() -> Look {
+    let shadow = Shadow { opacity: 0.9, map_size: 1024, ..Shadow::default() };
+    Look {
+        follow_strands: 1,
+        hair_count: 0,
+        tip_width: 1.0,
+        environment: Environment { sky: Vec3::ZERO, ground: Vec3::ZERO },
+        clump: Clump {
+            root_radius: 0.0,
+            tip_radius: 0.0,
+            shorter: 0.0,
+            wave_amplitude: 0.0,
+            ..Clump::default()
+        },
+        shadow,
+        ..Look::thesis()
+    }
+}
+
+/// Light of the floor at places along x.
+fn floor(on: &On, caster: Caster, light: Light) -> Vec<f32> {
+    let camera = Camera {
+        position: Vec3::new(0.0, 0.25, 0.7),
+        target: Vec3::ZERO,
+        field_of_view: 35.0,
+        ..Camera::default()
+    };
+    let dark = Vec3::ZERO;
+    let settings = PictureSettings {
+        layers: true,
+        supersampling: 1,
+        tone_map: ToneMap::Off,
+        background: Background { top: dark, bottom: dark },
+        ..PictureSettings::sized(640, 240)
+    };
+    let (guides, mesh, look) = (hair(caster), body(caster), look());
+    let input = FrameInput {
+        positions: guides.positions(),
+        world_from_head: Pose::IDENTITY,
+        camera: &camera,
+        look: &look,
+        body_look: &BodyLook {
+            color: Vec3::splat(0.5),
+            wrap: 0.0,
+            specular: 0.0,
+            scalp: 0.0,
+            ..BodyLook::default()
+        },
+        lights: &[light],
+        level_of_detail: &LevelOfDetail::full(),
+    };
+    let (_, report) = match on {
+        On::Cpu => Renderer::new(&guides, Some(&mesh), &settings).unwrap().draw(&input).unwrap(),
+        On::Gpu(gpu) => GpuRenderer::new(gpu, &guides, Some(&mesh), &settings).unwrap().draw(&input).unwrap(),
+    };
+    let picture = Linear::of(&report.layers.unwrap());
+    let view_from_world = camera.view_from_world();
+    let shown = |x: f32| {
+        let seen = view_from_world.transform_point3(Vec3::X * x);
+        let scale = 0.5 * picture.height as f32 * camera.focal() / -seen.z;
+        let column = 0.5 * picture.width as f32 + seen.x * scale - 0.5;
+        let row = (0.5 * picture.height as f32 - seen.y * scale) as usize;
+        let (low, part) = (column as usize, column.fract());
+        let at = |column: usize| picture.pixels[row * picture.width + column].x;
+        at(low) + (at(low + 1) - at(low)) * part
+    };
+    places().map(shown).collect()
+}
+
+fn places() -> impl Iterator<Item = f32> {
+    (0..PLACES).map(|place| REACH * (2.0 * place as f32 / (PLACES - 1) as f32 - 1.0))
+}
+
+/// Share of a light's irradiance that comes past the edge to a place on the floor.
+fn share(light: &Light, x: f32) -> f32 {
+    let forward = (light.target - light.position).normalize();
+    let right = forward.cross(Vec3::Y).normalize_or(Vec3::X);
+    let up = right.cross(forward);
+    let (mut whole, mut seen) = (0.0, 0.0);
+    for place in 0..200 * 200 {
+        let [along, across] = [place % 200, place / 200].map(|at| (at as f32 + 0.5) / 200.0 - 0.5);
+        if light.kind == LightKind::Disc && along.hypot(across) > 0.5 {
+            continue;
+        }
+        let height = if light.kind == LightKind::Disc { light.width } else { light.height };
+        let way = light.position + right * (along * light.width) + up * (across * height) - Vec3::X * x;
+        let weight = way.y * -way.dot(forward) / way.length_squared().powi(2);
+        whole += weight;
+        if x + way.x * (EDGE / way.y) > 0.0 {
+            seen += weight;
+        }
+    }
+    seen / whole
+}
+
+fn lights() -> impl Iterator<Item = Light> {
+    let light = Light { position: Vec3::new(0.0, 1.5, 0.0), width: 0.4, height: 0.4, ..Light::default() };
+    let kinds = [(LightKind::Rectangle, 1), (LightKind::Rectangle, 2), (LightKind::Disc, 2)];
+    kinds.into_iter().map(move |(kind, samples)| {
+        // One of them askew.
+        let position = if kind == LightKind::Disc { Vec3::new(0.2, 1.4, 0.3) } else { light.position };
+        Light { kind, samples, position, ..light }
+    })
+}
+
+/// Holds the light of the floor past an edge to what comes past it.
+fn hold(on: &On, caster: Caster) {
+    for light in lights() {
+        let (open, found) = (floor(on, Caster::Nothing, light), floor(on, caster, light));
+        let shares: Vec<f32> = found.iter().zip(&open).map(|(found, open)| found / open).collect();
+        let exact: Vec<f32> = places().map(|x| share(&light, x)).collect();
+        let off = shares.iter().zip(&exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f32::max);
+        let step = |all: &[f32]| all.windows(2).map(|pair| pair[1] - pair[0]).fold(f32::MIN, f32::max);
+        let least = shares.windows(2).map(|pair| pair[1] - pair[0]).fold(f32::MAX, f32::min);
+        // A place of the light is tried by 34 rays, by 21 past hair; a disc counts as squares of the same area.
+        assert!(off < 0.055, "{:?} of {} places: {off}", light.kind, light.samples);
+        assert!(step(&shares) < 3.0 * step(&exact) && least > -2e-3, "{} and {least}", step(&shares));
+    }
+}
+
+law! {
+    fn the_edge_of_a_body_hides_as_much_of_a_light_as_lies_behind_it(on) {
+        hold(on, Caster::Body);
+    }
+}
+
+law! {
+    fn the_edge_of_hair_hides_as_much_of_a_light_as_lies_behind_it(on) {
+        hold(on, Caster::Hair);
+    }
+}
