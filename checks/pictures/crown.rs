@@ -30,7 +30,7 @@ const CROWN: f32 = 0.08;
 const RIM: f32 = 0.01;
 
 /// A built-in style as a picture shows it before any simulation.
-struct Head {
+pub(crate) struct Head {
     guides: Guides,
     mesh: Mesh,
     camera: Camera,
@@ -38,7 +38,12 @@ struct Head {
 
 impl Head {
     fn new() -> Self {
-        let groom = StyleSettings { strand_count: 2_000, ..StyleSettings::new(Style::Long) }.grow().unwrap();
+        Self::of(2_000)
+    }
+
+    /// With so many guides.
+    pub(crate) fn of(strand_count: usize) -> Self {
+        let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Long) }.grow().unwrap();
         Self {
             guides: Guides::resample(&groom, 16).unwrap(),
             mesh: Mannequin::new().mesh(),
@@ -48,6 +53,11 @@ impl Head {
 
     /// The picture with one light.
     fn lit(&self, on: &On, preset: Preset, light: Light) -> Layers {
+        self.lit_by(on, preset, &[light])
+    }
+
+    /// The picture with some lights.
+    pub(crate) fn lit_by(&self, on: &On, preset: Preset, lights: &[Light]) -> Layers {
         let settings = PictureSettings {
             transparent: true,
             layers: true,
@@ -59,7 +69,7 @@ impl Head {
             camera: &self.camera,
             look: &Look::named(preset),
             body_look: &BodyLook::default(),
-            lights: &[light],
+            lights,
             level_of_detail: &LevelOfDetail::default(),
         };
         let body = Some(&self.mesh);
@@ -73,7 +83,7 @@ impl Head {
     }
 
     /// The pixels of the crown.
-    fn crown(&self, layers: &Layers) -> Vec<bool> {
+    pub(crate) fn crown(&self, layers: &Layers) -> Vec<bool> {
         let top = self.mesh.positions.iter().map(|point| point.y).fold(f32::MIN, f32::max);
         let [mask, depth] = ["mask.hair", "depth.Z"].map(|name| channel(layers, name));
         let world_from_view = self.camera.view_from_world().inverse();

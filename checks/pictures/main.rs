@@ -15,6 +15,7 @@ mod penumbra;
 mod resolve;
 mod screen;
 mod shading;
+mod shares;
 mod stillness;
 mod surroundings;
 mod terms;

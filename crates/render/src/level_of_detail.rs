@@ -138,6 +138,43 @@ pub(crate) fn is_drawn(guide: usize, left_out: f32) -> bool {
     RANKS[guide % RANKS.len()] < EIGHT - left_out
 }
 
+/// Strands at full detail from which on every few of them stand for all: 32 of them cross each cell of a grid of light.
+const MANY: usize = 16_384;
+/// Every so many-th strand stands for all where there are many.
+const EVERY: u32 = 4;
+
+/// Every so many-th of all strands, spread evenly over guides and clumps, which stand for all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EveryFew(u32);
+
+impl Default for EveryFew {
+    /// All strands.
+    fn default() -> Self {
+        Self(1)
+    }
+}
+
+impl EveryFew {
+    /// Of so many, counted at full detail, so that nothing jumps with distance. Of few all: what is found of fewer would
+    /// depend on which.
+    pub(crate) fn of(full_count: usize) -> Self {
+        Self(if full_count < MANY { 1 } else { EVERY })
+    }
+
+    /// How many each of them stands for.
+    pub(crate) fn stands_for(self) -> u32 {
+        self.0
+    }
+
+    /// Whether a strand is one of them, where each guide has so many. Eights of guides take turns, so that detail that
+    /// leaves some of eight out leaves as many of these.
+    #[inline]
+    pub(crate) fn holds(self, strand: usize, strands_per_guide: usize) -> bool {
+        let (guide, index) = (strand / strands_per_guide, strand % strands_per_guide);
+        (guide / RANKS.len() + index).is_multiple_of(self.0 as usize)
+    }
+}
+
 impl DetailLevel {
     /// Everything: whole numbers of segments on each span and of follow strands.
     pub fn full(segments_per_span: u32, follow_strands: u32) -> Self {
@@ -190,6 +227,21 @@ impl DetailLevel {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_few_strands_are_spread_evenly() {
+        let few = EveryFew::of(MANY);
+        for per_guide in [1, 3, 16] {
+            for left_out in [0.0, 2.5, 7.0] {
+                let drawn = |strand: &usize| is_drawn(strand / per_guide, left_out);
+                let strands: Vec<usize> = (0..32 * 10 * per_guide).filter(drawn).collect();
+                let found = strands.iter().filter(|strand| few.holds(**strand, per_guide)).count();
+                assert_eq!(few.stands_for() as usize * found, strands.len(), "{per_guide}, {left_out}");
+            }
+        }
+        assert_eq!(EveryFew::of(MANY - 1), EveryFew::default());
+        assert!((0..100).all(|strand| EveryFew::default().holds(strand, 3)));
+    }
 
     #[test]
     fn in_the_thesis_detail_falls_at_each_of_its_distances() {

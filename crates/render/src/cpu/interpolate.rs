@@ -34,6 +34,7 @@ pub fn interpolate(
     let points_per_strand = curves.points_per_curve;
     out.resize(curves.guide_count, strands_per_guide, points_per_strand);
     out.left_out = level.left_out;
+    out.full_count = curves.guide_count * level.full_follow_strands as usize;
     color(curves, guides, out);
     let shared = Shared {
         curves,

@@ -9,13 +9,16 @@ use super::light_field::Field;
 use super::occlusion::Occlusion;
 use super::{ShadowBody, Shadows, Strands};
 use crate::Light;
+use crate::level_of_detail::EveryFew;
 
 /// What light is scattered by.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// All drawn hair.
     pub strands: &'a Strands,
-    /// Share of each shadow light that reaches every point of it, shape `[light][point]`, empty for the others; behind
+    /// The strands that are summed.
+    pub summed: EveryFew,
+    /// Share of each shadow light that reaches every point of these, shape `[light][point]`, empty for the others; behind
     /// these, where the hair is mixed, how much of the lightest it is, by channel.
     pub reached: &'a [Vec<f32>],
     /// The body and the reflectance of its skin.

@@ -47,7 +47,8 @@ fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, su
     // Whole vectors; what is beyond the sums of hair adds nothing to those of skin.
     let mut values = vec![0.0; (width - SKIN_SUMS).next_multiple_of(4)];
     let mut quads = vec![f32x4::ZERO; values.len() / 4];
-    let drawn = range.filter(|strand| strands.is_drawn(*strand));
+    let drawn = range.filter(|strand| strands.is_one_of(*strand, scene.summed));
+    let stands_for = scene.summed.stands_for() as f32;
     for point in drawn.flat_map(|strand| strand * count..(strand + 1) * count - 1) {
         let (start, end) = (strands.positions[point], strands.positions[point + 1]);
         let way = end - start;
@@ -60,7 +61,7 @@ fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, su
         for piece in 0..pieces as usize {
             let along = (piece as f32 + 0.5) / pieces;
             let mix = |values: &[f32]| values[point] + (values[point + 1] - values[point]) * along;
-            let area = length / pieces * mix(&strands.widths);
+            let area = length / pieces * mix(&strands.widths) * stands_for;
             values[0] = area;
             values[1..4].copy_from_slice(&(way * (area / length)).to_array());
             for (value, reached) in values[HAIR_SUMS..].iter_mut().zip(scene.reached) {

@@ -11,6 +11,7 @@ use super::lattice::Lattice;
 use crate::Look;
 use crate::fibre::chiang::{INK, Pigments, WHITE};
 use crate::fibre::{Chiang, Pigment};
+use crate::level_of_detail::EveryFew;
 
 /// Colours of a groom, linear RGB.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,9 +148,11 @@ impl ByColor {
     }
 }
 
-/// Finds how much of the lightest hair each point is, the rest being the darkest: shape `[channel][point]`.
+/// Finds how much of the lightest hair each point of the strands that are summed is, the rest being the darkest: shape
+/// `[channel][point]`.
 pub(super) fn lightness(
     strands: &Strands,
+    summed: EveryFew,
     look: &Look,
     source: &Source,
     lattice: &Lattice,
@@ -171,7 +174,9 @@ pub(super) fn lightness(
         found.resize(strands.positions.len(), 0.0);
         found.par_chunks_mut(count * of_guide).enumerate().for_each(|(guide, found)| {
             let own = colors.get(guide * count..(guide + 1) * count);
-            for (index, found) in found.chunks_mut(count).enumerate() {
+            let is_summed =
+                |(index, _): &(usize, &mut [f32])| summed.holds(guide * of_guide + index, of_guide);
+            for (index, found) in found.chunks_mut(count).enumerate().filter(is_summed) {
                 match own {
                     Some(own) => {
                         let both = found.iter_mut().zip(own);

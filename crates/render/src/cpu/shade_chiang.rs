@@ -12,8 +12,9 @@ use super::light_scene::Scene;
 use super::mixture::{Chance, OwnColors, Source, lightness, pigments};
 use super::occlusion::{Occlusion, toward};
 use super::radiances::{Shading, fill_all};
-use super::{ShadowBody, Shadows, Strands};
+use super::{ShadowBody, ShadowMap, Shadows, Strands};
 use crate::fibre::chiang::{Pigments, Seen, Table};
+use crate::level_of_detail::EveryFew;
 use crate::lights::Shining;
 use crate::{Light, Look};
 
@@ -44,7 +45,9 @@ impl Made {
 #[derive(Clone, Debug, Default)]
 pub struct Scattering {
     made: Option<Made>,
-    /// Share of each shadow light that reaches every point, shape `[light][point]`.
+    /// The strands that scattered light is summed from.
+    summed: EveryFew,
+    /// Share of each shadow light that reaches every point of these, shape `[light][point]`.
     reached: Vec<Vec<f32>>,
     /// How much of the lightest hair every point is, where hair is mixed, shape `[channel][point]`.
     lightness: Vec<Vec<f32>>,
@@ -98,13 +101,15 @@ impl Scattering {
             self.made = Some(Made::new(source));
         }
         let Some(Made { lattice, .. }) = &self.made else { return };
-        reach(strands, lit, &mut self.reached);
+        self.summed = EveryFew::of(strands.full_count);
+        reach(strands, lit, self.summed, &mut self.reached);
         if lattice.is_mixed() {
-            lightness(strands, look, &source, lattice, &mut self.lightness);
+            lightness(strands, self.summed, look, &source, lattice, &mut self.lightness);
             self.reached.append(&mut self.lightness);
         }
         self.grid.fill(&Scene {
             strands,
+            summed: self.summed,
             reached: &self.reached,
             body: lit.body,
             shadows: lit.shadows,
@@ -126,13 +131,17 @@ impl Scattering {
         occlusion: &'a Occlusion,
     ) -> Option<ChiangShading<'a>> {
         let Made { table, .. } = self.made.as_ref()?;
-        let lights = lit.lights.iter().map(Light::shining).zip(&self.reached).collect();
-        Some(ChiangShading { strands, lit, table, lights, grid: &self.grid, occlusion })
+        let light = |(index, (light, reached))| {
+            let (light, reached): (&Light, &Vec<f32>) = (light, reached);
+            Shone { from: light.shining(), map: lit.shadows.map(index), reached }
+        };
+        let lights = lit.lights.iter().zip(&self.reached).enumerate().map(light).collect();
+        Some(ChiangShading { strands, lit, table, lights, summed: self.summed, grid: &self.grid, occlusion })
     }
 }
 
-/// Share of each shadow light that body and hair let through to every point.
-fn reach(strands: &Strands, lit: &Lit, reached: &mut Vec<Vec<f32>>) {
+/// Share of each shadow light that body and hair let through to every point of some strands.
+fn reach(strands: &Strands, lit: &Lit, summed: EveryFew, reached: &mut Vec<Vec<f32>>) {
     reached.resize_with(lit.lights.len(), Vec::new);
     for (light, reached) in reached.iter_mut().enumerate() {
         let Some(map) = lit.shadows.map(light) else {
@@ -142,7 +151,7 @@ fn reach(strands: &Strands, lit: &Lit, reached: &mut Vec<Vec<f32>>) {
         reached.resize(strands.positions.len(), 0.0);
         let count = strands.points_per_strand;
         let both = reached.par_chunks_mut(count).zip(strands.positions.par_chunks(count)).enumerate();
-        both.filter(|(strand, _)| strands.is_drawn(*strand)).for_each(|(_, (reached, places))| {
+        both.filter(|(strand, _)| strands.is_one_of(*strand, summed)).for_each(|(_, (reached, places))| {
             for (reached, &place) in reached.iter_mut().zip(places) {
                 *reached = map.reach(place);
             }
@@ -186,13 +195,32 @@ impl<'a> Strand<'a> {
     }
 }
 
+/// A light, and what it is to the hair.
+struct Shone<'a> {
+    from: Shining<'a>,
+    /// Its shadows.
+    map: Option<&'a ShadowMap>,
+    /// Share of it that reaches points, shape `[point]`; empty without shadow.
+    reached: &'a Vec<f32>,
+}
+
+impl Shone<'_> {
+    /// Share of the light that reaches a point \[m\], where hair and body cast shadows in it.
+    #[inline]
+    fn share(&self, point: usize, place: Vec3, known: bool) -> Option<f32> {
+        let map = self.map?;
+        Some(if known { self.reached[point] } else { map.reach(place) })
+    }
+}
+
 /// Shading of strands by \[Chiang2016\], with what is scattered among them.
 pub(crate) struct ChiangShading<'a> {
     strands: &'a Strands,
     lit: &'a Lit<'a>,
     table: &'a Table,
-    /// The lights, and the share of each that reaches every point.
-    lights: Vec<(Shining<'a>, &'a Vec<f32>)>,
+    lights: Vec<Shone<'a>>,
+    /// The strands of which it is known what reaches them.
+    summed: EveryFew,
     grid: &'a LightGrid,
     occlusion: &'a Occlusion,
 }
@@ -203,15 +231,16 @@ impl Shading for ChiangShading<'_> {
         let (guide, index) = (strand / strands_per_guide, strand % strands_per_guide);
         let own = colors.get(guide * count..(guide + 1) * count);
         let own = Strand::new(self.lit.look, own, guide as u32, index as u32);
+        let known = self.summed.holds(strand, *strands_per_guide);
         for (index, radiance) in (first..).zip(radiances) {
-            *radiance = self.radiance(&own, strand * count + index, index);
+            *radiance = self.radiance(&own, strand * count + index, index, known);
         }
     }
 }
 
 impl ChiangShading<'_> {
-    /// Light of a point, which is the one of this index on its strand.
-    fn radiance(&self, own: &Strand, point: usize, index: usize) -> Vec3 {
+    /// Light of a point, which is the one of this index on its strand, of which it is known what reaches it or not.
+    fn radiance(&self, own: &Strand, point: usize, index: usize, known: bool) -> Vec3 {
         let (place, t) = (self.strands.positions[point], self.strands.tangents[point]);
         let share = index as f32 / (self.strands.points_per_strand - 1) as f32;
         let (pigments, shift) = (own.pigments(index, share), own.shift(share));
@@ -222,14 +251,14 @@ impl ChiangShading<'_> {
         let seen = Seen::new(sine, pigments);
         let moments = self.table.seen_moments(&seen);
         let mut sum = (light_field::shown(&field, &moments, t, u) * more).truncate();
-        for (source, reached) in &self.lights {
-            let known = reached.get(point);
+        for light in &self.lights {
+            let share = light.share(point, place, known);
             // Most hair lies in shadow.
-            if known.is_some_and(|share| *share <= LEAST_SHARE) {
+            if share.is_some_and(|share| share <= LEAST_SHARE) {
                 continue;
             }
-            let from = source.at(place);
-            let share = known.copied().unwrap_or_else(|| toward(&self.occlusion.cube(place), from.to_light));
+            let from = light.from.at(place);
+            let share = share.unwrap_or_else(|| toward(&self.occlusion.cube(place), from.to_light));
             if share > LEAST_SHARE {
                 let sine_light = t.dot(from.to_light);
                 let flat = (1.0 - sine_light * sine_light).max(1e-8).sqrt();

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::level_of_detail::is_drawn;
+use crate::level_of_detail::{EveryFew, is_drawn};
 
 /// All drawn strands of a frame. Every strand has the same number of points; shapes are
 /// `[strand][point]`, root first, guide after guide, each guide followed by its follow strands.
@@ -12,6 +12,8 @@ pub struct Strands {
     pub strand_count: usize,
     /// Drawn strands of each guide, the guide itself first.
     pub strands_per_guide: usize,
+    /// Strands that there are at full detail.
+    pub full_count: usize,
     /// Of each eight guides, those whose strands are not drawn ([`crate::DetailLevel::left_out`]).
     pub left_out: f32,
     /// Points on each strand, one more than its segments.
@@ -32,6 +34,11 @@ impl Strands {
     /// Whether a strand is drawn: from afar some of those that stand for themselves are left out.
     pub fn is_drawn(&self, strand: usize) -> bool {
         is_drawn(strand / self.strands_per_guide, self.left_out)
+    }
+
+    /// Whether a strand is drawn, and one of those that stand for all.
+    pub(crate) fn is_one_of(&self, strand: usize, few: EveryFew) -> bool {
+        self.is_drawn(strand) && few.holds(strand, self.strands_per_guide)
     }
 
     /// Number of segments of all strands.

@@ -8,6 +8,7 @@ use super::scene::Scene;
 use super::{MAX_SHADOWS, codes};
 use crate::cpu::shadow::LightView;
 use crate::fibre::{Pigment, scheuermann::Numbers};
+use crate::level_of_detail::EveryFew;
 use crate::{LightKind, Look, ToneMap};
 
 mirror! {
@@ -117,7 +118,8 @@ mirror! {
         pub kinds: u32,
         /// Of each eight guides, those whose strands are not drawn.
         pub left_out: f32,
-        pub unused: u32,
+        /// How many strands each stands for that is summed into the cells of scattered light.
+        pub summed: u32,
         pub unused_too: u32,
         pub unused_last: u32,
         pub fitted: Fitted,
@@ -235,6 +237,7 @@ impl Frame {
             body_kind: scene.body_kind,
             middle: scene.middle.to_array(),
             left_out: level.left_out,
+            summed: EveryFew::of(scene.full_count()).stands_for(),
             ..Self::of_looks(scene)
         }
     }

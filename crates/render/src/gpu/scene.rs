@@ -34,6 +34,11 @@ impl Scene<'_> {
         self.guide_count * self.level.strand_count()
     }
 
+    /// Strands at full detail.
+    pub fn full_count(&self) -> usize {
+        self.guide_count * self.level.full_follow_strands as usize
+    }
+
     pub fn shadow_count(&self) -> usize {
         self.input.lights.iter().filter(|light| light.shadow).count()
     }

@@ -1,0 +1,29 @@
+//! Where there are many strands, every fourth stands for all whose scattered light is summed.
+
+use strandline_checks::law;
+use strandline_render::{Camera, Layers, Light, Preset};
+
+use crate::crown::Head;
+use crate::linear::Linear;
+
+/// Mean light of some pixels.
+fn mean(layers: &Layers, mask: &[bool]) -> f32 {
+    let pixels = Linear::of(layers).pixels;
+    let inside = || (0..mask.len()).filter(|at| mask[*at]);
+    assert!(inside().count() > 500, "{} pixels", inside().count());
+    inside().map(|at| pixels[at].element_sum()).sum::<f32>() / inside().count() as f32
+}
+
+law! {
+    fn light_is_scattered_as_much_by_some_of_many_strands_as_by_all_of_few(on) {
+        // Of 16,368 strands all are summed, of 16,384 every fourth.
+        let lights = Light::studio(Camera::front().target).map(|light| Light { samples: 1, ..light });
+        let [few, many] = [1_023, 1_024].map(|guides| {
+            let head = Head::of(guides);
+            let layers = head.lit_by(on, Preset::Blonde, &lights);
+            mean(&layers, &head.crown(&layers))
+        });
+        // Most of the light of blonde hair is scattered; a fourth of the hair scatters far less of it.
+        assert!((many / few - 1.0).abs() < 0.03, "{few} and {many}");
+    }
+}
