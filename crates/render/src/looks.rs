@@ -68,7 +68,7 @@ impl Look {
             Preset::Blonde => {
                 (Vec3::new(0.46, 0.31, 0.165), Vec3::new(0.68, 0.51, 0.31), [0.3, 0.0, 0.7], 0.0)
             }
-            Preset::Red => (Vec3::new(0.34, 0.10, 0.035), Vec3::new(0.46, 0.165, 0.06), [0.2, 1.4, 1.0], 0.0),
+            Preset::Red => (Vec3::new(0.34, 0.10, 0.035), Vec3::new(0.46, 0.165, 0.06), [0.0, 0.9, 1.0], 0.0),
             Preset::Grey => (Vec3::new(0.17, 0.16, 0.15), Vec3::new(0.22, 0.21, 0.20), [2.0, 0.0, 1.0], 0.6),
         };
         (self.root_color, self.tip_color, self.grey) = (root, tip, grey);
