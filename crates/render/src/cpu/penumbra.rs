@@ -4,17 +4,19 @@
 //! tells which of the part's rays hair or body hides [Fernando2005]: a blocker at depth d hides from a point at depth z
 //! what it hides beside the place by (z - d) / (z d) of the distance on the light.
 
+use std::ops::Range;
+
 use glam::{Vec2, Vec3};
 
 use super::fast_math::exp;
-use super::shadow::{LightView, ShadowMap};
+use super::shadow::{LightView, ShadowMap, Shadows};
 
-/// Looks for what hides the light.
-const BODY_LOOKS: usize = 40;
-const HAIR_LOOKS: usize = 40;
-/// Rays of the light's part that are tried.
-const BODY_RAYS: usize = 34;
-const HAIR_RAYS: usize = 21;
+/// Looks for what hides a light, shared out among its places.
+const LOOKS: usize = 40;
+/// Rays of the light that are tried past what hides it, shared out in the same way.
+const RAYS: usize = 34;
+/// Every so many of them are tried past hair, whose edges are ragged.
+const HAIR_STEP: usize = 2;
 /// Distance \[m\] before skin as far as blockers are looked for all about; farther ones are found where their shadow is
 /// deep.
 const MOST_GAP: f32 = 0.4;
@@ -25,21 +27,108 @@ const LEAST_SIDE: f32 = 2.0;
 /// A share of a whole that many steps of are spread evenly over it.
 const GOLDEN: f32 = 0.618_034;
 
-/// One of so many places in a square of side 1 about 0: seen from every side their shadows lie evenly.
-#[inline]
-fn place(index: usize, count: usize) -> Vec2 {
-    Vec2::new((index as f32 + 0.5) / count as f32, (index as f32 * GOLDEN).fract()) - 0.5
+/// Places in a square of side 1 about 0: seen from every side their shadows lie evenly.
+const PLACES: [Vec2; RAYS] = {
+    let mut places = [Vec2::ZERO; RAYS];
+    let mut index = 0;
+    while index < RAYS {
+        places[index] =
+            Vec2::new((index as f32 + 0.5) / RAYS as f32 - 0.5, part(index as f32 * GOLDEN) - 0.5);
+        index += 1;
+    }
+    places
+};
+
+/// Places that lie denser toward the middle of the square, where near blockers are: on the outlines of smaller squares,
+/// whose sides come third.
+const AROUND: [Vec3; LOOKS] = {
+    let mut looks = [Vec3::ZERO; LOOKS];
+    let mut index = 0;
+    while index < LOOKS {
+        let around = 4.0 * part(index as f32 * GOLDEN);
+        let (along, reach) = (part(around) - 0.5, (index as f32 + 0.5) / LOOKS as f32);
+        let side = if around < 2.0 { reach } else { -reach };
+        looks[index] = if around as u32 % 2 == 0 {
+            Vec3::new(along * side, 0.5 * side, reach)
+        } else {
+            Vec3::new(0.5 * side, along * side, reach)
+        };
+        index += 1;
+    }
+    looks
+};
+
+/// What is behind the point.
+const fn part(number: f32) -> f32 {
+    number - (number as u32) as f32
 }
 
-/// One of so many places that lie denser toward the middle of the square, where near blockers are; its distance from
-/// there over that of the square's sides.
-#[inline]
-fn look(index: usize, count: usize) -> (Vec2, f32) {
-    let around = 4.0 * (index as f32 * GOLDEN).fract();
-    let along = around.fract() - 0.5;
-    let side = if around % 2.0 < 1.0 { Vec2::new(along, 0.5) } else { Vec2::new(0.5, along) };
-    let reach = (index as f32 + 0.5) / count as f32;
-    (side * if around < 2.0 { reach } else { -reach }, reach)
+/// Mean distances \[m\] before a point of the body and of the hair that hide a light from it; 0 where none does.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Blockers {
+    body: f32,
+    hair: f32,
+}
+
+impl Shadows {
+    /// What hides a light, whose places are these, from a point \[m\], world space.
+    pub(crate) fn blockers(&self, places: Range<usize>, point: Vec3) -> Blockers {
+        let (mut body, mut hair) = (Gaps::default(), Gaps::default());
+        for (place, map) in places.clone().enumerate().filter_map(|(at, index)| Some((at, self.map(index)?)))
+        {
+            if map.view.part == [Vec2::ZERO; 2] {
+                continue;
+            }
+            let Some(seen) = map.view.project(point) else { continue };
+            let looks = || AROUND.iter().skip(place).step_by(places.len());
+            if !map.body_depths.is_empty() {
+                let near = Vec3 { z: seen.z - map.body_bias, ..seen };
+                body.add(&map.view, near, looks(), |at| {
+                    Some(map.body_depths[map.nearest(map.body_window.texel(at))?])
+                });
+            }
+            hair.add(&map.view, seen, looks(), |at| {
+                Some(map.texels[map.nearest(map.hair_window.texel(at))?].w)
+            });
+        }
+        Blockers { body: body.mean(), hair: hair.mean() }
+    }
+}
+
+/// Distances before a point.
+#[derive(Default)]
+struct Gaps {
+    sum: f32,
+    count: f32,
+}
+
+impl Gaps {
+    /// Adds those of what hides rays, of depths that are looked up.
+    #[inline]
+    fn add<'a>(
+        &mut self,
+        view: &LightView,
+        seen: Vec3,
+        looks: impl Iterator<Item = &'a Vec3>,
+        depth_at: impl Fn(Vec2) -> Option<f32>,
+    ) {
+        let most = LightView::aside(seen.z, MOST_GAP.min(0.5 * seen.z));
+        let sides = view.part.map(|side| side * most);
+        for look in looks {
+            let at = seen.truncate() + sides[0] * look.x + sides[1] * look.y;
+            let Some(depth) = depth_at(at) else { continue };
+            let gap = seen.z - depth;
+            // What hides none of this part's rays does not count.
+            if gap > 0.0 && LightView::aside(seen.z, gap) >= look.z * most {
+                self.sum += gap;
+                self.count += 1.0;
+            }
+        }
+    }
+
+    fn mean(&self) -> f32 {
+        self.sum / self.count.max(1.0)
+    }
 }
 
 /// Where a place of a light looks at a point from: its plane coordinates and depth.
@@ -48,12 +137,6 @@ impl LightView {
     #[inline]
     fn aside(depth: f32, gap: f32) -> f32 {
         gap / (depth * (depth - gap).max(1e-3))
-    }
-
-    /// A place of the light's part on the plane, for a square of side 1.
-    #[inline]
-    fn on_part(&self, at: Vec2) -> Vec2 {
-        self.part[0] * at.x + self.part[1] * at.y
     }
 
     /// As `aside`, but no less than some texels of a map of so many in a plane unit.
@@ -65,63 +148,48 @@ impl LightView {
 }
 
 impl ShadowMap {
-    /// Share of the light that hair and body let through to skin at a point \[m\], world space.
-    pub(crate) fn on_skin(&self, point: Vec3) -> f32 {
+    /// Share of a place of a light that hair and body let through to skin at a point \[m\], world space: it is the place
+    /// of this number among so many, of a light that is hidden by what `blockers` says.
+    pub(crate) fn on_skin(&self, point: Vec3, blockers: &Blockers, [place, count]: [usize; 2]) -> f32 {
         if self.view.part == [Vec2::ZERO; 2] {
             return self.transmittance(point);
         }
         let Some(seen) = self.view.project(point) else { return 1.0 };
-        let open = self.past_body(seen);
-        if open > 0.0 { open * self.past_hair(seen) } else { 0.0 }
+        let rays = |step: usize| PLACES.iter().skip(step * place).step_by(step * count);
+        let open = if blockers.body > 0.0 { self.past_body(seen, blockers.body, rays(1)) } else { 1.0 };
+        if open > 0.0 && blockers.hair > 0.0 {
+            open * self.past_hair(seen, blockers.hair, rays(HAIR_STEP))
+        } else {
+            open
+        }
     }
 
-    /// Mean distance before a point of what hides its light, of depths that are looked up; none where nothing does.
-    #[inline]
-    fn gap(&self, seen: Vec3, looks: usize, depth_at: impl Fn(Vec2) -> Option<f32>) -> Option<f32> {
-        let most = LightView::aside(seen.z, MOST_GAP.min(0.5 * seen.z));
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (at, reach) in (0..looks).map(|index| look(index, looks)) {
-            let Some(depth) = depth_at(seen.truncate() + self.view.on_part(at) * most) else { continue };
-            let gap = seen.z - depth;
-            // What hides none of this part's rays does not count.
-            if gap > 0.0 && LightView::aside(seen.z, gap) >= reach * most {
-                sum += gap;
-                count += 1.0;
-            }
-        }
-        (count > 0.0).then(|| sum / count)
-    }
-
-    fn past_body(&self, seen: Vec3) -> f32 {
-        if self.body_depths.is_empty() {
-            return 1.0;
-        }
-        let near = Vec3 { z: seen.z - self.body_bias, ..seen };
-        let depth_at = |at: Vec2| Some(self.body_depths[self.nearest(self.body_window.texel(at))?]);
-        let Some(gap) = self.gap(near, BODY_LOOKS, depth_at) else { return 1.0 };
-        let aside = self.view.aside_at_least(near.z, gap, self.body_window.density);
-        let before = near.z - OWN_SKIN * gap;
+    fn past_body<'a>(&self, seen: Vec3, gap: f32, rays: impl ExactSizeIterator<Item = &'a Vec2>) -> f32 {
+        let near = seen.z - self.body_bias;
+        let aside = self.view.aside_at_least(near, gap, self.body_window.density);
+        let sides = self.view.part.map(|side| side * aside);
+        let (before, count) = (near - OWN_SKIN * gap, rays.len());
         let mut hidden = 0.0;
-        for ray in 0..BODY_RAYS {
-            let at = seen.truncate() + self.view.on_part(place(ray, BODY_RAYS)) * aside;
+        for ray in rays {
+            let at = seen.truncate() + sides[0] * ray.x + sides[1] * ray.y;
             let Some((first, weights)) = self.corners(self.body_window.texel(at)) else { continue };
             for (corner, weight) in self.quad(first).into_iter().zip(weights) {
                 let behind = before - self.body_depths[corner];
                 hidden += weight * (behind * self.inverse_softness).clamp(0.0, 1.0);
             }
         }
-        1.0 - hidden / BODY_RAYS as f32
+        1.0 - hidden / count as f32
     }
 
-    fn past_hair(&self, seen: Vec3) -> f32 {
-        let depth_at = |at: Vec2| Some(self.texels[self.nearest(self.hair_window.texel(at))?].w);
-        let Some(gap) = self.gap(seen, HAIR_LOOKS, depth_at) else { return 1.0 };
+    fn past_hair<'a>(&self, seen: Vec3, gap: f32, rays: impl ExactSizeIterator<Item = &'a Vec2>) -> f32 {
         let aside = self.view.aside_at_least(seen.z, gap, self.hair_window.density);
-        let passed = |ray: usize| {
-            let at = seen.truncate() + self.view.on_part(place(ray, HAIR_RAYS)) * aside;
+        let sides = self.view.part.map(|side| side * aside);
+        let count = rays.len();
+        let passed = |ray: &Vec2| {
+            let at = seen.truncate() + sides[0] * ray.x + sides[1] * ray.y;
             exp(self.crossed(at.extend(seen.z)) * self.log_transmission())
         };
-        (0..HAIR_RAYS).map(passed).sum::<f32>() / HAIR_RAYS as f32
+        rays.map(passed).sum::<f32>() / count as f32
     }
 
     /// The texel in which texel coordinates lie.

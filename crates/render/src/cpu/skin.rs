@@ -1,6 +1,7 @@
 //! How the body reflects light: soft diffuse and a mild highlight.
 
 use std::f32::consts::PI;
+use std::ops::Range;
 
 use glam::Vec3;
 
@@ -39,16 +40,34 @@ impl Skin<'_> {
             Some(grid) => grid.on_skin(point, normal),
             None => self.occlusion.ambient_on(point, normal, self.environment),
         };
-        let lights = self.lights.iter().enumerate();
-        lights.fold(look.color * around, |sum, (index, light)| {
-            let lit = light.at(point);
-            let reflected = reflectance(look, normal, to_eye, lit.to_light);
-            if reflected == Vec3::ZERO || lit.radiance == Vec3::ZERO {
-                return sum;
+        let mut sum = look.color * around;
+        let mut first = 0;
+        while let Some(light) = self.lights.get(first) {
+            let places = first..(first + light.sample_count()).min(self.lights.len());
+            first = places.end;
+            sum += self.reflected(point, places, |to_light| reflectance(look, normal, to_eye, to_light));
+        }
+        sum
+    }
+
+    /// What a point reflects of a light with these places.
+    fn reflected(&self, point: Vec3, places: Range<usize>, reflectance: impl Fn(Vec3) -> Vec3) -> Vec3 {
+        let mut blockers = None;
+        let mut sum = Vec3::ZERO;
+        for index in places.clone() {
+            let lit = self.lights[index].at(point);
+            let reflected = reflectance(lit.to_light) * lit.radiance;
+            if reflected == Vec3::ZERO {
+                continue;
             }
-            let passed = self.shadows.map(index).map_or(1.0, |map| map.on_skin(point));
-            sum + reflected * lit.radiance * (PI * passed)
-        })
+            let mut passed = 1.0;
+            if let Some(map) = self.shadows.map(index) {
+                let blockers = blockers.get_or_insert_with(|| self.shadows.blockers(places.clone(), point));
+                passed = map.on_skin(point, blockers, [index - places.start, places.len()]);
+            }
+            sum += reflected * (PI * passed);
+        }
+        sum
     }
 }
 

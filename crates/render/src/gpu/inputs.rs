@@ -192,6 +192,11 @@ mirror! {
         pub depth_scale: f32,
         /// Sides of the part that it stands for, along right and up, of both \[m\].
         pub part: [f32; 4],
+        /// Places of its light, of which it is one; those of a light follow each other.
+        pub places: u32,
+        pub unused: u32,
+        pub unused_too: u32,
+        pub unused_last: u32,
     }
 }
 
@@ -323,6 +328,10 @@ impl LightSource {
                     let [across, along] = view.part;
                     [across.x, across.y, along.x, along.y]
                 },
+                places: light.sample_count() as u32,
+                unused: 0,
+                unused_too: 0,
+                unused_last: 0,
             };
             if light.shadow {
                 source.slot = slot;
