@@ -13,6 +13,7 @@ mod mixture;
 mod opacity;
 mod penumbra;
 mod resolve;
+mod round;
 mod screen;
 mod shading;
 mod shares;

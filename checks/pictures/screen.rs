@@ -45,6 +45,7 @@ impl Screen {
             camera: &Self::camera(),
             background: None,
             supersampling: self.supersampling,
+            round: false,
         };
         let skin = Skin {
             look: &BodyLook { color: Vec3::ZERO, specular: 0.0, ..BodyLook::default() },

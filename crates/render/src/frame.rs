@@ -186,6 +186,7 @@ impl Renderer {
             camera: input.camera,
             background: (!settings.transparent).then_some(settings.background),
             supersampling: settings.supersampling,
+            round: !layered,
         };
         let skin = Skin {
             look: input.body_look,

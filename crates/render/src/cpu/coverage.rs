@@ -11,6 +11,12 @@ use glam::{Vec2, Vec4};
 
 use super::samples::TILE;
 
+/// Width \[sample\] from which on ribbons are drawn round, and from which on they are wholly so.
+const ROUND_FROM: f32 = 2.0;
+const ROUND_FULL: f32 = 6.0;
+/// How much rounder ribbons are than flat: their middle has 1.3 times the light of a flat one, their edges 0.4 of it.
+const ROUNDNESS: f32 = 0.9;
+
 /// Samples with less than this left to show are done.
 pub const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
 
@@ -44,6 +50,8 @@ pub struct TileSamples<'a> {
     pub colors: &'a mut [Vec4],
     /// One over the body's view depth \[1/m\]; `None` when the tile shows no body.
     pub depths: Option<&'a [f32]>,
+    /// Whether wide ribbons are brighter in the middle than at their edges, as round fibres are.
+    pub round: bool,
 }
 
 impl TileSamples<'_> {
@@ -108,11 +116,13 @@ impl TileSamples<'_> {
         let reach = 0.5 * stroke.width.max(1.0) + 0.5;
         let low = (stroke.center - reach + 0.5).clamp(0.0, TILE as f32) as usize;
         let end = (stroke.center + reach + 0.5).clamp(0.0, TILE as f32) as usize;
+        let round = if self.round { stroke.roundness() } else { 0.0 };
         for place in low..end {
             let sample = index::<ALONG_Y>(stroke.step, place);
             if turns.is_none_or(|turns| turns.own(sample)) {
                 let distance = (place as f32 + 0.5 - stroke.center).abs();
                 let coverage = strength * (reach - distance).clamp(0.0, 1.0);
+                let color = if round > 0.0 { stroke.shaded(color, distance, round) } else { color };
                 self.blend::<BODY>(sample, stroke.depth, color, coverage);
             }
         }
@@ -241,6 +251,26 @@ struct Stroke {
     share: f32,
     /// One over the view depth \[1/m\].
     depth: f32,
+}
+
+impl Stroke {
+    /// How round it is: thin ribbons are flat.
+    #[inline]
+    fn roundness(&self) -> f32 {
+        ROUNDNESS * ((self.width - ROUND_FROM) / (ROUND_FULL - ROUND_FROM)).clamp(0.0, 1.0)
+    }
+
+    /// The colour of a round ribbon in a sample at a distance from its middle: 1 + roundness (1/3 - x^2) times its own
+    /// at x half widths, whose mean over the width is 1; integrated over what of the sample is covered, so that the sum
+    /// over all samples is that of a flat ribbon.
+    #[inline]
+    fn shaded(&self, color: Vec4, distance: f32, round: f32) -> Vec4 {
+        let half = 0.5 * self.width;
+        let (low, high) = ((distance - 0.5).max(-half), (distance + 0.5).min(half));
+        let square = (high * high + high * low + low * low) / (3.0 * half * half);
+        let light = 1.0 + round * (1.0 / 3.0 - square);
+        color * Vec4::new(light, light, light, 1.0)
+    }
 }
 
 /// The lines that bound a segment whose neighbours run along the other axis.

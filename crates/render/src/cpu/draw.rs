@@ -36,6 +36,8 @@ pub struct DrawInput<'a> {
     pub background: Option<Background>,
     /// Samples along each axis of a pixel.
     pub supersampling: u32,
+    /// Whether wide strands are drawn round; flat where numbers stand for their light.
+    pub round: bool,
 }
 
 /// The stage and what it keeps from frame to frame.
@@ -109,7 +111,7 @@ impl Draw {
                 colors.fill(Vec4::ZERO);
                 let corner = Vec2::new((tile % columns * TILE) as f32, (tile / columns * TILE) as f32);
                 let bare = triangles.iter().all(|&triangle| triangle == NO_TRIANGLE);
-                let hair = TileSamples { colors, depths: (!bare).then_some(depths) };
+                let hair = TileSamples { colors, depths: (!bare).then_some(depths), round: input.round };
                 self.hair(tile, corner, &input.light, hair);
                 if let Some(body) = &self.body
                     && !bare

@@ -170,7 +170,14 @@ mod tests {
         let draw = |strands: &Strands, light: Radiances| {
             let mut samples = Samples::default();
             samples.resize(640, 480);
-            let input = DrawInput { strands, light, camera: &camera, background: None, supersampling: 2 };
+            let input = DrawInput {
+                strands,
+                light,
+                camera: &camera,
+                background: None,
+                supersampling: 2,
+                round: true,
+            };
             Draw::new(None).draw(&input, &skin, &mut samples);
             samples.colors
         };

@@ -83,6 +83,7 @@ impl Renderer {
             camera: input.camera,
             background: None,
             supersampling: self.settings.supersampling,
+            round: false,
         };
         let skin = Skin {
             look: &BLACK,

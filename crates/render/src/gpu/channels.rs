@@ -4,6 +4,7 @@ use glam::Vec4;
 use strandline_gpu::{Download, Gpu, GpuError, Kernel, Recorder, Texture, wgpu};
 
 use super::GpuRenderer;
+use super::codes;
 use super::frame::samples;
 use super::inputs::Frame;
 use super::probe::from_half;
@@ -66,7 +67,9 @@ impl GpuRenderer {
         let input = FrameInput { body_look: &BLACK, lights: &[], ..*input };
         let scene = self.scene(&input, &settings, 1.0);
         let frame = &self.groom.frame;
-        frame.write(&[Frame::new(&scene)])?;
+        let mut flat = Frame::new(&scene);
+        flat.kinds |= codes::FLAT;
+        frame.write(&[flat])?;
         let buffers = Numbers { frame, points: &strands.points, radiances: &strands.radiances };
         let numbers = kernels[kind].bind(&self.gpu, &buffers)?;
         let points = scene.strand_count() * scene.curve_points();

@@ -8,6 +8,8 @@ pub const OWN_WIDTHS: u32 = 2;
 /// Light is scattered many times; with the look's colours.
 pub const SCATTERS: u32 = 4;
 pub const COLORED: u32 = 8;
+/// Numbers stand for the light of hair: its ribbons are flat.
+pub const FLAT: u32 = 16;
 
 /// Kinds of light; the last is a place on a rectangle or disc.
 pub const DIRECTIONAL: u32 = 0;
