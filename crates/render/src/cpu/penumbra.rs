@@ -156,11 +156,17 @@ impl ShadowMap {
         }
         let Some(seen) = self.view.project(point) else { return 1.0 };
         let rays = |step: usize| PLACES.iter().skip(step * place).step_by(step * count);
-        let open = if blockers.body > 0.0 { self.past_body(seen, blockers.body, rays(1)) } else { 1.0 };
-        if open > 0.0 && blockers.hair > 0.0 {
-            open * self.past_hair(seen, blockers.hair, rays(HAIR_STEP))
-        } else {
-            open
+        // What touches the skin is too small for the looks: the place's own ray meets it.
+        let open = match blockers.body {
+            0.0 => self.body_open(seen, &[Vec2::ZERO]),
+            gap => self.past_body(seen, gap, rays(1)),
+        };
+        if open <= 0.0 {
+            return 0.0;
+        }
+        open * match blockers.hair {
+            0.0 => exp(self.crossed(seen) * self.log_transmission()),
+            gap => self.past_hair(seen, gap, rays(HAIR_STEP)),
         }
     }
 

@@ -244,7 +244,7 @@ impl ShadowMap {
 
     /// Mean visibility past the body at offsets \[texel\] from a point on the plane with its depth \[m\].
     #[inline]
-    fn body_open(&self, projected: Vec3, offsets: &[Vec2]) -> f32 {
+    pub(super) fn body_open(&self, projected: Vec3, offsets: &[Vec2]) -> f32 {
         if self.body_depths.is_empty() {
             return 1.0;
         }
