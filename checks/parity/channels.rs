@@ -105,7 +105,7 @@ fn in_light(kind: LightKind) -> Both {
     // It faces a place beside the head, so that less reaches the head than shines straight on.
     let target = target + Vec3::X * 0.9;
     // Places with and without shadows of their own, of sides that differ.
-    let front = Light { kind, width: 0.9, height: 0.4, samples: 2, position, target, ..Light::default() };
+    let front = Light { kind, width: 1.8, height: 0.2, samples: 2, position, target, ..Light::default() };
     let side = Vec3::new(1.4, 0.3, -0.2);
     both.lights =
         vec![front, Light { position: side, samples: 3, shadow: false, width: 0.5, intensity: 0.3, ..front }];

@@ -9,7 +9,7 @@ use crate::terms::plain;
 
 const SIZE: u32 = 48;
 
-/// Straight strands, a pixel and a half wide, that cross each other, all of one radiance.
+/// Straight strands, less than a pixel wide, that cross each other, all of one radiance: wider ones are drawn round.
 fn crossing(radiance: Vec3) -> Drawn {
     let lines = (0..5).map(|strand| {
         let (sine, cosine) = (0.3 + 0.7 * strand as f32).sin_cos();
@@ -19,7 +19,7 @@ fn crossing(radiance: Vec3) -> Drawn {
     // Nothing hides the surroundings: a white hair shows them as they are.
     let look = Look {
         environment: Environment { sky: Vec3::ONE, ground: Vec3::ONE },
-        width_scale: 20.0,
+        width_scale: 10.0,
         ..plain(radiance)
     };
     let detail = LevelOfDetail { segments_per_span: 1, ..LevelOfDetail::full() };
