@@ -84,7 +84,7 @@ impl Source {
     pub(crate) fn lightest_of_darkest(&self) -> Option<Pigments> {
         let share = self.of_darkest(self.lightest);
         let even = share == Vec3::splat(share.x);
-        (share != Vec3::ONE).then(|| if even { Pigments::Even(share.x) } else { Pigments::Channels(share) })
+        (share != Vec3::ONE).then_some(if even { Pigments::Even(share.x) } else { Pigments::Channels(share) })
     }
 }
 

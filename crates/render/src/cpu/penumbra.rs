@@ -48,7 +48,7 @@ const AROUND: [Vec3; LOOKS] = {
         let around = 4.0 * part(index as f32 * GOLDEN);
         let (along, reach) = (part(around) - 0.5, (index as f32 + 0.5) / LOOKS as f32);
         let side = if around < 2.0 { reach } else { -reach };
-        looks[index] = if around as u32 % 2 == 0 {
+        looks[index] = if (around as u32).is_multiple_of(2) {
             Vec3::new(along * side, 0.5 * side, reach)
         } else {
             Vec3::new(0.5 * side, along * side, reach)
