@@ -27,7 +27,7 @@ impl Both {
         opacity_depth(&strands, body, &self.lights, self.middle(), &settings, &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
-        occlusion.set_middle(self.middle());
+        occlusion.set_grid(self.middle(), self.look.fibre.chiang.cells);
         let own_colors = OwnColors::of(&self.guides);
         let lit = Lit {
             lights: &self.lights,
@@ -68,7 +68,11 @@ fn agree(mut both: Both, body: bool) {
     let Some(renderer) = drawn_on_gpu(&both, &positions, body) else { return };
     let found = renderer.strands().unwrap().radiances;
     let placed: Vec<Vec3> = both.mesh.positions.iter().map(|&point| both.pose.point(point)).collect();
-    let shape = body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles });
+    let shape = body.then_some(ShadowBody {
+        positions: &placed,
+        triangles: &both.mesh.triangles,
+        closed: both.mesh.is_closed(),
+    });
     let strands = both.scattered_on_cpu(&positions, shape);
     let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
     let pairs = strands.radiances.iter().zip(&found);

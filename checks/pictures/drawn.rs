@@ -102,7 +102,7 @@ impl Drawn {
         opacity_depth(&strands, None, &self.lights, middle, &look.hair_shadow(), &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
-        occlusion.set_middle(middle);
+        occlusion.set_grid(middle, look.fibre.chiang.cells);
         let (lights, eye) = (&self.lights, self.eye);
         match look.fibre.model {
             FibreModel::Scheuermann => shade(&mut strands, &shadows, lights, look, eye, &mut occlusion),

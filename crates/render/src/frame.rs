@@ -164,7 +164,7 @@ impl Renderer {
         self.lay_strands(input, &level, middle, seconds);
         let own_colors = self.own_colors;
         let Self { strands, shadows, occlusion, scattering, found, draw, samples, settings, .. } = self;
-        occlusion.set_middle(middle);
+        occlusion.set_grid(middle, input.look.fibre.grid_cells());
         let (lights, look, eye) = (input.lights, input.look, input.camera.position);
         let map = layers_of.and_then(|light| shadows.map(light));
         let layered = map.map(|map| layer_colors(strands, map)).is_some();

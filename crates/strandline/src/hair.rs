@@ -218,7 +218,7 @@ impl Hair {
         (studio.camera, studio.look) = (*camera, look.clone());
         studio.lights.clone_from(&self.lights);
         (studio.body_look, studio.level_of_detail) = (self.body_look, self.level_of_detail);
-        self.session.picture(false)
+        self.session.picture(None)
     }
 
     /// Colours hair by the layer of a light's opacity map in which it lies instead of lighting it, from the

@@ -100,6 +100,11 @@ impl Painter {
         self.bound.as_ref()
     }
 
+    /// Points of each strand that is drawn, before it is made rounder.
+    pub fn points_per_strand(&self) -> usize {
+        self.strands.points_per_strand()
+    }
+
     /// The body that is drawn, head space.
     pub fn mesh(&self) -> Option<&Mesh> {
         self.mesh.as_ref()

@@ -324,7 +324,7 @@ impl Iterator for Player {
                 return Some(Ok(event));
             }
             let done = if std::mem::take(&mut self.undrawn) {
-                self.session.draw(false)
+                self.session.draw(None)
             } else if self.taken == self.frames || self.failed || self.closing {
                 return None;
             } else {

@@ -81,6 +81,7 @@ fn fibre(look: &mut Look, base: &Look, ui: &mut Ui) {
     slide(ui, (&mut own.tilt, base.tilt), &rows.tilt, "tilt of scales");
     slide(ui, (&mut own.index, base.index), &rows.index, "index");
     slide(ui, (&mut own.scatterings, base.scatterings), &rows.scatterings, "scatterings");
+    slide(ui, (&mut own.cells, base.cells), &rows.cells, "cells of scattered light");
 }
 
 fn surroundings(look: &mut Look, base: &Look, ui: &mut Ui) {

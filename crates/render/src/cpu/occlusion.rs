@@ -11,10 +11,9 @@ use super::Strands;
 use super::fast_math::exp;
 use super::lanes::{rounded_up, split};
 use super::shadow::stepped_down;
+use crate::fibre::chiang::MOST_CELLS as LONGEST;
 use crate::{Environment, Shadow};
 
-/// Cells along the longest side of the box around the hair, at most.
-const LONGEST: u32 = 39;
 /// Cells around them on each side: hair is spread over the nearest one, and light enters the other unhindered.
 const AROUND: u32 = 2;
 /// Bits of the cells' number on a metre behind the first: steps of 7 to 12 %.
@@ -39,6 +38,8 @@ type Cube = [f32; 8];
 pub struct Occlusion {
     /// Cells lie whole numbers of them beside this place \[m\].
     middle: Vec3,
+    /// Cells along the longest side of the box around the hair; 0 for as many as there may be.
+    longest: u32,
     min: Vec3,
     cell: f32,
     counts: [usize; 3],
@@ -50,9 +51,11 @@ pub struct Occlusion {
 }
 
 impl Occlusion {
-    /// Cells keep their places beside a place of the head \[m\], world space; beside the origin else.
-    pub fn set_middle(&mut self, middle: Vec3) {
+    /// Cells keep their places beside a place of the head \[m\], world space, and are so many along the longest side of
+    /// the hair; beside the origin, and as many as there may be, else.
+    pub fn set_grid(&mut self, middle: Vec3, longest: u32) {
         self.middle = if middle.is_finite() { middle } else { Vec3::ZERO };
+        self.longest = longest.min(LONGEST);
     }
 
     /// Sums the hair and carries light through it.
@@ -125,16 +128,17 @@ impl Occlusion {
             .par_chunks(8192)
             .map(|chunk| chunk.iter().fold(empty, |(min, max), &point| (min.min(point), max.max(point))))
             .reduce(|| empty, |one, other| (one.0.min(other.0), one.1.max(other.1)));
+        let longest = if self.longest == 0 { LONGEST } else { self.longest };
         let sound = min.is_finite() && max.is_finite();
         let (min, max) = if sound { (min, max) } else { (Vec3::ZERO, Vec3::ONE) };
         let extent = (max - min).max(Vec3::splat(1e-3));
         // Sizes of a few steps: cells stay where they are while the outline of the hair changes.
-        self.cell = 1.0 / stepped_down(LONGEST as f32 / extent.max_element(), CELL_BITS);
+        self.cell = 1.0 / stepped_down(longest as f32 / extent.max_element(), CELL_BITS);
         let around = Vec3::splat(AROUND as f32);
         let first = ((min - self.middle) / self.cell).floor() - around;
         let last = ((min + extent - self.middle) / self.cell).floor() + around;
         self.min = self.middle + first * self.cell;
-        let (least, most) = (UVec3::splat(1 + 2 * AROUND), UVec3::splat(LONGEST + 1 + 2 * AROUND));
+        let (least, most) = (UVec3::splat(1 + 2 * AROUND), UVec3::splat(longest + 1 + 2 * AROUND));
         let counts = ((last - first).as_uvec3() + UVec3::ONE).clamp(least, most);
         self.counts = counts.to_array().map(|count| count as usize);
     }

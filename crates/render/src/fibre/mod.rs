@@ -5,6 +5,7 @@ pub mod scheuermann;
 
 use strandline_base::{choices, settings};
 
+use chiang::MOST_CELLS;
 pub use chiang::{Chiang, Pigment};
 pub use scheuermann::{Highlight, Scheuermann};
 
@@ -44,6 +45,11 @@ impl FibreModel {
 }
 
 impl Fibre {
+    /// Cells along the longest side of the hair of the grid that light is carried through.
+    pub(crate) fn grid_cells(&self) -> u32 {
+        if self.model.scatters_many_times() { self.chiang.cells } else { MOST_CELLS }
+    }
+
     /// Whether the look's colours are those of the hair; else its pigment is.
     pub fn shows_colors(&self) -> bool {
         match self.model {

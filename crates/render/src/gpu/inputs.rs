@@ -120,7 +120,8 @@ mirror! {
         pub left_out: f32,
         /// How many strands each stands for that is summed into the cells of scattered light.
         pub summed: u32,
-        pub unused_too: u32,
+        /// Cells along the longest side of the hair.
+        pub cells: u32,
         pub unused_last: u32,
         pub fitted: Fitted,
         then lights: LightSource,
@@ -281,6 +282,7 @@ impl Frame {
             wave_length: look.clump.wave_length,
             shorter: look.clump.shorter,
             seed: look.seed,
+            cells: look.fibre.grid_cells(),
             kinds: scene.own
                 | if look.fibre.model.scatters_many_times() { codes::SCATTERS } else { 0 }
                 | if look.fibre.chiang.pigment == Pigment::Color { codes::COLORED } else { 0 },

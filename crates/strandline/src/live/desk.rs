@@ -9,7 +9,7 @@ use std::time::Duration;
 use super::clock::{Deadline, LiveClock};
 use super::loaded::Loaded;
 use super::messages::{Command, LiveEvent, Out, Shown};
-use super::playing::{Playing, changes_cost, of_size};
+use super::playing::{Drafts, Playing, changes_cost, of_size};
 use super::recorder::Recorder;
 use crate::{
     Error, FilmFiles, Scene,
@@ -166,6 +166,7 @@ impl Desk {
                 }
                 // How long one takes is known once it is drawn: the first is there sooner when simple.
                 (playing.stale, playing.tried) = (true, false);
+                playing.drafts = Drafts::START;
                 playing.slow = session.studio.painter.gpu().is_none();
                 (playing.scene, playing.loaded) = (Some(loaded), load);
                 (playing.step, playing.is_frame) = (None, false);
@@ -280,7 +281,8 @@ impl Desk {
         if playing.playing {
             loaded.session.start_frame(playing.received)?;
         }
-        let (drawn, seconds) = self.clock.timed(|| loaded.session.draw(draft));
+        let simpler = draft.then_some(playing.drafts.now);
+        let (drawn, seconds) = self.clock.timed(|| loaded.session.draw(simpler));
         drawn?;
         (playing.stale, playing.draft) = (false, draft);
         self.pass_on(playing, is_frame);

@@ -6,12 +6,47 @@ use std::time::Duration;
 
 use super::loaded::Loaded;
 use super::recorder::Recorder;
-use crate::{render::PictureSettings, session::Change, sim::StepReport};
+use crate::{
+    render::PictureSettings,
+    session::{Change, Draft},
+    sim::StepReport,
+};
 
 /// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
 const SLOW: f64 = 0.08;
+/// Simpler pictures become coarser where so many one after the other take longer than the first time \[s\], and finer
+/// where they take less than the second: eight a second are to be shown, and each is handed on.
+const SLOW_DRAFT: f64 = 0.12;
+const QUICK_DRAFT: f64 = 0.06;
+const ALIKE: i32 = 3;
 /// How long \[s\] nothing may happen before what stands still is drawn in full.
 const MOMENT: Duration = Duration::from_millis(200);
+
+/// Which simpler pictures are drawn.
+pub(super) struct Drafts {
+    pub now: Draft,
+    /// How many of the last took too long, or, below 0, were quick.
+    alike: i32,
+}
+
+impl Drafts {
+    pub const START: Self = Self { now: Draft::FINEST, alike: 0 };
+
+    /// Notes how long \[s\] one took.
+    fn judge(&mut self, seconds: f64) {
+        self.alike = if seconds > SLOW_DRAFT {
+            self.alike.max(0) + 1
+        } else if seconds < QUICK_DRAFT {
+            self.alike.min(0) - 1
+        } else {
+            0
+        };
+        if self.alike.abs() == ALIKE {
+            self.now = if self.alike > 0 { self.now.coarser() } else { self.now.finer() };
+            self.alike = 0;
+        }
+    }
+}
 
 /// What the drawing thread remembers.
 pub(super) struct Playing {
@@ -26,8 +61,9 @@ pub(super) struct Playing {
     pub slow: bool,
     /// Whether that was seen of the scene and the look as they are.
     pub tried: bool,
-    /// Whether the last picture was simpler.
+    /// Whether the last picture was simpler, and which simpler ones are drawn.
     pub draft: bool,
+    pub drafts: Drafts,
     pub frame: u64,
     pub received: u64,
     /// Number of the last load, and of the scene that plays; loads that are under way.
@@ -57,6 +93,7 @@ impl Playing {
         slow: false,
         tried: false,
         draft: false,
+        drafts: Drafts::START,
         frame: 0,
         received: 0,
         load: 0,
@@ -75,7 +112,10 @@ impl Playing {
         if !draft {
             self.slow = seconds > SLOW;
             self.tried = true;
-        } else if !self.tried && 4.0 * seconds < SLOW {
+            return;
+        }
+        self.drafts.judge(seconds);
+        if !self.tried && 4.0 * seconds < SLOW {
             // A full one takes some four times as long: it is tried, once.
             self.slow = false;
         }
@@ -112,5 +152,27 @@ pub(super) fn of_size(change: Change, kept: PictureSettings) -> Change {
             Change::Picture(PictureSettings { width, height, ..settings })
         }
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn drafts_become_as_coarse_as_their_time_asks_for() {
+        let mut drafts = Drafts::START;
+        let mut after = |seconds: &[f64]| {
+            seconds.iter().for_each(|seconds| drafts.judge(*seconds));
+            drafts.now
+        };
+        let (first, second) = (Draft::FINEST, Draft::FINEST.coarser());
+        assert_eq!(after(&[0.3, 0.3, 0.1, 0.3, 0.3]), first, "one was not slow");
+        assert_eq!(after(&[0.3]), second);
+        assert_eq!(after(&[0.1; 9]), second, "as it should be");
+        let coarsest = after(&[0.3; 90]);
+        assert_eq!(coarsest.coarser(), coarsest, "there is none coarser");
+        assert_eq!(after(&[0.05; 3]), coarsest.finer());
+        assert_eq!(after(&[0.05; 90]), first);
     }
 }

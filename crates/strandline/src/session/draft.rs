@@ -3,30 +3,57 @@
 use super::studio::Studio;
 use crate::render::{LevelOfDetail, Light, PictureSettings};
 
-/// A simpler picture has at most so many follow strands of a guide and segments of a span, shadow maps of so many
-/// texels a side, one place on each light, and light that is scattered so often; it is half as wide and high, with
-/// the samples that keep its edges smooth.
-const FEW_STRANDS: u32 = 8;
-const FEW_SEGMENTS: u32 = 2;
-const SMALL_MAP: u32 = 256;
-const FEW_SCATTERINGS: u32 = 3;
+/// A simpler picture has no more segments of a strand than these ask for, shadow maps of so many texels a side, one place on each light, and light that is scattered so often in so many
+/// cells; it has the samples that keep its edges smooth.
+const FEW_SEGMENTS: usize = 24;
+const SMALL_MAP: u32 = 192;
+const FEW_SCATTERINGS: u32 = 2;
+const FEW_CELLS: u32 = 26;
+/// Widths and heights as shares of those of full pictures, and the most follow strands of a guide: one after the other
+/// where one takes too long. Fewer strands save more than fewer pixels.
+const STEPS: [(f64, u32); 4] = [(0.5, 6), (0.5, 4), (0.4, 3), (0.33, 3)];
 
-/// Size and finish that a simpler picture has in place of others.
-pub(crate) fn smaller(picture: PictureSettings) -> PictureSettings {
-    let half = |side: u32| side.div_ceil(2);
-    PictureSettings { width: half(picture.width), height: half(picture.height), supersampling: 2, ..picture }
+/// A simpler picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Draft {
+    /// Which of [`STEPS`] it is.
+    step: usize,
+}
+
+impl Draft {
+    /// The finest.
+    pub(crate) const FINEST: Self = Self { step: 0 };
+
+    /// A coarser one, if there is one.
+    pub(crate) fn coarser(self) -> Self {
+        Self { step: (self.step + 1).min(STEPS.len() - 1) }
+    }
+
+    /// A finer one, if there is one.
+    pub(crate) fn finer(self) -> Self {
+        Self { step: self.step.saturating_sub(1) }
+    }
+
+    /// Size and finish that it has in place of those of a full picture.
+    pub(crate) fn settings(self, full: PictureSettings) -> PictureSettings {
+        let side = |side: u32| (f64::from(side) * STEPS[self.step].0).ceil() as u32;
+        PictureSettings { width: side(full.width), height: side(full.height), supersampling: 2, ..full }
+    }
 }
 
 /// Does something with a studio that draws simpler pictures meanwhile.
-pub(crate) fn simplified<T>(studio: &mut Studio, act: impl FnOnce(&mut Studio) -> T) -> T {
+pub(crate) fn simplified<T>(draft: Draft, studio: &mut Studio, act: impl FnOnce(&mut Studio) -> T) -> T {
     let level = studio.level_of_detail;
-    let segments_per_span = level.segments_per_span.min(FEW_SEGMENTS);
+    let spans = studio.painter.points_per_strand().saturating_sub(1).max(1);
+    let segments_per_span = level.segments_per_span.min(FEW_SEGMENTS.div_ceil(spans) as u32);
     studio.level_of_detail = LevelOfDetail { segments_per_span, most_segments: 1.0, ..level };
     let mut look = studio.look.clone();
-    look.follow_strands = look.follow_strands.min(FEW_STRANDS);
+    look.follow_strands = look.follow_strands.min(STEPS[draft.step].1);
     look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
     let scatterings = &mut look.fibre.chiang.scatterings;
     *scatterings = (*scatterings).min(FEW_SCATTERINGS);
+    let cells = &mut look.fibre.chiang.cells;
+    *cells = (*cells).min(FEW_CELLS);
     let look = std::mem::replace(&mut studio.look, look);
     let one_place = |light: &Light| Light { samples: 1, ..*light };
     let simpler = studio.lights.iter().map(one_place).collect();
@@ -34,4 +61,40 @@ pub(crate) fn simplified<T>(studio: &mut Studio, act: impl FnOnce(&mut Studio) -
     let done = act(studio);
     (studio.look, studio.lights, studio.level_of_detail) = (look, lights, level);
     done
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Picture;
+    use crate::session::Session;
+    use crate::{Backend, Prepared, Scene};
+
+    /// Mean of a picture's numbers.
+    fn mean(picture: &Picture) -> f64 {
+        let pixels = picture.interleaved();
+        pixels.iter().map(|number| f64::from(*number)).sum::<f64>() / pixels.len() as f64
+    }
+
+    #[test]
+    fn simpler_pictures_are_smaller_and_as_bright() {
+        let mut scene = Scene::demo();
+        scene.style.strand_count = 400;
+        (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
+        [scene.picture.width, scene.picture.height] = [160, 125];
+        let prepared = Prepared::new(&scene).unwrap();
+        let mut session = Session::of_scene(&scene, prepared, scene.devices).unwrap();
+        let full = session.picture(None).unwrap().0;
+        let mut draft = Draft::FINEST;
+        for size in [[80, 63], [80, 63], [64, 50], [53, 42]] {
+            let (picture, report) = session.picture(Some(draft)).unwrap();
+            assert_eq!([picture.width, picture.height], size);
+            assert!(report.strands <= 400 * STEPS[draft.step].1 as usize);
+            // Of 255: other noise of strands, softer shadows.
+            let off = mean(&picture) - mean(&full);
+            assert!(off.abs() < 2.0, "{draft:?}: {off} of {}", mean(&full));
+            draft = draft.coarser();
+        }
+        assert_eq!(session.picture(None).unwrap().0, full, "nothing of them stays");
+    }
 }

@@ -37,7 +37,8 @@ use crate::{
     worker::Worker,
 };
 use direction::Direction;
-use draft::{simplified, smaller};
+pub(crate) use draft::Draft;
+use draft::simplified;
 use engine::Engine;
 use job::{Done, Job};
 use moment::Moment;
@@ -47,9 +48,9 @@ pub(crate) struct Session<P> {
     pub place: P,
     pub studio: Studio,
     pub direction: Direction,
-    /// Size and finish of full pictures, and whether the painter draws simpler ones.
+    /// Size and finish of full pictures, and which simpler ones the painter draws in their place.
     settings: PictureSettings,
-    is_draft: bool,
+    draft: Option<Draft>,
     /// Where the hair of the last result was simulated: cpu, or the adapter.
     pub simulated_on: String,
     /// Strands in the hand.
@@ -97,7 +98,7 @@ impl Session<Here> {
             studio,
             direction: Direction::default(),
             settings: PictureSettings::default(),
-            is_draft: false,
+            draft: None,
             simulated_on,
             grabbed: 0,
             simulated_after: 0,
@@ -156,7 +157,7 @@ impl Session<Here> {
             studio: self.studio,
             direction: self.direction,
             settings: self.settings,
-            is_draft: self.is_draft,
+            draft: self.draft,
             simulated_on: self.simulated_on,
             grabbed: self.grabbed,
             simulated_after: self.simulated_after,
@@ -223,11 +224,11 @@ impl<P: Place> Session<P> {
         Ok(())
     }
 
-    /// Draws what is shown, simpler where `draft`, and emits the picture.
+    /// Draws what is shown, simpler where there is a `draft`, and emits the picture.
     ///
     /// # Errors
     /// A setting outside its range; the GPU failed, and falling back to the CPU is not allowed.
-    pub fn draw(&mut self, draft: bool) -> Result<(), Error> {
+    pub fn draw(&mut self, draft: Option<Draft>) -> Result<(), Error> {
         let (picture, report) = self.picture(draft)?;
         self.events.push_back(Event::Drawn { frame: self.drawn, picture, report });
         self.drawn += 1;
@@ -235,21 +236,24 @@ impl<P: Place> Session<P> {
         Ok(())
     }
 
-    /// Draws what is shown, simpler where `draft`.
+    /// Draws what is shown, simpler where there is a `draft`.
     ///
     /// # Errors
     /// As [`Session::draw`].
-    pub fn picture(&mut self, draft: bool) -> Result<(Picture, FrameReport), Error> {
-        if self.is_draft != draft {
-            let settings = if draft { smaller(self.settings) } else { self.settings };
+    pub fn picture(&mut self, draft: Option<Draft>) -> Result<(Picture, FrameReport), Error> {
+        if self.draft != draft {
+            let settings = draft.map_or(self.settings, |draft| draft.settings(self.settings));
             self.studio.painter.set_picture(&settings)?;
-            self.is_draft = draft;
+            self.draft = draft;
         }
         let Self { place, studio, shown, .. } = self;
         let mut draw = |studio: &mut Studio| {
             studio.draw(shown, |moment| place.with(|simulation| simulation.bring_home(moment)))
         };
-        if draft { simplified(studio, draw) } else { draw(studio) }
+        match draft {
+            Some(draft) => simplified(draft, studio, draw),
+            None => draw(studio),
+        }
     }
 
     /// Does what a change says; what concerns the simulation becomes a task of its own.
@@ -294,7 +298,7 @@ impl<P: Place> Session<P> {
     fn set_picture(&mut self, settings: PictureSettings) -> Result<(), Error> {
         // What is refused is refused at once, though it may be drawn only later.
         settings.validate()?;
-        let drawn = if self.is_draft { smaller(settings) } else { settings };
+        let drawn = self.draft.map_or(settings, |draft| draft.settings(settings));
         self.studio.painter.set_picture(&drawn)?;
         self.settings = settings;
         Ok(())

@@ -228,7 +228,7 @@ fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
     clock.advance(Duration::from_millis(210));
     let full = next(&live);
     assert_eq!((full.draft, full.picture.width, full.picture.height), (false, 64, 48));
-    assert_eq!(full.drawing.strands, 8 * draft.drawing.strands);
+    assert!(full.drawing.strands > 8 * draft.drawing.strands);
     live.send(Change::Camera(Camera::back()));
     assert!(settled(&live).draft, "what changes is simpler too");
     clock.advance(Duration::from_secs(1));

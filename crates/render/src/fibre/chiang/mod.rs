@@ -46,6 +46,8 @@ settings! {
         index: f32 = 1.55, in [1.05, 3.0], more "a brighter surface";
         /// How many times light is scattered on from hair to hair before it is left.
         scatterings: u32 = 8, in [0, 64], slider [0, 16], more "brighter light hair, at a cost";
+        /// Cells that scattered light is carried through, along the longest side of the hair.
+        cells: u32 = MOST_CELLS, in [8, MOST_CELLS], more "sharper scattered light, at a cost";
     }
 }
 
@@ -60,6 +62,9 @@ choices! {
     }
     default Melanin
 }
+
+/// Cells along the longest side of the box around the hair, at most.
+pub(crate) const MOST_CELLS: u32 = 39;
 
 /// Pigment of white hair, as a multiple of that of the others.
 pub const WHITE: f32 = 0.008;
