@@ -138,10 +138,10 @@ pub(crate) fn is_drawn(guide: usize, left_out: f32) -> bool {
     RANKS[guide % RANKS.len()] < EIGHT - left_out
 }
 
-/// Strands at full detail from which on every few of them stand for all: 32 of them cross each cell of a grid of light.
-const MANY: usize = 16_384;
-/// Every so many-th strand stands for all where there are many.
-const EVERY: u32 = 4;
+/// So many strands stand for any more: 32 of them cross each cell of a grid of light.
+const ENOUGH: usize = 4096;
+/// One strand stands for so many at most.
+const EVERY: usize = 4;
 
 /// Every so many-th of all strands, spread evenly over guides and clumps, which stand for all.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,7 +158,7 @@ impl EveryFew {
     /// Of so many, counted at full detail, so that nothing jumps with distance. Of few all: what is found of fewer would
     /// depend on which.
     pub(crate) fn of(full_count: usize) -> Self {
-        Self(if full_count < MANY { 1 } else { EVERY })
+        Self(1 << (full_count / ENOUGH).clamp(1, EVERY).ilog2())
     }
 
     /// How many each of them stands for.
@@ -230,7 +230,7 @@ mod tests {
 
     #[test]
     fn every_few_strands_are_spread_evenly() {
-        let few = EveryFew::of(MANY);
+        let few = EveryFew::of(4 * ENOUGH);
         for per_guide in [1, 3, 16] {
             for left_out in [0.0, 2.5, 7.0] {
                 let drawn = |strand: &usize| is_drawn(strand / per_guide, left_out);
@@ -239,7 +239,7 @@ mod tests {
                 assert_eq!(few.stands_for() as usize * found, strands.len(), "{per_guide}, {left_out}");
             }
         }
-        assert_eq!(EveryFew::of(MANY - 1), EveryFew::default());
+        assert_eq!(EveryFew::of(2 * ENOUGH - 1), EveryFew::default());
         assert!((0..100).all(|strand| EveryFew::default().holds(strand, 3)));
     }
 
