@@ -170,7 +170,7 @@ fn hold(on: &On, caster: Caster) {
         let off = shares.iter().zip(&exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f32::max);
         let step = |all: &[f32]| all.windows(2).map(|pair| pair[1] - pair[0]).fold(f32::MIN, f32::max);
         let least = shares.windows(2).map(|pair| pair[1] - pair[0]).fold(f32::MAX, f32::min);
-        // A light is tried by 34 rays, by 17 past hair; a disc counts as squares of the same area.
+        // A light is tried by 34 rays, one of one place and hair by 17; a disc counts as squares of the same area.
         let most = if caster == Caster::Hair { 0.08 } else { 0.065 };
         assert!(off < most, "{:?} of {} places: {off}", light.kind, light.samples);
         assert!(step(&shares) < 3.0 * step(&exact) && least > -2e-3, "{} and {least}", step(&shares));

@@ -15,6 +15,8 @@ use super::shadow::{LightView, ShadowMap, Shadows};
 const LOOKS: usize = 40;
 /// Rays of the light that are tried past what hides it, shared out in the same way.
 const RAYS: usize = 34;
+/// A place has every so many-th look and ray at least: one alone has no more than each of two.
+const LEAST_STEP: usize = 2;
 /// Every so many of them are tried past hair, whose edges are ragged.
 const HAIR_STEP: usize = 2;
 /// Distance \[m\] before skin as far as blockers are looked for all about; farther ones are found where their shadow is
@@ -80,7 +82,7 @@ impl Shadows {
                 continue;
             }
             let Some(seen) = map.view.project(point) else { continue };
-            let looks = || AROUND.iter().skip(place).step_by(places.len());
+            let looks = || AROUND.iter().skip(place).step_by(places.len().max(LEAST_STEP));
             if !map.body_depths.is_empty() {
                 let near = Vec3 { z: seen.z - map.body_bias, ..seen };
                 body.add(&map.view, near, looks(), |at| {
@@ -155,7 +157,7 @@ impl ShadowMap {
             return self.transmittance(point);
         }
         let Some(seen) = self.view.project(point) else { return 1.0 };
-        let rays = |step: usize| PLACES.iter().skip(step * place).step_by(step * count);
+        let rays = |step: usize| PLACES.iter().skip(step * place).step_by((step * count).max(LEAST_STEP));
         // What touches the skin is too small for the looks: the place's own ray meets it.
         let open = match blockers.body {
             0.0 => self.body_open(seen, &[Vec2::ZERO]),
