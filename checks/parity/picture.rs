@@ -123,7 +123,7 @@ impl Both {
         opacity_depth(&strands, body, &self.lights, self.middle(), &self.look.shadow, &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
-        occlusion.set_middle(self.middle());
+        occlusion.set_grid(self.middle(), self.look.fibre.chiang.cells);
         shade(&mut strands, &shadows, &self.lights, &self.look, self.camera.position, &mut occlusion);
         (curves, strands, shadows)
     }
@@ -280,7 +280,8 @@ fn shade_agrees_in_the_shadow_of_the_body() {
     // Another size of the maps in the same renderer, and back.
     for map_size in [300, 128, 300] {
         both.look.shadow.map_size = map_size;
-        let body = ShadowBody { positions: &placed, triangles: &both.mesh.triangles };
+        let body =
+            ShadowBody { positions: &placed, triangles: &both.mesh.triangles, closed: both.mesh.is_closed() };
         let (_, strands, shadows) = both.shadowed_on_cpu(&positions, Some(body));
         renderer.draw(&both.input(&positions)).unwrap();
         let found = renderer.strands().unwrap().radiances;

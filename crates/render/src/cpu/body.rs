@@ -26,7 +26,7 @@ const MIN_COSINE: f32 = 0.2;
 pub struct Body {
     mesh: Mesh,
     /// Every edge joins two triangles, so that back faces are never seen.
-    closed: bool,
+    pub closed: bool,
     /// Vertex positions \[m\], world space.
     pub positions: Vec<Vec3>,
     /// Vertex normals, world space.
@@ -81,10 +81,11 @@ impl Body {
                 depths.fill(0.0);
                 triangles.fill(NO_TRIANGLE);
                 let origin = ((tile % columns * TILE) as f32, (tile / columns * TILE) as f32);
-                for face in tiles.things(tile) {
-                    faces[face as usize].fill(origin, depths, triangles);
+                tiles.things(tile).for_each(|face| faces[face as usize].fill(origin, depths, triangles));
+                match tiles.things(tile).next() {
+                    Some(_) => body.occlude(projection, depths, triangles, blocks),
+                    None => blocks.fill(0.0),
                 }
-                body.occlude(projection, depths, triangles, blocks);
             });
     }
 

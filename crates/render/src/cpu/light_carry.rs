@@ -47,7 +47,7 @@ struct Way {
     length: f32,
     /// What each slot does to light.
     crossings: Vec<Crossing>,
-    /// Radiance that leaves each cell.
+    /// Radiance that leaves each cell: of all of them behind the last `carry`, of two layers else.
     leaving: Vec<Vec4>,
 }
 
@@ -103,8 +103,9 @@ impl Carried {
         });
     }
 
-    /// Carries light along every direction through what the cells hold.
-    pub(super) fn carry(&mut self, grid: &GridBox, around: &Field) {
+    /// Carries light along every direction through what the cells hold; what leaves each cell stays known of the `last`
+    /// time. Else two layers are enough, which stay close to a processor.
+    pub(super) fn carry(&mut self, grid: &GridBox, around: &Field, last: bool) {
         let Self { slots, holds, rays, skins, ways, .. } = self;
         let mut parts: Vec<Vec<&mut [Vec4; BLOCK]>> = (0..DIRECTIONS).map(|_| Vec::new()).collect();
         for block in rays {
@@ -115,29 +116,25 @@ impl Carried {
             let (step, [columns, rows, layers]) = (way.step, grid.counts.map(|count| count as i32));
             let turned = |at: i32, count: i32, step: i32| if step < 0 { count - 1 - at } else { at };
             let inside = |at: i32, count: i32| (0..count).contains(&at);
-            let back = (step.z * rows + step.y) * columns + step.x;
             for z in (0..layers).map(|z| turned(z, layers, step.z)) {
                 for y in (0..rows).map(|y| turned(y, rows, step.y)) {
                     let known = inside(z - step.z, layers) && inside(y - step.y, rows);
-                    if !holds[(z * rows + y) as usize] {
-                        way.pass((z * rows + y) * columns, columns, known.then_some(back), outside);
-                        continue;
-                    }
-                    for x in (0..columns).map(|x| turned(x, columns, step.x)) {
-                        let index = (z * rows + y) * columns + x;
-                        let arrived = if known && inside(x - step.x, columns) {
-                            way.leaving[(index - back) as usize]
-                        } else {
-                            outside
-                        };
-                        let slot = slots[index as usize];
-                        way.leaving[index as usize] = if slot == NONE {
-                            arrived
-                        } else {
-                            let slot = slot as usize;
-                            let ray = &mut rays[slot / BLOCK][slot % BLOCK];
-                            way.crossings[slot].cross(ray, skins[slot], arrived)
-                        };
+                    let first = |z: i32, y: i32| ((z * rows + y) * columns) as usize;
+                    let layer = |z: i32| if last { z } else { z & 1 };
+                    let row = Row {
+                        first: first(layer(z), y),
+                        columns: columns as usize,
+                        from: known.then(|| first(layer(z - step.z), y - step.y)),
+                        outside,
+                    };
+                    let cells = first(z, y);
+                    if holds[cells / row.columns] {
+                        let held = &slots[cells..][..row.columns];
+                        way.cross(&row, held, |slot, crossing, arrived| {
+                            crossing.cross(&mut rays[slot / BLOCK][slot % BLOCK], skins[slot], arrived)
+                        });
+                    } else {
+                        way.pass(&row);
                     }
                 }
             }
@@ -192,26 +189,73 @@ fn on_skin(skin: Vec3, rays: &Rays, scene: &Scene) -> Vec4 {
     met / whole
 }
 
+/// A row of cells along x.
+struct Row {
+    /// Where the light that leaves its first cell lies, and how many cells it has.
+    first: usize,
+    columns: usize,
+    /// The same of the row that light comes from, which may be this one; none where that is outside the grid.
+    from: Option<usize>,
+    /// Light from outside.
+    outside: Vec4,
+}
+
 impl Way {
-    /// Carries light through a row that holds nothing, of so many cells from `first` on; `back` leads from a cell to the
-    /// one behind, unless all of them lie outside the grid.
-    fn pass(&mut self, first: i32, columns: i32, back: Option<i32>, outside: Vec4) {
-        let row = first as usize..(first + columns) as usize;
-        let aside = self.step.x;
-        match back {
-            Some(back) if (self.step.y, self.step.z) != (0, 0) => {
-                let from = (first - back).max(first - back + aside);
-                let count = columns - aside.abs();
-                let to = first + aside.max(0);
-                self.leaving.copy_within(from as usize..(from + count) as usize, to as usize);
-                match aside {
-                    1 => self.leaving[row.start] = outside,
-                    -1 => self.leaving[row.end - 1] = outside,
-                    _ => {}
-                }
+    /// Carries light through a row that holds something: in a slot `leaves` says what does of what arrives.
+    #[inline]
+    fn cross(&mut self, row: &Row, held: &[u32], mut leaves: impl FnMut(usize, &Crossing, Vec4) -> Vec4) {
+        let (aside, crossings) = (self.step.x, &self.crossings);
+        let mut leaves = |slot: u32, arrived: Vec4| match slot {
+            NONE => arrived,
+            slot => leaves(slot as usize, &crossings[slot as usize], arrived),
+        };
+        if row.from == Some(row.first) {
+            let mut arrived = row.outside;
+            for at in 0..row.columns {
+                let column = if aside < 0 { row.columns - 1 - at } else { at };
+                arrived = leaves(held[column], arrived);
+                self.leaving[row.first + column] = arrived;
             }
-            _ => self.leaving[row].fill(outside),
+            return;
         }
+        let (from, to) = two_rows(&mut self.leaving, row);
+        for (column, (to, slot)) in to.iter_mut().zip(held).enumerate() {
+            // Before the first there is none, as there is none behind the last.
+            let arrived = from.get(column.wrapping_sub(aside as usize));
+            *to = leaves(*slot, arrived.copied().unwrap_or(row.outside));
+        }
+    }
+
+    /// Carries light through a row that holds nothing.
+    fn pass(&mut self, row: &Row) {
+        let aside = self.step.x;
+        let (from, to) = two_rows(&mut self.leaving, row);
+        if from.is_empty() {
+            return to.fill(row.outside);
+        }
+        let count = row.columns - aside.unsigned_abs() as usize;
+        let [from_first, to_first] = [(-aside).max(0), aside.max(0)].map(|first| first as usize);
+        to[to_first..][..count].copy_from_slice(&from[from_first..][..count]);
+        match aside {
+            1 => to[0] = row.outside,
+            -1 => to[row.columns - 1] = row.outside,
+            _ => {}
+        }
+    }
+}
+
+/// The row that light comes from, empty where that is the same one or outside the grid, and the row itself.
+fn two_rows<'a>(leaving: &'a mut [Vec4], row: &Row) -> (&'a [Vec4], &'a mut [Vec4]) {
+    match row.from {
+        Some(from) if from < row.first => {
+            let (low, high) = leaving.split_at_mut(row.first);
+            (&low[from..][..row.columns], &mut high[..row.columns])
+        }
+        Some(from) if from > row.first => {
+            let (low, high) = leaving.split_at_mut(from);
+            (&high[..row.columns], &mut low[row.first..][..row.columns])
+        }
+        _ => (&[], &mut leaving[row.first..][..row.columns]),
     }
 }
 

@@ -53,10 +53,10 @@ impl LightGrid {
         sum(&self.grid, scene, &mut self.parts);
         self.prepare(scene);
         for _ in 0..scene.rounds {
-            self.carried.carry(&self.grid, &scene.around);
+            self.carried.carry(&self.grid, &scene.around, false);
             self.carried.scatter(&self.cells, scene);
         }
-        self.carried.carry(&self.grid, &scene.around);
+        self.carried.carry(&self.grid, &scene.around, true);
         self.toward = Some(Toward { lattice: scene.lattice.clone(), eye: scene.eye });
         self.found.clear();
         self.found.resize_with(self.grid.cell_count(), OnceLock::new);

@@ -67,10 +67,7 @@ fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, su
             for (value, reached) in values[HAIR_SUMS..].iter_mut().zip(scene.reached) {
                 *value = if reached.is_empty() { 0.0 } else { area * mix(reached) };
             }
-            let units = f32x4::splat(UNITS);
-            quads.iter_mut().zip(values.as_chunks::<4>().0).for_each(|(quad, values)| {
-                *quad = f32x4::from(*values) * units;
-            });
+            quads.iter_mut().zip(values.chunks(4)).for_each(|(to, values)| *to = quad(values));
             let small = values.iter().all(|value| value.abs() * UNITS < MOST_SMALL);
             grid.spread(start + way * along, |index, share| {
                 let cell = &mut sums[index * width..][..width];
@@ -82,6 +79,13 @@ fn sum_hair(grid: &GridBox, scene: &Scene, range: Range<usize>, width: usize, su
             });
         }
     }
+}
+
+/// The first four of values, 0 beyond their end, in units.
+#[inline]
+fn quad(values: &[f32]) -> f32x4 {
+    let at = |index: usize| values.get(index).copied().unwrap_or(0.0);
+    f32x4::from([at(0), at(1), at(2), at(3)]) * f32x4::splat(UNITS)
 }
 
 /// Adds a share of values.
@@ -96,7 +100,7 @@ fn add(sums: &mut [i64], values: &[f32], share: f32) {
 #[inline]
 fn add_small(sums: &mut [i64], quads: &[f32x4], share: f32) {
     let share = f32x4::splat(share);
-    for (sums, quad) in sums.as_chunks_mut::<4>().0.iter_mut().zip(quads) {
+    for (sums, quad) in sums.chunks_mut(4).zip(quads) {
         let parts = (*quad * share).fast_trunc_int().to_array();
         sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += i64::from(part));
     }
@@ -135,15 +139,18 @@ fn sum_skin(
                 let lit = source.at(place);
                 let facing = normal.dot(lit.to_light);
                 if facing > 0.0 {
-                    let passed = scene.shadows.map(index).map_or(1.0, |map| map.transmittance(place));
+                    let passed = scene.shadows.map(index).map_or(1.0, |map| map.reach(place));
                     light += lit.radiance * (facing * passed);
                 }
             }
             let area = across * share;
             let light = light * area.length();
+            let values = [area.x, area.y, area.z, light.x, light.y, light.z];
+            let quads = [0, 4].map(|first| quad(&values[first..]));
+            let small = values.iter().all(|value| value.abs() * UNITS < MOST_SMALL);
             grid.spread(place, |index, share| {
                 let sums = &mut sums[(index + 1) * width - SKIN_SUMS..][..SKIN_SUMS];
-                add(sums, &[area.x, area.y, area.z, light.x, light.y, light.z], share);
+                if small { add_small(sums, &quads, share) } else { add(sums, &values, share) }
             });
         }
     }

@@ -7,18 +7,9 @@ use strandline_base::par::prelude::*;
 
 use super::Strands;
 use super::shadow::{LightView, NOTHING, ShadowMap, Shadows, Window};
-use super::shadow_body::draw_depth;
+use super::shadow_body::{ShadowBody, draw_depth};
 use super::shadow_hair::{part_strands, parts_of, plane_bounds, stride, walk};
 use crate::{Light, Shadow};
-
-/// A body that casts shadows, already in its place.
-#[derive(Clone, Copy, Debug)]
-pub struct ShadowBody<'a> {
-    /// Vertex positions \[m\], world space.
-    pub positions: &'a [Vec3],
-    /// Corner indices.
-    pub triangles: &'a [[u32; 3]],
-}
 
 /// Fits each shadow light's maps to hair and body, and finds the first depths in them. Point lights look
 /// at `middle` \[m\], world space, and all texels keep their places beside it.
@@ -58,7 +49,7 @@ fn body_depths(map: &mut ShadowMap, body: ShadowBody, middle: Vec3) {
     map.body_window = Window::around(bounds, &map.view, middle, map.size);
     map.body_depths.clear();
     map.body_depths.resize(map.size * map.size, NOTHING);
-    draw_depth(body.positions, body.triangles, &map.view, &map.body_window, map.size, &mut map.body_depths);
+    draw_depth(&body, &map.view, &map.body_window, map.size, &mut map.body_depths);
 }
 
 fn hair_depths(map: &mut ShadowMap, strands: &Strands) {
@@ -70,10 +61,18 @@ fn hair_depths(map: &mut ShadowMap, strands: &Strands) {
         depths.clear();
         depths.resize(size * stride(size), NOTHING);
         let depths = depths.as_mut_slice();
-        walk(strands, part_strands(strands, part, parts), &view, &window, size, |piece| {
-            let depth = &mut depths[piece.texel];
-            *depth = if piece.depth < *depth { piece.depth } else { *depth };
-        });
+        walk(
+            strands,
+            part_strands(strands, part, parts),
+            &view,
+            &window,
+            size,
+            |_| 1.0,
+            |piece| {
+                let depth = &mut depths[piece.texel];
+                *depth = if piece.depth < *depth { piece.depth } else { *depth };
+            },
+        );
     });
     for part in &map.depth_parts {
         map.depths.par_chunks_mut(stride(size)).zip(part.par_chunks(stride(size))).for_each(

@@ -32,14 +32,14 @@ fn sum_parts(map: &mut ShadowMap, strands: &Strands) {
         // The first depth lies beside the sums, where it costs no further way to memory.
         layers.extend(depths.iter().map(|depth| [0, 0, 0, depth.to_bits()]));
         let layers = layers.as_mut_slice();
-        walk(strands, part_strands(strands, part, parts), &view, &window, size, |piece| {
+        let weigh = |width| hiding.of(width) * UNITS;
+        walk(strands, part_strands(strands, part, parts), &view, &window, size, weigh, |piece| {
             let texel = &mut layers[piece.texel];
             let behind = piece.depth - f32::from_bits(texel[3]);
             let layer = usize::from(behind > second) + usize::from(behind > third);
-            let hidden = piece.coverage * hiding.of(piece.width);
             // Without a branch, which could not be predicted.
-            let hidden = if behind > end { 0.0 } else { hidden };
-            texel[layer] = texel[layer].saturating_add((hidden * UNITS) as u32);
+            let hidden = if behind > end { 0.0 } else { piece.coverage };
+            texel[layer] = texel[layer].saturating_add(hidden as u32);
         });
     });
 }
@@ -54,8 +54,7 @@ fn hiding(width: f32) -> f32 {
     -math::ln(1.0 - share) / share
 }
 
-/// [`hiding`] of any width by a table of straight lines, to 5e-5: a logarithm for every piece would cost as much as all
-/// else; 1 where hair is not solid.
+/// [`hiding`] of any width by a table of straight lines, to 5e-5: a logarithm for every segment would cost; 1 where hair is not solid.
 struct Hiding([f32; STEPS + 1]);
 
 /// Steps of the table, and of one texel's width. A node lies where `hiding` bends, at 0.02 texels.

@@ -8,10 +8,20 @@ use super::shadow::{LightView, Window};
 /// Half a texel and more than rounding adds.
 const HALF: f32 = 0.501;
 
-/// Draws the nearest depth \[m\] of triangles into a square map that already holds depths.
+/// A body that casts shadows, already in its place.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowBody<'a> {
+    /// Vertex positions \[m\], world space.
+    pub positions: &'a [Vec3],
+    /// Corner indices.
+    pub triangles: &'a [[u32; 3]],
+    /// Whether every edge joins two triangles: then those that face away from a light lie behind others.
+    pub closed: bool,
+}
+
+/// Draws the nearest depth \[m\] of a body into a square map that already holds depths.
 pub(crate) fn draw_depth(
-    positions: &[Vec3],
-    triangles: &[[u32; 3]],
+    body: &ShadowBody,
     view: &LightView,
     window: &Window,
     size: usize,
@@ -22,17 +32,17 @@ pub(crate) fn draw_depth(
         Some(point) => window.texel(point.truncate()).extend(point.z),
         None => Vec3::NAN,
     };
-    let places: Vec<Vec3> = positions.iter().map(place).collect();
-    for corners in triangles {
-        fill(corners.map(|corner| places[corner as usize]), size, depths);
+    let places: Vec<Vec3> = body.positions.iter().map(place).collect();
+    for corners in body.triangles {
+        fill(corners.map(|corner| places[corner as usize]), body.closed, size, depths);
     }
 }
 
-/// Fills one triangle; corners are texel coordinates with depth.
-fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32]) {
+/// Fills one triangle, of a closed body only where it faces the light; corners are texel coordinates with depth.
+fn fill(corners: [Vec3; 3], closed: bool, size: usize, depths: &mut [f32]) {
     let [a, b, c] = corners;
     let area = (b - a).truncate().perp_dot((c - a).truncate());
-    if area.abs() < 1e-12 || !area.is_finite() {
+    if area.abs() < 1e-12 || !area.is_finite() || (closed && area > 0.0) {
         return;
     }
     let limit = Vec2::splat(size as f32);

@@ -62,21 +62,20 @@ pub(crate) struct Piece {
     pub(crate) texel: usize,
     /// Depth \[m\].
     pub(crate) depth: f32,
-    /// Share of the texel that the piece covers.
+    /// Share of the texel that the piece covers, times what its segment weighs.
     pub(crate) coverage: f32,
-    /// Width of the hair \[texel\].
-    pub(crate) width: f32,
 }
 
 /// Cuts segments into pieces no longer than a texel along the axis that they follow most, and
 /// hands each to `take`; hair of more than two texels' width in rows no wider than a texel. The pieces of a segment
-/// cover width times length, whatever the map's size.
+/// cover width times length, whatever the map's size, times what `weigh` says of the segment's mean width \[texel\].
 pub(crate) fn walk(
     strands: &Strands,
     range: Range<usize>,
     view: &LightView,
     window: &Window,
     size: usize,
+    weigh: impl Fn(f32) -> f32,
     mut take: impl FnMut(Piece),
 ) {
     let count = strands.points_per_strand;
@@ -89,7 +88,7 @@ pub(crate) fn walk(
                 (texel.extend(point.z), width * view.scale(point.z) * window.density)
             });
             if let (Some(start), Some(end)) = (last, next) {
-                cut(start, end, size, &mut take);
+                cut(start, end, size, &weigh, &mut take);
             }
             last = next;
         }
@@ -98,7 +97,13 @@ pub(crate) fn walk(
 
 /// Cuts one segment; ends are texel coordinates with depth, and width \[texel\].
 #[inline]
-fn cut(start: (Vec3, f32), end: (Vec3, f32), size: usize, take: &mut impl FnMut(Piece)) {
+fn cut(
+    start: (Vec3, f32),
+    end: (Vec3, f32),
+    size: usize,
+    weigh: &impl Fn(f32) -> f32,
+    take: &mut impl FnMut(Piece),
+) {
     let (start, end) = (start.0.extend(start.1), end.0.extend(end.1));
     let way = end - start;
     let longest = way.x.abs().max(way.y.abs());
@@ -110,7 +115,8 @@ fn cut(start: (Vec3, f32), end: (Vec3, f32), size: usize, take: &mut impl FnMut(
     let inverse = 1.0 / pieces as f32;
     let length = (way.x * way.x + way.y * way.y).sqrt() * inverse;
     let step = way * inverse;
-    let line = Line { at: start + 0.5 * step, step, pieces, length, size };
+    let weight = weigh(0.5 * (start.w + end.w));
+    let line = Line { at: start + 0.5 * step, step, pieces, length: length * weight, size };
     let widest = start.w.max(end.w);
     if widest > WIDE && length > 0.0 {
         let rows = widest.min(MOST_ROWS).ceil();
@@ -132,7 +138,7 @@ struct Line {
     at: Vec4,
     step: Vec4,
     pieces: i32,
-    /// Length of a piece \[texel\].
+    /// Length of a piece \[texel\], times what it weighs.
     length: f32,
     /// Texels along a side of the map.
     size: usize,
@@ -148,7 +154,7 @@ impl Line {
             if seen(at) {
                 let [column, row, ..] = f32x4::from(at.to_array()).fast_trunc_int().to_array();
                 let texel = row as u32 as usize * stride + column as u32 as usize;
-                take(Piece { texel, depth: at.z, coverage: self.length * at.w, width: at.w });
+                take(Piece { texel, depth: at.z, coverage: self.length * at.w });
             }
             at += self.step;
         }
@@ -163,7 +169,7 @@ impl Line {
                 let place = Vec2::new(at.x, at.y) + aside * (at.w * (row as f32 + 0.5 - 0.5 * rows));
                 if is_within(place, self.size as f32) {
                     let texel = place.y as usize * stride(self.size) + place.x as usize;
-                    take(Piece { texel, depth: at.z, coverage: self.length * at.w / rows, width: at.w });
+                    take(Piece { texel, depth: at.z, coverage: self.length * at.w / rows });
                 }
             }
             at += self.step;
@@ -185,7 +191,7 @@ mod tests {
     fn covered(width: f32) -> Vec<f32> {
         let mut texels = vec![0.0; 64 * stride(64)];
         let ends = [Vec3::new(20.0, 20.0, 1.0), Vec3::new(44.0, 38.0, 1.0)];
-        cut((ends[0], width), (ends[1], width), 64, &mut |piece: Piece| {
+        cut((ends[0], width), (ends[1], width), 64, &|_| 1.0, &mut |piece: Piece| {
             texels[piece.texel] += piece.coverage
         });
         texels
