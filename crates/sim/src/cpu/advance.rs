@@ -72,17 +72,20 @@ pub fn advance(model: &Model, state: &mut State, scratch: &mut Scratch, obstacle
             let lengths = &lengths[block * points..(block + 1) * points];
             let live = model.live_lanes(block);
             let mut outcome = Outcome { non_finite, ..Outcome::default() };
+            let (mut stretches, mut speeds) = (Numbers::default(), Numbers::default());
+            let there = splat(live as f32).simd_gt(f32x8::from(NUMBERED));
             let inverse_mass = &model.inverse_mass[block * points..(block + 1) * points];
             for point in 1..points {
                 let pair = [Vec3x8::load(&positions[point - 1]), Vec3x8::load(&positions[point])];
                 let free = load(&inverse_mass[point - 1]) + load(&inverse_mass[point]);
                 let stretch = (pair[1] - pair[0]).length() / load(&lengths[point - 1]) - splat(1.0);
-                outcome.add_stretch(stretch, free.simd_gt(splat(0.0)), live);
+                stretches.add(stretch, free.simd_gt(splat(0.0)) & there);
             }
             for (now, before) in positions.iter().zip(&*previous) {
                 let moved = (Vec3x8::load(now) - Vec3x8::load(before)).length();
-                outcome.add_speed(moved * splat(1.0 / model.settings.time_step), live);
+                speeds.add(moved * splat(1.0 / model.settings.time_step), there);
             }
+            outcome.take(&stretches, &speeds);
             outcome.penetration_max = deepest(&solids, positions, inverse_mass, live);
             outcome
         })
@@ -91,22 +94,12 @@ pub fn advance(model: &Model, state: &mut State, scratch: &mut Scratch, obstacle
 }
 
 impl Outcome {
-    fn add_stretch(&mut self, stretch: f32x8, counted: f32x8, live: usize) {
-        let mask = counted.to_bitmask();
-        for (lane, stretch) in stretch.to_array().into_iter().take(live).enumerate() {
-            if mask & (1 << lane) != 0 {
-                self.stretch_sum += f64::from(stretch);
-                self.segment_count += 1;
-                self.stretch_max = larger(self.stretch_max, stretch);
-            }
-        }
-    }
-
-    fn add_speed(&mut self, speed: f32x8, live: usize) {
-        for speed in speed.to_array().into_iter().take(live) {
-            self.speed_sum += f64::from(speed);
-            self.speed_max = self.speed_max.max(speed);
-        }
+    fn take(&mut self, stretches: &Numbers, speeds: &Numbers) {
+        self.stretch_sum += stretches.sum();
+        self.segment_count += stretches.count;
+        self.stretch_max = larger(self.stretch_max, stretches.most());
+        self.speed_sum += speeds.sum();
+        self.speed_max = self.speed_max.max(speeds.most());
     }
 
     fn with(self, other: &Self) -> Self {
@@ -124,6 +117,37 @@ impl Outcome {
     /// Mean of length / rest length - 1.
     pub fn stretch_mean(&self) -> f32 {
         (self.stretch_sum / self.segment_count.max(1) as f64) as f32
+    }
+}
+
+/// The numbers of the lanes.
+const NUMBERED: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+/// Numbers of a block that are counted, lane by lane.
+#[derive(Default)]
+struct Numbers {
+    sum: f32x8,
+    /// The largest above 0; not a number where one is none.
+    most: f32x8,
+    count: usize,
+}
+
+impl Numbers {
+    #[inline]
+    fn add(&mut self, numbers: f32x8, counted: f32x8) {
+        let numbers = numbers & counted;
+        self.sum += numbers;
+        let stays = numbers.simd_le(self.most) | self.most.is_nan();
+        self.most = stays.bitselect(self.most, numbers);
+        self.count += counted.to_bitmask().count_ones() as usize;
+    }
+
+    fn sum(&self) -> f64 {
+        self.sum.to_array().map(f64::from).iter().sum()
+    }
+
+    fn most(&self) -> f32 {
+        self.most.to_array().into_iter().fold(0.0, larger)
     }
 }
 

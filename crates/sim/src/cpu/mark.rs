@@ -38,10 +38,7 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
     let look_up = |cell: usize| {
         let center = volume.grid.center(cell);
         let least = obstacles.at_least(center, &head_from_world);
-        if least > depth {
-            return least;
-        }
-        obstacles.nearest(center, &head_from_world).map_or(f32::INFINITY, |near| near.0)
+        if least > depth { least } else { obstacles.distance(center, &head_from_world) }
     };
     let occupied: Vec<f32> =
         volume.sort.cells().par_iter().with_min_len(256).map(|&cell| look_up(cell as usize)).collect();
@@ -83,8 +80,7 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
         let neighbour = if behind == 1 { cell + stride } else { cell - stride };
         (kinds[neighbour] == Kind::Solid).then(|| {
             let center = grid.face_center(axis, cell + behind * stride);
-            let near = obstacles.nearest(center, &head_from_world);
-            near.map_or(0.0, |(_, _, solid)| obstacles.velocity(solid, center, &head_from_world)[axis])
+            obstacles.nearest_velocity(center, &head_from_world).map_or(0.0, |velocity| velocity[axis])
         })
     };
     let around =

@@ -37,6 +37,25 @@ impl Obstacles<'_> {
             .min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// Signed distance \[m\] to the nearest solid at the end of the step, infinite without solids: that of
+    /// [`Self::nearest`]. World space.
+    pub fn distance(&self, point: Vec3, head_from_world: &Pose) -> f32 {
+        let distances = self.colliders.iter().map(|collider| match collider.carrier {
+            Carrier::World => collider.shape.distance(point),
+            Carrier::Head => collider.shape.distance(head_from_world.point(point)),
+        });
+        distances.fold(f32::INFINITY, f32::min)
+    }
+
+    /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, none without
+    /// solids. Where all are carried by one thing it need not be known which is the nearest.
+    pub fn nearest_velocity(&self, point: Vec3, head_from_world: &Pose) -> Option<Vec3> {
+        let first = self.colliders.first()?;
+        let together = self.colliders.iter().all(|collider| collider.carrier == first.carrier);
+        let nearest = if together { 0 } else { self.nearest(point, head_from_world)?.2 };
+        Some(self.velocity(nearest, point, head_from_world))
+    }
+
     /// How far \[m\] all solids are from a point at the end of the step at least, 0 where it may be inside one; quicker
     /// than [`Self::nearest`]. World space.
     pub fn at_least(&self, point: Vec3, head_from_world: &Pose) -> f32 {
