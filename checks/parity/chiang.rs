@@ -60,6 +60,14 @@ fn colours_of_the_groom_agree_point_by_point() {
     agree(both, true);
 }
 
+#[test]
+fn fewer_cells_of_scattered_light_agree_point_by_point() {
+    let mut both = Both::new(Style::Wavy, 16);
+    both.look = Look::brown();
+    both.look.fibre.chiang.cells = 16;
+    agree(both, true);
+}
+
 /// Holds what a GPU makes of it to what the CPU does.
 fn agree(mut both: Both, body: bool) {
     // As many as a software adapter does in a short time.

@@ -25,6 +25,8 @@ enum Caster {
     Nothing,
     Body,
     Hair,
+    /// Single hairs that nearly lie on the floor.
+    Touching,
 }
 
 fn square(middle: Vec3, half: Vec3) -> [Vec3; 4] {
@@ -46,11 +48,24 @@ fn body(caster: Caster) -> Mesh {
 
 /// A curtain of three layers of hair that lets next to nothing through, or one hair that is not seen.
 fn hair(caster: Caster) -> Guides {
+    if caster == Caster::Touching {
+        return touching();
+    }
     let (count, width) = if caster == Caster::Hair { (3 * 600, 2e-3) } else { (1, 1e-7) };
     let mut groom = Groom::empty(width);
     for strand in 0..count {
         let (across, layer) = ((strand / 3) as f32, (strand % 3) as f32);
         let middle = Vec3::new(-1e-3 - 5e-4 * across, EDGE + 1e-3 * (layer - 1.0), 0.0);
+        groom.push([middle - Vec3::Z * 0.3, middle + Vec3::Z * 0.3]);
+    }
+    Guides::resample(&groom, 8).unwrap()
+}
+
+/// Hairs 2 mm above the floor, 1 mm apart: finer than a texel of a map that holds them.
+fn touching() -> Guides {
+    let mut groom = Groom::empty(3e-4);
+    for strand in 0..400 {
+        let middle = Vec3::new(1e-3 * (strand as f32 - 200.0), 2e-3, 0.0);
         groom.push([middle - Vec3::Z * 0.3, middle + Vec3::Z * 0.3]);
     }
     Guides::resample(&groom, 8).unwrap()
@@ -186,5 +201,19 @@ law! {
 law! {
     fn the_edge_of_hair_hides_as_much_of_a_light_as_lies_behind_it(on) {
         hold(on, Caster::Hair);
+    }
+}
+
+law! {
+    fn hairs_that_touch_skin_do_not_speckle_it(on) {
+        for light in lights() {
+            let (open, found) = (floor(on, Caster::Nothing, light), floor(on, Caster::Touching, light));
+            let shares: Vec<f32> = found.iter().zip(&open).map(|(found, open)| found / open).collect();
+            let mean = shares.iter().sum::<f32>() / shares.len() as f32;
+            let off = shares.iter().map(|share| (share - mean).abs()).fold(0.0, f32::max);
+            assert!((0.5..0.95).contains(&mean), "{mean}");
+            // Their mean is shown to 0.032; by one ray of each place it is off by 0.039 to 0.053.
+            assert!(off < 0.036, "{off} beside {mean}");
+        }
     }
 }

@@ -24,6 +24,9 @@ const HAIR_STEP: usize = 2;
 const MOST_GAP: f32 = 0.4;
 /// What lies nearer than so much of the mean distance of blockers is the skin itself.
 const OWN_SKIN: f32 = 0.3;
+/// Distance \[m\] at which hair is taken to be that lies closer before skin than looks find it: its shadow is as wide as
+/// the least side.
+const TOUCH: f32 = 1e-6;
 /// Least side \[texel\] of what is looked at.
 const LEAST_SIDE: f32 = 2.0;
 /// A share of a whole that many steps of are spread evenly over it.
@@ -93,7 +96,7 @@ impl Shadows {
                 Some(map.texels[map.nearest(map.hair_window.texel(at))?].w)
             });
         }
-        Blockers { body: body.mean(), hair: hair.mean() }
+        Blockers { body: body.mean(), hair: hair.mean_or_touch() }
     }
 }
 
@@ -102,6 +105,8 @@ impl Shadows {
 struct Gaps {
     sum: f32,
     count: f32,
+    /// Whether anything was seen before it, though it hides no ray that was looked along.
+    touched: bool,
 }
 
 impl Gaps {
@@ -120,6 +125,7 @@ impl Gaps {
             let at = seen.truncate() + sides[0] * look.x + sides[1] * look.y;
             let Some(depth) = depth_at(at) else { continue };
             let gap = seen.z - depth;
+            self.touched |= gap > 0.0;
             // What hides none of this part's rays does not count.
             if gap > 0.0 && LightView::aside(seen.z, gap) >= look.z * most {
                 self.sum += gap;
@@ -130,6 +136,11 @@ impl Gaps {
 
     fn mean(&self) -> f32 {
         self.sum / self.count.max(1.0)
+    }
+
+    /// [`Gaps::mean`], or next to nothing of what only touches.
+    fn mean_or_touch(&self) -> f32 {
+        if self.count == 0.0 && self.touched { TOUCH } else { self.mean() }
     }
 }
 
