@@ -76,11 +76,7 @@ fn agree(mut both: Both, body: bool) {
     let Some(renderer) = drawn_on_gpu(&both, &positions, body) else { return };
     let found = renderer.strands().unwrap().radiances;
     let placed: Vec<Vec3> = both.mesh.positions.iter().map(|&point| both.pose.point(point)).collect();
-    let shape = body.then_some(ShadowBody {
-        positions: &placed,
-        triangles: &both.mesh.triangles,
-        closed: both.mesh.is_closed(),
-    });
+    let shape = body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles });
     let strands = both.scattered_on_cpu(&positions, shape);
     let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
     let pairs = strands.radiances.iter().zip(&found);

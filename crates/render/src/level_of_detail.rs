@@ -138,7 +138,7 @@ pub(crate) fn is_drawn(guide: usize, left_out: f32) -> bool {
     RANKS[guide % RANKS.len()] < EIGHT - left_out
 }
 
-/// So many strands stand for any more: 32 of them cross each cell of a grid of light.
+/// So many strands stand for any more: eight of them cross each cell of a grid of light.
 const ENOUGH: usize = 4096;
 /// One strand stands for so many at most.
 const EVERY: usize = 4;
@@ -230,8 +230,10 @@ mod tests {
 
     #[test]
     fn every_few_strands_are_spread_evenly() {
-        let few = EveryFew::of(4 * ENOUGH);
-        for per_guide in [1, 3, 16] {
+        let all = [2, 4].into_iter().flat_map(|times| [1, 3, 16].map(|per_guide| (times, per_guide)));
+        for (times, per_guide) in all {
+            let few = EveryFew::of(times * ENOUGH);
+            assert_eq!(few.stands_for() as usize, times);
             for left_out in [0.0, 2.5, 7.0] {
                 let drawn = |strand: &usize| is_drawn(strand / per_guide, left_out);
                 let strands: Vec<usize> = (0..32 * 10 * per_guide).filter(drawn).collect();

@@ -27,7 +27,8 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     let (back, base, rows) = (&mut picture.background, &base.background, &Background::ROWS);
     colour(ui, (&mut back.top, base.top), &rows.top, "backdrop above");
     colour(ui, (&mut back.bottom, base.bottom), &rows.bottom, "backdrop below");
-    let tip = "fewer strands and samples while the hair moves, where a picture takes long";
+    let tip =
+        "smaller, with fewer strands and simpler light while the hair moves, where a picture takes long";
     tick_of(ui, (&mut app.adapts, true), "simpler while it moves", tip);
     if app.scene.level_of_detail != before.0 {
         app.live.send(Change::LevelOfDetail(app.scene.level_of_detail));

@@ -26,7 +26,7 @@ const MIN_COSINE: f32 = 0.2;
 pub struct Body {
     mesh: Mesh,
     /// Every edge joins two triangles, so that back faces are never seen.
-    pub closed: bool,
+    closed: bool,
     /// Vertex positions \[m\], world space.
     pub positions: Vec<Vec3>,
     /// Vertex normals, world space.

@@ -72,7 +72,7 @@ impl Draw {
     /// The body in its place, to cast shadows.
     pub fn shadow_body(&self) -> Option<ShadowBody<'_>> {
         let body = self.body.as_ref()?;
-        Some(ShadowBody { positions: &body.positions, triangles: body.triangles(), closed: body.closed })
+        Some(ShadowBody { positions: &body.positions, triangles: body.triangles() })
     }
 
     /// Fills the samples; returns the number of segments that were not left out as hidden.

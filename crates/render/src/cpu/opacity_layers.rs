@@ -54,7 +54,8 @@ fn hiding(width: f32) -> f32 {
     -math::ln(1.0 - share) / share
 }
 
-/// [`hiding`] of any width by a table of straight lines, to 5e-5: a logarithm for every segment would cost; 1 where hair is not solid.
+/// [`hiding`] of any width by a table of straight lines, to 5e-5: quicker than a logarithm for every segment. 1 where
+/// hair is not solid.
 struct Hiding([f32; STEPS + 1]);
 
 /// Steps of the table, and of one texel's width. A node lies where `hiding` bends, at 0.02 texels.

@@ -218,7 +218,7 @@ impl ShadowMap {
         self.view.project(point).map_or(1.0, |projected| self.body_open(projected, &[Vec2::ZERO]))
     }
 
-    /// Share of the light that hair and body let through to a point of a strand \[m\], world space.
+    /// Share of the light that hair and body let through to a point \[m\], world space, by one look at the body.
     #[inline]
     pub(crate) fn reach(&self, point: Vec3) -> f32 {
         let Some(projected) = self.view.project(point) else { return 1.0 };

@@ -15,8 +15,6 @@ pub struct ShadowBody<'a> {
     pub positions: &'a [Vec3],
     /// Corner indices.
     pub triangles: &'a [[u32; 3]],
-    /// Whether every edge joins two triangles: then those that face away from a light lie behind others.
-    pub closed: bool,
 }
 
 /// Draws the nearest depth \[m\] of a body into a square map that already holds depths.
@@ -34,15 +32,15 @@ pub(crate) fn draw_depth(
     };
     let places: Vec<Vec3> = body.positions.iter().map(place).collect();
     for corners in body.triangles {
-        fill(corners.map(|corner| places[corner as usize]), body.closed, size, depths);
+        fill(corners.map(|corner| places[corner as usize]), size, depths);
     }
 }
 
-/// Fills one triangle, of a closed body only where it faces the light; corners are texel coordinates with depth.
-fn fill(corners: [Vec3; 3], closed: bool, size: usize, depths: &mut [f32]) {
+/// Fills one triangle; corners are texel coordinates with depth.
+fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32]) {
     let [a, b, c] = corners;
     let area = (b - a).truncate().perp_dot((c - a).truncate());
-    if area.abs() < 1e-12 || !area.is_finite() || (closed && area > 0.0) {
+    if area.abs() < 1e-12 || !area.is_finite() {
         return;
     }
     let limit = Vec2::splat(size as f32);

@@ -115,8 +115,8 @@ impl Playing {
             return;
         }
         self.drafts.judge(seconds);
-        if !self.tried && 4.0 * seconds < SLOW {
-            // A full one takes some four times as long: it is tried, once.
+        if !self.tried && 8.0 * seconds < SLOW {
+            // A full one takes some eight times as long: it is tried, once.
             self.slow = false;
         }
     }

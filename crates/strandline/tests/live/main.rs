@@ -219,6 +219,8 @@ fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
     live.send(Command::Adapt(true));
     let draft = wait(|| live.take_shown().filter(|shown| shown.draft));
     assert_eq!((draft.picture.width, draft.picture.height), (32, 24));
+    clock.set_picture_seconds(0.3);
+    wait(|| live.take_shown().filter(|shown| shown.draft && shown.picture.width == 22));
     live.send(Command::Play(false));
     let resting = settled(&live);
     assert!(resting.draft, "nothing has rested for a moment yet");
