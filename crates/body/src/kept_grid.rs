@@ -111,7 +111,7 @@ fn read(path: &Path, key: &[u8; DIGEST]) -> Option<DistanceGrid> {
     let (distances, _) = distances.as_chunks::<4>();
     let distances: Vec<f32> = distances.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
     let finite = distances.iter().all(|distance| distance.is_finite());
-    finite.then(|| DistanceGrid::from_distances(Lattice { origin, spacing, node_count }, &distances))
+    finite.then(|| DistanceGrid::from_distances(Lattice { origin, spacing, node_count }, distances))
 }
 
 /// Removes the oldest grids of a folder while all together take more than `most` \[byte\].

@@ -9,9 +9,9 @@ mod threads;
 #[cfg(feature = "threads")]
 pub use rayon::{current_num_threads, join, prelude};
 #[cfg(not(feature = "threads"))]
-pub use serial::{Pool, current_num_threads, join, prelude};
+pub use serial::{Pool, awake, current_num_threads, join, prelude};
 #[cfg(feature = "threads")]
-pub use threads::Pool;
+pub use threads::{Pool, awake};
 
 #[cfg(all(test, feature = "threads"))]
 mod tests {
@@ -41,5 +41,24 @@ mod tests {
     fn one_thread_gives_what_many_give() {
         assert_eq!(work!(rayon::prelude), work!(super::serial::prelude));
         assert_eq!(super::serial::join(|| 1, || 2), rayon::join(|| 1, || 2));
+        assert_eq!(super::serial::awake(|| 3), super::awake(|| 3));
+    }
+
+    #[test]
+    fn threads_that_are_kept_awake_end_with_the_work() {
+        use rayon::prelude::*;
+        let pool = super::Pool::new("awake");
+        let sums = || -> Vec<u32> {
+            let sum = |last: u32| (0..last).into_par_iter().with_min_len(1).sum();
+            (0..200).map(sum).collect()
+        };
+        assert_eq!(pool.run(|| super::awake(sums)), sums());
+        // Loops inside others, and work that fails.
+        let nested = pool.run(|| super::awake(|| super::awake(sums).len()));
+        assert_eq!(nested, 200);
+        let fails = || pool.run(|| super::awake(|| panic!("of the test")));
+        let failed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(fails));
+        assert!(failed.is_err());
+        assert_eq!(pool.run(|| super::awake(sums)), sums());
     }
 }

@@ -17,6 +17,11 @@ pub fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) 
     (one(), other())
 }
 
+/// Runs something: no thread falls asleep beside it.
+pub fn awake<T>(work: impl FnOnce() -> T) -> T {
+    work()
+}
+
 /// Threads of their own for one piece of work: none, it runs on that of the caller.
 #[derive(Debug)]
 pub struct Pool;

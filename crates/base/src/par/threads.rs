@@ -1,3 +1,5 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
 /// Threads of their own for the loops of one piece of work, beside those that all others share.
 #[derive(Debug)]
 pub struct Pool(Option<rayon::ThreadPool>);
@@ -14,5 +16,43 @@ impl Pool {
             Some(pool) => pool.install(work),
             None => work(),
         }
+    }
+}
+
+/// Rounds that a thread without work looks for some at once, then with the others let go first, until it sleeps.
+const ROUNDS_AT_ONCE: u32 = 64;
+const ROUNDS: u32 = 2048;
+
+/// Runs work of many short parallel loops with the threads awake in between, which else sleep where one of them does
+/// something alone and are late for the next loop. A thread that finds nothing for about a millisecond sleeps.
+pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let done = AtomicBool::new(false);
+    let wait = || {
+        let mut round = 0;
+        while round < ROUNDS && !done.load(Ordering::Relaxed) {
+            match rayon::yield_now() {
+                Some(rayon::Yield::Executed) => round = 0,
+                _ if round < ROUNDS_AT_ONCE => std::hint::spin_loop(),
+                _ => std::thread::yield_now(),
+            }
+            round += 1;
+        }
+    };
+    rayon::scope(|scope| {
+        for _ in 1..rayon::current_num_threads() {
+            scope.spawn(|_| wait());
+        }
+        // Dropped when the work panics, too.
+        let _end = End(&done);
+        work()
+    })
+}
+
+/// Says that something is done when it is dropped.
+struct End<'a>(&'a AtomicBool);
+
+impl Drop for End<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
     }
 }

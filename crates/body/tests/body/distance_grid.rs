@@ -68,6 +68,7 @@ fn check_ball(grid: &DistanceGrid, inexact: f32) {
     let tolerance = inexact + SPACING * SPACING / 8.0 * 2.0 / (RADIUS / 3.0) + 1e-6;
     for point in points(grid.bounds(), 20_000).filter(|point| point.distance(CENTER) > RADIUS / 3.0) {
         let (distance, gradient) = grid.distance_and_gradient(point);
+        assert_eq!(grid.distance(point), distance, "one look as the other");
         let (exact, direction) = Ball.distance_and_gradient(point);
         assert!((distance - exact).abs() < tolerance, "{point}: {distance}, not {exact}");
         assert_eq!(distance, grid.distance(point));

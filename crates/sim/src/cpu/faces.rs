@@ -30,20 +30,20 @@ impl Faces {
         self.components[axis][2 * cell + 1]
     }
 
-    /// Adds to a velocity \[m/s\].
-    #[inline]
-    pub fn change_by(&mut self, axis: usize, cell: usize, change: f32) {
-        let pair = &mut self.components[axis][2 * cell..][..2];
-        pair[0] += change;
-        pair[1] += change;
-    }
-
     /// Replaces a velocity \[m/s\].
     #[inline]
     pub fn set(&mut self, axis: usize, cell: usize, velocity: f32) {
         let change = velocity - self.velocity(axis, cell);
-        self.change_by(axis, cell, change);
+        change_by(&mut self.components[axis], cell, change);
     }
+}
+
+/// Adds to a velocity \[m/s\] of a component.
+#[inline]
+pub fn change_by(component: &mut [f32], cell: usize, change: f32) {
+    let pair = &mut component[2 * cell..][..2];
+    pair[0] += change;
+    pair[1] += change;
 }
 
 /// What a point brings to the faces.

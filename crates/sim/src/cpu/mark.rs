@@ -3,6 +3,7 @@
 use strandline_base::par::prelude::*;
 
 use super::cell_kind::Kind;
+use super::grid::Grid;
 use super::obstacles::Obstacles;
 use super::volume::Volume;
 
@@ -33,40 +34,48 @@ pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
 
 fn classify(volume: &mut Volume, obstacles: &Obstacles) {
     let depth = volume.grid.spacing();
-    let head_from_world = obstacles.end.inverse();
-    // What is farther than a cell need not be known to the bit.
-    let look_up = |cell: usize| {
-        let center = volume.grid.center(cell);
-        let least = obstacles.at_least(center, &head_from_world);
-        if least > depth { least } else { obstacles.distance(center, &head_from_world) }
-    };
-    let occupied: Vec<f32> =
-        volume.sort.cells().par_iter().with_min_len(256).map(|&cell| look_up(cell as usize)).collect();
-    for (&cell, &distance) in volume.sort.cells().iter().zip(&occupied) {
+    let cells = volume.sort.cells();
+    let occupied = distances(&volume.grid, obstacles, cells);
+    for (&cell, &distance) in cells.iter().zip(&occupied) {
         volume.kinds[cell as usize] = if distance < -depth { Kind::Solid } else { Kind::Fluid };
         volume.distances[cell as usize] = distance;
     }
-    let (strides, kinds, distances) = (volume.grid.strides(), &volume.kinds, &volume.distances);
-    let beside: Vec<u32> = volume
-        .marked
-        .par_iter()
-        .with_min_len(256)
-        // Occupied cells are fluid or solid by now.
-        .filter(|&&cell| kinds[cell as usize] == Kind::Air)
-        .filter(|&&cell| {
-            // A distance changes by no more than the way: most neighbours need no look-up. A cell of
-            // the ring has neighbours outside the grid.
-            let cell = cell as usize;
-            let around =
-                strides.into_iter().flat_map(|stride| [cell.checked_sub(stride), Some(cell + stride)]);
-            let far = |cell: usize| kinds.get(cell) == Some(&Kind::Fluid) && distances[cell] > depth;
-            !around.flatten().any(far) && look_up(cell) < 0.0
-        })
-        .map(|cell| *cell)
-        .collect();
-    for cell in beside {
+    let (strides, kinds, known) = (volume.grid.strides(), &volume.kinds, &volume.distances);
+    // A distance changes by no more than the way: most neighbours need no look-up.
+    let far = |cell: usize| kinds.get(cell) == Some(&Kind::Fluid) && known[cell] > depth;
+    let is_asked = |&&cell: &&u32| {
+        let cell = cell as usize;
+        // Occupied cells are fluid or solid by now. A cell of the ring has neighbours outside the grid.
+        kinds[cell] == Kind::Air
+            && !strides.iter().any(|stride| far(cell.wrapping_sub(*stride)) || far(cell + stride))
+    };
+    let asked: Vec<u32> =
+        volume.marked.par_iter().with_min_len(256).filter(is_asked).map(|cell| *cell).collect();
+    let beside = distances(&volume.grid, obstacles, &asked);
+    for (&cell, _) in asked.iter().zip(&beside).filter(|(_, distance)| **distance < 0.0) {
         volume.kinds[cell as usize] = Kind::Solid;
     }
+}
+
+/// Signed distances \[m\] at the middles of cells; what is farther than a cell is at least so far.
+fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
+    /// Cells whose first looks are under way together.
+    const TOGETHER: usize = 64;
+    let head_from_world = obstacles.end.inverse();
+    let center = |cell: &u32| grid.center(*cell as usize);
+    let mut distances = vec![0.0; cells.len()];
+    let parts = distances.par_chunks_mut(TOGETHER).zip(cells.par_chunks(TOGETHER));
+    parts.with_min_len(4).for_each(|(distances, cells)| {
+        for (distance, cell) in distances.iter_mut().zip(cells) {
+            *distance = obstacles.at_least(center(cell), &head_from_world);
+        }
+        // In a loop of its own: else the processor waits for each first look to know whether to take a second.
+        for (distance, cell) in distances.iter_mut().zip(cells).filter(|(least, _)| **least <= grid.spacing())
+        {
+            *distance = obstacles.distance(center(cell), &head_from_world);
+        }
+    });
+    distances
 }
 
 /// Sets faces between fluid and solid cells to the velocity of the solid.

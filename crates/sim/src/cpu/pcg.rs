@@ -196,20 +196,22 @@ impl Pcg {
         }
     }
 
-    /// The two substitutions of MIC(0).
+    /// The two substitutions of MIC(0). Along x each unknown waits for the one before: what comes from there is added
+    /// last, to what needs no waiting.
     fn substitute(&mut self, system: &Poisson, residual: &[f32]) {
         let zero = system.len();
         for (unknown, (lower, residual)) in system.lower.iter().zip(residual).enumerate() {
             let [x, y, z] = lower.map(|before| self.carried[before as usize]);
             let scale = self.scale[unknown];
-            let value = (residual + x + y + z) * scale;
-            self.forward[unknown] = value;
-            self.carried[unknown] = value * scale;
+            let value = residual + (y + z) + x;
+            self.forward[unknown] = value * scale;
+            self.carried[unknown] = value * (scale * scale);
         }
         for unknown in (0..zero).rev() {
             let [x, y, z] = system.upper[unknown].map(|behind| self.better[behind as usize]);
             let scale = self.scale[unknown];
-            self.better[unknown] = (self.forward[unknown] + (x + y + z) * scale) * scale;
+            let ready = self.forward[unknown] * scale + (y + z) * (scale * scale);
+            self.better[unknown] = ready + x * (scale * scale);
         }
     }
 }

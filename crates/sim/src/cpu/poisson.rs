@@ -72,18 +72,27 @@ impl Poisson {
     /// up to a constant only.
     fn find_enclosed(&mut self) {
         let count = self.len();
-        let mut reached = vec![false; count];
-        let mut waiting: Vec<usize> = (0..count)
-            .filter(|&unknown| self.diagonal[unknown] > self.neighbours(unknown).count() as f32)
-            .collect();
-        waiting.iter().for_each(|&unknown| reached[unknown] = true);
+        let around = |unknown: usize| {
+            self.lower[unknown].iter().chain(&self.upper[unknown]).map(|other| *other as usize)
+        };
+        let is_open = |unknown: usize| self.diagonal[unknown] > self.neighbours(unknown).count() as f32;
+        // The zero behind the last unknown is never reached.
+        let mut reached: Vec<bool> = (0..count).map(is_open).chain([false]).collect();
+        // Once there and once back reach nearly all.
+        for unknown in (0..count).chain((0..count).rev()) {
+            reached[unknown] |= around(unknown).fold(false, |any, other| any | reached[other]);
+        }
+        let leads_on =
+            |unknown: &usize| reached[*unknown] && self.neighbours(*unknown).any(|other| !reached[other]);
+        let mut waiting: Vec<usize> = (0..count).filter(leads_on).collect();
         self.spread(&mut waiting, &mut reached);
         self.enclosed.clear();
         for unknown in 0..count {
             if !reached[unknown] {
                 reached[unknown] = true;
                 let mut waiting = vec![unknown];
-                let group = self.spread(&mut waiting, &mut reached);
+                let mut group = self.spread(&mut waiting, &mut reached);
+                group.sort_unstable();
                 self.enclosed.push(group.into_iter().map(|unknown| unknown as u32).collect());
             }
         }
@@ -100,7 +109,6 @@ impl Poisson {
                 }
             }
         }
-        group.sort_unstable();
         group
     }
 

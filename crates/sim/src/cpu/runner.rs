@@ -1,6 +1,6 @@
 //! Runs steps on the CPU.
 
-use strandline_base::Stopwatch;
+use strandline_base::{Stopwatch, par};
 
 use super::advance::{NonFinite, advance};
 use super::constrain::constrain;
@@ -56,11 +56,13 @@ impl CpuRunner {
             time_step: model.settings.time_step,
         };
         let mut step = Step { model, state, scratch, obstacles, drive, report: StepReport::default() };
-        for stage in stages(&model.settings) {
-            let watch = Stopwatch::start();
-            step.run(stage);
-            step.report.seconds.push((stage.name(), watch.seconds()));
-        }
+        par::awake(|| {
+            for stage in stages(&model.settings) {
+                let watch = Stopwatch::start();
+                step.run(stage);
+                step.report.seconds.push((stage.name(), watch.seconds()));
+            }
+        });
         let Step { report, .. } = step;
         state.volume_box = scratch.volume.as_ref().map(|volume| volume.grid.place_numbers());
         report

@@ -1,6 +1,9 @@
 //! `solve_pressure`: the pressure that takes the divergence out of the hair's velocity.
 
+use strandline_base::par::prelude::*;
+
 use super::cell_kind::Kind;
+use super::faces::change_by;
 use super::pcg::PcgSettings;
 use super::volume::Volume;
 use crate::PressureReport;
@@ -13,10 +16,8 @@ use crate::PressureReport;
 pub fn solve_pressure(volume: &mut Volume) -> PressureReport {
     let strides = volume.grid.strides();
     volume.system.assemble(&volume.fluid, &volume.kinds, strides);
-    let right = volume.fluid.iter().map(|&cell| -volume.divergence(cell as usize));
-    let right: Vec<f32> = right.collect();
-    volume.solution.right.clear();
-    volume.solution.right.extend(right);
+    let right = volume.fluid.par_iter().with_min_len(512).map(|&cell| -volume.divergence(cell as usize));
+    volume.solution.right = right.collect();
     let settings = PcgSettings {
         preconditioner: volume.settings.preconditioner,
         tolerance: volume.settings.tolerance,
@@ -24,25 +25,27 @@ pub fn solve_pressure(volume: &mut Volume) -> PressureReport {
     };
     let Volume { system, pcg, solution, .. } = volume;
     let report = pcg.solve(system, &settings, solution);
-    for (axis, stride) in strides.into_iter().enumerate() {
-        subtract_gradient(volume, axis, stride);
-    }
+    subtract_gradients(volume);
     report
 }
 
-/// Subtracts the gradient along one axis from the faces of fluid cells.
-fn subtract_gradient(volume: &mut Volume, axis: usize, stride: usize) {
+/// Subtracts the gradient along each axis from the faces of fluid cells.
+fn subtract_gradients(volume: &mut Volume) {
+    let strides = volume.grid.strides();
     let Volume { faces, fluid, kinds, system, solution, .. } = volume;
     let pressure = &solution.values;
-    for (unknown, &cell) in fluid.iter().enumerate() {
-        let cell = cell as usize;
-        let before = system.lower[unknown][axis] as usize;
-        if kinds[cell - stride] != Kind::Solid {
-            faces.change_by(axis, cell, pressure[before] - pressure[unknown]);
+    faces.components.par_iter_mut().enumerate().for_each(|(axis, component)| {
+        let stride = strides[axis];
+        for (unknown, &cell) in fluid.iter().enumerate() {
+            let cell = cell as usize;
+            let before = system.lower[unknown][axis] as usize;
+            if kinds[cell - stride] != Kind::Solid {
+                change_by(component, cell, pressure[before] - pressure[unknown]);
+            }
+            // The face to a fluid cell behind is that cell's lower face.
+            if kinds[cell + stride] == Kind::Air {
+                change_by(component, cell + stride, pressure[unknown]);
+            }
         }
-        // The face to a fluid cell behind is that cell's lower face.
-        if kinds[cell + stride] == Kind::Air {
-            faces.change_by(axis, cell + stride, pressure[unknown]);
-        }
-    }
+    });
 }

@@ -6,7 +6,7 @@ use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::cell_sort::NO_CELL;
-use super::faces::{Carried, Stencil};
+use super::faces::{Carried, Faces, Stencil};
 use super::grid::REACH;
 use super::vec3x8::{Vec3x8, load, splat as all};
 use super::volume::Volume;
@@ -20,8 +20,8 @@ use super::volume::Volume;
 pub fn splat(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lanes], mass: &[Lanes]) {
     follow(volume, positions, mass);
     bring(volume, positions, velocities, mass);
-    volume.sort.sort(&volume.cell_of_point);
-    clear(volume);
+    let Volume { sort, cell_of_point, faces, touched, .. } = volume;
+    par::join(|| sort.sort(cell_of_point), || clear(faces, touched));
     touch(volume);
     let Volume { grid, sort, brought, carried, faces, touched, .. } = volume;
     let sorted = sort.order().par_iter().with_min_len(1024).map(|&point| brought[point as usize]);
@@ -113,9 +113,9 @@ fn bring(volume: &mut Volume, positions: &[Vec3Lanes], velocities: &[Vec3Lanes],
 }
 
 /// Forgets what the last step summed.
-fn clear(volume: &mut Volume) {
-    for component in &mut volume.faces.components {
-        for &cell in &volume.touched {
+fn clear(faces: &mut Faces, touched: &[u32]) {
+    for component in &mut faces.components {
+        for &cell in touched {
             component[2 * cell as usize..][..2].fill(0.0);
         }
     }
