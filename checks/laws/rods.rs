@@ -77,17 +77,17 @@ pub fn stepped(on: &On, model: &Model, seconds: f32, motion: impl Fn(f64) -> Pos
 law! {
     fn a_style_stays_as_it_was_groomed(on) {
         let styles = [Style::Bob, Style::Wavy, Style::Curly, Style::Long, Style::Pixie, Style::Ponytail];
-        for name in styles.into_iter().take(on.either(6, 2)) {
+        for name in styles.into_iter().take(on.either(6, 3)) {
             for volume in [true, false].into_iter().take(on.either(2, 1)) {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
                 settings.volume.enabled = volume;
                 let model = style(name, &settings, 120);
                 let state = stepped(on, &model, on.either(10.0, 0.5), |_| Pose::IDENTITY);
                 let (mean, most) = drift(&model, &state);
-                // Of 2,000 strands of each style nothing moved by a bit in 5 s on the CPU, but for some two curls that
-                // lie so near the body that they are pushed: by 1.1 %, 0.001 % on average; of these 120 by 0.26 %.
-                let largest = if volume { 1e-2 } else { 1e-3 };
-                let (bound, largest) = if name == Style::Curly { (1e-4, 1e-2) } else { (1e-5, largest) };
+                // Found on the CPU, of these and of 1,000 strands of each: not a bit in 5 s. Curls that lay half a
+                // millimetre above their margin were pulled down to it, by up to 1.1 %, when a solid caught what falls
+                // before bends had held it up.
+                let (bound, largest) = (1e-5, if volume { 1e-2 } else { 1e-3 });
                 assert!(mean < bound && most < largest, "{name:?}, volume {volume}: {mean}, at most {most}");
             }
         }

@@ -15,6 +15,9 @@ use crate::strands::rods::workspace::Workspace;
 /// solid sinks in by a thousandth of its fall in a step.
 const STIFF: f64 = 1e3;
 
+/// A point that is no higher \[m\] above a solid touches it: as near as two looks at one place of a skull may find it.
+pub(crate) const TOUCHES: f64 = 2e-4;
+
 impl Strands<'_> {
     /// Planes near the points and what a hand holds, as stiff springs.
     pub(super) fn find_pulls(
@@ -41,6 +44,9 @@ impl Strands<'_> {
                 if let Some(touch) = self.parts.solids.touch(planes, point, query) {
                     let height = touch.height(space.carried[point]);
                     let near = height.simd_lt(f32x8::splat(1.0));
+                    // What touches rests where it is.
+                    let touches = height.simd_lt(f32x8::of(TOUCHES));
+                    let height = touches.bitselect(height.fast_min(f32x8::ZERO), height);
                     // What the head carries has gone where it is already.
                     let stays = touch.stuck.x.simd_eq(space.points[point].x)
                         & touch.stuck.y.simd_eq(space.points[point].y)

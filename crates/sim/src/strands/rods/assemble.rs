@@ -5,6 +5,9 @@ use super::joint::{Joint, Slope};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Work};
 
+/// A point that is no farther \[m\] from where a solid presses is there.
+const ROUNDING: f64 = 1e-6;
+
 impl<R: Real> Work<R> {
     /// Assembles the gradient and the Hessian, and eliminates from root to tip; with `turns` 0 only the Hessian's
     /// positive part. Tells the force \[N\] with which a solid presses each strand at most, and 1 where what was
@@ -57,16 +60,16 @@ impl<R: Real> Work<R> {
         }
     }
 
-    /// A solid presses with the force that its spring has, at `first` with the one that would stop the inertia
-    /// of its point. Across the normal it holds with a spring too, as weak as Coulomb's limit asks for the
+    /// A solid presses with the force that its spring has, at `first` where it touches with the one that would stop the
+    /// inertia of its point. Across the normal it holds with a spring too, as weak as Coulomb's limit asks for the
     /// slip that there was: it never pushes a point farther back than it came from. Returns the force of
-    /// a solid \[N\].
+    /// a solid \[N\], at `first` of one that it only may come to touch, too: bends may hold it up.
     #[inline(always)]
     fn add_pull(&self, front: &mut Front<R>, pull: &Pull<R>, inertia: R, first: bool) -> R {
         let vector = |[x, y, z, _]: [R; UNKNOWNS]| Vector::new(x, y, z);
         let (here, normal, none) = (vector(self.moved[pull.node]), pull.normal, R::of(0.0));
         let missing = pull.reach - normal.dot(here);
-        let (mut acts, mut holds, mut solid) = (pull.stiffness, none, none);
+        let (mut acts, mut holds, mut solid, mut ahead) = (pull.stiffness, none, none, none);
         let mut slip = Vector::zero();
         if pull.one_sided {
             slip = pull.slip(here);
@@ -75,7 +78,8 @@ impl<R: Real> Work<R> {
             if first {
                 let wanted = vector(self.wanted[pull.node]);
                 rate = pull.stiffness.choose(inertia, none);
-                solid = solid.or_more((pull.reach - normal.dot(wanted)) * rate);
+                ahead = (pull.reach - normal.dot(wanted)) * rate;
+                solid = solid.or_more((missing + R::of(ROUNDING)).choose(ahead, none));
                 size = pull.slip(wanted).length();
             }
             solid = solid.or_more(none);
@@ -97,7 +101,7 @@ impl<R: Real> Work<R> {
                 front.add(row, column, pull.stiffness.choose(value, nothing));
             }
         }
-        solid
+        solid.or_more(ahead)
     }
 
     /// Tension of a segment, and the positive part of its derivative: along the segment, and across it where it
