@@ -28,7 +28,8 @@ pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
     spare_set.list_into(marked);
     classify(volume, obstacles);
     volume.fluid.clear();
-    volume.fluid.extend(volume.marked.iter().filter(|&&cell| volume.kinds[cell as usize] == Kind::Fluid));
+    let cells = volume.sort.cells().iter();
+    volume.fluid.extend(cells.filter(|&&cell| volume.kinds[cell as usize] == Kind::Fluid));
     carry_walls(volume, obstacles);
 }
 
@@ -92,13 +93,16 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
             obstacles.nearest_velocity(center, &head_from_world).map_or(0.0, |velocity| velocity[axis])
         })
     };
-    let around =
-        |cell: &u32| -> [Option<f32>; 6] { std::array::from_fn(|side| wall(*cell as usize, sides[side])) };
-    let walls: Vec<_> = volume.fluid.par_iter().with_min_len(256).map(around).collect();
-    for (&cell, walls) in volume.fluid.iter().zip(&walls) {
+    let around = |&cell: &u32| -> Option<(usize, [Option<f32>; 6])> {
+        let cell = cell as usize;
+        let walls = std::array::from_fn(|side| wall(cell, sides[side]));
+        walls.iter().any(Option::is_some).then_some((cell, walls))
+    };
+    let beside: Vec<_> = volume.fluid.par_iter().with_min_len(256).filter_map(around).collect();
+    for (cell, walls) in beside {
         for ((axis, stride, behind), wall) in sides.iter().zip(walls) {
             if let Some(velocity) = wall {
-                volume.faces.set(*axis, cell as usize + behind * stride, *velocity);
+                volume.faces.set(*axis, cell + behind * stride, velocity);
             }
         }
     }
