@@ -84,10 +84,10 @@ law! {
                 let model = style(name, &settings, 120);
                 let state = stepped(on, &model, on.either(10.0, 0.5), |_| Pose::IDENTITY);
                 let (mean, most) = drift(&model, &state);
-                // Found on the CPU, of these and of 1,000 strands of each: not a bit in 5 s. Curls that lay half a
+                // Found on the CPU: not a bit, and of 1,000 strands of each none in 4 s. Curls that lay half a
                 // millimetre above their margin were pulled down to it, by up to 1.1 %, when a solid caught what falls
                 // before bends had held it up.
-                let (bound, largest) = (1e-5, if volume { 1e-2 } else { 1e-3 });
+                let (bound, largest) = on.either((1e-6, 1e-6), (1e-5, if volume { 1e-2 } else { 1e-3 }));
                 assert!(mean < bound && most < largest, "{name:?}, volume {volume}: {mean}, at most {most}");
             }
         }

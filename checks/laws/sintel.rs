@@ -84,8 +84,8 @@ fn drift_at_rest(on: &On, prepared: &Prepared, volume: bool) -> (f32, f32) {
 law! {
     fn sintels_hair_stays_as_it_was_groomed(on) {
         let Some(prepared) = sintel() else { return };
-        // The bounds of the law. Found: 0.003 % on the CPU, 0.03 % on a GPU, at rest within a second; 19 % where planes were those of the
-        // places that points would fall to.
+        // The bounds of the law. Found: 0.003 % on the CPU, 0.03 % on a GPU, at rest within a second; 19 % where planes
+        // were those of the places that points would fall to.
         for (volume, largest) in [(false, 1e-3), (true, 1e-2)] {
             let (mean, most) = drift_at_rest(on, &prepared, volume);
             assert!(mean < 1e-5 && most < largest, "volume {volume}: {mean}, at most {most}");
@@ -97,10 +97,11 @@ law! {
     fn a_ponytail_stays_as_it_was_groomed(on) {
         let Some(prepared) = strandline_checks::ponytail(|scene| scene.groom.guide_every = 8) else { return };
         // The law asks for 0.1 % without a volume and 1 % with one. Found on the CPU: 0.002 % with and without. On a GPU
-        // it is not met: a strand that is folded by 137 degrees at a joint moves by 1.0 %.
+        // without a volume it is not met: a strand that is folded by 137 degrees at a joint moves by 1.0 %, with one by
+        // 0.8 %.
         for (volume, largest) in [(false, 1e-3), (true, 1e-2)] {
             let (mean, most) = drift_at_rest(on, &prepared, volume);
-            let (middle, largest) = if matches!(on, On::Cpu) { (1e-6, largest) } else { (2e-5, 2e-2) };
+            let (middle, largest) = if matches!(on, On::Cpu) { (1e-6, largest) } else { (2e-5, if volume { largest } else { 2e-2 }) };
             assert!(mean < middle && most < largest, "volume {volume}: {mean}, at most {most}");
         }
     }

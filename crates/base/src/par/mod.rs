@@ -45,20 +45,21 @@ mod tests {
     }
 
     #[test]
-    fn threads_that_are_kept_awake_end_with_the_work() {
+    fn loops_of_threads_that_are_kept_awake_give_what_they_give() {
         use rayon::prelude::*;
-        let pool = super::Pool::new("awake");
         let sums = || -> Vec<u32> {
             let sum = |last: u32| (0..last).into_par_iter().with_min_len(1).sum();
             (0..200).map(sum).collect()
         };
-        assert_eq!(pool.run(|| super::awake(sums)), sums());
-        // Loops inside others, and work that fails.
-        let nested = pool.run(|| super::awake(|| super::awake(sums).len()));
-        assert_eq!(nested, 200);
-        let fails = || pool.run(|| super::awake(|| panic!("of the test")));
-        let failed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(fails));
-        assert!(failed.is_err());
-        assert_eq!(pool.run(|| super::awake(sums)), sums());
+        for threads in [1, 2, 5] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert_eq!(pool.install(|| super::awake(sums)), sums());
+            // Some inside others, and work that fails.
+            assert_eq!(pool.install(|| super::awake(|| super::awake(sums).len())), 200);
+            let fails = || pool.install(|| super::awake(|| panic!("of the test")));
+            assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(fails)).is_err());
+            assert_eq!(pool.install(|| super::awake(sums)), sums());
+        }
+        assert_eq!(super::awake(sums), sums());
     }
 }

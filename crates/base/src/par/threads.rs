@@ -1,4 +1,7 @@
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{
+    Arc,
+    atomic::{AtomicBool, Ordering},
+};
 
 /// Threads of their own for the loops of one piece of work, beside those that all others share.
 #[derive(Debug)]
@@ -24,34 +27,42 @@ const ROUNDS_AT_ONCE: u32 = 64;
 const ROUNDS: u32 = 2048;
 
 /// Runs work of many short parallel loops with the threads awake in between, which else sleep where one of them does
-/// something alone and are late for the next loop. A thread that finds nothing for about a millisecond sleeps.
+/// something alone and are late for the next loop. A thread that finds nothing for about a millisecond sleeps, and is
+/// woken by loops alone from then on. Nothing waits for the threads that wait.
 pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    let done = AtomicBool::new(false);
-    let wait = || {
-        let mut round = 0;
-        while round < ROUNDS && !done.load(Ordering::Relaxed) {
-            match rayon::yield_now() {
-                Some(rayon::Yield::Executed) => round = 0,
-                _ if round < ROUNDS_AT_ONCE => std::hint::spin_loop(),
-                _ => std::thread::yield_now(),
-            }
-            round += 1;
+    // On a thread of the pool.
+    rayon::scope(|_| {
+        let done = Done::default();
+        if rayon::current_num_threads() > 1 {
+            let (own, done) = (rayon::current_thread_index(), done.0.clone());
+            rayon::spawn_broadcast(move |context| {
+                if Some(context.index()) != own {
+                    wait(&done);
+                }
+            });
         }
-    };
-    rayon::scope(|scope| {
-        for _ in 1..rayon::current_num_threads() {
-            scope.spawn(|_| wait());
-        }
-        // Dropped when the work panics, too.
-        let _end = End(&done);
         work()
     })
 }
 
-/// Says that something is done when it is dropped.
-struct End<'a>(&'a AtomicBool);
+/// Takes part in what others begin, until something is done.
+fn wait(done: &AtomicBool) {
+    let mut round = 0;
+    while round < ROUNDS && !done.load(Ordering::Relaxed) {
+        match rayon::yield_now() {
+            Some(rayon::Yield::Executed) => round = 0,
+            _ if round < ROUNDS_AT_ONCE => std::hint::spin_loop(),
+            _ => std::thread::yield_now(),
+        }
+        round += 1;
+    }
+}
 
-impl Drop for End<'_> {
+/// Says that something is done when it is dropped: when it panics, too.
+#[derive(Default)]
+struct Done(Arc<AtomicBool>);
+
+impl Drop for Done {
     fn drop(&mut self) {
         self.0.store(true, Ordering::Relaxed);
     }

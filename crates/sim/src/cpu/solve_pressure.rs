@@ -16,8 +16,10 @@ use crate::PressureReport;
 pub fn solve_pressure(volume: &mut Volume) -> PressureReport {
     let strides = volume.grid.strides();
     volume.system.assemble(&volume.fluid, &volume.kinds, strides);
-    let right = volume.fluid.par_iter().with_min_len(512).map(|&cell| -volume.divergence(cell as usize));
-    volume.solution.right = right.collect();
+    let mut right = std::mem::take(&mut volume.solution.right);
+    let divergence = |&cell: &u32| -volume.divergence(cell as usize);
+    volume.fluid.par_iter().with_min_len(512).map(divergence).collect_into_vec(&mut right);
+    volume.solution.right = right;
     let settings = PcgSettings {
         preconditioner: volume.settings.preconditioner,
         tolerance: volume.settings.tolerance,

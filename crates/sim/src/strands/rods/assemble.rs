@@ -10,8 +10,8 @@ const ROUNDING: f64 = 1e-6;
 
 impl<R: Real> Work<R> {
     /// Assembles the gradient and the Hessian, and eliminates from root to tip; with `turns` 0 only the Hessian's
-    /// positive part. Tells the force \[N\] with which a solid presses each strand at most, and 1 where what was
-    /// eliminated is positive definite, else 0.
+    /// positive part. Tells the force \[N\] with which a solid presses each strand at most, at `first` also one that may
+    /// come to press, and 1 where what was eliminated is positive definite, else 0.
     #[inline(always)]
     pub(super) fn factorise(
         &mut self,

@@ -55,7 +55,8 @@ settings! {
         rest: Rest = Rest::default();
         /// Parts of a step that are solved one after the other.
         substeps: u32 = 2, in [1, 64], slider [1, 8], more "hair that swings longer, at a higher cost";
-        /// Most Newton steps of each part; strands that move gently need one or two.
+        /// Most Newton steps of each part; strands that move gently need one or two. With one, hair that comes down onto
+        /// a solid is put out of it without friction.
         newton_steps: u32 = 4, in [1, 64], slider [1, 16],
             more "violent motion that is followed more closely, at a higher cost where it is needed";
         /// A strand is solved when a Newton step turns none of its segments farther. What is left is a tenth to a
