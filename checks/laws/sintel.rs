@@ -101,7 +101,8 @@ law! {
         // 0.8 %.
         for (volume, largest) in [(false, 1e-3), (true, 1e-2)] {
             let (mean, most) = drift_at_rest(on, &prepared, volume);
-            let (middle, largest) = if matches!(on, On::Cpu) { (1e-6, largest) } else { (2e-5, if volume { largest } else { 2e-2 }) };
+            let on_gpu = if volume { largest } else { 2e-2 };
+            let (middle, largest) = on.either((1e-6, largest), (2e-5, on_gpu));
             assert!(mean < middle && most < largest, "volume {volume}: {mean}, at most {most}");
         }
     }
