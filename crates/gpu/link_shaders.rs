@@ -14,13 +14,19 @@ const ENTRIES: [&str; 3] = ["@compute", "@vertex", "@fragment"];
 
 /// Links every module of a folder that has an entry point, and writes `linked.rs` for `strandline_gpu::linked!`, which
 /// names them all.
+///
+/// Names the sources alone to cargo, never the copies in `OUT_DIR`: those are newer than the script's own run, so
+/// that every later build would run it again and compile the crate anew.
 pub fn link(folder: &str) {
     println!("cargo::rerun-if-changed={folder}");
     let linker = wesl::Wesl::new(beside_kit(folder));
     let mut list = String::from("strandline_gpu::linked! {\n");
     for name in modules(folder) {
         let module = format!("package::{name}").parse().expect("a name is a path");
-        linker.build_artifact(&module, &name);
+        match linker.compile(&module) {
+            Ok(linked) => linked.write_artifact(&name),
+            Err(error) => panic!("{folder}/{name}.wesl cannot be linked: {error}"),
+        }
         writeln!(list, "    {} = \"{name}\",", name.to_uppercase()).expect("a string takes all");
     }
     list.push_str("}\n");
