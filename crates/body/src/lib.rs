@@ -10,6 +10,7 @@
 mod buried;
 mod closing;
 mod collider;
+mod curve;
 mod distance;
 mod distance_grid;
 mod error;
@@ -39,10 +40,11 @@ mod turn_out;
 mod welding;
 
 pub use collider::{Carrier, Collider, Shape};
+pub use curve::{Curve, Interpolation, Key};
 pub use distance::{Aabb, SignedDistance};
 pub use distance_grid::DistanceGrid;
 pub use error::BodyError;
-pub use keyframes::Keyframe;
+pub use keyframes::{Keyframe, Keyframes};
 pub use mannequin::Mannequin;
 pub use mesh::Mesh;
 pub use motion::Motion;
