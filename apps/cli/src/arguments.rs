@@ -81,7 +81,7 @@ pub struct Inputs {
         "Load strands from this {} file; given again: further strands of the same hair", endings(|_| true)
     ))]
     pub groom: Vec<PathBuf>,
-    /// Load the body from this .obj, .gltf or .glb file; given again: further meshes of the same body.
+    /// Load the body from this .obj, .gltf, .glb, .vrm, .ply or .stl file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
     /// Grow the style on what has this name in the body's files: a group, an object or a material [default: the
@@ -129,7 +129,7 @@ pub struct RenderOptions {
 
 #[derive(Args, Debug)]
 pub struct ViewOptions {
-    /// A .toml scene, a groom, or an .obj, .gltf or .glb body in place of the scene's.
+    /// A .toml scene, a groom, or an .obj, .gltf, .glb, .vrm or .stl body in place of the scene's.
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,
     #[command(flatten)]
@@ -200,7 +200,7 @@ pub struct ConvertOptions {
     /// Move the strands, in metres, after they are turned.
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     pub translation: Option<Vec3>,
-    /// Push strands out of this .obj, .gltf or .glb mesh, after they are moved; their lengths stay.
+    /// Push strands out of this .obj, .gltf, .glb, .vrm, .ply or .stl mesh, after they are moved; their lengths stay.
     #[arg(long, value_name = "MESH")]
     pub outside: Option<PathBuf>,
     /// Metres per unit of that mesh, or auto: what brings it to the roots.

@@ -1,4 +1,4 @@
-//! What the readers of meshes share.
+//! Tools that the readers of meshes share.
 
 use std::path::Path;
 
