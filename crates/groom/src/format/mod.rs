@@ -7,6 +7,8 @@ pub mod bin;
 mod bytes;
 pub mod data;
 pub mod hair;
+mod headerless;
+mod joining;
 mod load;
 pub mod npy;
 pub mod npz;
@@ -19,6 +21,7 @@ mod report;
 mod save;
 mod sieve;
 pub mod tfx;
+mod tfx_text;
 mod zip;
 
 pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
@@ -40,13 +43,13 @@ pub const MAX_COORDINATE: f32 = 1e7;
 /// Diameter of a human hair \[m\], for files that name none.
 pub const HAIR_WIDTH: f32 = 8e-5;
 
-/// What a reader found in bytes, before bad strands are sieved out; units and axes of the file.
+/// The contents of a file before bad strands are sieved out; units and axes of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parsed {
     /// Name and version of the format.
     pub format: &'static str,
     /// The strands, bad ones among them.
     pub groom: crate::Groom,
-    /// What was odd but could be read.
+    /// Notes on what was odd but could be read.
     pub problems: Vec<String>,
 }

@@ -43,14 +43,14 @@ pub const FORMATS: [Format; 9] = [
     Format {
         ending: "hair",
         about: "HAIR of Cem Yuksel",
-        read: Reader::Bytes(|bytes, _| hair::read(bytes)),
+        read: Reader::Bytes(hair::read),
         write: Some(hair::write),
         holds: &[Widths, WidthsAlong, Colors, Transparencies],
         taken: 2,
     },
     Format {
         ending: "tfx",
-        about: "TressFX 3 and 4, written as 4; strands of one number of points",
+        about: "TressFX 2 (text), 3 and 4, written as 4; strands of one number of points",
         read: Reader::Bytes(|bytes, _| tfx::read(bytes)),
         write: Some(tfx::write),
         holds: &[Widths, Colors, RootUvs],
@@ -67,7 +67,7 @@ pub const FORMATS: [Format; 9] = [
     Format {
         ending: "data",
         about: "USC-HairSalon: points alone",
-        read: Reader::Bytes(|bytes, _| data::read(bytes)),
+        read: Reader::Bytes(data::read),
         write: Some(data::write),
         holds: &[],
         taken: 2,
@@ -76,14 +76,14 @@ pub const FORMATS: [Format; 9] = [
         ending: "bin",
         about: "CT2Hair: points, written in metres (its own files are in millimetres); normals and labels are not read, \
                 and written as 0",
-        read: Reader::Bytes(|bytes, _| bin::read(bytes)),
+        read: Reader::Bytes(bin::read),
         write: Some(bin::write),
         holds: &[],
         taken: 2,
     },
     Format {
         ending: "ply",
-        about: "vertices with `strand` and `edge` elements, or bare ones with `--per-strand N`",
+        about: "vertices with `strand` and `edge` elements, edges alone, or bare vertices with `--per-strand N`",
         read: Reader::Bytes(ply::read),
         write: Some(ply::write),
         holds: &Part::ALL,
@@ -111,7 +111,7 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(|bytes, _| obj::read(bytes)),
         write: Some(obj::write),
         holds: &[Colors, Groups, GroupNames],
-        taken: 4,
+        taken: 8,
     },
 ];
 
