@@ -50,7 +50,7 @@ impl FolderLock {
         }
     }
 
-    /// Whether the lock keeps others out: not every file system knows locks.
+    /// True if the lock excludes other processes: some file systems have no locks.
     pub fn is_held(&self) -> bool {
         self.file.is_some()
     }
@@ -94,7 +94,7 @@ fn mark(file: &mut File) -> Result<()> {
     write!(file, "strandline, process {}, {now}", std::process::id())
 }
 
-/// Whether the file that is open is still the one of that name: both have the same mark.
+/// True if the open file is still the file of that name: both have the same mark.
 fn is_there(file: &mut File, path: &Path) -> bool {
     let read = |file: &mut File| {
         let mut bytes = Vec::new();

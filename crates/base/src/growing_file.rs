@@ -17,7 +17,7 @@ use crate::whole_file::permissions;
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,
-    /// Where it lies now.
+    /// Current path.
     place: PathBuf,
     published: bool,
     file: File,
@@ -60,7 +60,7 @@ impl GrowingFile {
         Ok(growing)
     }
 
-    /// Where it lies now.
+    /// Current path.
     pub fn place(&self) -> &Path {
         &self.place
     }

@@ -107,7 +107,7 @@ pub fn slerp(from: Quat, to: Quat, share: f32) -> Quat {
         cosine if cosine < 0.0 => (-cosine, -to),
         cosine => (cosine, to),
     };
-    // Where the angle is small its sine is that of rounding.
+    // For small angles the sine is dominated by rounding.
     if cosine > 0.9995 {
         return (from * (1.0 - share) + to * share).normalize();
     }
@@ -147,7 +147,7 @@ mod tests {
         })
     }
 
-    /// How far a result is from another in units in the last place.
+    /// Distance of a result from the exact one, in units in the last place.
     fn units(found: f32, exact: f64) -> f64 {
         let unit = f64::from(f32::EPSILON) * 2.0_f64.powi(exact.abs().max(1e-37).log2().floor() as i32);
         if found.is_nan() && exact.is_nan() { 0.0 } else { (f64::from(found) - exact).abs() / unit }

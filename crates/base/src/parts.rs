@@ -17,8 +17,8 @@ const NAME_BYTES: usize = 160;
 /// Folders that are remembered as cleared.
 const FOLDERS: usize = 1024;
 
-/// What this process must remove when it ends at once, and the folders that it cleared. A process has one: a
-/// thread that handles signals knows nothing else of what the others write.
+/// Files to remove when the process ends at once, and the folders that were cleared. There is one list per
+/// process, because a thread that handles signals sees nothing else of the writers.
 static PARTS: Mutex<Option<Parts>> = Mutex::new(None);
 
 #[derive(Debug, Default)]
@@ -68,13 +68,13 @@ pub struct Abandoned {
 pub fn abandon_parts() -> Abandoned {
     let mut held = hold();
     for part in std::mem::take(&mut held.parts().written) {
-        // What is gone already need not be removed.
+        // A part that is gone already needs no removal.
         let _ = fs::remove_file(part);
     }
     Abandoned { _held: held }
 }
 
-/// Who writes a part.
+/// Writer of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Writer {
     /// This process, which holds a lock on it.
@@ -98,7 +98,7 @@ pub(crate) fn create(path: &Path, writer: Writer) -> Result<(PathBuf, File)> {
         held.add(&part);
         drop(held);
         if writer == Writer::Here {
-            // Where a file system has no locks, its parts are left to a person.
+            // On a file system without locks the parts stay.
             let _ = file.lock();
         }
         // A run that clears may have taken it for that of an ended one before it was locked.

@@ -47,7 +47,7 @@ fn push_line(shown: &mut String, line: &str) {
     }
 }
 
-/// Whether a terminal may take it for a command.
+/// True if a terminal may interpret the character as a command.
 fn is_control(character: char) -> bool {
     match character {
         '\n' | '\t' => false,

@@ -68,7 +68,7 @@ macro_rules! settings {
         }
 
         const _: () = {
-            /// What a file gives of the section.
+            /// Settings of the section that a file gives.
             #[allow(missing_docs)]
             #[derive(Clone, Default, ::serde::Deserialize)]
             #[serde(deny_unknown_fields, default, expecting = "a section of settings")]
@@ -77,7 +77,7 @@ macro_rules! settings {
                 $($(pub $moved: Option<$Moved>,)*)?
             }
 
-            /// What is known of each setting.
+            /// Descriptions of the settings.
             #[allow(missing_docs)]
             pub struct Rows {
                 $(pub $field: $crate::Row,)*

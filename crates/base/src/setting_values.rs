@@ -87,7 +87,7 @@ numbers! {
     [u32; 3]: Kind::Whole(3), |value| value;
 }
 
-/// What is sound whatever it holds.
+/// Values without limits.
 macro_rules! free {
     ($($Type:ty: $kind:expr;)*) => {$(
         impl Value for $Type {

@@ -33,7 +33,7 @@ struct Member {
     compressed: u64,
     size: u64,
     crc: u32,
-    /// Where its local header begins.
+    /// Offset of the local header \[byte\].
     offset: u64,
 }
 
@@ -44,7 +44,7 @@ pub struct Rows {
     crc: u32,
     size: u64,
     deflated: bool,
-    /// Where the member's bytes begin and end in the file.
+    /// Begin and end of the member's bytes in the file.
     begin: u64,
     end: u64,
     /// The next of them.

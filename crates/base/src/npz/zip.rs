@@ -33,7 +33,7 @@ const ATTRIBUTES: u32 = 0o100_644 << 16;
 pub struct Entry {
     /// With `.npy`.
     pub name: String,
-    /// Where its local header begins.
+    /// Offset of the local header \[byte\].
     pub offset: u64,
     pub size: u64,
     pub crc: u32,

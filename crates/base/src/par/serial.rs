@@ -51,7 +51,7 @@ impl<I: Iterator> IntoIterator for Serial<I> {
     }
 }
 
-/// What loops run over.
+/// Ranges of loops.
 pub trait IntoParallelIterator: IntoIterator + Sized {
     /// The loop.
     fn into_par_iter(self) -> Serial<Self::IntoIter> {
@@ -61,7 +61,7 @@ pub trait IntoParallelIterator: IntoIterator + Sized {
 
 impl<T: IntoIterator> IntoParallelIterator for T {}
 
-/// What loops do: see rayon's methods of the same names.
+/// Methods of loops, named as in rayon.
 #[allow(missing_docs)]
 pub trait ParallelIterator: IntoIterator + Sized {
     fn map<R, F: Fn(Self::Item) -> R>(self, each: F) -> Serial<Map<Self::IntoIter, F>> {
