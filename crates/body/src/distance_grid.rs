@@ -144,8 +144,8 @@ impl DistanceGrid {
         self.lattice.node_count - 1
     }
 
-    /// How far \[m\] the body is from a point at least, 0 where it may be inside: one byte is looked at, where the
-    /// distance takes eight nodes.
+    /// Lower bound of the distance \[m\] of a point from the body, 0 for a point that may be inside. It reads
+    /// one byte, the exact distance eight nodes.
     #[inline]
     pub fn distance_at_least(&self, point: Vec3) -> f32 {
         let Aabb { min, max } = self.grid_box();
@@ -184,7 +184,7 @@ impl DistanceGrid {
     }
 }
 
-/// What can be interpolated.
+/// Values that can be interpolated.
 trait Interpolated: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self> {}
 
 impl<T: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>> Interpolated for T {}

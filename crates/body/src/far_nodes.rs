@@ -54,8 +54,8 @@ impl FarNodes {
         Some(Self { counts, nearest })
     }
 
-    /// What is known of a node from the corners of its block, where these are far: no more than its distance, and a
-    /// triangle that is near.
+    /// Lower bound of the distance of a node and a triangle near it, from the corners of its block, if these
+    /// are far.
     pub fn at(&self, node: UVec3, lattice: &Lattice) -> Option<Nearest> {
         let block = (node / SIDE).min(self.counts - 2);
         let [low, high] =

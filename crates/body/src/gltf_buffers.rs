@@ -60,7 +60,8 @@ fn file_name(uri: &str) -> Option<String> {
         name.extend_from_slice(&part.as_bytes()[2..]);
     }
     String::from_utf8(name).ok().filter(|name| {
-        // What separates folders and drives on one system does so on all: a file means the same everywhere.
+        // Separators of folders and drives of any system count on all systems: a file means the same
+        // everywhere.
         let is_below =
             |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
         !name.is_empty() && !name.contains(['\0', ':', '\\']) && is_below(name)

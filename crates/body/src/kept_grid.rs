@@ -12,8 +12,8 @@ use strandline_base::{Stopwatch, WholeFile, read_plain};
 use crate::lattice::Lattice;
 use crate::{BodyError, DistanceGrid, Mesh};
 
-/// What a file begins with. Its number counts the ways of building a grid: one more whenever another way gives
-/// other distances.
+/// First bytes of a file. The number counts the ways of building a grid: it increases with every change that
+/// gives other distances.
 const MAGIC: &[u8; 16] = b"strandline grid2";
 /// Bytes before the distances: the magic, the key, place, spacing and number of nodes.
 const HEADER: usize = 16 + DIGEST + 7 * 4;
@@ -54,7 +54,7 @@ impl DistanceGrid {
     }
 }
 
-/// What a grid depends on.
+/// Hash of all inputs of a grid.
 fn key(mesh: &Mesh, spacing: f32, padding: f32) -> [u8; DIGEST] {
     let mut hash = Sha256::new_with_prefix(MAGIC);
     hash.update(spacing.to_le_bytes());

@@ -58,7 +58,7 @@ impl<'a> Seen<'a> {
         let normal = if normal.length_squared() > FLAT * longest.length_squared().powi(2) {
             normal.normalize()
         } else {
-            // What has no area lies in every plane through its longest edge.
+            // A triangle without an area lies in every plane through its longest edge.
             longest.any_orthogonal_vector().normalize_or(DVec3::Z)
         };
         let squares = normal * normal;
@@ -100,7 +100,7 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// What the triangle takes of a row, along it, with all that is within reach across; nothing where none is.
+    /// Interval of a row within reach of the triangle; `None` if there is none.
     fn passing(&self, row: f64, reach: f64) -> Option<[f64; 2]> {
         let [across, along, _] = self.axes;
         let mut found = [f64::INFINITY, f64::NEG_INFINITY];

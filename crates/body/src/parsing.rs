@@ -1,4 +1,4 @@
-//! What the readers of meshes share.
+//! Helpers of all readers of meshes.
 
 use std::path::Path;
 

@@ -36,7 +36,7 @@ pub struct PlacedSolids<'a> {
 }
 
 impl PlacedSolids<'_> {
-    /// Whether there is none.
+    /// True without solids.
     pub fn is_empty(&self) -> bool {
         self.solids.is_empty()
     }

@@ -47,7 +47,7 @@ impl Node {
         (point - point.clamp(self.min, self.max)).length_squared()
     }
 
-    /// What decides which of two children is nearer: boxes that both hold the point by their middles.
+    /// Order of two children: by distance, and by their middles if both boxes hold the point.
     fn key(&self, point: DVec3) -> (f64, f64) {
         (self.distance_squared(point), (0.5 * (self.min + self.max) - point).length_squared())
     }

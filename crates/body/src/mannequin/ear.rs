@@ -53,7 +53,7 @@ pub(super) struct Ear {
     pub(super) head_from_ear: Mat3,
     /// The thin shell.
     pub(super) shell: Ellipsoid,
-    /// What joins the shell to the head.
+    /// Ellipsoid that joins the shell to the head.
     pub(super) stem: Ellipsoid,
     /// The lobe.
     pub(super) lobe: Ellipsoid,
