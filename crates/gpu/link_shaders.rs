@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 #[path = "src/threads.rs"]
 mod threads;
 
-/// What the shaders of every crate import as `package::kit`.
+/// Module that the shaders of every crate import as `package::kit`.
 const KIT: &str = include_str!("kit/kit.wesl");
 
-/// What a module with a kernel or a drawing has; the others are imported by such.
+/// Attributes of a module with a kernel or a drawing; other modules are imported by such.
 const ENTRIES: [&str; 3] = ["@compute", "@vertex", "@fragment"];
 
 /// Links every module of a folder that has an entry point, and writes `linked.rs` for `strandline_gpu::linked!`, which
@@ -38,7 +38,7 @@ pub fn link(folder: &str) {
 fn beside_kit(folder: &str) -> PathBuf {
     let out = std::env::var_os("OUT_DIR").expect("cargo names it");
     let package = Path::new(&out).join("shaders");
-    // What was there before may be gone from the folder by now.
+    // Files of an earlier build may be stale.
     let _ = std::fs::remove_dir_all(&package);
     std::fs::create_dir_all(&package).expect("cargo made the folder");
     for file in std::fs::read_dir(folder).expect("the shaders lie there") {

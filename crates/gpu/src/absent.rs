@@ -1,4 +1,4 @@
-//! What stands for a device in a build without GPUs: there is none, and none can be made.
+//! Replacement of a device in a build without GPUs: none can be made.
 
 use std::marker::PhantomData;
 
@@ -43,12 +43,12 @@ impl Gpu {
         match *self {}
     }
 
-    /// Whether both are one device.
+    /// True if both are one device.
     pub fn is_same(&self, _: &Self) -> bool {
         match *self {}
     }
 
-    /// Whether the device can tell how long its work takes.
+    /// True if the device can measure the time of its work.
     pub fn has_timestamps(&self) -> bool {
         match *self {}
     }

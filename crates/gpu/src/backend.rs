@@ -14,7 +14,7 @@ pub struct UnknownBackend {
     pub found: String,
 }
 
-/// Where stages run.
+/// Device of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Backend {

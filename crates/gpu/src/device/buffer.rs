@@ -97,7 +97,7 @@ impl<T: Pod> Buffer<T> {
         self.len
     }
 
-    /// Whether there is no element.
+    /// True without elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -107,7 +107,7 @@ impl<T: Pod> Buffer<T> {
         &self.lease.gpu
     }
 
-    /// What it is called.
+    /// Its name.
     pub fn name(&self) -> &'static str {
         self.name
     }

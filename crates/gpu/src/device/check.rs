@@ -78,7 +78,7 @@ fn entries(declaration: &Declaration) -> Vec<(ShaderStage, &'static str)> {
     std::iter::once((ShaderStage::Vertex, declaration.entry)).chain(fragment).collect()
 }
 
-/// What differs between the workgroups that are declared and the shader's.
+/// Differences between the declared workgroups and the shader's.
 fn threads(module: &Module, declaration: &Declaration) -> Vec<String> {
     if declaration.draws {
         return Vec::new();
@@ -144,8 +144,8 @@ fn compare_variable(
     compare_type(module, &declared.layout, element, declared.name, problems);
 }
 
-/// Whether a name is the declared one. The linker puts the names of modules before those of imported
-/// things, joined by underscores; a part that has underscores itself starts with their number, as in
+/// True if a name is the declared one. The linker puts the names of modules before those of imported items,
+/// joined by underscores. A part that has underscores itself starts with their number, as in
 /// `package_shadow__1body_depths`.
 fn is_named(found: &str, declared: &str) -> bool {
     if found == declared {

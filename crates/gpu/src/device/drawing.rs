@@ -30,7 +30,7 @@ macro_rules! drawing {
     };
 }
 
-/// What a drawing writes, and how.
+/// Target of a drawing, and its blending.
 #[derive(Clone, Debug, Default)]
 pub struct Output {
     /// Format of the colours and how they join what is there; none where only depth is drawn.

@@ -6,8 +6,7 @@ use std::time::Duration;
 use super::wanted::Wanted;
 use crate::{Adapter, Crossed, GpuError};
 
-/// How long a submission may take before the device counts as hung: a software adapter on a busy
-/// machine takes seconds.
+/// Time after which a submission counts as hung: a software adapter on a busy machine takes seconds.
 pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A device and its queue. Clones share them.
@@ -38,7 +37,7 @@ pub(crate) struct Compiled {
     pub layout: wgpu::BindGroupLayout,
 }
 
-/// What buffers hold, and the most that they may.
+/// Allocated bytes, and the limit.
 #[derive(Debug)]
 struct Memory {
     used: u64,
@@ -139,7 +138,7 @@ impl Gpu {
         let lost: Arc<Mutex<Option<String>>> = Arc::default();
         let (slot, first) = (lost.clone(), lost.clone());
         device.set_device_lost_callback(move |_, message| note(&slot, message));
-        // What no error scope caught: the device is of no use after it.
+        // An error that no scope caught makes the device useless.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&first, error.to_string())));
         Ok(Self::new(device, queue, adapter, lost))
     }
@@ -154,7 +153,7 @@ impl Gpu {
         &self.shared.queue
     }
 
-    /// Whether both are one device.
+    /// True if both are one device.
     pub fn is_same(&self, other: &Self) -> bool {
         self.device() == other.device()
     }
@@ -164,7 +163,7 @@ impl Gpu {
         &self.shared.adapter
     }
 
-    /// Whether the device can tell how long its work takes.
+    /// True if the device can measure the time of its work.
     pub fn has_timestamps(&self) -> bool {
         self.device().features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use super::gpu::Compiled;
 use crate::{Gpu, GpuError, Layout};
 
-/// How a kernel uses a buffer.
+/// Use of a buffer by a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// `var<storage, read>`.
@@ -24,13 +24,13 @@ pub struct Binding {
     pub index: u32,
     /// The variable's name.
     pub name: &'static str,
-    /// How it is used.
+    /// Its use.
     pub access: Access,
-    /// What an element is.
+    /// Layout of an element.
     pub layout: Layout,
 }
 
-/// What is known of a kernel without a device.
+/// Declaration of a kernel, known without a device.
 #[derive(Clone, Debug)]
 pub struct Declaration {
     /// The shader module.
@@ -41,7 +41,7 @@ pub struct Declaration {
     pub entry: &'static str,
     /// The entry point of a drawing's fragments, where it has any.
     pub fragment: Option<&'static str>,
-    /// Whether it draws.
+    /// True for a drawing.
     pub draws: bool,
     /// Threads of a workgroup, along its first axis; none where a constant of the pipeline chooses them, and for a
     /// drawing.
@@ -60,9 +60,9 @@ pub trait Bindings {
     fn resources(&self) -> Vec<wgpu::BindingResource<'_>>;
 }
 
-/// What may stand in a declaration: a buffer or a texture.
+/// A buffer or a texture of a declaration.
 pub trait Resource {
-    /// How it is bound.
+    /// Its binding.
     fn resource(&self) -> wgpu::BindingResource<'_>;
 }
 
@@ -86,7 +86,7 @@ macro_rules! field_type {
     ($access:ident $kind:ty) => { $crate::Buffer<$kind> };
 }
 
-/// What a kernel's and a drawing's declaration have in common.
+/// Common to the declarations of kernels and drawings.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! declare {
@@ -218,7 +218,7 @@ fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> R
     made.map_err(as_shader_error)
 }
 
-/// What the driver refuses about a pipeline is the shader's fault.
+/// An error of the driver about a pipeline is an error of the shader.
 pub(crate) fn as_shader_error(error: GpuError) -> GpuError {
     match error {
         GpuError::Refused { adapter, what, message } => GpuError::Shader { adapter, module: what, message },

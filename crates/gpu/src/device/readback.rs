@@ -22,7 +22,7 @@ pub struct Part<T> {
     element: PhantomData<T>,
 }
 
-/// What was copied.
+/// Copied bytes.
 #[derive(Debug)]
 pub struct Copied {
     pub(super) bytes: Vec<u8>,
@@ -113,7 +113,7 @@ impl Download {
         Ok(Self { held, staging })
     }
 
-    /// Where copies are to go.
+    /// Target of copies.
     pub fn raw(&self) -> &wgpu::Buffer {
         &self.staging
     }

@@ -2,7 +2,7 @@
 
 use crate::{Bound, BoundDrawing, Buffer, Gpu, Timer};
 
-/// What drawings go to.
+/// Targets of drawings.
 #[derive(Clone, Copy)]
 pub struct Targets<'a> {
     /// A texture for colours, and whether it is cleared first.
@@ -11,12 +11,12 @@ pub struct Targets<'a> {
     pub depth: Option<(&'a wgpu::TextureView, wgpu::LoadOp<f32>)>,
 }
 
-/// How much a drawing draws.
+/// Number of vertices and instances of a drawing.
 #[derive(Clone, Copy)]
 pub enum Amount<'a> {
     /// So many vertices, three a triangle, once, as an instance of this number.
     Vertices {
-        /// How many.
+        /// Number of vertices.
         count: u32,
         /// The number.
         instance: u32,
@@ -25,7 +25,7 @@ pub enum Amount<'a> {
     Instanced {
         /// Three a triangle.
         indices: &'a Buffer<u32>,
-        /// How often.
+        /// Number of instances.
         instances: u32,
     },
 }

@@ -9,14 +9,14 @@ use std::time::Duration;
 use super::gpu::PATIENCE;
 use crate::{Copied, Gpu, GpuError};
 
-/// How often a host that waits looks whether the device was lost.
+/// Interval at which a waiting host checks for a lost device.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// A copy on its way from the device: looked for now and then, waited for, or awaited.
 #[derive(Debug)]
 pub struct Transfer {
     held: Held,
-    /// Where it arrives; none where nothing is copied.
+    /// Buffer of the copy; `None` if nothing is copied.
     staging: Option<(wgpu::Buffer, Mapping)>,
 }
 
@@ -30,7 +30,7 @@ impl Transfer {
         Self { held, staging }
     }
 
-    /// Whether it has arrived; never waits.
+    /// True if it has arrived; never waits.
     ///
     /// # Errors
     /// The device was lost.
@@ -38,7 +38,7 @@ impl Transfer {
         self.staging.as_ref().map_or(Ok(true), |(_, mapping)| mapping.is_there(&self.held.gpu))
     }
 
-    /// What was copied, if it has arrived; never waits.
+    /// The copied bytes, if they have arrived; never waits.
     ///
     /// # Errors
     /// The device was lost.
@@ -147,7 +147,7 @@ impl Mapping {
         Self { submission, arrival }
     }
 
-    /// Whether it is readable by now.
+    /// True if it is readable by now.
     pub fn is_there(&self, gpu: &Gpu) -> Result<bool, GpuError> {
         if self.arrival.lock().mapped.is_none() {
             gpu.poll()?;
@@ -176,7 +176,7 @@ impl Mapping {
     }
 }
 
-/// What lies in a mapped buffer.
+/// Content of a mapped buffer.
 pub(super) fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<wgpu::BufferView, GpuError> {
     let view = staging.slice(..).get_mapped_range().map_err(|error| refused(gpu, &error.to_string()))?;
     gpu.count_from_device(view.len());
