@@ -16,7 +16,7 @@ pub struct App {
     pub(crate) live: Live,
     /// The window, once it is there: the scene is loaded before.
     pub(crate) context: Arc<OnceLock<egui::Context>>,
-    /// What is seen, as a scene: it can be saved at any time.
+    /// The scene as shown; it can be saved at any time.
     pub(crate) scene: Scene,
     /// The scene as it was loaded: what the controls are set to by default.
     pub(crate) base: Scene,
@@ -24,11 +24,11 @@ pub struct App {
     /// The view of the scene.
     pub(crate) home: Camera,
     pub(crate) playing: bool,
-    /// What the mouse does when no key is held.
+    /// Action of the mouse without a key.
     pub(crate) tool: Tool,
-    /// Where a drag in the picture was at the last pass.
+    /// Position of a drag in the picture at the last pass.
     pub(crate) dragged_to: Option<egui::Pos2>,
-    /// Whether the mouse holds hair, and the radius \[m\] of the hand.
+    /// True while the mouse holds hair, and the radius \[m\] of the hand.
     pub(crate) grabs: bool,
     pub(crate) radius: f32,
     /// The scene that is on its way, and the number of its command.
@@ -40,17 +40,17 @@ pub struct App {
     /// Pictures a second, smoothed.
     pub(crate) rate: f32,
     pub(crate) last: Option<Instant>,
-    /// What is typed as the path of a file.
+    /// Typed path of a file.
     pub(crate) path: String,
-    /// Whether pictures may be simpler while the hair moves.
+    /// True if pictures may be simpler while the hair moves.
     pub(crate) adapts: bool,
-    /// Whether a video is recorded, and how many are being finished.
+    /// True while a video is recorded, and the number of videos that are being finished.
     pub(crate) recording: bool,
     pub(crate) finishing: u32,
     /// Number of the load that the scene comes from.
     pub(crate) loaded: u64,
     pub(crate) saves: saves::Saves,
-    /// What is seen, for the case that the window stops in an error, and when it was kept last.
+    /// The scene as shown, for a window that stops in an error, and the time when it was kept.
     pub(crate) kept: rescue::Kept,
     pub(crate) kept_at: Option<Instant>,
     /// Number of the last step that was asked for by dragging while nothing plays, and whether another one
@@ -61,14 +61,14 @@ pub struct App {
     /// Moving hair that is being written, and what of it.
     pub(crate) exporting: Option<export::Export>,
     pub(crate) export_wanted: export::Wanted,
-    /// Where the next picture and scene are saved.
+    /// Folder of the next picture and scene.
     pub folder: PathBuf,
 }
 
-/// How long a new picture waits to be shown.
+/// Delay after which a new picture is shown.
 const SOON: Duration = Duration::from_millis(1);
 
-/// What the mouse does in the picture.
+/// Action of the mouse in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
     /// Goes around the head.
@@ -196,22 +196,22 @@ impl App {
         }
     }
 
-    /// What is seen at the moment, if there is anything.
+    /// The newest picture, if there is one.
     pub fn shown(&self) -> Option<&Shown> {
         self.shown.as_ref()
     }
 
-    /// What went wrong last, until it is put away.
+    /// The last error, until the user dismisses it.
     pub fn error(&self) -> Option<&str> {
         self.error.as_deref()
     }
 
-    /// Whether the hair moves.
+    /// True while the hair moves.
     pub fn is_playing(&self) -> bool {
         self.playing
     }
 
-    /// Whether a scene is on its way.
+    /// True while a scene is loading.
     pub(crate) fn is_loading(&self) -> bool {
         self.pending.is_some()
     }

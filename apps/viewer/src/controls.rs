@@ -31,7 +31,7 @@ pub fn slide_in<N: Numeric>(
     set_back(ui, &response, (value, default)) || response.changed()
 }
 
-/// What a setting is, its unit, and what more of it does.
+/// Meaning of a setting, its unit, and the effect of a larger value.
 pub fn about(row: &Row) -> String {
     let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
     let more = if row.more.is_empty() { String::new() } else { format!("\nmore: {}", row.more) };

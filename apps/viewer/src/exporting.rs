@@ -30,7 +30,7 @@ impl App {
         }
     }
 
-    /// Whether moving hair is being written.
+    /// True while moving hair is being written.
     pub fn is_exporting(&self) -> bool {
         self.exporting.is_some()
     }

@@ -79,8 +79,8 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
     Err(libraries::missing().filter(|_| has_display).map_or(error, ViewError::Missing))
 }
 
-/// What the window asks of its device: textures as large as the adapter has, since a window is drawn into one
-/// and may be as wide as several screens.
+/// Device requirements of the window: textures as large as the adapter allows, since a window is drawn into
+/// one and may be as wide as several screens.
 fn device(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let required_limits = wgpu::Limits {
         max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,

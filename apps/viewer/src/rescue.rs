@@ -1,4 +1,4 @@
-//! What is left when the window stops with an error of the program's own: the scene, as a file.
+//! Saves the scene to a file when the window stops with an internal error.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -43,7 +43,7 @@ type Hook = Arc<dyn Fn(&PanicHookInfo) + Send + Sync>;
 /// saves the scene, says where, and continues as a panic.
 pub fn run<T>(kept: &Kept, window: impl FnOnce() -> T) -> Result<T, String> {
     let former: Hook = panic::take_hook().into();
-    // What a panic said before anything was seen.
+    // Message of a panic before the first picture.
     let early = Arc::new(Mutex::new(None));
     panic::set_hook(Box::new({
         let (own_thread, former) = (std::thread::current().id(), former.clone());

@@ -1,4 +1,4 @@
-//! What is seen, as files: written by threads of their own, so that the window stays awake.
+//! Pictures, scenes and videos as files, written by threads of their own so that the window stays responsive.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -7,11 +7,11 @@ use strandline::low_level::{Command, LiveEvent};
 
 use crate::App;
 
-/// How long a window that is closed waits for a picture in full.
+/// Time for which a closing window waits for a picture in full.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Drop for App {
-    /// What a person saved is written, though the window is closed; after ten seconds as it is seen.
+    /// Finishes the user's saves although the window is closed; after ten seconds, as shown.
     fn drop(&mut self) {
         let begin = Instant::now();
         while !self.saves.waiting.is_empty() && begin.elapsed() < PATIENCE {
@@ -124,7 +124,7 @@ impl App {
         }
     }
 
-    /// Whether a video is recorded.
+    /// True while a video is recorded.
     pub fn is_recording(&self) -> bool {
         self.recording
     }

@@ -128,7 +128,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     wind::show(app, ui, room);
 }
 
-/// What the mouse does, in the upper left corner of the picture.
+/// Tools of the mouse, in the upper left corner of the picture.
 fn tools(app: &mut App, ui: &mut egui::Ui, room: Rect) {
     let corner = Rect::from_min_size(room.min + egui::vec2(8.0, 8.0), egui::vec2(260.0, 24.0));
     let mut row = ui.new_child(egui::UiBuilder::new().max_rect(corner));
@@ -203,8 +203,8 @@ fn ray(app: &App, room: Rect, pointer: Pos2) -> Ray {
     Ray::new(&app.camera, Vec2::new(halves.x, -halves.y))
 }
 
-/// How far \[point\] the mouse was dragged since the last pass, or since the press: what it moved before,
-/// in the same pass, is no drag.
+/// Distance \[point\] that the mouse was dragged since the last pass, or since the press: movement before the
+/// press in the same pass is no drag.
 fn dragged(app: &mut App, ui: &egui::Ui, response: &egui::Response) -> egui::Vec2 {
     let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) else {
         app.dragged_to = None;

@@ -10,7 +10,7 @@ use strandline::{
 
 use crate::{App, panels, stage, strip};
 
-/// How often what is seen is kept.
+/// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
 
 impl App {
@@ -29,7 +29,7 @@ impl App {
                 }
                 LiveEvent::Note(note) => self.note(note),
                 LiveEvent::NotLoaded(number, error) => {
-                    // What plays is still what played before.
+                    // The previous scene still plays.
                     self.pending.take_if(|(pending, _)| *pending == number);
                     self.error = Some(error);
                     if self.shown.is_none() {

@@ -1,4 +1,4 @@
-//! What moves the hair: the head, the wind, the length of the strands, a hand.
+//! Controls of motion: the head, the wind, the length of the strands, a hand.
 
 use eframe::egui::{DragValue, Ui};
 use strandline::{
