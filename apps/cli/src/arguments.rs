@@ -1,4 +1,4 @@
-//! What may stand on the command line.
+//! Arguments of the command line.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -54,7 +54,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it may open a GPU.
+    /// True for commands that may open a GPU.
     pub fn opens_gpu(&self) -> bool {
         match self {
             Self::View(_) | Self::Render(_) | Self::Sim(_) | Self::Bench(_) | Self::Gpus => true,
@@ -68,7 +68,7 @@ impl Command {
     }
 }
 
-/// What to simulate: a scene, and what replaces parts of it.
+/// Inputs of a run: a scene, and replacements of parts of it.
 #[derive(Args, Clone, Debug)]
 pub struct Inputs {
     /// demo, thesis, or a .toml file [default: demo].
@@ -88,7 +88,7 @@ pub struct Inputs {
     /// built-in scalp, brought onto the skull].
     #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "groom")]
     pub scalp: Option<String>,
-    /// What hair is made of: fine, medium, coarse, wet or sprayed.
+    /// Material of the hair: fine, medium, coarse, wet or sprayed.
     #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
     pub hair: Option<HairKind>,
     /// still, shake, nod, turn or keyframes.
@@ -97,13 +97,13 @@ pub struct Inputs {
     /// Number of frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
-    /// Where it is simulated and drawn: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
+    /// Device of simulation and pictures: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub backend: Option<Backend>,
-    /// Where it is simulated, when that is not where it is drawn.
+    /// Device of the simulation, if it differs from that of the pictures.
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub sim_device: Option<Backend>,
-    /// Where it is drawn, when that is not where it is simulated.
+    /// Device of the pictures, if it differs from that of the simulation.
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub render_device: Option<Backend>,
     /// Print one JSON object, and nothing else, to standard output.
@@ -208,7 +208,7 @@ pub struct ConvertOptions {
     pub mesh_scale: Scale,
 }
 
-/// How a groom file is read.
+/// Reading of a groom file.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Reading {
     /// Metres per unit of the file, or auto: what makes it as large as hair can be.
@@ -286,7 +286,7 @@ pub struct BenchOptions {
 
 #[derive(Args, Debug)]
 pub struct PlotOptions {
-    /// What `bench thesis --json FILE` or `bench view --json FILE` wrote.
+    /// File written by `bench thesis --json FILE` or `bench view --json FILE`.
     #[arg(value_name = "FILE.json")]
     pub file: PathBuf,
     /// The picture to write [default: beside the measurements, ending in .svg].
@@ -302,7 +302,7 @@ pub enum Bench {
     Scaling,
     /// Frames per second against viewing distance and picture size, beside the thesis's table 5.
     View,
-    /// What is gained by simulating a frame while the one before is drawn, for pairs of devices.
+    /// Gain of simulating a frame while the one before is drawn, for pairs of devices.
     Workers,
     /// Ten minutes of play as in the window: time to the first picture, pictures a second, how soon a move
     /// shows, and whether memory grows.

@@ -22,7 +22,7 @@ const APART: f32 = 0.1;
 /// Reads one or more files as one groom, changes it as asked, and writes it.
 pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     let (output, inputs) = options.files.split_last().context("clap asks for two files")?;
-    // What cannot be written is refused before anything is read.
+    // An output that cannot be written is refused before anything is read.
     format::Format::of(output)?;
     let loaded = format::load_all(inputs, &options.reading.options())?;
     for problem in &loaded.report.problems {

@@ -76,7 +76,7 @@ impl Inputs {
         Ok(scene)
     }
 
-    /// What the output is called: the style, the groom's or the scene's name.
+    /// Name of the output: the style, the groom's or the scene's name.
     pub fn name(&self) -> String {
         let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         match (&self.style, self.groom.first()) {

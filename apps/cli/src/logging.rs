@@ -18,7 +18,7 @@ impl Log for ToStderr {
     fn log(&self, record: &Record) {
         if self.0.matches(record) {
             let text = record.args().to_string();
-            // Who closed it does not want to know.
+            // A closed stderr is no error.
             let _ = writeln!(stderr(), "{} {}: {}", record.level(), record.target(), printable(&text));
         }
     }

@@ -1,4 +1,4 @@
-//! What stands for the window in a build without one.
+//! Replacement of the window in a build without it.
 
 use crate::{arguments::ViewOptions, render};
 

@@ -1,4 +1,4 @@
-//! What the program prints, and what it does when its output is closed.
+//! Output of the program, and its behaviour when the output is closed.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Result, Write, stderr, stdout};
@@ -59,6 +59,6 @@ pub fn complain(error: &str) {
 }
 
 fn to_stderr(who: &str, what: &str) {
-    // Who closed it does not want to know.
+    // A closed stderr is no error.
     let _ = writeln!(stderr(), "{who}: {}", printable(what));
 }

@@ -15,7 +15,7 @@ use crate::output::{self, print_line};
 use crate::progress::{LOADING, Progress, Waiting};
 use crate::statistics::{Collector, Times};
 
-/// What `render --json` prints.
+/// Output of `render --json`.
 #[derive(Debug, Serialize)]
 struct RenderReport {
     backend: String,
@@ -77,7 +77,7 @@ fn has_ending(path: &Path, wanted: &str) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
 }
 
-/// What plays a scene, or shows a cache of it.
+/// Player of a scene, or of a cache of it.
 fn player(scene: &Scene, cache: Option<Cache>) -> Result<Player, Error> {
     match cache {
         Some(cache) => Player::showing(scene, scene.devices, cache),
@@ -184,7 +184,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
     if written.video_failed { Err(NoVideo.into()) } else { Ok(()) }
 }
 
-/// What was drawn.
+/// Contents of the drawn pictures.
 #[derive(Default)]
 struct Drawn {
     /// Pictures that were drawn while the next frame was simulated, and the last one.

@@ -18,7 +18,7 @@ use crate::output::{self, print_line};
 use crate::progress::{LOADING, Progress, Waiting};
 use crate::statistics::{Collector, Times};
 
-/// What `sim --json` prints.
+/// Output of `sim --json`.
 #[derive(Debug, Serialize)]
 pub struct SimReport {
     pub backend: String,
@@ -39,7 +39,7 @@ pub struct SimReport {
     pub non_finite: NonFinite,
     pub pcg: Pcg,
     pub fluid_cells_mean: f64,
-    /// What `--out` wrote.
+    /// Files written by `--out`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub out: Option<OutReport>,
 }
@@ -71,10 +71,10 @@ pub struct Spread {
     pub max: f32,
 }
 
-/// How rods were solved.
+/// Quality of the solve of rods.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Rods {
-    /// How far the last Newton step of a strand turned one of its segments at most.
+    /// Largest turn of a segment in the last Newton step of a strand.
     pub residual_max_rad: f32,
     /// Most strands of a step that would have needed more Newton steps.
     pub unsolved_max: usize,
@@ -113,7 +113,7 @@ pub struct Steps {
     non_finite: NonFinite,
 }
 
-/// What a simulation is when its steps are over.
+/// State of a simulation after its last step.
 pub struct Ended {
     /// The device.
     pub backend: String,
@@ -129,7 +129,7 @@ pub struct Ended {
 }
 
 impl Ended {
-    /// What a player of a scene has come to.
+    /// State of a player's simulation.
     ///
     /// # Errors
     /// The GPU was lost.
@@ -241,7 +241,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     Ok(report.non_finite.outcome()?)
 }
 
-/// What is written: what the command line names, or a cache that is resumed.
+/// Settings of the output: those of the command line, or those of a cache that is resumed.
 fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSettings> {
     let mut settings = OutSettings::new(options.out.as_ref().or(options.resume.as_ref())?);
     settings.what = options.what.or(former.map(Cache::what)).unwrap_or_default();
@@ -251,7 +251,7 @@ fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSetti
     Some(settings)
 }
 
-/// What plays, with its file; from then on a request to stop waits until that is closed.
+/// Player with its output; a request to stop waits until the file is closed.
 fn begin(
     scene: &Scene,
     out: Option<OutSettings>,

@@ -25,7 +25,7 @@ impl StageTimes {
     }
 }
 
-/// What a repeated thing cost \[ms\].
+/// Times of a repeated task \[ms\].
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Times {
     /// The middle value.

@@ -16,9 +16,9 @@ pub struct Chart {
     pub note: String,
     pub x_label: &'static str,
     pub y_label: &'static str,
-    /// Where numbers stand on the level axis; it reaches from the first to the last.
+    /// Positions of the numbers on the horizontal axis; it reaches from the first to the last.
     pub x_ticks: Vec<f64>,
-    /// Whether the level axis is logarithmic too.
+    /// True if the horizontal axis is logarithmic too.
     pub x_logarithmic: bool,
     pub lines: Vec<Line>,
 }

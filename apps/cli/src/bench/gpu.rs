@@ -12,7 +12,7 @@ pub struct Device {
     pub adapter: Adapter,
 }
 
-/// What is written of it.
+/// Description of an adapter in the measurements.
 #[derive(Clone, Debug, Serialize)]
 pub struct Adapter {
     pub name: String,
@@ -78,7 +78,7 @@ impl Device {
         Ok(Some(Self { gpu, adapter }))
     }
 
-    /// What the command line calls it.
+    /// Its name on the command line.
     pub fn backend(&self) -> Backend {
         Backend::Gpu(Some(self.gpu.adapter().index))
     }

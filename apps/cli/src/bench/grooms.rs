@@ -27,7 +27,8 @@ const BOUND: [[u32; 2]; 2] = [[100_000, 2000], [2000, 100]];
 const FRAMES: [u32; 2] = [12, 3];
 /// Frames that are written; in a short run.
 const WRITTEN: [u32; 2] = [240, 12];
-/// What is promised: seconds and MB to the first picture and its segments, ms a frame of bound strands, MB a second.
+/// Bounds: seconds and MB to the first picture and its segments, ms per frame of bound strands, MB per
+/// second.
 const MOST: (f64, f64, usize, f64, f64) = (5.0, 500.0, 2_500_000, 60.0, 100.0);
 
 #[derive(Debug, Serialize)]
@@ -47,7 +48,7 @@ struct First {
     segments: usize,
 }
 
-/// What it takes to place bound strands in a frame.
+/// Cost of placing bound strands in a frame.
 #[derive(Debug, Serialize)]
 struct Bound {
     on: String,

@@ -1,4 +1,4 @@
-//! What the measurements are made on: what the system says of it, and what it was seen to do.
+//! The machine of the measurements: its description and its measured speed.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::output::print_line;
 
-/// What the measurements were made on.
+/// The machine of the measurements.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
     /// Name of the processor, where the system reports it.
@@ -26,7 +26,7 @@ pub struct Machine {
     pub peak_memory_mb: Option<f64>,
 }
 
-/// How much of something happens in a second, the best of a few runs.
+/// Operations per second, the best of a few runs.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Rates {
     pub one_thread: f64,

@@ -48,7 +48,7 @@ pub struct Whole {
     pub frames_per_second: f64,
 }
 
-/// What a picture takes on the CPU.
+/// Cost of a picture on the CPU.
 #[derive(Debug, Serialize)]
 pub struct Pictures {
     /// While the next frame is simulated.

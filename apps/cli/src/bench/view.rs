@@ -29,7 +29,7 @@ const SIZES: [(u32, u32, [f64; 6]); 4] = [
 ];
 /// Frames of a row; on a software adapter; in a short run.
 const FRAMES: [u32; 3] = [8, 2, 1];
-/// What is promised of a current GPU at 1280x968: follow strands, most ms a picture, most MB on the device.
+/// Aims for a current GPU at 1280x968: follow strands, most ms per picture, most MB on the device.
 const PROMISED: [(u32, f64, f64); 2] = [(16, 4.0, 200.0), (43, 10.0, 200.0)];
 
 #[derive(Debug, Serialize)]

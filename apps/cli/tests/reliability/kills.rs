@@ -4,7 +4,7 @@ use super::*;
 
 /// Times that each command is ended, unless the environment's `STRANDLINE_KILLS` says another number.
 const KILLS: usize = 52;
-/// How many runs are ended before one may finish and clear up.
+/// Number of runs that are killed before one may finish and clear up.
 const BETWEEN: usize = 8;
 /// Names and numbers of the signals, in turn.
 const SIGNALS: [(&str, i32); 4] = [("INT", 2), ("TERM", 15), ("KILL", 9), ("HUP", 1)];

@@ -13,9 +13,10 @@ use crate::{folder, open};
 
 /// Seconds of use when the environment's STRANDLINE_RANDOM_USE says nothing else: a minute; most of it waits.
 const SECONDS: u64 = 60;
-/// How much more memory \[MiB\] a window of one size with one scene may take at the end than after the first third, in
-/// which all that is dropped has been loaded once: what the allocator of each thread keeps, and samples of up to twice a
-/// picture (115 MiB). Found: 43 MiB in ten minutes, 68 in two and a half beside a build, 159 in one.
+/// Allowed growth of memory \[MiB\] of a window of one size with one scene, from the end of the first third,
+/// in which everything that is dropped has been loaded once. It covers the allocator's reserve per thread and
+/// samples of up to twice a picture (115 MiB). Found: 43 MiB in ten minutes, 68 in two and a half beside a
+/// build, 159 in one.
 const ADDED: u64 = 250;
 /// X symbols: space, full stop, arrows, f, g, r, t, tab, escape, page up and down.
 const KEYS: [u32; 12] = [0x20, 0x2e, 0xff51, 0xff53, 0x66, 0x67, 0x72, 0x74, 0xff09, 0xff1b, 0xff55, 0xff56];
