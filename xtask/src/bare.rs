@@ -11,7 +11,7 @@ const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];
 /// The words for cargo that choose it.
 pub const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
 
-/// What it is run with, in a folder of its own: a step of hair, and a picture of it.
+/// Commands of the trial run, in a folder of its own: a step of hair, and a picture of it.
 const RUNS: [&[&str]; 2] = [
     &["sim", "--scene", "bare.toml", "--frames", "2", "--json"],
     &["render", "--scene", "bare.toml", "--frames", "1", "--out", "bare.png", "--json"],
@@ -20,7 +20,7 @@ const RUNS: [&[&str]; 2] = [
 const SCENE: &str = "[style]\nstrand_count = 40\n[body]\nspacing = 0.02\n[film]\nsettle = 0.0\n\
                      [picture]\nwidth = 64\nheight = 48\n[simulation]\nvolume.cells = [8, 8, 8]\n";
 
-/// Whether it is built from none of the crates that it can do without, and then does what it is for.
+/// Checks that the bare program is built without optional crates, and runs it.
 pub fn check() -> bool {
     is_built_from_what_it_needs() && runs()
 }

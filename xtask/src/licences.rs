@@ -1,4 +1,4 @@
-//! What others' code may be used, and the list of their licences.
+//! Allowed licences of dependencies, and the page that lists them.
 //!
 //! docs/licences.md is written from what cargo says of every package; that it names the packages of Cargo.lock
 //! and no others is checked with every test, without cargo and without a network.
@@ -91,7 +91,7 @@ pub fn deny() -> bool {
     }
 }
 
-/// What is said where cargo-deny is missing.
+/// Note for a missing cargo-deny.
 pub const NOT_INSTALLED: &str =
     "licences and sources of dependencies: cargo-deny is not installed (`cargo install --locked cargo-deny`)";
 

@@ -6,6 +6,7 @@
 mod adapter;
 mod bare;
 mod cargo;
+mod comments;
 mod faults;
 mod house;
 mod licences;
@@ -25,8 +26,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            and usd-core into target/python where python3 has none, and says so where it cannot
   ci       test --setup
   bless    record the golden pictures again; look at each before you commit it
-  docs     write docs/scene.md from the settings table
-  names    check that every stage has one name everywhere
+  docs     write docs/scene.md from the settings table and docs/cli.md from the arguments
+  names    check that every stage has one name everywhere, and that comments name their subject first
   house    check the plan of the house: arrows between crates, circles of files, sizes
   faults   plant the faults of checks/faults in a copy of the tree, one after the other, and run
            the tests that have to see each. Results are kept: a run that was stopped early resumes,
@@ -39,7 +40,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            faults where their list can be had; `test` does the first three where it is installed
   licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";
 
-/// What to do.
+/// A chore of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Chore {
     Test { setup: bool },
@@ -79,7 +80,7 @@ fn main() -> ExitCode {
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// What the words of the command line ask for; none when they ask for nothing that there is.
+/// Chore named by the words of the command line; `None` for an unknown one.
 fn chore(words: &[&str]) -> Option<Chore> {
     if words.iter().any(|word| ["--help", "-h", "help"].contains(word)) {
         return Some(Chore::Help);

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::cargo::root;
+use crate::comments;
 
 /// A crate with stages: its CPU backend says which there are.
 struct Recipe {
@@ -36,12 +37,13 @@ const RECIPES: [Recipe; 2] = [
 
 /// Prints every stage that lacks its file, its line or its row. True when none does.
 pub fn check() -> bool {
-    let problems = problems(root());
+    let mut problems = problems(root());
+    problems.extend(comments::problems());
     for problem in &problems {
         eprintln!("names: {problem}");
     }
     if problems.is_empty() {
-        println!("names: every stage has one name everywhere");
+        println!("names: every stage has one name everywhere, and comments name their subject first");
     }
     problems.is_empty()
 }

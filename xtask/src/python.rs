@@ -5,10 +5,10 @@ use std::process::{Command, Stdio};
 
 use crate::cargo::root;
 
-/// What names it to the tests.
+/// Variable that names the interpreter to the tests.
 pub const NAMED: &str = "STRANDLINE_PYTHON";
 
-/// What is left out without one.
+/// Summary of the tests that need Python.
 pub const NONE: &str = "no Python with numpy and usd-core: nobody else read moving caches and USD \
                         (STRANDLINE_PYTHON names one; with STRANDLINE_REQUIRE_PYTHON the test fails without it)";
 

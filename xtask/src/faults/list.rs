@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 
-/// Where the lists are.
+/// Folder of the lists.
 const FOLDER: &str = "checks/faults";
 
 /// A file of faults.
@@ -21,7 +21,7 @@ struct List {
 #[serde(deny_unknown_fields)]
 pub struct Fault {
     pub name: String,
-    /// What goes wrong, in words.
+    /// The fault, in words.
     pub what: String,
     /// The backends that it spoils: each has to see it.
     #[serde(default)]

@@ -16,7 +16,7 @@ use list::{Fault, load};
 
 pub use wish::Wish;
 
-/// What is wrong with the list: faults that no longer apply, and tests that are not there.
+/// Faults of the list that no longer apply, and tests of it that do not exist.
 fn problems(root: &Path, faults: &[Fault]) -> Vec<String> {
     let mut found = Vec::new();
     for fault in faults {

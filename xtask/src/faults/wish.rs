@@ -1,6 +1,6 @@
-//! What is asked for.
+//! The arguments of `cargo xtask faults`.
 
-/// What the words behind `faults` ask for.
+/// The arguments of `faults`, parsed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wish {
     /// Faults by name; all that have no result for the tree as it is where there are none.

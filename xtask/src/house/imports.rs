@@ -14,7 +14,7 @@ pub struct Modules {
 struct Module {
     file: String,
     code: String,
-    /// What it gives on under a name of its own: the path that the name stands for.
+    /// Names that it re-exports, with the paths they stand for.
     given_on: BTreeMap<String, Vec<String>>,
 }
 
@@ -71,7 +71,7 @@ impl Modules {
         }
     }
 
-    /// What a module gives on: the names of its `pub use`, with the paths they stand for.
+    /// Names of a module's `pub use`, with the paths they stand for.
     fn given_on(&self, path: &[String], code: &str) -> BTreeMap<String, Vec<String>> {
         let mut found = BTreeMap::new();
         for (is_public, tree) in uses(code) {
