@@ -1,4 +1,4 @@
-//! For build scripts: links the WESL modules of a crate's stages, and what all crates share, into one WGSL text each.
+//! For build scripts: links each WESL module of a crate's stages, with the kit of all crates, into one WGSL text.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

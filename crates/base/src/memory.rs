@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// Memory that may be taken when nothing else is said \[MiB\].
+/// Default limit of memory \[MiB\].
 pub const DEFAULT: u64 = 8192;
 /// The environment's variable that allows more or less \[MiB\].
 pub const VARIABLE: &str = "STRANDLINE_MEMORY";
@@ -58,8 +58,8 @@ pub fn check(needs: &[Need]) -> Result<(), MemoryError> {
     check_within(needs, allowed(std::env::var_os(VARIABLE))?)
 }
 
-/// Refuses a file whose reader would take more than may be taken: `taken` bytes for each of its own. One longer than
-/// `limit` \[byte\] is left to what reads it.
+/// Refuses a file whose reader would take more than is allowed: `taken` bytes for each of its own. A file longer than
+/// `limit` \[byte\] is left to its reader.
 ///
 /// # Errors
 /// See [`MemoryError`].

@@ -6,7 +6,7 @@ const LINE: usize = 500;
 /// Lines that are shown.
 const LINES: usize = 60;
 
-/// Text that may hold parts of somebody's file, for a terminal: characters that could move its cursor, change
+/// Text that may quote a file, for a terminal: characters that could move its cursor, change
 /// its colours or turn the direction of writing are spelled out (`\u{1b}`), lines of more than 500 characters
 /// and texts of more than 60 lines are cut.
 pub fn printable(text: &str) -> Cow<'_, str> {

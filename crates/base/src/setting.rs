@@ -59,7 +59,7 @@ impl fmt::Display for Key<'_> {
     }
 }
 
-/// One of the words that a setting may be, and what it means.
+/// A word of a setting, and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Word {
     /// As a file has it.
@@ -86,7 +86,7 @@ pub enum Kind {
     Flag,
     /// As many whole numbers.
     Whole(usize),
-    /// As many numbers; more than one are a vector, a colour or a list.
+    /// A number of numbers: a vector, a colour or a list if there are several.
     Number(usize),
     /// A number, or this word.
     NumberOr(&'static str),
@@ -100,7 +100,7 @@ pub enum Kind {
     List(&'static Table),
 }
 
-/// Everything known of one setting.
+/// Description of one setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// Its name in its section.
@@ -122,7 +122,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// A row that says nothing.
+    /// An empty row.
     pub const NONE: Self = Self {
         name: "",
         doc: "",
@@ -139,12 +139,12 @@ impl Row {
         plain(self.doc)
     }
 
-    /// Least and most of a slider; 0 to 1 for what has no range.
+    /// Least and most of a slider; 0 to 1 without a range.
     pub fn slider(&self) -> [f64; 2] {
         self.slider.or(self.range).unwrap_or([0.0, 1.0])
     }
 
-    /// Its range with its unit: `0 to 1000 1/s`; empty for what has none.
+    /// Its range with its unit: `0 to 1000 1/s`; empty without a range.
     pub fn limits(&self) -> String {
         let Some([least, most]) = self.range else { return String::new() };
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
@@ -205,7 +205,7 @@ pub trait Value: Sized {
     /// Allowed values.
     const KIND: Kind;
 
-    /// Replaces what is given and leaves the rest as it is.
+    /// Replaces the given settings and leaves the rest as it is.
     fn take(&mut self, given: Self::Given);
 
     /// Checks it, and a section's own settings, against their ranges.
@@ -229,7 +229,7 @@ pub trait Group: Value {
     /// The same as a list.
     const TABLE: Table;
 
-    /// Checks every setting against its range; `name` is what the section is called in errors.
+    /// Checks every setting against its range; `name` is the section's name in errors.
     ///
     /// # Errors
     /// The first setting outside its range.

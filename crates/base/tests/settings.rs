@@ -1,4 +1,4 @@
-//! A section of settings: how files give it, what is checked, what is known.
+//! A section of settings: reading, checks, description.
 
 use glam::Vec3;
 use strandline_base::{Group, Key, Kind, SettingError, Value, choices, settings};
@@ -39,7 +39,7 @@ settings! {
         count: [u32; 3] = [4; 3], in [4, 512];
         /// Others.
         others: Vec<Spring> = Vec::new(), in [0, 2];
-        /// A time, or none.
+        /// An optional time.
         time: Option<f64> = None, in [0.0, 1.0] "s";
         plain {
             /// In no file.

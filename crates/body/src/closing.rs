@@ -21,7 +21,7 @@ impl Mesh {
     /// Number of edges of triangles without a counterpart in the opposite direction.
     ///
     /// # Panics
-    /// As [`Self::is_closed`] and [`Self::closed`], when an index is out of range; loaded meshes have none such.
+    /// As [`Self::is_closed`] and [`Self::closed`], if an index is out of range; indices of loaded meshes are not.
     pub fn open_edge_count(&self) -> usize {
         open_edges(self).len()
     }

@@ -10,7 +10,7 @@ choices! {
     pub enum Carrier as "carrier" {
         /// The head: the shape is given in head space.
         Head = "head",
-        /// Nothing: the shape is given in world space and stays.
+        /// World space: the shape stays.
         World = "world",
     }
     default Head
@@ -144,14 +144,14 @@ fn positive(what: &'static str, value: f32) -> Result<(), BodyError> {
     Err(BodyError::Value { what, found: value.to_string(), expected: "a finite number above zero [m]" })
 }
 
-/// A shape, what carries it, and how it rubs.
+/// A shape, its carrier and its friction.
 #[derive(Clone, Debug)]
 pub struct Collider {
     /// The solid.
     pub shape: Shape,
     /// Its space.
     pub carrier: Carrier,
-    /// Coulomb friction coefficient, 0 is frictionless. It acts once a step, whatever the number of rounds.
+    /// Coulomb friction coefficient, 0 is frictionless. It acts once per step, for any number of rounds.
     pub friction: f32,
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct FarNodes {
 }
 
 impl FarNodes {
-    /// Looks for the surface from every corner, at no more than `budget` triangles each; none for a small lattice. A
+    /// Looks for the surface from every corner, at no more than `budget` triangles each; `None` for a small lattice. A
     /// corner for which these do not suffice counts as near, so that the nodes of its blocks are searched for.
     pub fn new(tree: &TriangleTree, lattice: &Lattice, budget: u64) -> Option<Self> {
         if lattice.len() <= FEW {

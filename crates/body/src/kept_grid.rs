@@ -27,7 +27,7 @@ impl DistanceGrid {
     /// The same as [`Self::of_mesh`] to the bit, read from `folder` where a run before left it, and left there for
     /// the next where it took long to build.
     ///
-    /// A file is found by all that the grid depends on. One that is broken, cut or of other content is built
+    /// A file is found by the hash of all inputs. A grid whose file is broken, cut or of other content is built
     /// again; a folder that cannot be read or written changes the time only.
     ///
     /// # Errors
@@ -46,7 +46,7 @@ impl DistanceGrid {
         let watch = Stopwatch::start();
         let grid = Self::of_mesh(mesh, spacing, padding)?;
         if watch.elapsed() >= WORTH_A_FILE {
-            // Nothing is lost but time.
+            // Only time is lost.
             let _ = fs::create_dir_all(folder).and_then(|()| write(&grid, &path, &key));
             forget_oldest(folder, MOST_BYTES);
         }
@@ -85,7 +85,7 @@ fn write(grid: &DistanceGrid, path: &Path, key: &[u8; DIGEST]) -> Result<()> {
     WholeFile::write(path, |file| file.write_all(&bytes).and_then(|()| file.write_all(&digest)))?.keep()
 }
 
-/// The grid in a file; none unless every byte is as it was written.
+/// The grid in a file; `None` unless every byte is as it was written.
 fn read(path: &Path, key: &[u8; DIGEST]) -> Option<DistanceGrid> {
     let largest = (HEADER + DIGEST) as u64 + 4 * Lattice::NODE_LIMIT;
     let bytes = read_plain(path, largest).ok()?;

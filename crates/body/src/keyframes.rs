@@ -19,7 +19,7 @@ pub struct Keyframe {
 /// Largest difference of a rotation from a unit quaternion; a larger one is an error, not rounding.
 const UNIT_TOLERANCE: f32 = 1e-3;
 
-/// The keyframes with unit rotations, or what is wrong with them.
+/// The keyframes with unit rotations, or their error.
 pub(crate) fn checked(mut keys: Vec<Keyframe>) -> Result<Vec<Keyframe>, BodyError> {
     if keys.is_empty() {
         return Err(BodyError::Value {

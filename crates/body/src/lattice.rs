@@ -22,7 +22,7 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// The most nodes of one grid: 16 bytes each make 128 MiB, which is what a GPU takes as one buffer.
+    /// The most nodes of one grid: 16 bytes each make 128 MiB, the largest buffer of a GPU.
     pub const NODE_LIMIT: u64 = 8 << 20;
     /// The coarsest spacing \[m\] that is taken in place of one that is too fine; a body that needs more is
     /// in other units.

@@ -9,7 +9,7 @@ use crate::triangle_tree::Nearest;
 
 /// Nodes within this distance \[cells\] of the surface are painted.
 pub(crate) const REACH: f64 = 1.0;
-/// By how much more nodes are visited, so that rounding leaves none out.
+/// Margin of visited nodes, so that rounding leaves none out.
 const MARGIN: f64 = 1e-6;
 /// Squared sine of the angles below which a triangle has no normal of its own.
 const FLAT: f64 = 1e-20;
@@ -128,7 +128,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The whole numbers from one to another, both included.
+/// The whole numbers between two, both included.
 fn whole_numbers(first: f64, last: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(first), |number| Some(number + 1.0)).take_while(move |number| *number <= last)
 }
@@ -139,7 +139,7 @@ mod tests {
 
     use super::*;
 
-    /// No node that is within reach of a triangle is left out, whatever its shape and place.
+    /// No node within reach of a triangle is left out, for any shape and place.
     #[test]
     fn every_node_within_reach_is_visited() {
         let mut random = crate::Random::new(7, 0);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::layers::Corners;
 
-/// The squared distance of a point from a triangle, where it is less than what is known.
+/// The squared distance of a point from a triangle, if it is less than a known one.
 ///
 /// Double precision: in single precision the distance to a triangle that is small and far comes out
 /// wrong by its whole size.

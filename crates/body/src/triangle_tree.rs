@@ -7,7 +7,7 @@ use crate::triangle::nearer;
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
-/// Nodes that wait at most: one for each halving of 2^32 triangles.
+/// Most waiting nodes: one for each halving of 2^32 triangles.
 const DEPTH: usize = 40;
 
 /// A tree of boxes over triangles.
@@ -38,7 +38,7 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// Nothing known.
+    /// No triangle known.
     pub const NONE: Self = Self { squared: f64::INFINITY, triangle: u32::MAX };
 }
 

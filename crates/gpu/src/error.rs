@@ -1,6 +1,6 @@
 use crate::Adapter;
 
-/// Why a GPU could not do what was asked.
+/// Errors of a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
@@ -42,7 +42,7 @@ pub enum GpuError {
         adapter: String,
         /// Data to be stored.
         what: String,
-        /// Its size; 0 where the driver does not tell what it lacked.
+        /// Its size; 0 if the driver does not name it.
         bytes: u64,
     },
     /// A shader that the driver does not take.

@@ -141,7 +141,7 @@ pub enum NpzError {
     /// The system could not read it.
     #[error(transparent)]
     Read(#[from] std::io::Error),
-    /// Its bytes are not what the format requires.
+    /// Its bytes violate the format.
     #[error("{found}, expected {expected}")]
     Malformed {
         /// Content that was found, with its place.

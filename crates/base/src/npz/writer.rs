@@ -6,7 +6,7 @@
 //!
 //! The last growing array has the free end of the file before it; the tail, arrays that change with time, and the
 //! directory lie ahead of it. Before it reaches them they are written again farther ahead. So there is a sound
-//! directory at the end of the file at every moment, and what it names is not overwritten as long as it names it.
+//! directory at the end of the file at every moment, and members named in it are not overwritten.
 //! A row is first data, then the directory in place, then the headers of the arrays: between the last two
 //! `numpy.load` still reads one row less.
 
@@ -219,7 +219,7 @@ impl GrowingNpz {
     /// tail has to be set. From the first row with a tail of its time on the file has its name.
     ///
     /// # Errors
-    /// Whatever the system reports, a full disk for example: the rows before stay.
+    /// Errors of the system, a full disk for example: the rows before stay.
     pub fn append(&mut self, row: &[&[u8]]) -> Result<()> {
         if self.rows >= self.capacity {
             return Err(Error::other("more rows than the file was begun for"));
@@ -255,7 +255,7 @@ impl GrowingNpz {
     /// Replaces the tail.
     ///
     /// # Errors
-    /// Whatever the system reports; the tail before stays.
+    /// Errors of the system; the tail before stays.
     pub fn set_tail(&mut self, tail: &[Array]) -> Result<()> {
         let Some(last) = self.growing.last() else { return Ok(()) };
         let length = tail_room(tail, self.zip64);
@@ -286,7 +286,7 @@ impl GrowingNpz {
     /// Ends the file with its last tail, and gives it its name.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn finish(mut self, tail: &[Array]) -> Result<()> {
         self.close(tail)?;
         self.file.finish()
@@ -295,7 +295,7 @@ impl GrowingNpz {
     /// As [`GrowingNpz::finish`] for a run that was stopped early: the file stays where it lies, which is returned.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn leave(mut self, tail: &[Array]) -> Result<PathBuf> {
         self.close(tail)?;
         self.file.leave()

@@ -77,7 +77,7 @@ impl Ear {
     #[inline]
     pub(super) fn add(&self, point: Vec3, head: &mut Field) {
         let offset = point - self.origin;
-        // A blend further away than its width changes nothing.
+        // A blend further away than its width has no effect.
         let reach = REACH + ROOT_BLEND + head.value.max(0.0);
         if offset.length_squared() > reach * reach {
             return;

@@ -1,4 +1,4 @@
-//! Signed distance of meshes against what is known of them.
+//! Signed distance of meshes against known values.
 
 use glam::Vec3;
 use strandline_body::{Aabb, BodyError, DistanceGrid, Mannequin, Mesh, SignedDistance};

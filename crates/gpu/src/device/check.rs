@@ -9,7 +9,7 @@ use wgpu::naga::{
 
 use crate::{Access, Binding, Declaration, Layout, Tail};
 
-/// Compares a declaration with its linked shader, without a device. Returns what differs; nothing
+/// Compares a declaration with its linked shader, without a device. Returns the differences; nothing
 /// when the two agree.
 pub fn check(declaration: &Declaration) -> Vec<String> {
     let named = |message: String| format!("{}::{}: {message}", declaration.module, declaration.entry);
@@ -236,7 +236,7 @@ fn is_unsized(module: &Module, ty: Handle<Type>) -> bool {
     matches!(module.types[ty].inner, TypeInner::Array { size: ArraySize::Dynamic, .. })
 }
 
-/// Compares what a struct ends in with the array without a length that a shader has there.
+/// Compares the tail of a struct with the shader's array without a length.
 fn compare_tail(
     module: &Module,
     declared: Option<&Tail>,

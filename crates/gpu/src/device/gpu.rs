@@ -48,7 +48,7 @@ impl Gpu {
     /// The first adapter that is real hardware, discrete before integrated.
     ///
     /// # Errors
-    /// There is none, or it does not offer WebGPU's default limits.
+    /// There is no adapter, or it does not offer WebGPU's default limits.
     pub fn auto() -> Result<Self, GpuError> {
         pollster::block_on(Self::request(Wanted::Hardware))
     }
@@ -56,7 +56,7 @@ impl Gpu {
     /// The first adapter of any kind, hardware before software.
     ///
     /// # Errors
-    /// There is none, or it does not offer WebGPU's default limits.
+    /// There is no adapter, or it does not offer WebGPU's default limits.
     pub fn any() -> Result<Self, GpuError> {
         pollster::block_on(Self::request(Wanted::Any))
     }
@@ -64,7 +64,7 @@ impl Gpu {
     /// An adapter by its number in [`Gpu::list`].
     ///
     /// # Errors
-    /// There is none of that number, or it does not offer WebGPU's default limits.
+    /// No adapter has that number, or it does not offer WebGPU's default limits.
     pub fn open(index: usize) -> Result<Self, GpuError> {
         pollster::block_on(Self::request(Wanted::Number(index)))
     }
@@ -77,7 +77,7 @@ impl Gpu {
     /// The first wanted adapter that starts, for hosts that cannot block, as in a browser page.
     ///
     /// # Errors
-    /// There is none, or it does not offer WebGPU's default limits: why the first of them did not start.
+    /// There is no adapter, or none offers WebGPU's default limits: the error of the first.
     pub async fn request(wanted: Wanted) -> Result<Self, GpuError> {
         let adapters = adapters().await;
         let offered: Vec<Adapter> = adapters.iter().map(|(_, adapter)| adapter.clone()).collect();
@@ -169,7 +169,7 @@ impl Gpu {
     }
 
     /// Sets the most bytes that all buffers together may hold, so that a host can keep some for
-    /// itself. What is held already stays.
+    /// itself. Memory that is allocated already stays.
     pub fn set_memory_limit(&self, bytes: u64) {
         self.memory().most = bytes;
     }
@@ -198,7 +198,7 @@ impl Gpu {
         self.shared.crossed[1].fetch_add(bytes as u64, Relaxed);
     }
 
-    /// Gives the device up; whatever is asked of it afterwards is an error.
+    /// Gives the device up; every later use is an error.
     pub fn destroy(&self) {
         note(&self.shared.lost, "it was given up".to_owned());
         self.device().destroy();
@@ -215,7 +215,7 @@ impl Gpu {
         }
     }
 
-    /// Runs what may be refused and turns a refusal into an error.
+    /// Runs an operation that the device may refuse, and turns the refusal into an error.
     ///
     /// # Errors
     /// The device is lost, has no memory left, or finds a mistake.
@@ -241,7 +241,7 @@ impl Gpu {
         }
     }
 
-    /// Runs what ends in a panic when the driver says that the device is gone: wgpu takes that for
+    /// Runs an operation that panics when the device is lost: wgpu takes that for
     /// fatal where it waits. Nothing of ours is left half done, since it is not used afterwards.
     fn surviving<T>(&self, run: impl FnOnce() -> T) -> Result<T, GpuError> {
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).map_err(|panic| {
@@ -281,7 +281,7 @@ impl Gpu {
         polled.map(drop).map_err(|error| GpuError::Lost { adapter: self.name(), reason: error.to_string() })
     }
 
-    /// Sees what is done by now.
+    /// Processes finished work.
     pub(crate) fn poll(&self) -> Result<(), GpuError> {
         self.check()?;
         let polled = self.surviving(|| self.device().poll(wgpu::PollType::Poll))?;
@@ -338,7 +338,7 @@ impl Gpu {
     }
 }
 
-/// A lock that outlives a panic elsewhere: what it holds is plain data.
+/// A lock that outlives a panic elsewhere: its content is plain data.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -352,7 +352,7 @@ fn note(slot: &Mutex<Option<String>>, reason: String) {
 async fn adapters() -> Vec<(wgpu::Adapter, Adapter)> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
-    // The validation layers of old drivers report errors where there are none.
+    // The validation layers of old drivers report false errors.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let mut found = instance.enumerate_adapters(wgpu::Backends::all()).await;

@@ -43,7 +43,7 @@ pub struct Declaration {
     pub fragment: Option<&'static str>,
     /// True for a drawing.
     pub draws: bool,
-    /// Threads of a workgroup, along its first axis; none where a constant of the pipeline chooses them, and for a
+    /// Threads of a workgroup, along its first axis; `None` if a constant of the pipeline chooses them, and for a
     /// drawing.
     pub threads: Option<usize>,
     /// Its buffers.
@@ -52,7 +52,7 @@ pub struct Declaration {
 
 /// The buffers of a kernel. [`kernel!`](crate::kernel) makes them.
 pub trait Bindings {
-    /// The kernel, whatever the lifetime of its buffers.
+    /// The kernel, for any lifetime of its buffers.
     type Kernel;
     /// The declaration.
     fn declaration() -> Declaration;
@@ -133,7 +133,7 @@ macro_rules! declare {
 ///
 /// ```text
 /// kernel! {
-///     /// What it does.
+///     /// Its purpose.
 ///     pub struct Name in "module" (LINKED_TEXT), entry "name" {
 ///         0 step: Read Step,
 ///         1 positions: Read f32,
@@ -165,7 +165,7 @@ macro_rules! kernel {
     };
 }
 
-/// A compiled kernel; `B` is what [`kernel!`](crate::kernel) declared, with a static lifetime.
+/// A compiled kernel; `B` is the type declared by [`kernel!`](crate::kernel), with a static lifetime.
 #[derive(Debug)]
 pub struct Kernel<B> {
     compiled: Compiled,
@@ -297,17 +297,17 @@ fn entry_of(binding: &Binding, declaration: &Declaration) -> wgpu::BindGroupLayo
 pub struct Bound {
     pub(crate) pipeline: wgpu::ComputePipeline,
     pub(crate) group: wgpu::BindGroup,
-    /// Of a workgroup; none where a constant of the pipeline chose them.
+    /// Threads of a workgroup; `None` if a constant of the pipeline chose them.
     threads: Option<usize>,
 }
 
 impl Bound {
-    /// Workgroups for so many threads; where a constant of the pipeline chose their size, for so many workgroups.
+    /// Workgroups for a number of threads; if a constant of the pipeline chose their size, the number of workgroups itself.
     pub fn groups(&self, count: usize) -> [u32; 3] {
         groups(count, self.threads.unwrap_or(1))
     }
 
-    /// The kernel over so many threads, counted as [`Bound::groups`] counts them.
+    /// The kernel over a number of threads, counted as in [`Bound::groups`].
     pub fn over(self, count: usize) -> (Self, [u32; 3]) {
         let groups = self.groups(count);
         (self, groups)
@@ -318,7 +318,7 @@ impl Bound {
 pub type Dispatches = Vec<(Bound, [u32; 3])>;
 
 /// Workgroups for a number of threads, in rows of no more than WebGPU's 65,535: the index of a
-/// workgroup is `x + y * num_workgroups.x`. Never none: an empty dispatch would leave reports unwritten.
+/// workgroup is `x + y * num_workgroups.x`. At least one: an empty dispatch would leave reports unwritten.
 pub fn groups(threads: usize, workgroup_size: usize) -> [u32; 3] {
     const ROW: usize = 65_535;
     let count = threads.div_ceil(workgroup_size).max(1);

@@ -14,7 +14,7 @@ pub enum Layout {
         /// 2 to 4.
         count: usize,
     },
-    /// So many vectors one after the other, within a struct.
+    /// An array of vectors within a struct.
     Array {
         /// An element.
         element: Box<Layout>,

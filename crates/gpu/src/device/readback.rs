@@ -118,7 +118,7 @@ impl Download {
         &self.staging
     }
 
-    /// Waits for the submission that copied, none for all of them, and shows what was copied.
+    /// Waits for the submission that copied (`None`: for all submissions), and gives the copied bytes.
     ///
     /// # Errors
     /// The device was lost.

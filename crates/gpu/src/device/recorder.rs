@@ -14,14 +14,14 @@ pub struct Targets<'a> {
 /// Number of vertices and instances of a drawing.
 #[derive(Clone, Copy)]
 pub enum Amount<'a> {
-    /// So many vertices, three a triangle, once, as an instance of this number.
+    /// A number of vertices, three per triangle, once, as the instance of a number.
     Vertices {
         /// Number of vertices.
         count: u32,
         /// The number.
         instance: u32,
     },
-    /// The vertices of indices, so many times over.
+    /// The vertices of indices, for a number of instances.
     Instanced {
         /// Three a triangle.
         indices: &'a Buffer<u32>,
@@ -50,7 +50,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records a stage: kernels and their numbers of workgroups, one after the other. Each sees
-    /// what those before it wrote.
+    /// the results of those before it.
     pub fn stage(&mut self, name: &'static str, kernels: &[(Bound, [u32; 3])]) {
         let timestamp_writes = self.timer.and_then(|timer| timer.next(name));
         let mut pass = self

@@ -1,4 +1,4 @@
-//! Copies from the device on their way to the host, which nobody has to wait for.
+//! Copies from the device on their way to the host, without a wait.
 
 use std::future::Future;
 use std::pin::Pin;
@@ -21,7 +21,7 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// The copy that a submission makes into a staging buffer; none copies nothing.
+    /// The copy of a submission into a staging buffer; `None` copies nothing.
     pub(super) fn new(held: Held, staging: Option<(wgpu::Buffer, wgpu::SubmissionIndex)>) -> Self {
         let staging = staging.map(|(staging, submission)| {
             let mapping = Mapping::new(&staging, Some(submission));
@@ -51,7 +51,7 @@ impl Transfer {
         Ok(Some(Copied { bytes: view.to_vec() }))
     }
 
-    /// Waits until it arrives, and for nothing that was submitted later.
+    /// Waits until it arrives, and not for later submissions.
     ///
     /// # Errors
     /// The device was lost or does not answer.
@@ -104,7 +104,7 @@ impl Drop for Held {
 /// A buffer that becomes readable when a submission is done.
 #[derive(Debug)]
 pub(super) struct Mapping {
-    /// None is everything that was submitted.
+    /// `None` is all submissions.
     submission: Option<wgpu::SubmissionIndex>,
     arrival: Arc<Arrival>,
 }
