@@ -11,14 +11,14 @@ use strandline::{
 
 use crate::{export, files, messages, rescue, saves};
 
-/// The window's state: what plays, and what a person made of it.
+/// The window's state: the scene that plays, and the changes of the user.
 pub struct App {
     pub(crate) live: Live,
     /// The window, once it is there: the scene is loaded before.
     pub(crate) context: Arc<OnceLock<egui::Context>>,
     /// The scene as shown; it can be saved at any time.
     pub(crate) scene: Scene,
-    /// The scene as it was loaded: what the controls are set to by default.
+    /// The scene as it was loaded: the defaults of the controls.
     pub(crate) base: Scene,
     pub(crate) camera: Camera,
     /// The view of the scene.
@@ -53,12 +53,12 @@ pub struct App {
     /// The scene as shown, for a window that stops in an error, and the time when it was kept.
     pub(crate) kept: rescue::Kept,
     pub(crate) kept_at: Option<Instant>,
-    /// Number of the last step that was asked for by dragging while nothing plays, and whether another one
+    /// Number of the last step requested by dragging while nothing plays, and whether another one
     /// is wanted once its picture is there.
     pub(crate) stepped: u64,
     pub(crate) wants_step: bool,
     pub(crate) dialog: Option<files::Dialog>,
-    /// Moving hair that is being written, and what of it.
+    /// Moving hair that is being written, and its part of the film.
     pub(crate) exporting: Option<export::Export>,
     pub(crate) export_wanted: export::Wanted,
     /// Folder of the next picture and scene.
@@ -91,7 +91,7 @@ impl App {
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let context = Arc::new(OnceLock::<egui::Context>::new());
         let known = context.clone();
-        // At once would be two passes, the second one for nothing.
+        // An immediate repaint would be two passes, the second one useless.
         let wake = move || {
             known.get().into_iter().for_each(|context| context.request_repaint_after(SOON));
         };
@@ -187,7 +187,7 @@ impl App {
         self.step_on();
     }
 
-    /// Lets a frame of time pass where nothing plays, so that hair follows what is dragged; one at a time.
+    /// Advances by a frame while nothing plays, so that hair follows a drag; one frame at a time.
     pub(crate) fn step_on(&mut self) {
         let drawn = self.shown.as_ref().map_or(0, |shown| shown.drawn_after_command);
         self.wants_step = !self.playing && self.stepped > drawn;
@@ -216,7 +216,7 @@ impl App {
         self.pending.is_some()
     }
 
-    /// Loads another scene; the old one stays, and is what the controls change, until it is there.
+    /// Loads another scene; until it is there the old one stays and the controls change it.
     pub(crate) fn load(&mut self, mut scene: Scene) {
         self.error = None;
         // The window's size and the devices that the program was started with stay.
@@ -235,7 +235,7 @@ impl App {
         self.pending = Some((number, Box::new(scene)));
     }
 
-    /// Loads a scene, or another groom or body into the one that is there.
+    /// Loads a scene, or another groom or body into the current one.
     pub(crate) fn open_file(&mut self, file: &Path) {
         // A body dropped right after a groom goes with it.
         let onto = self.pending.as_ref().map_or(&self.scene, |(_, scene)| scene);
@@ -245,7 +245,7 @@ impl App {
         }
     }
 
-    /// The scene with the view as it is.
+    /// The scene with the current view.
     pub fn seen(&self) -> Scene {
         let mut scene = self.scene.clone();
         scene.camera.position = Some(self.camera.position);

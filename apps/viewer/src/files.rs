@@ -27,21 +27,21 @@ pub struct Dialog {
     since: Instant,
 }
 
-/// No person puts a dialog away as fast as this: there was none.
+/// A user cannot close a dialog as fast as this: there was none.
 const AT_ONCE: Duration = Duration::from_millis(300);
 
 /// Answer of a dialog.
 pub struct Answer {
     /// Purpose of the dialog.
     pub wanted: Wanted,
-    /// The file, where there is one.
+    /// The file, if one was chosen.
     pub file: Option<PathBuf>,
     /// True if it came sooner than a person can answer.
     pub at_once: bool,
 }
 
 impl Dialog {
-    /// Opens one.
+    /// Opens a dialog.
     ///
     /// # Errors
     /// The system gives no thread.

@@ -32,7 +32,7 @@ use strandline::Scene;
 /// Why there is no window.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
-    /// The system shows none.
+    /// The system has no dialogs.
     #[error("there is no display")]
     NoDisplay,
     /// The system gives no thread.
@@ -44,7 +44,7 @@ pub enum ViewError {
     /// Something in the system's libraries gave up.
     #[error("the window's library gave up: {0}")]
     GaveUp(String),
-    /// The display takes none, or nothing draws it.
+    /// The display takes no window, or nothing draws it.
     #[error("{0}")]
     Refused(eframe::Error),
 }
@@ -52,7 +52,7 @@ pub enum ViewError {
 /// Opens a window on a scene and returns when it is closed.
 ///
 /// # Errors
-/// There is no display, or nothing to draw the window with.
+/// There is no display, or no device that draws the window.
 pub fn open(scene: Scene) -> Result<(), ViewError> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("strandline")

@@ -19,7 +19,7 @@ const CACHE: &str = "/etc/ld.so.cache";
 /// The first bytes of a library.
 const MAGIC: &[u8] = b"\x7fELF";
 
-/// The first library that the loader would not find, with how to get it; none where all are there, or where
+/// The first library that the loader would not find, with its package; `None` if all are there, or if
 /// the system keeps no list of them.
 pub fn missing() -> Option<String> {
     let cache = std::fs::read(CACHE).ok()?;
@@ -63,7 +63,7 @@ mod tests {
         }
         let named = folder.path().join("named");
         assert_eq!(missing_of(&cache, named.as_os_str()), None);
-        // A damaged one in a folder that comes first.
+        // A damaged library in a folder that comes first.
         std::fs::create_dir(&named).unwrap();
         std::fs::write(named.join("libXi.so.6"), b"").unwrap();
         assert!(missing_of(&cache, named.as_os_str()).unwrap().contains("libXi.so.6"));

@@ -13,7 +13,7 @@ use strandline::Scene;
 pub struct Kept(Arc<Mutex<Option<Scene>>>);
 
 impl Kept {
-    /// Takes what is seen now.
+    /// Keeps the shown scene.
     pub fn keep(&self, scene: Scene) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(scene);
     }
@@ -22,7 +22,7 @@ impl Kept {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Writes the scene into its own folder, or the one for temporary files where that takes none.
+    /// Writes the scene into its own folder, or into that for temporary files if its own cannot be written.
     fn save(&self) -> Option<PathBuf> {
         let scene = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
         let text = scene.to_toml();

@@ -12,7 +12,7 @@ pub type Saved = Result<PathBuf, String>;
 
 /// Pictures that are to be saved, and names that are given away.
 pub struct Saves {
-    /// Those that wait for a picture in full: paths, or none for one in the folder.
+    /// Saves that wait for a picture in full: paths, or `None` for a free name in the folder.
     pub waiting: Vec<Option<PathBuf>>,
     threads: Vec<JoinHandle<()>>,
     finished: (Sender<Saved>, Receiver<Saved>),

@@ -16,7 +16,7 @@ pub fn dial(room: Rect) -> Rect {
     Rect::from_min_size(corner - egui::vec2(0.0, 16.0), Vec2::splat(2.0 * RADIUS))
 }
 
-/// Draws the dial and takes what the mouse does to it.
+/// Draws the dial and handles its mouse.
 pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     let rect = dial(room);
     let response = ui.interact(rect, ui.scope_id().with("wind"), Sense::click_and_drag());
