@@ -15,9 +15,9 @@ use crate::{exit, output};
 /// checks works on every system.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// The last signal that came; 0 for none.
+/// The last signal; 0 before any.
 static CAME: AtomicUsize = AtomicUsize::new(0);
-/// The signal that asks those who look for it to stop; 0 for none.
+/// The signal that asks observers to stop; 0 before any.
 static ASKED: AtomicUsize = AtomicUsize::new(0);
 /// Number of observers.
 static LOOKING: AtomicUsize = AtomicUsize::new(0);
@@ -47,7 +47,7 @@ fn heeds_hangup() -> bool {
     ignored_signals(&status).is_some_and(|ignored| ignored & (1 << (SIGHUP - 1)) == 0)
 }
 
-/// The mask of ignored signals in what Linux reports of a process; signal 1 is its lowest bit.
+/// The mask of ignored signals of a process, as Linux reports it; signal 1 is its lowest bit.
 fn ignored_signals(status: &str) -> Option<u64> {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
     u64::from_str_radix(mask.trim(), 16).ok()
@@ -60,7 +60,7 @@ fn watch() {
         if signal == 0 {
             continue;
         }
-        // In this order: who finishes says so before nobody looks any more.
+        // In this order: an observer that finishes sets the flag before the count of observers falls.
         let looking = LOOKING.load(SeqCst) > 0;
         let finished = FINISHED.load(SeqCst);
         if !(looking || finished) || ASKED.swap(signal, SeqCst) != 0 {
@@ -73,7 +73,7 @@ fn watch() {
     }
 }
 
-/// Somebody who looks for the signal between frames, as long as it lives.
+/// An observer of the signal between frames, as long as it lives.
 pub struct Stoppable(());
 
 impl Stoppable {
@@ -88,7 +88,7 @@ impl Stoppable {
         FINISHED.store(true, SeqCst);
     }
 
-    /// The request to stop, if there was one.
+    /// The request to stop, if there was any.
     pub fn check(&self, done: u64, of: u64, what: &'static str) -> Result<(), Stopped> {
         match ASKED.load(SeqCst) {
             0 => Ok(()),

@@ -2,7 +2,7 @@
 
 use crate::{arguments::ViewOptions, render};
 
-/// There is none.
+/// Always an error: this build has no window.
 pub fn view(_: &ViewOptions) -> anyhow::Result<()> {
     anyhow::bail!(
         "this build is without a window: build it with the feature `window`, or use `strandline render`"

@@ -64,7 +64,7 @@ pub struct NotFinite {
     first: First,
 }
 
-/// The larger of two numbers; what is no number is kept, where a maximum would pass over it.
+/// The larger of two numbers; unlike a maximum it keeps NaN.
 pub fn larger(one: f32, other: f32) -> f32 {
     if other > one || other.is_nan() { other } else { one }
 }

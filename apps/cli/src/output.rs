@@ -20,7 +20,7 @@ macro_rules! print_part {
 
 pub(crate) use {print_line, print_part};
 
-/// Text for a person, which may hold parts of a file: nothing in it moves the terminal's cursor.
+/// Text for the terminal, which may quote a file: control characters are spelled out.
 pub fn person(text: Arguments) {
     written(stdout().write_all(printable(&text.to_string()).as_bytes()));
 }
@@ -53,7 +53,7 @@ pub fn note(note: &str) {
     to_stderr("note", note);
 }
 
-/// Says what went wrong on standard error.
+/// Prints an error to standard error.
 pub fn complain(error: &str) {
     to_stderr("strandline", error);
 }

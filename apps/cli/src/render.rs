@@ -23,7 +23,7 @@ struct RenderReport {
     frames: usize,
     follow_strands: usize,
     segments: usize,
-    /// Pictures that were drawn while the next frame was simulated, all but the last; none of a film of one.
+    /// Pictures that were drawn while the next frame was simulated, all but the last; `None` for a film of one.
     ms_per_frame_beside_simulation: Option<Times>,
     /// The last picture, beside which nothing is simulated.
     ms_of_frame_alone: Times,
@@ -85,7 +85,7 @@ fn player(scene: &Scene, cache: Option<Cache>) -> Result<Player, Error> {
     }
 }
 
-/// Writes a .png or .exr file, or of more frames one each with its number before the ending.
+/// Writes a .png or .exr file, or a file per frame with its number before the ending.
 fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow::Result<()> {
     let waiting = Waiting::begin(LOADING);
     let mut player = player(scene, cache)?;
@@ -226,7 +226,7 @@ fn play(
     Ok(())
 }
 
-/// Closes a film that failed, and says what there is of it.
+/// Closes a film that failed, and reports its files.
 fn stopped_early(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Error {
     let frames = film.len();
     let notes = if error.is::<Stopped>() {

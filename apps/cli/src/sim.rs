@@ -64,7 +64,7 @@ pub struct Stretch {
 }
 
 /// A mean and a largest value: of `drift` the distance of points at the end from the groom as loaded,
-/// carried by the head, over the strand's length; of `speed` what moved in the last second \[m/s\].
+/// carried by the head, over the strand's length; of `speed` the motion in the last second \[m/s\].
 #[derive(Debug, Default, Serialize)]
 pub struct Spread {
     pub mean: f32,
@@ -148,7 +148,7 @@ impl Ended {
 }
 
 impl Steps {
-    /// Adds a step of a frame; what a person should know of it at once.
+    /// Adds a step of a frame; returns notes for the user.
     pub fn add(&mut self, report: &StepReport, frame: u32) -> Option<String> {
         self.times.add(&report.seconds);
         self.stretch += f64::from(report.stretch_mean);
@@ -294,7 +294,7 @@ fn play(player: &mut Player, steps: &mut Steps, stoppable: &Stoppable, quiet: bo
     Ok(())
 }
 
-/// Closes what was written, also where the run was stopped early, and then says what there is of it.
+/// Closes the output, also of a run that was stopped early, and then reports its files.
 fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Option<Written>> {
     let written = player.close_out();
     let Err(error) = played else {

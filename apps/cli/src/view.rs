@@ -4,7 +4,7 @@ use strandline::Scene;
 
 use crate::{arguments::ViewOptions, output, render};
 
-/// Opens the window on what the command line names.
+/// Opens the window on the inputs of the command line.
 pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
     let mut inputs = options.inputs.clone();
     if let Some(file) = options.file.as_deref().filter(|file| strandline::scene::is_file(file)) {

@@ -1,4 +1,4 @@
-//! Line charts as SVG: text and lines, nothing else.
+//! Line charts as SVG of text and lines.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ const MARGIN: [f64; 4] = [70.0, 220.0, 56.0, 56.0];
 /// Distance between two entries of the key.
 const ENTRY: f64 = 19.0;
 
-/// A panel: lines over two axes, the upright one logarithmic.
+/// A panel: lines over two axes, the vertical axis logarithmic.
 pub struct Chart {
     pub title: String,
     /// A line below the title.

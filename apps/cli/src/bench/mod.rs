@@ -40,7 +40,7 @@ struct Baseline<T: Serialize> {
     /// True for a release build.
     release: bool,
     machine: Machine,
-    /// None when no GPU was measured.
+    /// `None` if no GPU was measured.
     gpu: Option<Adapter>,
     /// True for a short run, whose figures mean little.
     quick: bool,

@@ -17,7 +17,7 @@ const STRANDS: [usize; 6] = [625, 1250, 2500, 5000, 10_000, 20_000];
 const GRIDS: [u32; 4] = [16, 32, 64, 128];
 /// Frames of a row; in a short run.
 const FRAMES: [u32; 2] = [60, 4];
-/// On a GPU: strands of 32 points, doubled until the device refuses, or so many times.
+/// On a GPU: strands of 32 points, doubled until the device refuses, or this many times.
 const FIRST_ON_GPU: usize = 1250;
 const DOUBLINGS: usize = 9;
 /// Aims for a current data-centre GPU: strands, points, cells, most ms per step.
@@ -158,7 +158,7 @@ fn row(strand_count: usize, cells: u32, frames: u32) -> anyhow::Result<Row> {
 }
 
 fn on_gpu(device: &Device, frames: u32, quick: bool) -> anyhow::Result<OnGpu> {
-    print_line!("\non {}: what is promised of a data-centre GPU", device.adapter.name);
+    print_line!("\non {}: aims for a data-centre GPU", device.adapter.name);
     gpu_heading();
     let mut promised = Vec::new();
     let promises = if quick { &PROMISED[..1] } else { &PROMISED[..] };

@@ -35,7 +35,7 @@ const PROMISED: [(u32, f64, f64); 2] = [(16, 4.0, 200.0), (43, 10.0, 200.0)];
 #[derive(Debug, Serialize)]
 pub struct Results {
     backends: Vec<OnBackend>,
-    /// None when no GPU was measured.
+    /// `None` if no GPU was measured.
     promised: Vec<Promised>,
 }
 
@@ -104,7 +104,7 @@ impl View {
         Ok(Self { player, middle: 0.5 * (low + high) })
     }
 
-    /// Seconds until the next picture is there, and what it cost.
+    /// Seconds until the next picture, and its cost.
     fn frame(&mut self) -> anyhow::Result<(f64, FrameReport)> {
         let begin = Instant::now();
         loop {

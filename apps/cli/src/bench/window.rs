@@ -66,11 +66,11 @@ struct Shows {
     /// Pictures that come after a move up to the one that shows it: the middle and the most. The first of
     /// them was under way.
     pictures: [f64; 2],
-    /// Time \[ms\]: the middle, and what 95 of 100 keep to.
+    /// Time \[ms\]: the median, and the 95th percentile.
     ms: [f64; 2],
 }
 
-/// Pictures and times \[ms\] from moves to what shows them.
+/// Pictures and times \[ms\] between moves and the pictures that show them.
 #[derive(Default)]
 struct Moves(Vec<(f64, f64)>);
 
@@ -84,7 +84,7 @@ impl Moves {
     }
 }
 
-/// Somebody at play.
+/// A simulated user.
 struct Play {
     live: Live,
     camera: Camera,
@@ -138,7 +138,7 @@ impl Play {
 
     /// Does something and waits for the picture that shows it.
     fn act(&mut self, change: Change) -> anyhow::Result<()> {
-        // Whatever is finished is seen before.
+        // Finished pictures are shown before.
         if let Some(shown) = self.live.take_shown() {
             self.shown = shown;
         }

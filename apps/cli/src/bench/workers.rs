@@ -1,4 +1,4 @@
-//! Two workers on one or two devices: what a frame takes when the next one is simulated while it is drawn,
+//! Two workers on one or two devices: cost of a frame if the next one is simulated while it is drawn,
 //! against the sum and the greater of both [Chen2011 §5].
 
 use std::time::Instant;
