@@ -27,11 +27,11 @@ const LIBRARIES: [&str; 4] = ["libX11-xcb.so.1", "libXcursor.so.1", "libXi.so.6"
 /// Action on the adapter before the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plan {
-    /// There is one, or none is asked for.
+    /// There is an adapter, or none is required.
     Go,
-    /// Install what is missing, with these words before the package manager's name.
+    /// Install the missing packages, with these words before the package manager's name.
     Install(&'static [&'static str]),
-    /// One is required, and cannot be installed from here.
+    /// An adapter is required and cannot be installed from here.
     GiveUp(&'static str),
 }
 
@@ -72,7 +72,7 @@ pub struct There {
     pub display: bool,
 }
 
-/// Sees to it that there is an adapter and a display, as far as that is asked for: what there is, or why the
+/// Installs an adapter and a display if asked to. Returns the devices, or why the
 /// tests cannot start.
 pub fn prepare(setup: bool) -> Result<There, String> {
     let required = std::env::var_os(REQUIRED).is_some_and(|value| value == "1");

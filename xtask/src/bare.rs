@@ -1,4 +1,4 @@
-//! The program without GPUs and window: what may not be in it, and that it simulates and draws.
+//! The program without GPUs and window: crates that it must not contain, and a trial run.
 
 use std::path::Path;
 use std::process::Command;

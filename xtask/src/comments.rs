@@ -1,4 +1,4 @@
-//! Comments name their subject first: none begins with a word that makes the reader turn the sentence around.
+//! Comments name their subject first: they do not begin with a word that turns the sentence around.
 
 use std::path::Path;
 
@@ -22,10 +22,12 @@ pub fn problems() -> Vec<String> {
 
 /// Problems among comments, each with its path in front, for a list of folders that may have some.
 fn judged(found: &[String], allowed: &[&str]) -> Vec<String> {
-    let below = |line: &str, folder: &str| line.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'));
+    let below =
+        |line: &str, folder: &str| line.strip_prefix(folder).is_some_and(|rest| rest.starts_with('/'));
     let new = found.iter().filter(|line| !allowed.iter().any(|folder| below(line, folder))).cloned();
     let clean = allowed.iter().filter(|folder| !found.iter().any(|line| below(line, folder)));
-    new.chain(clean.map(|folder| format!("{folder} is clean: take it out of xtask/src/comments.rs"))).collect()
+    new.chain(clean.map(|folder| format!("{folder} is clean: take it out of xtask/src/comments.rs")))
+        .collect()
 }
 
 /// Adds the headless comments of a folder, whose path in the tree is `name`.
@@ -40,7 +42,9 @@ fn look(folder: &Path, name: &str, found: &mut Vec<String>) {
             }
         } else if file.ends_with(".rs") || file.ends_with(".wesl") {
             let text = std::fs::read_to_string(entry.path()).unwrap_or_default();
-            found.extend(headless(&text).map(|(line, text)| format!("{name}:{line}: a headless comment: {text}")));
+            found.extend(
+                headless(&text).map(|(line, text)| format!("{name}:{line}: a headless comment: {text}")),
+            );
         }
     }
 }

@@ -1,5 +1,5 @@
 //! One stage, one stem: a stage listed in a recipe has files of its name, a timer label and a row
-//! in ARCHITECTURE.md's stage table, and nothing there is without a stage.
+//! in ARCHITECTURE.md's stage table, and every row there has a stage.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -35,7 +35,7 @@ const RECIPES: [Recipe; 2] = [
     },
 ];
 
-/// Prints every stage that lacks its file, its line or its row. True when none does.
+/// Prints every stage that lacks its file, its line or its row. True if all are complete.
 pub fn check() -> bool {
     let mut problems = problems(root());
     problems.extend(comments::problems());

@@ -16,7 +16,7 @@ struct List {
     fault: Vec<Fault>,
 }
 
-/// A fault: what it changes, and the tests that have to see it.
+/// A fault: its change of the code, and the tests that have to see it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fault {
@@ -41,7 +41,7 @@ pub enum Backends {
     Gpu,
 }
 
-/// A text that stands once in a file, and what is put in its place.
+/// A text that stands once in a file, and its replacement.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Edit {

@@ -98,7 +98,7 @@ impl Modules {
         found.iter().filter_map(|target| self.absolute(path, target)).collect()
     }
 
-    /// A path from the crate's root; none where it leads out of the crate.
+    /// A path from the crate's root; `None` if it leads out of the crate.
     fn absolute(&self, here: &[String], target: &[String]) -> Option<Vec<String>> {
         let first = target.first()?;
         let mut base = here.to_vec();
