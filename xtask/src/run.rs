@@ -1,4 +1,4 @@
-//! Runs the steps one after the other and adds up what the test runners print.
+//! Runs the steps in order and adds up the results of the test runners.
 
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
@@ -38,7 +38,7 @@ impl Tally {
 }
 
 /// Everything that must hold before a change lands. False when anything failed. `setup` installs an
-/// adapter to test on where there is none.
+/// adapter if there is none.
 pub fn test(setup: bool) -> bool {
     let there = match adapter::prepare(setup) {
         Ok(there) => there,
@@ -96,7 +96,7 @@ pub fn test(setup: bool) -> bool {
     broken.is_empty() && tally.failed == 0 && tally.passed > 0
 }
 
-/// The checks that run nothing of the program: each one's name, and whether it passed.
+/// The checks that do not run the program: name and result.
 fn look() -> [(&'static str, bool); 6] {
     let passes = |arguments: &[&str]| cargo(arguments, &[], &mut Tally::default());
     let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
@@ -112,10 +112,10 @@ fn look() -> [(&'static str, bool); 6] {
     ]
 }
 
-/// What is left out where the grooms are missing.
+/// Summary of the tests that need grooms.
 const NO_GROOMS: &str = "grooms and heads that are not part of the project (STRANDLINE_GROOMS names their folder; with STRANDLINE_REQUIRE_GROOMS their tests fail without it)";
 
-/// Whether the folder of grooms that are not part of the project is where tests look for it.
+/// True if the folder of grooms outside the project exists.
 fn grooms_are_there() -> bool {
     let beside = || root().join("../shared/grooms");
     std::env::var_os("STRANDLINE_GROOMS").map_or_else(beside, PathBuf::from).join("sintel").is_dir()
@@ -128,11 +128,14 @@ pub fn bless() -> bool {
     cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 
-/// Writes docs/scene.md again from the settings table.
+/// Writes docs/scene.md from the settings table, and docs/cli.md from the arguments of the program.
 pub fn docs() -> bool {
-    let mut tally = Tally::default();
-    let page = ["test", "--workspace", "--test", "it", "scene_reference::the_page"];
-    cargo(&page, &[("STRANDLINE_BLESS", "1")], &mut tally)
+    let pages = [["--test", "it", "scene_reference::the_page"], ["--bin", "strandline", "the_page"]];
+    let write = |page: &[&str; 3]| {
+        let arguments: Vec<&str> = ["test", "--workspace"].iter().chain(page).copied().collect();
+        cargo(&arguments, &[("STRANDLINE_BLESS", "1")], &mut Tally::default())
+    };
+    pages.iter().all(write)
 }
 
 /// The examples, by the name of their file or folder, in order.
@@ -152,7 +155,7 @@ fn examples() -> Vec<String> {
     names
 }
 
-/// Runs cargo in the root, prints what it prints, and adds up its test results.
+/// Runs cargo in the root, forwards its output, and adds up its test results.
 fn cargo(arguments: &[&str], environment: &[(&str, &str)], tally: &mut Tally) -> bool {
     println!("\n== cargo {}", arguments.join(" "));
     let mut command = cargo_command(arguments);
