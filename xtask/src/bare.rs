@@ -9,7 +9,22 @@ use crate::cargo::{cargo_command, root};
 const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];
 
 /// The words for cargo that choose it.
-pub const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
+const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
+
+/// The words for cargo that choose all crates with features, without these.
+pub const WITHOUT_FEATURES: [&str; 11] = [
+    "--package",
+    "strandline-gpu",
+    "--package",
+    "strandline-sim",
+    "--package",
+    "strandline-render",
+    "--package",
+    "strandline",
+    "--package",
+    "strandline-cli",
+    "--no-default-features",
+];
 
 /// Commands of the trial run, in a folder of its own: a step of hair, and a picture of it.
 const RUNS: [&[&str]; 2] = [
@@ -63,7 +78,8 @@ fn run(program: &Path, words: &[&str], folder: &Path) -> bool {
     false
 }
 
-fn is_built_from_what_it_needs() -> bool {
+/// Checks that no crate of it is one that it can do without.
+pub fn is_built_from_what_it_needs() -> bool {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let tree = ["tree", "--edges", "normal,build", "--prefix", "none"];
     let output = Command::new(cargo).args(tree).args(CHOICE).current_dir(root()).output();

@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | bare | deny | licences`.
+//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | bare | long | deny | licences`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
@@ -10,9 +10,13 @@ mod comments;
 mod faults;
 mod house;
 mod licences;
+mod long;
 mod names;
+mod programs;
 mod python;
 mod run;
+mod times;
+mod workflows;
 
 use std::process::ExitCode;
 
@@ -36,6 +40,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            --table the page docs/faults.md
   bare     build the program without GPUs and window, look what it is built from, simulate and draw
            with it
+  long     bare, and the tests that `test` runs for a short time only for as long as they should:
+           kills, random use of the window; records the day in bench/long.json
   deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
            faults where their list can be had; `test` does the first three where it is installed
   licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";
@@ -50,6 +56,7 @@ enum Chore {
     House,
     Faults(faults::Wish),
     Bare,
+    Long,
     Deny,
     Licences(Option<String>),
     Help,
@@ -66,6 +73,7 @@ fn main() -> ExitCode {
         Some(Chore::House) => house::check(),
         Some(Chore::Faults(wish)) => faults::faults(&wish),
         Some(Chore::Bare) => bare::check(),
+        Some(Chore::Long) => long::run(),
         Some(Chore::Deny) => licences::deny(),
         Some(Chore::Licences(texts)) => licences::write(texts.as_deref()),
         Some(Chore::Help) => {
@@ -94,6 +102,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["house"] => Some(Chore::House),
         ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
         ["bare"] => Some(Chore::Bare),
+        ["long"] => Some(Chore::Long),
         ["deny"] => Some(Chore::Deny),
         ["licences"] => Some(Chore::Licences(None)),
         ["licences", file] => Some(Chore::Licences(Some((*file).to_owned()))),
