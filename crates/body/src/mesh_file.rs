@@ -91,7 +91,7 @@ impl Mesh {
         parsed.map_err(|(found, expected)| BodyError::BadMesh { found, expected })?.complete(Path::new(""))
     }
 
-    /// Checks what was read and gives a normal to every vertex that has none.
+    /// Checks the mesh and gives a normal to every vertex without.
     fn complete(mut self, path: &Path) -> Result<Self, BodyError> {
         self.check_usable().map_err(|error| match error {
             BodyError::BadMesh { found, expected } => BodyError::Mesh {
@@ -105,7 +105,7 @@ impl Mesh {
         let computed = vertex_normals(&self.positions, &self.triangles);
         self.normals.resize(self.positions.len(), Vec3::ZERO);
         for (normal, computed) in self.normals.iter_mut().zip(computed) {
-            // In double precision: the square of a short one underflows.
+            // In double precision: the square of a short normal underflows.
             *normal = normal.as_dvec3().try_normalize().map_or(computed, |unit| unit.as_vec3());
         }
         Ok(self)

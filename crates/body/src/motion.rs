@@ -22,7 +22,7 @@ const TURN_DEGREES: f64 = 60.0;
 /// Length of one look to both sides \[s\].
 const TURN_PERIOD: f64 = 4.0;
 
-/// How the head moves: a pose for every time, smooth in velocity, at rest at time 0.
+/// Motion of the head: a pose for every time, smooth in velocity, at rest at time 0.
 ///
 /// Before time 0 the built-in motions rest. Left is the head's own left, +x.
 #[derive(Clone, Debug, Default, PartialEq)]

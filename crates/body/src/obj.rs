@@ -58,7 +58,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
     };
     let no_materials = |_: &Path| Err(tobj::LoadError::GenericFailure);
     let (models, _) = tobj::load_obj_buf(&mut bytes, &options, no_materials)
-        .map_err(|error| refused(format!("a line that is none ({error})")))?;
+        .map_err(|error| refused(format!("an invalid line ({error})")))?;
     let mut mesh = Mesh::default();
     for model in &models {
         append(&mut mesh, &model.mesh);
@@ -85,7 +85,7 @@ fn check_faces(bytes: &[u8]) -> Result<(), String> {
     let mut counts = [0i64; 3];
     for (number, line) in bytes.lines().enumerate() {
         let number = number + 1;
-        let line = line.map_err(|_| format!("bytes that are no text in line {number}"))?;
+        let line = line.map_err(|_| format!("bytes that are not text in line {number}"))?;
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => counts[0] += 1,

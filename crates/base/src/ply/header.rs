@@ -76,7 +76,7 @@ pub struct Element {
     pub properties: Vec<Property>,
 }
 
-/// How numbers are written.
+/// Encoding of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     Text,

@@ -11,7 +11,7 @@ const MAX_LIST: f64 = 4096.0;
 pub struct Column {
     name: String,
     is_byte: bool,
-    /// Where the list of each row ends among the values; empty for numbers that are no lists.
+    /// End of the list of each row among the values; empty for numbers that are not lists.
     ends: Vec<usize>,
     is_list: bool,
     /// Numbers, or the lists one behind the other.

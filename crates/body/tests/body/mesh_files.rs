@@ -1,4 +1,4 @@
-//! Reading bodies: what a file holds, and what is wrong with it.
+//! Reading bodies: contents and errors of files.
 
 use std::path::Path;
 
