@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
-use strandline::low_level::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
+use strandline::low_level::groom::format::{Cleaning, FORMATS, Format, LoadOptions, Scale, Up, endings};
 use strandline::{
     Backend, Style,
     low_level::{Target, What, sim::rods::HairKind},
@@ -188,6 +188,9 @@ pub struct ConvertOptions {
     pub files: Vec<PathBuf>,
     #[command(flatten)]
     pub reading: Reading,
+    /// Leave out stray, dummy and tiny strands, and mend widths and colours that no hair has.
+    #[arg(long)]
+    pub clean: bool,
     /// Keep this number of strands, spread over the scalp and alike in shape to those left out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8_000_000))]
     pub thin: Option<u32>,
@@ -225,7 +228,13 @@ pub struct Reading {
 impl Reading {
     /// Bad strands are left out and counted.
     pub fn options(&self) -> LoadOptions {
-        LoadOptions { strict: false, scale: self.scale, up: self.up, per_strand: self.per_strand }
+        LoadOptions {
+            strict: false,
+            scale: self.scale,
+            up: self.up,
+            per_strand: self.per_strand,
+            cleaning: Cleaning::Named,
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 
 pub mod bin;
 mod bytes;
+mod cleaning;
 pub mod data;
 pub mod hair;
 mod headerless;
@@ -24,6 +25,7 @@ pub mod tfx;
 mod tfx_text;
 mod zip;
 
+pub use cleaning::Cleaning;
 pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};

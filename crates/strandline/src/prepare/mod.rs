@@ -157,7 +157,7 @@ fn loaded(scene: &mut Scene, notes: &mut Vec<String>) -> Result<Loaded, Error> {
                 notes.push("body.scalp is for styles: strands of a file stay where they grow".to_owned());
             }
             let (turn, translation) = (scene.groom.rotation, scene.groom.translation);
-            strands::place(&mut groom, placings.groom, scene, turn, translation);
+            notes.extend(strands::place(&mut groom, placings.groom, scene, turn, translation));
             if let Some(mesh) = drawn.filter(|_| is_foreign) {
                 notes.extend(foreign::fit(&mut groom, mesh));
             }

@@ -115,7 +115,7 @@ pub(super) fn add_grooms(
         if placing != first {
             notes.push(format!("{}: a unit is {} m", part.file.display(), placing.scale));
         }
-        strands::place(&mut further, placing, scene, part.rotation, part.translation);
+        notes.extend(strands::place(&mut further, placing, scene, part.rotation, part.translation));
         let apart = mesh.and_then(|mesh| placing::apart(&further, mesh));
         notes.extend(apart.map(|said| format!("{}: {said}", part.file.display())));
         let next = groom.groups.iter().flatten().max().map_or(0, |group| group.saturating_add(1));

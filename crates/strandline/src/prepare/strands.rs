@@ -10,7 +10,7 @@ use crate::{
     body::{Carrier, Collider, Pose, Shape, Solids},
     groom::{
         Groom, Guides, Outside, Widths,
-        format::{self, HAIR_WIDTH, LoadOptions, Part, Scale, Up},
+        format::{self, Cleaning, HAIR_WIDTH, LoadOptions, Part, Scale, Up},
     },
 };
 
@@ -35,14 +35,26 @@ pub(super) fn read(
     per_strand: Option<u32>,
     notes: &mut Vec<String>,
 ) -> Result<Groom, Error> {
-    let options = LoadOptions { strict: false, scale: Scale::Factor(1.0), up: Up::Y, per_strand };
+    let options = LoadOptions {
+        strict: false,
+        scale: Scale::Factor(1.0),
+        up: Up::Y,
+        per_strand,
+        cleaning: Cleaning::Strays,
+    };
     let loaded = format::load(&scene.path(file), &options)?;
     notes.extend(loaded.report.problems.iter().map(|problem| format!("{}: {problem}", file.display())));
     Ok(loaded.groom)
 }
 
-/// Places strands: scaled and turned as guessed, then turned (degrees) and moved \[m\] as a scene says.
-pub(super) fn place(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Vec3, translation: Vec3) {
+/// Places strands and mends what no hair has, with notes: scaled and turned as guessed, then turned (degrees) and moved \[m\] as a scene says.
+pub(super) fn place(
+    groom: &mut Groom,
+    placing: Placing,
+    scene: &Scene,
+    turn: Vec3,
+    translation: Vec3,
+) -> Vec<String> {
     if !scene.groom.own_look {
         groom.colors = None;
     }
@@ -53,6 +65,7 @@ pub(super) fn place(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Ve
     if !has_widths {
         groom.widths = Widths::Constant(HAIR_WIDTH);
     }
+    groom.mend()
 }
 
 /// A grown style: its guides, or as many strands as are bound to guides among them.
