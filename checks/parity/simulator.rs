@@ -110,7 +110,7 @@ fn a_device_may_fail_after_any_run() {
     }
 }
 
-/// Reading a state makes it the one to resume from: what was reported before it is not made again.
+/// Reading a state makes it the one to resume from: steps reported before it are not repeated.
 #[test]
 fn a_device_may_fail_after_its_state_was_read() {
     let (head, every) = (&heads()[0], 120);
