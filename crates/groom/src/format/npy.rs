@@ -69,7 +69,7 @@ impl<'a> Array<'a> {
         Ok(Self { bytes: rest, ..array })
     }
 
-    /// So many numbers from the first on, as floats.
+    /// A number of values from the first on, as floats.
     pub fn first_floats(&self, count: usize) -> Vec<f32> {
         self.numbers().take(count).map(|number| number as f32).collect()
     }
@@ -150,7 +150,7 @@ fn shape(source: &Source, text: &str) -> Result<Vec<u64>, GroomError> {
 /// Reads a `.npy` file: an array \[strand, point, 3\], or \[point, 3\] with the points of each strand.
 ///
 /// # Errors
-/// [`GroomError::Malformed`] with what is wrong.
+/// [`GroomError::Malformed`] with the error.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".npy" };
     let array = Array::new(&source)?;
@@ -158,7 +158,7 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
     Ok(Parsed { format: ".npy", groom, problems: Vec::new() })
 }
 
-/// Strands of one number of points.
+/// Strands with the same number of points.
 pub(super) fn strands(source: &Source, array: &Array, per_strand: Option<u32>) -> Result<Groom, GroomError> {
     let (count, each) = match (&array.shape[..], per_strand) {
         ([strands, points, 3], _) => (*strands, *points),
@@ -182,7 +182,7 @@ pub(super) fn split(source: &Source, points: u64, each: u32) -> Result<(u64, u64
     Ok((points / each, each))
 }
 
-/// `count` strands of `each` points; `points` gives so many places.
+/// `count` strands of `each` points; `points` gives their places.
 pub(super) fn even(
     source: &Source,
     count: u64,
@@ -198,12 +198,12 @@ pub(super) fn even(
     Ok(Groom { starts, points: points(count * each), ..Groom::empty(0.0) })
 }
 
-/// So many places of an array.
+/// A number of places of an array.
 pub(super) fn points(array: &Array, count: u64) -> Vec<Vec3> {
     array.first_floats(3 * count as usize).chunks_exact(3).map(Vec3::from_slice).collect()
 }
 
-/// The bytes of a `.npy` array; `kind` is NumPy's name of what it holds.
+/// The bytes of a `.npy` array; `kind` is NumPy's name of the type.
 pub(super) fn array(kind: &str, shape: &[usize], numbers: impl Iterator<Item = u8>) -> Vec<u8> {
     let axes: String = shape.iter().map(|axis| format!("{axis}, ")).collect();
     let text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}), }}", axes.trim_end());

@@ -83,7 +83,7 @@ impl Arrays<'_> {
 /// Reads a `.npz` file. A moving cache gives the strands of its first frame.
 ///
 /// # Errors
-/// [`GroomError::Malformed`] with what is wrong; arrays that do not fit each other.
+/// [`GroomError::Malformed`] with the error; arrays that do not fit each other.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".npz" };
     let arrays = Arrays { source, entries: zip::entries(&source)? };
@@ -184,7 +184,7 @@ fn meta(arrays: &Arrays) -> Result<Meta, GroomError> {
     let source = Source { bytes: &bytes, format: ".npz" };
     let array = Array::new(&source)?;
     let text = array.raw().filter(|text| text.len() <= MAX_META);
-    // Names of groups alone are of interest here: a text that says something else says nothing.
+    // Only the names of groups are of interest here: any other text is ignored.
     Ok(text.and_then(|text| serde_json::from_slice(text).ok()).unwrap_or_default())
 }
 

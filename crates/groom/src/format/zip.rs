@@ -15,7 +15,7 @@ const COMMENT: usize = 65_535;
 const ELSEWHERE: u64 = 0xffff_ffff;
 /// Most files of an archive.
 const MAX_FILES: u32 = 4096;
-/// Arrays may be larger than the archive by this factor and so many bytes: real strands shrink to a third at
+/// Arrays may be larger than the archive by this factor and number of bytes: real strands shrink to a third at
 /// best, constant attributes a thousandfold.
 const INFLATION: u64 = 64;
 const SPARE: u64 = 16 << 20;
@@ -30,7 +30,7 @@ pub struct Entry {
     offset: u64,
 }
 
-/// The files of an archive. What they are together when unpacked is bounded by what the archive is.
+/// The files of an archive. Their unpacked size is bounded by that of the archive.
 pub fn entries(source: &Source) -> Result<Vec<Entry>, GroomError> {
     let bytes = source.bytes;
     let first = bytes.len().saturating_sub(END_BYTES + COMMENT);
@@ -58,7 +58,7 @@ pub fn entries(source: &Source) -> Result<Vec<Entry>, GroomError> {
     Ok(entries)
 }
 
-/// The entry of the list at `offset`, and where the next one begins.
+/// The entry of the list at `offset`, and the offset of the next.
 fn entry(source: &Source, offset: u64) -> Result<(Entry, u64), GroomError> {
     if source.u32("file in the list", offset)? != ENTRY {
         return Err(source.error(format!("no file in the list at byte {offset}"), "`PK\\x01\\x02`"));
@@ -127,7 +127,7 @@ pub fn unpack(source: &Source, entry: &Entry) -> Result<Vec<u8>, GroomError> {
     Ok(bytes)
 }
 
-/// An archive of stored files; none when it would be larger than 4 GiB.
+/// An archive of stored files; `None` beyond 4 GiB.
 pub fn pack(files: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
     let room: usize = files.iter().map(|(name, bytes)| bytes.len() + 2 * name.len() + 96).sum();
     u32::try_from(room + END_BYTES).ok()?;

@@ -187,7 +187,7 @@ fn sizes_that_no_file_has_are_refused_before_memory_is_taken() {
     refused(obj::read(b"v 0 0 0\nf 1 1 1\n"), &["no line (`l`)", "--body"]);
 }
 
-/// A list of one file of so many bytes when unpacked, which a few stored bytes claim to be.
+/// A directory of one file whose few stored bytes claim to unpack to this many.
 fn archive(size: u32) -> Vec<u8> {
     let name = b"points.npy";
     let head = [&words(&[20, 0x21_0000 << 8 >> 8, 0])[..2], &[0, 0, 8, 0, 0, 0, 33, 0]].concat();
