@@ -21,6 +21,7 @@ mod checkpoint;
 mod clock;
 mod error;
 mod grab;
+mod journal;
 mod length_scale;
 mod masses;
 mod memory;
