@@ -9,7 +9,8 @@ use strandline_sim::cpu::gather::gather;
 use strandline_sim::cpu::mark::mark;
 use strandline_sim::cpu::solve_pressure::solve_pressure;
 use strandline_sim::cpu::splat::splat;
-use strandline_sim::cpu::{Obstacles, Volume};
+use strandline_sim::contact::Obstacles;
+use strandline_sim::cpu::Volume;
 use strandline_sim::gpu::{GpuRunner, Probe};
 use strandline_sim::{Drive, Model, Settings, Stage, VolumeSettings};
 

@@ -6,9 +6,10 @@ use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::contacts::Solids;
-use super::vec3x8::{Vec3x8, load, splat};
-use super::{Obstacles, Scratch};
+use crate::contact::contacts::Solids;
+use strandline_base::vec3x8::{Vec3x8, load, splat};
+use super::Scratch;
+use crate::contact::Obstacles;
 use crate::{Model, State};
 
 /// What a step did to the strands.

@@ -5,11 +5,12 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::advance::{Block, NonFinite, recover};
-use super::contacts::{Care, Plane, Query, Solids, Touch};
+use crate::contact::contacts::{Care, Plane, Query, Solids, Touch};
 use super::length_pass::Follow;
 use super::spans::Spans;
-use super::vec3x8::{Vec3x8, load, splat};
-use super::{Obstacles, Scratch};
+use strandline_base::vec3x8::{Vec3x8, load, splat};
+use super::Scratch;
+use crate::contact::Obstacles;
 use crate::grab::Pinned;
 use crate::strands::constrain::angles::{Bends, Joints, ROUNDS_PER_PASS};
 use crate::strands::constrain::lengths::Segments;

@@ -4,9 +4,9 @@ use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::cell_sort::NO_CELL;
+use crate::cells::NO_CELL;
 use super::faces::{Faces, Stencil};
-use super::vec3x8::Vec3x8;
+use strandline_base::vec3x8::Vec3x8;
 use super::volume::Volume;
 use crate::VolumeSettings;
 

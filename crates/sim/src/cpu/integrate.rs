@@ -7,7 +7,7 @@ use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::Scratch;
-use super::vec3x8::{Vec3x8, load, splat};
+use strandline_base::vec3x8::{Vec3x8, load, splat};
 use crate::strands::constrain::springs::{Elastic, Strand};
 use crate::{Model, State};
 

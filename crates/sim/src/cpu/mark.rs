@@ -2,9 +2,9 @@
 
 use strandline_base::par::prelude::*;
 
-use super::cell_kind::Kind;
-use super::grid::Grid;
-use super::obstacles::Obstacles;
+use crate::cells::Kind;
+use crate::cells::Grid;
+use crate::contact::Obstacles;
 use super::volume::Volume;
 
 /// Marks the cells, and gives the faces of solid cells the velocity of the solid

@@ -11,7 +11,8 @@ use super::pose_roots::pose_roots;
 use super::solve_pressure::solve_pressure;
 use super::solve_rods::solve_rods;
 use super::splat::splat;
-use super::{Obstacles, Scratch};
+use super::Scratch;
+use crate::contact::Obstacles;
 use crate::step::{Stage, stages};
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 

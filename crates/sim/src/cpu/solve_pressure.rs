@@ -2,7 +2,7 @@
 
 use strandline_base::par::prelude::*;
 
-use super::cell_kind::Kind;
+use crate::cells::Kind;
 use super::faces::change_by;
 use super::pcg::PcgSettings;
 use super::volume::Volume;

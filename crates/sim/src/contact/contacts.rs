@@ -13,8 +13,8 @@ use strandline_body::{Carrier, Collider, Pose};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::Obstacles;
-use super::vec3x8::{Rigid, Vec3x8, load, splat};
+use super::obstacles::Obstacles;
+use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 use super::way::{Seen, met};
 
 /// How careful a look at the solids is.
