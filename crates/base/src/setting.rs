@@ -79,7 +79,25 @@ impl Word {
     }
 }
 
-/// What a setting may hold.
+/// The section of the items of a list. A function returns its table, since the items may take rows from the section
+/// that lists them.
+#[derive(Clone, Copy, Debug)]
+pub struct Items(pub(crate) fn() -> &'static Table);
+
+impl Items {
+    /// The settings of an item.
+    pub fn table(self) -> &'static Table {
+        self.0()
+    }
+}
+
+impl PartialEq for Items {
+    fn eq(&self, other: &Self) -> bool {
+        self.table() == other.table()
+    }
+}
+
+/// The values that a setting may hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// true or false.
@@ -97,7 +115,7 @@ pub enum Kind {
     /// A section of its own.
     Group(&'static Table),
     /// Any number of sections.
-    List(&'static Table),
+    List(Items),
 }
 
 /// Everything known of one setting.
@@ -192,7 +210,8 @@ impl Table {
         let row = self.rows.iter().find(|row| row.name == name)?;
         match (row.kind, rest) {
             (_, None) => Some(row),
-            (Kind::Group(table) | Kind::List(table), Some(rest)) => table.row(rest),
+            (Kind::Group(table), Some(rest)) => table.row(rest),
+            (Kind::List(items), Some(rest)) => items.table().row(rest),
             _ => None,
         }
     }
@@ -236,6 +255,13 @@ pub trait Group: Value {
     fn check_as(&self, name: &str) -> Result<(), SettingError> {
         self.check(&Row::NONE, &Key::root(name))
     }
+}
+
+/// A section of settings that replace those of another, `Base`; `overrides` in a
+/// [`settings!`](crate::settings) block makes it.
+pub trait Overrides<Base> {
+    /// A copy of `base` with the settings that are given here.
+    fn over(&self, base: &Base) -> Base;
 }
 
 /// A number as a person reads it.
@@ -284,6 +310,62 @@ mod tests {
         for (value, text) in cases {
             assert_eq!(number(value), text);
         }
+    }
+
+    crate::settings! {
+        /// Cloth.
+        pub struct Cloth: Copy {
+            /// Thickness.
+            thickness: f32 = 1.0, in [0.1, 10.0] "mm", slider [0.5, 2.0], more "stiffer cloth";
+            /// Shear stiffness.
+            shear: Option<f32> = None, in [1.0, 9.0] "Pa";
+            /// Weave.
+            count: u32 = 12, required true, in [1, 40];
+        }
+        prepare Cloth::prepare;
+    }
+
+    impl Cloth {
+        /// Thick cloth shears less.
+        fn prepare(&mut self, given: &<Self as Value>::Given) {
+            if given.thickness.is_some_and(|thickness| thickness > 5.0) {
+                self.shear = Some(2.0);
+            }
+        }
+    }
+
+    crate::settings! {
+        /// A patch of other cloth.
+        pub struct Patch {
+            /// Its name.
+            name: String = String::new(), required true;
+            shared Cloth { count: u32 }
+            overrides Cloth { thickness: f32, shear: f32 }
+        }
+    }
+
+    #[test]
+    fn settings_that_override_others_have_their_rows_and_merge() {
+        let (own, base) = (Patch::ROWS.thickness, Cloth::ROWS.thickness);
+        assert_eq!(own, base);
+        assert_eq!(Patch::ROWS.count, Cloth::ROWS.count);
+        let names: Vec<_> = Patch::TABLE.rows.iter().map(|row| row.name).collect();
+        assert_eq!(names, ["name", "count", "thickness", "shear"]);
+        let cloth = Cloth { shear: Some(3.0), ..Cloth::default() };
+        let patch: Patch = toml::from_str("name = 'a'\ncount = 3").unwrap();
+        assert_eq!((patch.over(&cloth), patch.count, patch.thickness), (cloth, 3, None));
+        assert_eq!(toml::to_string(&patch).unwrap(), "name = \"a\"\ncount = 3\n");
+        let patch: Patch = toml::from_str("name = 'a'\ncount = 3\nthickness = 6.0").unwrap();
+        // The base's own preparation counts, and its settings that are not overridden stay.
+        let wanted = Cloth { thickness: 6.0, shear: Some(2.0), ..cloth };
+        assert_eq!(patch.over(&cloth), wanted);
+        assert_eq!(toml::from_str::<Patch>(&toml::to_string(&patch).unwrap()).unwrap(), patch);
+        let refused = Patch { thickness: Some(11.0), ..patch.clone() }.check_as("patch").unwrap_err();
+        assert_eq!(refused.to_string(), "patch.thickness is 11, expected 0.1 to 10 mm");
+        let refused = Patch { count: 41, ..patch }.check_as("patch").unwrap_err();
+        assert_eq!(refused.to_string(), "patch.count is 41, expected 1 to 40");
+        assert!(toml::from_str::<Patch>("name = 'a'").unwrap_err().to_string().contains("missing field `count`"));
+        assert_eq!(Patch::default().count, 12);
     }
 
     #[test]
