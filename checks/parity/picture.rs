@@ -4,7 +4,7 @@ use glam::{Quat, Vec3, Vec4};
 use strandline_body::{Mannequin, Mesh, Pose};
 use strandline_checks::gpu;
 use strandline_groom::{Guides, Style, StyleSettings, Widths};
-use strandline_render::cpu::layer_colors::{LAYER_COLORS, layer_colors};
+use strandline_render::cpu::shadow::layer_colors::{LAYER_COLORS, layer_colors};
 use strandline_render::cpu::{
     Curves, Occlusion, ShadowBody, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade,
     tessellate,
