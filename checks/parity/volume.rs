@@ -2,9 +2,10 @@
 
 use strandline_checks::gpu;
 use strandline_groom::{LANES, Vec3Lanes};
+use strandline_sim::cells::Kind;
 use strandline_sim::cpu::{
-    Kind, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
-    pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
+    Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark, pose_roots::pose_roots,
+    solve_pressure::solve_pressure, splat::splat,
 };
 use strandline_sim::gpu::{GpuRunner, Gradient, Probe, Spread};
 use strandline_sim::{Model, Preconditioner, Stage, State, VolumeSettings};

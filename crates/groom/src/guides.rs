@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use strandline_base::{SettingError, lane_place};
 use strandline_base::par::prelude::*;
+use strandline_base::{SettingError, lane_place};
 
 use crate::arcs::equal_arcs;
 use crate::{Groom, GroomError, LANES, Vec3Lanes, Widths, attributes, block_count};

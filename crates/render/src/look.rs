@@ -54,7 +54,8 @@ settings! {
         color_map: Option<PathBuf> = None;
         /// A .png with the width of each strand as a share of its own: white is all of it, black none.
         width_map: Option<PathBuf> = None;
-        /// Groups of strands that look other than all, at most 256.
+        /// Groups of strands that look other than all, at most 256. A setting that a group does not give is that of all
+        /// but its tip colour, which is that of its root; a colour or a map of a group wins over its pigment.
         group: Vec<GroupLook> = Vec::new(), in [0, 256];
         /// Seed of every random choice of the look.
         seed: u32 = 0, in [0, u32::MAX];
@@ -74,7 +75,6 @@ settings! {
 
 settings! {
     /// The look of one group of strands; what it does not give is that of all. The first that names a group counts.
-    /// A colour or a map of the group wins over its pigment; a tip without a colour has that of the root.
     pub struct GroupLook {
         /// Name of the group in the groom, or its number; of files that are brought together each is a group of
         /// its name.

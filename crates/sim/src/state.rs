@@ -7,10 +7,10 @@ use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
 use crate::contact::contacts::Contacts;
-use strandline_base::vec3x8::{Vec3x8, splat};
 use crate::grab::Grab;
 use crate::length_scale;
 use crate::{Model, SimError};
+use strandline_base::vec3x8::{Vec3x8, splat};
 
 /// What the world does to the hair during one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -82,7 +82,9 @@ impl HairPose {
         vectors(&mut state.corrections, &self.corrections);
         if !self.sections.is_empty() && !self.spins.is_empty() {
             vectors(&mut state.sections, &self.sections);
-            fill_lanes(&mut state.spins, strands, points, |strand, point| self.spins[strand * points + point]);
+            fill_lanes(&mut state.spins, strands, points, |strand, point| {
+                self.spins[strand * points + point]
+            });
         }
         state.previous_positions.clone_from(&state.positions);
     }

@@ -236,9 +236,8 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
     let colors = groom.colors.as_ref().map(|all| floats("colors", &[points, 3], all.as_flattened()));
     arrays.extend(colors);
     arrays.extend(groom.transparencies.as_ref().map(|all| floats("transparencies", &[points], all)));
-    let uvs = |all: &Vec<Vec2>| {
-        npz::Array::f32s("root_uv", &[strands, 2], all.iter().flat_map(|uv| uv.to_array()))
-    };
+    let uvs =
+        |all: &Vec<Vec2>| npz::Array::f32s("root_uv", &[strands, 2], all.iter().flat_map(|uv| uv.to_array()));
     arrays.extend(groom.root_uvs.as_ref().map(uvs));
     arrays.extend(groom.root_normals.as_ref().map(|all| vectors("root_normals", strands, all)));
     arrays.extend(groom.groups.as_ref().map(|all| whole("groups", &[strands], all)));

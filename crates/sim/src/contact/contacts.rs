@@ -14,8 +14,8 @@ use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::obstacles::Obstacles;
-use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 use super::way::{Seen, met};
+use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 
 /// How careful a look at the solids is.
 #[derive(Clone, Copy)]

@@ -2,12 +2,12 @@
 
 use strandline_groom::LANES;
 
-use crate::cells::{CellSort, Contents, Grid, Kind};
-use crate::cells::set::CellSet;
 use super::faces::{Carried, Faces};
 use super::pcg::{Pcg, Solution};
 use super::poisson::Poisson;
 use crate::VolumeSettings;
+use crate::cells::set::CellSet;
+use crate::cells::{CellSort, Contents, Grid, Kind};
 
 /// The fluid volume [Chen2011 §4.2, McAdams2009]. Its memory is kept from step to step; what a step
 /// costs follows the cells that hold hair, not the size of the box.

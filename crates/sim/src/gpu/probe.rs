@@ -117,8 +117,7 @@ impl Probe {
         device.faces.write(faces)?;
         let kinds: Vec<u32> = kinds.iter().map(|kind| kind.code()).collect();
         device.kinds.write(&kinds)?;
-        let mut fluid: Vec<u32> =
-            contents.kinds.iter().map(|kind| u32::from(*kind == Kind::Fluid)).collect();
+        let mut fluid: Vec<u32> = contents.kinds.iter().map(|kind| u32::from(*kind == Kind::Fluid)).collect();
         fluid.push(0);
         device.unknowns.write(&fluid)?;
         Ok(())

@@ -80,8 +80,7 @@ choices! {
 
 settings! {
     /// Hair of a group of the groom that is made of something else than the rest. What it does not give is that of
-    /// `[simulation.strands.rods]`. `hair` sets the defaults of the others; a shear modulus that is not given keeps its
-    /// share of Young's modulus, or follows from Poisson's ratio where that is given.
+    /// `[simulation.strands.rods]`.
     pub struct GroupSettings {
         /// The group: its name in the groom, or its number.
         group: String = String::new(), required true;
