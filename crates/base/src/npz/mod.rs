@@ -143,13 +143,6 @@ impl<'a> Array<'a> {
         let shape = shape.iter().map(|count| *count as u64).collect();
         Self { name, kind, shape, bytes: bytes.into() }
     }
-
-    /// The array as a .npy file.
-    pub fn npy(&self) -> Vec<u8> {
-        let mut bytes = npy::header(self.kind, &self.shape, 0);
-        bytes.extend_from_slice(&self.bytes);
-        bytes
-    }
 }
 
 /// The single-precision numbers in bytes.

@@ -28,6 +28,15 @@ pub fn member(array: &Array, offset: u64, zip64: bool) -> (Entry, Vec<u8>) {
     (entry, bytes)
 }
 
+impl Array<'_> {
+    /// The array as a .npy file.
+    pub fn npy(&self) -> Vec<u8> {
+        let mut bytes = npy::header(self.kind, &self.shape, 0);
+        bytes.extend_from_slice(&self.bytes);
+        bytes
+    }
+}
+
 /// Arrays as a .npz file; the same arrays are the same bytes.
 pub fn pack(arrays: &[Array]) -> Vec<u8> {
     let elements: u64 = arrays.iter().map(|array| array.bytes.len() as u64).sum();
