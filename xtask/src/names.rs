@@ -1,10 +1,11 @@
 //! One stage, one stem: a stage listed in a recipe has files of its name, a timer label and a row
-//! in ARCHITECTURE.md's stage table, and nothing there is without a stage.
+//! in ARCHITECTURE.md's stage table, and every row there has a stage.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::cargo::root;
+use crate::comments;
 
 /// A crate with stages: its CPU backend says which there are.
 struct Recipe {
@@ -34,14 +35,15 @@ const RECIPES: [Recipe; 2] = [
     },
 ];
 
-/// Prints every stage that lacks its file, its line or its row. True when none does.
+/// Prints every stage that lacks its file, its line or its row. True if all are complete.
 pub fn check() -> bool {
-    let problems = problems(root());
+    let mut problems = problems(root());
+    problems.extend(comments::problems());
     for problem in &problems {
         eprintln!("names: {problem}");
     }
     if problems.is_empty() {
-        println!("names: every stage has one name everywhere");
+        println!("names: every stage has one name everywhere, and comments name their subject first");
     }
     problems.is_empty()
 }

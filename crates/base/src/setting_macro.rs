@@ -17,8 +17,8 @@
 /// assert!(Drag { across: f32::NAN, ..Drag::default() }.check_as("drag").is_err());
 /// ```
 ///
-/// A line is `name: Type = default`, then what there is to say of it in this order: `required true` for
-/// what a file has to give, `in [least, most] "unit"`, `slider [least, most]`, `more "what it does"`.
+/// A line is `name: Type = default`, then its properties in this order: `required true` for
+/// a setting that a file must give, `in [least, most] "unit"`, `slider [least, most]`, `more "effect of a larger value"`.
 /// * A number of a section that a file does not give keeps the default of the section *where it stands*: a
 ///   part of `springs.stretch` leaves the rest of the stretch spring as it is.
 /// * `shared Other { name: Type }` are settings that another section states: default, range, unit and sentence are
@@ -29,7 +29,7 @@
 ///   old files: read by a section around this one in its `prepare`, refused elsewhere with the new key.
 /// * After the struct, `prepare path;` names a `fn(&mut Self, &<Self as Value>::Given)` that runs before
 ///   what is given is taken (for defaults that depend on it), and `also path;` a
-///   `fn(&Self, &Key) -> Result<(), SettingError>` for what no range says.
+///   `fn(&Self, &Key) -> Result<(), SettingError>` for conditions beyond ranges.
 #[macro_export]
 macro_rules! settings {
     (

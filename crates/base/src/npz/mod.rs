@@ -167,12 +167,12 @@ pub enum NpzError {
     /// The system could not read it.
     #[error(transparent)]
     Read(#[from] std::io::Error),
-    /// Its bytes are not what the format requires.
+    /// Its bytes violate the format.
     #[error("{found}, expected {expected}")]
     Malformed {
-        /// What was found, and where.
+        /// Content that was found, with its place.
         found: String,
-        /// What was expected there.
+        /// Content that was expected there.
         expected: String,
     },
 }

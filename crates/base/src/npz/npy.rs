@@ -32,7 +32,7 @@ impl Header {
 /// The header of an array, `least` bytes or more.
 pub fn header(kind: Kind, shape: &[u64], least: usize) -> Vec<u8> {
     let counts: String = shape.iter().map(|count| format!("{count}, ")).collect();
-    // A tuple of one needs its comma, others have none behind the last.
+    // A tuple of one needs its comma; longer ones end without.
     let counts = if shape.len() == 1 { counts.trim_end() } else { counts.trim_end_matches(", ") };
     let text = format!("{{'descr': '{}', 'fortran_order': False, 'shape': ({counts}), }}", kind.name());
     let length = (MAGIC.len() + 4 + text.len() + 1).next_multiple_of(ALIGNMENT as usize).max(least);

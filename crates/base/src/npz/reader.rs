@@ -13,7 +13,7 @@ use super::{
 
 /// Most bytes behind the last record: a comment of the longest kind.
 const MAX_COMMENT: u64 = 65_535;
-/// Bytes that one compressed byte may become: the format's own bound.
+/// Most bytes that a compressed byte may become, by the format.
 const MOST_INFLATED: u64 = 1032;
 /// Compressed bytes that are read at once.
 const CHUNK: usize = 1 << 16;
@@ -33,7 +33,7 @@ struct Member {
     compressed: u64,
     size: u64,
     crc: u32,
-    /// Where its local header begins.
+    /// Offset of the local header \[byte\].
     offset: u64,
 }
 
@@ -44,7 +44,7 @@ pub struct Rows {
     crc: u32,
     size: u64,
     deflated: bool,
-    /// Where the member's bytes begin and end in the file.
+    /// Begin and end of the member's bytes in the file.
     begin: u64,
     end: u64,
     /// The next of them.
@@ -186,7 +186,7 @@ impl<R: Read + Seek> Npz<R> {
         self.take(rows, bytes)
     }
 
-    /// Goes to a byte of an array's data; of a deflated one everything before it is unpacked.
+    /// Goes to a byte of an array's data; in a deflated array everything before it is unpacked.
     ///
     /// # Errors
     /// As [`Npz::read`].
