@@ -24,6 +24,7 @@ mod checkpoint;
 mod clock;
 mod error;
 mod grab;
+mod journal;
 mod length_scale;
 mod masses;
 mod memory;
