@@ -162,7 +162,7 @@ fn a_state_of_the_last_runs_is_computed_again_when_the_device_fails() {
     gpu.destroy();
     assert_eq!(simulator.state_after(STEPS as u64 - 1).time, expected[STEPS - 1].time);
     simulator.fall_back();
-    // What the CPU does next leaves the state that a picture under way shows.
+    // The CPU's next steps keep the state of a picture under way.
     let left = simulator.state().unwrap().positions.clone();
     simulator.run(&[drive(STEPS + 1)]).unwrap();
     assert_eq!(simulator.state_after(STEPS as u64).positions, left);
