@@ -6,11 +6,12 @@ use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, LANES, Vec3Lanes};
-use strandline_sim::cpu::{Obstacles, Scratch};
+use strandline_sim::contact::Obstacles;
+use strandline_sim::cpu::Scratch;
 use strandline_sim::gpu::{GpuRunner, Probe};
 use strandline_sim::{CpuRunner, Drive, Model, Settings, State, StrandMethod, VolumeSettings};
 
-/// One kind of hair: what is compared on it.
+/// One kind of hair, with the comparisons made on it.
 pub struct Head {
     pub name: &'static str,
     pub guides: Guides,
@@ -27,7 +28,7 @@ impl Head {
         GpuRunner::new(gpu, self.model()).unwrap()
     }
 
-    /// The hair after some steps of a head that turns, with nothing remembered of the solids.
+    /// The hair after some steps of a head that turns, without planes of the solids.
     pub fn moving(&self, model: &Model) -> Moving {
         let mut state = model.rest_state(Pose::IDENTITY);
         let mut runner = CpuRunner::from(model.clone());

@@ -2,7 +2,7 @@
 
 use super::Mismatch;
 
-/// Longest header \[byte\], and most elements and properties of one.
+/// Longest header \[byte\], and its most elements and properties.
 const MAX_HEADER: usize = 1 << 20;
 const MAX_PROPERTIES: usize = 256;
 
@@ -34,7 +34,7 @@ impl Number {
         })
     }
 
-    /// Bytes of one.
+    /// Bytes of a number.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,

@@ -56,7 +56,7 @@ pub(super) fn strands<const N: usize>(source: &Source) -> Result<(Groom, usize),
 /// Writes a `.data` file.
 ///
 /// # Errors
-/// None for a groom in memory.
+/// `None` for a groom in memory.
 pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
     let mut out = Vec::with_capacity(4 + 4 * groom.strand_count() + 12 * groom.points.len());
     put_u32(&mut out, [groom.strand_count() as u32]);

@@ -50,7 +50,8 @@ fn strays_are_left_out_whatever_the_units() {
         groom.transform(scale, glam::Quat::IDENTITY, Vec3::ZERO);
         groom.points[4 * 16 + 15] = Vec3::X * far * scale;
         groom.points[9 * 16 + 7] = Vec3::NEG_Y * far * scale;
-        groom.points[groom.range(20)].iter_mut().for_each(|point| *point += Vec3::Z * far * scale);
+        let range = groom.range(20);
+        groom.points[range].iter_mut().for_each(|point| *point += Vec3::Z * far * scale);
         assert_eq!(groom.strays("named"), ["3 strands reach far from all others, the first is 4: named"]);
         let held = groom.bounds_without_strays();
         assert_eq!(groom.leave_out_strays().len(), 1);
