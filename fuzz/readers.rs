@@ -4,7 +4,7 @@
 use strandline::Scene;
 use strandline::low_level::body::{DistanceGrid, Mesh, MeshFormat, SignedDistance};
 use strandline::low_level::groom::format::{
-    LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx,
+    LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx, usda,
 };
 use strandline::low_level::groom::{Groom, GroomError, Guides};
 use strandline::low_level::render::surroundings::{Panorama, Surroundings};
@@ -13,13 +13,14 @@ use strandline::low_level::render::surroundings::{Panorama, Surroundings};
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 21] = [
+pub const TARGETS: [(&str, Target); 22] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
     ("project", project_file),
     ("data", data_file),
     ("bin", bin_file),
     ("ply", ply_file),
+    ("usda", usda_file),
     ("npz", npz_file),
     ("npy", npy_file),
     ("lines", lines),
@@ -45,6 +46,11 @@ const UNIT: f32 = 1e-3;
 /// A .hair file is read or refused; what was read can be written and read again.
 pub fn hair_file(bytes: &[u8]) -> bool {
     groom(hair::read(bytes, None), |groom| hair::write(groom).map(|bytes| hair::read(&bytes, None).is_ok()))
+}
+
+/// A .usda file is read or refused.
+pub fn usda_file(bytes: &[u8]) -> bool {
+    groom(usda::read(bytes), |_| Ok(true))
 }
 
 /// A .tfx file, as a .hair file.

@@ -23,6 +23,7 @@ mod save;
 mod sieve;
 pub mod tfx;
 mod tfx_text;
+pub mod usda;
 
 pub use cleaning::Cleaning;
 pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};

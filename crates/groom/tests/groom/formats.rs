@@ -219,7 +219,7 @@ fn files_are_written_whole_and_errors_end_with_the_path() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     refused(two_strands().save(folder.path().join("no").join("two.hair")), &["cannot write", "two.hair"]);
     refused(Groom::load(folder.path().join("absent.hair")), &["cannot read", "absent.hair"]);
-    refused(Groom::load(folder.path().join("a.fbx")), &["ending `fbx`", ".hair, .tfx,", "or .obj", "a.fbx"]);
+    refused(Groom::load(folder.path().join("a.fbx")), &["ending `fbx`", ".hair, .tfx,", "or .usda", "a.fbx"]);
     std::fs::write(&path, b"PK\x03\x04").unwrap();
     let text = Groom::load(&path).unwrap_err().to_string();
     assert!(text.contains("starts with `PK") && text.ends_with("two.hair"), "{text}");

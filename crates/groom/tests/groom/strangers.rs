@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use strandline_groom::Groom;
-use strandline_groom::format::{bin, data, hair, obj, ply, tfx};
+use strandline_groom::format::{bin, data, hair, obj, ply, tfx, usda};
 
 /// Three strands of four points.
 fn strands() -> Vec<Vec<Vec3>> {
@@ -162,4 +162,97 @@ fn strands_without_a_header_are_read_where_sizes_agree() {
     assert!(
         hair::read(&counted[..counted.len() - 4], None).unwrap_err().to_string().contains("expected `HAIR`")
     );
+}
+
+fn seed(name: &str) -> String {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/usda").join(name);
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn our_own_text_usd_is_read() {
+    let parsed = usda::read(seed("own").as_bytes()).unwrap();
+    let groom = &parsed.groom;
+    assert_eq!(groom.starts, [0, 2, 5]);
+    assert_eq!(groom.points[4], Vec3::new(0.5, 0.25, 0.0), "the first time");
+    assert_eq!(parsed.problems, ["the first of 2 times of `strands` is read"]);
+    assert!((groom.widths.at(1, 3) - 6e-5).abs() < 1e-9);
+    assert_eq!(groom.colors.as_ref().unwrap()[2], [1.0, 0.0, 0.0]);
+    assert_eq!(groom.root_uvs.as_ref().unwrap()[1], Vec2::new(0.75, 0.5));
+    assert_eq!(groom.groups, None);
+}
+
+#[test]
+fn splines_units_axes_and_transforms_of_usd_are_applied() {
+    let groom = usda::read(seed("blender").as_bytes()).unwrap().groom;
+    assert_eq!(groom.starts, [0, 4, 9]);
+    // Up is z there; the prim is moved by 1 along x and twice as large.
+    let expected = [
+        Vec3::new(1.0, 0.0, 0.0),
+        Vec3::new(1.0, 0.2, 0.0),
+        Vec3::new(1.0, 0.4, 0.0),
+        Vec3::new(1.0, 0.6, 0.0),
+    ];
+    for (point, expected) in groom.points.iter().zip(expected) {
+        assert!(point.distance(expected) < 1e-6, "{point} {expected}");
+    }
+    assert!((groom.widths.at(0, 0) - 2e-4).abs() < 1e-9, "widths grow with the prim");
+    let centimetres = seed("blender").replace("metersPerUnit = 1", "metersPerUnit = 0.01");
+    let small = usda::read(centimetres.as_bytes()).unwrap().groom;
+    assert!(small.points[3].distance(0.01 * groom.points[3]) < 1e-7);
+    let bezier = seed("blender")
+        .replace("\"bspline\"", "\"bezier\"")
+        .replace("[4, 5]", "[4, 4]")
+        .replace(", (1, 0, 0.4)", "");
+    let bezier = usda::read(bezier.as_bytes()).unwrap().groom;
+    assert!(bezier.points[1].distance(Vec3::new(1.0, 0.2, 0.0)) < 1e-6, "an even Bezier curve is even");
+    let catmull =
+        seed("blender").replace("\"bspline\"", "\"catmullRom\"").replace("\"pinned\"", "\"nonperiodic\"");
+    assert_eq!(usda::read(catmull.as_bytes()).unwrap().groom.starts, [0, 2, 5], "ends are no points");
+}
+
+#[test]
+fn several_prims_of_usd_are_groups_and_mistakes_are_named() {
+    let two = format!(
+        "{}\n{}",
+        seed("own"),
+        seed("own").split_once("\n)\n").unwrap().1.replace("\"strands\"", "\"back\"")
+    );
+    let parsed = usda::read(two.as_bytes()).unwrap();
+    assert_eq!(parsed.groom.groups.as_deref(), Some(&[0, 0, 1, 1][..]));
+    assert_eq!(parsed.groom.group_names[&1], "back");
+    let refused = |from: &str, to: &str| {
+        assert!(seed("own").contains(from), "{from}");
+        usda::read(seed("own").replace(from, to).as_bytes()).unwrap_err().to_string()
+    };
+    assert!(refused("[2, 3]", "[2, 4]").contains("2 curves of 6 points in all, and 5 points"));
+    assert!(refused("[2, 3]", "[2, -3]").contains("a curve of -3 points"));
+    assert!(refused("[2, 3]", "[2, 1e300]").contains("a curve of"));
+    assert!(refused("BasisCurves", "Mesh").contains("no BasisCurves"));
+    assert!(refused("#usda", "usda").contains("starts with `usda"));
+    assert!(refused("#usda 1.0", "PXR-USDC").contains("usdcat -o"));
+    assert!(refused("    }\n}\n", "").contains("at byte"));
+    let deep =
+        format!("#usda 1.0\ndef Xform \"a\" {{ int[] x = {}1{} }}", "[".repeat(100_000), "]".repeat(100_000));
+    assert!(usda::read(deep.as_bytes()).unwrap_err().to_string().contains("fewer levels"));
+    let prims = format!("#usda 1.0\n{}", "def Xform \"a\" {".repeat(100_000));
+    assert!(usda::read(prims.as_bytes()).unwrap_err().to_string().contains("fewer levels"));
+}
+
+#[test]
+fn files_of_other_programs_are_told_the_way_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |name: &str| Groom::load(folder.path().join(name)).unwrap_err().to_string();
+    for (name, way) in [
+        ("a.abc", "import it in Blender"),
+        ("a.usdc", "usdcat -o hair.usda"),
+        ("a.usdz", "ending .usda"),
+        ("a.fbx", "open it in its program"),
+        ("a.blend", "export them as USD"),
+        ("a.vrm", "a mesh is a body"),
+    ] {
+        assert!(told(name).contains(way), "{}", told(name));
+    }
+    std::fs::write(folder.path().join("a.usd"), seed("own")).unwrap();
+    assert_eq!(Groom::load(folder.path().join("a.usd")).unwrap().strand_count(), 2);
 }
