@@ -129,6 +129,11 @@ impl Error {
         move |source| Self::Save { what, path, source }
     }
 
+    /// For a map over the scalp.
+    pub(crate) fn map(path: &Path, message: String) -> Self {
+        Self::Map { path: path.to_owned(), message }
+    }
+
     /// For `map_err` on what writes to `path`.
     pub(crate) fn write(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();

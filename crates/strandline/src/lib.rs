@@ -61,6 +61,7 @@ pub use groom::{Groom, Style};
 pub use hair::Hair;
 pub use live::Live;
 pub use player::Player;
+pub use prepare::Sources;
 pub use render::{Camera, Light, Look, Picture};
 pub use scene::Scene;
 pub use session::Event;

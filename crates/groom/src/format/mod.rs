@@ -21,7 +21,7 @@ mod sieve;
 pub mod tfx;
 mod zip;
 
-pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
+pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
 pub use report::{Counts, GroupOf, Lengths, Report};

@@ -1,16 +1,16 @@
 //! A grown style on the scalp that a body's file marks: what grows over the built-in scalp is spread over that one.
 
 use std::f32::consts::{PI, TAU};
-use std::path::Path;
 
 use glam::Vec3;
 use strandline_base::{SettingError, math};
 
-use super::parts::part_placing;
-use super::placing::{self, Placing};
+use super::join::part_placing;
+use super::loading::Loading;
+use super::placing::place_mesh;
 use super::skull::Skull;
 use crate::{
-    Error, Scene,
+    Error,
     body::{Mannequin, Mesh},
     groom::Groom,
 };
@@ -31,12 +31,13 @@ const LOOKS: usize = 3;
 const ASTRAY: f32 = 0.05;
 const OFF: f32 = 0.4;
 
-/// The scalp that a scene names in the files of its body, head space; none where it names none. A note where it does
-/// not, and there is something of that name.
+/// The scalp that a scene names among the meshes of its body, head space; none where it names none. Adds a note where
+/// it names none, and a mesh has that name.
 ///
 /// # Errors
-/// A file that cannot be read; none of them has the name that is asked for.
-pub(super) fn scalp(scene: &Scene, placing: Placing, notes: &mut Vec<String>) -> Result<Option<Mesh>, Error> {
+/// A file that cannot be read; no mesh of the name.
+pub(super) fn scalp(loading: &mut Loading) -> Result<Option<Mesh>, Error> {
+    let (scene, sources, placing) = (&loading.scene, loading.sources, loading.placings.body);
     let body = &scene.body;
     let Some(file) = &body.file else { return Ok(None) };
     let first = (file, placing, [body.rotation, body.translation]);
@@ -46,36 +47,35 @@ pub(super) fn scalp(scene: &Scene, placing: Placing, notes: &mut Vec<String>) ->
         .map(|part| (&part.file, part_placing(part, placing), [part.rotation, part.translation]));
     let files: Vec<_> = std::iter::once(first).chain(further).collect();
     let Some(name) = &body.scalp else {
-        let parts = Mesh::part_names(&scene.path(file))?;
+        let parts = sources.part_names(scene, file)?;
         if let Some(part) = parts.iter().find(|part| part.eq_ignore_ascii_case(LIKELY)) {
-            notes
-                .push(format!("the body has a part `{part}`: body.scalp = \"{part}\" grows the style on it"));
+            let note = format!("the body has a part `{part}`: body.scalp = \"{part}\" grows the style on it");
+            loading.notes.push(note);
         }
         return Ok(None);
     };
     for (file, placing, [turn, translation]) in &files {
-        if let Some(mut found) = Mesh::load_part(&scene.path(file), name)? {
-            placing::place_mesh(&mut found, *placing, *turn, *translation);
+        if let Some(mut found) = sources.mesh_part(scene, file, name)? {
+            place_mesh(&mut found, *placing, *turn, *translation);
             return Ok(Some(found));
         }
     }
-    let expected = known(files.iter().map(|(file, ..)| scene.path(file)))?;
-    Err(SettingError::new("body.scalp", format!("`{name}`"), expected).into())
+    let mut names = Vec::new();
+    for (file, ..) in &files {
+        names.extend(sources.part_names(scene, file)?);
+    }
+    Err(SettingError::new("body.scalp", format!("`{name}`"), known(names)).into())
 }
 
-/// What the parts of files are called, human-readable.
-fn known(files: impl Iterator<Item = impl AsRef<Path>>) -> Result<String, Error> {
-    let mut names = Vec::new();
-    for file in files {
-        names.extend(Mesh::part_names(file.as_ref())?);
-    }
+/// Lists the names of parts, human-readable.
+fn known(mut names: Vec<String>) -> String {
     let more = if names.len() > LISTED { " ..." } else { "" };
     names.truncate(LISTED);
-    Ok(if names.is_empty() {
+    if names.is_empty() {
         "a body with named parts: this one has none".to_owned()
     } else {
         format!("a part of the body: `{}`{more}", names.join("`, `"))
-    })
+    }
 }
 
 /// How far a scalp reaches down from the crown in each direction \[rad\], seen from within the skull.

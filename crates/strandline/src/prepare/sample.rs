@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
-use super::place::{Placing, diagonal, upright};
+use super::placing::{Placing, diagonal, upright};
 use crate::{
     body::{Aabb, Mesh, Random},
     groom::{Groom, format::Up},
