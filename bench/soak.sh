@@ -10,4 +10,4 @@ case ${2:-hair} in
     rods) test=shaken_rods_stay_finite_in_length_and_in_memory ;;
     *) echo "the method is $2, expected hair or rods" >&2; exit 2 ;;
 esac
-STRANDLINE_SHAKEN_HOURS=$hours cargo test --release --workspace --test shaken -- --nocapture --exact "$test"
+STRANDLINE_SHAKEN_HOURS=$hours cargo test --release --workspace --test soak -- --nocapture --exact "shaken::$test"

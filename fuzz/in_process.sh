@@ -13,5 +13,5 @@ if [ ${#targets[@]} -eq 0 ]; then
 fi
 for target in "${targets[@]}"; do
     STRANDLINE_FUZZ_SECONDS=$seconds STRANDLINE_FUZZ_TARGET=$target STRANDLINE_FUZZ_SEED=${SEED:-$(date +%s)} \
-        cargo test --quiet --workspace --test corpora -- --nocapture
+        cargo test --quiet --workspace --test it corpora -- --nocapture
 done

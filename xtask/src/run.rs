@@ -131,7 +131,7 @@ pub fn bless() -> bool {
 /// Writes docs/scene.md again from the settings table.
 pub fn docs() -> bool {
     let mut tally = Tally::default();
-    let page = ["test", "--workspace", "--test", "scene_reference", "the_page"];
+    let page = ["test", "--workspace", "--test", "it", "scene_reference::the_page"];
     cargo(&page, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 

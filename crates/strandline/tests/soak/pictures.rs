@@ -318,6 +318,7 @@ fn apart(a: &Picture, b: &Picture) -> u8 {
 
 #[test]
 fn ten_thousand_pictures_with_changes_at_random() {
+    let _alone = super::alone();
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("bad.hair"), b"PK nothing").unwrap();
     let mut person = Person::new(folder.path().to_owned());

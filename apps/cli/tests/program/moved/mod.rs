@@ -45,7 +45,7 @@ fn untested(why: &str) {
 /// A Python with numpy and usd-core, as the environment's STRANDLINE_PYTHON names it.
 fn check(folder: &Path, files: &[&str]) {
     let python = std::env::var("STRANDLINE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/moved/check.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/program/moved/check.py");
     let Ok(output) = Command::new(&python).arg(script).args(files).current_dir(folder).output() else {
         return untested(&format!("no {python}, so nobody else reads the files"));
     };

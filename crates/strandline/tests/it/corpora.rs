@@ -1,6 +1,6 @@
 //! The kept corpora of the fuzz targets, replayed: every file of them and many that are nearly them.
 //!
-//! `STRANDLINE_FUZZ_SECONDS=60 cargo test --release -p strandline --test corpora -- --nocapture` continues for
+//! `STRANDLINE_FUZZ_SECONDS=60 cargo test --release -p strandline --test it corpora -- --nocapture` continues for
 //! so long for each target and prints how many runs that were; `STRANDLINE_FUZZ_TARGET=obj` takes one of them, and
 //! `STRANDLINE_FUZZ_SEED=8` changes the files otherwise: with one seed a longer run repeats a shorter one.
 
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use strandline::low_level::body::Random;
 
-#[path = "../../../fuzz/readers.rs"]
+#[path = "../../../../fuzz/readers.rs"]
 mod readers;
 
 /// Changed copies of each seed when nothing else is said.

@@ -17,7 +17,7 @@ fn most(list: &str) -> f64 {
 
 #[test]
 fn the_limits_of_inputs_are_documented() {
-    let text = include_str!("../../../../docs/limits.md").replace(',', "");
+    let text = include_str!("../../../../../docs/limits.md").replace(',', "");
     for words in [
         format!(
             "| scene | {} MiB {MAX_LIGHTS} `lights` {} `colliders` {} `groom.parts` {} `body.parts` {} of `look.group` \

@@ -1,6 +1,5 @@
 //! Every documented limit that scales memory is run, or refused before anything is taken: under a limit of
 //! the system's on memory, so that a wrong estimate ends the program (134) and fails the test.
-#![cfg(target_os = "linux")]
 
 use std::path::Path;
 use std::process::{Command, Output};

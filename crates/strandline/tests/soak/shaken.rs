@@ -2,7 +2,6 @@
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use std::f64::consts::TAU;
-use std::sync::{Mutex, PoisonError};
 
 use strandline::low_level::sim::StrandMethod;
 use strandline::{Backend, Hair, Pose, Scene, low_level::Prepared};
@@ -31,12 +30,9 @@ fn memory() -> Option<u64> {
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// Memory is that of the process: one test after the other.
-static ALONE: Mutex<()> = Mutex::new(());
-
 /// Shakes hair and looks at every step; with hours asked for it prints what it saw.
 fn shake(method: StrandMethod, seconds: f64) {
-    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let _alone = super::alone();
     let hours = std::env::var("STRANDLINE_SHAKEN_HOURS").ok();
     let seconds = hours.as_ref().map_or(seconds, |hours| 3600.0 * hours.parse::<f64>().unwrap());
     let mut scene = scene();

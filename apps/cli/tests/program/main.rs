@@ -1,0 +1,9 @@
+//! The program as a person or a script calls it: commands, limits, hostile files, files for others.
+
+mod command_line;
+#[cfg(target_os = "linux")]
+mod hostile_files;
+#[cfg(target_os = "linux")]
+mod limits;
+mod moved;
+mod sim_motion;

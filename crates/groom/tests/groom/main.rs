@@ -1,0 +1,6 @@
+//! The groom crate's integration tests, one program for all.
+
+mod attributes;
+mod bound;
+mod formats;
+mod styles;

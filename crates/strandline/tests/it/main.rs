@@ -1,0 +1,13 @@
+//! The façade's integration tests, one program for all that need neither a counted heap nor a quiet machine.
+
+mod backends;
+mod bound;
+mod cache;
+mod corpora;
+mod live;
+mod outside;
+mod pose;
+mod readme;
+mod scene_reference;
+mod time;
+mod workers;
