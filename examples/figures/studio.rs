@@ -38,9 +38,8 @@ impl Studio {
         if self.quick {
             scene.style.strand_count = 50;
         }
-        let prepared = Prepared::new(&scene)?;
-        let head = prepared.head.clone();
-        let mut hair = Hair::from_scene(&scene, prepared, self.backend)?;
+        let mut hair = Hair::from_prepared(Prepared::new(&scene)?, self.backend)?;
+        let head = hair.head().clone();
         if scene.simulation.strands.method == StrandMethod::Constrain && !self.quick {
             hair.step(FilmSection::SETTLE.into(), &Pose::IDENTITY)?;
         }

@@ -93,8 +93,13 @@ impl Groom {
         let points = self.points.len();
         let rises = self.starts.is_sorted() && self.starts.first() == Some(&0);
         if !rises || self.starts.last().is_none_or(|end| *end as usize != points) {
-            let expected = format!("one for each strand and one more, rising from 0 to {points}, the number of points");
-            return Err(SettingError::new("groom.starts", format!("{} numbers", self.starts.len()), expected));
+            let expected =
+                format!("one for each strand and one more, rising from 0 to {points}, the number of points");
+            return Err(SettingError::new(
+                "groom.starts",
+                format!("{} numbers", self.starts.len()),
+                expected,
+            ));
         }
         let strands = self.strand_count();
         let widths = match &self.widths {

@@ -54,24 +54,41 @@ pub(crate) use strandline_groom as groom;
 pub(crate) use strandline_render as render;
 pub(crate) use strandline_sim as sim;
 
-pub use body::Pose;
+pub use body::{Mesh, Pose};
+pub use cache::{Cache, Out, OutSettings, Target, What, Written};
+pub use devices::Devices;
 pub use error::Error;
-pub use film::Film;
+pub use film::{Film, FilmFiles, PictureFiles};
 pub use groom::{Groom, Style};
 pub use hair::Hair;
+pub use head::HeadMotion;
 pub use live::Live;
+pub use pick::Ray;
 pub use player::Player;
-pub use prepare::Sources;
-pub use render::{Camera, Light, Look, Picture};
+pub use prepare::{Prepared, Sources};
+pub use render::{Camera, Light, Look, Picture, PictureSettings};
 pub use scene::Scene;
-pub use session::Event;
-pub use sim::{Backend, Settings};
+pub use session::{Change, Event};
+pub use sim::{Backend, Settings, StepReport};
 
 // Names of this crate's own modules.
 pub(crate) use bound::BoundStrands;
-pub(crate) use cache::{Cache, OutSettings, What, Written};
-pub(crate) use devices::Devices;
-pub(crate) use film::FilmFiles;
-pub(crate) use head::HeadMotion;
-pub(crate) use pick::Ray;
-pub(crate) use prepare::Prepared;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Compiles where a type may be sent to other threads and shared by them.
+    fn shared<T: Send + Sync>() {}
+
+    #[test]
+    fn faces_and_loaded_scenes_may_be_shared_by_threads() {
+        shared::<Hair>();
+        shared::<Player>();
+        shared::<Live>();
+        shared::<Prepared>();
+        shared::<Sources>();
+        shared::<Cache>();
+        shared::<Out>();
+    }
+}

@@ -6,7 +6,7 @@ use strandline_gpu::Gpu;
 use crate::{
     BoundStrands,
     body::Mesh,
-    devices::{Opened, place},
+    devices::{Opened, device_name},
     groom::{Frames, Guides, Vec3Lanes},
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
@@ -84,7 +84,7 @@ impl Painter {
 
     /// Where the last picture was drawn, human-readable.
     pub fn drawn_on(&self) -> String {
-        if self.stands_in { place(None) } else { place(self.gpu()) }
+        if self.stands_in { device_name(None) } else { device_name(self.gpu()) }
     }
 
     /// The device, unless all pictures are drawn on the CPU.

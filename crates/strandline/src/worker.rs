@@ -44,7 +44,7 @@ impl<W: Work> Worker<W> {
         let own = work.clone();
         let thread = Builder::new().name("simulation".to_owned()).spawn(move || {
             // Ends with the senders, or when the receiver of results is gone.
-            for job in waiting {
+            while let Ok(job) = waiting.recv() {
                 let result = lock(&own).run(job);
                 if done.send(result).is_err() {
                     break;

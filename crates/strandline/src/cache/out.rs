@@ -51,7 +51,7 @@ pub struct Written {
     pub left_out: Vec<String>,
 }
 
-/// Hair on its way into a file.
+/// A file of moving hair that is being written.
 pub struct Out {
     shape: Shape,
     first: u32,
@@ -59,6 +59,8 @@ pub struct Out {
     writer: Writer,
     points: Vec<Vec3>,
     frames: usize,
+    /// Frames of the film so far, whether written or passed over.
+    offered: u32,
     time: Duration,
 }
 
@@ -124,7 +126,30 @@ impl Out {
             Format::Usda => Writer::Usd(Usd::new(path, scene, &shape, settings.target)?.into()),
             Format::Sequence => Writer::Files(Files::new(path, &shape)?.into()),
         };
-        Ok(Self { shape, first, every, writer, points: Vec::new(), frames: 0, time: Duration::ZERO })
+        Ok(Self {
+            shape,
+            first,
+            every,
+            writer,
+            points: Vec::new(),
+            frames: 0,
+            offered: 0,
+            time: Duration::ZERO,
+        })
+    }
+
+    /// Frames of the film so far, whether written or passed over.
+    pub fn offered(&self) -> u32 {
+        self.offered
+    }
+
+    /// Refuses a frame more than the film has.
+    pub(crate) fn check_room(&self, frames: u32) -> Result<(), Error> {
+        if self.offered < frames {
+            return Ok(());
+        }
+        let expected = "the frames of all calls of `write`: a file has room for so many";
+        Err(SettingError::new("film.frames", frames, expected).into())
     }
 
     /// Whether a frame is one of those that are written.
@@ -152,6 +177,7 @@ impl Out {
         if let Writer::Store(store) = &mut self.writer {
             store.step(steps);
         }
+        self.offered = number + 1;
         if !self.takes(number) {
             return Ok(());
         }
@@ -206,6 +232,7 @@ impl Out {
             let (number, time) = (self.first + index as u32 * self.every, cache.times()[index]);
             self.write(&Frame { number, time, points: &points, world_from_head }, None)?;
         }
+        self.offered = state.frame + 1;
         if let Writer::Store(store) = &mut self.writer {
             store.inherit(steps, report);
             store.set_state(Some(state))?;

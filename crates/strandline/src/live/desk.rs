@@ -12,7 +12,7 @@ use super::messages::{Command, LiveEvent, Out, Shown};
 use super::playing::{Drafts, Playing, changes_cost, of_size};
 use super::recorder::Recorder;
 use crate::{
-    Error, FilmFiles, Scene,
+    Error, FilmFiles, Scene, Sources,
     render::{FrameReport, Picture},
     session::{Change, Event, FRAME},
 };
@@ -118,10 +118,8 @@ impl Desk {
         };
         playing.received += 1;
         match command {
-            Command::Load(scene) => {
-                playing.load = playing.received;
-                self.load(playing, scene);
-            }
+            Command::Load(scene) => self.load(playing, scene, Box::default()),
+            Command::LoadSources(scene, sources) => self.load(playing, scene, sources),
             // Steps that were asked for before are among those it plays.
             Command::Play(true) => (playing.playing, playing.steps) = (true, 0),
             Command::Play(false) => playing.playing = false,
@@ -155,9 +153,10 @@ impl Desk {
             // Another scene was asked for since.
             _ if load != playing.load => {}
             Ok(mut loaded) => {
-                let Loaded { session, scene, notes } = &mut *loaded;
-                let (camera, bounds) = (session.studio.camera, session.studio.bounds);
-                self.emit(LiveEvent::Loaded(load, scene.clone(), camera, bounds, notes.clone()));
+                let Loaded { session, notes } = &mut *loaded;
+                let (camera, bounds) = (*session.studio().camera(), session.studio().bounds());
+                let scene = Box::new(session.scene().clone());
+                self.emit(LiveEvent::Loaded(load, scene, camera, bounds, notes.clone()));
                 if let (Some(old), Some(_)) = (&playing.scene, &playing.recorder) {
                     let picture = of_size(Change::Picture(session.settings()), old.session.settings());
                     if let Err(error) = session.change(picture) {
@@ -167,7 +166,7 @@ impl Desk {
                 // How long one takes is known once it is drawn: the first is there sooner when simple.
                 (playing.stale, playing.tried) = (true, false);
                 playing.drafts = Drafts::START;
-                playing.slow = session.studio.painter.gpu().is_none();
+                playing.slow = session.studio().gpu().is_none();
                 (playing.scene, playing.loaded) = (Some(loaded), load);
                 (playing.step, playing.is_frame) = (None, false);
             }
@@ -176,11 +175,14 @@ impl Desk {
     }
 
     /// Loads on a thread of its own, so that what plays continues.
-    fn load(&self, playing: &mut Playing, scene: Box<Scene>) {
+    fn load(&self, playing: &mut Playing, scene: Box<Scene>, sources: Box<Sources>) {
+        playing.load = playing.received;
         playing.loading += 1;
         let (own, number) = (self.own.clone(), playing.load);
         let job = move || {
-            let loaded = catch_unwind(|| Loaded::new(&scene)).unwrap_or(Err(Error::WorkerGone)).map(Box::new);
+            let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources)))
+                .unwrap_or(Err(Error::WorkerGone))
+                .map(Box::new);
             // Nobody waits for it any more when the window is closed.
             let _ = own.send(Message::Loaded(number, loaded));
         };
@@ -233,7 +235,7 @@ impl Desk {
             // The last good state is still there.
             self.emit(LiveEvent::Error(error.to_string()));
         }
-        self.emit(match &playing.scene {
+        self.emit(match &mut playing.scene {
             Some(loaded) if playing.loaded == load => match loaded.save(scene, &path) {
                 Ok(()) => LiveEvent::Saved(path),
                 Err(error) => LiveEvent::Error(error.to_string()),
@@ -245,7 +247,7 @@ impl Desk {
 
     /// Waits for all that the simulation has begun.
     fn catch_up(&self, playing: &mut Playing) -> Result<(), Error> {
-        while playing.scene.as_ref().is_some_and(|loaded| loaded.session.place.started() > 0) {
+        while playing.scene.as_ref().is_some_and(|loaded| loaded.session.started() > 0) {
             playing.stale = true;
             self.take(playing)?;
         }
@@ -271,7 +273,7 @@ impl Desk {
     fn frame(&self, playing: &mut Playing, draft: bool) -> Result<(), Error> {
         let Some(loaded) = &mut playing.scene else { return Ok(()) };
         let moves = (playing.playing || playing.steps > 0) && !playing.is_frame;
-        if moves && loaded.session.place.started() == 0 {
+        if moves && loaded.session.started() == 0 {
             loaded.session.start_frame(playing.received)?;
             playing.steps = playing.steps.saturating_sub(1);
         }
@@ -325,13 +327,13 @@ impl Desk {
             picture,
             frame: playing.frame,
             drawn_after_command: playing.received,
-            simulated_after_command: session.simulated_after,
+            simulated_after_command: session.simulated_after(),
             draft: playing.draft,
             recorded: playing.recorder.as_ref().map(|recorder| recorder.frames),
             drawing,
             step: playing.step.take(),
-            grabbed: session.grabbed,
-            places: [session.simulated_on.clone(), session.studio.painter.drawn_on()],
+            grabbed: session.grabbed(),
+            places: [session.simulated_on().to_owned(), session.studio().drawn_on()],
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
         // A step that was not seen is still reported.

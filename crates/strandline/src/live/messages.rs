@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 
 use crate::{
-    Scene,
+    Scene, Sources,
     body::Aabb,
     render::{Camera, FrameReport, Picture},
     session::Change,
@@ -15,6 +15,8 @@ use crate::{
 pub enum Command {
     /// Loads a scene; what plays continues until it is there, and stays when it cannot be loaded.
     Load(Box<Scene>),
+    /// Loads a scene with grooms, meshes and maps from memory, likewise.
+    LoadSources(Box<Scene>, Box<Sources>),
     /// Plays, or stands still.
     Play(bool),
     /// One frame, while it stands still.

@@ -3,8 +3,8 @@ use std::f32::consts::PI;
 use strandline_base::math;
 
 use super::*;
-use crate::prepare::placing::place_mesh;
 use crate::groom::{Style, StyleSettings};
+use crate::prepare::placing::place_mesh;
 
 /// The built-in bust and a bob that grew on it, both elsewhere, in other units, turned by some angles.
 fn pair(groom_scale: f32, groom_turn: f32, body_turn: f32) -> (Groom, Mesh) {

@@ -1,8 +1,8 @@
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use super::*;
-use crate::prepare::placing::place_mesh;
 use crate::groom::format::Scale;
+use crate::prepare::placing::place_mesh;
 
 /// A ball of a head of 12 cm radius on a narrow neck, y up, and hair on its upper back half that hangs: the face
 /// looks along +z.
@@ -96,11 +96,11 @@ fn units_axes_and_the_face_are_found_from_both() {
 fn a_head_that_no_unit_makes_that_of_a_person_is_made_one() {
     let (groom, mesh) = head();
     let (large, body) = turned(&groom, &mesh, 360.0, Quat::IDENTITY);
-    let placings = placings(&scene(), &[&large], Some(&body));
+    let found = placings(&scene(), &[&large], Some(&body));
     // Roots on a ball of 24 cm span 21 cm; 0.15 m are asked for, in two digits.
-    let scale = placings.groom.scale;
-    assert!((0.0018..=0.0022).contains(&scale) && placings.body.scale == scale, "{scale}");
-    assert!(placings.note.unwrap().contains("m wide"));
+    let scale = found.groom.scale;
+    assert!((0.0018..=0.0022).contains(&scale) && found.body.scale == scale, "{scale}");
+    assert!(found.note.unwrap().contains("m wide"));
     let mut given = scene();
     given.body.scale = Scale::Factor(0.01);
     assert_eq!(placings(&given, &[&large], Some(&body)).groom.scale, 0.01);

@@ -83,7 +83,9 @@ fn a_group_that_is_not_there_is_refused_by_name() {
     let error = dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string();
     assert!(error.contains("look.group[1].name") && error.contains("`hair`, 5"), "{error}");
     groom.groups = None;
-    assert!(dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string().contains("this one has none"));
+    assert!(
+        dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string().contains("this one has none")
+    );
 }
 
 #[test]
@@ -103,7 +105,14 @@ fn maps_are_read_over_the_scalp() {
     let middle = Map::load(&colors).unwrap().color(Vec2::splat(0.5));
     assert!((middle - Vec3::splat(0.5)).abs().max_element() < 1e-6, "{middle}");
     groom.root_uvs = None;
-    assert!(dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string().contains("root coordinates"));
+    assert!(
+        dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string().contains("root coordinates")
+    );
     std::fs::write(&colors, b"GIF89a").unwrap();
-    assert!(dress(&scene, &Sources::default(), &mut self::groom()).unwrap_err().to_string().contains("expected a .png"));
+    assert!(
+        dress(&scene, &Sources::default(), &mut self::groom())
+            .unwrap_err()
+            .to_string()
+            .contains("expected a .png")
+    );
 }

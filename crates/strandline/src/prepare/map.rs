@@ -45,7 +45,8 @@ impl Map {
         let is_sound = [width, height].iter().all(|length| (1..=side).contains(length));
         let pixels = RgbImage::from_raw(width, height, picture.pixels.clone()).filter(|_| is_sound);
         // Longer data than the size asks for would be cut off silently.
-        let pixels = pixels.filter(|pixels| pixels.as_raw().len() == 3 * (width as usize) * (height as usize));
+        let pixels =
+            pixels.filter(|pixels| pixels.as_raw().len() == 3 * (width as usize) * (height as usize));
         let found = || format!("{width} x {height} pixels in {} bytes, {expected}", picture.pixels.len());
         Ok(Self { picture: pixels.ok_or_else(found)?.into() })
     }
@@ -113,4 +114,3 @@ impl Map {
 fn linear(part: f32) -> f32 {
     if part <= 0.040_45 { part / 12.92 } else { math::powf((part + 0.055) / 1.055, 2.4) }
 }
-

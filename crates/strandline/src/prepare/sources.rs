@@ -140,3 +140,86 @@ impl Sources {
         Err(SettingError::new("a source", found, format!("a name of the scene: {expected}")).into())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::{Prepared, body::Mannequin};
+
+    /// Hair in centimetres on the mannequin in millimetres, as files and in memory.
+    fn both(folder: &Path) -> [(Scene, Sources); 2] {
+        let mut style = crate::groom::StyleSettings::new(crate::Style::Bob);
+        style.strand_count = 60;
+        let mut groom = style.grow().unwrap();
+        groom.transform(100.0, glam::Quat::IDENTITY, Vec3::ZERO);
+        let mut mesh = Mannequin::new().mesh();
+        mesh.positions.iter_mut().for_each(|place| *place *= 1000.0);
+        let text: String =
+            mesh.positions.iter().map(|place| format!("v {} {} {}\n", place.x, place.y, place.z)).collect();
+        let faces = mesh.triangles.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+        std::fs::write(folder.join("head.obj"), text + &faces.collect::<String>()).unwrap();
+        format::save(&groom, &folder.join("bob.hair")).unwrap();
+        let groom = format::load(
+            &folder.join("bob.hair"),
+            &LoadOptions { scale: Scale::Factor(1.0), ..LoadOptions::default() },
+        );
+        let mesh = Mesh::load(&folder.join("head.obj"), 1.0).unwrap();
+        let scene = |names: [PathBuf; 2]| {
+            let [groom, body] = names.map(Some);
+            let mut scene = Scene::default();
+            (scene.groom.file, scene.body.file, scene.body.spacing) = (groom, body, 0.01);
+            scene
+        };
+        let sources = Sources::default().with_groom("bob", groom.unwrap().groom).with_mesh("head", mesh);
+        let files = ["bob.hair", "head.obj"].map(|name| folder.join(name));
+        [(scene(files), Sources::default()), (scene(["bob", "head"].map(PathBuf::from)), sources)]
+    }
+
+    #[test]
+    fn a_scene_in_memory_is_placed_and_fitted_as_one_of_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let loaded =
+            both(folder.path()).map(|(scene, sources)| Prepared::from_sources(&scene, &sources).unwrap());
+        let [file, memory] = &loaded;
+        assert!(file.guides.positions() == memory.guides.positions(), "other strands");
+        assert!(file.bounds.min == memory.bounds.min && file.bounds.max == memory.bounds.max, "another body");
+        assert!(memory.bounds.max.y < 1.0, "metres, not {}", memory.bounds.max);
+        let [mut of_file, of_memory] = [&file.scene, &memory.scene].map(Scene::clone);
+        (of_file.groom.file, of_file.body.file) = (of_memory.groom.file.clone(), of_memory.body.file.clone());
+        assert_eq!(of_file, of_memory);
+        assert_eq!(file.notes, memory.notes);
+        assert!(file.notes.iter().any(|note| note.contains("unit")), "{:?}", file.notes);
+    }
+
+    #[test]
+    fn sources_that_are_not_named_or_not_sound_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let [_, (scene, sources)] = both(folder.path());
+        let refused = |scene: &Scene, sources: &Sources| match Prepared::from_sources(scene, sources) {
+            Ok(_) => panic!("it was taken"),
+            Err(error) => error.to_string(),
+        };
+        let mut misspelt = scene.clone();
+        misspelt.groom.file = Some("bobb".into());
+        let error = refused(&misspelt, &sources);
+        assert!(error.contains("`bob`") && error.contains("`bobb`, `head`"), "{error}");
+        let mut torn = Groom::empty(8e-5);
+        torn.push([Vec3::ZERO, Vec3::Y]);
+        torn.starts[1] = 7;
+        let error = refused(&scene, &sources.clone().with_groom("bob", torn));
+        assert!(error.contains("rising from 0 to 2"), "{error}");
+        let mut bare = Groom::empty(8e-5);
+        bare.push([Vec3::ZERO, Vec3::Y]);
+        bare.colors = Some(vec![[0.5; 3]]);
+        let error = refused(&scene, &sources.clone().with_groom("bob", bare));
+        assert!(error.contains("groom.colors is 1 entries"), "{error}");
+        let flat = Mesh { positions: vec![Vec3::ZERO], triangles: vec![[0, 1, 2]], ..Mesh::default() };
+        let error = refused(&scene, &sources.clone().with_mesh("head", flat));
+        assert!(error.contains("vertices 0, 1, 2 of 1"), "{error}");
+        let picture = Picture { width: 2, height: 2, pixels: vec![0; 11], alpha: None };
+        let error = sources.with_map("map", &picture).err().unwrap().to_string();
+        assert!(error.contains("2 x 2 pixels in 11 bytes"), "{error}");
+    }
+}

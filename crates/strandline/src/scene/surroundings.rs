@@ -50,8 +50,10 @@ mod tests {
         scene.surroundings.file = Some(path);
         let prepared = Prepared::new(&scene).unwrap();
         assert!(prepared.scene.look.surroundings.is_some());
-        let hair = Hair::from_scene(&scene, prepared, Backend::Cpu).unwrap();
+        let loaded = prepared.scene.look.clone();
+        let hair = Hair::from_prepared(prepared, Backend::Cpu).unwrap();
         // An even sky has no sun, and lamps beside it only where the scene has some.
-        assert!(hair.lights.is_empty(), "{:?}", hair.lights);
+        assert!(hair.lights().is_empty(), "{:?}", hair.lights());
+        assert_eq!(hair.look(), &loaded, "the look has the surroundings that light it");
     }
 }

@@ -87,8 +87,7 @@ mod tests {
         (scene.picture.background.top, scene.picture.background.bottom) = Default::default();
         (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
         [scene.picture.width, scene.picture.height] = [160, 125];
-        let prepared = Prepared::new(&scene).unwrap();
-        let mut session = Session::of_scene(&scene, prepared, scene.devices).unwrap();
+        let mut session = Session::open(Prepared::new(&scene).unwrap(), scene.devices).unwrap();
         let full = session.picture(None).unwrap().0;
         let mut draft = Draft::FINEST;
         for size in [[80, 63], [80, 63], [64, 50], [53, 42]] {

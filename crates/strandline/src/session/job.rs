@@ -1,4 +1,4 @@
-//! What is asked of a simulation, as data, and where it is done: on the thread of the caller or beside it.
+//! Tasks of a simulation, as data, and the executors that perform them: on the thread of the caller or beside it.
 
 use glam::Vec3;
 use std::collections::VecDeque;
@@ -8,14 +8,14 @@ use super::{course::Course, moment::Moment, simulation::Simulation};
 use crate::{
     HeadMotion,
     body::Pose,
-    devices::place,
+    devices::device_name,
     groom::Vec3Lanes,
     scene::WindSection,
     sim::{Settings, SimError, StepReport},
     worker::{Gone, Work, Worker},
 };
 
-/// What is asked of a simulation.
+/// A task of a simulation.
 pub(crate) enum Task {
     /// The frame of a film with this number, with settings that change before it.
     Film { course: Course, frame: u32, settings: Option<Box<Settings>> },
@@ -139,38 +139,53 @@ impl Work for Simulation {
             None => run(),
         };
         self.threads = threads;
-        let simulated_on = place(self.engine.gpu());
+        let simulated_on = device_name(self.engine.gpu());
         let (seconds, grabbed) = (self.passed - before, self.engine.grabbed());
         let notes = self.engine.take_notes();
         Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on }
     }
 }
 
-/// Where a simulation does its jobs.
-pub(crate) trait Place {
+/// Runs the jobs of a simulation: on the thread of the caller, or on one beside it.
+pub(crate) trait Executor {
     /// Hands a job over.
     fn start(&mut self, job: Job) -> Result<(), Gone>;
 
     /// Waits for the oldest job that was started.
     fn finish(&mut self) -> Result<Done, Gone>;
 
+    /// Jobs that were started and not finished.
+    fn started(&self) -> usize;
+
     /// The simulation between two jobs: waits for the one that runs.
     fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T;
 }
 
 /// A simulation on the thread of the caller.
-pub(crate) struct Here {
-    pub simulation: Simulation,
+pub(crate) struct Inline {
+    simulation: Simulation,
     done: VecDeque<Done>,
 }
 
-impl Here {
+impl Inline {
     pub fn new(simulation: Simulation) -> Self {
         Self { simulation, done: VecDeque::new() }
     }
+
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    pub fn simulation_mut(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+
+    pub fn into_simulation(self) -> Simulation {
+        self.simulation
+    }
 }
 
-impl Place for Here {
+impl Executor for Inline {
     fn start(&mut self, job: Job) -> Result<(), Gone> {
         self.done.push_back(self.simulation.run(job));
         Ok(())
@@ -180,18 +195,26 @@ impl Place for Here {
         self.done.pop_front().ok_or(Gone)
     }
 
+    fn started(&self) -> usize {
+        self.done.len()
+    }
+
     fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T {
         act(&mut self.simulation)
     }
 }
 
-impl Place for Worker<Simulation> {
+impl Executor for Worker<Simulation> {
     fn start(&mut self, job: Job) -> Result<(), Gone> {
         Worker::start(self, job)
     }
 
     fn finish(&mut self) -> Result<Done, Gone> {
         Worker::finish(self)
+    }
+
+    fn started(&self) -> usize {
+        Worker::started(self)
     }
 
     fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T {

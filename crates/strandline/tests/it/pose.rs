@@ -4,7 +4,6 @@
 use strandline::{
     Backend, Error, Event, Hair, Picture, Player, Pose, Scene,
     low_level::{
-        Prepared,
         groom::{LANES, Vec3Lanes},
         sim::{State, StrandMethod},
     },
@@ -27,7 +26,7 @@ fn scene(backend: Backend) -> Scene {
 }
 
 fn hair(scene: &Scene) -> Result<Hair, Error> {
-    Hair::from_scene(scene, Prepared::new(scene)?, scene.devices)
+    Hair::open(scene)
 }
 
 /// The largest difference between the strands of two sets of lanes.
@@ -103,7 +102,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     posed.film.settle = 1.0;
     let shown = first_picture(&posed);
     let mut fresh = hair(&posed).unwrap();
-    let camera = strandline::low_level::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
+    let camera = strandline::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
     assert_eq!(shown, fresh.picture(&camera, &posed.look).unwrap());
     posed.begin_at_rest();
     assert!(first_picture(&posed) != shown);

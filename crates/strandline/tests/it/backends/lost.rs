@@ -62,7 +62,7 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
         let mut hair = match gpu {
             Some(gpu) => hair(gpu),
             None => {
-                let prepared = strandline::low_level::Prepared::new(&scene()).unwrap();
+                let prepared = strandline::Prepared::new(&scene()).unwrap();
                 let settings = scene().simulation;
                 Hair::with_body(Backend::Cpu, prepared.guides, None, prepared.colliders, &settings).unwrap()
             }
