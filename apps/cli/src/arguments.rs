@@ -68,6 +68,15 @@ impl Command {
     }
 }
 
+/// Settings of a scene by their keys.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Set {
+    /// Set a value of the scene, after all other options: simulation.gravity=[0,-1.6,0], motion.name=nod,
+    /// lights[0].intensity=2; docs/scene.md lists the keys. Given again: further values. A key alone is explained.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub values: Vec<String>,
+}
+
 /// What to simulate: a scene, and what replaces parts of it.
 #[derive(Args, Clone, Debug)]
 pub struct Inputs {
@@ -106,6 +115,8 @@ pub struct Inputs {
     /// Where it is drawn, when that is not where it is simulated.
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub render_device: Option<Backend>,
+    #[command(flatten)]
+    pub set: Set,
     /// Print one JSON object, and nothing else, to standard output.
     #[arg(long)]
     pub json: bool,
@@ -247,6 +258,8 @@ pub struct SceneOptions {
     /// demo, thesis, or a .toml file.
     #[arg(value_name = "NAME|FILE.toml", default_value = "demo")]
     pub scene: String,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 #[derive(Args, Debug)]

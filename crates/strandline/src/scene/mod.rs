@@ -5,6 +5,7 @@ mod builtin;
 mod film;
 mod given;
 mod groom;
+mod keys;
 mod motion;
 mod surroundings;
 
