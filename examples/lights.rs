@@ -5,10 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline::low_level::base::math;
-use strandline::low_level::render::surroundings::{Panorama, Surroundings};
-use strandline::low_level::render::{Light, LightKind, Picture, PictureSettings, Preset};
-use strandline::{Backend, Camera, Hair, Look, Prepared, Scene, Style};
+use strandline::{
+    Backend, Camera, Hair, Light, Look, Picture, PictureSettings, Prepared, Scene, Style,
+    look::{
+        LightKind, Preset,
+        surroundings::{Panorama, Surroundings},
+    },
+    math,
+};
 
 const COLOURS: [Preset; 5] = [Preset::Black, Preset::Brown, Preset::Red, Preset::Blonde, Preset::Grey];
 

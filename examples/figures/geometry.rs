@@ -1,11 +1,7 @@
 //! Figures of what is drawn: detail, samples, segments and follow strands.
 
 use glam::Vec3;
-use strandline::{
-    Camera, Look, Picture, Style,
-    low_level::render::{LevelOfDetail, PictureSettings},
-    scene::MotionName,
-};
+use strandline::{Camera, Look, Picture, PictureSettings, Style, look::LevelOfDetail, scene::MotionName};
 
 use crate::strip::{joined, magnified};
 use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline::{
     Camera, Hair, Light, Look, Picture, Style,
-    low_level::render::{Environment, fibre::Highlight},
+    look::{Environment, fibre::Highlight},
 };
 
 use crate::strip::joined;

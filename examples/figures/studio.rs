@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use strandline::{
-    Backend, Camera, Hair, Picture, Pose, Scene, Style,
-    low_level::{HeadMotion, Prepared, render::PictureSettings, sim::StrandMethod},
+    Backend, Camera, Hair, HeadMotion, Picture, PictureSettings, Pose, Prepared, Scene, Style,
     scene::{FilmSection, MotionName},
+    settings::StrandMethod,
 };
 
 /// A finished figure, or why there is none.

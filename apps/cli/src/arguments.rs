@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
-use strandline::low_level::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
 use strandline::{
-    Backend, Style,
-    low_level::{Target, What, sim::rods::HairKind},
+    Backend, Style, Target, What,
+    format::{FORMATS, Format, LoadOptions, Scale, Up, endings},
     scene::MotionName,
+    settings::rods::HairKind,
 };
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.

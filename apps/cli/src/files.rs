@@ -1,6 +1,6 @@
 //! `strandline groom`, `info` and `scene`: files without motion.
 
-use strandline::low_level::groom::{Groom, StyleSettings, format};
+use strandline::{Groom, format, settings::StyleSettings};
 
 use crate::arguments::{GroomOptions, InfoOptions, SceneOptions};
 use crate::inputs;

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use strandline::{
-    Scene,
-    low_level::{Cache, base::Value, sim::StrandMethod},
+    Cache, Scene,
     scene::{BodyPart, GroomPart},
+    settings::{StrandMethod, Value},
 };
 
 use crate::arguments::{Inputs, Set, Usage};
@@ -94,7 +94,9 @@ impl Inputs {
 impl Set {
     /// Sets the values in a scene, in their order.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), Usage> {
-        self.values.iter().try_for_each(|text| set(scene, text).map_err(|words| Usage(format!("--set {words}"))))
+        self.values
+            .iter()
+            .try_for_each(|text| set(scene, text).map_err(|words| Usage(format!("--set {words}"))))
     }
 }
 
@@ -133,9 +135,15 @@ mod tests {
         assert_eq!(scene.film.frames, 7);
         assert_eq!(scene.groom.file, std::path::absolute("a b.hair").ok());
         let error = applied(&["film.frame=3"]).unwrap_err();
-        assert!(error.starts_with("--set film.frame is no setting") && error.contains("`film.frames`"), "{error}");
+        assert!(
+            error.starts_with("--set film.frame is no setting") && error.contains("`film.frames`"),
+            "{error}"
+        );
         let error = applied(&["film.frames"]).unwrap_err();
-        assert!(error.contains("needs KEY=VALUE: film.frames: ") && error.contains("1 to 1,000,000"), "{error}");
+        assert!(
+            error.contains("needs KEY=VALUE: film.frames: ") && error.contains("1 to 1,000,000"),
+            "{error}"
+        );
         let error = applied(&["film.frames=0"]).unwrap_err();
         assert!(error.contains("film.frames is 0, expected 1 to"), "{error}");
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use strandline::low_level::render::Picture;
+use strandline::Picture;
 
 /// What a picture's writing led to: its path, or what went wrong.
 pub type Saved = Result<PathBuf, String>;

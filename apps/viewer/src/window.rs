@@ -5,7 +5,8 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::{
     Camera, Scene,
-    low_level::{Command, LiveEvent, Shown, body::Aabb},
+    live::{Command, LiveEvent, Shown},
+    mesh::Aabb,
 };
 
 use crate::{App, panels, stage, strip};

@@ -31,7 +31,7 @@ mod film;
 mod hair;
 mod hair_pose;
 mod head;
-mod live;
+pub mod live;
 mod memory;
 mod painter;
 mod pick;
@@ -44,9 +44,55 @@ mod worker;
 #[cfg(test)]
 mod worker_tests;
 
+pub mod low_level;
 pub mod scene;
 
-pub mod low_level;
+/// Settings as data, and the sections of `[simulation]` and `[style]`. [`settings::Group::TABLE`] lists the settings of a
+/// section with name, kind, range, unit and sentence.
+pub mod settings {
+    pub use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word};
+
+    pub use crate::groom::StyleSettings;
+    pub use crate::sim::{
+        Drag, Preconditioner, StrandMethod, StrandSettings, VolumeSettings, constrain, rods,
+    };
+}
+
+/// Sections of `[look]` and of pictures.
+pub mod look {
+    pub use crate::render::{
+        Background, BodyLook, Clump, Environment, FrameReport, GroupLook, LevelOfDetail, LightKind, Preset,
+        ToneMap, fibre, surroundings,
+    };
+}
+
+/// Meshes and the distance to them.
+pub mod mesh {
+    pub use crate::body::{Aabb, DistanceGrid, SignedDistance};
+    pub use crate::prepare::mesh_unit;
+}
+
+/// GPUs.
+pub mod device {
+    pub use crate::gpu::{Crossed, Gpu, GpuError};
+
+    /// The linked shader modules, each with its name.
+    pub fn shader_modules() -> Vec<(&'static str, &'static str)> {
+        crate::sim::gpu::modules().into_iter().chain(crate::render::gpu::modules()).collect()
+    }
+}
+
+/// Files that are whole or not there, and text of files for terminals.
+pub mod file {
+    pub use strandline_base::{WholeFile, abandon_parts, printable, read_plain};
+}
+
+/// Mathematical functions and random numbers with the same bits on every machine.
+pub mod math {
+    pub use strandline_base::{Random, math::*};
+}
+
+pub use strandline_groom::format;
 
 pub(crate) use strandline_body as body;
 pub(crate) use strandline_gpu as gpu;
@@ -69,7 +115,7 @@ pub use prepare::{Prepared, Sources};
 pub use render::{Camera, Light, Look, Picture, PictureSettings};
 pub use scene::Scene;
 pub use session::{Change, Event};
-pub use sim::{Backend, Settings, StepReport};
+pub use sim::{Backend, Drift, Settings, SimError, StepReport};
 
 // Names of this crate's own modules.
 pub(crate) use bound::BoundStrands;

@@ -96,10 +96,9 @@ impl Scene {
                 origin: key.to_owned(),
                 message: printable(error.to_string().trim_end()).into_owned(),
             },
-            _ if first_index.is_some() => Error::ParseScene {
-                origin: key.to_owned(),
-                message: printable(error.message()).into_owned(),
-            },
+            _ if first_index.is_some() => {
+                Error::ParseScene { origin: key.to_owned(), message: printable(error.message()).into_owned() }
+            }
             _ => SettingError::new(key, printable(text.trim()), expected(row)).into(),
         })?;
         self.take_sections(given);
@@ -149,7 +148,8 @@ fn resolve(key: &str) -> Result<(Vec<Step>, &'static Row), Error> {
             Some((name, index)) => (name, Some(index.parse().map_err(|_| unknown())?)),
             None => (part, None),
         };
-        let found = table.and_then(|table| table.rows.iter().find(|row| row.name == name)).ok_or_else(unknown)?;
+        let found =
+            table.and_then(|table| table.rows.iter().find(|row| row.name == name)).ok_or_else(unknown)?;
         steps.push(Step::Name(name.to_owned()));
         steps.extend(index.map(Step::Index));
         table = match (found.kind, index) {

@@ -64,7 +64,8 @@ fn every_number_outside_its_range_is_refused_with_key_and_range() {
             _ => 1,
         };
         for value in [2.0 * least.abs() + most + 1.0, least - 2.0 * most.abs() - 1.0] {
-            let one = if matches!(row.kind, Kind::Whole(_)) { format!("{value:.0}") } else { format!("{value:e}") };
+            let one =
+                if matches!(row.kind, Kind::Whole(_)) { format!("{value:.0}") } else { format!("{value:e}") };
             let value = if count > 1 { format!("[{}]", vec![one; count].join(", ")) } else { one };
             let error = refused(&key, &value);
             let names = error.contains(&key) || error.contains(&key.replace("[0]", ""));
@@ -147,7 +148,10 @@ fn mistakes_are_refused_with_the_nearest_key_or_the_values_that_may_be() {
 #[test]
 fn settings_explain_themselves() {
     let text = Scene::default().explain("simulation.gravity").unwrap();
-    assert!(text.starts_with("simulation.gravity: ") && text.contains("-9.81") && text.contains("m/s^2"), "{text}");
+    assert!(
+        text.starts_with("simulation.gravity: ") && text.contains("-9.81") && text.contains("m/s^2"),
+        "{text}"
+    );
     let text = Scene::default().explain("wind").unwrap();
     assert!(text.lines().count() > 2 && text.contains("  wind."), "{text}");
 }
