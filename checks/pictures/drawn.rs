@@ -15,7 +15,7 @@ use strandline_render::{
     PictureSettings, Renderer,
 };
 
-/// What is drawn.
+/// Contents of a picture.
 pub struct Drawn {
     pub guides: Guides,
     pub look: Look,

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline_body::{Mesh, Pose};
-use strandline_render::cpu::skin::Skin;
+use strandline_render::cpu::shade::skin::Skin;
 use strandline_render::cpu::{Draw, DrawInput, Occlusion, Radiances, Samples, Shadows, Strands};
 use strandline_render::{BodyLook, Camera, Environment};
 

@@ -1,31 +1,33 @@
-//! For build scripts: links the WESL modules of a crate's stages, and what all crates share, into one WGSL text each.
+//! For build scripts: links each WESL module of a crate's stages, with the kit of all crates, into one WGSL text.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 #[path = "src/threads.rs"]
 mod threads;
 
-/// What the shaders of every crate import as `package::kit`.
+/// The module that the shaders of every crate import as `package::kit`.
 const KIT: &str = include_str!("kit/kit.wesl");
 
-/// What a module with a kernel or a drawing has; the others are imported by such.
+/// Marks of an entry point.
 const ENTRIES: [&str; 3] = ["@compute", "@vertex", "@fragment"];
 
-/// Links every module of a folder that has an entry point, and writes `linked.rs` for `strandline_gpu::linked!`, which
-/// names them all.
+/// Links every module below a folder that has an entry point, and writes `linked.rs` for `strandline_gpu::linked!`,
+/// which names them all. Folders order the files alone: a module is `package::NAME`, wherever it lies.
 ///
 /// Names the sources alone to cargo, never the copies in `OUT_DIR`: those are newer than the script's own run, so
 /// that every later build would run it again and compile the crate anew.
 pub fn link(folder: &str) {
     println!("cargo::rerun-if-changed={folder}");
-    let linker = wesl::Wesl::new(beside_kit(folder));
+    let shaders = shaders(Path::new(folder));
+    let linker = wesl::Wesl::new(beside_kit(&shaders));
     let mut list = String::from("strandline_gpu::linked! {\n");
-    for name in modules(folder) {
+    for (name, _) in shaders.iter().filter(|(_, text)| has_entry(text)) {
         let module = format!("package::{name}").parse().expect("a name is a path");
         match linker.compile(&module) {
-            Ok(linked) => linked.write_artifact(&name),
-            Err(error) => panic!("{folder}/{name}.wesl cannot be linked: {error}"),
+            Ok(linked) => linked.write_artifact(name),
+            Err(error) => panic!("{name}.wesl below {folder} cannot be linked: {error}"),
         }
         writeln!(list, "    {} = \"{name}\",", name.to_uppercase()).expect("a string takes all");
     }
@@ -34,26 +36,51 @@ pub fn link(folder: &str) {
     std::fs::write(Path::new(&out).join("linked.rs"), list).expect("cargo made the folder");
 }
 
-/// A copy of a folder's modules with the kit beside them, since a package is one folder.
-fn beside_kit(folder: &str) -> PathBuf {
+/// The shader modules below a folder, by name: the text of each.
+fn shaders(folder: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for file in std::fs::read_dir(&folder).expect("the shaders lie there") {
+            let path = file.expect("a file of the folder").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "wesl") {
+                let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a module has a name");
+                let text = std::fs::read_to_string(&path).expect("a shader is text");
+                let other = found.insert(name.to_owned(), text);
+                assert!(
+                    other.is_none() && name != "kit",
+                    "two modules are called {name}: {}",
+                    path.display()
+                );
+            }
+        }
+    }
+    found
+}
+
+/// A copy of modules in one folder with the kit beside them, since a package is one folder.
+fn beside_kit(shaders: &BTreeMap<String, String>) -> PathBuf {
     let out = std::env::var_os("OUT_DIR").expect("cargo names it");
     let package = Path::new(&out).join("shaders");
-    // What was there before may be gone from the folder by now.
+    // A module that was renamed leaves its old copy there.
     let _ = std::fs::remove_dir_all(&package);
     std::fs::create_dir_all(&package).expect("cargo made the folder");
-    for file in std::fs::read_dir(folder).expect("the shaders lie there") {
-        let path = file.expect("a file of the folder").path();
-        if path.extension().is_some_and(|ending| ending == "wesl") {
-            let name = path.file_name().expect("it has an ending");
-            let text = std::fs::read_to_string(&path).expect("a shader is text");
-            std::fs::write(package.join(name), with_constants(&text)).expect("cargo made the folder");
-        }
+    for (name, text) in shaders {
+        let file = package.join(format!("{name}.wesl"));
+        std::fs::write(file, with_constants(text)).expect("cargo made the folder");
     }
     let (threads, many) = (threads::THREADS, threads::MANY);
     let sizes = format!("const THREADS = {threads}u;\nconst MANY = {many}u;\n");
     let kit = format!("{KIT}\n// Threads of a workgroup: threads.rs.\n{sizes}");
     std::fs::write(package.join("kit.wesl"), kit).expect("cargo made the folder");
     package
+}
+
+/// True for a module with a kernel or a drawing; other modules are imported by such.
+fn has_entry(text: &str) -> bool {
+    ENTRIES.iter().any(|entry| text.lines().any(|line| line.starts_with(entry)))
 }
 
 /// A shader with the constants that Rust owns: `const NAME = rust("cpu/file.rs");` takes the value of `NAME` in that
@@ -115,20 +142,4 @@ fn number(digits: &str, kind: &str) -> String {
         "u32" | "usize" => format!("{digits}u"),
         other => panic!("a {other}, which a shader has not"),
     }
-}
-
-/// The names of the modules with entry points, in order.
-fn modules(folder: &str) -> Vec<String> {
-    let files = std::fs::read_dir(folder).expect("the shaders lie there");
-    let mut names: Vec<String> = files
-        .map(|file| file.expect("a file of the folder").path())
-        .filter(|path| path.extension().is_some_and(|ending| ending == "wesl"))
-        .filter(|path| {
-            let text = std::fs::read_to_string(path).expect("a shader is text");
-            ENTRIES.iter().any(|entry| text.lines().any(|line| line.starts_with(entry)))
-        })
-        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
-        .collect();
-    names.sort();
-    names
 }

@@ -1,10 +1,11 @@
 //! One stage, one stem: a stage listed in a recipe has files of its name, a timer label and a row
-//! in ARCHITECTURE.md's stage table, and nothing there is without a stage.
+//! in ARCHITECTURE.md's stage table, and every row there has a stage.
 
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::cargo::root;
+use crate::comments;
 
 /// A crate with stages: its CPU backend says which there are.
 struct Recipe {
@@ -34,14 +35,15 @@ const RECIPES: [Recipe; 2] = [
     },
 ];
 
-/// Prints every stage that lacks its file, its line or its row. True when none does.
+/// Prints every stage that lacks its file, its line or its row. True if all are complete.
 pub fn check() -> bool {
-    let problems = problems(root());
+    let mut problems = problems(root());
+    problems.extend(comments::problems());
     for problem in &problems {
         eprintln!("names: {problem}");
     }
     if problems.is_empty() {
-        println!("names: every stage has one name everywhere");
+        println!("names: every stage has one name everywhere, and comments name their subject first");
     }
     problems.is_empty()
 }
@@ -81,15 +83,19 @@ impl Recipe {
         format!("{}/{}", self.crate_folder, backend.list)
     }
 
-    /// Stages without their files or their timer label in one backend.
+    /// Stages without their files or their timer label in one backend. The files may lie in any folder of the
+    /// backend; a folder that is called after its stage has it in its `mod.rs`.
     fn missing(&self, root: &Path, backend: &Backend, stages: &[String]) -> Vec<String> {
         let list = read(&root.join(self.list(backend)));
+        let folder = format!("{}/src/{}", self.crate_folder, backend.folder);
+        let files = files_below(&root.join(&folder));
         let mut found = Vec::new();
         for stage in stages {
             for ending in backend.endings {
-                let file = format!("{}/src/{}/{stage}.{ending}", self.crate_folder, backend.folder);
-                if !root.join(&file).is_file() {
-                    found.push(format!("{stage}: no file {file}"));
+                let file = format!("{stage}.{ending}");
+                let room = format!("{stage}/mod.{ending}");
+                if !files.iter().any(|path| path.ends_with(&file) || path.ends_with(&room)) {
+                    found.push(format!("{stage}: no file {file} below {folder}"));
                 }
             }
             if !list.contains(&format!("\"{stage}\"")) {
@@ -108,6 +114,12 @@ fn timed(text: &str) -> Vec<String> {
     let lines = code.lines().filter(|line| line.ends_with(';'));
     let named = lines.filter_map(|line| Some(line.split_once(" = \"")?.1.split_once("\", ")?.0.to_owned()));
     called.chain(named).collect()
+}
+
+/// The files below a folder.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let paths = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|file| file.path());
+    paths.flat_map(|path| if path.is_dir() { files_below(&path) } else { vec![path] }).collect()
 }
 
 /// The text of every file of a folder.
@@ -146,6 +158,23 @@ mod tests {
                     fn timed(s: S);\n#[cfg(test)]\nmod tests { timed(s, \"no\", f); }";
         assert_eq!(timed(list), ["splat", "mark"]);
         assert_eq!(timed("stages! {\n    /// Sorted.\n    Splat = \"splat\", volume;\n}\n"), ["splat"]);
+    }
+
+    #[test]
+    fn a_stage_lies_in_any_folder_of_its_backend_and_a_longer_name_is_another() {
+        let folder = tempfile::tempdir().unwrap();
+        let backend = Backend { folder: "cpu", list: "list.rs", endings: &["rs"] };
+        let recipe =
+            Recipe { crate_folder: "a", cpu: backend, gpu: Backend { folder: "gpu", ..RECIPES[0].gpu } };
+        let cpu = folder.path().join("a/src/cpu");
+        for file in ["draw/mod.rs", "shadow/depth.rs", "shadow/other_sort.rs"] {
+            std::fs::create_dir_all(cpu.join(file).parent().unwrap()).unwrap();
+            std::fs::write(cpu.join(file), "").unwrap();
+        }
+        std::fs::write(folder.path().join("a/list.rs"), "\"draw\" \"depth\" \"sort\"").unwrap();
+        let stages = ["draw", "depth", "sort"].map(str::to_owned);
+        let missing = recipe.missing(folder.path(), &recipe.cpu, &stages);
+        assert_eq!(missing, ["sort: no file sort.rs below a/src/cpu"]);
     }
 
     #[test]

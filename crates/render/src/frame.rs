@@ -10,8 +10,8 @@ use strandline_base::timed;
 use strandline_body::{Aabb, Mesh, Solids};
 use strandline_groom::Guides;
 
-use crate::cpu::scalp::root_densities;
-use crate::cpu::skin::Skin;
+use crate::cpu::shade::skin::Skin;
+use crate::cpu::strands::scalp::root_densities;
 use crate::cpu::{
     Curves, Draw, DrawInput, Found, Lit, Occlusion, OwnColors, Radiances, Resolve, Samples, Scattering,
     Scheuermann, Seen, Shading, Shadows, Strands, interpolate, keep_outside, layer_colors, opacity_depth,

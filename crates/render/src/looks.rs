@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline_base::{Group, Value};
 
-use crate::cpu::light_field::{self, Field};
+use crate::cpu::scatter::light_field::{self, Field};
 use crate::fibre::{FibreModel, Scheuermann, chiang::Pigment};
 use crate::{Environment, Light, Look, Preset, RenderError, Shadow};
 

@@ -5,7 +5,7 @@ use strandline_base::{
     memory::{self, Need},
 };
 
-use crate::cpu::ribbons::Segment;
+use crate::cpu::draw::ribbons::Segment;
 use crate::{DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
 /// Most lights of a picture: each point that is drawn asks every one of them.
@@ -61,7 +61,7 @@ impl Drawn<'_> {
         let shadows: u64 = casting.map(|light| light.sample_count() as u64).sum::<u64>() + suns;
         let size = u64::from(self.look.shadow.map_size);
         let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");
-        let texel = TEXEL_BYTES + PART_BYTES * crate::cpu::shadow_hair::part_count() as u64;
+        let texel = TEXEL_BYTES + PART_BYTES * crate::cpu::shadow::hair::part_count() as u64;
         let PictureSettings { width, height, supersampling, .. } = self.picture;
         let picture = format!("a picture of {width} x {height} pixels at supersampling {supersampling}");
         let scatters = self.look.fibre.model.scatters_many_times();

@@ -1,8 +1,8 @@
 //! The plan of the house: arrows between crates point down, no circle among the files of a crate, and nothing
 //! longer than a person sees at once.
 //!
-//! What was there before the plan is listed in checks/house.toml with how large it may be: nothing may grow, and
-//! what is mended leaves the list.
+//! Older exceptions are listed in checks/house.toml with their sizes: none may grow, and a mended one leaves
+//! the list.
 
 mod imports;
 mod sizes;
@@ -43,7 +43,7 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("apps/cli", &["strandline", "strandline-viewer"]),
 ];
 
-/// What may be there still: lines by file, lines by function, and circles.
+/// Exceptions of the list: lines by file, lines by function, and circles.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Known {
@@ -52,7 +52,7 @@ struct Known {
     circles: Vec<BTreeSet<String>>,
 }
 
-/// Where the plan is not kept.
+/// Exceptions found in the tree.
 #[derive(Debug, Default)]
 struct Found {
     arrows: Vec<String>,
@@ -88,7 +88,7 @@ fn problems(root: &Path) -> Result<Vec<String>> {
     Ok(compare(&look(root)?, &known))
 }
 
-/// Where code of ours lies.
+/// Folders of code.
 const PLACES: [&str; 6] = ["apps", "checks", "crates", "examples", "fuzz", "xtask"];
 
 fn look(root: &Path) -> Result<Found> {
@@ -146,7 +146,7 @@ impl Found {
     }
 }
 
-/// What lies in a folder, by name.
+/// Entries of a folder, by name.
 fn entries(folder: &Path) -> Result<Vec<(String, std::fs::DirEntry)>> {
     let entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
     let mut named: Vec<_> =

@@ -9,7 +9,7 @@ use glam::{Vec3, Vec4};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
 
-use super::samples::Samples;
+use super::draw::samples::Samples;
 use crate::{Picture, PictureSettings, ToneMap};
 
 /// Rows of pixels handled together by one thread.

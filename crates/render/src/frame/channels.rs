@@ -3,8 +3,8 @@
 use glam::{Vec3, Vec4};
 
 use super::Renderer;
-use crate::cpu::known::{body_depths, depths, nearest_strands};
-use crate::cpu::skin::Skin;
+use crate::cpu::draw::known::{body_depths, depths, nearest_strands};
+use crate::cpu::shade::skin::Skin;
 use crate::cpu::{DrawInput, Radiances, Strands, resolve_linear};
 use crate::{BodyLook, Environment, FrameInput, Layers, PictureSettings};
 

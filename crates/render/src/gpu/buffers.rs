@@ -5,13 +5,13 @@ use strandline_body::Mesh;
 use strandline_gpu::{Buffer, Gpu, GpuError, Scan, Texture, wgpu};
 use strandline_groom::Guides;
 
-use super::fit::BOX;
 use super::inputs::{Frame, LightSource, body_stride};
 use super::records::{Curve, Root, Tap, Vertex};
 use super::scene::Scene;
+use super::shadow::fit::BOX;
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
-use crate::cpu::scalp::root_densities;
-use crate::cpu::tessellate::skin_axes;
+use crate::cpu::strands::scalp::root_densities;
+use crate::cpu::strands::tessellate::skin_axes;
 use crate::{PictureSettings, RenderError};
 
 /// Format of the samples: the widest that blends on every device.

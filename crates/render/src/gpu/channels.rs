@@ -10,7 +10,7 @@ use super::inputs::Frame;
 use super::probe::from_half;
 use super::shade::Numbers;
 use crate::cpu::Samples;
-use crate::cpu::known::{body_depths, nearest_strands};
+use crate::cpu::draw::known::{body_depths, nearest_strands};
 use crate::cpu::resolve_linear;
 use crate::frame::{
     channels::{BLACK, Known},

@@ -4,11 +4,12 @@ use strandline_gpu::{Amount, Bound, BoundDrawing, Buffer, Recorder, Targets, gro
 
 use super::buffers::{CELLS, Groom, Maps};
 use super::inputs::body_stride;
-use super::light_grid::{self, LightGrid};
+use super::scatter::light_grid::{self, LightGrid};
 use super::scene::Scene;
+use super::shadow::fit;
 use super::stages::Stages;
-use super::{buffers, draw, fit};
-use crate::cpu::lattice::DIRECTIONS;
+use super::{buffers, draw};
+use crate::cpu::scatter::lattice::DIRECTIONS;
 
 /// What a frame is recorded from.
 pub(super) struct Bounds<'a> {

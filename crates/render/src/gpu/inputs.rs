@@ -12,7 +12,7 @@ use crate::level_of_detail::EveryFew;
 use crate::{LightKind, Look, ToneMap};
 
 mirror! {
-    /// Light that changes slowly with direction: see cpu/light_field.rs. Last numbers: the share of its width that a
+    /// Light that changes slowly with direction: see cpu/scatter/light_field.rs. Last numbers: the share of its width that a
     /// strand has at the skin; what skin is multiplied with where roots are dense.
     pub(super) struct Around {
         pub a: [f32; 4],
@@ -225,7 +225,7 @@ impl Frame {
             near: input.camera.near,
             background_top: settings.background.top.to_array(),
             background_bottom: settings.background.bottom.to_array(),
-            widening: crate::cpu::interpolate::widening(input.look, scene.guide_count),
+            widening: crate::cpu::strands::interpolate::widening(input.look, scene.guide_count),
             guide_count: scene.guide_count as u32,
             guide_points: scene.guide_points as u32,
             curve_points: scene.curve_points() as u32,

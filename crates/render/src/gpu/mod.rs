@@ -4,39 +4,28 @@
 //! A [`GpuRenderer`] keeps its buffers from frame to frame; a frame is one submission. Guide points may
 //! lie on the device already, and the picture may stay there.
 
-mod background;
-mod body;
-mod bound;
-mod bound_solids;
 mod buffers;
 mod channels;
 mod codes;
-mod device_points;
 mod draw;
-mod fit;
 mod frame;
 mod inputs;
-mod interpolate;
-mod light_grid;
 mod linked;
-mod occlude;
-mod opacity_depth;
-mod opacity_layers;
-mod points;
 mod probe;
 mod records;
 mod renderer;
 mod resolve;
+mod scatter;
 mod scene;
 mod shade;
-mod sort;
+mod shadow;
 mod stages;
-mod tessellate;
+mod strands;
 
-pub use device_points::DevicePoints;
 pub use linked::modules;
 pub use renderer::GpuRenderer;
 pub use stages::declarations;
+pub use strands::device_points::DevicePoints;
 
 /// Most lights of a picture.
 pub const MAX_LIGHTS: usize = 32;

@@ -5,10 +5,11 @@ use strandline_gpu::{
 };
 
 use super::buffers::{Groom, Maps, Strands};
-use super::{
-    background, body, bound, draw, fit, interpolate, light_grid, occlude, opacity_depth, opacity_layers,
-    resolve, shade, sort, tessellate,
-};
+use super::draw::{background, body, sort};
+use super::scatter::{light_grid, occlude};
+use super::shadow::{fit, opacity_depth, opacity_layers};
+use super::strands::{bound, interpolate, tessellate};
+use super::{draw, resolve, shade};
 
 /// Declares what of a frame is bound once for all pictures: each kernel, and each drawing with how it joins what is
 /// behind it, with its buffers. What compiles, keeps and binds them follows from that.

@@ -1,0 +1,61 @@
+//! What scattered light is made of: what it comes from, and what lies in a cell of its grid.
+
+use std::sync::Arc;
+
+use glam::{Vec3, Vec4};
+
+use super::lattice::{Lattice, Mix};
+use super::light_field::Field;
+use super::occlusion::Occlusion;
+use crate::Light;
+use crate::cpu::{ShadowBody, Shadows, Strands};
+use crate::level_of_detail::EveryFew;
+
+/// What light is scattered by.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// All drawn hair.
+    pub strands: &'a Strands,
+    /// The strands that are summed.
+    pub summed: EveryFew,
+    /// Share of each shadow light that reaches every point of these, shape `[light][point]`, empty for the others; behind
+    /// these, where the hair is mixed, how much of the lightest it is, by channel.
+    pub reached: &'a [Vec<f32>],
+    /// The body and the reflectance of its skin.
+    pub body: Option<(ShadowBody<'a>, Vec3)>,
+    /// Shadows of the same lights.
+    pub shadows: &'a Shadows,
+    /// How much of the surroundings hair hides; its grid is taken.
+    pub occlusion: &'a Occlusion,
+    /// The lights.
+    pub lights: &'a [Light],
+    /// Light from all around.
+    pub around: Field,
+    /// The fibre's scattering among directions.
+    pub lattice: &'a Arc<Lattice>,
+    /// Where the camera stands \[m\], world space.
+    pub eye: Vec3,
+    /// How many times light is scattered.
+    pub rounds: u32,
+}
+
+/// What lies in a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Cell {
+    /// Which cell of the grid it is.
+    pub(crate) index: usize,
+    /// Area of its hair, full width times length, over that of a face.
+    pub(crate) hair: f32,
+    /// Mean direction of the hair, of unit length.
+    pub(crate) tangent: Vec3,
+    /// Share of the hair that has it; the rest lies every way.
+    pub(crate) order: f32,
+    /// Area of skin over that of a face, times its normal.
+    pub(crate) skin: Vec3,
+    /// Light that skin meets straight from lights, as radiance of a white surface.
+    pub(crate) skin_light: Vec4,
+    /// The lattice's number of the tangent.
+    pub(crate) nearest: usize,
+    /// Shares of the darkest and the lightest hair.
+    pub(crate) mix: Mix,
+}

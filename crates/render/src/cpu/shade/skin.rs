@@ -1,0 +1,132 @@
+//! How the body reflects light: soft diffuse and a mild highlight.
+
+use std::f32::consts::PI;
+use std::ops::Range;
+
+use glam::Vec3;
+
+use crate::cpu::{LightGrid, Occlusion, Shadows};
+use crate::{BodyLook, Environment, Light};
+
+/// What lights the body.
+#[derive(Clone, Copy)]
+pub struct Skin<'a> {
+    /// How it reflects.
+    pub look: &'a BodyLook,
+    /// The lights.
+    pub lights: &'a [Light],
+    /// Their shadows of hair and body.
+    pub shadows: &'a Shadows,
+    /// How much of the surroundings the hair hides.
+    pub occlusion: &'a Occlusion,
+    /// Light that hair and skin scatter, where the fibre has it; that from all around is in it.
+    pub grid: Option<&'a LightGrid>,
+    /// Light from all around.
+    pub environment: &'a Environment,
+    /// What its colour is multiplied with where roots are dense.
+    pub scalp: Vec3,
+    /// Where the camera stands \[m\], world space.
+    pub eye: Vec3,
+}
+
+impl Skin<'_> {
+    /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space, where roots are so
+    /// dense, 0 to 1.
+    pub fn radiance(&self, point: Vec3, normal: Vec3, rooted: f32) -> Vec3 {
+        let color = self.look.color * Vec3::ONE.lerp(self.scalp, rooted);
+        let look = &BodyLook { color, ..*self.look };
+        let to_eye = (self.eye - point).normalize_or(normal);
+        let around = match self.grid {
+            Some(grid) => grid.on_skin(point, normal),
+            None => self.occlusion.ambient_on(point, normal, self.environment),
+        };
+        let mut sum = look.color * around;
+        let mut first = 0;
+        while let Some(light) = self.lights.get(first) {
+            let places = first..(first + light.sample_count()).min(self.lights.len());
+            first = places.end;
+            sum += self.reflected(point, places, |to_light| reflectance(look, normal, to_eye, to_light));
+        }
+        sum
+    }
+
+    /// What a point reflects of a light with these places.
+    fn reflected(&self, point: Vec3, places: Range<usize>, reflectance: impl Fn(Vec3) -> Vec3) -> Vec3 {
+        let mut blockers = None;
+        let mut sum = Vec3::ZERO;
+        for index in places.clone() {
+            let lit = self.lights[index].at(point);
+            let reflected = reflectance(lit.to_light) * lit.radiance;
+            if reflected == Vec3::ZERO {
+                continue;
+            }
+            let mut passed = 1.0;
+            if let Some(map) = self.shadows.map(index) {
+                let blockers = blockers.get_or_insert_with(|| self.shadows.blockers(places.clone(), point));
+                passed = map.on_skin(point, blockers, [index - places.start, places.len()]);
+            }
+            sum += reflected * (PI * passed);
+        }
+        sum
+    }
+}
+
+/// Share of a light's irradiance (on a surface that faces it) that leaves toward the camera
+/// \[1/sr\], linear RGB. All directions are unit vectors away from the surface.
+pub fn reflectance(look: &BodyLook, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
+    let facing = normal.dot(to_light);
+    // Light wrapped around the edge of shadow, scaled so that no energy is gained.
+    let wrap = look.wrap;
+    let diffuse = ((facing + wrap) / (1.0 + wrap)).max(0.0) / (1.0 + wrap);
+    look.color * (diffuse / PI) + Vec3::splat(highlight(look, normal, to_eye, to_light))
+}
+
+/// Microfacets with the distribution and masking of \[Walter2007\] and the Fresnel term of
+/// \[Schlick1994\].
+fn highlight(look: &BodyLook, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> f32 {
+    let (light, eye) = (normal.dot(to_light), normal.dot(to_eye).max(1e-3));
+    if light <= 0.0 {
+        return 0.0;
+    }
+    let half = (to_light + to_eye).normalize_or(normal);
+    let spread = look.roughness.powi(4);
+    let cosine = normal.dot(half).max(0.0);
+    let lobe = cosine * cosine * (spread - 1.0) + 1.0;
+    let distribution = spread / (PI * lobe * lobe); // [Walter2007 eq. 33]
+    let masking = |cosine: f32| 2.0 * cosine / (cosine + (spread + (1.0 - spread) * cosine * cosine).sqrt());
+    let fresnel = look.specular + (1.0 - look.specular) * (1.0 - to_eye.dot(half).max(0.0)).powi(5);
+    // The cosine of the irradiance cancels one in the denominator.
+    distribution * fresnel * masking(light) * masking(eye) / (4.0 * eye)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_more_light_leaves_than_arrives() {
+        let look = BodyLook { color: Vec3::ONE, wrap: 0.5, specular: 0.04, roughness: 0.5, scalp: 0.0 };
+        let to_light = Vec3::new(0.6, 0.8, 0.0);
+        let mut total = 0.0;
+        let count = 200;
+        for ring in 0..count {
+            // Equal steps of the squared sine: equal shares of the cosine-weighted hemisphere.
+            let sine = ((ring as f32 + 0.5) / count as f32).sqrt();
+            let cosine = (1.0 - sine * sine).sqrt();
+            for turn in 0..64 {
+                let angle = turn as f32 / 64.0 * 2.0 * PI;
+                let to_eye = Vec3::new(sine * angle.cos(), cosine, sine * angle.sin());
+                total += reflectance(&look, Vec3::Y, to_eye, to_light).x * PI / (count * 64) as f32;
+            }
+        }
+        // Irradiance is 0.8 of the light; the wrap shifts some of it, the highlight adds at most 4 %
+        // and its grazing part.
+        assert!(total > 0.5 && total < 0.8 * 1.08, "{total}");
+    }
+
+    #[test]
+    fn light_from_behind_leaves_nothing() {
+        let look = BodyLook { wrap: 0.0, ..BodyLook::default() };
+        assert_eq!(reflectance(&look, Vec3::Y, Vec3::Y, Vec3::new(0.1, -0.99, 0.0)), Vec3::ZERO);
+    }
+}

@@ -1,0 +1,280 @@
+//! Light that hair and skin scatter many times, and `shade` with it.
+
+use glam::{Vec3, Vec4};
+use strandline_gpu::{
+    Bindings, Bound, BoundDrawing, Buffer, Declaration, Drawing, Gpu, GpuError, Kernel, kernel,
+};
+
+use crate::RenderError;
+use crate::cpu::scatter::lattice::{DIRECTIONS, MOST_ENDS, TANGENTS};
+use crate::cpu::scatter::mixture::Source;
+use crate::cpu::shade::shade_chiang::Made;
+use crate::fibre::chiang::Table;
+use crate::gpu::buffers::{CELLS, Groom, Maps, PLANE, Strands};
+use crate::gpu::draw::body::Body;
+use crate::gpu::inputs::Frame;
+use crate::gpu::records::{LightCell, Vertex};
+use crate::gpu::{MAX_SHADOWS, draw};
+
+/// Sums of a cell: see light_sums.wesl.
+const SUMS: usize = 13 + MAX_SHADOWS;
+/// Vectors of a cell behind the fibre's tables, and where they begin.
+const GLOW: usize = 13;
+const FIRST_GLOW: usize = 28_672;
+/// Lines that begin on one of three faces of the grid.
+pub(crate) const LINES: usize = 3 * PLANE;
+/// Threads of a cell that scatters: directions, rounded up.
+const SCATTERERS: usize = 32;
+
+kernel! {
+    /// One thread is one segment.
+    pub(crate) struct SumHair in "light_sums" (crate::gpu::linked::LIGHT_SUMS), entry "sum_hair" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        2 colors: Read [u32; 2],
+        4 maps: Read [u32; 4],
+        5 body_depths: Read f32,
+        6 cubes: Read [f32; 4],
+        9 sums: ReadWrite u32,
+    }
+}
+
+kernel! {
+    /// One thread is one triangle.
+    pub(crate) struct SumSkin in "light_sums" (crate::gpu::linked::LIGHT_SUMS), entry "sum_skin" {
+        0 frame: Read Frame,
+        4 maps: Read [u32; 4],
+        5 body_depths: Read f32,
+        7 triangles: Read u32,
+        8 vertices: Read Vertex,
+        9 sums: ReadWrite u32,
+    }
+}
+
+kernel! {
+    /// One thread is one cell.
+    pub(crate) struct Prepare in "light_prepare" (crate::gpu::linked::LIGHT_PREPARE), entry "prepare" {
+        0 frame: Read Frame,
+        4 open: Read [f32; 4],
+        6 cubes: Read [f32; 4],
+        9 sums: ReadWrite u32,
+        10 cells: ReadWrite LightCell,
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One thread is one line of cells along one direction.
+    pub(crate) struct Carry in "light_grid" (crate::gpu::linked::LIGHT_GRID), entry "carry" {
+        0 frame: Read Frame,
+        10 cells: ReadWrite LightCell,
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One workgroup is one cell.
+    pub(crate) struct Scatter in "light_grid" (crate::gpu::linked::LIGHT_GRID), entry "scatter", threads (Some(SCATTERERS)) {
+        0 frame: Read Frame,
+        6 cubes: Read [f32; 4],
+        10 cells: ReadWrite LightCell,
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One thread is one cell.
+    pub(crate) struct Gather in "light_gather" (crate::gpu::linked::LIGHT_GATHER), entry "gather" {
+        0 frame: Read Frame,
+        4 open: Read [f32; 4],
+        6 cubes: Read [f32; 4],
+        7 glow: ReadWrite [f32; 4],
+        10 cells: ReadWrite LightCell,
+        11 rays: ReadWrite [f32; 4],
+    }
+}
+
+kernel! {
+    /// One thread is one point.
+    pub(crate) struct ShadeChiang in "shade_chiang" (crate::gpu::linked::SHADE_CHIANG), entry "shade_chiang" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        4 maps: Read [u32; 4],
+        5 body_depths: Read f32,
+        6 cubes: Read [f32; 4],
+        7 radiances: ReadWrite [u32; 2],
+    }
+}
+
+/// The declarations of its kernels.
+pub(crate) fn declarations() -> [Declaration; 7] {
+    [
+        SumHair::declaration(),
+        SumSkin::declaration(),
+        Prepare::declaration(),
+        Carry::declaration(),
+        Scatter::declaration(),
+        Gather::declaration(),
+        ShadeChiang::declaration(),
+    ]
+}
+
+/// The kernels and buffers of scattered light, there once a look asks for them.
+pub(crate) struct LightGrid {
+    sum_hair: Kernel<SumHair<'static>>,
+    sum_skin: Kernel<SumSkin<'static>>,
+    prepare: Kernel<Prepare<'static>>,
+    carry: Kernel<Carry<'static>>,
+    scatter: Kernel<Scatter<'static>>,
+    gather: Kernel<Gather<'static>>,
+    shade: Kernel<ShadeChiang<'static>>,
+    body: Drawing<Body<'static>>,
+    sums: Buffer<u32>,
+    cells: Buffer<LightCell>,
+    rays: Buffer<[f32; 4]>,
+    /// The fibre's tables with its scattering among directions.
+    lattice: Buffer<[f32; 4]>,
+    /// The fibre's tables, and scattered light of every cell.
+    glow: Buffer<[f32; 4]>,
+    made: Option<Made>,
+    bounds: Option<Bounds>,
+}
+
+/// The kernels, bound to the buffers of the moment.
+pub(crate) struct Bounds {
+    pub sum_hair: Bound,
+    pub sum_skin: Bound,
+    pub prepare: Bound,
+    pub carry: Bound,
+    pub scatter: Bound,
+    pub gather: Bound,
+    pub shade: Bound,
+    pub body: BoundDrawing,
+}
+
+impl LightGrid {
+    pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
+        Ok(Self {
+            sum_hair: Kernel::new(gpu, &[])?,
+            sum_skin: Kernel::new(gpu, &[])?,
+            prepare: Kernel::new(gpu, &[])?,
+            carry: Kernel::new(gpu, &[])?,
+            scatter: Kernel::new(gpu, &[])?,
+            gather: Kernel::new(gpu, &[])?,
+            shade: Kernel::new(gpu, &[])?,
+            body: Drawing::new(gpu, &draw::body_output(), &[])?,
+            sums: Buffer::new(gpu, "sums of cells", SUMS * CELLS)?,
+            cells: Buffer::new(gpu, "cells", CELLS)?,
+            rays: Buffer::new(gpu, "light along directions", 2 * DIRECTIONS * CELLS)?,
+            lattice: Buffer::new(gpu, "scattering among directions", Made::lattice_len())?,
+            glow: Buffer::new(gpu, "scattered light", FIRST_GLOW + GLOW * CELLS)?,
+            made: None,
+            bounds: None,
+        })
+    }
+
+    /// Brings the tables of a fibre, and binds the kernels where [`Self::forget`] was called.
+    pub fn prepare(
+        &mut self,
+        gpu: &Gpu,
+        source: Source,
+        groom: &Groom,
+        strands: &Strands,
+        maps: &Maps,
+    ) -> Result<(), RenderError> {
+        self.write(source)?;
+        if self.bounds.is_none() {
+            self.bounds = Some(self.bind(gpu, groom, strands, maps)?);
+        }
+        Ok(())
+    }
+
+    /// The buffers that the kernels were bound to are gone.
+    pub fn forget(&mut self) {
+        self.bounds = None;
+    }
+
+    /// The kernels, where they are bound.
+    pub fn bounds(&self) -> Option<&Bounds> {
+        self.bounds.as_ref()
+    }
+
+    /// Tables of a fibre, where they are not there yet.
+    fn write(&mut self, source: Source) -> Result<(), RenderError> {
+        if self.made.as_ref().is_some_and(|made| made.from == source) {
+            return Ok(());
+        }
+        let made = Made::new(source);
+        let table = made.device_table();
+        let numbers = |entries: Vec<Vec4>| entries.iter().map(|entry| entry.to_array()).collect::<Vec<_>>();
+        self.glow.write(&numbers(table))?;
+        self.lattice.write(&numbers(made.device_lattice()))?;
+        self.made = Some(made);
+        Ok(())
+    }
+
+    /// The sums, to be cleared before each frame.
+    pub fn sums(&self) -> &Buffer<u32> {
+        &self.sums
+    }
+
+    /// Binds the kernels.
+    fn bind(&self, gpu: &Gpu, groom: &Groom, strands: &Strands, maps: &Maps) -> Result<Bounds, GpuError> {
+        let Groom { frame, cubes: open, triangles, vertices, .. } = groom;
+        let Strands { points, radiances, .. } = strands;
+        let Maps { texels: maps, body: body_depths, .. } = maps;
+        let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
+        Ok(Bounds {
+            sum_hair: self
+                .sum_hair
+                .bind(gpu, &SumHair { frame, points, colors: radiances, maps, body_depths, cubes, sums })?,
+            sum_skin: self
+                .sum_skin
+                .bind(gpu, &SumSkin { frame, maps, body_depths, triangles, vertices, sums })?,
+            prepare: self.prepare.bind(gpu, &Prepare { frame, open, cubes, sums, cells, rays })?,
+            carry: self.carry.bind(gpu, &Carry { frame, cells, rays })?,
+            scatter: self.scatter.bind(gpu, &Scatter { frame, cubes, cells, rays })?,
+            gather: self.gather.bind(gpu, &Gather { frame, open, cubes, glow, cells, rays })?,
+            shade: self
+                .shade
+                .bind(gpu, &ShadeChiang { frame, points, maps, body_depths, cubes: glow, radiances })?,
+            body: self
+                .body
+                .bind(gpu, &Body { frame, maps, body_depths, cubes: glow, triangles, vertices })?,
+        })
+    }
+}
+
+const _: () = assert!(crate::fibre::chiang::ENTRIES <= FIRST_GLOW);
+
+impl Made {
+    /// The tables as a device reads them.
+    fn device_table(&self) -> Vec<Vec4> {
+        let mut entries = self.table.entries.clone();
+        self.note(&self.table, &mut entries);
+        entries
+    }
+
+    /// Behind the tables directions of hair and what it shows.
+    fn device_lattice(&self) -> Vec<Vec4> {
+        let mut entries = self.lattice.entries();
+        self.note(self.lattice.table(), &mut entries);
+        entries
+    }
+
+    /// Single numbers, in the last lanes of the first entries.
+    fn note(&self, table: &Table, entries: &mut [Vec4]) {
+        let Source { fibre, darkest, lightest, .. } = self.from;
+        let albedos: Vec<Vec3> = self.lattice.albedos().map(Vec4::truncate).collect();
+        let [dark, light] = [albedos[0], albedos[albedos.len() - 1]];
+        let scale = fibre.color_scale() as f32;
+        let single = [table.floor, albedos.len() as f32, fibre.tip_pigment, scale];
+        let vectors = [dark, light, darkest, self.from.of_darkest(lightest)];
+        let numbers = single.into_iter().chain(vectors.into_iter().flat_map(|vector| vector.to_array()));
+        entries.iter_mut().zip(numbers).for_each(|(entry, number)| entry.w = number);
+    }
+
+    fn lattice_len() -> usize {
+        crate::fibre::chiang::ENTRIES + TANGENTS + MOST_ENDS * TANGENTS * DIRECTIONS * DIRECTIONS
+    }
+}

@@ -1,0 +1,71 @@
+//! `shade`: light from every point of the hair toward the camera.
+
+use strandline_gpu::{Bound, Gpu, Kernel, kernel};
+
+use crate::gpu::buffers::{Groom, Maps, Strands};
+use crate::gpu::inputs::Frame;
+use crate::lights::first_sample;
+use crate::{Light, RenderError};
+
+kernel! {
+    /// Radiances of points by the layer of a light's map instead; one thread is one point.
+    pub(crate) struct LayerColors in "shade" (crate::gpu::linked::SHADE), entry "layer_colors" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        4 maps: Read [u32; 4],
+        7 radiances: ReadWrite [u32; 2],
+    }
+}
+
+kernel! {
+    /// Numbers of points in the place of their light; one thread is one point.
+    pub(crate) struct Numbers in "shade" (crate::gpu::linked::SHADE), entry "numbers" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        7 radiances: ReadWrite [u32; 2],
+    }
+}
+
+kernel! {
+    /// One thread is one point.
+    pub(crate) struct Shade in "shade" (crate::gpu::linked::SHADE), entry "shade" {
+        0 frame: Read Frame,
+        1 points: Read [f32; 4],
+        4 maps: Read [u32; 4],
+        5 body_depths: Read f32,
+        6 cubes: Read [f32; 4],
+        7 radiances: ReadWrite [u32; 2],
+    }
+}
+
+/// Hair coloured by the layers of a light's map, where that is asked for.
+#[derive(Default)]
+pub(crate) struct LayerColoring {
+    /// The light, as the host counts lights.
+    pub light: Option<usize>,
+    /// The kernel for a place of it.
+    compiled: Option<(usize, Kernel<LayerColors<'static>>)>,
+}
+
+impl LayerColoring {
+    /// What colours the hair, if a light with shadow is chosen for it.
+    pub fn bind(
+        &mut self,
+        gpu: &Gpu,
+        lights: &[Light],
+        groom: &Groom,
+        strands: &Strands,
+        maps: &Maps,
+    ) -> Result<Option<Bound>, RenderError> {
+        let chosen = self.light.filter(|&light| lights.get(light).is_some_and(|light| light.shadow));
+        let Some(light) = chosen.map(|light| first_sample(lights, light)) else { return Ok(None) };
+        if self.compiled.as_ref().is_none_or(|(compiled, _)| *compiled != light) {
+            self.compiled = Some((light, Kernel::new(gpu, &[("LAYERS_OF", light as f64)])?));
+        }
+        let Groom { frame, .. } = groom;
+        let Strands { points, radiances, .. } = strands;
+        let buffers = LayerColors { frame, points, maps: &maps.texels, radiances };
+        let bind = |(_, kernel): &(usize, Kernel<LayerColors>)| kernel.bind(gpu, &buffers);
+        Ok(self.compiled.as_ref().map(bind).transpose()?)
+    }
+}

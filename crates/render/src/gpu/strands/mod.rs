@@ -1,0 +1,8 @@
+//! Strands as they are drawn: guides tessellated, strands between them, strands that guides carry.
+
+pub(crate) mod bound;
+mod bound_solids;
+pub(crate) mod device_points;
+pub(crate) mod interpolate;
+pub(crate) mod points;
+pub(crate) mod tessellate;

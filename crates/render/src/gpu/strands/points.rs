@@ -1,0 +1,128 @@
+//! Guide points: where they come from, and what reads them.
+
+use strandline_base::SettingError;
+use strandline_body::Solids;
+use strandline_gpu::{Bound, Buffer, Gpu, Kernel, wgpu};
+use strandline_groom::{Binding, Guides};
+
+use super::bound::BoundStrands;
+use super::device_points::DevicePoints;
+use super::tessellate::Tessellate;
+use crate::gpu::buffers::{Groom, Strands, floats};
+use crate::{FrameInput, RenderError};
+
+/// What guide points go through before strands are grown about them.
+#[derive(Default)]
+pub(crate) struct GuidePoints {
+    /// What places the strands where guides carry them.
+    bound: Option<BoundStrands>,
+    /// `tessellate` bound to pairs of buffers of guide points.
+    tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
+}
+
+impl GuidePoints {
+    /// As [`GpuRenderer::bind`](crate::gpu::GpuRenderer::bind).
+    pub fn bind(
+        &mut self,
+        gpu: &Gpu,
+        groom: &Groom,
+        guides: &Guides,
+        binding: &Binding,
+        solids: &Solids,
+    ) -> Result<(), RenderError> {
+        let shape = [binding.strands().strand_count(), binding.strands().points_per_strand()];
+        if shape != [guides.strand_count(), guides.points_per_strand()] {
+            let expected = "those of the renderer";
+            return Err(SettingError::new("the bound strands", format!("{shape:?}"), expected).into());
+        }
+        self.bound = Some(BoundStrands::new(gpu, binding, solids, &groom.frame, &groom.places)?);
+        Ok(())
+    }
+
+    /// What places the strands, where guides carry them.
+    pub fn stages(
+        &mut self,
+        gpu: &Gpu,
+        groom: &Groom,
+        points: Option<DevicePoints>,
+    ) -> Result<Vec<(Bound, [u32; 3])>, RenderError> {
+        let Some(bound) = &mut self.bound else { return Ok(Vec::new()) };
+        Ok(bound.stages(gpu, &groom.frame, points)?.into())
+    }
+
+    /// Where guide points of the host lie.
+    pub fn of_host<'a>(&'a self, groom: &'a Groom) -> &'a Buffer<f32> {
+        self.bound.as_ref().map_or(&groom.places, BoundStrands::now)
+    }
+
+    /// Guide points must be those of the renderer's guides, and on its device.
+    pub fn check(
+        &self,
+        gpu: &Gpu,
+        groom: &Groom,
+        input: &FrameInput,
+        points: Option<DevicePoints>,
+    ) -> Result<(), RenderError> {
+        let expected = self.of_host(groom).len();
+        let (found, here) = match points {
+            None => (floats(input.positions).len(), true),
+            Some(DevicePoints { before, after, .. }) => (
+                if before.len() == expected { after.len() } else { before.len() },
+                [before, after].iter().all(|buffer| buffer.gpu().device() == gpu.device()),
+            ),
+        };
+        if found == expected && here {
+            return Ok(());
+        }
+        let device = if here { "" } else { " on another device" };
+        let expected = "those of the renderer's guides, on its device";
+        Err(SettingError::new("the number of guide points", format!("{}{device}", found / 3), expected)
+            .into())
+    }
+
+    /// What keeps so many drawn strands out of solids, where guides carry them.
+    pub fn keep_outside(
+        &mut self,
+        gpu: &Gpu,
+        groom: &Groom,
+        strands: &Strands,
+        count: usize,
+    ) -> Result<Option<(Bound, [u32; 3])>, RenderError> {
+        let Some(bound) = &mut self.bound else { return Ok(None) };
+        Ok(Some(bound.keep_outside(gpu, &groom.frame, strands, count)?))
+    }
+
+    /// `tessellate`, bound to guide points; the last two pairs of buffers stay bound.
+    pub fn tessellate(
+        &mut self,
+        gpu: &Gpu,
+        kernel: &Kernel<Tessellate<'static>>,
+        groom: &Groom,
+        strands: &Strands,
+        points: Option<DevicePoints>,
+    ) -> Result<Bound, RenderError> {
+        let (before, after) = match &points {
+            Some(points) if self.bound.is_none() => (points.before, points.after),
+            // Bound strands are placed there.
+            _ => (&groom.places, &groom.places),
+        };
+        let pair = [before.raw().clone(), after.raw().clone()];
+        if let Some((_, bound)) = self.tessellates.iter().find(|(known, _)| *known == pair) {
+            return Ok(bound.clone());
+        }
+        let Groom { frame, roots, clumps, .. } = groom;
+        let Strands { tables, curves, scales, .. } = strands;
+        let buffers = Tessellate { frame, before, after, roots, tables, curves, clumps, scales };
+        let bound = kernel.bind(gpu, &buffers)?;
+        if self.tessellates.len() > 1 {
+            self.tessellates.remove(0);
+        }
+        self.tessellates.push((pair, bound.clone()));
+        Ok(bound)
+    }
+
+    /// The buffers of the strands are gone.
+    pub fn forget(&mut self) {
+        self.tessellates.clear();
+    }
+}
