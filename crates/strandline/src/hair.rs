@@ -172,7 +172,7 @@ impl Hair {
 
     /// Where pictures are drawn, the same way.
     pub fn drawn_on(&self) -> String {
-        self.session.studio().drawn_on()
+        self.session.view().drawn_on()
     }
 
     /// What happened to the backend since the last call, human-readable.
@@ -271,17 +271,17 @@ impl Hair {
 
     /// The view of the last picture; before the first that of the scene.
     pub fn camera(&self) -> &Camera {
-        self.session.studio().camera()
+        self.session.view().camera()
     }
 
     /// The look of the last picture; before the first that of the scene.
     pub fn look(&self) -> &Look {
-        self.session.studio().look()
+        self.session.view().look()
     }
 
     /// The lights.
     pub fn lights(&self) -> &[Light] {
-        self.session.studio().lights()
+        self.session.view().lights()
     }
 
     /// Changes the lights, from the next picture on.
@@ -294,7 +294,7 @@ impl Hair {
 
     /// The look of the body.
     pub fn body_look(&self) -> &BodyLook {
-        self.session.studio().body_look()
+        self.session.view().body_look()
     }
 
     /// Changes the look of the body, from the next picture on.
@@ -307,7 +307,7 @@ impl Hair {
 
     /// The rule by which detail follows distance and the size of a pixel.
     pub fn level_of_detail(&self) -> LevelOfDetail {
-        self.session.studio().level_of_detail()
+        self.session.view().level_of_detail()
     }
 
     /// Changes how detail follows distance and the size of a pixel, from the next picture on.
@@ -356,7 +356,7 @@ impl Hair {
     /// # Errors
     /// The GPU that drew it was lost.
     pub fn opacity_map(&self, light: usize) -> Result<Option<Picture>, Error> {
-        Ok(self.session.studio().maps(light)?.map(|[opacity, _]| opacity))
+        Ok(self.session.view().maps(light)?.map(|[opacity, _]| opacity))
     }
 
     /// The depth of the first hair in that map as grey, white the nearest; `None` as there.
@@ -364,7 +364,7 @@ impl Hair {
     /// # Errors
     /// As there.
     pub fn depth_map(&self, light: usize) -> Result<Option<Picture>, Error> {
-        Ok(self.session.studio().maps(light)?.map(|[_, depth]| depth))
+        Ok(self.session.view().maps(light)?.map(|[_, depth]| depth))
     }
 
     /// Changes size and finish of the pictures; where they are drawn stays.
@@ -386,7 +386,7 @@ impl Hair {
 
     /// The simulated strands at rest.
     pub fn guides(&self) -> &Guides {
-        self.session.studio().guides()
+        self.session.view().guides()
     }
 
     /// The state of the simulation. On a GPU this waits, unless nothing has moved since the last call.
@@ -416,6 +416,6 @@ impl Hair {
 
     /// The box around hair and body at rest \[m\], head space.
     pub fn bounds(&self) -> Aabb {
-        self.session.studio().bounds()
+        self.session.view().bounds()
     }
 }

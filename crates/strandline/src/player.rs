@@ -5,7 +5,7 @@ use crate::{
     gpu::Gpu,
     groom::Guides,
     render::{Camera, Look, PictureSettings},
-    session::{Change, Event, Session, Simulation, Task, course::Course},
+    session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
     sim::{Drift, Settings, State},
     worker::Worker,
 };
@@ -18,7 +18,7 @@ pub struct Player {
     session: Session<Worker<Simulation>>,
     /// Changed by [`Player::set_settings`] before the next frame is simulated.
     change: Option<Settings>,
-    course: Course,
+    timing: FilmTiming,
     draw: bool,
     overlap: bool,
     frames: u32,
@@ -89,12 +89,12 @@ impl Player {
         let mut session = Session::open(prepared, devices.into())?;
         notes.extend(session.take_notes());
         let here = session.simulation().end();
-        let course = Course::new(session.scene(), session.head().clone(), here);
+        let timing = FilmTiming::new(session.scene(), session.head().clone(), here);
         let frames = session.scene().film.frames;
         Ok(Self {
             session: session.beside()?,
             change: None,
-            course,
+            timing,
             draw,
             overlap: true,
             frames,
@@ -178,7 +178,7 @@ impl Player {
 
     /// The simulated strands at rest.
     pub fn guides(&self) -> &Guides {
-        self.session.studio().guides()
+        self.session.view().guides()
     }
 
     /// The state of the simulation: as long as a frame is on its way, before it or after.
@@ -210,7 +210,7 @@ impl Player {
 
     /// The device that the pictures are drawn on, the same way.
     pub fn picture_gpu(&self) -> Option<Gpu> {
-        self.session.studio().gpu().cloned()
+        self.session.view().gpu().cloned()
     }
 
     /// Where the hair is simulated: cpu, or the adapter's number and name.
@@ -220,7 +220,7 @@ impl Player {
 
     /// Where pictures are drawn, the same way.
     pub fn drawn_on(&self) -> String {
-        self.session.studio().drawn_on()
+        self.session.view().drawn_on()
     }
 
     /// Number of frames of the film.
@@ -247,10 +247,10 @@ impl Player {
         let task = match &mut self.cache {
             None => {
                 let settings = self.change.take().map(Box::new);
-                Task::Film { course: self.course.clone(), frame, settings }
+                Task::Film { timing: self.timing.clone(), frame, settings }
             }
             Some(cache) => {
-                let guides = self.session.studio().guides();
+                let guides = self.session.view().guides();
                 let mut positions = guides.positions().to_vec();
                 let points = guides.points_per_strand();
                 let world_from_head = cache.read_lanes(frame as usize, points, &mut positions)?;
@@ -278,7 +278,7 @@ impl Player {
         if self.overlap {
             self.start()?;
         }
-        let time = self.course.time(frame);
+        let time = self.timing.time(frame);
         if let Some(mut out) = self.out.take() {
             let reports = self.session.reports_after(earlier);
             // A file that cannot be written ends with the frame before.

@@ -13,8 +13,8 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
     pub fn begin_file(&self, settings: &OutSettings) -> Result<Out, Error> {
-        let (studio, tags) = (&self.studio, &self.tags);
-        let leaving = Leaving { guides: &studio.guides, bound: studio.painter.bound(), tags };
+        let (view, tags) = (&self.view, &self.tags);
+        let leaving = Leaving { guides: &view.guides, bound: view.painter.bound(), tags };
         Out::new(settings, &self.scene, leaving)
     }
 
@@ -47,7 +47,7 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// A cache of other hair, without a state, or of a film that was over; a file that cannot be written.
     pub fn resume(&mut self, cache: &mut Cache, frames: u32, out: Option<&mut Out>) -> Result<u32, Error> {
-        let guides = &self.studio.guides;
+        let guides = &self.view.guides;
         let (strands, points) = (guides.strand_count(), guides.points_per_strand());
         if cache.what() == What::Guides {
             cache.check_guides(strands, points)?;

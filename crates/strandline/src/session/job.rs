@@ -4,7 +4,7 @@ use glam::Vec3;
 use std::collections::VecDeque;
 use strandline_gpu::Gpu;
 
-use super::{course::Course, moment::Moment, simulation::Simulation};
+use super::{film_timing::FilmTiming, moment::Moment, simulation::Simulation};
 use crate::{
     HeadMotion,
     body::Pose,
@@ -18,7 +18,7 @@ use crate::{
 /// A task of a simulation.
 pub(crate) enum Task {
     /// The frame of a film with this number, with settings that change before it.
-    Film { course: Course, frame: u32, settings: Option<Box<Settings>> },
+    Film { timing: FilmTiming, frame: u32, settings: Option<Box<Settings>> },
     /// A frame of a cache: guide points \[m\], world space, shape `[block][point]` of lanes.
     Cached { world_from_head: Pose, positions: Vec<Vec3Lanes> },
     /// A stretch of time that a person directs.
@@ -55,9 +55,9 @@ impl Task {
 
     fn perform(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
         let done = match self {
-            Self::Film { course, frame, settings } => {
+            Self::Film { timing, frame, settings } => {
                 settings.map_or(Ok(()), |settings| simulation.set_settings(&settings))?;
-                return course.run(simulation, frame);
+                return timing.run(simulation, frame);
             }
             Self::Live(live) => return live.run(simulation),
             Self::Cached { world_from_head, positions } => {

@@ -2,17 +2,17 @@
 //! `Live` are its faces.
 
 mod change;
-pub(crate) mod course;
 mod direction;
 mod draft;
 pub(crate) mod engine;
 mod event;
 mod files;
+pub(crate) mod film_timing;
 mod job;
 pub(crate) mod moment;
 mod open;
 mod simulation;
-mod studio;
+mod view;
 
 pub use change::Change;
 pub(crate) use direction::FRAME;
@@ -20,7 +20,7 @@ pub(crate) use draft::Draft;
 pub use event::Event;
 pub(crate) use job::{Executor, Inline, Task};
 pub(crate) use simulation::Simulation;
-pub(crate) use studio::Studio;
+pub(crate) use view::View;
 
 use std::collections::VecDeque;
 
@@ -46,7 +46,7 @@ pub(crate) struct Session<E> {
     scene: Scene,
     tags: Tags,
     executor: E,
-    studio: Studio,
+    view: View,
     direction: Direction,
     /// Size and finish of full pictures, and the simpler pictures that are drawn in their place.
     settings: PictureSettings,
@@ -79,8 +79,8 @@ impl<E: Executor> Session<E> {
     }
 
     /// The renderer, with the view, the look and the lights of its pictures.
-    pub fn studio(&self) -> &Studio {
-        &self.studio
+    pub fn view(&self) -> &View {
+        &self.view
     }
 
     /// Device on which the hair of the last result was simulated: cpu, or the adapter.
@@ -116,7 +116,7 @@ impl<E: Executor> Session<E> {
 
     /// Colours hair by the layers of a light's opacity map.
     pub fn show_layers(&mut self, light: Option<usize>) {
-        self.studio.painter.layers_of = light;
+        self.view.painter.layers_of = light;
     }
 
     /// Hands a task over; the host needs the points of its moment too where `home`.
@@ -124,7 +124,7 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// The simulation's thread has ended.
     pub fn start(&mut self, task: Task, home: bool, commands: u64) -> Result<(), Error> {
-        let (gpu, moment) = (self.studio.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
+        let (gpu, moment) = (self.view.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
         self.executor.start(Job { task, moment, gpu, home, commands }).map_err(|_| Error::WorkerGone)
     }
 
@@ -173,7 +173,7 @@ impl<E: Executor> Session<E> {
         let (picture, report) = self.picture(draft)?;
         self.events.push_back(Event::Drawn { frame: self.drawn, picture, report });
         self.drawn += 1;
-        self.events.extend(std::mem::take(&mut self.studio.painter.notes).into_iter().map(Event::Note));
+        self.events.extend(std::mem::take(&mut self.view.painter.notes).into_iter().map(Event::Note));
         Ok(())
     }
 
@@ -184,16 +184,16 @@ impl<E: Executor> Session<E> {
     pub fn picture(&mut self, draft: Option<Draft>) -> Result<(Picture, FrameReport), Error> {
         if self.draft != draft {
             let settings = draft.map_or(self.settings, |draft| draft.settings(self.settings));
-            self.studio.painter.set_picture(&settings)?;
+            self.view.painter.set_picture(&settings)?;
             self.draft = draft;
         }
-        let Self { executor, studio, shown, .. } = self;
-        let mut draw = |studio: &mut Studio| {
-            studio.draw(shown, |moment| executor.with(|simulation| simulation.bring_home(moment)))
+        let Self { executor, view, shown, .. } = self;
+        let mut draw = |view: &mut View| {
+            view.draw(shown, |moment| executor.with(|simulation| simulation.bring_home(moment)))
         };
         match draft {
-            Some(draft) => simplified(draft, studio, draw),
-            None => draw(studio),
+            Some(draft) => simplified(draft, view, draw),
+            None => draw(view),
         }
     }
 
@@ -202,28 +202,28 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// The change is refused, and nothing has changed; or the simulation's thread has ended.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
-        let studio = &mut self.studio;
+        let view = &mut self.view;
         match change {
-            Change::Camera(camera) => camera.validate().map(|()| studio.camera = camera)?,
-            Change::Look(look) => look.validate().map(|()| studio.look = *look)?,
-            Change::BodyLook(look) => look.validate().map(|()| studio.body_look = look)?,
+            Change::Camera(camera) => camera.validate().map(|()| view.camera = camera)?,
+            Change::Look(look) => look.validate().map(|()| view.look = *look)?,
+            Change::BodyLook(look) => look.validate().map(|()| view.body_look = look)?,
             Change::Lights(lights) => {
                 check_lights(&lights)?;
-                studio.lights = lights;
+                view.lights = lights;
             }
-            Change::LevelOfDetail(level) => level.validate().map(|()| studio.level_of_detail = level)?,
+            Change::LevelOfDetail(level) => level.validate().map(|()| view.level_of_detail = level)?,
             Change::Picture(settings) => self.set_picture(settings)?,
             Change::Wind(wind) => wind.check_as("wind").map(|()| self.direction.wind = wind)?,
             Change::Motion(motion) => self.direction.set_motion(*motion)?,
             Change::Drag(ray) => {
                 let hand = &mut self.direction.hand;
-                *hand = hand.and_then(|hand| ray.at_depth_of(&studio.camera, hand)).or(*hand);
+                *hand = hand.and_then(|hand| ray.at_depth_of(&view.camera, hand)).or(*hand);
             }
             Change::Grab(ray, radius) => self.grab(&ray, radius)?,
             Change::Release => self.release()?,
             Change::Settings(settings) => self.start(Task::Settings(settings), false, 0)?,
             Change::Length(scale) => {
-                let scales = vec![scale; self.studio.guides.strand_count()];
+                let scales = vec![scale; self.view.guides.strand_count()];
                 self.start(Task::Lengths(scales), false, 0)?;
             }
             Change::Reset => {
@@ -237,12 +237,12 @@ impl<E: Executor> Session<E> {
 
     /// Changes the view without a check: the next picture refuses settings outside their range.
     pub fn set_camera(&mut self, camera: Camera) {
-        self.studio.camera = camera;
+        self.view.camera = camera;
     }
 
     /// Changes the look of the hair without a check, likewise.
     pub fn set_look(&mut self, look: Look) {
-        self.studio.look = look;
+        self.view.look = look;
     }
 
     /// Changes size and finish of the pictures; nothing changes where that fails.
@@ -250,7 +250,7 @@ impl<E: Executor> Session<E> {
         // Refused at once, although a draft may be drawn with it only later.
         settings.validate()?;
         let drawn = self.draft.map_or(settings, |draft| draft.settings(settings));
-        self.studio.painter.set_picture(&drawn)?;
+        self.view.painter.set_picture(&drawn)?;
         self.settings = settings;
         Ok(())
     }
@@ -279,9 +279,9 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// The GPU that had its points failed, and falling back to the CPU is not allowed.
     pub fn pick(&mut self, ray: &Ray, radius: f32) -> Result<Option<Picked>, Error> {
-        let Self { executor, shown, studio, .. } = self;
+        let Self { executor, shown, view, .. } = self;
         executor.with(|simulation| simulation.bring_home(shown))?;
-        let Studio { guides, painter, .. } = studio;
+        let View { guides, painter, .. } = view;
         let body = painter.mesh().map(|mesh| (mesh, &shown.world_from_head));
         let shape = [guides.strand_count(), guides.points_per_strand()];
         Ok(ray.hair(shown.positions(), shape, radius, body))
@@ -292,9 +292,9 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// As [`Session::pick`].
     pub fn points(&mut self) -> Result<&[Vec3], Error> {
-        let Self { executor, shown, studio, points, .. } = self;
+        let Self { executor, shown, view, points, .. } = self;
         executor.with(|simulation| simulation.bring_home(shown))?;
-        let (strands, each) = (studio.guides.strand_count(), studio.guides.points_per_strand());
+        let (strands, each) = (view.guides.strand_count(), view.guides.points_per_strand());
         points.clear();
         points.extend((0..strands).flat_map(|strand| {
             let block = &shown.positions()[strand / LANES * each..][..each];
@@ -306,7 +306,7 @@ impl<E: Executor> Session<E> {
     /// Notes on the devices, human-readable.
     pub fn take_notes(&mut self) -> Vec<String> {
         let mut notes = self.with(Simulation::take_notes);
-        notes.append(&mut self.studio.painter.notes);
+        notes.append(&mut self.view.painter.notes);
         notes
     }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use strandline_base::par::Pool;
 
-use super::{Inline, Session, Simulation, Studio, direction::Direction, engine::Engine, moment::Moment};
+use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
 use crate::{
     BoundStrands, Devices, Error, Prepared, Scene,
     body::{Collider, Mesh, Pose},
@@ -35,7 +35,7 @@ impl Session<Inline> {
         let mut engine = Engine::new(gpu.as_ref(), Model::new(&guides, settings, colliders)?, fall_back)?;
         engine.notes.extend(notes);
         let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
-        let studio = Studio {
+        let view = View {
             painter: Painter::new(pictures, &guides, bound, mesh)?,
             guides,
             bounds,
@@ -46,13 +46,13 @@ impl Session<Inline> {
             level_of_detail: LevelOfDetail::default(),
         };
         let mut scene = Scene { simulation: settings.clone(), ..Scene::default() };
-        scene.groom.points_per_strand = studio.guides.points_per_strand() as u32;
+        scene.groom.points_per_strand = view.guides.points_per_strand() as u32;
         let simulated_on = device_name(engine.gpu());
         Ok(Self {
             scene,
             tags: Tags::default(),
             executor: Inline::new(Simulation::new(engine, settings.time_step)),
-            studio,
+            view,
             direction: Direction::default(),
             settings: PictureSettings::default(),
             draft: None,
@@ -79,12 +79,12 @@ impl Session<Inline> {
         let Prepared { guides, bound, mesh, colliders, head, pose, scene, tags, .. } = prepared;
         let pair = devices.open()?;
         let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
-        let studio = &mut session.studio;
-        studio.lights = lights(&scene, studio);
-        (studio.camera, studio.look) = (camera, scene.look.clone());
-        (studio.body_look, studio.level_of_detail) = (scene.body_look, scene.level_of_detail);
+        let view = &mut session.view;
+        view.lights = lights(&scene, view);
+        (view.camera, view.look) = (camera, scene.look.clone());
+        (view.body_look, view.level_of_detail) = (scene.body_look, scene.level_of_detail);
         session.set_picture(picture)?;
-        let scales = vec![scene.groom.length; session.studio.guides.strand_count()];
+        let scales = vec![scene.groom.length; session.view.guides.strand_count()];
         let simulation = session.executor.simulation_mut();
         if scene.groom.length != 1.0 {
             simulation.set_length_scale(&scales)?;
@@ -113,7 +113,7 @@ impl Session<Inline> {
             scene: self.scene,
             tags: self.tags,
             executor: Worker::new(simulation).map_err(Error::Thread)?,
-            studio: self.studio,
+            view: self.view,
             direction: self.direction,
             settings: self.settings,
             draft: self.draft,
@@ -143,14 +143,14 @@ impl Session<Inline> {
     /// # Errors
     /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn show(&mut self) -> Result<(), Error> {
-        let Self { executor, studio, shown, .. } = self;
-        Ok(executor.simulation_mut().show(studio.painter.gpu(), shown)?)
+        let Self { executor, view, shown, .. } = self;
+        Ok(executor.simulation_mut().show(view.painter.gpu(), shown)?)
     }
 
     /// Allows or forbids falling back to the CPU when a GPU fails.
     pub fn set_fall_back(&mut self, fall_back: bool) {
         self.executor.simulation_mut().set_fall_back(fall_back);
-        self.studio.painter.fall_back = fall_back;
+        self.view.painter.fall_back = fall_back;
     }
 
     /// Sets the strands' attributes that files are given.
@@ -167,9 +167,9 @@ impl Session<Worker<Simulation>> {
 }
 
 /// The lights of a scene: its own, else those of its surroundings, else those of its look.
-fn lights(scene: &Scene, studio: &Studio) -> Vec<Light> {
+fn lights(scene: &Scene, view: &View) -> Vec<Light> {
     if scene.lights.is_empty() && scene.look.surroundings.is_none() {
-        return scene.look.lights(prepare::center(studio.bounds));
+        return scene.look.lights(prepare::center(view.bounds));
     }
     scene.lights.clone()
 }
@@ -198,8 +198,8 @@ mod tests {
         assert_ne!(fitted.look.follow_strands, scene.look.follow_strands);
         scene.level_of_detail.segments_per_span = 7;
         let session = Session::open(prepared, Backend::Cpu.into()).unwrap();
-        assert_eq!(session.studio.level_of_detail, fitted.level_of_detail);
-        assert_eq!(session.studio.look, fitted.look);
+        assert_eq!(session.view.level_of_detail, fitted.level_of_detail);
+        assert_eq!(session.view.look, fitted.look);
         assert_eq!(session.scene, fitted);
     }
 }

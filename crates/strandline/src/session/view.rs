@@ -13,7 +13,7 @@ use crate::{
 use super::moment::Moment;
 
 /// A renderer, with the view, the look and the lights of its pictures.
-pub(crate) struct Studio {
+pub(crate) struct View {
     pub(super) guides: Guides,
     pub(super) bounds: Aabb,
     pub(super) painter: Painter,
@@ -24,7 +24,7 @@ pub(crate) struct Studio {
     pub(super) level_of_detail: LevelOfDetail,
 }
 
-impl Studio {
+impl View {
     /// The simulated strands at rest.
     pub fn guides(&self) -> &Guides {
         &self.guides

@@ -33,7 +33,7 @@ pub(super) enum Message {
 }
 
 /// The drawing thread.
-pub(super) struct Desk {
+pub(super) struct DrawingThread {
     messages: Receiver<Message>,
     own: Sender<Message>,
     out: Arc<Mutex<Out>>,
@@ -41,7 +41,7 @@ pub(super) struct Desk {
     clock: LiveClock,
 }
 
-impl Desk {
+impl DrawingThread {
     pub fn new(
         messages: Receiver<Message>,
         own: Sender<Message>,
@@ -154,7 +154,7 @@ impl Desk {
             _ if load != playing.load => {}
             Ok(mut loaded) => {
                 let Loaded { session, notes } = &mut *loaded;
-                let (camera, bounds) = (*session.studio().camera(), session.studio().bounds());
+                let (camera, bounds) = (*session.view().camera(), session.view().bounds());
                 let scene = Box::new(session.scene().clone());
                 self.emit(LiveEvent::Loaded(load, scene, camera, bounds, notes.clone()));
                 if let (Some(old), Some(_)) = (&playing.scene, &playing.recorder) {
@@ -166,7 +166,7 @@ impl Desk {
                 // How long one takes is known once it is drawn: the first is there sooner when simple.
                 (playing.stale, playing.tried) = (true, false);
                 playing.drafts = Drafts::START;
-                playing.slow = session.studio().gpu().is_none();
+                playing.slow = session.view().gpu().is_none();
                 (playing.scene, playing.loaded) = (Some(loaded), load);
                 (playing.step, playing.is_frame) = (None, false);
             }
@@ -333,7 +333,7 @@ impl Desk {
             drawing,
             step: playing.step.take(),
             grabbed: session.grabbed(),
-            places: [session.simulated_on().to_owned(), session.studio().drawn_on()],
+            places: [session.simulated_on().to_owned(), session.view().drawn_on()],
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
         // A step that was not seen is still reported.
