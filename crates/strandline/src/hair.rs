@@ -5,14 +5,14 @@ use glam::Vec3;
 use crate::{
     Cache, Devices, Error, HeadMotion, Out, OutSettings, Prepared, Ray, Scene, Sources, Written,
     body::{Aabb, Collider, Mesh, Pose},
-    devices::{Opened, Pair, device_name},
     gpu::Gpu,
     groom::{Groom, Guides},
     render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
     scene::GroomSection,
+    scene::devices::{Opened, Pair, device_name},
     session::{Change, Inline, Session},
     sim::{Settings, State, StepReport},
-    tags::Tags,
+    strands::tags::Tags,
 };
 
 /// A head of hair that moves and can be drawn: simulator and renderer in one.
@@ -154,7 +154,7 @@ impl Hair {
         Ok(self.session.simulation_mut().release()?)
     }
 
-    /// Whether the hair falls back to the CPU, resuming from its last state, when the GPU fails; it does for
+    /// Allows or forbids falling back to the CPU from the last state when the GPU fails; it is allowed for
     /// [`Backend::Auto`](crate::Backend::Auto).
     pub fn set_fall_back(&mut self, fall_back: bool) {
         self.session.set_fall_back(fall_back);
@@ -165,17 +165,17 @@ impl Hair {
         self.session.simulation().gpu()
     }
 
-    /// Where the hair is simulated: cpu, or the adapter's number and name.
+    /// Device of the simulation: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
         device_name(self.gpu())
     }
 
-    /// Where pictures are drawn, the same way.
+    /// Device of the pictures, likewise.
     pub fn drawn_on(&self) -> String {
         self.session.view().drawn_on()
     }
 
-    /// What happened to the backend since the last call, human-readable.
+    /// Notes on the devices since the last call, human-readable.
     pub fn take_notes(&mut self) -> Vec<String> {
         self.session.take_notes()
     }

@@ -22,27 +22,15 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
-mod attributes;
-mod bound;
 mod cache;
-mod devices;
 mod error;
 mod film;
 mod hair;
-mod hair_pose;
-mod head;
 pub mod live;
-mod memory;
-mod painter;
-mod pick;
 mod player;
 mod prepare;
 mod session;
-mod sync;
-mod tags;
-mod worker;
-#[cfg(test)]
-mod worker_tests;
+mod strands;
 
 pub mod low_level;
 pub mod scene;
@@ -102,23 +90,20 @@ pub(crate) use strandline_sim as sim;
 
 pub use body::{Mesh, Pose};
 pub use cache::{Cache, Out, OutSettings, Target, What, Written};
-pub use devices::Devices;
 pub use error::Error;
 pub use film::{Film, FilmFiles, PictureFiles};
 pub use groom::{Groom, Style};
 pub use hair::Hair;
-pub use head::HeadMotion;
 pub use live::Live;
-pub use pick::Ray;
 pub use player::Player;
 pub use prepare::{Prepared, Sources};
 pub use render::{Camera, Light, Look, Picture, PictureSettings};
-pub use scene::Scene;
-pub use session::{Change, Event};
+pub use scene::{Devices, HeadMotion, Scene};
+pub use session::{Change, Event, Ray};
 pub use sim::{Backend, Drift, Settings, SimError, StepReport};
 
 // Names of this crate's own modules.
-pub(crate) use bound::BoundStrands;
+pub(crate) use strands::bound::BoundStrands;
 
 #[cfg(test)]
 mod tests {

@@ -1,13 +1,13 @@
 use crate::{
     Cache, Devices, Error, Out, OutSettings, Prepared, Scene, Sources, What, Written,
     cache::drawn,
-    devices::device_name,
     gpu::Gpu,
     groom::Guides,
     render::{Camera, Look, PictureSettings},
+    scene::devices::device_name,
+    session::worker::Worker,
     session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
     sim::{Drift, Settings, State},
-    worker::Worker,
 };
 
 /// Plays a scene: an iterator of events, frame after frame, until the film is over.
@@ -25,16 +25,16 @@ pub struct Player {
     /// Frames whose simulation was started, and taken.
     started: u32,
     taken: u32,
-    /// Whether a frame was taken that is to be drawn.
+    /// True where a frame was taken that is to be drawn.
     undrawn: bool,
-    /// Whether the simulation failed.
+    /// True after the simulation failed.
     failed: bool,
     notes: Vec<String>,
-    /// Where frames are written as they are made.
+    /// File that frames are written to as they are made.
     out: Option<Out>,
-    /// Where frames come from in place of the simulation.
+    /// Cache that frames come from in place of the simulation.
     cache: Option<Cache>,
-    /// Whether no frame is begun any more.
+    /// True where no frame is begun any more.
     closing: bool,
 }
 
@@ -147,7 +147,7 @@ impl Player {
         self.session.end_file(out, self.taken, self.frames).map(Some)
     }
 
-    /// Whether a frame is simulated while the one before is drawn; on by default.
+    /// Simulates each frame while the one before is drawn; on by default.
     pub fn set_overlap(&mut self, overlap: bool) {
         self.overlap = overlap;
     }
@@ -189,7 +189,7 @@ impl Player {
         Ok(self.session.peek(|simulation| simulation.state().cloned())?)
     }
 
-    /// How far the hair lies from the groom as loaded, which the head carries.
+    /// Distance of the hair from the groom as loaded, which the head carries.
     ///
     /// # Errors
     /// As [`Player::state`].
@@ -213,12 +213,12 @@ impl Player {
         self.session.view().gpu().cloned()
     }
 
-    /// Where the hair is simulated: cpu, or the adapter's number and name.
+    /// Device of the simulation: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
         device_name(self.gpu().as_ref())
     }
 
-    /// Where pictures are drawn, the same way.
+    /// Device of the pictures, likewise.
     pub fn drawn_on(&self) -> String {
         self.session.view().drawn_on()
     }
@@ -233,7 +233,7 @@ impl Player {
         self.taken - u32::from(self.undrawn)
     }
 
-    /// What was mended or left out while loading.
+    /// Mends, guesses and omissions of the loading.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -20,7 +20,8 @@ fn values_are_set_in_every_command_that_takes_a_scene() {
     assert!(scene.contains("gravity = [0.0, -1.6, 0.0]"), "{scene}");
     assert!(scene.contains("[[lights]]"), "{scene}");
     let small = ["--frames", "9", "--set", "film.frames=2", "--set", "style.strand_count=5"];
-    let report = printed(&[&["sim", "--json", "--backend", "cpu", "--set", "film.settle=0"][..], &small].concat());
+    let report =
+        printed(&[&["sim", "--json", "--backend", "cpu", "--set", "film.settle=0"][..], &small].concat());
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
     // The value comes after the options.
     assert_eq!((report["frames"].as_u64(), report["strands"].as_u64()), (Some(2), Some(5)), "{report}");

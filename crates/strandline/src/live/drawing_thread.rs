@@ -17,7 +17,7 @@ use crate::{
     session::{Change, Event, FRAME},
 };
 
-/// What the drawing thread receives.
+/// A message to the drawing thread.
 pub(super) enum Message {
     Command(Command),
     /// The scene of the load with this number.
@@ -73,7 +73,7 @@ impl DrawingThread {
         loop {
             let deadline = self.clock.after(playing.patience());
             if playing.is_idle() {
-                // Who waits for it may be gone.
+                // The caller that waits may be gone.
                 for idler in playing.idlers.drain(..) {
                     let _ = idler.send(());
                 }
@@ -98,7 +98,7 @@ impl DrawingThread {
             if let Err(error) = self.frame(playing, draft) {
                 self.emit(LiveEvent::Error(error.to_string()));
                 self.emit(LiveEvent::Paused);
-                // What fails now fails again: it waits for another command.
+                // A frame that fails fails again: it waits for another command.
                 (playing.playing, playing.steps, playing.stale, playing.draft) = (false, 0, false, false);
             }
         }
@@ -163,7 +163,7 @@ impl DrawingThread {
                         self.emit(LiveEvent::Error(error.to_string()));
                     }
                 }
-                // How long one takes is known once it is drawn: the first is there sooner when simple.
+                // The time of one is known once it is drawn: the first is there sooner when simple.
                 (playing.stale, playing.tried) = (true, false);
                 playing.drafts = Drafts::START;
                 playing.slow = session.view().gpu().is_none();

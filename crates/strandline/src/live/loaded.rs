@@ -7,8 +7,8 @@ use strandline_base::WholeFile;
 
 use crate::{
     Error, Prepared, Scene, Sources,
+    session::worker::Worker,
     session::{Session, Simulation},
-    worker::Worker,
 };
 
 /// A scene that plays.
@@ -46,7 +46,7 @@ impl Loaded {
     }
 }
 
-/// Where the pose of a scene's hair is saved: beside it, and not over a file that is not its own.
+/// Path of the pose of a scene's hair: beside the scene, and not over a file that is not its own.
 fn pose_path(scene: &Path) -> PathBuf {
     let folder = scene.parent().unwrap_or(Path::new(""));
     let before = Scene::load(scene).ok().and_then(|before| before.groom.pose).map(|pose| folder.join(pose));

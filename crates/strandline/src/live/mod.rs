@@ -82,7 +82,7 @@ impl Live {
         self.out().shown.take()
     }
 
-    /// What happened since the last call, in order.
+    /// Events since the last call, in order.
     pub fn take_events(&self) -> Vec<LiveEvent> {
         self.out().events.drain(..).collect()
     }

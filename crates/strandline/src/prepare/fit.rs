@@ -168,7 +168,7 @@ fn points(groom: &Groom) -> u32 {
     POINTS.into_iter().find(|count| keeps(*count)).unwrap_or(most)
 }
 
-/// How far strands of so many points stray from themselves over what is allowed, of 95 in 100.
+/// Deviation of strands of so many points from themselves over the tolerance, for 95 in 100.
 fn astray(groom: &Groom, count: usize) -> f32 {
     let mut found: Vec<f32> = some(groom)
         .map(|strand| {

@@ -48,7 +48,7 @@ pub(super) fn placings(scene: &Scene, groom: &Groom, mesh: &Mesh, as_one: &Placi
     Some(Placings { groom, body, note: None })
 }
 
-/// Whether a scene says nothing of where groom and body are.
+/// True where a scene leaves the placement of groom and body open.
 fn is_open(scene: &Scene) -> bool {
     let (groom, body) = (&scene.groom, &scene.body);
     let still = [groom.rotation, groom.translation, body.rotation, body.translation];
@@ -78,7 +78,7 @@ fn front_of_hair(roots: &[Vec3], tips: &[Vec3]) -> Option<Quat> {
 }
 
 /// Fits hair that is placed by [`placings`] to the head of a mesh, head space: crown on crown and back on back.
-/// What is to be said of it.
+/// Returns a note.
 pub(super) fn fit(groom: &mut Groom, mesh: &Mesh) -> Option<String> {
     let roots: Vec<Vec3> = groom.roots().collect();
     let (from, to) = (Skull::of(&roots)?, Skull::of(&mesh.positions)?);

@@ -23,7 +23,7 @@ use crate::{
 const BODIES: std::ops::RangeInclusive<f32> = 0.15..=4.0;
 /// Diagonal of the box around a groom without a body \[m\].
 const GROOMS: std::ops::RangeInclusive<f32> = 0.05..=2.0;
-/// How much higher roots have to lie along z than along y for z to be up, and how much surer it has to be in all.
+/// Least advantage of z over y in the height of roots for z to be up, and in all evidence.
 const HIGHER: f32 = 0.15;
 const SURER: f32 = 0.3;
 /// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
@@ -199,7 +199,7 @@ fn noted(scene: &Scene, groom: Placing, body: Placing, has_body: bool, turn: Qua
     (!words.is_empty()).then(|| format!("taken from the files: {}; {keys}", words.join(", ")))
 }
 
-/// What is wrong with where a groom and a body are \[m\], head space, when they do not meet.
+/// Describes a groom and a body \[m\], head space, that do not meet.
 pub(super) fn apart(groom: &Groom, mesh: &Mesh) -> Option<String> {
     let (of_groom, of_body) = (groom.bounds(), mesh.bounds()?);
     let low = of_groom.min.max(of_body.min);

@@ -1,13 +1,13 @@
 //! Seventh stage of loading: the simulated strands, resampled, at rest outside of all solids.
 
 use crate::{
-    Error, Scene, attributes,
+    Error, Scene,
     body::{Carrier, Collider, Pose, Shape, Solids},
     groom::{Groom, Guides, Outside},
-    memory,
+    strands::attributes,
 };
 
-use super::{loading::Loading, looks};
+use super::{loading::Loading, looks, memory};
 
 /// Depth \[m\] up to which no note is made: less than the error of a sampled body.
 const WORTH_A_NOTE: f32 = 1e-4;

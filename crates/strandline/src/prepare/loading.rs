@@ -3,12 +3,12 @@
 use glam::Vec3;
 
 use super::Sources;
+use super::memory;
 use super::placing::{Placing, Placings};
 use crate::{
     Error, Scene,
     body::{Collider, Mesh, Shape},
     groom::{Groom, Guides},
-    memory,
 };
 
 /// A scene while it is loaded. Each stage fills in fields that later stages read.
@@ -32,7 +32,7 @@ pub(super) struct Loading<'a> {
     pub solid_mesh: Option<Mesh>,
     /// Placements of files, from `place`.
     pub placings: Placings,
-    /// Whether the groom was made for another head, from `place`.
+    /// True where the groom was made for another head, from `place`.
     pub is_foreign: bool,
     /// Signed distance of the body, from `solids`.
     pub shape: Option<Shape>,

@@ -81,7 +81,7 @@ pub(super) fn spreads(look: &Look, groom: &Groom) -> Result<Option<Vec<f32>>, Er
     Ok(Some(groups(look, groom)?.into_iter().map(of).collect()))
 }
 
-/// What one strand has of its own.
+/// Look of one strand.
 struct Dressed<'a> {
     look: Option<&'a GroupLook>,
     /// The look of all with its group's own pigment.

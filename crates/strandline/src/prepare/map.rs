@@ -87,7 +87,7 @@ impl Map {
         self.at(uv, |part| part).element_sum() / 3.0
     }
 
-    /// What lies between the four pixels about a place; beyond the borders they repeat.
+    /// Interpolates the four pixels about a place; beyond the borders they repeat.
     fn at(&self, uv: Vec2, part: impl Fn(f32) -> f32) -> Vec3 {
         let size = Vec2::new(self.picture.width() as f32, self.picture.height() as f32);
         // The first row of a picture is its upper border.

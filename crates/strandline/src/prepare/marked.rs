@@ -15,7 +15,7 @@ use crate::{
     groom::Groom,
 };
 
-/// What a part is called that may be one.
+/// Name of a part that may be one.
 const LIKELY: &str = "scalp";
 /// Names that an error lists.
 const LISTED: usize = 12;
@@ -27,7 +27,7 @@ const PLACES: usize = 6;
 const ROOTS: usize = 4000;
 /// Times that a root is looked for on it again, from as far as it was found.
 const LOOKS: usize = 3;
-/// How far beside the marked scalp a root may lie, and from how far it is led there, as shares of the width of the skull.
+/// Distance of a root from the marked scalp that is allowed, and from which it is led there, as shares of the skull's width.
 const ASTRAY: f32 = 0.05;
 const OFF: f32 = 0.4;
 
@@ -78,7 +78,7 @@ fn known(mut names: Vec<String>) -> String {
     }
 }
 
-/// How far a scalp reaches down from the crown in each direction \[rad\], seen from within the skull.
+/// Extent of a scalp down from the crown in each direction \[rad\], seen from within the skull.
 #[derive(Clone, Debug)]
 struct Rim {
     polars: Vec<Option<f32>>,
@@ -187,7 +187,7 @@ pub(super) fn onto(
     Ok(format!("the style grows on the scalp that the body marks{left}"))
 }
 
-/// Where roots would lie as far from the middle of the skull as a mesh does, and the places of the mesh nearest there.
+/// Roots moved to the mesh's distance from the middle of the skull, and the points of the mesh nearest to them.
 fn seen_on(mesh: &Mesh, middle: Vec3, roots: &[Vec3]) -> (Vec<Vec3>, Vec<Vec3>) {
     let mut sought = roots.to_vec();
     let mut found = mesh.nearest_places(&sought);

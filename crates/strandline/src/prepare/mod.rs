@@ -10,6 +10,7 @@ mod loading;
 mod looks;
 mod map;
 mod marked;
+pub(crate) mod memory;
 mod place;
 mod placing;
 mod read;
@@ -31,10 +32,10 @@ use loading::Loading;
 use crate::{
     BoundStrands, Camera, Error, HeadMotion, Scene,
     body::{Aabb, Collider, Mesh},
-    bound::clearance,
     groom::{Binding, Guides},
-    hair_pose::HairPose,
-    tags::Tags,
+    strands::bound::clearance,
+    strands::hair_pose::HairPose,
+    strands::tags::Tags,
 };
 
 /// A scene, loaded: strands, body, solids and motion.
@@ -49,7 +50,7 @@ pub struct Prepared {
     pub mesh: Option<Mesh>,
     /// Everything that hair hits.
     pub colliders: Vec<Collider>,
-    /// How the head moves.
+    /// Motion of the head.
     pub head: HeadMotion,
     /// Positions and velocities to begin with; none at rest.
     pub(crate) pose: Option<HairPose>,
@@ -160,7 +161,7 @@ pub(crate) fn center(bounds: Aabb) -> Vec3 {
     0.5 * (bounds.min + bounds.max)
 }
 
-/// Where the neck of an unknown head may be: in the middle, a third of the way up.
+/// Assumed neck of an unknown head: in the middle, a third of the way up.
 fn low_center(bounds: Aabb) -> Vec3 {
     let mut center = center(bounds);
     center.y = bounds.min.y + (bounds.max.y - bounds.min.y) / 3.0;

@@ -7,16 +7,16 @@ use crate::{
     Error,
     body::Pose,
     groom::Vec3Lanes,
-    hair_pose::HairPose,
     sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
+    strands::hair_pose::HairPose,
 };
 
 /// A simulator that outlives its device.
 pub(crate) struct Engine {
     simulator: Simulator,
-    /// Whether the run falls back to the CPU when the GPU fails.
+    /// True where the run falls back to the CPU when the GPU fails.
     pub fall_back: bool,
-    /// What happened on the way, human-readable.
+    /// Notes, human-readable.
     pub notes: Vec<String>,
     /// The state that the CPU resumed from, and the number of steps before it: a picture under way may show it.
     left: Option<(u64, State)>,
@@ -108,7 +108,7 @@ impl Engine {
         Ok(())
     }
 
-    /// How far the hair lies from the groom as loaded, which the head carries.
+    /// Distance of the hair from the groom as loaded, which the head carries.
     pub fn drift(&mut self) -> Result<Drift, SimError> {
         self.state()?;
         Ok(self.model().drift(self.simulator.last_state()))

@@ -31,7 +31,7 @@ impl<E: Executor> Session<E> {
         reports: &[StepReport],
         state: Option<&Snapshot>,
     ) -> Result<(), Error> {
-        out.add(frame, time, &self.shown, reports, state)
+        out.add(frame, time, (self.shown.positions(), &self.shown.world_from_head), reports, state)
     }
 
     /// The simulation after a frame.

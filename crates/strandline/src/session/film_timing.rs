@@ -21,7 +21,7 @@ pub(crate) struct FilmTiming {
     settle_seconds: f64,
     /// Time of motion and wind at the beginning \[s\].
     start: f64,
-    /// Whether the first picture shows hair as it begins.
+    /// True where the first picture shows hair as it begins.
     posed: bool,
     /// Transform from the head at the beginning of the motion to the head of a pose of hair.
     aside: Pose,

@@ -8,11 +8,11 @@ use super::{film_timing::FilmTiming, moment::Moment, simulation::Simulation};
 use crate::{
     HeadMotion,
     body::Pose,
-    devices::device_name,
     groom::Vec3Lanes,
     scene::WindSection,
+    scene::devices::device_name,
+    session::worker::{Gone, Work, Worker},
     sim::{Settings, SimError, StepReport},
-    worker::{Gone, Work, Worker},
 };
 
 /// A task of a simulation.
@@ -43,12 +43,12 @@ pub(crate) struct Live {
     pub most_steps: f64,
     pub head: HeadMotion,
     pub wind: WindSection,
-    /// Where the hand goes \[m\], world space.
+    /// Target of the hand \[m\], world space.
     pub hand: Option<Vec3>,
 }
 
 impl Task {
-    /// Whether a frame ends with it.
+    /// True where a frame ends with it.
     pub fn is_frame(&self) -> bool {
         matches!(self, Self::Film { .. } | Self::Cached { .. } | Self::Live(_))
     }
@@ -95,13 +95,13 @@ pub(crate) struct Job {
     pub moment: Moment,
     /// The device that the pictures are drawn on.
     pub gpu: Option<Gpu>,
-    /// Whether the host needs the points of the moment too.
+    /// True where the host needs the points of the moment too.
     pub home: bool,
     /// Commands that were received before.
     pub commands: u64,
 }
 
-/// What it led to; after a failure the moment is that of the last state.
+/// Result of a job; after a failure the moment is that of the last state.
 pub(crate) struct Done {
     pub moment: Moment,
     pub reports: Result<Vec<StepReport>, SimError>,
@@ -113,7 +113,7 @@ pub(crate) struct Done {
     pub is_frame: bool,
     /// As in the job.
     pub commands: u64,
-    /// Where it was done: cpu, or the adapter.
+    /// Device of the job: cpu, or the adapter.
     pub simulated_on: String,
 }
 

@@ -11,14 +11,21 @@ pub(crate) mod film_timing;
 mod job;
 pub(crate) mod moment;
 mod open;
+mod painter;
+mod pick;
 mod simulation;
+mod sync;
 mod view;
+pub(crate) mod worker;
+#[cfg(test)]
+mod worker_tests;
 
 pub use change::Change;
 pub(crate) use direction::FRAME;
 pub(crate) use draft::Draft;
 pub use event::Event;
 pub(crate) use job::{Executor, Inline, Task};
+pub use pick::Ray;
 pub(crate) use simulation::Simulation;
 pub(crate) use view::View;
 
@@ -28,17 +35,17 @@ use glam::Vec3;
 use strandline_base::Group;
 
 use crate::{
-    Error, HeadMotion, Ray, Scene,
+    Error, HeadMotion, Scene,
     groom::LANES,
-    pick::Picked,
     render::{Camera, FrameReport, Look, Picture, PictureSettings, memory::check_lights},
     sim::StepReport,
-    tags::Tags,
+    strands::tags::Tags,
 };
 use direction::Direction;
 use draft::simplified;
 use job::{Done, Job};
 use moment::Moment;
+use pick::Picked;
 
 /// A simulation, its renderer, and the commands between them.
 pub(crate) struct Session<E> {

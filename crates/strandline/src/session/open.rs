@@ -8,14 +8,14 @@ use super::{Inline, Session, Simulation, View, direction::Direction, engine::Eng
 use crate::{
     BoundStrands, Devices, Error, Prepared, Scene,
     body::{Collider, Mesh, Pose},
-    devices::{Opened, Pair, device_name},
     groom::Guides,
-    painter::Painter,
     prepare,
     render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
+    scene::devices::{Opened, Pair, device_name},
+    session::painter::Painter,
+    session::worker::Worker,
     sim::{Model, Settings},
-    tags::Tags,
-    worker::Worker,
+    strands::tags::Tags,
 };
 
 impl Session<Inline> {
@@ -201,5 +201,24 @@ mod tests {
         assert_eq!(session.view.level_of_detail, fitted.level_of_detail);
         assert_eq!(session.view.look, fitted.look);
         assert_eq!(session.scene, fitted);
+    }
+
+    #[test]
+    fn hair_of_a_scene_is_lit_by_the_surroundings_that_were_loaded_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("even.hdr");
+        let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+        bytes.extend([128, 128, 128, 129].repeat(8));
+        std::fs::write(&path, bytes).unwrap();
+        let mut scene = Scene::demo();
+        (scene.style.strand_count, scene.body.spacing) = (4, 0.05);
+        scene.surroundings.file = Some(path);
+        let prepared = Prepared::new(&scene).unwrap();
+        assert!(prepared.scene.look.surroundings.is_some());
+        let loaded = prepared.scene.look.clone();
+        let session = Session::open(prepared, Backend::Cpu.into()).unwrap();
+        // An even sky has no sun, and lamps beside it only where the scene has some.
+        assert!(session.view.lights.is_empty(), "{:?}", session.view.lights);
+        assert_eq!(session.view.look, loaded, "the look has the surroundings that light it");
     }
 }

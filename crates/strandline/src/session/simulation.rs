@@ -14,8 +14,8 @@ use crate::{
     body::Pose,
     cache::Snapshot,
     groom::Vec3Lanes,
-    hair_pose::HairPose,
     sim::{Clock, Drift, Drive, Settings, SimError, State, StepReport, Ticks},
+    strands::hair_pose::HairPose,
 };
 
 /// Steps that settling hair makes in one run.

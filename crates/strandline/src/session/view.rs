@@ -5,8 +5,8 @@ use crate::{
     body::Aabb,
     gpu::Gpu,
     groom::Guides,
-    painter::Painter,
     render::{BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, RenderError},
+    session::painter::Painter,
     sim::SimError,
 };
 

@@ -131,7 +131,7 @@ fn film(path: &std::path::Path) -> Scene {
     scene
 }
 
-/// What a film leaves in a cache: its path.
+/// Writes a film as a cache; returns its path.
 fn written(
     scene: &Scene,
     path: &std::path::Path,

@@ -77,7 +77,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     // Velocities are those of the last state.
     let there = &left.velocities;
     assert_eq!(apart(there, &begun.velocities), 0.0);
-    // What a length pass gave back, or how rods are turned.
+    // Corrections of a length pass, or sections of rods.
     let kept_by = |state: &State| match method {
         StrandMethod::Constrain => state.corrections.clone(),
         StrandMethod::Rods => state.sections.clone(),

@@ -346,7 +346,7 @@ fn ten_thousand_pictures_with_changes_at_random() {
             let now = person.begin_again();
             assert_eq!(apart(&now[0], &first[0]), 0, "at rest it is what it was");
             assert_eq!(apart(&now[1], &first[1]), 0, "it moves as it did the first time");
-            // What is refused is reported once, and nothing else; a scene that goes away takes its last errors along.
+            // Refusals alone are reported, each once; a scene that goes away takes its last errors along.
             let untold = person.refused - person.errors;
             assert!(untold <= 3 * person.loads, "{untold} of {}, {} loads", person.refused, person.loads);
             person.tell(Command::Play(true));

@@ -1,4 +1,4 @@
-//! What happens when the GPU goes away or has no memory left.
+//! Loss of a GPU, and a GPU without memory.
 
 use strandline::{
     Backend, Event, Film, Hair, Player, Settings,

@@ -142,7 +142,7 @@ fn both_ends_of_every_range_are_taken_and_nothing_beyond() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What was reported, as it was reported.
+/// Reported cases.
 #[test]
 fn what_passed_or_failed_once_does_not_again() {
     let taken = [

@@ -66,7 +66,7 @@ fn a_style_in_a_file_is_the_style_of_the_command_line() {
     );
 }
 
-/// What held a style before there were rods.
+/// Settings that held a style before there were rods.
 #[test]
 fn what_rods_replace_is_refused_and_other_keys_of_older_files_are_taken() {
     let old = "[simulation.angles]\nhold = 8.0\n";

@@ -62,7 +62,7 @@ pub fn written() -> String {
     page
 }
 
-/// What a style sets beside strands.
+/// Settings of a style beside strands.
 fn styles() -> String {
     let mut text = "Without a groom file the `[style]` is grown, and two keys of other sections take their default from it:\n\n\
                     | style | `groom.points_per_strand` | `level_of_detail.segments_per_span` |\n|---|---|---|\n"

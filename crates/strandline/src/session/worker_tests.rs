@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use strandline_base::Random;
 
-use crate::worker::{Gone, Work, Worker};
+use crate::session::worker::{Gone, Work, Worker};
 
 /// Writes its settings and the number of its frame all over a page.
 struct Writer {
