@@ -6,10 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicIsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use strandline::{
-    Camera, Live, Scene,
-    low_level::{Change, Ray, Shown},
-};
+use strandline::{Camera, Change, Live, Ray, Scene, live::Shown};
 
 /// The system's allocator, counted.
 struct Counted;

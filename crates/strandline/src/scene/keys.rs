@@ -49,7 +49,12 @@ impl Scene {
     /// As [`Scene::get`].
     pub fn explain(&self, key: &str) -> Result<String, Error> {
         let (_, row) = resolve(key)?;
-        if let Kind::Group(table) | Kind::List(table) = row.kind {
+        let section = match row.kind {
+            Kind::Group(table) => Some(table),
+            Kind::List(items) => Some(items.table()),
+            _ => None,
+        };
+        if let Some(table) = section {
             let line = |row: &Row| format!("  {key}.{}: {}", row.name, row.sentence());
             let lines = table.rows.iter().map(line).collect::<Vec<_>>();
             return Ok(format!("{key}: {}\n{}", row.sentence(), lines.join("\n")));
@@ -153,7 +158,8 @@ fn resolve(key: &str) -> Result<(Vec<Step>, &'static Row), Error> {
         steps.push(Step::Name(name.to_owned()));
         steps.extend(index.map(Step::Index));
         table = match (found.kind, index) {
-            (Kind::Group(table), None) | (Kind::List(table), Some(_)) => Some(table),
+            (Kind::Group(table), None) => Some(table),
+            (Kind::List(items), Some(_)) => Some(items.table()),
             (_, Some(_)) => return Err(unknown().into()),
             (_, None) => None,
         };
@@ -235,7 +241,7 @@ fn keys(table: &'static Table, path: &str, found: &mut Vec<String>) {
         let key = if path.is_empty() { row.name.to_owned() } else { format!("{path}.{}", row.name) };
         match row.kind {
             Kind::Group(table) => keys(table, &key, found),
-            Kind::List(table) => keys(table, &format!("{key}[0]"), found),
+            Kind::List(items) => keys(items.table(), &format!("{key}[0]"), found),
             _ => {}
         }
         found.push(key);

@@ -3,14 +3,11 @@
 
 use glam::{Vec3, vec3};
 use strandline::{
-    Groom, Pose, Scene, Settings,
+    Groom, Pose, Prepared, Scene, Settings,
+    format::{Scale, Up},
     low_level::{
-        Prepared,
         body::Mannequin,
-        groom::{
-            Guides,
-            format::{Scale, Up},
-        },
+        groom::Guides,
         sim::{self, CpuRunner, Drive},
     },
     scene::Model,

@@ -5,8 +5,9 @@ use strandline::{
     Backend, Error, Event, Hair, Picture, Player, Pose, Scene,
     low_level::{
         groom::{LANES, Vec3Lanes},
-        sim::{State, StrandMethod},
+        sim::State,
     },
+    settings::StrandMethod,
 };
 
 const STRANDS: usize = 60;

@@ -3,8 +3,9 @@
 
 use glam::Vec3;
 use strandline::{
-    Backend, Event, Live, Player, Pose, Scene,
-    low_level::{Change, Command, LiveEvent, groom::Vec3Lanes, sim::State},
+    Backend, Change, Event, Live, Player, Pose, Scene,
+    live::{Command, LiveEvent},
+    low_level::{groom::Vec3Lanes, sim::State},
     scene::{MotionName, WindSection},
 };
 

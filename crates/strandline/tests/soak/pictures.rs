@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
-use strandline::low_level::render::{BodyLook, LevelOfDetail, PictureSettings, fibre::FibreModel};
-use strandline::scene::{Model, MotionName, MotionSection, WindSection};
 use strandline::{
-    Backend, Camera, Event, Light, Live, Look, Picture, Scene,
-    low_level::{Change, Command, LiveEvent, Ray, Shown, body},
+    Backend, Camera, Change, Event, Light, Live, Look, Picture, PictureSettings, Ray, Scene,
+    live::{Command, LiveEvent, Shown},
+    look::{BodyLook, LevelOfDetail, fibre::FibreModel},
+    low_level::body,
+    scene::{Model, MotionName, MotionSection, WindSection},
 };
 
 const PICTURES: u64 = 10_000;

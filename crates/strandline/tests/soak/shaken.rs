@@ -3,8 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use strandline::low_level::sim::StrandMethod;
-use strandline::{Backend, Hair, Pose, Scene};
+use strandline::{Backend, Hair, Pose, Scene, settings::StrandMethod};
 
 /// Shakes in a second, and how far to each side \[m\]: 20 times 9.81 m/s^2 at the turning points.
 const RATE: f64 = 5.0;

@@ -1,9 +1,6 @@
 //! Loss of a GPU, and a GPU without memory.
 
-use strandline::{
-    Backend, Event, Film, Hair, Player, Settings,
-    low_level::{gpu::Gpu, sim::VolumeSettings},
-};
+use strandline::{Backend, Event, Film, Hair, Player, Settings, device::Gpu, settings::VolumeSettings};
 
 use super::{apart, gpu, hair, scene, turned};
 

@@ -4,12 +4,11 @@
 mod lost;
 
 use strandline::{
-    Backend, Event, Hair, Picture, Player, Pose, Scene,
+    Backend, Devices, Event, Hair, Picture, Player, Pose, Scene,
+    device::Gpu,
+    look::Preset,
     low_level::{
-        Devices,
-        gpu::Gpu,
         groom::{LANES, Vec3Lanes},
-        render::Preset,
         sim::State,
     },
     scene::MotionName,
@@ -207,15 +206,12 @@ fn a_second_picture_asks_for_no_more_memory() {
         hair.picture(&camera, &look).unwrap();
         assert_eq!(gpu.memory_used(), used);
     }
-    let wider = strandline::low_level::render::PictureSettings::sized(4096, 4096);
+    let wider = strandline::PictureSettings::sized(4096, 4096);
     let error = hair.set_picture(&wider).unwrap_err().to_string();
     assert!(error.contains("out of memory"), "{error}");
     assert!(hair.picture(&camera, &look).is_ok(), "the old size stays");
     gpu.set_memory_limit(u64::MAX);
-    let error = hair
-        .set_picture(&strandline::low_level::render::PictureSettings::sized(8192, 64))
-        .unwrap_err()
-        .to_string();
+    let error = hair.set_picture(&strandline::PictureSettings::sized(8192, 64)).unwrap_err().to_string();
     assert!(error.contains("samples") && error.contains("8192"), "{error}");
 }
 
@@ -297,7 +293,7 @@ fn a_hand_holds_on_a_gpu_and_when_it_goes_away() {
 fn mic0_is_for_the_cpu_and_auto_takes_it_there() {
     let Some(gpu) = gpu() else { return };
     let mut scene = scene();
-    scene.simulation.volume.preconditioner = strandline::low_level::sim::Preconditioner::Mic0;
+    scene.simulation.volume.preconditioner = strandline::settings::Preconditioner::Mic0;
     let prepared = strandline::Prepared::new(&scene).unwrap();
     let made = Hair::with_device(&gpu, prepared.guides, None, Vec::new(), &scene.simulation);
     let error = made.err().unwrap().to_string();

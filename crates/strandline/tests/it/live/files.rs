@@ -1,8 +1,9 @@
 //! Videos and scenes of hair that plays.
 
-use strandline::low_level::render::PictureSettings;
-use strandline::low_level::{Change, Command, LiveEvent};
-use strandline::{Live, Scene};
+use strandline::{
+    Change, Live, PictureSettings, Scene,
+    live::{Command, LiveEvent},
+};
 
 use super::helpers::{error, next, scene, still, wait, waking};
 

@@ -5,10 +5,11 @@ mod helpers;
 
 use std::time::Duration;
 
-use strandline::low_level::render::PictureSettings;
-use strandline::low_level::{Change, Command, LiveClock, LiveEvent, Prepared, Ray, Shown};
-use strandline::scene::{MotionName, MotionSection};
-use strandline::{Camera, Live, Look, Settings};
+use strandline::{
+    Camera, Change, Live, Look, PictureSettings, Prepared, Ray, Settings,
+    live::{Command, LiveClock, LiveEvent, Shown},
+    scene::{MotionName, MotionSection},
+};
 
 use helpers::{error, next, scene, settled, still, wait, waking};
 
@@ -105,7 +106,7 @@ fn first_camera() -> Camera {
 
 #[test]
 fn it_may_be_left_at_any_moment_under_any_commands() {
-    let mut random = strandline::low_level::base::Random::new(7, 0);
+    let mut random = strandline::math::Random::new(7, 0);
     for round in 0..12 {
         let live = Live::new(scene(), waking()).unwrap();
         for _ in 0..round * 4 {

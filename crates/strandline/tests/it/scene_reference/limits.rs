@@ -2,11 +2,8 @@
 //! is no number are refused by its key, in every component, before anything is grown.
 
 use strandline::{
-    Error, Scene,
-    low_level::{
-        Prepared,
-        base::{Group, Kind, Row, Table},
-    },
+    Error, Prepared, Scene,
+    settings::{Group, Kind, Row, Table},
 };
 
 /// Every number with the key that a file names it by and the lines that have to stand before it.

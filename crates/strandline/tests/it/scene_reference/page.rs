@@ -4,13 +4,10 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use strandline::{
-    Scene, Style,
-    low_level::{
-        base::{Group, Kind, Row, Table},
-        render::{GroupLook, Light},
-        sim::rods::GroupSettings,
-    },
+    Light, Scene, Style,
+    look::GroupLook,
     scene::{BodyPart, CapsuleSection, ColliderSection, GroomPart, KeyframeSection, SphereSection},
+    settings::{Group, Kind, Row, Table, rods::GroupSettings},
 };
 
 const HEAD: &str = r#"# Scene files
