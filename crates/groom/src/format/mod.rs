@@ -26,7 +26,7 @@ mod tfx_text;
 pub mod usda;
 
 pub use cleaning::Cleaning;
-pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
+pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
 pub use report::{Counts, GroupOf, Lengths, Report};
