@@ -4,6 +4,7 @@ mod bandwidth;
 mod buffer;
 mod check;
 mod drawing;
+mod errors;
 mod gpu;
 mod kernel;
 mod layout;

@@ -26,7 +26,7 @@ impl Timer {
         if !gpu.has_timestamps() {
             return Ok(None);
         }
-        let set = gpu.guarded("timestamps", || {
+        let set = gpu.ask("timestamps", || {
             gpu.device().create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("stages"),
                 ty: wgpu::QueryType::Timestamp,

@@ -82,7 +82,7 @@ impl GpuRunner {
     }
 
     fn with_kernels(gpu: &Gpu, model: Model, kernels: Arc<Kernels>, state: &State) -> Result<Self, SimError> {
-        Ok(Self {
+        let made = Self {
             gpu: gpu.clone(),
             kernels,
             buffers: Buffers::new(gpu, &model, state)?,
@@ -101,7 +101,9 @@ impl GpuRunner {
             gradient: Gradient::default(),
             spread: Spread::default(),
             costs: Costs::default(),
-        })
+        };
+        gpu.check()?;
+        Ok(made)
     }
 
     /// The model.
@@ -226,7 +228,7 @@ impl GpuRunner {
         self.buffers.step.write(&[uniform])?;
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
         let Pending { timer, marks, count, .. } = &self.pending;
-        self.gpu.guarded("a step", || {
+        self.gpu.ask("a step", || {
             let mut recorder = Recorder::new(&self.gpu, timer.as_ref());
             timer.iter().for_each(Timer::restart);
             for (stage, dispatches) in self.bound.iter().flat_map(|sides| &sides[self.side]) {
