@@ -2,12 +2,12 @@
 //! attribute: fill it in [`Shape::new`]; the writers take all that is there.
 
 use glam::Vec3;
-use strandline_base::choices;
+use strandline_base::{choices, in_strand_order};
 
 use crate::{
     BoundStrands, Error, Scene,
     body::Pose,
-    groom::{Frames, Guides, LANES, MOST_INFLUENCES, Vec3Lanes},
+    groom::{Frames, Guides, MOST_INFLUENCES, Vec3Lanes},
     render::{
         DetailLevel, Look,
         cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
@@ -195,10 +195,7 @@ impl Shape {
         let strand_count = self.strand_count();
         match &mut self.source {
             Source::Guides { points_per_strand: each } => {
-                points.extend((0..strand_count).flat_map(|strand| {
-                    let block = &positions[strand / LANES * *each..][..*each];
-                    block.iter().map(move |lanes| lanes.get(strand % LANES))
-                }))
+                points.extend(in_strand_order(positions, strand_count, *each));
             }
             Source::Strands(drawn) => {
                 drawn.grow(positions, world_from_head);
