@@ -11,7 +11,7 @@ use strandline_render::{
 };
 use strandline_sim::{Drive, Model, Settings};
 
-/// Her hair with so many guides, to which the other strands are bound.
+/// Her hair with a number of guides, to which the other strands are bound.
 fn sintel(guides: Option<u32>) -> Option<Prepared> {
     strandline_checks::sintel(|scene| scene.groom.guides = guides)
 }

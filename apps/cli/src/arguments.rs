@@ -17,12 +17,12 @@ use strandline::{
 /// Without a command it opens the window on the demo; without a display a head of hair shakes for 4 s and
 /// pictures go to out/demo.
 #[derive(Debug, Parser)]
-#[command(version, about, long_about)]
+#[command(name = "strandline", version, about, long_about)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Show messages of the libraries, wgpu's above all: error, warn, info, debug or trace. RUST_LOG can do so
-    /// for some of them (`wgpu_hal=warn`).
+    /// Show messages of the libraries, wgpu's above all: error, warn, info, debug or trace. RUST_LOG selects
+    /// some of them (`wgpu_hal=warn`).
     #[arg(long, global = true, value_name = "LEVEL", value_parser = parse_level)]
     pub log: Option<log::LevelFilter>,
 }
@@ -142,10 +142,10 @@ pub struct SimOptions {
     #[command(flatten)]
     pub inputs: Inputs,
     /// Write the hair as it moves: .npz (a moving cache), .usda (text USD for Blender, Houdini and Unreal), or a
-    /// groom file a frame, such as out/%04d.hair.
+    /// groom file per frame, such as out/%04d.hair.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Which strands are written: guides, those that are simulated, or strands, all that pictures draw
+    /// Strands to write: guides, the simulated ones, or strands, all that pictures draw
     /// [default: guides].
     #[arg(long, value_name = "NAME", requires = "written", value_parser = What::from_str)]
     pub what: Option<What>,
@@ -181,7 +181,7 @@ pub struct GroomOptions {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = formats())]
+#[command(after_help = formats(), override_usage = "strandline convert [OPTIONS] IN... OUT")]
 pub struct ConvertOptions {
     /// The files to read, each a group of one groom, and the file to write.
     #[arg(value_name = "IN... OUT", num_args = 2.., required = true)]

@@ -42,7 +42,7 @@ pub struct Groom {
     pub root_normals: Option<Vec<Vec3>>,
     /// A group number for each strand, shape `[strand]`.
     pub groups: Option<Vec<u32>>,
-    /// Names of groups that have one.
+    /// Names of the named groups.
     pub group_names: BTreeMap<u32, String>,
     /// Which strands are guides, shape `[strand]`.
     pub guide_flags: Option<Vec<bool>>,
@@ -105,7 +105,7 @@ impl Groom {
         (0..self.strand_count()).map(|strand| length(self.strand(strand))).collect()
     }
 
-    /// The box around all points \[m\]; inside out when there is none.
+    /// The box around all points \[m\]; inverted without points.
     pub fn bounds(&self) -> Aabb {
         let start = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
         let (min, max) =

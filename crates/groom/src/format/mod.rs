@@ -1,7 +1,7 @@
-//! Readers and writers of groom files: one file a format, listed in [`FORMATS`].
+//! Readers and writers of groom files: one module per format, listed in [`FORMATS`].
 //!
 //! Readers work on bytes in memory, check every size in 64-bit arithmetic before they allocate,
-//! and never allocate more than a small multiple of what they were given.
+//! and never allocate more than a small multiple of their input.
 
 pub mod bin;
 mod bytes;
