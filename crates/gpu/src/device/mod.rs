@@ -2,6 +2,8 @@
 
 mod bandwidth;
 mod buffer;
+// A page has no naga.
+#[cfg(not(target_family = "wasm"))]
 mod check;
 mod drawing;
 mod errors;
@@ -19,6 +21,7 @@ mod transfer;
 mod wanted;
 
 pub use buffer::Buffer;
+#[cfg(not(target_family = "wasm"))]
 pub use check::check;
 pub use drawing::{BoundDrawing, Drawing, Output};
 pub use gpu::Gpu;
