@@ -1,4 +1,4 @@
-/// What a change of settings invalidates of what was compiled from them; nothing where they are read anew each time.
+/// Compiled parts that a change of settings invalidates; none where settings are read anew each time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Invalidates {
     /// Shape at rest.
@@ -15,7 +15,7 @@ impl Invalidates {
     /// Nothing.
     pub const NOTHING: Self = Self { rest_shape: false, masses: false, stages: false, buffers: false };
 
-    /// What one of both changes invalidates.
+    /// Parts that one of both changes invalidates.
     pub const fn and(self, other: Self) -> Self {
         Self {
             rest_shape: self.rest_shape || other.rest_shape,

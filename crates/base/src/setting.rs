@@ -139,7 +139,7 @@ pub struct Row {
     pub more: &'static str,
     /// True if a file must give it.
     pub required: bool,
-    /// What a change of it invalidates.
+    /// Parts that a change of it invalidates.
     pub invalidates: Invalidates,
 }
 
@@ -243,7 +243,7 @@ pub trait Value: Sized + PartialEq {
     /// The first setting outside its range.
     fn check(&self, row: &Row, key: &Key) -> Result<(), SettingError>;
 
-    /// What a change to another value invalidates.
+    /// Parts that a change to another value invalidates.
     fn change_to(&self, other: &Self, row: &Row) -> Invalidates {
         if self == other { Invalidates::NOTHING } else { row.invalidates }
     }

@@ -48,7 +48,7 @@ fn gpu() -> Option<Gpu> {
     }
 }
 
-/// What a future has at once, as all of a native system have.
+/// The output of a future that is ready, as all of a native system are.
 fn at_once<T>(future: impl Future<Output = T>) -> T {
     match std::pin::pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(found) => found,

@@ -55,7 +55,7 @@ impl Settings {
         }
     }
 
-    /// What a change to other settings invalidates of a model, a runner and its state.
+    /// Parts of a model, a runner and its state that a change to other settings invalidates.
     pub fn change_to(&self, other: &Self) -> Invalidates {
         // A shape that is an equilibrium carries its gravity.
         let carries = other.has_rods() && other.strands.rods.rest == Rest::SagFree;

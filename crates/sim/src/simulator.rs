@@ -25,7 +25,7 @@ pub struct Simulator {
     reports: Reports,
 }
 
-/// What keeps reports in order: each step is reported once, also where it is computed again.
+/// Reports in order: each step is reported once, also where it is computed again.
 #[derive(Default)]
 struct Reports {
     /// Steps that were reported.

@@ -129,7 +129,7 @@ pub enum Error {
     Gpu(#[from] GpuError),
 }
 
-/// What a program may do about an error.
+/// Kind of an error, by what a program may do about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -155,7 +155,7 @@ impl Error {
         }
     }
 
-    /// What may be done about it.
+    /// Its kind: what may be done about it.
     pub fn kind(&self) -> ErrorKind {
         match (self, self.gpu()) {
             (_, Some(GpuError::Lost { .. })) => ErrorKind::DeviceLost,

@@ -8,7 +8,7 @@ use std::task::{Context, Poll, Waker};
 
 use crate::GpuError;
 
-/// What a device refused, or has not answered yet. No call waits for it.
+/// Refusals of a device, and answers that are still on their way. No call waits for them.
 #[derive(Debug, Default)]
 pub(super) struct Errors {
     filed: Mutex<Filed>,
@@ -27,9 +27,9 @@ struct Filed {
 /// A refusal without the name of its adapter.
 #[derive(Debug)]
 pub(super) struct Refusal {
-    /// What was asked for.
+    /// The request.
     what: String,
-    /// What the device says; `None` where it has no memory left.
+    /// Words of the device; `None` where it has no memory left.
     message: Option<String>,
 }
 
@@ -106,7 +106,7 @@ impl Errors {
     }
 }
 
-/// What an error scope answered by now, or the answer itself where it is still on its way.
+/// The answer of an error scope if it has arrived, else its future.
 pub(super) fn answered(
     answer: impl Future<Output = Option<wgpu::Error>> + Send + 'static,
 ) -> Result<Option<wgpu::Error>, Answer> {
@@ -114,7 +114,7 @@ pub(super) fn answered(
     now(answer.as_mut()).ok_or(answer)
 }
 
-/// What a future has by now. A native system answers all requests of this kit at once.
+/// The output of a future that is ready. A native system answers all requests of this kit at once.
 pub(super) fn now<F: Future + ?Sized>(future: Pin<&mut F>) -> Option<F::Output> {
     match future.poll(&mut Context::from_waker(Waker::noop())) {
         Poll::Ready(output) => Some(output),

@@ -334,7 +334,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What a request finds at once, as a native system does.
+/// The output of a request that a native system answers at once.
 fn at_once<F: Future>(request: F) -> Result<F::Output, GpuError> {
     now(std::pin::pin!(request)).ok_or(GpuError::Page)
 }
