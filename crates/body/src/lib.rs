@@ -2,7 +2,7 @@
 //! distance, colliders and the motion of the head. No GPU, no hair.
 //!
 //! Units are SI; y is up and the face looks along +z. *Head space* is the space in which a body
-//! and a groom are at rest; [`Pose`] carries it into the world.
+//! and a groom are at rest; a [`BodyFrame`] carries it into the world.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
@@ -15,6 +15,7 @@ mod distance;
 mod distance_grid;
 mod error;
 mod far_nodes;
+mod frame;
 mod gltf;
 mod inside;
 mod kept_grid;
@@ -46,6 +47,7 @@ pub use curve::{Curve, Interpolation, Key};
 pub use distance::{Aabb, SignedDistance};
 pub use distance_grid::DistanceGrid;
 pub use error::BodyError;
+pub use frame::BodyFrame;
 pub use keyframes::{Keyframe, Keyframes};
 pub use mannequin::Mannequin;
 pub use mesh::Mesh;
