@@ -1,10 +1,11 @@
-//! The window in which a person plays with hair: panels only, all else is the library's.
+//! The window: panels only; the library does everything else.
 
 #![recursion_limit = "256"] // the documentation follows types down into the device
 #![forbid(unsafe_code)]
 
 mod app;
 mod asking;
+mod canvas;
 mod controls;
 mod export;
 mod exporting;
@@ -15,8 +16,7 @@ mod panels;
 mod rescue;
 mod saves;
 mod saving;
-mod stage;
-mod strip;
+mod status;
 mod wind;
 mod window;
 

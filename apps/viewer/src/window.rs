@@ -8,7 +8,7 @@ use strandline::{
     low_level::{Command, LiveEvent, Shown, body::Aabb},
 };
 
-use crate::{App, panels, stage, strip};
+use crate::{App, canvas, panels, status};
 
 /// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
@@ -105,10 +105,10 @@ impl App {
         self.take_saved();
         self.take_exported();
         self.keep_scene();
-        stage::keys(self, ui);
-        egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
+        canvas::keys(self, ui);
+        egui::Panel::bottom("status").show(ui, |ui| status::show(self, ui));
         egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
-        egui::CentralPanel::default().show(ui, |ui| stage::show(self, ui));
+        egui::CentralPanel::default().show(ui, |ui| canvas::show(self, ui));
     }
 }
 
