@@ -1,7 +1,7 @@
 //! Rods: a style is an equilibrium, and hair comes to rest in it.
 
 use glam::{Quat, Vec3};
-use strandline::{Scene, low_level::Prepared};
+use strandline::{Prepared, Scene};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Motion, Pose, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, LANES, Style, StyleSettings};

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
-use strandline::low_level::Prepared;
+use strandline::Prepared;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_sim::{Drive, Model, Settings};

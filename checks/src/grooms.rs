@@ -3,7 +3,7 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use strandline::{Scene, low_level::Prepared};
+use strandline::{Prepared, Scene};
 
 /// Sintel's hair on her head, in a scene that is changed first; `None`, with a note, if the folder of grooms
 /// (`STRANDLINE_GROOMS`) is not.

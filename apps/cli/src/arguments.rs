@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
-use strandline::low_level::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
 use strandline::{
-    Backend, Style,
-    low_level::{Target, What, sim::rods::HairKind},
+    Backend, Style, Target, What,
+    format::{FORMATS, Format, LoadOptions, Scale, Up, endings},
     scene::MotionName,
+    settings::rods::HairKind,
 };
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
@@ -68,6 +68,15 @@ impl Command {
     }
 }
 
+/// Settings of a scene by their keys.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Set {
+    /// Set a value of the scene, after all other options: simulation.gravity=[0,-1.6,0], motion.name=nod,
+    /// lights[0].intensity=2; docs/scene.md lists the keys. Given again: further values. A key alone is explained.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub values: Vec<String>,
+}
+
 /// Inputs of a run: a scene, and replacements of parts of it.
 #[derive(Args, Clone, Debug)]
 pub struct Inputs {
@@ -106,6 +115,8 @@ pub struct Inputs {
     /// Device of the pictures, if it differs from that of the simulation.
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub render_device: Option<Backend>,
+    #[command(flatten)]
+    pub set: Set,
     /// Print a single JSON object to standard output.
     #[arg(long)]
     pub json: bool,
@@ -247,6 +258,8 @@ pub struct SceneOptions {
     /// demo, thesis, or a .toml file.
     #[arg(value_name = "NAME|FILE.toml", default_value = "demo")]
     pub scene: String,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 #[derive(Args, Debug)]

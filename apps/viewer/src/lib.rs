@@ -1,11 +1,10 @@
-//! The window: panels only; the library does everything else.
+//! The window in which a person plays with hair: panels only, all else is the library's.
 
 #![recursion_limit = "256"] // the documentation follows types down into the device
 #![forbid(unsafe_code)]
 
 mod app;
 mod asking;
-mod canvas;
 mod controls;
 mod export;
 mod exporting;
@@ -16,7 +15,8 @@ mod panels;
 mod rescue;
 mod saves;
 mod saving;
-mod status;
+mod status_bar;
+mod viewport;
 mod wind;
 mod window;
 

@@ -222,6 +222,14 @@ fn regroup(groom: &mut Groom, name: &str, first: u32) -> u32 {
     first + own.len() as u32
 }
 
+/// A groom from memory, prepared as one from a file: bad strands are left out or refused, the rest is scaled and turned.
+///
+/// # Errors
+/// A bad strand in strict mode; no strand left.
+pub fn sieved(groom: Groom, options: &LoadOptions) -> Result<Loaded, GroomError> {
+    prepare(Parsed { format: "memory", groom, problems: Vec::new() }, options)
+}
+
 /// Sieves, scales and turns the strands of a reader.
 ///
 /// # Errors

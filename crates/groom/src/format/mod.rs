@@ -20,7 +20,7 @@ mod save;
 mod sieve;
 pub mod tfx;
 
-pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
+pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
 pub use report::{Counts, GroupOf, Lengths, Report};

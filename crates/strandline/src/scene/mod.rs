@@ -2,9 +2,12 @@
 
 mod body;
 mod builtin;
+pub(crate) mod devices;
 mod film;
 mod given;
 mod groom;
+pub(crate) mod head;
+mod keys;
 mod motion;
 mod surroundings;
 
@@ -14,14 +17,16 @@ use glam::Vec3;
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
 pub use body::{BodyPart, BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
+pub use devices::Devices;
 pub use film::{CameraSection, FilmSection, View};
 pub(crate) use given::Given;
 pub use groom::{GroomPart, GroomSection};
+pub use head::HeadMotion;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 pub use surroundings::SurroundingsSection;
 
 use crate::{
-    Backend, Devices, Error,
+    Backend, Error,
     groom::StyleSettings,
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, Preset, memory::MAX_LIGHTS},
     sim::{Settings, StrandMethod},

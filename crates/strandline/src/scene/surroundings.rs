@@ -32,26 +32,3 @@ impl Scene {
         Ok(())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Backend, Hair, Prepared};
-
-    #[test]
-    fn hair_of_a_scene_is_lit_by_the_surroundings_that_were_loaded_with_it() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("even.hdr");
-        let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
-        bytes.extend([128, 128, 128, 129].repeat(8));
-        std::fs::write(&path, bytes).unwrap();
-        let mut scene = Scene::demo();
-        (scene.style.strand_count, scene.body.spacing) = (4, 0.05);
-        scene.surroundings.file = Some(path);
-        let prepared = Prepared::new(&scene).unwrap();
-        assert!(prepared.scene.look.surroundings.is_some());
-        let hair = Hair::from_scene(&scene, prepared, Backend::Cpu).unwrap();
-        // An even sky has no sun, and lamps beside it only where the scene has some.
-        assert!(hair.lights.is_empty(), "{:?}", hair.lights);
-    }
-}

@@ -72,7 +72,7 @@ fn open(backend: Backend, doing: &str, notes: &mut Vec<String>) -> Result<Opened
     Ok(Opened { gpu, fall_back })
 }
 
-/// Where something runs, human-readable.
-pub(crate) fn place(gpu: Option<&Gpu>) -> String {
+/// Name of a device, human-readable: cpu, or the adapter's number and name.
+pub(crate) fn device_name(gpu: Option<&Gpu>) -> String {
     gpu.map_or_else(|| "cpu".to_owned(), |gpu| gpu.adapter().to_string())
 }
