@@ -61,6 +61,8 @@ pub struct Out {
     frames: usize,
     /// Frames of the film so far, whether written or passed over.
     offered: u32,
+    /// Time of the last of them \[s\].
+    last_time: f64,
     time: Duration,
 }
 
@@ -134,6 +136,7 @@ impl Out {
             points: Vec::new(),
             frames: 0,
             offered: 0,
+            last_time: f64::NEG_INFINITY,
             time: Duration::ZERO,
         })
     }
@@ -143,13 +146,25 @@ impl Out {
         self.offered
     }
 
-    /// Refuses a frame more than the film has.
-    pub(crate) fn check_room(&self, frames: u32) -> Result<(), Error> {
-        if self.offered < frames {
+    /// Refuses a frame more than the film has, and one at the time \[s\] of the last or before it.
+    pub(crate) fn check_next(&self, frames: u32, time: f64) -> Result<(), Error> {
+        let last = self.last_time;
+        let refused = if self.offered >= frames {
+            SettingError::new(
+                "film.frames",
+                frames,
+                "the number of all calls of `write`: a file has room for so many",
+            )
+        } else if !(last < time) {
+            SettingError::new(
+                "the time of a frame",
+                format!("{time} s"),
+                format!("more than {last} s, that of the last"),
+            )
+        } else {
             return Ok(());
-        }
-        let expected = "the frames of all calls of `write`: a file has room for so many";
-        Err(SettingError::new("film.frames", frames, expected).into())
+        };
+        Err(refused.into())
     }
 
     /// True for frames that are written.
@@ -178,7 +193,7 @@ impl Out {
         if let Writer::Store(store) = &mut self.writer {
             store.step(steps);
         }
-        self.offered = number + 1;
+        (self.offered, self.last_time) = (number + 1, time);
         if !self.takes(number) {
             return Ok(());
         }
@@ -233,7 +248,7 @@ impl Out {
             let (number, time) = (self.first + index as u32 * self.every, cache.times()[index]);
             self.write(&Frame { number, time, points: &points, world_from_head }, None)?;
         }
-        self.offered = state.frame + 1;
+        (self.offered, self.last_time) = (state.frame + 1, state.time);
         if let Writer::Store(store) = &mut self.writer {
             store.inherit(steps, report);
             store.set_state(Some(state))?;

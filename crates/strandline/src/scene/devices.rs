@@ -4,11 +4,11 @@ use strandline_gpu::{Gpu, GpuError};
 use crate::Backend;
 
 settings! {
-    /// Where the simulation runs and where pictures are drawn. When both are on one GPU, points stay there.
+    /// Devices of the simulation and of pictures. When both are on one GPU, points stay there.
     pub struct Devices: Copy {
-        /// Where hair is simulated.
+        /// Device of the simulation.
         simulation: Backend = Backend::Auto;
-        /// Where pictures are drawn.
+        /// Device of the pictures.
         pictures: Backend = Backend::Auto;
     }
 }

@@ -36,11 +36,9 @@ fn every_key_takes_the_value_that_it_has() {
     let mut set = 0;
     for (key, row) in all() {
         let value = scene.get(&key).unwrap();
-        // Words that bring other settings along, and files that begin at rest, change nothing where they are as before.
-        if value.is_empty() || matches!(row.kind, Kind::Group(_)) {
-            continue;
-        }
-        if matches!(key.as_str(), "style.style" | "groom.file" | "body.file") {
+        // An absent value, and settings that bring others along or let hair begin at rest.
+        let brings = ["style.style", "groom.file", "body.file", "look.root_color", "look.tip_color"];
+        if value.is_empty() || matches!(row.kind, Kind::Group(_)) || brings.contains(&key.as_str()) {
             continue;
         }
         let mut same = scene.clone();
@@ -63,7 +61,8 @@ fn every_number_outside_its_range_is_refused_with_key_and_range() {
             Kind::Number(count) | Kind::Whole(count) => count,
             _ => 1,
         };
-        for value in [2.0 * least.abs() + most + 1.0, least - 2.0 * most.abs() - 1.0] {
+        let beyond = 2.0 * (least.abs() + most.abs()) + 1.0;
+        for value in [beyond, -beyond] {
             let one =
                 if matches!(row.kind, Kind::Whole(_)) { format!("{value:.0}") } else { format!("{value:e}") };
             let value = if count > 1 { format!("[{}]", vec![one; count].join(", ")) } else { one };

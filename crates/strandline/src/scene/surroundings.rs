@@ -17,7 +17,7 @@ settings! {
         file: Option<PathBuf> = None;
         /// Turns it about the height, counter-clockwise as seen from above.
         rotation: f32 = 0.0, in [-360.0, 360.0] "degrees";
-        /// What its light is multiplied with.
+        /// Factor of its light.
         strength: f32 = 1.0, in [0.0, 1e6], slider [0.0, 4.0], more "brighter surroundings";
     }
 }

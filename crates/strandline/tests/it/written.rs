@@ -30,6 +30,10 @@ fn a_loop_writes_its_own_poses_and_resumes_to_the_bit() {
         hair.step(1.0 / 60.0, &head(frame)).unwrap();
         shown.push(hair.points().unwrap().to_vec());
         hair.write(&mut whole).unwrap();
+        if frame == 0 {
+            let error = hair.write(&mut whole).unwrap_err().to_string();
+            assert!(error.contains("more than 0.016"), "{error}");
+        }
         if frame == 1 {
             let mut out = Hair::open(&scene()).unwrap();
             let mut file = out.begin_file(&at("half.npz")).unwrap();
