@@ -6,8 +6,8 @@ use strandline::{
     look::{Environment, fibre::Highlight},
 };
 
-use crate::strip::joined;
 use crate::setup::{Figure, Setup, THREE_QUARTER, bust, close};
+use crate::strip::joined;
 
 /// Hair by the layer of the key light's map, seen from that light, from the side and from behind it.
 pub fn layers(setup: &Setup) -> Figure {
