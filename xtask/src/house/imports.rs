@@ -82,6 +82,13 @@ impl Modules {
         levels.values().flat_map(circles).filter(|circle| circle.iter().any(is_folder)).collect()
     }
 
+    /// The files of a folder of the crate that import from another, by name.
+    pub fn between(&self, folder: &str, other: &str) -> BTreeSet<&str> {
+        let lies_in = |path: &[String], folder: &str| path.first().is_some_and(|first| first == folder);
+        let wrong = self.edges().filter(|(path, target)| lies_in(path, folder) && lies_in(target, other));
+        wrong.map(|(path, _)| self.files[path].file.as_str()).collect()
+    }
+
     /// Each import of a module from another, as their paths.
     fn edges(&self) -> impl Iterator<Item = (&[String], &[String])> {
         self.files.iter().flat_map(move |(path, module)| {
@@ -353,5 +360,19 @@ mod tests {
             let planted = [("lib.rs", "mod a;\nfn h() { a::g() }"), (own, parent), ("a/part.rs", child)];
             assert!(modules(&planted).folder_circles().is_empty());
         }
+    }
+
+    #[test]
+    fn imports_from_one_folder_to_another_are_found_through_names_that_are_given_on() {
+        let planted = [
+            ("lib.rs", "mod cpu;\nmod gpu;\npub use cpu::step::Step;"),
+            ("cpu/mod.rs", "pub mod step;"),
+            ("cpu/step.rs", "pub struct Step;"),
+            ("gpu/mod.rs", "mod wrong;\nmod right;"),
+            ("gpu/wrong.rs", "use crate::Step;"),
+            ("gpu/right.rs", "use super::Kernel;"),
+        ];
+        assert_eq!(modules(&planted).between("gpu", "cpu"), BTreeSet::from(["gpu/wrong.rs"]));
+        assert!(modules(&planted).between("cpu", "gpu").is_empty());
     }
 }

@@ -43,6 +43,9 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("apps/cli", &["strandline", "strandline-viewer"]),
 ];
 
+/// Folders of which the first imports nothing from the second.
+const APART: [(&str, &str, &str); 1] = [("crates/render/src", "gpu", "cpu")];
+
 /// Exceptions that are listed: lines by file, lines by function, circles of files and circles of folders.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -146,6 +149,10 @@ impl Found {
         let named = |circle: Vec<String>| circle.iter().map(|name| format!("{folder}/{name}")).collect();
         self.circles.extend(imports::circles(&modules.imports()).into_iter().map(named));
         self.folders.extend(modules.folder_circles().into_iter().map(named));
+        for (_, one, other) in APART.iter().filter(|(place, ..)| *place == folder) {
+            let wrong = modules.between(one, other);
+            self.arrows.extend(wrong.iter().map(|file| format!("{folder}/{file} imports from {other}/")));
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! Where bound strands are: eight at a time, one lane a strand.
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::{Rigid, Vec3x8};
-use strandline_body::Pose;
+use strandline_body::{Pose, Solids};
 use wide::f32x8;
 
 use super::frames::{Frame, Frames};
@@ -12,6 +12,26 @@ use super::{Binding, Surface};
 use crate::{LANES, Vec3Lanes, outside::placed_outside};
 
 impl Binding {
+    /// Fills `out` with the points of all strands \[m\], world space, shape `[block][point]` of lanes, given those of
+    /// the guides in the same shape: [`Binding::follow`], then [`Binding::place`] out of solids. `frames` is used
+    /// again from call to call.
+    pub fn carry(
+        &self,
+        guides: &[Vec3Lanes],
+        world_from_head: &Pose,
+        solids: &Solids,
+        frames: &mut Frames,
+        out: &mut Vec<Vec3Lanes>,
+    ) {
+        let placed = solids.placed(*world_from_head);
+        let at = |point: Vec3| placed.at(point);
+        let at_least = |point: Vec3| placed.at_least(point);
+        let surface = Surface { at: &at, at_least: &at_least };
+        let surface = (!placed.is_empty()).then_some(&surface);
+        self.follow(guides, world_from_head, frames);
+        self.place(frames, world_from_head, surface, out);
+    }
+
     /// Where all strands are \[m\], world space, shape `[block][point]` of lanes, given where the guides are
     /// ([`Binding::follow`]). Roots move with the head, segments have the lengths that they have at rest, or that
     /// share of them that those of the guides have; points inside the body are put onto its surface.
