@@ -1,4 +1,5 @@
-//! What must hold of any bytes, for every reader: fuzz targets and the test of the kept corpora share it.
+//! Properties that hold for any bytes, for every reader. Fuzz targets and the test of the kept corpora share
+//! them.
 
 use strandline::Scene;
 use strandline::low_level::body::{DistanceGrid, Mesh, SignedDistance};
@@ -99,7 +100,7 @@ fn groom(parsed: Result<Parsed, GroomError>, again: impl Fn(&Groom) -> Result<bo
     true
 }
 
-/// What has a name in a mesh is no more than the mesh.
+/// A named part of a mesh is no larger than the mesh.
 fn part(bytes: &[u8], ending: &str, whole: &Mesh) -> bool {
     for name in ["a", "scalp", "Mesh"] {
         if let Ok(Some(part)) = Mesh::part_from(bytes, ending, name) {

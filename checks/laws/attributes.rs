@@ -39,7 +39,7 @@ fn mean_velocity(rig: &mut Rig, mass: fn(usize) -> f32) -> Vec3 {
     momentum / (0..POINTS).map(mass).sum::<f32>()
 }
 
-/// How much a loose strand's mean velocity changes, with its own masses and with even ones.
+/// Change of a loose strand's mean velocity, with its own masses and with even ones.
 fn drift(on: &On) -> [f32; 2] {
     let guides = guides();
     let settings = settings().with_constrain(|constrain| {

@@ -16,7 +16,7 @@ fn sintel(guides: Option<u32>) -> Option<Prepared> {
     strandline_checks::sintel(|scene| scene.groom.guides = guides)
 }
 
-/// Where the simulated strands are \[m\] after two seconds of shake.
+/// Positions \[m\] of the simulated strands after two seconds of shake.
 fn shaken(prepared: &Prepared) -> (Vec<Vec3Lanes>, Pose) {
     let settings = Settings::default();
     let model = Model::new(&prepared.guides, &settings, prepared.colliders.clone()).unwrap();
@@ -49,7 +49,7 @@ fn nearest_of([a, b, c]: [Vec3; 3], point: Vec3) -> Vec3 {
     places.into_iter().min_by(|one, two| one.distance(point).total_cmp(&two.distance(point))).unwrap()
 }
 
-/// How deep \[m\] a point lies under a mesh; below 0 outside.
+/// Depth \[m\] of a point under a mesh; below 0 outside.
 fn depth(mesh: &Mesh, point: Vec3) -> f32 {
     let mut best = (f32::INFINITY, 0.0);
     for corners in &mesh.triangles {

@@ -8,7 +8,7 @@ use strandline_sim::{Drive, Model, Settings, VolumeSettings};
 
 use crate::strands::{ball_of_hair, bare, first, line, one_strand, skull};
 
-/// How far \[m\] a loose strand slides in a second down a slope of so many degrees.
+/// Distance \[m\] that a loose strand slides in a second down a slope of so many degrees.
 fn slide(on: &On, degrees: f32, friction: f32) -> f32 {
     // A ball so large that it is a plane: its top is the origin.
     let radius = 50.0;

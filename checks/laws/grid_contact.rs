@@ -46,7 +46,7 @@ fn curtain() -> Guides {
     Guides::resample(&groom, 16).unwrap()
 }
 
-/// How deep \[m\] the free points of a rig are inside a ball that stays or that the head carries.
+/// Depth \[m\] of the free points of a rig inside a ball that stays or that the head carries.
 fn depth(rig: &mut Rig, ball: &Ball, head: Pose, carrier: Carrier) -> f32 {
     let points = rig.model().points_per_strand();
     let from_world = if carrier == Carrier::Head { head.inverse() } else { Pose::IDENTITY };
@@ -120,7 +120,7 @@ law! {
                 let head = Pose { translation: way, ..Pose::IDENTITY };
                 let report = rig.step(&Drive { world_from_head: head, ..Drive::default() });
                 let found = depth(&mut rig, &ball, head, Carrier::World);
-                // What samples err by, 1.5 cm and more from the middle.
+                // Error of the samples, 1.5 cm and more from the middle.
                 let off = (report.penetration_max - found).abs();
                 assert!(off < 3e-4, "{method:?}, step {step}: {found} m deep, the report is {off} m off");
                 assert!(step < 60 || found > 0.02, "{method:?}: nothing is inside: {found}");

@@ -1,4 +1,4 @@
-//! What hair is made of: groups, wisps, what they carry, and how hair changes from root to tip.
+//! Materials of hair: groups, wisps, the loads that they carry, and changes from root to tip.
 
 use glam::Vec3;
 use strandline_checks::{On, Rig, law};
@@ -27,7 +27,7 @@ fn sagging() -> Settings {
     settings
 }
 
-/// How far the tips hang below the roots \[m\] after a time \[s\].
+/// Depth of the tips below the roots \[m\] after a time \[s\].
 fn droops(on: &On, guides: &Guides, settings: &Settings, seconds: f32) -> [f32; 2] {
     let model = Model::new(guides, settings, Vec::new()).unwrap();
     let mut rig = Rig::new(on, model);

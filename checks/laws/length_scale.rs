@@ -33,8 +33,8 @@ fn mean_velocity(rig: &mut Rig, masses: &[f32]) -> Vec3 {
     rig.state().velocities.iter().zip(masses).map(momentum).sum::<Vec3>() / masses.iter().sum::<f32>()
 }
 
-/// How much the velocity of a kicked strand's middle changes, with masses that follow the length and with
-/// those at rest.
+/// Change of the velocity of a kicked strand's middle, with masses that follow the length and with those at
+/// rest.
 fn drift(on: &On, scale: f32) -> [f32; 2] {
     let mut rig = loose(on, scale);
     let points = first(rig.state());

@@ -1,4 +1,4 @@
-//! What the pressure leaves: nothing flows out of a cell.
+//! The pressure's result: no flow leaves a cell.
 
 use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Pose, Shape};

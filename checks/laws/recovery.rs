@@ -1,4 +1,4 @@
-//! What has no direction or is no number does no harm.
+//! Points that are not finite or have no direction do no harm.
 
 use glam::Vec3;
 use strandline_checks::{On, Rig, law};
@@ -51,7 +51,7 @@ law! {
         let mut rig = Rig::new(on, chain(&line(Vec3::ZERO, Vec3::NEG_Y, 16), 1.0, |point| point == 0, &settings));
         assert_eq!(rig.grab(Vec3::NEG_Y, 0.01), 1);
         for step in 1..=120 {
-            // Where another joint is: each of them in turn, the head's among them, for some steps.
+            // Each joint in turn is elsewhere for some steps, the head's among them.
             let joint = first(rig.state())[15 - step / 8];
             let report = rig.step(&Drive { hand: Some(joint), ..Drive::default() });
             assert_eq!(report.non_finite, 0, "step {step}");

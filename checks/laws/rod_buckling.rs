@@ -19,7 +19,8 @@ fn straight() -> Settings {
     settings
 }
 
-/// How far \[lengths\] a straight rod is from its line five seconds after a push of 0.03 m/s across it at its tip.
+/// Distance \[lengths\] of a straight rod from its line, five seconds after a push of 0.03 m/s across it at
+/// its tip.
 fn aside(on: &On, along: Vec3, across: Vec3, settings: &Settings) -> f32 {
     let points = line(along * (-LENGTH / COUNT as f32), along * LENGTH, COUNT + 1);
     let mut rig = Rig::new(on, model(&one_strand(&points), settings, |point| point < 2, Vec::new()));

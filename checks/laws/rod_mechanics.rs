@@ -107,7 +107,8 @@ law! {
     }
 }
 
-/// How far \[m\] a loose strand slides in a second along a bar that slopes by a tangent, and its speed \[m/s\].
+/// Distance \[m\] that a loose strand slides in a second along a bar that slopes by a tangent, and its speed
+/// \[m/s\].
 fn slid(on: &On, slope: f32, friction: f32) -> (f32, f32) {
     let mut settings = rods(1.0 / 60.0);
     settings.strands.rods.rest = Rest::Unstressed;
@@ -185,7 +186,7 @@ law! {
         let scale = (0.5 + 1.0 / count as f32) / (1.0 + 1.0 / count as f32);
         rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
         rig.steps(&[Drive::default(); 240]);
-        // What is left of the other half is the last 3 mm.
+        // The last 3 mm are the rest of the other half.
         let tip = first(rig.state())[count / 2 + 1];
         // reference/cantilever_elastica.csv gives 0.12456 for 1 and 0.58572 for 5; that of 1.25 by the same program
         // that found the chains'.
@@ -273,7 +274,7 @@ law! {
     }
 }
 
-/// How far \[m\] a hanging rod of a natural curvature k L leaves its plane after a small push.
+/// Distance \[m\] of a hanging rod of a natural curvature k L from its plane after a small push.
 fn out_of_plane(on: &On, curvature: f32) -> f32 {
     let (length, count) = (0.2_f32, 32);
     let mut settings = rods(1.0 / 60.0);

@@ -15,7 +15,7 @@ fn tips(model: &Model, state: &State) -> Vec<Vec3> {
     (0..model.strand_count()).map(tip).collect()
 }
 
-/// How far tips are apart in the middle of all strands, over the length of their strand.
+/// Median distance between tips of two states, over the length of their strand.
 fn apart(model: &Model, one: &[Vec3], other: &[Vec3]) -> f32 {
     let points = model.points_per_strand();
     let length = |strand: usize| -> f32 {

@@ -115,7 +115,7 @@ law! {
             // 2.2 and 2.4 s.
             assert!((4..=6).contains(&passages), "1/{rate} s: {passages} passages");
             assert!(rests, "1/{rate} s: not still after 4 s");
-            // What rubbing of 0.2 m/s^2 holds aside: 0.2 / 9.81 of its length.
+            // Rubbing of 0.2 m/s^2 holds 0.2 / 9.81 of the length aside.
             assert!(before.abs() < 0.02 * LENGTH, "1/{rate} s: {before} m beside its rest");
         }
     }

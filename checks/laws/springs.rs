@@ -1,4 +1,4 @@
-//! What each kind of spring does: its force on both ends, and the frequency at which a point swings on it.
+//! Springs of each kind: the force on both ends, and the frequency at which a point swings on them.
 
 use std::f32::consts::PI;
 
@@ -50,7 +50,7 @@ fn moved(guides: &Guides) -> Vec<(Vec3, Vec3)> {
         .collect()
 }
 
-/// What `integrate` changes the velocities by \[m/s\] where only springs act.
+/// Change of the velocities \[m/s\] in `integrate` if only springs act.
 fn kicks(on: &On, settings: &Settings, rooted: usize) -> Vec<Vec3> {
     let guides = helix();
     let mut rest = RestShape::new(&guides, 1.0);

@@ -1,4 +1,4 @@
-//! What projection leaves of stretch, and what the length pass leaves of it.
+//! Stretch left by projection, and by the length pass after it.
 
 use std::f32::consts::PI;
 

@@ -1,4 +1,4 @@
-//! What the way to the grid and back keeps: momentum, angular momentum, volume.
+//! Quantities that the transfer to the grid and back conserves: momentum, angular momentum, volume.
 
 use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Pose, Random, Shape};
@@ -60,7 +60,7 @@ impl Cloud {
         self.velocities[slot].get(lane)
     }
 
-    /// Where a point is: an index, and a lane.
+    /// Index and lane of a point.
     pub fn slot(&self, index: usize) -> (usize, usize) {
         let (strand, point) = (index / (POINTS - 2), index % (POINTS - 2) + 2);
         (strand / LANES * POINTS + point, strand % LANES)
@@ -270,7 +270,7 @@ law! {
             let found = taken(time_step, 1.0) / whole;
             assert!((found - share).abs() < 1e-3, "a step of {time_step} s takes {found} of it");
         }
-        // What is taken of PIC has as much of the pressure in it: with a quarter of the PIC share too.
+        // A shorter step with a share of PIC takes less of the pressure, too.
         let (long, short) = (taken(1.0 / 60.0, 0.5), taken(1.0 / 240.0, 0.5));
         assert!(short < 0.5 * long, "a step of 1/240 s takes {short}, one of 1/60 s {long}");
     }

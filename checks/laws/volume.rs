@@ -1,5 +1,5 @@
-//! What the fluid volume does to hair: walls carry it, heavy points count for more, wisps do not pass through
-//! each other; and where the faces of the grid lie.
+//! Effects of the fluid volume on hair: walls carry it, heavy points count for more, two wisps that meet slow
+//! each other down; and the places of the grid's faces.
 
 use glam::{DVec3, Vec3, vec3};
 use strandline_body::{Carrier, Collider, Pose, Random, Shape};
@@ -75,7 +75,7 @@ law! {
                 assert!((0.6..1.4).contains(&share), "{carrier:?}: {share} of the flow");
             }
         }
-        // What the head does not carry stays where it is.
+        // Hair that the head does not carry stays in place.
         for share in share_of_the_flow(on, Carrier::World, Vec3::NEG_Y, 0.0, 0.2) {
             assert!(share.abs() < 1e-3, "{share} of the flow");
         }
@@ -131,7 +131,7 @@ fn splatted(on: &On, cloud: &Cloud, cells: [u32; 3]) -> Faces {
     }
 }
 
-/// Where the lower face of a cell along an axis has its middle \[m\] [Chen2011 §4]: on the border of the cell along its
+/// Middle \[m\] of the lower face of a cell along an axis [Chen2011 §4]: on the border of the cell along its
 /// own axis, half a cell further along the other two.
 fn face_middle(origin: [f32; 3], spacing: f32, size: [usize; 3], axis: usize, cell: usize) -> DVec3 {
     let place = [cell % size[0], cell / size[0] % size[1], cell / (size[0] * size[1])];
@@ -203,7 +203,7 @@ law! {
 const ROWS: usize = 4;
 /// Distance of the middle of a wisp from the plane between both \[m\]: as far again as half of its width.
 const APART: f32 = 0.016;
-/// How fast each comes \[m/s\].
+/// Speed of each wisp \[m/s\].
 const SPEED: f32 = 0.05;
 
 /// Two wisps of loose strands of 10 cm that come at each other, by the time that they would have changed places: the

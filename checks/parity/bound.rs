@@ -66,7 +66,7 @@ fn look() -> Look {
     Look { follow_strands: 3, ..Look::brown() }
 }
 
-/// Where strands are and the points that are drawn of them; none without a GPU.
+/// Strands and the points drawn of them; `None` without a GPU.
 fn on_gpu(binding: &Binding, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec3>)> {
     let settings = PictureSettings::sized(32, 32);
     let mut renderer = GpuRenderer::new(&gpu()?, binding.strands(), None, &settings).unwrap();
@@ -120,7 +120,7 @@ fn bind_keeps_strands_out_of_solids_as_on_the_cpu() {
     let on_cpu = on_cpu(&binding, &solids);
     let strands = binding.strands().strand_count();
     let found = apart(&on_cpu, &on_gpu, strands);
-    // What touches a surface at a point that rounding moves takes another way from there on: few strands.
+    // A few strands that touch a surface take another path after a rounding error.
     let [most, last] = [found.len() * 98 / 100, found.len() - 1].map(|place| found[place]);
     println!("98 of 100 within {most:e} m, all within {last:e} m");
     assert!(most < 1e-4, "{most} m");
@@ -162,7 +162,7 @@ fn what_is_drawn_between_their_points_stays_out_as_on_the_cpu() {
     let [most, last] = [apart.len() * 999 / 1000, apart.len() - 1].map(|place| apart[place]);
     let inside = [&free, &kept, &on_gpu].map(|all| deep(all, each));
     println!("999 of 1000 within {most:e} m, all within {last:e} m; inside: {inside:?} of {}", kept.len());
-    // Where two surfaces are as near, rounding decides which of them a point comes out at.
+    // Between two surfaces at the same distance, rounding decides on which one a point comes out.
     assert!(kept.len() == on_gpu.len() && most < 1e-5, "{most} m");
     assert!(inside[0] > 300 && inside[1..].iter().all(|deep| 20 * deep < inside[0]), "{inside:?}");
 }

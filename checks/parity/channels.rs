@@ -44,8 +44,8 @@ fn light_apart(pair: &[Arc<Layers>; 2]) -> f32 {
     off / all
 }
 
-/// What the two may differ by: skin is lit once a pixel on the CPU and once a sample on a GPU. Found 0.009 with a body and
-/// 7e-4, what half floats round, without.
+/// Allowed difference of the two: skin is lit once per pixel on the CPU and once per sample on a GPU. Found
+/// 0.009 with a body and 7e-4, the rounding of half floats, without.
 const LIGHT: f32 = 0.02;
 /// The same in light with soft shadows: found 0.004.
 const SOFT_LIGHT: f32 = 0.006;
@@ -77,7 +77,7 @@ fn channels_agree_pixel_by_pixel() {
         let [one, other] = [0, 1].map(|which| channel(&pair[which], "strand.id"));
         let different = one.iter().zip(other).filter(|(one, other)| one != other).count();
         let known = one.iter().filter(|&&strand| strand > 0.0).count();
-        // Where two strands are as near as each other to the last bit, either may be named.
+        // Of two strands at the same distance to the last bit either may be named.
         assert!(different * 100 <= known && known > 1000, "{different} of {known} strands");
     }
 }

@@ -18,8 +18,8 @@ fn pictures(both: &Both, body: bool) -> Option<[Picture; 2]> {
     Some([on_cpu.draw(&input).unwrap().0, on_gpu.draw(&input).unwrap().0])
 }
 
-/// What the two backends may differ by: skin is lit once a pixel on the CPU and once a sample on a GPU,
-/// blending rounds to half floats.
+/// Allowed difference of the two backends: skin is lit once per pixel on the CPU and once per sample on a
+/// GPU, and blending rounds to half floats.
 const MEAN: f32 = 0.01;
 const ONE_IN_A_HUNDRED: f32 = 0.1;
 

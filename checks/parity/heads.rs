@@ -218,7 +218,7 @@ pub fn strands_apart(a: &[Vec3Lanes], b: &[Vec3Lanes], guides: &Guides) -> Vec<f
     let strand = |strand: usize| {
         let of = |all: &[Vec3Lanes], point: usize| all[strand / LANES * points + point].get(strand % LANES);
         let apart = (0..points).map(|point| of(a, point).distance(of(b, point)));
-        // What is no number counts as farthest.
+        // NaN counts as the farthest.
         apart.fold(0.0, |most, one| if one <= most { most } else { one })
     };
     let mut apart: Vec<f32> = (0..guides.strand_count()).map(strand).collect();

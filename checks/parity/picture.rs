@@ -105,7 +105,7 @@ impl Both {
         self.pose.point(0.5 * (all(Vec3::min, Vec3::MAX) + all(Vec3::max, Vec3::MIN)))
     }
 
-    /// What the CPU's stages make of it up to `shade`, with no body's shadow.
+    /// Result of the CPU's stages up to `shade`, without a body's shadow.
     fn on_cpu(&self, positions: &[strandline_groom::Vec3Lanes]) -> (Curves, Strands, Shadows) {
         self.shadowed_on_cpu(positions, None)
     }
@@ -237,7 +237,7 @@ fn shade_agrees_point_by_point() {
         let off: f32 = pairs.clone().map(|(one, other)| (*one - *other).abs().element_sum()).sum();
         // Half floats round by 2.4e-4 of the value at most, by half of that in the mean.
         assert!(off <= 5e-4 * all, "{style:?}: {off} of {all}");
-        // Where a texel differs, light does by as much as one hair takes.
+        // A texel that differs changes the light by that of one hair.
         let worst = pairs.filter(|(one, other)| (**one - **other).abs().max_element() > 0.01).count();
         assert!(worst * 10_000 <= found.len(), "{style:?}: {worst} of {}", found.len());
     }

@@ -61,7 +61,7 @@ fn solve_rods_agrees() {
             |_| (),
             |state, probe| {
                 let distance = apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);
-                // Where several solids meet, a point may be put onto one or the other.
+                // Between several solids a point may be put onto either.
                 let limit = if head.colliders.len() > 1 { 1e-3 } else { PLACE };
                 assert!(distance < limit, "{}: {distance}", head.name);
                 let mean = mean_apart(state.predicted(), &probe.predicted().unwrap(), &head.guides);

@@ -25,7 +25,7 @@ fn simulator(head: &Head, gpu: &strandline_gpu::Gpu, checkpoint_every: u32) -> S
     simulator
 }
 
-/// What tells steps apart.
+/// Numbers that tell steps apart.
 fn numbers(reports: &[StepReport]) -> Vec<[f32; 3]> {
     reports.iter().map(|report| [report.speed_mean, report.stretch_mean, report.stretch_max]).collect()
 }
@@ -74,7 +74,7 @@ fn steps_are_not_waited_for() {
     assert_eq!(gpu.waits(), before);
     simulator.state().unwrap();
     simulator.reports().unwrap();
-    // What has arrived already is not waited for.
+    // Results that have arrived already are not waited for.
     assert!((before..=before + 2 + RUNS.len() as u64).contains(&gpu.waits()));
 }
 

@@ -90,7 +90,7 @@ fn long_runs_agree_by_statistics() {
         let speeds = state.velocities.iter().flat_map(|v| (0..8).map(|lane| v.get(lane).length_squared()));
         *energy = speeds.map(f64::from).sum();
     }
-    // What still moves does so about as much.
+    // Both backends keep a similar energy.
     assert!((0.3..3.0).contains(&(energies[1] / energies[0])), "{energies:?}");
 }
 

@@ -15,7 +15,7 @@ use strandline_render::{
 };
 use strandline_render::{OwnColors, Shadows, Strands};
 
-/// What is drawn.
+/// Contents of a picture.
 pub struct Drawn {
     pub guides: Guides,
     pub look: Look,

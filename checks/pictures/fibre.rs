@@ -72,7 +72,8 @@ fn shown(table: &Table, eye: f64, light: f64, turn: f64, pigment: f32) -> [f64; 
     table.scatter(eye, light, turn, Pigments::Even(pigment), 0.0).to_array().map(f64::from)
 }
 
-/// What a fibre of some absorption shows of even light, by a sum over inclinations and turns of the table's far field.
+/// Reflectance of a fibre of some absorption in even light, by a sum over inclinations and turns of the
+/// table's far field.
 fn albedo(along: f64, tilt: f64, eye: f64, absorption: f64) -> f64 {
     let table = Table::new(&lobes(along, tilt), [absorption; 3]);
     let (inclinations, turns) = (720, 48);

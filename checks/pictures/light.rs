@@ -104,7 +104,7 @@ impl Scene {
         }
     }
 
-    /// What a GPU draws.
+    /// Picture drawn by a GPU.
     fn drawn_on(&self, gpu: &Gpu) -> Linear {
         let settings = PictureSettings { layers: true, ..self.settings };
         let mut renderer = GpuRenderer::new(gpu, &self.guides, Some(&self.body), &settings).unwrap();
@@ -247,7 +247,7 @@ law! {
 /// A square light \[m\] of a radiance that faces the head.
 fn panel(position: [f32; 3], side: f32, radiance: [f32; 3]) -> Light {
     let (position, target) = (Vec3::from(position), Vec3::new(0.0, -0.07, 0.0));
-    // What a white surface at the target shows.
+    // Radiance of a white surface at the target.
     let scale = side * side / (std::f32::consts::PI * position.distance_squared(target));
     Light {
         kind: LightKind::Rectangle,

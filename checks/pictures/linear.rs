@@ -82,7 +82,7 @@ pub fn reference(name: &str, width: usize) -> Linear {
     Linear { width, height: pixels.len() / width, pixels }
 }
 
-/// How far a picture is from its reference inside a mask.
+/// Differences between a picture and its reference inside a mask.
 #[derive(Debug)]
 pub struct Measures {
     /// Mean FLIP error.
@@ -94,7 +94,7 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// Whether FLIP and the mean of each channel keep to their bounds.
+    /// True if FLIP and the mean of each channel are within their bounds.
     pub fn sound(&self, flip: f32, mean: f32) -> bool {
         self.flip <= flip && (self.mean - Vec3::ONE).abs().max_element() <= mean
     }

@@ -1,4 +1,4 @@
-//! What is drawn: its shape, its light, and whole pictures.
+//! Pictures: shape, light, and whole images.
 
 mod clump;
 mod coverage;

@@ -75,7 +75,7 @@ pub fn shadows_in(renderer: &mut GpuRenderer, strands: &Strands, light: &Light, 
     renderer.shadows_of(strands, &input).unwrap()
 }
 
-/// How well a map tells the light that reaches points: 0.7 to the power of the crossings.
+/// Accuracy of a map at points whose light is 0.7 to the power of the crossings.
 #[derive(Debug)]
 struct Accuracy {
     /// Mean of the error.

@@ -19,7 +19,7 @@ const EDGE: f32 = 0.3;
 const PLACES: usize = 81;
 const REACH: f32 = 0.12;
 
-/// What casts the shadow.
+/// Object that casts the shadow.
 #[derive(Clone, Copy, PartialEq)]
 enum Caster {
     Nothing,

@@ -67,7 +67,7 @@ law! {
             for width in [2.5, 4.0, 9.0] {
                 let wide = pixels(on, width, angle);
                 assert!((mean(&wide) / thin - 1.0).abs() < 0.01, "{width} at {angle}: {} {thin}", mean(&wide));
-                // Where it is wholly covered: what numbers say of coverage is flat.
+                // Wholly covered samples only: coverage in channels is flat.
                 let shown = wide.0.iter().zip(&wide.1).filter(|(_, covered)| **covered > 0.99);
                 let (least, most) = shown
                     .map(|(light, covered)| light / covered / thin)

@@ -30,7 +30,7 @@ fn directions(count: usize) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// What a hair shows of light that is even from all around, by a sum over directions.
+/// Radiance of a hair in light that is even from all around, by a sum over directions.
 fn furnace(look: &Look, color: Vec3, tangent: Vec3, to_eye: Vec3) -> f32 {
     let count = 20_000;
     // A direction stands for 4 pi / count of solid angle, and lights are given over pi.
@@ -61,7 +61,7 @@ fn a_white_hair_in_a_white_furnace_does_not_shine() {
 
 #[test]
 fn the_furnace_sees_a_hair_that_gives_back_more() {
-    // Where the eye looks across the hair, all of its light comes back.
+    // An eye that looks across the hair sees all of its light.
     let shown = |look: &Look, color: f32| furnace(look, Vec3::splat(color), Vec3::Y, Vec3::X);
     assert!(shown(&Look::thesis(), 1.0) < 1.01);
     // Hair that sends back more diffuse light than it takes; highlights that take more than there is.

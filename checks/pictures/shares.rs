@@ -1,4 +1,4 @@
-//! Where there are many strands, every second or fourth stands for all whose scattered light is summed.
+//! Many strands: every second or fourth stands for all in the sum of scattered light.
 
 use strandline_checks::law;
 use strandline_render::{Camera, Layers, Light, Preset};

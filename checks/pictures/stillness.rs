@@ -68,7 +68,7 @@ law! {
             lines.push(aside(0.05 + 0.003 * frame as f32).collect());
             let now = maps.transmittances(&lines, &sun(), 512, &points);
             if let Some(last) = &last {
-                // What is left are last bits of places in another window: found up to 1.1e-5.
+                // The remaining change is rounding of places in another window: found up to 1.1e-5.
                 let change = change(last, &now);
                 assert!(change < 1e-3, "frame {frame}: {change}");
             }

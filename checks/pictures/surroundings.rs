@@ -77,7 +77,7 @@ law! {
         for (frame, pair) in shares.windows(2).enumerate() {
             let kept = pair[0].iter().zip(&pair[1]).take(8 * rest.len());
             let change = kept.map(|(before, after)| (after - before).abs()).sum::<f32>() / (8 * rest.len()) as f32;
-            // What the tip hides, a long way off, and last bits: found up to 6e-7.
+            // The remaining change is the far tip's occlusion and rounding: found up to 6e-7.
             assert!(change < 1e-4, "frame {frame}: {change}");
         }
     }

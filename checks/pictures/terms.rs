@@ -287,7 +287,7 @@ law! {
         let (open, dull, clear) = (lit(0.0, 0.0), lit(0.3, 0.0), lit(0.3, 0.6));
         let mut deep = 0;
         for ((open, dull), clear) in open.iter().zip(&dull).zip(&clear) {
-            // What the hair before takes: exp(-x), the same in every colour.
+            // Transmittance of the hair before: exp(-x), the same in every colour.
             let x = (open.x / dull.x).ln();
             assert!(close(open.z / dull.z, open.x / dull.x, 4.0 * HALF), "{open} became {dull}");
             if x < 0.5 {

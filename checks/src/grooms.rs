@@ -51,7 +51,7 @@ fn folder(variable: &str, name: &str, files: &[&str]) -> Option<PathBuf> {
     None
 }
 
-/// Where this variable of the environment is set, nothing may go untested for want of data.
+/// Variable of the environment that makes missing data a failure.
 const REQUIRED: &str = "STRANDLINE_REQUIRE_GROOMS";
 
 /// Says in one line on stderr that the running test checks nothing, and why. The line is written past the capture of
@@ -63,7 +63,7 @@ fn not_tested(why: &str, required: Option<&OsStr>) {
     let thread = std::thread::current();
     let line = format!("NOT TESTED: {}: {why}\n", thread.name().unwrap_or("a test"));
     assert!(required.is_none(), "{REQUIRED} is set, but {line}");
-    // Where stderr is closed there is no place to say it.
+    // A closed stderr leaves no place for the note.
     std::io::Write::write_all(&mut std::io::stderr(), line.as_bytes()).ok();
 }
 

@@ -9,15 +9,15 @@ const SECTIONS: [&str; 23] = [
 ];
 /// Its last equation, figure and table.
 const LAST: [(&str, u32); 3] = [("eq.", 24), ("fig.", 54), ("table", 5)];
-/// Where citations stand, below the root of the project.
+/// Folders of citations, below the root of the project.
 const FOLDERS: [&str; 8] = ["apps", "bench", "checks", "crates", "docs", "examples", "fuzz", "xtask"];
 
-/// What is wrong with the citations of a text.
+/// Errors in the citations of a text.
 fn wrong(text: &str) -> Vec<String> {
     text.match_indices("Chen2011").filter_map(|(at, key)| wrong_after(&text[at + key.len()..])).collect()
 }
 
-/// What is wrong with the citation whose places follow its key.
+/// Error in the citation whose places follow its key.
 fn wrong_after(text: &str) -> Option<String> {
     let cited = text.split([']', '\\', ';', '\n']).next().unwrap_or_default();
     // A key without a place; the places that the examples print.

@@ -39,7 +39,7 @@ fn the_simulation_is_the_one_printed() {
         settings.strands.constrain.springs.torsion,
     ];
     assert!(springs.iter().all(|spring| spring.enabled && spring.stiffness > 0.0));
-    // What the thesis does not have.
+    // Features that the thesis does not have.
     assert!(
         settings.strands.constrain.angles == Angles::OFF && !settings.strands.constrain.length_pass.enabled
     );

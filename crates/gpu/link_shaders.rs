@@ -1,4 +1,4 @@
-//! For build scripts: links the WESL modules of a crate's stages, and what all crates share, into one WGSL text each.
+//! For build scripts: links each WESL module of a crate's stages, with the kit of all crates, into one WGSL text.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -78,7 +78,7 @@ fn beside_kit(shaders: &BTreeMap<String, String>) -> PathBuf {
     package
 }
 
-/// Whether a module has a kernel or a drawing; the others are imported by such.
+/// True for a module with a kernel or a drawing; other modules are imported by such.
 fn has_entry(text: &str) -> bool {
     ENTRIES.iter().any(|entry| text.lines().any(|line| line.starts_with(entry)))
 }

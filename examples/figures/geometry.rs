@@ -13,7 +13,7 @@ use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
 /// The same hair from 1, 2, 4 and 8 times as far: as large as it is, then the far ones magnified.
 pub fn level_of_detail(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 240, 240)?;
-    // What distance does, not that these pictures are small.
+    // The effect of distance alone, without that of the small pictures.
     hair.level_of_detail.by_pixel = false;
     let (mut natural, mut large) = (Vec::new(), Vec::new());
     for times in [1, 2, 4, 8] {

@@ -14,12 +14,12 @@ const SIZE: u32 = 128;
 const TIMES: [f64; 7] = [0.0, 0.2, 0.4, 0.6, 0.9, 1.2, 1.8];
 /// When the head comes to rest \[s\], and the hand lets go.
 const REST: f64 = 0.65;
-/// How far the hand pulls \[m\].
+/// Distance that the hand pulls \[m\].
 const PULL: Vec3 = Vec3::new(0.12, 0.10, 0.06);
 /// Radius of the hand \[m\].
 const HAND: f32 = 0.03;
 
-/// What moves the hair.
+/// Cause of the motion.
 #[derive(Clone, Copy)]
 enum Drive {
     /// The head, and then it rests.

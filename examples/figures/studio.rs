@@ -1,4 +1,4 @@
-//! What all figures share: scenes at rest or in motion, cameras and sizes.
+//! Scenes at rest or in motion, cameras and sizes of all figures.
 
 use glam::Vec3;
 use strandline::{
@@ -13,11 +13,11 @@ pub type Figure = Result<Picture, Box<dyn std::error::Error>>;
 /// Seconds between two moves of the head.
 pub const FRAME: f64 = 1.0 / 60.0;
 
-/// Where figures are made.
+/// Settings of all figures.
 pub struct Studio {
-    /// Where hair is simulated and drawn.
+    /// Backend of simulation and pictures.
     pub backend: Backend,
-    /// Whether pictures are small and strands few.
+    /// True for small pictures of few strands.
     pub quick: bool,
 }
 
@@ -66,7 +66,7 @@ pub struct Moving {
     pub picture: PictureSettings,
     /// Time that passed \[s\].
     pub time: f64,
-    /// Where a hand took hair \[m\], as long as it holds it.
+    /// Point \[m\] at which a hand holds hair; `None` if it holds none.
     pub held: Option<Vec3>,
     head: HeadMotion,
 }
@@ -93,7 +93,7 @@ pub fn bust(direction: Vec3) -> Camera {
     close(direction, Vec3::new(0.0, -0.09, -0.05), 0.54)
 }
 
-/// What lies about `target` \[m\] from a direction, `height` \[m\] high.
+/// Camera on `target` \[m\] from a direction, with a view `height` \[m\] high.
 pub fn close(direction: Vec3, target: Vec3, height: f32) -> Camera {
     let camera = Camera { target, field_of_view: 25.0, ..Camera::front() };
     let position = target + direction.normalize() * (0.5 * height * camera.focal());

@@ -1,22 +1,21 @@
-//! Whether there is a GPU to test on and a display to open windows on, and what can be installed where there
-//! is none.
+//! Finds a GPU to test on and a display for windows, and installs software ones if asked to.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::cargo::{example, root};
 
-/// What the tests ask of the machine: a missing adapter is a failure.
+/// Variable that makes a missing adapter a failure.
 pub const REQUIRED: &str = "STRANDLINE_REQUIRE_GPU";
 
-/// What is left out without an adapter.
+/// Summary of the tests that need an adapter.
 pub const UNTESTED: &str =
     "no GPU adapter: the parity checks, the laws on the GPU and the backend tests compared nothing";
 
-/// What the tests of the window ask of the machine: a missing display is a failure.
+/// Variable that makes a missing display a failure.
 pub const DISPLAY_REQUIRED: &str = "STRANDLINE_REQUIRE_DISPLAY";
 
-/// What is left out without a display.
+/// Summary of the tests that need a display.
 pub const NO_WINDOW: &str = "no Xvfb or no X libraries: the window was not opened";
 
 /// Debian's software Vulkan.
@@ -25,22 +24,22 @@ const VULKAN: [&str; 2] = ["mesa-vulkan-drivers", "libvulkan1"];
 const DISPLAY: [&str; 5] = ["xvfb", "libx11-xcb1", "libxcursor1", "libxi6", "libxkbcommon-x11-0"];
 const LIBRARIES: [&str; 4] = ["libX11-xcb.so.1", "libXcursor.so.1", "libXi.so.6", "libxkbcommon-x11.so.0"];
 
-/// What to do about the adapter before the tests.
+/// Action on the adapter before the tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plan {
-    /// There is one, or none is asked for.
+    /// There is an adapter, or none is required.
     Go,
-    /// Install what is missing, with these words before the package manager's name.
+    /// Install the missing packages, with these words before the package manager's name.
     Install(&'static [&'static str]),
-    /// One is required, and cannot be installed from here.
+    /// An adapter is required and cannot be installed from here.
     GiveUp(&'static str),
 }
 
-/// What is known of the machine.
+/// State of the machine.
 #[derive(Clone, Copy, Debug)]
 pub struct Machine {
     pub adapter: bool,
-    /// Whether windows can be opened without a screen.
+    /// True if windows can be opened without a screen.
     pub display: bool,
     pub apt: bool,
     pub root: bool,
@@ -66,14 +65,14 @@ pub fn plan(setup: bool, required: bool, machine: Machine) -> Plan {
     }
 }
 
-/// What the tests can use.
+/// Devices that the tests can use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct There {
     pub adapter: bool,
     pub display: bool,
 }
 
-/// Sees to it that there is an adapter and a display, as far as that is asked for: what there is, or why the
+/// Installs an adapter and a display if asked to. Returns the devices, or why the
 /// tests cannot start.
 pub fn prepare(setup: bool) -> Result<There, String> {
     let required = std::env::var_os(REQUIRED).is_some_and(|value| value == "1");
@@ -100,7 +99,7 @@ pub fn prepare(setup: bool) -> Result<There, String> {
     }
 }
 
-/// Whether there is Xvfb, and the libraries that a window loads.
+/// True if Xvfb and the libraries of a window are installed.
 fn has_display() -> bool {
     let mut server = Command::new("Xvfb");
     let server =

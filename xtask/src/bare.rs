@@ -1,4 +1,4 @@
-//! The program without GPUs and window: what may not be in it, and that it simulates and draws.
+//! The program without GPUs and window: crates that it must not contain, and a trial run.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,9 +9,24 @@ use crate::cargo::{cargo_command, root};
 const UNWANTED: [&str; 4] = ["wgpu", "eframe", "egui", "winit"];
 
 /// The words for cargo that choose it.
-pub const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
+const CHOICE: [&str; 3] = ["--package", "strandline-cli", "--no-default-features"];
 
-/// What it is run with, in a folder of its own: a step of hair, and a picture of it.
+/// The words for cargo that choose all crates with features, without these.
+pub const WITHOUT_FEATURES: [&str; 11] = [
+    "--package",
+    "strandline-gpu",
+    "--package",
+    "strandline-sim",
+    "--package",
+    "strandline-render",
+    "--package",
+    "strandline",
+    "--package",
+    "strandline-cli",
+    "--no-default-features",
+];
+
+/// Commands of the trial run, in a folder of its own: a step of hair, and a picture of it.
 const RUNS: [&[&str]; 2] = [
     &["sim", "--scene", "bare.toml", "--frames", "2", "--json"],
     &["render", "--scene", "bare.toml", "--frames", "1", "--out", "bare.png", "--json"],
@@ -20,7 +35,7 @@ const RUNS: [&[&str]; 2] = [
 const SCENE: &str = "[style]\nstrand_count = 40\n[body]\nspacing = 0.02\n[film]\nsettle = 0.0\n\
                      [picture]\nwidth = 64\nheight = 48\n[simulation]\nvolume.cells = [8, 8, 8]\n";
 
-/// Whether it is built from none of the crates that it can do without, and then does what it is for.
+/// Checks that the bare program is built without optional crates, and runs it.
 pub fn check() -> bool {
     is_built_from_what_it_needs() && runs()
 }
@@ -63,7 +78,8 @@ fn run(program: &Path, words: &[&str], folder: &Path) -> bool {
     false
 }
 
-fn is_built_from_what_it_needs() -> bool {
+/// Checks that no crate of it is one that it can do without.
+pub fn is_built_from_what_it_needs() -> bool {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let tree = ["tree", "--edges", "normal,build", "--prefix", "none"];
     let output = Command::new(cargo).args(tree).args(CHOICE).current_dir(root()).output();

@@ -1,4 +1,4 @@
-//! Cargo and what it builds, from the root.
+//! Cargo and its outputs, from the root.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -16,7 +16,7 @@ pub fn cargo_command(arguments: &[&str]) -> Command {
 }
 
 /// An example's program, built with the workspace: a package by itself has other features of its dependencies, so
-/// that all of them would be built once more. None where it does not build.
+/// that all of them would be built once more. `None` if it does not build.
 pub fn example(name: &str) -> Option<Command> {
     let build = ["build", "--workspace", "--quiet", "--example", name];
     let mut command = cargo_command(&build);

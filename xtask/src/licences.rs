@@ -1,4 +1,4 @@
-//! What others' code may be used, and the list of their licences.
+//! Allowed licences of dependencies, and the page that lists them.
 //!
 //! docs/licences.md is written from what cargo says of every package; that it names the packages of Cargo.lock
 //! and no others is checked with every test, without cargo and without a network.
@@ -13,9 +13,9 @@ use serde::Deserialize;
 
 use crate::cargo::{cargo_command, root};
 
-/// The packages that people get: what these need is in the program.
+/// The packages that are distributed: the program contains their dependencies.
 const PROGRAM: &str = "strandline-cli";
-/// Names of files that hold a licence or what it asks to be passed on.
+/// Names of files with a licence, or with a notice that it requires.
 const TEXTS: [&str; 5] = ["license", "licence", "copying", "notice", "copyright"];
 
 #[derive(Deserialize)]
@@ -30,7 +30,7 @@ struct Package {
     name: String,
     version: String,
     license: Option<String>,
-    /// None for our own.
+    /// `None` for our own.
     source: Option<String>,
     manifest_path: String,
 }
@@ -77,7 +77,7 @@ fn page() -> std::path::PathBuf {
 pub fn deny() -> bool {
     match deny_if_installed() {
         Some(held) => {
-            // The list of faults lies in the net: without it nothing is known, which is no fault.
+            // The list of known faults is online: a missing connection is no failure.
             println!("\n== cargo deny check advisories");
             if !cargo(&["deny", "check", "advisories"]) {
                 println!("advisories: see above; without a network their list cannot be had");
@@ -91,11 +91,11 @@ pub fn deny() -> bool {
     }
 }
 
-/// What is said where cargo-deny is missing.
+/// Note for a missing cargo-deny.
 pub const NOT_INSTALLED: &str =
     "licences and sources of dependencies: cargo-deny is not installed (`cargo install --locked cargo-deny`)";
 
-/// Licences, sources and duplicates by cargo-deny; none where it is not installed.
+/// Licences, sources and duplicates by cargo-deny; `None` if it is not installed.
 pub fn deny_if_installed() -> Option<bool> {
     let version = cargo_command(&["deny", "--version"]).stdout(Stdio::null()).stderr(Stdio::null()).status();
     version.is_ok_and(|status| status.success()).then(|| {
@@ -130,7 +130,7 @@ pub fn write(texts: Option<&str>) -> bool {
     }
 }
 
-/// Checks that the page names what Cargo.lock has.
+/// Checks that the page names the packages of Cargo.lock.
 pub fn check() -> bool {
     let compared =
         std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock").and_then(|lock| {

@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | bare | deny | licences`.
+//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | bare | long | deny | licences`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
@@ -6,12 +6,17 @@
 mod adapter;
 mod bare;
 mod cargo;
+mod comments;
 mod faults;
 mod house;
 mod licences;
+mod long;
 mod names;
+mod programs;
 mod python;
 mod run;
+mod times;
+mod workflows;
 
 use std::process::ExitCode;
 
@@ -25,8 +30,8 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            and usd-core into target/python where python3 has none, and says so where it cannot
   ci       test --setup
   bless    record the golden pictures again; look at each before you commit it
-  docs     write docs/scene.md from the settings table
-  names    check that every stage has one name everywhere
+  docs     write docs/scene.md from the settings table and docs/cli.md from the arguments
+  names    check that every stage has one name everywhere, and that comments name their subject first
   house    check the plan of the house: arrows between crates, circles of files, sizes
   faults   plant the faults of checks/faults in a copy of the tree, one after the other, and run
            the tests that have to see each. Results are kept: a run that was stopped early resumes,
@@ -35,11 +40,13 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            --table the page docs/faults.md
   bare     build the program without GPUs and window, look what it is built from, simulate and draw
            with it
+  long     bare, and the tests that `test` runs for a short time only for as long as they should:
+           kills, random use of the window; records the day in bench/long.json
   deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
            faults where their list can be had; `test` does the first three where it is installed
   licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";
 
-/// What to do.
+/// A chore of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Chore {
     Test { setup: bool },
@@ -49,6 +56,7 @@ enum Chore {
     House,
     Faults(faults::Wish),
     Bare,
+    Long,
     Deny,
     Licences(Option<String>),
     Help,
@@ -65,6 +73,7 @@ fn main() -> ExitCode {
         Some(Chore::House) => house::check(),
         Some(Chore::Faults(wish)) => faults::faults(&wish),
         Some(Chore::Bare) => bare::check(),
+        Some(Chore::Long) => long::run(),
         Some(Chore::Deny) => licences::deny(),
         Some(Chore::Licences(texts)) => licences::write(texts.as_deref()),
         Some(Chore::Help) => {
@@ -79,7 +88,7 @@ fn main() -> ExitCode {
     if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// What the words of the command line ask for; none when they ask for nothing that there is.
+/// Chore named by the words of the command line; `None` for an unknown one.
 fn chore(words: &[&str]) -> Option<Chore> {
     if words.iter().any(|word| ["--help", "-h", "help"].contains(word)) {
         return Some(Chore::Help);
@@ -93,6 +102,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["house"] => Some(Chore::House),
         ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
         ["bare"] => Some(Chore::Bare),
+        ["long"] => Some(Chore::Long),
         ["deny"] => Some(Chore::Deny),
         ["licences"] => Some(Chore::Licences(None)),
         ["licences", file] => Some(Chore::Licences(Some((*file).to_owned()))),

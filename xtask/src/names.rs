@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::cargo::root;
+use crate::comments;
 
 /// A crate with stages, and the file that lists them in order, with their names: one list for both backends.
 struct Recipe {
@@ -20,14 +21,15 @@ const RECIPES: [Recipe; 2] = [
 /// The folder of each backend, and the endings of the files of a stage there.
 const BACKENDS: [(&str, &[&str]); 2] = [("cpu", &["rs"]), ("gpu", &["rs", "wesl"])];
 
-/// Prints every stage that lacks its file, its line or its row. True when none does.
+/// Prints every stage that lacks its file, its line or its row. True if all are complete.
 pub fn check() -> bool {
-    let problems = problems(root());
+    let mut problems = problems(root());
+    problems.extend(comments::problems());
     for problem in &problems {
         eprintln!("names: {problem}");
     }
     if problems.is_empty() {
-        println!("names: every stage has one name everywhere");
+        println!("names: every stage has one name everywhere, and comments name their subject first");
     }
     problems.is_empty()
 }

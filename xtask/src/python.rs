@@ -1,18 +1,18 @@
-//! A Python with numpy and usd-core, which read what the program writes.
+//! A Python with numpy and usd-core, which read files of the program.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use crate::cargo::root;
 
-/// What names it to the tests.
+/// Variable that names the interpreter to the tests.
 pub const NAMED: &str = "STRANDLINE_PYTHON";
 
-/// What is left out without one.
+/// Summary of the tests that need Python.
 pub const NONE: &str = "no Python with numpy and usd-core: nobody else read moving caches and USD \
                         (STRANDLINE_PYTHON names one; with STRANDLINE_REQUIRE_PYTHON the test fails without it)";
 
-/// The Python of the tests, where it has what they need. `setup` makes one in `target` where there is none and
+/// The Python of the tests, if it has their packages. `setup` makes one in `target` if there is none, and
 /// packages can be had.
 pub fn prepare(setup: bool) -> Option<String> {
     let named = std::env::var(NAMED).unwrap_or_else(|_| "python3".to_owned());

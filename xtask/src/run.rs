@@ -1,45 +1,46 @@
-//! Runs the steps one after the other and adds up what the test runners print.
+//! Everything that must hold before a change lands, step by step, with the seconds of each.
 
 use std::io::{BufRead, BufReader};
 use std::path::PathBuf;
 use std::process::Stdio;
-use std::time::Instant;
 
-use crate::cargo::{cargo_command, example, root};
-use crate::{adapter, bare, house, licences, names, python};
+use crate::cargo::{cargo_command, root};
+use crate::programs::{self, Ran, Tally};
+use crate::times::{Clock, Times};
+use crate::{adapter, bare, house, licences, long, names, python, workflows};
 
-/// Sums over every `test result:` line.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Tally {
-    passed: u64,
-    failed: u64,
-    ignored: u64,
+/// Builds every test program and example; the messages of this call name them.
+const BUILD: [&str; 4] = ["test", "--workspace", "--no-run", "--message-format=json-render-diagnostics"];
+
+/// The outcome so far.
+#[derive(Default)]
+struct Report {
+    tally: Tally,
+    broken: Vec<String>,
+    times: Times,
+    failures: Vec<Ran>,
 }
 
-impl Tally {
-    /// Adds a line such as `test result: ok. 3 passed; 0 failed; 1 ignored; ...`; false when it is not one.
-    fn add(&mut self, line: &str) -> bool {
-        let Some(counts) = line.trim_start().strip_prefix("test result:") else { return false };
-        for part in counts.split([';', '.']) {
-            let mut words = part.split_whitespace();
-            let (Some(number), Some(word)) = (words.next().and_then(|n| n.parse::<u64>().ok()), words.next())
-            else {
-                continue;
-            };
-            match word {
-                "passed" => self.passed += number,
-                "failed" => self.failed += number,
-                "ignored" => self.ignored += number,
-                _ => {}
-            }
+impl Report {
+    /// Runs a step and notes its seconds and whether it passed.
+    fn step(&mut self, name: &str, run: impl FnOnce(&mut Tally) -> bool) -> bool {
+        let clock = Clock::start();
+        let passed = run(&mut self.tally);
+        self.times.add(name, clock.stop());
+        if !passed {
+            self.broken.push(name.to_owned());
         }
-        true
+        passed
+    }
+
+    fn passed(&self) -> bool {
+        self.broken.is_empty() && self.tally.failed == 0 && self.tally.passed > 0
     }
 }
 
-/// Everything that must hold before a change lands. False when anything failed. `setup` installs an
-/// adapter to test on where there is none.
+/// Runs all steps; false when anything failed. `setup` installs an adapter to test on where there is none.
 pub fn test(setup: bool) -> bool {
+    let whole = Clock::start();
     let there = match adapter::prepare(setup) {
         Ok(there) => there,
         Err(why) => {
@@ -53,69 +54,110 @@ pub fn test(setup: bool) -> bool {
         wanted.extend([(adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")]);
     }
     wanted.extend(python.as_deref().map(|python| (python::NAMED, python)));
-    let begin = Instant::now();
-    let mut tally = Tally::default();
-    let mut broken: Vec<String> = Vec::new();
+    let mut report = Report::default();
+    report.times.add("adapter and Python", whole.stop());
+    look(&mut report);
     let denied = licences::deny_if_installed();
-    let mut step = |name: &str, passed: bool| {
-        if !passed {
-            broken.push(name.to_owned());
-        }
-    };
-    for (name, passed) in look() {
-        step(name, passed);
-    }
-    step("deny", denied.unwrap_or(true));
-    let tests = ["test", "--workspace", "--all-targets", "--no-fail-fast"];
-    step("tests", cargo(&tests, &wanted, &mut tally));
-    step("doc tests", cargo(&["test", "--workspace", "--doc", "--no-fail-fast"], &[], &mut tally));
-    let docs = ["doc", "--workspace", "--no-deps", "--quiet"];
-    step("documentation", cargo(&docs, &[("RUSTDOCFLAGS", "-D warnings")], &mut tally));
-    for name in examples() {
-        println!("\n== example {name}");
-        let ran = example(&name).is_some_and(|mut program| {
-            program.env("STRANDLINE_QUICK", "1").status().is_ok_and(|status| status.success())
-        });
-        step(&format!("example {name}"), ran);
-    }
-    println!("\ntook {:.0} s", begin.elapsed().as_secs_f64());
+    report.step("deny", |_| denied.unwrap_or(true));
+    let workflows = workflows::check_if_installed();
+    report.step("workflows", |_| workflows.unwrap_or(true));
+    tests(&mut report, &wanted);
     let missing = [
         (there.adapter, adapter::UNTESTED),
         (there.display, adapter::NO_WINDOW),
         (python.is_some(), python::NONE),
         (denied.is_some(), licences::NOT_INSTALLED),
+        (workflows.is_some(), workflows::NOT_INSTALLED),
         (grooms_are_there(), NO_GROOMS),
     ];
-    for (_, what) in missing.iter().filter(|(is_there, _)| !is_there) {
-        println!("NOT TESTED: {what}");
-    }
-    for name in &broken {
-        println!("FAILED: {name}");
-    }
-    println!("tests: {} passed, {} failed, {} skipped", tally.passed, tally.failed, tally.ignored);
-    broken.is_empty() && tally.failed == 0 && tally.passed > 0
+    report.times.add_sum("all", whole.stop());
+    close(&report, missing.into_iter().filter(|(is_there, _)| !is_there).map(|(_, what)| what));
+    report.passed()
 }
 
-/// The checks that run nothing of the program: each one's name, and whether it passed.
-fn look() -> [(&'static str, bool); 6] {
+/// The checks that run nothing of the program.
+fn look(report: &mut Report) {
     let passes = |arguments: &[&str]| cargo(arguments, &[], &mut Tally::default());
     let lints = ["clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"];
-    let bare: Vec<&str> =
-        ["clippy", "--quiet"].into_iter().chain(bare::CHOICE).chain(["--", "-D", "warnings"]).collect();
-    [
-        ("format", passes(&["fmt", "--all", "--check"])),
-        ("names", names::check()),
-        ("house", house::check()),
-        ("licences", licences::check()),
-        ("lints", passes(&lints)),
-        ("without GPUs and window", bare::check() && passes(&bare)),
-    ]
+    let without: Vec<&str> = ["clippy", "--quiet", "--no-deps"]
+        .into_iter()
+        .chain(bare::WITHOUT_FEATURES)
+        .chain(["--", "-D", "warnings"])
+        .collect();
+    report.step("format", |_| passes(&["fmt", "--all", "--check"]));
+    report.step("names", |_| names::check());
+    report.step("house", |_| house::check());
+    report.step("licences", |_| licences::check());
+    report.step("lints", |_| passes(&lints));
+    report.step("lints without GPUs and window", |_| bare::is_built_from_what_it_needs() && passes(&without));
 }
 
-/// What is left out where the grooms are missing.
+/// Builds, then runs the test programs and examples side by side, the doc tests and the documentation.
+fn tests(report: &mut Report, wanted: &[(&str, &str)]) {
+    let mut messages = String::new();
+    if !report.step("build", |_| build(&mut messages)) {
+        return;
+    }
+    report.step("second build", |_| nothing_is_built_again());
+    let clock = Clock::start();
+    let ran = programs::run(programs::found(&messages, &examples()), wanted);
+    programs::keep(ran.iter().filter(|ran| ran.passed).map(|ran| (ran.name.clone(), ran.seconds.wall)));
+    report.times.add_sum("test programs and examples", clock.stop());
+    for ran in ran {
+        report.tally.join(ran.tally);
+        report.times.add(&ran.name, ran.seconds);
+        if !ran.passed {
+            report.broken.push(ran.name.clone());
+            report.failures.push(ran);
+        }
+    }
+    let docs = ["test", "--workspace", "--doc", "--no-fail-fast"];
+    report.step("doc tests", |tally| cargo(&docs, &[], tally));
+    let documentation = ["doc", "--workspace", "--no-deps", "--quiet"];
+    report.step("documentation", |tally| cargo(&documentation, &[("RUSTDOCFLAGS", "-D warnings")], tally));
+}
+
+/// Builds what is tested; `messages` receives those of cargo.
+fn build(messages: &mut String) -> bool {
+    println!("\n== cargo {}", BUILD.join(" "));
+    match cargo_command(&BUILD).stderr(Stdio::inherit()).output() {
+        Ok(output) => {
+            *messages = String::from_utf8_lossy(&output.stdout).into_owned();
+            output.status.success()
+        }
+        Err(error) => {
+            eprintln!("cannot run cargo: {error}");
+            false
+        }
+    }
+}
+
+/// Checks that a second build of an unchanged tree compiles none of our crates.
+fn nothing_is_built_again() -> bool {
+    let mut messages = String::new();
+    let built = build(&mut messages);
+    let stale = programs::stale(&messages);
+    stale.iter().for_each(|name| println!("built again although nothing changed: {name}"));
+    built && stale.is_empty()
+}
+
+/// Prints seconds, failures once more, what was not tested, and the summary as the last line.
+fn close(report: &Report, missing: impl Iterator<Item = &'static str>) {
+    println!("\n{}", report.times.table());
+    for ran in &report.failures {
+        println!("== {} once more\n{}", ran.name, ran.failures().trim());
+    }
+    println!("{}", long::last_run());
+    missing.for_each(|what| println!("NOT TESTED: {what}"));
+    report.broken.iter().for_each(|name| println!("FAILED: {name}"));
+    let Tally { passed, failed, ignored } = report.tally;
+    println!("tests: {passed} passed, {failed} failed, {ignored} skipped");
+}
+
+/// Summary of the tests that need grooms.
 const NO_GROOMS: &str = "grooms and heads that are not part of the project (STRANDLINE_GROOMS names their folder; with STRANDLINE_REQUIRE_GROOMS their tests fail without it)";
 
-/// Whether the folder of grooms that are not part of the project is where tests look for it.
+/// True if the folder of grooms outside the project exists.
 fn grooms_are_there() -> bool {
     let beside = || root().join("../shared/grooms");
     std::env::var_os("STRANDLINE_GROOMS").map_or_else(beside, PathBuf::from).join("sintel").is_dir()
@@ -128,11 +170,14 @@ pub fn bless() -> bool {
     cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 
-/// Writes docs/scene.md again from the settings table.
+/// Writes docs/scene.md from the settings table, and docs/cli.md from the arguments of the program.
 pub fn docs() -> bool {
-    let mut tally = Tally::default();
-    let page = ["test", "--workspace", "--test", "it", "scene_reference::the_page"];
-    cargo(&page, &[("STRANDLINE_BLESS", "1")], &mut tally)
+    let pages = [["--test", "it", "scene_reference::the_page"], ["--bin", "strandline", "the_page"]];
+    let write = |page: &[&str; 3]| {
+        let arguments: Vec<&str> = ["test", "--workspace"].iter().chain(page).copied().collect();
+        cargo(&arguments, &[("STRANDLINE_BLESS", "1")], &mut Tally::default())
+    };
+    pages.iter().all(write)
 }
 
 /// The examples, by the name of their file or folder, in order.
@@ -152,7 +197,7 @@ fn examples() -> Vec<String> {
     names
 }
 
-/// Runs cargo in the root, prints what it prints, and adds up its test results.
+/// Runs cargo in the root, forwards its output, and adds up its test results.
 fn cargo(arguments: &[&str], environment: &[(&str, &str)], tally: &mut Tally) -> bool {
     println!("\n== cargo {}", arguments.join(" "));
     let mut command = cargo_command(arguments);
@@ -171,18 +216,4 @@ fn cargo(arguments: &[&str], environment: &[(&str, &str)], tally: &mut Tally) ->
         tally.add(&line);
     }
     child.wait().is_ok_and(|status| status.success())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn results_are_added_and_other_lines_are_not() {
-        let mut tally = Tally::default();
-        assert!(tally.add("test result: FAILED. 3 passed; 1 failed; 2 ignored; 0 measured; 4 filtered out"));
-        assert!(!tally.add("running 3 tests"));
-        assert!(tally.add("test result: ok. 5 passed; 0 failed; 0 ignored; 0 measured; 0 filtered out"));
-        assert_eq!(tally, Tally { passed: 8, failed: 1, ignored: 2 });
-    }
 }

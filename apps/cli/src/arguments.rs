@@ -1,4 +1,4 @@
-//! What may stand on the command line.
+//! Arguments of the command line.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -39,7 +39,7 @@ pub enum Command {
     Groom(GroomOptions),
     /// Read a groom and write it in another format.
     Convert(ConvertOptions),
-    /// Say what a groom file holds.
+    /// Print the contents of a groom file.
     Info(InfoOptions),
     /// Print a scene as TOML, every key spelled out: a start for your own.
     Scene(SceneOptions),
@@ -54,7 +54,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it may open a GPU.
+    /// True for commands that may open a GPU.
     pub fn opens_gpu(&self) -> bool {
         match self {
             Self::View(_) | Self::Render(_) | Self::Sim(_) | Self::Bench(_) | Self::Gpus => true,
@@ -68,7 +68,7 @@ impl Command {
     }
 }
 
-/// What to simulate: a scene, and what replaces parts of it.
+/// Inputs of a run: a scene, and replacements of parts of it.
 #[derive(Args, Clone, Debug)]
 pub struct Inputs {
     /// demo, thesis, or a .toml file [default: demo].
@@ -84,11 +84,11 @@ pub struct Inputs {
     /// Load the body from this .obj, .gltf or .glb file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
-    /// Grow the style on what has this name in the body's files: a group, an object or a material [default: the
+    /// Grow the style on the part of this name in the body's files: a group, an object or a material [default: the
     /// built-in scalp, brought onto the skull].
     #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "groom")]
     pub scalp: Option<String>,
-    /// What hair is made of: fine, medium, coarse, wet or sprayed.
+    /// Material of the hair: fine, medium, coarse, wet or sprayed.
     #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
     pub hair: Option<HairKind>,
     /// still, shake, nod, turn or keyframes.
@@ -97,16 +97,16 @@ pub struct Inputs {
     /// Number of frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
-    /// Where it is simulated and drawn: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
+    /// Device of simulation and pictures: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub backend: Option<Backend>,
-    /// Where it is simulated, when that is not where it is drawn.
+    /// Device of the simulation, if it differs from that of the pictures.
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub sim_device: Option<Backend>,
-    /// Where it is drawn, when that is not where it is simulated.
+    /// Device of the pictures, if it differs from that of the simulation.
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub render_device: Option<Backend>,
-    /// Print one JSON object, and nothing else, to standard output.
+    /// Print a single JSON object to standard output.
     #[arg(long)]
     pub json: bool,
 }
@@ -119,7 +119,7 @@ pub struct RenderOptions {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
     /// Folder of the pictures [default: out/ and the scene's name], or a .png file, or an .exr file for linear light,
-    /// depth, coverage, directions and strands (of more frames one file each, with its number).
+    /// depth, coverage, directions and strands. Several frames become numbered files.
     #[arg(long, value_name = "DIR|FILE")]
     pub out: Option<PathBuf>,
     /// Draw the hair of this moving cache in place of a simulation, with its own scene unless --scene names one.
@@ -152,14 +152,14 @@ pub struct SimOptions {
     /// Write every N-th frame, from the first [default: 1].
     #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub every: Option<u32>,
-    /// Write frames from this one on, counted from 0; the film is simulated from its beginning [default: 0].
+    /// Write frames from this number on, counted from 0; the film is simulated from its beginning [default: 0].
     #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub from: Option<u32>,
     /// Units and axes of a .usda: any (metres, y up), unreal (centimetres, z up, groom_* attributes) or blender
     /// (metres, z up, frames from 1); all else stays in metres with y up [default: any].
     #[arg(long = "for", value_name = "NAME", requires = "out", value_parser = Target::from_str)]
     pub target: Option<Target>,
-    /// Go on where the run of this moving cache stood, with its own scene unless --scene names one; --frames is the
+    /// Resume the run of this moving cache, with its own scene unless --scene names one; --frames is the
     /// length of the whole film. The result is written to it, unless --out names another file.
     #[arg(long, value_name = "FILE.npz")]
     pub resume: Option<PathBuf>,
@@ -203,21 +203,21 @@ pub struct ConvertOptions {
     /// Push strands out of this .obj, .gltf or .glb mesh, after they are moved; their lengths stay.
     #[arg(long, value_name = "MESH")]
     pub outside: Option<PathBuf>,
-    /// Metres per unit of that mesh, or auto: what brings it to the roots.
+    /// Metres per unit of that mesh, or auto: the unit that brings it to the roots.
     #[arg(long, value_name = "F|auto", default_value = "auto", value_parser = parse_scale)]
     pub mesh_scale: Scale,
 }
 
-/// How a groom file is read.
+/// Reading of a groom file.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct Reading {
-    /// Metres per unit of the file, or auto: what makes it as large as hair can be.
+    /// Metres per unit of the file, or auto: the first unit that makes it as large as hair can be.
     #[arg(long, value_name = "F|auto", default_value = "auto", value_parser = parse_scale)]
     pub scale: Scale,
     /// The axis of the file that points up: y or z.
     #[arg(long, value_name = "AXIS", default_value = "y", value_parser = Up::from_str)]
     pub up: Up,
-    /// Points of each strand, for files that do not say which points make a strand.
+    /// Points of each strand, for files that do not give strands.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub per_strand: Option<u32>,
 }
@@ -258,12 +258,10 @@ pub struct ShaderOptions {
 
 #[derive(Args, Debug)]
 pub struct BenchOptions {
-    /// The thesis's tables 1 to 4 beside ours; how cost grows with strands and cells; the thesis's
-    /// table 5, frames per second by viewing distance and picture size; what two workers gain; how the window
-    /// fares over ten minutes; or grooms as artists bring them.
+    /// The measurement.
     #[arg(value_enum, default_value = "thesis")]
     pub what: Bench,
-    /// Which GPU is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,
+    /// GPU that is measured beside the CPU: auto (a hardware one if there is one), cpu (none), gpu,
     /// or gpu:0 and so on.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = Backend::from_str)]
     pub backend: Backend,
@@ -286,7 +284,7 @@ pub struct BenchOptions {
 
 #[derive(Args, Debug)]
 pub struct PlotOptions {
-    /// What `bench thesis --json FILE` or `bench view --json FILE` wrote.
+    /// File written by `bench thesis --json FILE` or `bench view --json FILE`.
     #[arg(value_name = "FILE.json")]
     pub file: PathBuf,
     /// The picture to write [default: beside the measurements, ending in .svg].
@@ -302,12 +300,12 @@ pub enum Bench {
     Scaling,
     /// Frames per second against viewing distance and picture size, beside the thesis's table 5.
     View,
-    /// What is gained by simulating a frame while the one before is drawn, for pairs of devices.
+    /// Gain of simulating a frame while the one before is drawn, for pairs of devices.
     Workers,
-    /// Ten minutes of play as in the window: time to the first picture, pictures a second, how soon a move
-    /// shows, and whether memory grows.
+    /// Ten minutes of use as in the window: time to the first picture, pictures per second, delay until a move
+    /// shows, growth of memory.
     Window,
-    /// Grooms as artists bring them: how soon the first picture is there, what bound strands cost, and how fast
+    /// Grooms of artists: time to the first picture, cost of bound strands, and speed at which
     /// moving hair is written.
     Groom,
 }
@@ -333,7 +331,7 @@ fn parse_scale(text: &str) -> Result<Scale, String> {
     match (text, factor) {
         ("auto", _) => Ok(Scale::Auto),
         (_, Some(factor)) => Ok(Scale::Factor(factor)),
-        _ => Err(format!("`{text}` is no scale, expected auto or a number from 0.000001 to 1000000")),
+        _ => Err(format!("`{text}` is not a scale, expected auto or a number from 0.000001 to 1000000")),
     }
 }
 
@@ -348,7 +346,8 @@ fn parse_vector(text: &str) -> Result<Vec3, String> {
 }
 
 fn parse_level(text: &str) -> Result<log::LevelFilter, String> {
-    text.parse().map_err(|_| format!("`{text}` is no level, expected off, error, warn, info, debug or trace"))
+    text.parse()
+        .map_err(|_| format!("`{text}` is not a level, expected off, error, warn, info, debug or trace"))
 }
 
 fn parse_size(text: &str) -> Result<(u32, u32), String> {

@@ -19,10 +19,10 @@ const AIR: f32 = 0.01;
 /// Distance of roots from it, as a share of its size, beyond which a mesh is not theirs.
 const APART: f32 = 0.1;
 
-/// Reads one or more files as one groom, changes it as asked, and writes it.
+/// Reads files as one groom, changes it as requested, and writes it.
 pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     let (output, inputs) = options.files.split_last().context("clap asks for two files")?;
-    // What cannot be written is refused before anything is read.
+    // An output that cannot be written is refused before anything is read.
     format::Format::of(output)?;
     let loaded = format::load_all(inputs, &options.reading.options())?;
     for problem in &loaded.report.problems {
@@ -70,7 +70,7 @@ fn place(mesh: &mut Mesh, groom: &Groom, scale: Scale) {
     }
 }
 
-/// Puts what lies inside a mesh onto its surface.
+/// Moves points inside a mesh to its surface.
 fn push_out(groom: &mut Groom, mesh: &Mesh) -> anyhow::Result<()> {
     let waiting = Waiting::begin("pushing strands out of the mesh");
     let grid = DistanceGrid::of_mesh(mesh, SPACING, AIR)?;

@@ -19,7 +19,7 @@ pub const SIGNAL: i32 = 128;
 /// Ends the program at once: files that are not finished are removed.
 pub fn end_now(code: i32) -> ! {
     let _abandoned = abandon_parts();
-    // Nothing else of the program runs any more, such as a driver's own farewell beside its threads.
+    // No other code runs any more, such as destructors of a driver beside its threads.
     low_level::exit(code)
 }
 

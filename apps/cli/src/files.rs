@@ -36,7 +36,7 @@ pub(crate) fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()>
 /// Groups that are listed: a grown style has one for each lock.
 const MOST_GROUPS: usize = 20;
 
-/// Says what a file holds.
+/// Prints the contents of a file.
 pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     let report = format::load(&options.file, &options.reading.options())?.report;
     if options.json {

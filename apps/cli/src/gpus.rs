@@ -1,4 +1,4 @@
-//! `strandline gpus` and `strandline shaders`: what there is to simulate on, and what runs there.
+//! `strandline gpus` and `strandline shaders`: the adapters, and the programs that run on them.
 
 use strandline::{
     Error,

@@ -20,12 +20,12 @@ pub fn scene(name: &str) -> anyhow::Result<Scene> {
 }
 
 impl Inputs {
-    /// The scene with what the command line replaces.
+    /// The scene with the replacements of the command line.
     pub fn scene(&self) -> anyhow::Result<Scene> {
         self.changed(scene(self.scene.as_deref().unwrap_or("demo"))?)
     }
 
-    /// The scene of a cache, unless the command line names one, with what the command line replaces.
+    /// The scene of a cache, unless the command line names one, with the replacements of the command line.
     pub fn scene_of(&self, cache: &Cache) -> anyhow::Result<Scene> {
         if self.scene.is_some() || self.style.is_some() || !self.groom.is_empty() {
             return self.scene();
@@ -76,7 +76,7 @@ impl Inputs {
         Ok(scene)
     }
 
-    /// What the output is called: the style, the groom's or the scene's name.
+    /// Name of the output: the style, the groom's or the scene's name.
     pub fn name(&self) -> String {
         let stem = |path: &Path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         match (&self.style, self.groom.first()) {

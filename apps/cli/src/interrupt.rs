@@ -1,7 +1,7 @@
 //! Ctrl-C, a terminal that is closed, and the request of a system that shuts down.
 //!
-//! Where pictures or steps follow each other the program stops between two of them, closes what it writes and
-//! ends; a second request, or one at any other time, ends it at once, with its half-written files removed.
+//! A program that makes pictures or steps stops between two of them, closes its files and ends. A second
+//! request, or one at any other time, ends it at once and removes its half-written files.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::SeqCst};
 use std::time::Duration;
@@ -11,17 +11,17 @@ use signal_hook::flag;
 
 use crate::{exit, output};
 
-/// How often is looked for a signal. The handlers themselves may only note it, and a thread that
-/// sleeps between looks works on every system.
+/// Interval of the checks for a signal. The handlers may only set a flag, and a thread that sleeps between
+/// checks works on every system.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// The last signal that came; 0 for none.
+/// The last signal; 0 before any.
 static CAME: AtomicUsize = AtomicUsize::new(0);
-/// The signal that asks those who look for it to stop; 0 for none.
+/// The signal that asks observers to stop; 0 before any.
 static ASKED: AtomicUsize = AtomicUsize::new(0);
-/// How many look for it.
+/// Number of observers.
 static LOOKING: AtomicUsize = AtomicUsize::new(0);
-/// Whether what was to be stopped has ended by itself: the program only has to say so.
+/// True if the interrupted work has ended by itself: the program only has to report it.
 static FINISHED: AtomicBool = AtomicBool::new(false);
 
 /// Begins to listen. Where the system has no signals or no thread to give, its own way of ending stays.
@@ -33,21 +33,21 @@ pub fn listen() {
             && heeded
             && let Ok(value) = usize::try_from(signal)
         {
-            // What cannot be registered keeps the system's way.
+            // A signal that cannot be registered keeps the system's behaviour.
             let _ = flag::register_usize(signal, &CAME, value);
         }
     }
 }
 
-/// Whether a closed terminal is to end the program: it began with that signal ignored where `nohup` or a shell's
-/// `trap '' HUP` came before it. Only Linux says so without a call that is not safe; elsewhere the signal keeps
-/// the system's way.
+/// True if a closed terminal is to end the program. `nohup`, or a shell's `trap '' HUP`, makes a program
+/// begin with that signal ignored. Only Linux reports it without an unsafe call; elsewhere the signal keeps
+/// the system's behaviour.
 fn heeds_hangup() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     ignored_signals(&status).is_some_and(|ignored| ignored & (1 << (SIGHUP - 1)) == 0)
 }
 
-/// The mask of ignored signals in what Linux reports of a process; signal 1 is its lowest bit.
+/// The mask of ignored signals of a process, as Linux reports it; signal 1 is its lowest bit.
 fn ignored_signals(status: &str) -> Option<u64> {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"))?;
     u64::from_str_radix(mask.trim(), 16).ok()
@@ -60,7 +60,7 @@ fn watch() {
         if signal == 0 {
             continue;
         }
-        // In this order: who finishes says so before nobody looks any more.
+        // In this order: an observer that finishes sets the flag before the count of observers falls.
         let looking = LOOKING.load(SeqCst) > 0;
         let finished = FINISHED.load(SeqCst);
         if !(looking || finished) || ASKED.swap(signal, SeqCst) != 0 {
@@ -73,7 +73,7 @@ fn watch() {
     }
 }
 
-/// Somebody who looks for the signal between frames, as long as it lives.
+/// An observer of the signal between frames, as long as it lives.
 pub struct Stoppable(());
 
 impl Stoppable {
@@ -88,7 +88,7 @@ impl Stoppable {
         FINISHED.store(true, SeqCst);
     }
 
-    /// The request to stop, if there was one.
+    /// The request to stop, if there was any.
     pub fn check(&self, done: u64, of: u64, what: &'static str) -> Result<(), Stopped> {
         match ASKED.load(SeqCst) {
             0 => Ok(()),

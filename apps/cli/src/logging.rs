@@ -18,7 +18,7 @@ impl Log for ToStderr {
     fn log(&self, record: &Record) {
         if self.0.matches(record) {
             let text = record.args().to_string();
-            // Who closed it does not want to know.
+            // A closed stderr is no error.
             let _ = writeln!(stderr(), "{} {}: {}", record.level(), record.target(), printable(&text));
         }
     }
@@ -26,7 +26,7 @@ impl Log for ToStderr {
     fn flush(&self) {}
 }
 
-/// Shows messages of this level and above; without one those that `RUST_LOG` names, else none.
+/// Shows messages of this level and above; without a level, those that `RUST_LOG` names.
 pub fn begin(level: Option<LevelFilter>) {
     let mut filter = Builder::new();
     match (level, std::env::var("RUST_LOG")) {
@@ -42,6 +42,6 @@ pub fn begin(level: Option<LevelFilter>) {
     }
     let filter = filter.build();
     log::set_max_level(filter.filter());
-    // There is none before.
+    // No logger is set before.
     let _ = log::set_boxed_logger(Box::new(ToStderr(filter)));
 }

@@ -1,8 +1,8 @@
-//! What stands for the window in a build without one.
+//! Replacement of the window in a build without it.
 
 use crate::{arguments::ViewOptions, render};
 
-/// There is none.
+/// Always an error: this build has no window.
 pub fn view(_: &ViewOptions) -> anyhow::Result<()> {
     anyhow::bail!(
         "this build is without a window: build it with the feature `window`, or use `strandline render`"

@@ -11,12 +11,12 @@ pub struct NonFinite {
     /// The most in a step.
     #[serde(rename = "non_finite")]
     pub points: usize,
-    /// Where they were first.
+    /// The first place.
     #[serde(rename = "non_finite_first", skip_serializing_if = "Option::is_none")]
     pub first: Option<First>,
 }
 
-/// Where points were not finite first.
+/// The first place of points that were not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct First {
     /// The frame, from 0.
@@ -44,7 +44,7 @@ impl NonFinite {
         Some(format!("{first}: {} points are not finite; their strands go back to rest", report.non_finite))
     }
 
-    /// What the run ends with.
+    /// Result of the run.
     ///
     /// # Errors
     /// There were such points.
@@ -64,7 +64,7 @@ pub struct NotFinite {
     first: First,
 }
 
-/// The larger of two numbers; what is no number is kept, where a maximum would pass over it.
+/// The larger of two numbers; unlike a maximum it keeps NaN.
 pub fn larger(one: f32, other: f32) -> f32 {
     if other > one || other.is_nan() { other } else { one }
 }

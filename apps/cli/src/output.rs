@@ -1,4 +1,4 @@
-//! What the program prints, and what it does when its output is closed.
+//! Output of the program, and its behaviour when the output is closed.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Result, Write, stderr, stdout};
@@ -20,7 +20,7 @@ macro_rules! print_part {
 
 pub(crate) use {print_line, print_part};
 
-/// Text for a person, which may hold parts of a file: nothing in it moves the terminal's cursor.
+/// Text for the terminal, which may quote a file: control characters are spelled out.
 pub fn person(text: Arguments) {
     written(stdout().write_all(printable(&text.to_string()).as_bytes()));
 }
@@ -53,12 +53,12 @@ pub fn note(note: &str) {
     to_stderr("note", note);
 }
 
-/// Says what went wrong on standard error.
+/// Prints an error to standard error.
 pub fn complain(error: &str) {
     to_stderr("strandline", error);
 }
 
 fn to_stderr(who: &str, what: &str) {
-    // Who closed it does not want to know.
+    // A closed stderr is no error.
     let _ = writeln!(stderr(), "{who}: {}", printable(what));
 }

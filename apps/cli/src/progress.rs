@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::output;
 
-/// How long something may take before a bar is shown.
+/// Delay after which a bar is shown.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Shows how far something has come, how fast it is, and how long it will take.
@@ -61,7 +61,7 @@ impl Drop for Progress {
     }
 }
 
-/// What is said while hair and body are loaded or grown and the body's distances are found.
+/// Message while hair and body are loaded or grown and the body's distances are computed.
 pub const LOADING: &str = "loading hair and body";
 
 /// Shows that something is under way whose progress is not known.

@@ -1,4 +1,4 @@
-//! Keeps what a driver prints off the terminal.
+//! Keeps a driver's output off the terminal.
 
 /// Mesa's Vulkan layer for the choice of a device looks for a Wayland compositor, and the library that it asks
 /// prints two lines to standard error where `XDG_RUNTIME_DIR` is not set, as in containers and over ssh. There

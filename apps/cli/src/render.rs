@@ -15,7 +15,7 @@ use crate::output::{self, print_line};
 use crate::progress::{LOADING, Progress, Waiting};
 use crate::statistics::{Collector, Times};
 
-/// What `render --json` prints.
+/// Output of `render --json`.
 #[derive(Debug, Serialize)]
 struct RenderReport {
     backend: String,
@@ -23,7 +23,7 @@ struct RenderReport {
     frames: usize,
     follow_strands: usize,
     segments: usize,
-    /// Pictures that were drawn while the next frame was simulated, all but the last; none of a film of one.
+    /// Pictures that were drawn while the next frame was simulated, all but the last; `None` for a film of one.
     ms_per_frame_beside_simulation: Option<Times>,
     /// The last picture, beside which nothing is simulated.
     ms_of_frame_alone: Times,
@@ -77,7 +77,7 @@ fn has_ending(path: &Path, wanted: &str) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(wanted))
 }
 
-/// What plays a scene, or shows a cache of it.
+/// Player of a scene, or of a cache of it.
 fn player(scene: &Scene, cache: Option<Cache>) -> Result<Player, Error> {
     match cache {
         Some(cache) => Player::showing(scene, scene.devices, cache),
@@ -85,7 +85,7 @@ fn player(scene: &Scene, cache: Option<Cache>) -> Result<Player, Error> {
     }
 }
 
-/// Writes a .png or .exr file, or of more frames one each with its number before the ending.
+/// Writes a .png or .exr file, or a file per frame with its number before the ending.
 fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow::Result<()> {
     let waiting = Waiting::begin(LOADING);
     let mut player = player(scene, cache)?;
@@ -184,7 +184,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
     if written.video_failed { Err(NoVideo.into()) } else { Ok(()) }
 }
 
-/// What was drawn.
+/// Contents of the drawn pictures.
 #[derive(Default)]
 struct Drawn {
     /// Pictures that were drawn while the next frame was simulated, and the last one.
@@ -226,7 +226,7 @@ fn play(
     Ok(())
 }
 
-/// Closes a film that failed, and says what there is of it.
+/// Closes a film that failed, and reports its files.
 fn stopped_early(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Error {
     let frames = film.len();
     let notes = if error.is::<Stopped>() {

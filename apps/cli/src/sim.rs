@@ -18,7 +18,7 @@ use crate::output::{self, print_line};
 use crate::progress::{LOADING, Progress, Waiting};
 use crate::statistics::{Collector, Times};
 
-/// What `sim --json` prints.
+/// Output of `sim --json`.
 #[derive(Debug, Serialize)]
 pub struct SimReport {
     pub backend: String,
@@ -39,7 +39,7 @@ pub struct SimReport {
     pub non_finite: NonFinite,
     pub pcg: Pcg,
     pub fluid_cells_mean: f64,
-    /// What `--out` wrote.
+    /// Files written by `--out`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub out: Option<OutReport>,
 }
@@ -64,17 +64,17 @@ pub struct Stretch {
 }
 
 /// A mean and a largest value: of `drift` the distance of points at the end from the groom as loaded,
-/// carried by the head, over the strand's length; of `speed` what moved in the last second \[m/s\].
+/// carried by the head, over the strand's length; of `speed` the motion in the last second \[m/s\].
 #[derive(Debug, Default, Serialize)]
 pub struct Spread {
     pub mean: f32,
     pub max: f32,
 }
 
-/// How rods were solved.
+/// Quality of the solve of rods.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Rods {
-    /// How far the last Newton step of a strand turned one of its segments at most.
+    /// Largest turn of a segment in the last Newton step of a strand.
     pub residual_max_rad: f32,
     /// Most strands of a step that would have needed more Newton steps.
     pub unsolved_max: usize,
@@ -113,7 +113,7 @@ pub struct Steps {
     non_finite: NonFinite,
 }
 
-/// What a simulation is when its steps are over.
+/// State of a simulation after its last step.
 pub struct Ended {
     /// The device.
     pub backend: String,
@@ -129,7 +129,7 @@ pub struct Ended {
 }
 
 impl Ended {
-    /// What a player of a scene has come to.
+    /// State of a player's simulation.
     ///
     /// # Errors
     /// The GPU was lost.
@@ -148,7 +148,7 @@ impl Ended {
 }
 
 impl Steps {
-    /// Adds a step of a frame; what a person should know of it at once.
+    /// Adds a step of a frame; returns notes for the user.
     pub fn add(&mut self, report: &StepReport, frame: u32) -> Option<String> {
         self.times.add(&report.seconds);
         self.stretch += f64::from(report.stretch_mean);
@@ -241,7 +241,7 @@ pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     Ok(report.non_finite.outcome()?)
 }
 
-/// What is written: what the command line names, or a cache that is resumed.
+/// Settings of the output: those of the command line, or those of a cache that is resumed.
 fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSettings> {
     let mut settings = OutSettings::new(options.out.as_ref().or(options.resume.as_ref())?);
     settings.what = options.what.or(former.map(Cache::what)).unwrap_or_default();
@@ -251,7 +251,7 @@ fn out_settings(options: &SimOptions, former: Option<&Cache>) -> Option<OutSetti
     Some(settings)
 }
 
-/// What plays, with its file; from then on a request to stop waits until that is closed.
+/// Player with its output; a request to stop waits until the file is closed.
 fn begin(
     scene: &Scene,
     out: Option<OutSettings>,
@@ -294,7 +294,7 @@ fn play(player: &mut Player, steps: &mut Steps, stoppable: &Stoppable, quiet: bo
     Ok(())
 }
 
-/// Closes what was written, also where the run was stopped early, and then says what there is of it.
+/// Closes the output, also of a run that was stopped early, and then reports its files.
 fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Option<Written>> {
     let written = player.close_out();
     let Err(error) = played else {

@@ -25,7 +25,7 @@ impl StageTimes {
     }
 }
 
-/// What a repeated thing cost \[ms\].
+/// Times of a repeated task \[ms\].
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Times {
     /// The middle value.
@@ -91,12 +91,12 @@ impl Collector {
     }
 }
 
-/// The middle value; 0 of nothing.
+/// The median; 0 of no values.
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The value below which a share of all values lies (nearest rank); 0 of nothing.
+/// The value below which a share of all values lies (nearest rank); 0 of no values.
 pub fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

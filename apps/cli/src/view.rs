@@ -4,11 +4,11 @@ use strandline::Scene;
 
 use crate::{arguments::ViewOptions, output, render};
 
-/// Opens the window on what the command line names.
+/// Opens the window on the inputs of the command line.
 pub fn view(options: &ViewOptions) -> anyhow::Result<()> {
     let mut inputs = options.inputs.clone();
     if let Some(file) = options.file.as_deref().filter(|file| strandline::scene::is_file(file)) {
-        // What else is on the command line replaces parts of it.
+        // Other flags replace parts of it.
         inputs.scene = Some(file.display().to_string());
     }
     let mut scene = inputs.scene()?;

@@ -11,24 +11,24 @@ use strandline::{
 
 use crate::{export, files, messages, rescue, saves};
 
-/// The window's state: what plays, and what a person made of it.
+/// The window's state: the scene that plays, and the changes of the user.
 pub struct App {
     pub(crate) live: Live,
     /// The window, once it is there: the scene is loaded before.
     pub(crate) context: Arc<OnceLock<egui::Context>>,
-    /// What is seen, as a scene: it can be saved at any time.
+    /// The scene as shown; it can be saved at any time.
     pub(crate) scene: Scene,
-    /// The scene as it was loaded: what the controls are set to by default.
+    /// The scene as it was loaded: the defaults of the controls.
     pub(crate) base: Scene,
     pub(crate) camera: Camera,
     /// The view of the scene.
     pub(crate) home: Camera,
     pub(crate) playing: bool,
-    /// What the mouse does when no key is held.
+    /// Action of the mouse without a key.
     pub(crate) tool: Tool,
-    /// Where a drag in the picture was at the last pass.
+    /// Position of a drag in the picture at the last pass.
     pub(crate) dragged_to: Option<egui::Pos2>,
-    /// Whether the mouse holds hair, and the radius \[m\] of the hand.
+    /// True while the mouse holds hair, and the radius \[m\] of the hand.
     pub(crate) grabs: bool,
     pub(crate) radius: f32,
     /// The scene that is on its way, and the number of its command.
@@ -40,35 +40,35 @@ pub struct App {
     /// Pictures a second, smoothed.
     pub(crate) rate: f32,
     pub(crate) last: Option<Instant>,
-    /// What is typed as the path of a file.
+    /// Typed path of a file.
     pub(crate) path: String,
-    /// Whether pictures may be simpler while the hair moves.
+    /// True if pictures may be simpler while the hair moves.
     pub(crate) adapts: bool,
-    /// Whether a video is recorded, and how many are being finished.
+    /// True while a video is recorded, and the number of videos that are being finished.
     pub(crate) recording: bool,
     pub(crate) finishing: u32,
     /// Number of the load that the scene comes from.
     pub(crate) loaded: u64,
     pub(crate) saves: saves::Saves,
-    /// What is seen, for the case that the window stops in an error, and when it was kept last.
+    /// The scene as shown, for a window that stops in an error, and the time when it was kept.
     pub(crate) kept: rescue::Kept,
     pub(crate) kept_at: Option<Instant>,
-    /// Number of the last step that was asked for by dragging while nothing plays, and whether another one
+    /// Number of the last step requested by dragging while nothing plays, and whether another one
     /// is wanted once its picture is there.
     pub(crate) stepped: u64,
     pub(crate) wants_step: bool,
     pub(crate) dialog: Option<files::Dialog>,
-    /// Moving hair that is being written, and what of it.
+    /// Moving hair that is being written, and its part of the film.
     pub(crate) exporting: Option<export::Export>,
     pub(crate) export_wanted: export::Wanted,
-    /// Where the next picture and scene are saved.
+    /// Folder of the next picture and scene.
     pub folder: PathBuf,
 }
 
-/// How long a new picture waits to be shown.
+/// Delay after which a new picture is shown.
 const SOON: Duration = Duration::from_millis(1);
 
-/// What the mouse does in the picture.
+/// Action of the mouse in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tool {
     /// Goes around the head.
@@ -91,7 +91,7 @@ impl App {
     pub fn new(scene: Scene) -> Result<Self, Error> {
         let context = Arc::new(OnceLock::<egui::Context>::new());
         let known = context.clone();
-        // At once would be two passes, the second one for nothing.
+        // An immediate repaint would be two passes, the second one useless.
         let wake = move || {
             known.get().into_iter().for_each(|context| context.request_repaint_after(SOON));
         };
@@ -187,7 +187,7 @@ impl App {
         self.step_on();
     }
 
-    /// Lets a frame of time pass where nothing plays, so that hair follows what is dragged; one at a time.
+    /// Advances by a frame while nothing plays, so that hair follows a drag; one frame at a time.
     pub(crate) fn step_on(&mut self) {
         let drawn = self.shown.as_ref().map_or(0, |shown| shown.drawn_after_command);
         self.wants_step = !self.playing && self.stepped > drawn;
@@ -196,27 +196,27 @@ impl App {
         }
     }
 
-    /// What is seen at the moment, if there is anything.
+    /// The newest picture, if there is one.
     pub fn shown(&self) -> Option<&Shown> {
         self.shown.as_ref()
     }
 
-    /// What went wrong last, until it is put away.
+    /// The last error, until the user dismisses it.
     pub fn error(&self) -> Option<&str> {
         self.error.as_deref()
     }
 
-    /// Whether the hair moves.
+    /// True while the hair moves.
     pub fn is_playing(&self) -> bool {
         self.playing
     }
 
-    /// Whether a scene is on its way.
+    /// True while a scene is loading.
     pub(crate) fn is_loading(&self) -> bool {
         self.pending.is_some()
     }
 
-    /// Loads another scene; the old one stays, and is what the controls change, until it is there.
+    /// Loads another scene; until it is there the old one stays and the controls change it.
     pub(crate) fn load(&mut self, mut scene: Scene) {
         self.error = None;
         // The window's size and the devices that the program was started with stay.
@@ -235,7 +235,7 @@ impl App {
         self.pending = Some((number, Box::new(scene)));
     }
 
-    /// Loads a scene, or another groom or body into the one that is there.
+    /// Loads a scene, or another groom or body into the current one.
     pub(crate) fn open_file(&mut self, file: &Path) {
         // A body dropped right after a groom goes with it.
         let onto = self.pending.as_ref().map_or(&self.scene, |(_, scene)| scene);
@@ -245,7 +245,7 @@ impl App {
         }
     }
 
-    /// The scene with the view as it is.
+    /// The scene with the current view.
     pub fn seen(&self) -> Scene {
         let mut scene = self.scene.clone();
         scene.camera.position = Some(self.camera.position);

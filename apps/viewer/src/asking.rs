@@ -1,4 +1,4 @@
-//! Files that a person is asked for, and what is done with them.
+//! Dialogs for files, and their results.
 
 use eframe::egui;
 
@@ -6,7 +6,7 @@ use crate::App;
 use crate::files::{Answer, Dialog, Wanted};
 
 impl App {
-    /// Opens a dialog, unless one is open.
+    /// Opens a dialog, unless another is open.
     pub(crate) fn ask(&mut self, wanted: Wanted, context: &egui::Context) {
         if self.dialog.is_some() {
             return;

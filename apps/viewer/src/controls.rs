@@ -1,4 +1,4 @@
-//! Controls that tell their unit and what they are set to by default.
+//! Controls with unit and default.
 
 use std::ops::RangeInclusive;
 
@@ -18,7 +18,7 @@ pub fn slide<N: Numeric>(ui: &mut Ui, value: (&mut N, N), row: &Row, name: &str)
     slide_in(ui, value, least..=most, name, &about(row))
 }
 
-/// A slider for what is no setting.
+/// A slider for a value that is no setting.
 pub fn slide_in<N: Numeric>(
     ui: &mut Ui,
     (value, default): (&mut N, N),
@@ -31,7 +31,7 @@ pub fn slide_in<N: Numeric>(
     set_back(ui, &response, (value, default)) || response.changed()
 }
 
-/// What a setting is, its unit, and what more of it does.
+/// Meaning of a setting, its unit, and the effect of a larger value.
 pub fn about(row: &Row) -> String {
     let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
     let more = if row.more.is_empty() { String::new() } else { format!("\nmore: {}", row.more) };
@@ -43,7 +43,7 @@ pub fn tick(ui: &mut Ui, value: (&mut bool, bool), row: &Row, name: &str) -> boo
     tick_of(ui, value, name, &about(row))
 }
 
-/// A box to tick for what is no setting.
+/// A check box for a value that is no setting.
 pub fn tick_of(ui: &mut Ui, (value, default): (&mut bool, bool), name: &str, tip: &str) -> bool {
     let response = ui.checkbox(value, name);
     let response = response.on_hover_text(tip_of(tip, if default { "on" } else { "off" }));

@@ -13,7 +13,7 @@ use strandline::{
     low_level::{OutSettings, Target, What, Written},
 };
 
-/// What is to be written.
+/// Request to write moving hair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
     /// Time of the film at which it begins and ends \[s\].
@@ -85,7 +85,7 @@ impl Export {
         Ok(Self { path: path.to_owned(), stop, done, frames, result, thread: Some(thread) })
     }
 
-    /// What is written, and what came of it once it is done.
+    /// Path of the export, and its result once it is finished.
     pub fn result(&self) -> Option<(&Path, Result<Option<Written>, String>)> {
         Some((&self.path, self.result.try_recv().ok()?))
     }
@@ -121,7 +121,7 @@ fn write(
             Err(error) => failed = Some(error),
         }
     }
-    // What was done stays.
+    // Written frames stay.
     let written = player.close_out()?;
     failed.map_or(Ok(written), Err)
 }

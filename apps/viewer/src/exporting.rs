@@ -1,4 +1,4 @@
-//! Moving hair of what is seen.
+//! Export of the moving hair that is shown.
 
 use std::path::Path;
 
@@ -8,11 +8,11 @@ use crate::App;
 use crate::export::{Export, numbered};
 
 impl App {
-    /// Writes moving hair of the scene as it is now, or ends what is being written. The ending of the path says
-    /// what it is: .npz, .usda, or that of a groom format for a file a frame; without a path a free cache in the folder.
+    /// Writes moving hair of the current scene, or ends a running export. The ending of the path chooses
+    /// the format: .npz, .usda, or a groom format for a file per frame; without a path, a free cache in the folder.
     pub fn export(&mut self, path: Option<&Path>) {
         if self.exporting.take().is_some() {
-            self.note("the export was stopped: what was done stays".to_owned());
+            self.note("the export was stopped: written frames stay".to_owned());
             return;
         }
         let numbered = path.and_then(numbered);
@@ -30,7 +30,7 @@ impl App {
         }
     }
 
-    /// Whether moving hair is being written.
+    /// True while moving hair is being written.
     pub fn is_exporting(&self) -> bool {
         self.exporting.is_some()
     }

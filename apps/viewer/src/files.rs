@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::low_level::groom::format::FORMATS;
 
-/// What a file is asked for.
+/// Purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wanted {
     /// To be loaded.
@@ -27,21 +27,21 @@ pub struct Dialog {
     since: Instant,
 }
 
-/// No person puts a dialog away as fast as this: there was none.
+/// A user cannot close a dialog as fast as this: there was none.
 const AT_ONCE: Duration = Duration::from_millis(300);
 
-/// What a dialog said.
+/// Answer of a dialog.
 pub struct Answer {
-    /// What was asked for.
+    /// Purpose of the dialog.
     pub wanted: Wanted,
-    /// The file, where there is one.
+    /// The file, if one was chosen.
     pub file: Option<PathBuf>,
-    /// Whether it came sooner than a person answers.
+    /// True if it came sooner than a person can answer.
     pub at_once: bool,
 }
 
 impl Dialog {
-    /// Opens one.
+    /// Opens a dialog.
     ///
     /// # Errors
     /// The system gives no thread.
@@ -58,7 +58,7 @@ impl Dialog {
         Ok(Self { wanted, answer, since: Instant::now() })
     }
 
-    /// What it said, once it did.
+    /// The answer, once there is one.
     pub fn answer(&self) -> Option<Answer> {
         let file = match self.answer.try_recv() {
             Err(TryRecvError::Empty) => return None,

@@ -32,7 +32,7 @@ use strandline::Scene;
 /// Why there is no window.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
-    /// The system shows none.
+    /// The system has no dialogs.
     #[error("there is no display")]
     NoDisplay,
     /// The system gives no thread.
@@ -44,7 +44,7 @@ pub enum ViewError {
     /// Something in the system's libraries gave up.
     #[error("the window's library gave up: {0}")]
     GaveUp(String),
-    /// The display takes none, or nothing draws it.
+    /// The display takes no window, or nothing draws it.
     #[error("{0}")]
     Refused(eframe::Error),
 }
@@ -52,7 +52,7 @@ pub enum ViewError {
 /// Opens a window on a scene and returns when it is closed.
 ///
 /// # Errors
-/// There is no display, or nothing to draw the window with.
+/// There is no display, or no device that draws the window.
 pub fn open(scene: Scene) -> Result<(), ViewError> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("strandline")
@@ -79,8 +79,8 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
     Err(libraries::missing().filter(|_| has_display).map_or(error, ViewError::Missing))
 }
 
-/// What the window asks of its device: textures as large as the adapter has, since a window is drawn into one
-/// and may be as wide as several screens.
+/// Device requirements of the window: textures as large as the adapter allows, since a window is drawn into
+/// one and may be as wide as several screens.
 fn device(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let required_limits = wgpu::Limits {
         max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,

@@ -14,12 +14,12 @@ const LIBRARIES: [[&str; 2]; 7] = [
     ["libxkbcommon-x11.so.0", "libxkbcommon-x11-0"],
     ["libvulkan.so.1", "libvulkan1"],
 ];
-/// What the loader knows: paths that end with 0.
+/// Cache of the loader: paths that end with 0.
 const CACHE: &str = "/etc/ld.so.cache";
 /// The first bytes of a library.
 const MAGIC: &[u8] = b"\x7fELF";
 
-/// The first library that the loader would not find, with how to get it; none where all are there, or where
+/// The first library that the loader would not find, with its package; `None` if all are there, or if
 /// the system keeps no list of them.
 pub fn missing() -> Option<String> {
     let cache = std::fs::read(CACHE).ok()?;
@@ -32,7 +32,7 @@ fn missing_of(cache: &[u8], folders: &OsStr) -> Option<String> {
     Some(format!("the library {library} is missing or damaged: install it (Debian and Ubuntu: {package})"))
 }
 
-/// Whether the loader finds a library: in the folders that a person names first, then by its cache.
+/// True if the loader finds a library: in the folders named by the environment first, then by its cache.
 fn is_there(library: &str, cache: &[u8], folders: &OsStr) -> bool {
     let named = std::env::split_paths(folders).map(|folder| folder.join(library)).find(|path| path.exists());
     if let Some(path) = named {
@@ -63,7 +63,7 @@ mod tests {
         }
         let named = folder.path().join("named");
         assert_eq!(missing_of(&cache, named.as_os_str()), None);
-        // A damaged one in a folder that comes first.
+        // A damaged library in a folder that comes first.
         std::fs::create_dir(&named).unwrap();
         std::fs::write(named.join("libXi.so.6"), b"").unwrap();
         assert!(missing_of(&cache, named.as_os_str()).unwrap().contains("libXi.so.6"));

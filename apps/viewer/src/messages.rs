@@ -1,10 +1,10 @@
-//! What a person should read, over the foot of the picture: nothing moves aside for it.
+//! Messages for the user, over the foot of the picture: the layout does not change for them.
 
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, Align2, Color32, Rect};
 
-/// How long a note is shown.
+/// Time for which a note is shown.
 const READING: Duration = Duration::from_secs(8);
 /// Notes that are shown at once.
 const MOST: usize = 5;

@@ -1,4 +1,4 @@
-//! What is left when the window stops with an error of the program's own: the scene, as a file.
+//! Saves the scene to a file when the window stops with an internal error.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -13,7 +13,7 @@ use strandline::Scene;
 pub struct Kept(Arc<Mutex<Option<Scene>>>);
 
 impl Kept {
-    /// Takes what is seen now.
+    /// Keeps the shown scene.
     pub fn keep(&self, scene: Scene) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(scene);
     }
@@ -22,7 +22,7 @@ impl Kept {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some()
     }
 
-    /// Writes the scene into its own folder, or the one for temporary files where that takes none.
+    /// Writes the scene into its own folder, or into that for temporary files if its own cannot be written.
     fn save(&self) -> Option<PathBuf> {
         let scene = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
         let text = scene.to_toml();
@@ -43,7 +43,7 @@ type Hook = Arc<dyn Fn(&PanicHookInfo) + Send + Sync>;
 /// saves the scene, says where, and continues as a panic.
 pub fn run<T>(kept: &Kept, window: impl FnOnce() -> T) -> Result<T, String> {
     let former: Hook = panic::take_hook().into();
-    // What a panic said before anything was seen.
+    // Message of a panic before the first picture.
     let early = Arc::new(Mutex::new(None));
     panic::set_hook(Box::new({
         let (own_thread, former) = (std::thread::current().id(), former.clone());

@@ -7,12 +7,12 @@ use std::thread::JoinHandle;
 
 use strandline::low_level::render::Picture;
 
-/// What a picture's writing led to: its path, or what went wrong.
+/// Result of writing a picture: its path, or the error.
 pub type Saved = Result<PathBuf, String>;
 
 /// Pictures that are to be saved, and names that are given away.
 pub struct Saves {
-    /// Those that wait for a picture in full: paths, or none for one in the folder.
+    /// Saves that wait for a picture in full: paths, or `None` for a free name in the folder.
     pub waiting: Vec<Option<PathBuf>>,
     threads: Vec<JoinHandle<()>>,
     finished: (Sender<Saved>, Receiver<Saved>),
@@ -48,7 +48,7 @@ impl Saves {
         Ok(())
     }
 
-    /// What came of pictures that are written since.
+    /// Results of pictures that were written since the last call.
     pub fn written(&mut self) -> Vec<Saved> {
         self.threads.retain(|thread| !thread.is_finished());
         self.finished.1.try_iter().collect()

@@ -1,4 +1,4 @@
-//! What is seen, as files: written by threads of their own, so that the window stays awake.
+//! Pictures, scenes and videos as files, written by threads of their own so that the window stays responsive.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -7,11 +7,11 @@ use strandline::low_level::{Command, LiveEvent};
 
 use crate::App;
 
-/// How long a window that is closed waits for a picture in full.
+/// Time for which a closing window waits for a picture in full.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 impl Drop for App {
-    /// What a person saved is written, though the window is closed; after ten seconds as it is seen.
+    /// Finishes the user's saves although the window is closed; after ten seconds, as shown.
     fn drop(&mut self) {
         let begin = Instant::now();
         while !self.saves.waiting.is_empty() && begin.elapsed() < PATIENCE {
@@ -31,7 +31,7 @@ impl Drop for App {
 }
 
 impl App {
-    /// Saves the next picture that is drawn in full, or the one that is seen where it is; into a free file of
+    /// Saves the next picture that is drawn in full, or the shown one if it is; into a free file of
     /// the folder when no path is given.
     pub fn save_picture(&mut self, path: Option<PathBuf>) {
         if self.shown.is_none() && !self.is_loading() {
@@ -53,7 +53,7 @@ impl App {
         }
     }
 
-    /// Has pictures be simpler, unless one is to be saved.
+    /// Allows simpler pictures, unless a picture is to be saved.
     pub(crate) fn send_adapt(&self) {
         self.live.send(Command::Adapt(self.adapts && self.saves.waiting.is_empty()));
     }
@@ -67,7 +67,7 @@ impl App {
         self.send_adapt();
     }
 
-    /// Writes the picture that is seen to all files that wait for one.
+    /// Writes the shown picture to all files that wait for it.
     fn write_pictures(&mut self) {
         for path in std::mem::take(&mut self.saves.waiting) {
             self.write_picture(path.as_deref());
@@ -84,7 +84,7 @@ impl App {
         }
     }
 
-    /// Saves what is seen as a scene, or says why not.
+    /// Saves the shown scene, or reports the error.
     pub fn save_scene(&mut self, path: Option<&Path>) {
         if let Some(path) = self.path_or_free(path, "view", "toml") {
             self.live.send(Command::Save(Box::new(self.seen()), self.loaded, path));
@@ -101,7 +101,7 @@ impl App {
         }
     }
 
-    /// Begins a video, or ends the one that is recorded.
+    /// Begins a video, or ends the recording.
     pub fn record(&mut self) {
         if self.recording {
             self.finishing += 1;
@@ -124,12 +124,12 @@ impl App {
         }
     }
 
-    /// Whether a video is recorded.
+    /// True while a video is recorded.
     pub fn is_recording(&self) -> bool {
         self.recording
     }
 
-    /// The path with its ending, or a free one; none after an error that was shown.
+    /// The path with its ending, or a free one; `None` after an error that was shown.
     pub(crate) fn path_or_free(&mut self, path: Option<&Path>, stem: &str, ending: &str) -> Option<PathBuf> {
         let has_ending =
             |path: &Path| path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending));

@@ -1,4 +1,4 @@
-//! The picture, and what mouse and keys do to it.
+//! The picture, and its mouse and keys.
 
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
 use glam::Vec2;
@@ -15,7 +15,7 @@ const ORBIT: f32 = 0.008;
 /// Pictures have sides of whole multiples of this \[pixel\], so that they do not change with every point.
 const GRAIN: f32 = 16.0;
 
-/// Does what a key says: the panel lists them.
+/// Runs the action of a key: the panel lists them.
 pub fn keys(app: &mut App, ui: &egui::Ui) {
     if ui.ctx().egui_wants_keyboard_input() {
         return;
@@ -105,7 +105,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     fit(app, room.size(), ui.ctx().pixels_per_point());
     messages::show(&mut app.notes, &mut app.error, ui, room);
     let Some(texture) = &app.texture else {
-        // Nothing that turns: it would take from the loading what it needs.
+        // No spinner: it would take time from the loading.
         let text = if app.is_loading() { "growing hair ..." } else { "nothing to show yet: open a scene" };
         ui.centered_and_justified(|ui| ui.label(text));
         return;
@@ -128,7 +128,7 @@ pub fn show(app: &mut App, ui: &mut egui::Ui) {
     wind::show(app, ui, room);
 }
 
-/// What the mouse does, in the upper left corner of the picture.
+/// Tools of the mouse, in the upper left corner of the picture.
 fn tools(app: &mut App, ui: &mut egui::Ui, room: Rect) {
     let corner = Rect::from_min_size(room.min + egui::vec2(8.0, 8.0), egui::vec2(260.0, 24.0));
     let mut row = ui.new_child(egui::UiBuilder::new().max_rect(corner));
@@ -203,8 +203,8 @@ fn ray(app: &App, room: Rect, pointer: Pos2) -> Ray {
     Ray::new(&app.camera, Vec2::new(halves.x, -halves.y))
 }
 
-/// How far \[point\] the mouse was dragged since the last pass, or since the press: what it moved before,
-/// in the same pass, is no drag.
+/// Distance \[point\] that the mouse was dragged since the last pass, or since the press: movement before the
+/// press in the same pass is no drag.
 fn dragged(app: &mut App, ui: &egui::Ui, response: &egui::Response) -> egui::Vec2 {
     let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged()) else {
         app.dragged_to = None;

@@ -1,4 +1,4 @@
-//! The strip at the foot of the window: what runs where, how fast and how well.
+//! The strip at the foot of the window: devices, speed and quality.
 
 use eframe::egui;
 

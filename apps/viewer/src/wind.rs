@@ -10,13 +10,13 @@ use crate::App;
 const RADIUS: f32 = 44.0;
 const STRONGEST: f32 = 10.0;
 
-/// Where the dial lies in the room of the picture.
+/// Rectangle of the dial in the picture's area.
 pub fn dial(room: Rect) -> Rect {
     let corner = room.right_bottom() - Vec2::splat(12.0 + 2.0 * RADIUS);
     Rect::from_min_size(corner - egui::vec2(0.0, 16.0), Vec2::splat(2.0 * RADIUS))
 }
 
-/// Draws the dial and takes what the mouse does to it.
+/// Draws the dial and handles its mouse.
 pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     let rect = dial(room);
     let response = ui.interact(rect, ui.scope_id().with("wind"), Sense::click_and_drag());
@@ -32,7 +32,7 @@ pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     if response.double_clicked() {
         seen = Vec3::ZERO;
     }
-    // What was not moved stays as it is, however strong.
+    // Untouched components keep their value, however large.
     if response.dragged() || response.double_clicked() || scroll != 0.0 {
         let wind = view.inverse().transform_vector3(seen);
         app.scene.wind.velocity = wind.clamp_length_max(STRONGEST);

@@ -1,4 +1,4 @@
-//! A pass of the window: what came since the last one is taken, then everything is drawn.
+//! A pass of the window: it takes the events since the last pass, then draws everything.
 
 use std::time::{Duration, Instant};
 
@@ -10,11 +10,11 @@ use strandline::{
 
 use crate::{App, panels, stage, strip};
 
-/// How often what is seen is kept.
+/// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
 
 impl App {
-    /// Loads what was dropped on the window.
+    /// Loads files dropped on the window.
     fn take_files(&mut self, ui: &egui::Ui) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
         dropped.iter().for_each(|file| self.open_file(file.path()));
@@ -29,7 +29,7 @@ impl App {
                 }
                 LiveEvent::Note(note) => self.note(note),
                 LiveEvent::NotLoaded(number, error) => {
-                    // What plays is still what played before.
+                    // The previous scene still plays.
                     self.pending.take_if(|(pending, _)| *pending == number);
                     self.error = Some(error);
                     if self.shown.is_none() {
@@ -48,7 +48,7 @@ impl App {
         }
     }
 
-    /// Makes the scene that has come the one that the controls change.
+    /// Hands the loaded scene to the controls.
     fn take_scene(&mut self, number: u64, scene: Scene, camera: Camera, bounds: Aabb) {
         if self.pending.take_if(|(pending, _)| *pending == number).is_none() {
             return;
@@ -87,7 +87,7 @@ impl App {
         }
     }
 
-    /// Keeps what is seen, now and then: it may be the last that there is of it.
+    /// Keeps the shown scene at intervals: an error may end the window.
     fn keep_scene(&mut self) {
         if self.kept_at.is_none_or(|last| last.elapsed() > KEPT_EVERY) {
             self.kept.keep(self.seen());

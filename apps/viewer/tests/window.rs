@@ -100,7 +100,7 @@ impl Window {
         self.app.shown().unwrap().picture.clone()
     }
 
-    /// Waits until nothing comes any more, and what is seen is drawn in full.
+    /// Waits until no event comes any more and the picture is drawn in full.
     fn settle(&mut self) {
         let (mut last, mut since) = (self.frame(), Instant::now());
         let is_draft = |app: &App| app.shown().is_some_and(|shown| shown.draft);
@@ -141,7 +141,7 @@ fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays
     let room = egui::Rect::from_min_max(egui::pos2(303.0, 8.0), egui::pos2(892.0, 567.0));
     let scale = egui::vec2(room.width() / width as f32, room.height() / picture.height as f32);
     let place = room.min + egui::vec2((hair % width) as f32 + 0.5, (hair / width) as f32 + 0.5) * scale;
-    // The whole way in one pass, as in a slow one.
+    // The whole drag in one pass, as in a slow window.
     let away = egui::pos2(320.0, 300.0);
     window.pass(
         vec![egui::Event::PointerMoved(place), button(place, true), egui::Event::PointerMoved(away)],
@@ -150,7 +150,7 @@ fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays
     window.until("hair in the hand", |app| app.shown().is_some_and(|shown| shown.grabbed > 0));
     window.settle();
     let before = window.picture();
-    // Of moves that come faster than pictures the last one counts.
+    // Of moves that come faster than pictures the last counts.
     for step in 1..=8 {
         window.pass(vec![egui::Event::PointerMoved(away + egui::vec2(-2.0, 4.0) * step as f32)], None);
     }

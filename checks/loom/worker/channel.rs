@@ -9,7 +9,7 @@ use std::sync::mpsc::{RecvError, SendError};
 
 use loom::sync::{Condvar, Mutex};
 
-/// What the two ends share.
+/// State shared by the two ends.
 struct Shared<T> {
     state: Mutex<State<T>>,
     changed: Condvar,

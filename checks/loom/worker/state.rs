@@ -1,4 +1,4 @@
-//! What is worked on, seen from outside between two jobs.
+//! The object of the work, seen from outside between two jobs.
 
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};

@@ -1,4 +1,4 @@
-//! The folder in which what takes long to build is kept from run to run.
+//! The folder of results that take long to build, kept from run to run.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// The environment's variable that names the folder; `off` keeps nothing.
 pub const VARIABLE: &str = "STRANDLINE_CACHE";
 
-/// The folder, which may not be there yet; none when nothing is to be kept, or no place is known.
+/// The folder, which may not exist yet; `None` if the cache is off or no folder is known.
 ///
 /// `STRANDLINE_CACHE` where it is set, else `strandline` in the user's folder for such files: `XDG_CACHE_HOME`,
 /// `LOCALAPPDATA` or `.cache` in `HOME`, whichever the system sets. A variable that is no whole path is passed

@@ -12,20 +12,20 @@ const MARK: u64 = 256;
 
 /// A folder that one run writes at a time.
 ///
-/// The lock is the system's, on a file in the folder: it ends with the process, whatever ends that. The file is
-/// removed with the lock; one that an ended run left is taken over.
+/// The lock is the system's, on a file in the folder: it ends with the process. The file is
+/// removed with the lock; a file left by an ended run is taken over.
 #[derive(Debug)]
 pub struct FolderLock {
     path: PathBuf,
-    /// Holds the lock while it is open; none where the file system knows no locks.
+    /// Holds the lock while it is open; `None` on a file system without locks.
     file: Option<File>,
 }
 
 impl FolderLock {
-    /// Locks a folder that is there, and removes what ended runs left of files there.
+    /// Locks an existing folder, and removes unfinished files of ended runs.
     ///
     /// # Errors
-    /// `ResourceBusy`: another run holds it. Else whatever the system reports: the folder cannot be written.
+    /// `ResourceBusy`: another run holds it. Otherwise an error of the system: the folder cannot be written.
     pub fn take(folder: &Path) -> Result<Self> {
         let path = folder.join(NAME);
         loop {
@@ -39,7 +39,7 @@ impl FolderLock {
                 }
             }
             // The holder before may have removed it after it was opened here, and a third may have made
-            // another: then this lock keeps nothing out.
+            // another: then this lock excludes no other run.
             if is_there(&mut file, &path) {
                 parts::hold().add(&path);
                 mark(&mut file)?;
@@ -50,7 +50,7 @@ impl FolderLock {
         }
     }
 
-    /// Whether the lock keeps others out: not every file system knows locks.
+    /// True if the lock excludes other processes: some file systems have no locks.
     pub fn is_held(&self) -> bool {
         self.file.is_some()
     }
@@ -66,7 +66,7 @@ impl Drop for FolderLock {
     }
 }
 
-/// The file of a lock, made if it is not there; none when it went meanwhile.
+/// The file of a lock, made if it is missing; `None` if it was removed meanwhile.
 fn open(path: &Path) -> Result<Option<File>> {
     let mut options = OpenOptions::new();
     options.read(true).write(true);
@@ -77,8 +77,8 @@ fn open(path: &Path) -> Result<Option<File>> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_file() => {}
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        // A link is not followed: what it leads to is not ours to lock.
-        _ => return Err(Error::other(format!("{NAME} in the folder is no plain file: remove it"))),
+        // A link is not followed: its target is not ours to lock.
+        _ => return Err(Error::other(format!("{NAME} in the folder is not a plain file: remove it"))),
     }
     match options.open(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
@@ -86,7 +86,7 @@ fn open(path: &Path) -> Result<Option<File>> {
     }
 }
 
-/// Writes what no other lock has.
+/// Writes a mark that no other lock has.
 fn mark(file: &mut File) -> Result<()> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_nanos());
     file.rewind()?;
@@ -94,7 +94,7 @@ fn mark(file: &mut File) -> Result<()> {
     write!(file, "strandline, process {}, {now}", std::process::id())
 }
 
-/// Whether the file that is open is still the one of that name: both have the same mark.
+/// True if the open file is still the file of that name: both have the same mark.
 fn is_there(file: &mut File, path: &Path) -> bool {
     let read = |file: &mut File| {
         let mut bytes = Vec::new();
@@ -104,7 +104,7 @@ fn is_there(file: &mut File, path: &Path) -> bool {
     match File::open(path).map(|mut named| read(&mut named)) {
         Err(_) => false,
         Ok(Ok(there)) => here.is_ok_and(|here| here == there),
-        // Systems that let nobody read what is locked let nobody remove what is open either.
+        // Systems on which a locked file cannot be read do not let an open file be removed either.
         Ok(Err(_)) => true,
     }
 }
@@ -122,7 +122,7 @@ mod tests {
         assert!(FolderLock::take(&folder.path().join("absent")).is_err());
         drop(first);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-        // One that an ended run left is taken over, with what it did not finish.
+        // A lock left by an ended run is taken over, with its unfinished files.
         fs::write(folder.path().join(NAME), b"of another").unwrap();
         fs::write(folder.path().join("video.1-1.strandline-foreign-part"), b"half").unwrap();
         fs::write(folder.path().join("frame.1-1.strandline-part"), b"half").unwrap();
@@ -157,7 +157,7 @@ mod tests {
         fs::write(&target, b"mine").unwrap();
         std::os::unix::fs::symlink(&target, folder.path().join(NAME)).unwrap();
         let error = FolderLock::take(folder.path()).unwrap_err().to_string();
-        assert!(error.contains("no plain file: remove it"), "{error}");
+        assert!(error.contains("not a plain file: remove it"), "{error}");
         assert_eq!(fs::read(&target).unwrap(), b"mine");
     }
 }

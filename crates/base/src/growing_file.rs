@@ -11,13 +11,13 @@ use crate::whole_file::permissions;
 /// * It begins under a temporary name, as [`WholeFile`](crate::WholeFile) does, and is removed when it is
 ///   dropped before [`GrowingFile::publish`].
 /// * From then on it lies under its own name, or, where a file of that name was there before, beside it with
-///   `.unfinished` before its ending: what an earlier run made is replaced by a finished file only.
-/// * Whatever ends the run leaves it there. To keep it sound at every moment is up to who writes it.
+///   `.unfinished` before its ending: the file of an earlier run is replaced by a finished file only.
+/// * It stays if the run ends early. The writer has to keep it sound at every moment.
 /// * It is locked: a second run on the same file is refused.
 #[derive(Debug)]
 pub struct GrowingFile {
     path: PathBuf,
-    /// Where it lies now.
+    /// Current path.
     place: PathBuf,
     published: bool,
     file: File,
@@ -35,10 +35,10 @@ pub(crate) enum Change {
 }
 
 impl GrowingFile {
-    /// Begins a file; whatever lies under its name stays as it is until it is finished.
+    /// Begins a file; an existing file of its name stays until it is finished.
     ///
     /// # Errors
-    /// `ResourceBusy`: another run writes it. Else whatever the system reports; a name under which a file may
+    /// `ResourceBusy`: another run writes it. Otherwise an error of the system; a name under which a file may
     /// not be put.
     pub fn create(path: &Path) -> Result<Self> {
         let former = permissions(path)?;
@@ -60,15 +60,15 @@ impl GrowingFile {
         Ok(growing)
     }
 
-    /// Where it lies now.
+    /// Current path.
     pub fn place(&self) -> &Path {
         &self.place
     }
 
-    /// Writes bytes at an offset; what lies between the end and there is 0.
+    /// Writes bytes at an offset; a gap behind the end is filled with 0.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn write_at(&mut self, offset: u64, bytes: &[u8]) -> Result<()> {
         #[cfg(test)]
         self.changes.push(Change::Write(offset, bytes.to_vec()));
@@ -79,17 +79,17 @@ impl GrowingFile {
     /// Cuts the file off.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn cut(&mut self, length: u64) -> Result<()> {
         #[cfg(test)]
         self.changes.push(Change::Cut(length));
         self.file.set_len(length)
     }
 
-    /// Lets others see it: from now on it stays, whatever ends the run.
+    /// Publishes it: from now on it stays, even if the run ends early.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn publish(&mut self) -> Result<()> {
         if self.published {
             return Ok(());
@@ -109,7 +109,7 @@ impl GrowingFile {
     /// Waits until it is on the disk and gives it its name.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn finish(mut self) -> Result<()> {
         self.publish()?;
         self.file.sync_all()?;
@@ -123,7 +123,7 @@ impl GrowingFile {
     /// Waits until it is on the disk and leaves it where it lies, which is returned.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn leave(mut self) -> Result<PathBuf> {
         self.publish()?;
         self.file.sync_all()?;
@@ -153,7 +153,7 @@ fn unfinished(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Refuses a file that another run holds a lock on; where a file system has no locks none does.
+/// Refuses a file that another run has locked; without locks of the file system it refuses none.
 fn refuse_busy(path: &Path) -> Result<()> {
     let Ok(found) = fs::symlink_metadata(path) else { return Ok(()) };
     if !found.is_file() {

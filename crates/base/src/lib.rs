@@ -1,10 +1,10 @@
-//! What every other crate stands on: files that are whole or not there, inputs that are plain files, folders
-//! that one run writes at a time, arrays in a zip that grow during a run, vectors of eight
-//! strands, poses, random numbers, clocks, parallel loops, text that is safe to
-//! print, the settings table. No hair, no GPU, nothing of ours below it.
+//! The base of every other crate: files that are whole or absent, inputs that are plain files, folders that one
+//! run writes at a time, arrays in a zip that grow during a run, vectors of eight strands, poses, random numbers,
+//! clocks, parallel loops, text that is safe to print, the settings table. It knows no hair and no GPU, and
+//! imports no other crate of the project.
 
 #![forbid(unsafe_code)]
-#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // tests may use inexact math
 
 pub mod cache;
 mod folder_lock;

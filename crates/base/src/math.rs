@@ -17,7 +17,7 @@ impl Float for f64 {}
 macro_rules! functions {
     ($($(#[$document:meta])* $name:ident($($more:ident)?) = $single:ident, $double:ident;)*) => {
         mod sealed {
-            /// The functions, where nobody takes them for the standard library's methods of the same names.
+            /// The functions, in a module so that they are not taken for methods of the standard library.
             pub trait Sealed: Sized {
                 $(fn $name(self $(, $more: Self)?) -> Self;)*
             }
@@ -101,13 +101,13 @@ pub fn pitch_yaw_roll(degrees: Vec3) -> Quat {
     rotation(Vec3::Y, yaw) * rotation(Vec3::X, pitch) * rotation(Vec3::Z, roll)
 }
 
-/// The rotation on the shorter way from one to another; `share` is 0 at the first and 1 at the second.
+/// The rotation on the shorter path between two; `share` is 0 at the first and 1 at the second.
 pub fn slerp(from: Quat, to: Quat, share: f32) -> Quat {
     let (cosine, to) = match from.dot(to) {
         cosine if cosine < 0.0 => (-cosine, -to),
         cosine => (cosine, to),
     };
-    // Where the angle is small its sine is that of rounding.
+    // For small angles the sine is dominated by rounding.
     if cosine > 0.9995 {
         return (from * (1.0 - share) + to * share).normalize();
     }
@@ -147,7 +147,7 @@ mod tests {
         })
     }
 
-    /// How far a result is from another in units in the last place.
+    /// Distance of a result from the exact one, in units in the last place.
     fn units(found: f32, exact: f64) -> f64 {
         let unit = f64::from(f32::EPSILON) * 2.0_f64.powi(exact.abs().max(1e-37).log2().floor() as i32);
         if found.is_nan() && exact.is_nan() { 0.0 } else { (f64::from(found) - exact).abs() / unit }
@@ -187,7 +187,7 @@ mod tests {
         }
     }
 
-    /// The reason of this module: whatever the system, the bits are these. A new version of `libm` may change
+    /// The purpose of this module: the bits are the same on every system. A new version of `libm` may change
     /// them, and with them those of every simulation.
     #[test]
     fn the_bits_are_known() {

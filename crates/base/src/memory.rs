@@ -1,13 +1,13 @@
-//! How much memory may be taken: asked before anything that a setting scales.
+//! Limits of memory, checked before any allocation that a setting scales.
 
 use std::path::Path;
 
-/// Memory that may be taken when nothing else is said \[MiB\].
+/// Default limit of memory \[MiB\].
 pub const DEFAULT: u64 = 8192;
 /// The environment's variable that allows more or less \[MiB\].
 pub const VARIABLE: &str = "STRANDLINE_MEMORY";
 
-/// What one part of a run takes.
+/// Memory of one part of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Need {
     /// The part, by the keys that scale it.
@@ -35,17 +35,17 @@ pub enum MemoryError {
     TooMuch {
         /// The largest part.
         what: String,
-        /// What that part would take \[MiB\].
+        /// Memory of that part \[MiB\].
         needed: u64,
-        /// What all parts would take \[MiB\].
+        /// Memory of all parts \[MiB\].
         total: u64,
-        /// What is allowed \[MiB\].
+        /// Allowed memory \[MiB\].
         allowed: u64,
     },
     /// The variable holds no number.
     #[error("STRANDLINE_MEMORY is `{found}`, expected a number of MiB, 64 or more")]
     Variable {
-        /// What it holds.
+        /// Its value.
         found: String,
     },
 }
@@ -58,8 +58,8 @@ pub fn check(needs: &[Need]) -> Result<(), MemoryError> {
     check_within(needs, allowed(std::env::var_os(VARIABLE))?)
 }
 
-/// Refuses a file whose reader would take more than may be taken: `taken` bytes for each of its own. One longer than
-/// `limit` \[byte\] is left to what reads it.
+/// Refuses a file whose reader would take more than is allowed: `taken` bytes for each of its own. A file longer than
+/// `limit` \[byte\] is left to its reader.
 ///
 /// # Errors
 /// See [`MemoryError`].
@@ -72,12 +72,13 @@ pub fn check_file(what: &str, path: &Path, limit: u64, taken: u64) -> Result<(),
     }
 }
 
-/// What a packed file may unpack to \[byte\]: a flat picture packs so well that a small file would take all memory.
+/// Largest size to which a packed file may unpack \[byte\]: a uniform picture packs so well that a small file
+/// could exhaust memory.
 pub const fn most_unpacked(file_length: u64) -> u64 {
     (256 << 20) + 64 * file_length
 }
 
-/// What may be taken \[MiB\], by the value of the variable.
+/// Allowed memory \[MiB\], by the value of the variable.
 fn allowed(variable: Option<std::ffi::OsString>) -> Result<u64, MemoryError> {
     let Some(text) = variable else { return Ok(DEFAULT) };
     let number = text.to_str().and_then(|text| text.trim().parse().ok());

@@ -17,8 +17,8 @@ const NAME_BYTES: usize = 160;
 /// Folders that are remembered as cleared.
 const FOLDERS: usize = 1024;
 
-/// What this process must remove when it ends at once, and the folders that it cleared. A process has one: a
-/// thread that handles signals knows nothing else of what the others write.
+/// Files to remove when the process ends at once, and the folders that were cleared. There is one list per
+/// process, because a thread that handles signals sees nothing else of the writers.
 static PARTS: Mutex<Option<Parts>> = Mutex::new(None);
 
 #[derive(Debug, Default)]
@@ -63,18 +63,18 @@ pub struct Abandoned {
     _held: Held,
 }
 
-/// Removes every file that this process is writing and has not finished, and lets none begin or get its name
+/// Removes every unfinished file of this process, and lets none begin or get its name
 /// until the value is dropped: for a process that is about to end at once.
 pub fn abandon_parts() -> Abandoned {
     let mut held = hold();
     for part in std::mem::take(&mut held.parts().written) {
-        // What is gone already need not be removed.
+        // A part that is gone already needs no removal.
         let _ = fs::remove_file(part);
     }
     Abandoned { _held: held }
 }
 
-/// Who writes a part.
+/// Writer of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Writer {
     /// This process, which holds a lock on it.
@@ -83,7 +83,7 @@ pub(crate) enum Writer {
     Foreign,
 }
 
-/// Creates a part of `path` beside it, under a name that nothing else has.
+/// Creates a part of `path` beside it, under a unique name.
 pub(crate) fn create(path: &Path, writer: Writer) -> Result<(PathBuf, File)> {
     let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
     clear_once(folder_of(path));
@@ -98,10 +98,10 @@ pub(crate) fn create(path: &Path, writer: Writer) -> Result<(PathBuf, File)> {
         held.add(&part);
         drop(held);
         if writer == Writer::Here {
-            // Where a file system has no locks, its parts are left to a person.
+            // On a file system without locks the parts stay.
             let _ = file.lock();
         }
-        // A run that clears may have taken it for that of an ended one before it was locked.
+        // A run that clears may have taken it for a part of an ended run before it was locked.
         if fs::symlink_metadata(&part).is_ok() {
             return Ok((part, file));
         }
@@ -130,16 +130,16 @@ fn clear_once(folder: &Path) {
     }
 }
 
-/// Removes what runs that were ended left in a folder. A part whose writer lives is locked; the system frees
-/// the lock of a process that has ended, whatever ended it. Parts that another program writes have no lock:
-/// `Writer::Foreign` is for those who hold the folder's.
+/// Removes the parts that ended runs left in a folder. A part whose writer lives is locked; the system frees
+/// the lock of an ended process. Parts that another program writes have no lock:
+/// `Writer::Foreign` needs the lock of the folder.
 pub(crate) fn clear(folder: &Path, writer: Writer) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         if !is_part(&entry.file_name(), writer) || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
             continue;
         }
         let part = entry.path();
-        // One that cannot be opened or locked may be in use.
+        // A part that cannot be opened or locked may be in use.
         let Ok(file) = OpenOptions::new().write(true).open(&part) else { continue };
         if file.try_lock().is_ok() {
             // Removed before the lock is given back.

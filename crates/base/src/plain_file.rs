@@ -4,12 +4,12 @@ use std::path::Path;
 
 /// Opens a plain file of `limit` bytes at most, links followed. No more than `limit` + 1 bytes can be read.
 ///
-/// What lies there is looked at before it is opened: opening a pipe waits for a writer, and opening a device can
-/// do what its driver likes. Who puts a pipe there between the two makes this wait; a flag that opens without
-/// waiting would not, but has another value on every system, and only who may write the folder can do it.
+/// The type of the file is checked before it is opened: opening a pipe waits for a writer, and opening a device can
+/// have side effects. A pipe that replaces the file between the check and the opening makes this wait. Only a
+/// process that may write the folder can do so, and the flag that would prevent it differs on every system.
 ///
 /// # Errors
-/// Whatever the system reports; something else than a plain file; a file that is too large.
+/// Errors of the system; anything but a plain file; a file that is too large.
 pub fn open_plain(path: &Path, limit: u64) -> Result<Take<File>> {
     check(&fs::metadata(path)?, limit)?;
     let file = File::open(path)?;

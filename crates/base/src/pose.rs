@@ -13,7 +13,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose that moves nothing.
+    /// The identity.
     pub const IDENTITY: Self = Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
 
     /// A rotation about a fixed point \[m\].
@@ -33,14 +33,14 @@ impl Pose {
         self.rotation * direction
     }
 
-    /// The pose that undoes this one.
+    /// The inverse.
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.conjugate();
         Self { rotation, translation: -(rotation * self.translation) }
     }
 
     /// The pose on the way to `end`: linear in translation, spherical in rotation;
-    /// `share` is 0 here and 1 at `end`. Between a pose and itself nothing is rounded.
+    /// `share` is 0 here and 1 at `end`. Between equal poses the result is exact.
     pub fn toward(&self, end: &Self, share: f32) -> Self {
         if self == end {
             return *self;

@@ -6,7 +6,7 @@ const LINE: usize = 500;
 /// Lines that are shown.
 const LINES: usize = 60;
 
-/// Text that may hold parts of somebody's file, for a terminal: characters that could move its cursor, change
+/// Text that may quote a file, for a terminal: characters that could move its cursor, change
 /// its colours or turn the direction of writing are spelled out (`\u{1b}`), lines of more than 500 characters
 /// and texts of more than 60 lines are cut.
 pub fn printable(text: &str) -> Cow<'_, str> {
@@ -47,7 +47,7 @@ fn push_line(shown: &mut String, line: &str) {
     }
 }
 
-/// Whether a terminal may take it for a command.
+/// True if a terminal may interpret the character as a command.
 fn is_control(character: char) -> bool {
     match character {
         '\n' | '\t' => false,

@@ -40,7 +40,7 @@ impl Random {
     }
 }
 
-/// Spreads the bits of a number, so that neighbouring seeds have nothing in common
+/// Spreads the bits of a number, so that neighbouring seeds are unrelated
 /// (the finalizer of SplitMix64 \[Steele2014\]).
 fn mix(number: u64) -> u64 {
     let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -26,7 +26,7 @@ pub trait Real:
     fn or_less(self, other: Self) -> Self;
     /// `yes` where this is above 0, else `no`.
     fn choose(self, yes: Self, no: Self) -> Self;
-    /// Whether it is above 0 in any lane.
+    /// True if it is above 0 in any lane.
     fn any_positive(self) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! What is known of a setting. Each stands once, in a [`settings!`](crate::settings) block; files,
+//! Description of a setting. Each stands once, in a [`settings!`](crate::settings) block; files,
 //! checks, docs/scene.md, sliders and error texts read it from there.
 
 use std::fmt;
@@ -11,9 +11,9 @@ use serde::de::DeserializeOwned;
 pub struct SettingError {
     /// The setting, with its sections.
     pub key: String,
-    /// What was given.
+    /// Value that was given.
     pub found: String,
-    /// What may be given.
+    /// Values that are allowed.
     pub expected: String,
 }
 
@@ -59,7 +59,7 @@ impl fmt::Display for Key<'_> {
     }
 }
 
-/// One of the words that a setting may be, and what it means.
+/// A word of a setting, and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Word {
     /// As a file has it.
@@ -73,20 +73,20 @@ impl Word {
         Self { name, about }
     }
 
-    /// What it means.
+    /// Its meaning.
     pub fn about(&self) -> String {
         plain(self.about)
     }
 }
 
-/// What a setting may hold.
+/// Values of a setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// true or false.
     Flag,
     /// As many whole numbers.
     Whole(usize),
-    /// As many numbers; more than one are a vector, a colour or a list.
+    /// A number of numbers: a vector, a colour or a list if there are several.
     Number(usize),
     /// A number, or this word.
     NumberOr(&'static str),
@@ -100,14 +100,14 @@ pub enum Kind {
     List(&'static Table),
 }
 
-/// Everything known of one setting.
+/// Description of one setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// Its name in its section.
     pub name: &'static str,
     /// Its doc comment; [`Row::sentence`] reads better.
     pub doc: &'static str,
-    /// What it may hold.
+    /// Allowed values.
     pub kind: Kind,
     /// Least and most, both allowed; for every component. Every number has one.
     pub range: Option<[f64; 2]>,
@@ -115,14 +115,14 @@ pub struct Row {
     pub unit: &'static str,
     /// The part of the range that a slider covers, where that is not all of it.
     pub slider: Option<[f64; 2]>,
-    /// What more of it does; empty where its sentence says so.
+    /// Effect of a larger value; empty if the sentence has it.
     pub more: &'static str,
-    /// Whether it has to be given.
+    /// True if a file must give it.
     pub required: bool,
 }
 
 impl Row {
-    /// A row that says nothing.
+    /// An empty row.
     pub const NONE: Self = Self {
         name: "",
         doc: "",
@@ -134,24 +134,24 @@ impl Row {
         required: false,
     };
 
-    /// What it is, as text without marks of a doc comment.
+    /// Its sentence, without the marks of a doc comment.
     pub fn sentence(&self) -> String {
         plain(self.doc)
     }
 
-    /// Least and most of a slider; 0 to 1 for what has no range.
+    /// Least and most of a slider; 0 to 1 without a range.
     pub fn slider(&self) -> [f64; 2] {
         self.slider.or(self.range).unwrap_or([0.0, 1.0])
     }
 
-    /// Its range with its unit: `0 to 1000 1/s`; empty for what has none.
+    /// Its range with its unit: `0 to 1000 1/s`; empty without a range.
     pub fn limits(&self) -> String {
         let Some([least, most]) = self.range else { return String::new() };
         let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
         format!("{} to {}{unit}", number(least), number(most))
     }
 
-    /// What may be given, for an error.
+    /// Allowed values, for an error.
     pub fn expected(&self) -> String {
         let limits = self.limits();
         match (self.kind, limits.is_empty()) {
@@ -180,7 +180,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// What it is about, as text without marks of a doc comment, a line for each paragraph.
+    /// Its sentences without the marks of a doc comment, a line per paragraph.
     pub fn about(&self) -> String {
         self.doc.split("\n\n").map(plain).collect::<Vec<_>>().join("\n\n")
     }
@@ -198,14 +198,14 @@ impl Table {
     }
 }
 
-/// What can be a setting: a number, a vector, a word, a section.
+/// Types of settings: numbers, vectors, words, sections.
 pub trait Value: Sized {
-    /// What a file gives of it: for a section only the settings that it names.
+    /// Part that a file gives: for a section only the settings that it names.
     type Given: Clone + DeserializeOwned;
-    /// What it may hold.
+    /// Allowed values.
     const KIND: Kind;
 
-    /// Replaces what is given and leaves the rest as it is.
+    /// Replaces the given settings and leaves the rest as it is.
     fn take(&mut self, given: Self::Given);
 
     /// Checks it, and a section's own settings, against their ranges.
@@ -214,7 +214,7 @@ pub trait Value: Sized {
     /// The first setting outside its range.
     fn check(&self, row: &Row, key: &Key) -> Result<(), SettingError>;
 
-    /// Whether it is left out of a file.
+    /// True if a file may leave it out.
     fn is_absent(&self) -> bool {
         false
     }
@@ -224,12 +224,12 @@ pub trait Value: Sized {
 pub trait Group: Value {
     /// A [`Row`] for each setting, by its name.
     type Rows;
-    /// What is known of each setting.
+    /// Description of each setting.
     const ROWS: Self::Rows;
     /// The same as a list.
     const TABLE: Table;
 
-    /// Checks every setting against its range; `name` is what the section is called in errors.
+    /// Checks every setting against its range; `name` is the section's name in errors.
     ///
     /// # Errors
     /// The first setting outside its range.

@@ -17,15 +17,15 @@
 /// assert!(Drag { across: f32::NAN, ..Drag::default() }.check_as("drag").is_err());
 /// ```
 ///
-/// A line is `name: Type = default`, then what there is to say of it in this order: `required true` for
-/// what a file has to give, `in [least, most] "unit"`, `slider [least, most]`, `more "what it does"`.
+/// A line is `name: Type = default`, then its properties in this order: `required true` for
+/// a setting that a file must give, `in [least, most] "unit"`, `slider [least, most]`, `more "effect of a larger value"`.
 /// * A number of a section that a file does not give keeps the default of the section *where it stands*: a
 ///   part of `springs.stretch` leaves the rest of the stretch spring as it is.
 /// * `plain { name: Type }` are fields that no file has; `moved { name: Type => "new.key" }` are keys of
 ///   old files: read by a section around this one in its `prepare`, refused elsewhere with the new key.
 /// * After the struct, `prepare path;` names a `fn(&mut Self, &<Self as Value>::Given)` that runs before
 ///   what is given is taken (for defaults that depend on it), and `also path;` a
-///   `fn(&Self, &Key) -> Result<(), SettingError>` for what no range says.
+///   `fn(&Self, &Key) -> Result<(), SettingError>` for conditions beyond ranges.
 #[macro_export]
 macro_rules! settings {
     (
@@ -68,7 +68,7 @@ macro_rules! settings {
         }
 
         const _: () = {
-            /// What a file gives of the section.
+            /// Settings of the section that a file gives.
             #[allow(missing_docs)]
             #[derive(Clone, Default, ::serde::Deserialize)]
             #[serde(deny_unknown_fields, default, expecting = "a section of settings")]
@@ -77,7 +77,7 @@ macro_rules! settings {
                 $($(pub $moved: Option<$Moved>,)*)?
             }
 
-            /// What is known of each setting.
+            /// Descriptions of the settings.
             #[allow(missing_docs)]
             pub struct Rows {
                 $(pub $field: $crate::Row,)*

@@ -26,7 +26,7 @@ impl Ranged for f64 {
     }
 }
 
-/// Whole numbers: what has no range goes as far as a file can write it.
+/// Whole numbers; without a range, as far as a file can write them.
 macro_rules! whole {
     ($($Type:ty),*) => {$(
         impl Ranged for $Type {
@@ -87,7 +87,7 @@ numbers! {
     [u32; 3]: Kind::Whole(3), |value| value;
 }
 
-/// What is sound whatever it holds.
+/// Values without limits.
 macro_rules! free {
     ($($Type:ty: $kind:expr;)*) => {$(
         impl Value for $Type {

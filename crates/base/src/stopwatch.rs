@@ -1,4 +1,4 @@
-//! How long something takes.
+//! Elapsed time.
 
 use std::time::{Duration, Instant};
 

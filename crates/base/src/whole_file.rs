@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use crate::parts::{self, Writer};
 
 /// A file that is whole or not there: it is written under a temporary name in the same folder and gets its own
-/// when it is kept. One that is not kept is removed.
+/// when it is kept. Otherwise it is removed.
 ///
-/// * A file of that name is replaced in one move and lends its mode bits; one that is read-only is refused.
-/// * A symbolic link is replaced itself: what it points to stays as it is.
-/// * What is no file (a folder, a device, a pipe, or a link to one) is refused.
+/// * A file of that name is replaced in one move and lends its mode bits; a read-only file is refused.
+/// * A symbolic link is replaced itself; its target stays as it is.
+/// * A folder, a device, a pipe, or a link to one, is refused.
 /// * The content is on the disk before the file gets its name. The name itself may be lost with the power;
 ///   then the former file is there, whole.
 /// * The temporary name, `NAME.PROCESS-NUMBER.strandline-part`, is new and locked. Parts of runs that were ended
@@ -18,18 +18,18 @@ use crate::parts::{self, Writer};
 pub struct WholeFile {
     path: PathBuf,
     part: PathBuf,
-    /// None while another program writes it.
+    /// `None` while another program writes it.
     file: Option<BufWriter<File>>,
 }
 
 impl WholeFile {
-    /// Begins a file; whatever lies under its name stays as it is until it is kept.
+    /// Begins a file; an existing file of its name stays until this one is kept.
     ///
     /// # Errors
-    /// Whatever the system reports; a name under which a file may not be put.
+    /// Errors of the system; a name under which no file may be put.
     pub fn create(path: &Path) -> Result<Self> {
         let mut file = Self::begin(path, Writer::Here)?;
-        // Before anything is in it: what only its owner may read is never readable by others.
+        // Before it has content: a private file is never readable by others.
         if let (Some(permissions), Some(part)) = (permissions(path)?, &mut file.file) {
             part.get_ref().set_permissions(permissions)?;
         }
@@ -58,7 +58,7 @@ impl WholeFile {
     /// Writes all of it, to be kept.
     ///
     /// # Errors
-    /// Whatever the system or `write` reports.
+    /// Errors of the system or of `write`.
     pub fn write(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> Result<()>) -> Result<Self> {
         let mut file = Self::create(path)?;
         if let Some(part) = &mut file.file {
@@ -71,7 +71,7 @@ impl WholeFile {
     /// Writes these bytes and gives the file its name.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn save(path: &Path, bytes: &[u8]) -> Result<()> {
         Self::write(path, |file| file.write_all(bytes))?.keep()
     }
@@ -89,7 +89,7 @@ impl WholeFile {
     /// Gives it its name.
     ///
     /// # Errors
-    /// Whatever the system reports; the file is then removed.
+    /// Errors of the system; the file is then removed.
     pub fn keep(mut self) -> Result<()> {
         self.store()?;
         permissions(&self.path)?;
@@ -125,22 +125,22 @@ impl Write for WholeFile {
 impl Drop for WholeFile {
     fn drop(&mut self) {
         let mut parts = parts::hold();
-        // One that was kept is not there any more, and the first error is the one to report.
+        // A kept file is gone from its temporary name, and the first error is reported.
         let _ = fs::remove_file(&self.part);
         parts.forget(&self.part);
     }
 }
 
-/// The permissions of the file that would be replaced; none where there is none.
+/// The permissions of the file that would be replaced; `None` without one.
 pub(crate) fn permissions(path: &Path) -> Result<Option<fs::Permissions>> {
     let found = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         found => found?,
     };
     if found.is_symlink() {
-        // One that leads nowhere may be replaced too.
+        // A dangling link may be replaced too.
         return match fs::metadata(path) {
-            Ok(target) if !target.is_file() => Err(no_file("a link to what is no file")),
+            Ok(target) if !target.is_file() => Err(no_file("a link to a folder or device")),
             _ => Ok(None),
         };
     }

@@ -1,4 +1,4 @@
-//! A section of settings: how files give it, what is checked, what is known.
+//! A section of settings: reading, checks, description.
 
 use glam::Vec3;
 use strandline_base::{Group, Key, Kind, SettingError, Value, choices, settings};
@@ -17,7 +17,7 @@ choices! {
 settings! {
     /// A spring.
     pub struct Spring: Copy {
-        /// Whether it pulls.
+        /// Enables the pull.
         enabled: bool = true;
         /// Force \[over\] extension.
         stiffness: f32 = 1e-5, in [0.0, 0.1] "N/m", slider [0.0, 1e-4], more "stiffer";
@@ -35,11 +35,11 @@ settings! {
         place: Vec3 = Vec3::X, required true, in [-1.0, 1.0] "m";
         /// A way.
         way: Way = Way::default();
-        /// How many.
+        /// Number of items.
         count: [u32; 3] = [4; 3], in [4, 512];
         /// Others.
         others: Vec<Spring> = Vec::new(), in [0, 2];
-        /// A time, or none.
+        /// An optional time.
         time: Option<f64> = None, in [0.0, 1.0] "s";
         plain {
             /// In no file.

@@ -5,7 +5,7 @@ use glam::{DVec3, UVec3};
 use crate::lattice::Lattice;
 use crate::layers::Corners;
 
-/// How many nodes of any box of a lattice are outside, at the cost of eight look-ups.
+/// Counts nodes of any box of a lattice that are outside, at the cost of eight look-ups.
 pub(crate) struct OutsideCounts<'a> {
     lattice: &'a Lattice,
     /// Nodes outside in the box from the first node to each one, both included, modulo 2^32.
@@ -27,8 +27,8 @@ impl<'a> OutsideCounts<'a> {
         Self { lattice, sums }
     }
 
-    /// Whether all nodes within a cell of a triangle are inside: then it is part of a shell within another
-    /// one and no place of the skin.
+    /// True if all nodes within a cell of a triangle are inside: it then belongs to a shell within another
+    /// one and is no part of the skin.
     pub fn is_buried(&self, corners: &Corners) -> bool {
         let last = (self.lattice.node_count - 1).as_dvec3();
         let low = corners.iter().fold(last, |low, corner| low.min(*corner));

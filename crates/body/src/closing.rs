@@ -12,16 +12,16 @@ use crate::welding::welded_vertices;
 type Edge = [u32; 2];
 
 impl Mesh {
-    /// Whether the surface has an inside: every edge of a triangle is met by one of a neighbour in the
-    /// opposite direction, where vertices at the same position count as one.
+    /// True if the surface has an inside: every edge of a triangle meets one of a neighbour in the opposite
+    /// direction, with vertices at the same position counted as one.
     pub fn is_closed(&self) -> bool {
         self.open_edge_count() == 0
     }
 
-    /// How many edges of triangles are met by none in the opposite direction.
+    /// Number of edges of triangles without a counterpart in the opposite direction.
     ///
     /// # Panics
-    /// As [`Self::is_closed`] and [`Self::closed`], when an index is out of range; loaded meshes have none such.
+    /// As [`Self::is_closed`] and [`Self::closed`], if an index is out of range; indices of loaded meshes are not.
     pub fn open_edge_count(&self) -> usize {
         open_edges(self).len()
     }

@@ -6,11 +6,11 @@ use strandline_base::choices;
 use crate::{Aabb, BodyError, DistanceGrid, Mannequin, SignedDistance};
 
 choices! {
-    /// What a collider moves with.
+    /// Space in which a collider is fixed.
     pub enum Carrier as "carrier" {
         /// The head: the shape is given in head space.
         Head = "head",
-        /// Nothing: the shape is given in world space and stays.
+        /// World space: the shape stays.
         World = "world",
     }
     default Head
@@ -66,8 +66,8 @@ impl Shape {
 
     /// Signed distance \[m\] and unit gradient at a point \[m\], both in the shape's space.
     ///
-    /// Where the gradient does not exist (the centre of a sphere, the segment of a capsule) it is
-    /// some unit vector that leads out of the shape on a shortest way.
+    /// At points without a gradient (the centre of a sphere, the segment of a capsule) it is a unit vector
+    /// that leads out of the shape on a shortest path.
     pub fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
         match self {
             Self::Sphere { center, radius } => round(point - *center, Vec3::Y, *radius),
@@ -91,8 +91,8 @@ impl Shape {
         }
     }
 
-    /// How far \[m\] the shape is from a point at least, 0 where the point may be inside: as the distance, but quick
-    /// where that takes its time.
+    /// Lower bound of the distance \[m\] of a point from the shape, 0 for a point that may be inside. It is
+    /// cheap where the exact distance is expensive.
     #[inline]
     pub fn distance_at_least(&self, point: Vec3) -> f32 {
         match self {
@@ -123,7 +123,8 @@ fn round(offset: Vec3, aside: Vec3, radius: f32) -> (f32, Vec3) {
     (length - radius, gradient)
 }
 
-/// Where along `axis` the point at `offset` from its start is nearest, 0..1; 0 for a zero-length axis.
+/// Parameter of the nearest point along `axis` to the point at `offset` from its start, 0..1; 0 for a
+/// zero-length axis.
 fn share_along(offset: Vec3, axis: Vec3) -> f32 {
     let squared = axis.length_squared();
     if squared > 0.0 { (offset.dot(axis) / squared).clamp(0.0, 1.0) } else { 0.0 }
@@ -143,14 +144,14 @@ fn positive(what: &'static str, value: f32) -> Result<(), BodyError> {
     Err(BodyError::Value { what, found: value.to_string(), expected: "a finite number above zero [m]" })
 }
 
-/// A shape, what carries it, and how it rubs.
+/// A shape, its carrier and its friction.
 #[derive(Clone, Debug)]
 pub struct Collider {
     /// The solid.
     pub shape: Shape,
-    /// What it moves with.
+    /// Its space.
     pub carrier: Carrier,
-    /// Coulomb friction coefficient, 0 is frictionless. It acts once a step, whatever the number of rounds.
+    /// Coulomb friction coefficient, 0 is frictionless. It acts once per step, for any number of rounds.
     pub friction: f32,
 }
 

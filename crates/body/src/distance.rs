@@ -17,7 +17,7 @@ pub trait SignedDistance: Send + Sync {
     /// Signed distance \[m\] and its unit gradient (pointing out of the body).
     fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3);
 
-    /// Whether both sides of the plane x = 0 are the same.
+    /// True if both sides of the plane x = 0 are the same.
     fn is_symmetric(&self) -> bool {
         false
     }

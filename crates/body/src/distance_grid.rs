@@ -27,7 +27,7 @@ pub struct DistanceGrid {
     /// The distances alone: four times as many stay close to the processor.
     distances: Vec<f32>,
     /// The least distance of the corners of the cell that begins at each node, not below 0, in quarters of a spacing,
-    /// rounded down: what is interpolated in the cell is no less. A sixteenth of what the nodes take.
+    /// rounded down: interpolated distances in the cell are no less. It takes a sixteenth of the nodes' memory.
     least: Vec<u8>,
 }
 
@@ -39,7 +39,7 @@ impl DistanceGrid {
     ///
     /// # Errors
     /// The spacing must be above zero, the padding not negative. A grid of more than 1,024 cells a side or
-    /// 8 Mi nodes is made coarser (see [`Self::spacing`]); one that would need cells of more than 0.1 m is refused.
+    /// 8 Mi nodes is made coarser (see [`Self::spacing`]); a grid that would need cells of more than 0.1 m is refused.
     pub fn from_field(field: &dyn SignedDistance, spacing: f32, padding: f32) -> Result<Self, BodyError> {
         let lattice = Lattice::around(field.bounds(), spacing, padding)?;
         let mut distances = vec![0.0; lattice.len()];
@@ -59,7 +59,7 @@ impl DistanceGrid {
 
     /// Signed distance of a closed mesh at `spacing` \[m\], padded by `padding` \[m\] (two cells at least).
     ///
-    /// Inside is what the surface winds around: shells that overlap are joined. A mesh that is
+    /// Inside is the space that the surface winds around: shells that overlap are joined. A mesh that is
     /// inside out as a whole is taken as if it were not.
     ///
     /// # Errors
@@ -85,7 +85,7 @@ impl DistanceGrid {
         Self::from_closed(&mesh.without_repeats().closed(), spacing, padding)
     }
 
-    /// The same for any mesh: a closed one as it is, an open one with its holes closed.
+    /// The same for any mesh: the holes of an open mesh are closed.
     ///
     /// # Errors
     /// As [`Self::from_open_mesh`].
@@ -124,7 +124,7 @@ impl DistanceGrid {
         Self { lattice, inverse_spacing, nodes, distances, least }
     }
 
-    /// Distance of neighbouring nodes \[m\]: the one asked for, or more.
+    /// Distance of neighbouring nodes \[m\]: the requested one, or more.
     pub fn spacing(&self) -> f32 {
         self.lattice.spacing
     }
@@ -144,8 +144,8 @@ impl DistanceGrid {
         self.lattice.node_count - 1
     }
 
-    /// How far \[m\] the body is from a point at least, 0 where it may be inside: one byte is looked at, where the
-    /// distance takes eight nodes.
+    /// Lower bound of the distance \[m\] of a point from the body, 0 for a point that may be inside. It reads
+    /// one byte, the exact distance eight nodes.
     #[inline]
     pub fn distance_at_least(&self, point: Vec3) -> f32 {
         let Aabb { min, max } = self.grid_box();
@@ -184,7 +184,7 @@ impl DistanceGrid {
     }
 }
 
-/// What can be interpolated.
+/// Values that can be interpolated.
 trait Interpolated: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self> {}
 
 impl<T: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f32, Output = Self>> Interpolated for T {}

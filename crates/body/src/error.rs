@@ -14,7 +14,7 @@ pub enum BodyError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The file is not a mesh that can be used.
@@ -22,11 +22,11 @@ pub enum BodyError {
     Mesh {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// Content that was found.
         found: String,
-        /// What was expected.
+        /// Content that was expected.
         expected: &'static str,
-        /// How to mend it.
+        /// Remedy.
         mend: &'static str,
     },
     /// A mesh with holes has no inside.
@@ -41,9 +41,9 @@ pub enum BodyError {
     /// A mesh without triangles or with vertices that are no points.
     #[error("the mesh has {found}, expected {expected}; export it again as triangles")]
     BadMesh {
-        /// What was found.
+        /// Content that was found.
         found: String,
-        /// What was expected.
+        /// Content that was expected.
         expected: &'static str,
     },
     /// A distance grid would be too large.
@@ -63,7 +63,7 @@ pub enum BodyError {
     Value {
         /// Which value.
         what: &'static str,
-        /// What was given.
+        /// Value that was given.
         found: String,
         /// The range.
         expected: &'static str,
@@ -73,9 +73,9 @@ pub enum BodyError {
     Keyframe {
         /// Its place in the list, from 0.
         index: usize,
-        /// What was found.
+        /// Content that was found.
         found: String,
-        /// What was expected.
+        /// Content that was expected.
         expected: &'static str,
     },
 }

@@ -27,7 +27,7 @@ pub(crate) struct FarNodes {
 }
 
 impl FarNodes {
-    /// Looks for the surface from every corner, at no more than `budget` triangles each; none for a small lattice. A
+    /// Looks for the surface from every corner, at no more than `budget` triangles each; `None` for a small lattice. A
     /// corner for which these do not suffice counts as near, so that the nodes of its blocks are searched for.
     pub fn new(tree: &TriangleTree, lattice: &Lattice, budget: u64) -> Option<Self> {
         if lattice.len() <= FEW {
@@ -54,8 +54,8 @@ impl FarNodes {
         Some(Self { counts, nearest })
     }
 
-    /// What is known of a node from the corners of its block, where these are far: no more than its distance, and a
-    /// triangle that is near.
+    /// Lower bound of the distance of a node and a triangle near it, from the corners of its block, if these
+    /// are far.
     pub fn at(&self, node: UVec3, lattice: &Lattice) -> Option<Nearest> {
         let block = (node / SIDE).min(self.counts - 2);
         let [low, high] =

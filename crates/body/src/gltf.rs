@@ -29,7 +29,7 @@ pub(crate) fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyE
     })
 }
 
-/// The same from the bytes of a file; without a folder none beside it is read.
+/// The same from the bytes of a file; without a folder no file beside it is read.
 pub(crate) fn parse(
     bytes: &[u8],
     folder: Option<&Path>,
@@ -40,7 +40,7 @@ pub(crate) fn parse(
     check_positions(&::gltf::Gltf::from_slice_without_validation(bytes).map_err(refused)?.document)?;
     let ::gltf::Gltf { document, blob } = ::gltf::Gltf::from_slice(bytes).map_err(refused)?;
     let buffers = load_buffers(&document, blob, folder)?;
-    // Nodes that repeat a mesh make much of a small file: beyond what it could hold itself it is refused.
+    // Nodes that repeat a mesh make much of a small file: more than it could hold itself is refused.
     let limit = (bytes.len() + buffers.len()).clamp(LEAST_COUNT_LIMIT, COUNT_LIMIT);
     let mut mesh = Mesh::default();
     for (node, world_from_node) in placed_nodes(&document)? {
@@ -74,7 +74,7 @@ fn check_container(bytes: &[u8]) -> Result<(), Refusal> {
     }
 }
 
-/// The parser's own validation looks up the accessor of the positions before it knows that there is one.
+/// The parser's own validation looks up the accessor of the positions before it knows that it exists.
 fn check_positions(document: &::gltf::Document) -> Result<(), Refusal> {
     let root = document.as_json();
     let parts = root.meshes.iter().flat_map(|mesh| &mesh.primitives);

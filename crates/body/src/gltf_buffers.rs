@@ -12,7 +12,7 @@ use crate::parsing::{Refusal, read_file};
 /// The bytes of each buffer.
 pub(crate) struct Buffers(Vec<Vec<u8>>);
 
-/// Loads what the file holds itself, what it encodes as text, and files beside it.
+/// Loads buffers in the file, buffers encoded as text, and files beside it.
 pub(crate) fn load_buffers(
     document: &Document,
     mut blob: Option<Vec<u8>>,
@@ -50,8 +50,8 @@ pub(crate) fn load_buffers(
     Ok(Buffers(buffers))
 }
 
-/// A relative address as a path below the file's folder: `%20` and the like become bytes again. None for other
-/// addresses, and for what is one only after that: a path from the root, a way up, a drive, a share.
+/// A relative address as a path below the file's folder: `%20` and the like become bytes again. `None` for other
+/// addresses, and for paths that leave the folder after decoding: from the root, upward, a drive, a share.
 fn file_name(uri: &str) -> Option<String> {
     let mut parts = uri.split('%');
     let mut name = parts.next()?.as_bytes().to_vec();
@@ -60,7 +60,8 @@ fn file_name(uri: &str) -> Option<String> {
         name.extend_from_slice(&part.as_bytes()[2..]);
     }
     String::from_utf8(name).ok().filter(|name| {
-        // What separates folders and drives on one system does so on all: a file means the same everywhere.
+        // Separators of folders and drives of any system count on all systems: a file means the same
+        // everywhere.
         let is_below =
             |name: &str| Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
         !name.is_empty() && !name.contains(['\0', ':', '\\']) && is_below(name)

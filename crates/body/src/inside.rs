@@ -6,13 +6,13 @@ use strandline_base::par::prelude::*;
 use crate::lattice::{Lattice, SLAB};
 use crate::layers::{Corners, Layers};
 
-/// Whether the surface winds around each node, in the order of storage; `turned` takes every triangle as
-/// if it were wound the other way.
+/// For each node, in the order of storage: true if the surface winds around it. `turned` reverses every
+/// triangle.
 ///
-/// Triangles are given in cells. Each line of nodes along x counts the triangles that it
-/// passes, with their direction: the winding number \[Jacobson2013\] of a closed surface, as an integer.
-/// A line through an edge or a corner counts one of the triangles that meet there, never two and
-/// never none, because each edge decides alone, from its two ends, on which side the line passes it.
+/// Triangles are given in cells. Each line of nodes along x counts the triangles that it passes, with their
+/// direction: the winding number \[Jacobson2013\] of a closed surface, as an integer. A line through an edge
+/// or a corner counts exactly one of the triangles that meet there, because each edge decides alone, from its
+/// two ends, on which side the line passes it.
 pub(crate) fn inside_nodes(layers: &Layers, turned: bool, lattice: &Lattice) -> Vec<bool> {
     let mut inside = vec![false; lattice.len()];
     let (layer_len, columns) = (lattice.layer_len(), lattice.node_count.x as usize);
@@ -20,7 +20,7 @@ pub(crate) fn inside_nodes(layers: &Layers, turned: bool, lattice: &Lattice) -> 
         let first = slab * SLAB;
         let last = first + inside.len() / layer_len - 1;
         let reached = layers.between(first as f64, last as f64);
-        // How much the winding number changes at each node of a layer from the one before it in its row.
+        // Change of the winding number at each node of a layer from the one before it in its row.
         let mut changes = vec![0_i32; layer_len];
         for (layer, inside) in inside.chunks_mut(layer_len).enumerate() {
             changes.fill(0);
@@ -55,10 +55,11 @@ fn add_changes(corners: &Corners, z: f64, columns: usize, changes: &mut [i32]) {
     }
 }
 
-/// Whether an edge passes the half-line from y, z towards larger y upwards (1), downwards (-1) or not (0).
+/// Direction in which an edge passes the half-line from y, z towards larger y: upwards (1), downwards (-1) or
+/// not at all (0).
 ///
-/// The two triangles of an edge see it in opposite directions and get opposite numbers exactly, since
-/// the place is computed from the lower end in both.
+/// The two triangles of an edge see it in opposite directions and get exactly opposite numbers, since the
+/// place is computed from the lower end in both.
 fn edge_turn(start: DVec3, end: DVec3, y: f64, z: f64) -> i32 {
     let up = start.z <= z && end.z > z;
     let down = end.z <= z && start.z > z;
@@ -73,7 +74,8 @@ fn edge_turn(start: DVec3, end: DVec3, y: f64, z: f64) -> i32 {
     if up { 1 } else { -1 }
 }
 
-/// Where the plane of a triangle passes the line y, z; within the triangle also when it holds the line.
+/// Place at which the plane of a triangle passes the line y, z; within the triangle also if it holds the
+/// line.
 fn place(corners: &Corners, y: f64, z: f64) -> f64 {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);

@@ -12,8 +12,8 @@ use strandline_base::{Stopwatch, WholeFile, read_plain};
 use crate::lattice::Lattice;
 use crate::{BodyError, DistanceGrid, Mesh};
 
-/// What a file begins with. Its number counts the ways of building a grid: one more whenever another way gives
-/// other distances.
+/// First bytes of a file. The number counts the ways of building a grid: it increases with every change that
+/// gives other distances.
 const MAGIC: &[u8; 16] = b"strandline grid2";
 /// Bytes before the distances: the magic, the key, place, spacing and number of nodes.
 const HEADER: usize = 16 + DIGEST + 7 * 4;
@@ -27,7 +27,7 @@ impl DistanceGrid {
     /// The same as [`Self::of_mesh`] to the bit, read from `folder` where a run before left it, and left there for
     /// the next where it took long to build.
     ///
-    /// A file is found by all that the grid depends on. One that is broken, cut or of other content is built
+    /// A file is found by the hash of all inputs. A grid whose file is broken, cut or of other content is built
     /// again; a folder that cannot be read or written changes the time only.
     ///
     /// # Errors
@@ -46,7 +46,7 @@ impl DistanceGrid {
         let watch = Stopwatch::start();
         let grid = Self::of_mesh(mesh, spacing, padding)?;
         if watch.elapsed() >= WORTH_A_FILE {
-            // Nothing is lost but time.
+            // Only time is lost.
             let _ = fs::create_dir_all(folder).and_then(|()| write(&grid, &path, &key));
             forget_oldest(folder, MOST_BYTES);
         }
@@ -54,7 +54,7 @@ impl DistanceGrid {
     }
 }
 
-/// What a grid depends on.
+/// Hash of all inputs of a grid.
 fn key(mesh: &Mesh, spacing: f32, padding: f32) -> [u8; DIGEST] {
     let mut hash = Sha256::new_with_prefix(MAGIC);
     hash.update(spacing.to_le_bytes());
@@ -85,7 +85,7 @@ fn write(grid: &DistanceGrid, path: &Path, key: &[u8; DIGEST]) -> Result<()> {
     WholeFile::write(path, |file| file.write_all(&bytes).and_then(|()| file.write_all(&digest)))?.keep()
 }
 
-/// The grid in a file; none unless every byte is as it was written.
+/// The grid in a file; `None` unless every byte is as it was written.
 fn read(path: &Path, key: &[u8; DIGEST]) -> Option<DistanceGrid> {
     let largest = (HEADER + DIGEST) as u64 + 4 * Lattice::NODE_LIMIT;
     let bytes = read_plain(path, largest).ok()?;

@@ -16,10 +16,10 @@ pub struct Keyframe {
     pub world_from_head: Pose,
 }
 
-/// How far a rotation may be from a unit quaternion; more is a mistake and not rounding.
+/// Largest difference of a rotation from a unit quaternion; a larger one is an error, not rounding.
 const UNIT_TOLERANCE: f32 = 1e-3;
 
-/// The keyframes with unit rotations, or what is wrong with them.
+/// The keyframes with unit rotations, or their error.
 pub(crate) fn checked(mut keys: Vec<Keyframe>) -> Result<Vec<Keyframe>, BodyError> {
     if keys.is_empty() {
         return Err(BodyError::Value {
@@ -73,7 +73,7 @@ pub(crate) fn pose(keys: &[Keyframe], time: f64, pivot: Vec3) -> Pose {
 
 /// A keyframe with the velocities with which the curve passes it.
 struct Knot {
-    /// Where the pivot is \[m\], world space.
+    /// Position of the pivot \[m\], world space.
     position: DVec3,
     velocity: DVec3,
     rotation: DQuat,
@@ -129,8 +129,8 @@ fn logarithm(rotation: DQuat) -> DVec3 {
     math::rotation_vector(rotation)
 }
 
-/// How fast a rotation vector changes when its rotation turns with an angular velocity given in the
-/// rotated space: the inverse right Jacobian of the rotation group. // [Sola2018 eq. 144]
+/// Rate of a rotation vector whose rotation turns with an angular velocity given in the rotated space: the
+/// inverse right Jacobian of the rotation group. // [Sola2018 eq. 144]
 fn vector_rate(vector: DVec3, angular_velocity: DVec3) -> DVec3 {
     let angle = vector.length();
     let once = vector.cross(angular_velocity);

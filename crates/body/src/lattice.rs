@@ -1,4 +1,4 @@
-//! Where the nodes of a distance grid lie.
+//! Positions of the nodes of a distance grid.
 
 use glam::{DVec3, U64Vec3, UVec3, Vec3};
 use strandline_base::math;
@@ -22,7 +22,7 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// The most nodes of one grid: 16 bytes each make 128 MiB, which is what a GPU takes as one buffer.
+    /// The most nodes of one grid: 16 bytes each make 128 MiB, the largest buffer of a GPU.
     pub const NODE_LIMIT: u64 = 8 << 20;
     /// The coarsest spacing \[m\] that is taken in place of one that is too fine; a body that needs more is
     /// in other units.
@@ -65,7 +65,7 @@ impl Lattice {
         Ok(Self { origin, spacing, node_count: cells.as_uvec3() + 1 })
     }
 
-    /// Whether the nodes on either side of the plane x = 0 are each other's mirror images.
+    /// True if the nodes on either side of the plane x = 0 are each other's mirror images.
     pub fn is_centered(&self) -> bool {
         self.origin.x == -0.5 * self.spacing * (self.node_count.x - 1) as f32
     }
@@ -105,7 +105,7 @@ fn cells_at(size: DVec3, spacing: f32, padding: f32) -> U64Vec3 {
     ((size + 2.0 * padding) / f64::from(spacing)).ceil().as_u64vec3()
 }
 
-/// How many times as coarse cells have to be at least, if there are too many.
+/// Factor by which cells must be coarsened, if there are too many.
 fn excess(cells: U64Vec3) -> Option<f64> {
     let nodes = cells.saturating_add(U64Vec3::ONE);
     let total = nodes.x.saturating_mul(nodes.y).saturating_mul(nodes.z);

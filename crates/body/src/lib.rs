@@ -1,4 +1,4 @@
-//! What hair grows on and hits: the built-in mannequin, loaded meshes, the scalp, signed
+//! Bodies that hair grows on and collides with: the built-in mannequin, loaded meshes, the scalp, signed
 //! distance, colliders and the motion of the head. No GPU, no hair.
 //!
 //! Units are SI; y is up and the face looks along +z. *Head space* is the space in which a body

@@ -45,7 +45,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// Refuses a mesh that is empty, or holds indices or positions that are none.
+    /// Refuses a mesh that is empty, or has invalid indices or positions.
     pub(crate) fn check_usable(&self) -> Result<(), BodyError> {
         let bad = |found: String, expected| Err(BodyError::BadMesh { found, expected });
         if self.positions.is_empty() {

@@ -57,7 +57,7 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
     distances
 }
 
-/// What is kept of the nearest triangle of a node.
+/// Nearest triangle of a node.
 #[derive(Clone, Copy, Default)]
 struct Found {
     /// \[cells\].
@@ -92,7 +92,7 @@ fn nearest_in_slab(
         }
         let point = node.as_dvec3();
         let place = [node.x as usize, node.y as usize, node.z as usize - first_layer];
-        // What is nearest to a neighbour is nearly the nearest here: the search only has to make sure.
+        // The nearest triangle of a neighbour is nearly the nearest here: it bounds the search.
         let mut here = nearest[index];
         for (place, stride) in place.into_iter().zip(strides) {
             if place > 0 && nearest[index - stride].triangle != here.triangle {
@@ -141,8 +141,8 @@ fn spread(tree: &TriangleTree, lattice: &Lattice, found: &mut [Found]) {
     }
 }
 
-/// How much work the extent of triangles is at a spacing \[m\], in nodes that look at one: long and large
-/// triangles pass many cells.
+/// Work that the extent of triangles causes at a spacing \[m\], in nodes that look at a triangle: long and
+/// large triangles pass many cells.
 pub(crate) fn work(mesh: &Mesh, spacing: f32) -> f64 {
     let of = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize].as_dvec3());

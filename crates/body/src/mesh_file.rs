@@ -28,7 +28,7 @@ impl Mesh {
     /// Loads an OBJ or glTF 2.0 file (by its ending: .obj, .gltf, .glb), scaled by `scale` \[m per unit\].
     ///
     /// All objects and scenes of the file become one mesh; polygons become triangles; skins, materials and
-    /// animations are ignored. Vertices keep the file's normals; where it gives none they are computed.
+    /// animations are ignored. Vertices keep the file's normals; missing normals are computed.
     ///
     /// # Errors
     /// See [`BodyError`].
@@ -46,7 +46,7 @@ impl Mesh {
         mesh.complete(path)
     }
 
-    /// Loads the part of an OBJ or glTF 2.0 file that has a name, in the units of the file; `None` where nothing has
+    /// Loads the named part of an OBJ or glTF 2.0 file, in the units of the file; `None` if nothing has
     /// it. Names are those of objects, groups and materials of an OBJ, of nodes, meshes and materials of a glTF; upper
     /// and lower case are the same.
     ///
@@ -105,7 +105,7 @@ impl Mesh {
         parsed.map_err(|(found, expected)| BodyError::BadMesh { found, expected })?.complete(Path::new(""))
     }
 
-    /// Checks what was read and gives a normal to every vertex that has none.
+    /// Checks the mesh and gives a normal to every vertex without.
     fn complete(mut self, path: &Path) -> Result<Self, BodyError> {
         self.check_usable().map_err(|error| match error {
             BodyError::BadMesh { found, expected } => BodyError::Mesh {
@@ -119,7 +119,7 @@ impl Mesh {
         let computed = vertex_normals(&self.positions, &self.triangles);
         self.normals.resize(self.positions.len(), Vec3::ZERO);
         for (normal, computed) in self.normals.iter_mut().zip(computed) {
-            // In double precision: the square of a short one underflows.
+            // In double precision: the square of a short normal underflows.
             *normal = normal.as_dvec3().try_normalize().map_or(computed, |unit| unit.as_vec3());
         }
         Ok(self)

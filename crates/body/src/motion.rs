@@ -22,7 +22,7 @@ const TURN_DEGREES: f64 = 60.0;
 /// Length of one look to both sides \[s\].
 const TURN_PERIOD: f64 = 4.0;
 
-/// How the head moves: a pose for every time, smooth in velocity, at rest at time 0.
+/// Motion of the head: a pose for every time, smooth in velocity, at rest at time 0.
 ///
 /// Before time 0 the built-in motions rest. Left is the head's own left, +x.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,7 +58,7 @@ impl Motion {
     ///
     /// `pivot` \[m\], head space, is the point about which the head rotates, near the top of the
     /// neck. The built-in motions keep it where it is. Keyframes give the whole pose at their times
-    /// whatever the pivot; between them the rotation is interpolated about it.
+    /// for any pivot; between them the rotation is interpolated about it.
     pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
         // [Chen2011 fig. 34] shows the head shake and gives no angle; these are a quick "no".
         let (axis, degrees) = match self {

@@ -9,7 +9,7 @@ use crate::triangle_tree::Nearest;
 
 /// Nodes within this distance \[cells\] of the surface are painted.
 pub(crate) const REACH: f64 = 1.0;
-/// By how much more nodes are visited, so that rounding leaves none out.
+/// Margin of visited nodes, so that rounding leaves none out.
 const MARGIN: f64 = 1e-6;
 /// Squared sine of the angles below which a triangle has no normal of its own.
 const FLAT: f64 = 1e-20;
@@ -58,7 +58,7 @@ impl<'a> Seen<'a> {
         let normal = if normal.length_squared() > FLAT * longest.length_squared().powi(2) {
             normal.normalize()
         } else {
-            // What has no area lies in every plane through its longest edge.
+            // A triangle without an area lies in every plane through its longest edge.
             longest.any_orthogonal_vector().normalize_or(DVec3::Z)
         };
         let squares = normal * normal;
@@ -100,7 +100,7 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// What the triangle takes of a row, along it, with all that is within reach across; nothing where none is.
+    /// Interval of a row within reach of the triangle; `None` if there is none.
     fn passing(&self, row: f64, reach: f64) -> Option<[f64; 2]> {
         let [across, along, _] = self.axes;
         let mut found = [f64::INFINITY, f64::NEG_INFINITY];
@@ -128,7 +128,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The whole numbers from one to another, both included.
+/// The whole numbers between two, both included.
 fn whole_numbers(first: f64, last: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some(first), |number| Some(number + 1.0)).take_while(move |number| *number <= last)
 }
@@ -139,7 +139,7 @@ mod tests {
 
     use super::*;
 
-    /// No node that is within reach of a triangle is left out, whatever its shape and place.
+    /// No node within reach of a triangle is left out, for any shape and place.
     #[test]
     fn every_node_within_reach_is_visited() {
         let mut random = crate::Random::new(7, 0);

@@ -9,7 +9,7 @@ use crate::parsing::{Refusal, read_file, unit_normal};
 use crate::part_names::Names;
 use crate::{BodyError, Mesh};
 
-/// Reads a mesh, or the part of it that has a name, in the units of the file; vertices without a normal get a zero one.
+/// Reads a mesh, or its named part, in the units of the file; vertices without a normal get a zero normal.
 pub(crate) fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
     let bytes = read_file(path)?;
     let parsed = names.map_or_else(|| parse(&bytes), |names| parse_part(&bytes, names));
@@ -67,7 +67,7 @@ pub(crate) fn parse(mut bytes: &[u8]) -> Result<Mesh, Refusal> {
     };
     let no_materials = |_: &Path| Err(tobj::LoadError::GenericFailure);
     let (models, _) = tobj::load_obj_buf(&mut bytes, &options, no_materials)
-        .map_err(|error| refused(format!("a line that is none ({error})")))?;
+        .map_err(|error| refused(format!("an invalid line ({error})")))?;
     let mut mesh = Mesh::default();
     for model in &models {
         append(&mut mesh, &model.mesh);
@@ -94,7 +94,7 @@ fn check_faces(bytes: &[u8]) -> Result<(), String> {
     let mut counts = [0i64; 3];
     for (number, line) in bytes.lines().enumerate() {
         let number = number + 1;
-        let line = line.map_err(|_| format!("bytes that are no text in line {number}"))?;
+        let line = line.map_err(|_| format!("bytes that are not text in line {number}"))?;
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => counts[0] += 1,

@@ -1,4 +1,4 @@
-//! What the readers of meshes share.
+//! Helpers of all readers of meshes.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::BodyError;
 const FILE_LIMIT: u64 = 256 << 20;
 /// Memory that the parsers need at most for each byte of a file \[byte\].
 const TAKEN: u64 = 30;
-/// Why a file is refused: what was found and what was expected.
+/// Refusal of a file: the content found and expected.
 pub(crate) type Refusal = (String, &'static str);
 
 /// The bytes of a plain file, unless it is too large or would take more memory than may be taken.
@@ -20,9 +20,9 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, BodyError> {
     read_plain(path, FILE_LIMIT).map_err(|source| BodyError::Read { path: path.into(), source })
 }
 
-/// A normal of a file as a unit vector, however short; zero for what is none.
+/// A normal of a file as a unit vector, however short; zero for an invalid one.
 pub(crate) fn unit_normal(normal: Vec3) -> Vec3 {
-    // The square of a very short or very long one is no number that could be divided by.
+    // The square of a very short or very long normal underflows or overflows.
     let largest = normal.abs().max_element();
     if normal.is_finite() && largest > 0.0 { (normal / largest).normalize_or_zero() } else { Vec3::ZERO }
 }

@@ -21,7 +21,7 @@ impl Names {
         self.found.into_iter().collect()
     }
 
-    /// Takes note of a name; whether it is the one.
+    /// Notes a name; true if it is the wanted one.
     pub fn add(&mut self, name: &str) -> bool {
         if !name.is_empty() && !self.found.contains(name) && self.found.len() < MOST_NAMES {
             self.found.insert(name.to_owned());

@@ -9,7 +9,7 @@ use strandline_base::par::prelude::*;
 
 use crate::{Mannequin, Random, SignedDistance};
 
-/// Where a strand leaves the skin, in head space.
+/// Root of a strand on the skin, in head space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Root {
     /// Position on the skin \[m\].
@@ -83,7 +83,7 @@ impl Scalp {
         scalp
     }
 
-    /// Whether hair grows at a place on the skin \[m\].
+    /// True if hair grows at a place on the skin \[m\].
     pub fn contains(&self, position: Vec3) -> bool {
         self.height_above_hairline(position) > 0.0 && self.mannequin.ear_distance(position) > EAR_MARGIN
     }

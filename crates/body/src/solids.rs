@@ -11,7 +11,7 @@ use crate::{Carrier, Collider, Pose};
 pub struct Solids(Arc<[(Collider, f32)]>);
 
 impl Solids {
-    /// Solids in the space of what carries them.
+    /// Solids in the space of their carrier.
     pub fn new(solids: impl IntoIterator<Item = (Collider, f32)>) -> Self {
         Self(solids.into_iter().collect())
     }
@@ -36,7 +36,7 @@ pub struct PlacedSolids<'a> {
 }
 
 impl PlacedSolids<'_> {
-    /// Whether there is none.
+    /// True without solids.
     pub fn is_empty(&self) -> bool {
         self.solids.is_empty()
     }

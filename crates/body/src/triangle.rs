@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::layers::Corners;
 
-/// The squared distance of a point from a triangle, where it is less than what is known.
+/// The squared distance of a point from a triangle, if it is less than a known one.
 ///
 /// Double precision: in single precision the distance to a triangle that is small and far comes out
 /// wrong by its whole size.
@@ -47,7 +47,7 @@ pub(crate) fn nearest_place(corners: &Corners, point: DVec3) -> DVec3 {
         .unwrap_or_else(|| point - normal * ((point - a).dot(normal) / normal.length_squared()))
 }
 
-/// Whether a point is not on the inner side of an edge; always for a triangle without an area.
+/// True if a point is not on the inner side of an edge; always true for a triangle without an area.
 fn is_outer(start: DVec3, end: DVec3, normal: DVec3, point: DVec3) -> bool {
     (end - start).cross(point - start).dot(normal) <= 0.0
 }

@@ -7,7 +7,7 @@ use crate::triangle::nearer;
 
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
-/// Nodes that wait at most: one for each halving of 2^32 triangles.
+/// Most waiting nodes: one for each halving of 2^32 triangles.
 const DEPTH: usize = 40;
 
 /// A tree of boxes over triangles.
@@ -38,7 +38,7 @@ pub(crate) struct Nearest {
 }
 
 impl Nearest {
-    /// Nothing known.
+    /// No triangle known.
     pub const NONE: Self = Self { squared: f64::INFINITY, triangle: u32::MAX };
 }
 
@@ -47,7 +47,7 @@ impl Node {
         (point - point.clamp(self.min, self.max)).length_squared()
     }
 
-    /// What decides which of two children is nearer: boxes that both hold the point by their middles.
+    /// Order of two children: by distance, and by their middles if both boxes hold the point.
     fn key(&self, point: DVec3) -> (f64, f64) {
         (self.distance_squared(point), (0.5 * (self.min + self.max) - point).length_squared())
     }

@@ -1,4 +1,4 @@
-//! Vertices at one place, which count as one.
+//! Vertices at the same position, which count as one.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Lists the adapters, one a line; ends with 1 when there is none.
+//! Lists the adapters, one per line; ends with 1 if there is none.
 
 #![allow(clippy::print_stdout)] // it talks to a person at a terminal
 

@@ -1,15 +1,15 @@
-//! What stands for a device in a build without GPUs: there is none, and none can be made.
+//! Replacement of a device in a build without GPUs: none can be made.
 
 use std::marker::PhantomData;
 
 use crate::{Adapter, Crossed, GpuError};
 
-/// A device and its queue: none, in this build.
+/// A device and its queue; it does not exist in this build.
 #[derive(Clone, Debug)]
 pub enum Gpu {}
 
 impl Gpu {
-    /// None.
+    /// Absent in this build.
     ///
     /// # Errors
     /// Always: there are no GPUs in this build. So do the next two.
@@ -17,7 +17,7 @@ impl Gpu {
         Err(GpuError::NotBuilt)
     }
 
-    /// None.
+    /// Absent in this build.
     ///
     /// # Errors
     /// Always.
@@ -25,7 +25,7 @@ impl Gpu {
         Err(GpuError::NotBuilt)
     }
 
-    /// None.
+    /// Absent in this build.
     ///
     /// # Errors
     /// Always.
@@ -43,12 +43,12 @@ impl Gpu {
         match *self {}
     }
 
-    /// Whether both are one device.
+    /// True if both are one device.
     pub fn is_same(&self, _: &Self) -> bool {
         match *self {}
     }
 
-    /// Whether the device can tell how long its work takes.
+    /// True if the device can measure the time of its work.
     pub fn has_timestamps(&self) -> bool {
         match *self {}
     }
@@ -71,7 +71,7 @@ impl Gpu {
     /// Bytes per second that a copy reads and writes.
     ///
     /// # Errors
-    /// None.
+    /// Absent in this build.
     pub fn copy_bandwidth(&self, _: usize) -> Result<f64, GpuError> {
         match *self {}
     }
@@ -79,7 +79,7 @@ impl Gpu {
     /// Copies buffers.
     ///
     /// # Errors
-    /// None.
+    /// Absent in this build.
     pub fn copy<T>(&self, _: &str, _: [[&Buffer<T>; 2]; 2]) -> Result<(), GpuError> {
         match *self {}
     }
@@ -96,7 +96,7 @@ impl<T> Buffer<T> {
     /// A buffer of zeros.
     ///
     /// # Errors
-    /// None.
+    /// Absent in this build.
     pub fn new(gpu: &Gpu, _: &'static str, _: usize) -> Result<Self, GpuError> {
         match *gpu {}
     }

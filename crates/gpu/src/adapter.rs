@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// What is known of an adapter before it is opened.
+/// Description of an adapter before it is opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Adapter {
     /// Its number in the list.
@@ -9,7 +9,7 @@ pub struct Adapter {
     pub name: String,
     /// The interface that drives it: Vulkan, Metal, Dx12.
     pub interface: String,
-    /// Whether it is a processor that plays a GPU: for tests only.
+    /// True for a processor that emulates a GPU: for tests only.
     pub software: bool,
 }
 

@@ -14,11 +14,11 @@ pub struct UnknownBackend {
     pub found: String,
 }
 
-/// Where stages run.
+/// Device of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Backend {
-    /// A hardware GPU when there is one, else the CPU; never a software adapter. When the GPU fails
+    /// A hardware GPU if there is one, otherwise the CPU; never a software adapter. When the GPU fails
     /// in the middle of a run, the run falls back to the CPU.
     #[default]
     Auto,
@@ -34,10 +34,10 @@ impl Backend {
         Self::Auto
     }
 
-    /// Opens the device; none means the CPU.
+    /// Opens the device; `None` means the CPU.
     ///
     /// # Errors
-    /// A GPU is asked for by name and there is none; or the one that is there does not start.
+    /// A GPU is named and does not exist, or does not start.
     pub fn open(self) -> Result<Option<Gpu>, GpuError> {
         match self {
             Self::Auto => match Gpu::auto() {
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn the_cpu_needs_no_device() {
         assert!(Backend::Cpu.open().unwrap().is_none());
-        // Whatever is installed: auto never opens a software adapter.
+        // On any machine: auto never opens a software adapter.
         let opened = Backend::Auto.open().ok().flatten();
         assert!(opened.is_none_or(|gpu| !gpu.adapter().software));
     }

@@ -1,15 +1,15 @@
 use crate::Adapter;
 
-/// Why a GPU could not do what was asked.
+/// Errors of a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
     /// There is no adapter that would do.
     #[error("no {wanted} was found{}; install a Vulkan driver or use the CPU backend", found(.offered))]
     NoAdapter {
-        /// What was looked for.
+        /// Adapter that was requested.
         wanted: String,
-        /// What there is.
+        /// Adapters of the machine.
         offered: Vec<Adapter>,
     },
     /// This build has no GPUs.
@@ -20,11 +20,11 @@ pub enum GpuError {
     Limit {
         /// The adapter's name.
         adapter: String,
-        /// What needs it.
+        /// Part of the run that needs it.
         what: String,
-        /// How much it needs.
+        /// Amount that it needs.
         needed: u64,
-        /// How much may be had.
+        /// Limit of the device.
         limit: u64,
     },
     /// The device is gone.
@@ -32,7 +32,7 @@ pub enum GpuError {
     Lost {
         /// The adapter's name.
         adapter: String,
-        /// What the driver says.
+        /// Message of the driver.
         reason: String,
     },
     /// The adapter has no memory left.
@@ -40,9 +40,9 @@ pub enum GpuError {
     OutOfMemory {
         /// The adapter's name.
         adapter: String,
-        /// What was to be stored.
+        /// Data to be stored.
         what: String,
-        /// Its size; 0 where the driver does not tell what it lacked.
+        /// Its size; 0 if the driver does not name it.
         bytes: u64,
     },
     /// A shader that the driver does not take.
@@ -52,7 +52,7 @@ pub enum GpuError {
         adapter: String,
         /// The module.
         module: String,
-        /// What is wrong, with the line.
+        /// Error, with its line.
         message: String,
     },
     /// Anything else that the device refused.
@@ -60,9 +60,9 @@ pub enum GpuError {
     Refused {
         /// The adapter's name.
         adapter: String,
-        /// What was being done.
+        /// Operation that failed.
         what: String,
-        /// What the device says.
+        /// Message of the device.
         message: String,
     },
 }

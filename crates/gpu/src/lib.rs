@@ -1,7 +1,7 @@
 //! A thin kit over wgpu: a device, typed buffers, kernels that are held to their shaders, readback
 //! and timestamps. There is no hair in it.
 //!
-//! Everything keeps to WebGPU's default limits, whatever the adapter offers. Without the feature `wgpu` the
+//! Everything keeps to WebGPU's default limits on every adapter. Without the feature `wgpu` the
 //! kit knows the names of backends and that there is no GPU.
 
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! The kit on a device: what it does, and how it refuses.
+//! The kit on a device: results and refusals.
 
 use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, Readback, Recorder, Timer, groups, kernel, wgpu};
 

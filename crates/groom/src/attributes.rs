@@ -1,4 +1,4 @@
-//! What points have, resampled with their strands.
+//! Attributes of points, resampled with their strands.
 
 use glam::Vec3;
 use strandline_base::SettingError;
@@ -49,8 +49,8 @@ fn refuse(name: &'static str, found: String, expected: &'static str) -> Result<(
     Err(SettingError::new(name, found, expected).into())
 }
 
-/// What points have, at `count` points at equal arc length on every strand; `mix` gives what lies between two
-/// points at a share of the way from the first to the second.
+/// Attribute of points, at `count` points at equal arc length on every strand; `mix` interpolates between two
+/// points.
 pub(crate) fn along<T: Copy>(
     groom: &Groom,
     values: &[T],
@@ -76,7 +76,7 @@ pub(crate) fn along<T: Copy>(
 pub(crate) fn masses(groom: &Groom, strand: usize, count: usize) -> Option<Vec<f32>> {
     let masses = &groom.masses.as_ref()?[groom.range(strand)];
     let points = groom.strand(strand);
-    // Where the share of each point ends \[m\], and the mass up to there [kg].
+    // End of the share of each point \[m\], and the mass up to there [kg].
     let (mut ends, mut sums) = (vec![0.0_f64], vec![0.0_f64]);
     let mut passed = 0.0;
     for (point, mass) in masses.iter().enumerate() {

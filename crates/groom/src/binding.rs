@@ -20,7 +20,7 @@ use crate::{
 pub struct Surface<'a> {
     /// The signed distance \[m\] at a point \[m\], negative inside, and its unit gradient.
     pub at: &'a (dyn Fn(Vec3) -> (f32, Vec3) + Sync),
-    /// How far \[m\] it is at least, 0 where that is not known without asking for the distance.
+    /// Lower bound of the distance \[m\], 0 if it is not known without the exact one.
     pub at_least: &'a (dyn Fn(Vec3) -> f32 + Sync),
 }
 
@@ -108,7 +108,7 @@ impl Binding {
                 let pace = lengths[strand] / lengths[strands_of_guides[guide]].max(f32::MIN_POSITIVE);
                 *slot = Influence { guide: guide as u32, weight, pace };
             }
-            // What is followed by nothing is a guide that is followed anyway: 0 times what is no number is none.
+            // An unused influence repeats a guide that is followed anyway: 0 times NaN would be NaN.
             let first = influences[0];
             for none in influences.iter_mut().filter(|influence| influence.weight == 0.0) {
                 *none = Influence { weight: 0.0, ..first };
@@ -165,7 +165,7 @@ impl Binding {
                 *frame = Frame::new(rotation, rest(point), now(point));
             }
             let found = length / own.max(f32::MIN_POSITIVE);
-            // What the solver leaves of stretch is not what was asked for.
+            // Stretch left by the solver is not a change of length.
             *scale = if (found - 1.0).abs() < UNSCALED { 1.0 } else { found };
         });
     }

@@ -12,7 +12,7 @@ use crate::arcs::equal_arcs;
 
 /// Places along a strand at which shapes are compared, as shares of its length.
 const PLACES: usize = 3;
-/// How much a difference in shape counts beside a distance of roots: strands a centimetre apart that end three
+/// Weight of a difference in shape relative to a distance of roots: strands a centimetre apart that end three
 /// centimetres apart are as far from each other as parallel ones 1.3 cm apart.
 const SHAPE: f32 = 0.3;
 /// Distance \[m\] added between strands of different groups: more than a body is large.

@@ -20,11 +20,11 @@ pub enum GroomError {
     Malformed {
         /// The format.
         format: &'static str,
-        /// What was found, and where.
+        /// Content that was found, and its place.
         found: String,
-        /// What was expected there.
+        /// Content that was expected there.
         expected: String,
-        /// What a person can do.
+        /// Remedy.
         mend: &'static str,
     },
     /// A strand that cannot be used.
@@ -32,9 +32,9 @@ pub enum GroomError {
     Strand {
         /// Its index, from 0.
         strand: usize,
-        /// What is wrong with it.
+        /// Its fault.
         found: &'static str,
-        /// What a strand must be.
+        /// Requirement of a strand.
         expected: &'static str,
     },
     /// A groom that a format cannot hold.
@@ -42,11 +42,11 @@ pub enum GroomError {
     CannotHold {
         /// The format.
         format: &'static str,
-        /// What the groom has.
+        /// Content of the groom.
         found: String,
-        /// What the format holds.
+        /// Limit of the format.
         expected: &'static str,
-        /// What a person can do.
+        /// Remedy.
         mend: &'static str,
     },
     /// A file ending that names no format.
@@ -76,15 +76,15 @@ pub enum GroomError {
         action: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
-    /// What is wrong with the content of a file.
+    /// Error in the content of a file.
     #[error("{source}: {}", path.display())]
     In {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The error.
         source: Box<GroomError>,
     },
 }

@@ -61,7 +61,7 @@ impl Influences {
         &self.guides
     }
 
-    /// How much of each, shape `[strand][per_strand]`.
+    /// Weights of the guides, shape `[strand][per_strand]`.
     pub fn weights(&self) -> &[f32] {
         &self.weights
     }
@@ -112,7 +112,7 @@ impl Influences {
         self.weights.extend(weights);
     }
 
-    /// How many of some strands, in rising order, follow a guide that is not among them.
+    /// Number of strands, of some in rising order, that follow a guide that is not among them.
     pub fn torn_by(&self, strands: &[usize]) -> usize {
         let is_gone = |guide: usize| strands.binary_search(&guide).is_err();
         let is_torn = |strand: usize| self.of(strand).any(|(guide, weight)| weight > 0.0 && is_gone(guide));
@@ -122,7 +122,8 @@ impl Influences {
     fn normalize(&mut self) {
         for weights in self.weights.chunks_exact_mut(self.per_strand) {
             let sum: f64 = weights.iter().map(|weight| f64::from(*weight)).sum();
-            // What sums to 1 but for rounding keeps its bits, so that reading what was written changes nothing.
+            // Weights that sum to 1 but for rounding keep their bits, so that reading a written file changes
+            // nothing.
             if sum > 0.0 && (sum - 1.0).abs() > 1e-6 {
                 weights.iter_mut().for_each(|weight| *weight = (f64::from(*weight) / sum) as f32);
             }

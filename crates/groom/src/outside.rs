@@ -10,19 +10,19 @@ use crate::{Groom, Guides, LANES};
 const PLACINGS: usize = 16;
 /// Tangent of the angle by which a segment turns at most to come back to its place.
 const GENTLE: f32 = 0.25;
-/// How far \[m\] inside a point may lie: rounding of places of some decimetres.
+/// Depth \[m\] that is tolerated: rounding of positions of some decimetres.
 const TOLERATED: f32 = 1e-6;
 
-/// What [`Guides::move_outside`] and [`Groom::move_outside`] found.
+/// Result of [`Guides::move_outside`] and [`Groom::move_outside`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outside {
     /// Points that lay inside, but for roots.
     pub point_count: usize,
     /// Strands that they belong to.
     pub strand_count: usize,
-    /// How deep \[m\] the deepest of them lay.
+    /// Depth \[m\] of the deepest point.
     pub depth: f32,
-    /// How deep \[m\] the deepest of them still lies, because its segment does not reach out.
+    /// Remaining depth \[m\] of the deepest point, whose segment does not reach out.
     pub depth_left: f32,
 }
 
@@ -126,7 +126,7 @@ pub(crate) fn placed_outside(
         if distance >= -TOLERATED {
             return (best.0, best.1.max(0.0));
         }
-        // Where the plane of the surface and the sphere of the length meet.
+        // Intersection of the plane of the surface and the sphere of the length.
         let across = placed - before;
         let rise = (normal.dot(across) - distance).min(length);
         let aside = across.reject_from_normalized(normal);

@@ -2,7 +2,7 @@ use strandline_base::par::prelude::*;
 
 use crate::{Guides, LANES, Lanes, Vec3Lanes};
 
-/// What the solver keeps of a groom. All shapes are `[block][point]` of lanes.
+/// Rest shape of a groom for the solver. All shapes are `[block][point]` of lanes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestShape {
     /// Rest length \[m\] from point i to i + 1; the last point holds 0.

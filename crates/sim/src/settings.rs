@@ -142,9 +142,9 @@ impl Drag {
 }
 
 settings! {
-    /// The fluid volume that keeps strands apart [Chen2011 §4.2, McAdams2009].
+    /// The fluid volume, which keeps the density of hair [Chen2011 §4.2, McAdams2009].
     pub struct VolumeSettings: Copy {
-        /// Whether there is a volume; without one strands pass through each other.
+        /// Keeps the density of hair: pressed hair spreads again. Single locks still pass through each other.
         enabled: bool = true;
         /// Cells along x, y and z.
         cells: [u32; 3] = [32; 3], in [4, 512], slider [8, 128],

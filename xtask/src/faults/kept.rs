@@ -1,4 +1,4 @@
-//! Where results and trees of planted faults lie.
+//! Folders of results and of trees with planted faults.
 
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
 
-/// Where the lists are.
+/// Folder of the lists.
 const FOLDER: &str = "checks/faults";
 
 /// A file of faults.
@@ -16,12 +16,12 @@ struct List {
     fault: Vec<Fault>,
 }
 
-/// A fault: what it changes, and the tests that have to see it.
+/// A fault: its change of the code, and the tests that have to see it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fault {
     pub name: String,
-    /// What goes wrong, in words.
+    /// The fault, in words.
     pub what: String,
     /// The backends that it spoils: each has to see it.
     #[serde(default)]
@@ -41,7 +41,7 @@ pub enum Backends {
     Gpu,
 }
 
-/// A text that stands once in a file, and what is put in its place.
+/// A text that stands once in a file, and its replacement.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Edit {

@@ -16,7 +16,7 @@ use list::{Fault, load};
 
 pub use wish::Wish;
 
-/// What is wrong with the list: faults that no longer apply, and tests that are not there.
+/// Faults of the list that no longer apply, and tests of it that do not exist.
 fn problems(root: &Path, faults: &[Fault]) -> Vec<String> {
     let mut found = Vec::new();
     for fault in faults {
@@ -35,7 +35,7 @@ fn problems(root: &Path, faults: &[Fault]) -> Vec<String> {
     found
 }
 
-/// Plants the faults that are wished for, one after the other, and reports which were seen. False where one was not.
+/// Plants the requested faults, one after the other, and reports which were seen. False if a fault was not.
 pub fn faults(wish: &Wish) -> bool {
     match try_faults(wish) {
         Ok(seen) => seen,

@@ -1,4 +1,4 @@
-//! What became of the planted faults, kept from run to run, and the page that shows it.
+//! Results of planted faults, kept from run to run, and the page that lists them.
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -9,18 +9,18 @@ use serde::{Deserialize, Serialize};
 use super::kept::{kept, make_room};
 use super::list::{Backends, Fault};
 
-/// What a fault's tests came to.
+/// Result of the tests of a fault.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// The files that it was planted in.
     pub tree: String,
     /// Their commit, with a plus where there were changes on top.
     pub commit: String,
-    /// Whether tests on a GPU were run.
+    /// True if tests ran on a GPU.
     pub gpu: bool,
     /// Wall-clock time of build and tests \[s\].
     pub seconds: u64,
-    /// What kept it from being planted or tested.
+    /// Reason why it was not planted or not tested.
     pub note: String,
     /// Tests that failed, each with its target.
     pub failed: Vec<String>,
@@ -66,12 +66,12 @@ impl Outcome {
     }
 }
 
-/// Whether a test runs on a GPU: those of laws end so, parity is nothing else, others say it.
+/// True for tests that run on a GPU: laws ending in `::gpu`, all of parity, and tests with `_on_a_gpu_`.
 fn on_gpu(test: &str) -> bool {
     test.ends_with("::gpu") || test.starts_with("parity ") || test.contains("_on_a_gpu_")
 }
 
-/// Whether a fault was seen on every backend that it spoils and that was tried.
+/// True if tests saw the fault on every backend that it affects and that was tried.
 pub fn seen(fault: &Fault, outcome: &Outcome) -> bool {
     let applies = outcome.note.is_empty() || outcome.note == "ran out of time";
     let missing = |gpu: bool| outcome.seen_on(gpu).is_empty();

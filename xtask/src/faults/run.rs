@@ -169,7 +169,7 @@ fn commit() -> String {
     format!("{}{}", name.trim(), if changed { "+" } else { "" })
 }
 
-/// What a run of tests came to.
+/// Result of a run of tests.
 #[derive(Default)]
 struct Ran {
     built: bool,
@@ -201,7 +201,7 @@ fn run(tree: &Tree, target: &Target, filters: &[String], wish: &Wish) -> Result<
         command.args(["--skip", "::gpu"]);
     }
     command.current_dir(&tree.folder).env("CARGO_TARGET_DIR", kept().join("build"));
-    // What lies beside the tree does not lie beside its copy.
+    // The copy has no folder of grooms beside it.
     if std::env::var_os(GROOMS).is_none() {
         command.env(GROOMS, root().join("../shared/grooms"));
     }

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 
 /// A copy of the files that git knows or would know.
 pub struct Tree {
-    /// Where the copy is.
+    /// Folder of the copy.
     pub folder: PathBuf,
     /// Tells one state of the files from another.
     pub hash: String,

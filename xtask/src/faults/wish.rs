@@ -1,11 +1,11 @@
-//! What is asked for.
+//! The arguments of `cargo xtask faults`.
 
-/// What the words behind `faults` ask for.
+/// The arguments of `faults`, parsed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wish {
-    /// Faults by name; all that have no result for the tree as it is where there are none.
+    /// Faults by name; without names, all that have no result for the current tree.
     pub names: Vec<String>,
-    /// Names the faults and what they do.
+    /// Lists the faults with their meaning.
     pub list: bool,
     /// Prints the table of the last results.
     pub table: bool,
@@ -14,7 +14,7 @@ pub struct Wish {
 }
 
 impl Wish {
-    /// `None` for an option that there is not.
+    /// `None` for an unknown option.
     pub fn parse(words: &[&str]) -> Option<Self> {
         let mut wish = Self::default();
         for word in words {

@@ -23,7 +23,7 @@ pub struct Modules {
 struct Module {
     file: String,
     code: String,
-    /// Names of its `pub use`s, each with the path that it stands for.
+    /// Names that it re-exports, with the paths they stand for.
     given_on: BTreeMap<String, Vec<String>>,
 }
 
@@ -112,7 +112,7 @@ impl Modules {
         }
     }
 
-    /// The names of a module's `pub use`s, with the paths that they stand for.
+    /// Names of a module's `pub use`, with the paths they stand for.
     fn given_on(&self, path: &[String], code: &str) -> BTreeMap<String, Vec<String>> {
         let mut found = BTreeMap::new();
         for (is_public, tree) in uses(code) {
@@ -139,7 +139,7 @@ impl Modules {
         found.iter().filter_map(|target| self.absolute(path, target)).collect()
     }
 
-    /// A path from the crate's root; none where it leads out of the crate.
+    /// A path from the crate's root; `None` if it leads out of the crate.
     fn absolute(&self, here: &[String], target: &[String]) -> Option<Vec<String>> {
         let first = target.first()?;
         let mut base = here.to_vec();

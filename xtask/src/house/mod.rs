@@ -1,8 +1,8 @@
 //! The plan of the house: arrows between crates point down, no circle among the files of a crate nor among its
 //! folders, and nothing longer than a person sees at once.
 //!
-//! What was there before the plan is listed in checks/house.toml with how large it may be: nothing may grow, and
-//! what is mended leaves the list.
+//! Older exceptions are listed in checks/house.toml with their sizes: none may grow, and a mended one leaves
+//! the list.
 
 mod imports;
 mod sizes;
@@ -46,7 +46,7 @@ const ARROWS: [(&str, &[&str]); 9] = [
 /// Folders of which the first imports nothing from the second.
 const APART: [(&str, &str, &str); 1] = [("crates/render/src", "gpu", "cpu")];
 
-/// Exceptions that are listed: lines by file, lines by function, circles of files and circles of folders.
+/// Exceptions of the list: lines by file, lines by function, circles of files and circles of folders.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Known {
@@ -56,7 +56,7 @@ struct Known {
     folders: Vec<BTreeSet<String>>,
 }
 
-/// Places where the plan is not kept.
+/// Exceptions found in the tree.
 #[derive(Debug, Default)]
 struct Found {
     arrows: Vec<String>,
@@ -93,7 +93,7 @@ fn problems(root: &Path) -> Result<Vec<String>> {
     Ok(compare(&look(root)?, &known))
 }
 
-/// Where code of ours lies.
+/// Folders of code.
 const PLACES: [&str; 6] = ["apps", "checks", "crates", "examples", "fuzz", "xtask"];
 
 fn look(root: &Path) -> Result<Found> {
@@ -156,7 +156,7 @@ impl Found {
     }
 }
 
-/// What lies in a folder, by name.
+/// Entries of a folder, by name.
 fn entries(folder: &Path) -> Result<Vec<(String, std::fs::DirEntry)>> {
     let entries = std::fs::read_dir(folder)?.collect::<std::io::Result<Vec<_>>>()?;
     let mut named: Vec<_> =

@@ -1,4 +1,4 @@
-//! How long files and functions are.
+//! Lengths of files and functions.
 
 use super::text::braced;
 
@@ -25,7 +25,7 @@ pub fn long_functions(code: &str, most: usize) -> Vec<(String, usize)> {
     found
 }
 
-/// Where the body of a function opens; none where it has none.
+/// Place where the body of a function opens; `None` without a body.
 fn body(item: &str) -> Option<usize> {
     let mut depth = 0;
     for (at, letter) in item.char_indices() {

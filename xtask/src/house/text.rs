@@ -17,7 +17,7 @@ pub fn blanked(code: &str) -> String {
     out
 }
 
-/// Length of the comment, string or character that a text begins with; 0 where it begins with none.
+/// Length of the comment, string or character that a text begins with; 0 for other text.
 fn skipped(text: &str, before: Option<char>) -> usize {
     if text.starts_with("//") {
         return text.find('\n').unwrap_or(text.len());
@@ -75,7 +75,7 @@ fn quoted(text: &str, begin: usize, mark: char) -> usize {
     text.len()
 }
 
-/// The text behind a place up to the brace that closes the first one there; none where no brace opens.
+/// The text behind a place up to the brace that closes the first one there; `None` if no brace opens.
 pub fn braced(text: &str) -> Option<usize> {
     let open = text.find('{')?;
     let mut depth = 0;

@@ -1,4 +1,4 @@
-//! Line charts as SVG: text and lines, nothing else.
+//! Line charts as SVG of text and lines.
 
 use std::fmt::Write;
 
@@ -9,16 +9,16 @@ const MARGIN: [f64; 4] = [70.0, 220.0, 56.0, 56.0];
 /// Distance between two entries of the key.
 const ENTRY: f64 = 19.0;
 
-/// A panel: lines over two axes, the upright one logarithmic.
+/// A panel: lines over two axes, the vertical axis logarithmic.
 pub struct Chart {
     pub title: String,
     /// A line below the title.
     pub note: String,
     pub x_label: &'static str,
     pub y_label: &'static str,
-    /// Where numbers stand on the level axis; it reaches from the first to the last.
+    /// Positions of the numbers on the horizontal axis; it reaches from the first to the last.
     pub x_ticks: Vec<f64>,
-    /// Whether the level axis is logarithmic too.
+    /// True if the horizontal axis is logarithmic too.
     pub x_logarithmic: bool,
     pub lines: Vec<Line>,
 }

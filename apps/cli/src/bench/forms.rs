@@ -1,4 +1,4 @@
-//! One thread a strand against one a point: the rounds of lengths alone [Chen2011 fig. 16-17].
+//! One thread per strand against one per point: the rounds of lengths alone [Chen2011 fig. 16-17].
 
 use strandline::low_level::sim::gpu::{LengthsForm, LengthsInput, lengths_alone};
 
@@ -10,7 +10,7 @@ const GROOMS: [(usize, usize); 4] = [(1750, 6), (10_000, 16), (10_000, 32), (100
 /// Grooms of a software adapter and of a short run.
 const FEW: usize = 2;
 const ROUNDS: u32 = 20;
-/// The time is the mean of so many runs in a row, the best of a few rows.
+/// The time is the mean of this many runs in a row, the best of a few rows.
 const IN_A_ROW: usize = 8;
 const ROWS: usize = 3;
 

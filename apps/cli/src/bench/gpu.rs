@@ -12,7 +12,7 @@ pub struct Device {
     pub adapter: Adapter,
 }
 
-/// What is written of it.
+/// Description of an adapter in the measurements.
 #[derive(Clone, Debug, Serialize)]
 pub struct Adapter {
     pub name: String,
@@ -27,7 +27,7 @@ pub struct Adapter {
 pub struct GpuRun {
     /// Times by timestamps.
     pub steps: SimReport,
-    /// None without a volume.
+    /// `None` without a volume.
     pub us_of_gradient: Option<GradientTimes>,
     /// Time on the host's clock for a step among many that are queued.
     pub wall_ms_per_step: f64,
@@ -44,11 +44,11 @@ pub struct GpuRun {
 pub struct GradientTimes {
     pub one_kernel: f64,
     pub three_kernels: f64,
-    /// The time is the mean of so many in a row; the best of a few rows.
+    /// The time is the mean of this many in a row; the best of a few rows.
     pub in_a_row: usize,
 }
 
-/// One thread a strand against one a point: GPU time of 20 rounds of all strands \[us\].
+/// One thread per strand against one per point: GPU time of 20 rounds of all strands \[us\].
 #[derive(Debug, Serialize)]
 pub struct Forms {
     pub strands: usize,
@@ -58,7 +58,7 @@ pub struct Forms {
 }
 
 impl Device {
-    /// Opens what the command line names; none when that is the CPU.
+    /// Opens the device of the command line; `None` for the CPU.
     pub fn open(backend: Backend, quick: bool) -> anyhow::Result<Option<Self>> {
         let Some(gpu) = backend.open()? else {
             print_line!("no hardware GPU is measured: its columns are left out");
@@ -78,7 +78,7 @@ impl Device {
         Ok(Some(Self { gpu, adapter }))
     }
 
-    /// What the command line calls it.
+    /// Its name on the command line.
     pub fn backend(&self) -> Backend {
         Backend::Gpu(Some(self.gpu.adapter().index))
     }

@@ -25,7 +25,7 @@ impl GradientTimes {
     fn measured(runner: &GpuRunner, software: bool) -> anyhow::Result<Option<Self>> {
         const ROWS: usize = 5;
         let in_a_row = if software { 8 } else { 64 };
-        // Both in turn, so that whatever else happens falls on both.
+        // Both in turn, so that other load falls on both.
         let mut best = [f64::INFINITY; 2];
         for _ in 0..ROWS {
             for (best, gradient) in best.iter_mut().zip([Gradient::Joint, Gradient::Split]) {

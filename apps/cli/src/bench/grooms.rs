@@ -1,4 +1,4 @@
-//! Grooms as artists bring them: how soon the first picture is there, what it takes to move strands that are bound to
+//! Grooms of artists: time to the first picture, cost of moving strands that are bound to
 //! guides, and how fast hair that moved is written.
 
 use std::f32::consts::PI;
@@ -27,7 +27,8 @@ const BOUND: [[u32; 2]; 2] = [[100_000, 2000], [2000, 100]];
 const FRAMES: [u32; 2] = [12, 3];
 /// Frames that are written; in a short run.
 const WRITTEN: [u32; 2] = [240, 12];
-/// What is promised: seconds and MB to the first picture and its segments, ms a frame of bound strands, MB a second.
+/// Bounds: seconds and MB to the first picture and its segments, ms per frame of bound strands, MB per
+/// second.
 const MOST: (f64, f64, usize, f64, f64) = (5.0, 500.0, 2_500_000, 60.0, 100.0);
 
 #[derive(Debug, Serialize)]
@@ -37,17 +38,17 @@ pub struct Results {
     written: Vec<Written>,
 }
 
-/// A program's run from a groom and a body to one picture, with nothing kept from runs before.
+/// A program's run from a groom and a body to one picture, without kept files of earlier runs.
 #[derive(Debug, Serialize)]
 struct First {
     groom: String,
     seconds: f64,
-    /// None where the system does not tell.
+    /// `None` if the system does not report it.
     peak_memory_mb: Option<f64>,
     segments: usize,
 }
 
-/// What it takes to place bound strands in a frame.
+/// Cost of placing bound strands in a frame.
 #[derive(Debug, Serialize)]
 struct Bound {
     on: String,
@@ -152,7 +153,7 @@ fn ellipsoid(half: Vec3) -> String {
     text
 }
 
-/// Runs this program as an artist does, with nothing kept from before.
+/// Runs this program as an artist does, without kept files of earlier runs.
 fn first(groom: &Path, body: Option<&Path>, folder: &Path) -> anyhow::Result<First> {
     let mut command = Command::new(std::env::current_exe()?);
     command
@@ -187,7 +188,7 @@ fn place(pictures: Backend, [strands, guides]: [u32; 2], frames: u32) -> anyhow:
     (scene.film.frames, scene.film.settle) = (frames + 1, 0.0);
     (scene.look.follow_strands, scene.picture.width, scene.picture.height) = (1, 64, 64);
     scene.look.dress(strandline::low_level::render::Preset::Thesis);
-    // Curves of more points pass what a buffer holds by WebGPU's default limits.
+    // Curves of more points exceed a buffer of WebGPU's default limits.
     scene.level_of_detail.segments_per_span = 1;
     (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, pictures);
     let mut player = Player::new(&scene, scene.devices, true)?;

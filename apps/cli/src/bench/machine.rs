@@ -1,4 +1,4 @@
-//! What the measurements are made on: what the system says of it, and what it was seen to do.
+//! The machine of the measurements: its description and its measured speed.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::output::print_line;
 
-/// What the measurements were made on.
+/// The machine of the measurements.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
     /// Name of the processor, where the system reports it.
@@ -26,7 +26,7 @@ pub struct Machine {
     pub peak_memory_mb: Option<f64>,
 }
 
-/// How much of something happens in a second, the best of a few runs.
+/// Operations per second, the best of a few runs.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Rates {
     pub one_thread: f64,
@@ -50,7 +50,7 @@ impl Machine {
         }
     }
 
-    /// Prints what it is and can do.
+    /// Prints the machine and its speed.
     pub fn print(&self) {
         let cores = self.cores.map_or(String::new(), |cores| format!("{cores} cores, "));
         print_line!("machine: {}, {cores}{} threads, {}", self.cpu, self.threads, self.system);
@@ -101,7 +101,7 @@ const NUMBERS: usize = 48;
 /// Multiplications and additions of each of them in a run.
 const ROUNDS: usize = 400_000;
 
-/// Multiplications with an addition a second on so many threads.
+/// Multiplications with an addition per second, on a number of threads.
 fn multiply_adds(threads: usize) -> f64 {
     best(threads, (threads * NUMBERS * ROUNDS) as f64, |_| {
         // To 1.5 and no farther, so that no number grows or vanishes.
@@ -119,7 +119,7 @@ fn multiply_adds(threads: usize) -> f64 {
 /// Bytes of the copy, shared out among the threads.
 const COPIED: usize = 64 << 20;
 
-/// Bytes read and written a second on so many threads.
+/// Bytes read and written per second, on a number of threads.
 fn copied_bytes(threads: usize) -> f64 {
     let part = COPIED.div_ceil(threads);
     let source = vec![1_u8; COPIED];

@@ -32,17 +32,17 @@ use crate::output::print_line;
 use gpu::{Adapter, Device};
 use machine::Machine;
 
-/// What is written with `--json`: the measurements and what they were made on.
+/// Content of a `--json` file: the measurements and their machine.
 #[derive(Debug, Serialize)]
 struct Baseline<T: Serialize> {
     bench: &'static str,
     version: &'static str,
-    /// Whether the program is a release build.
+    /// True for a release build.
     release: bool,
     machine: Machine,
-    /// None when no GPU was measured.
+    /// `None` if no GPU was measured.
     gpu: Option<Adapter>,
-    /// Whether this was a short run, whose figures mean little.
+    /// True for a short run, whose figures mean little.
     quick: bool,
     results: T,
 }

@@ -1,4 +1,4 @@
-//! What stands for runs on a GPU in a build without GPUs: no device is ever opened.
+//! Replacement of GPU runs in a build without GPUs: no device is ever opened.
 
 use strandline::Scene;
 

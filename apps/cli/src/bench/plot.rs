@@ -16,7 +16,7 @@ use crate::output::print_line;
 /// Colours of the lines.
 const COLORS: [&str; 4] = ["#1f6fb4", "#d1601d", "#2f8f3c", "#8a4fb0"];
 
-/// What every file of measurements begins with.
+/// Fields common to all files of measurements.
 #[derive(Deserialize)]
 struct Measured {
     bench: String,
@@ -42,7 +42,7 @@ struct Gpu {
 }
 
 impl Measured {
-    /// What the figures were measured on, and why they may mean little.
+    /// The machine of the figures, and reasons why they may mean little.
     fn note(&self) -> String {
         let Machine { cpu, threads } = &self.machine;
         let mut note = format!("{cpu}, {threads} threads");
@@ -58,7 +58,7 @@ impl Measured {
 /// Largest file of measurements \[byte\]: they have some thousand.
 const MOST: u64 = 16 << 20;
 
-/// What is plotted of `bench thesis`.
+/// Plotted fields of `bench thesis`.
 #[derive(Deserialize)]
 struct Thesis {
     grids: Vec<Grid>,
@@ -83,7 +83,7 @@ struct Whole {
     frames_per_second: f64,
 }
 
-/// What is plotted of `bench view`.
+/// Plotted fields of `bench view`.
 #[derive(Deserialize)]
 struct View {
     backends: Vec<OnBackend>,

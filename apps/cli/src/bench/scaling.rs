@@ -1,4 +1,4 @@
-//! How the cost of a step grows with strands and with cells.
+//! Growth of the cost of a step with strands and with cells.
 
 use serde::Serialize;
 use strandline::{
@@ -17,10 +17,10 @@ const STRANDS: [usize; 6] = [625, 1250, 2500, 5000, 10_000, 20_000];
 const GRIDS: [u32; 4] = [16, 32, 64, 128];
 /// Frames of a row; in a short run.
 const FRAMES: [u32; 2] = [60, 4];
-/// On a GPU: strands of 32 points, doubled until the device refuses, or so many times.
+/// On a GPU: strands of 32 points, doubled until the device refuses, or this many times.
 const FIRST_ON_GPU: usize = 1250;
 const DOUBLINGS: usize = 9;
-/// What is promised of a current data-centre GPU: strands, points, cells, most ms a step.
+/// Aims for a current data-centre GPU: strands, points, cells, most ms per step.
 const PROMISED: [(usize, usize, u32, f64); 3] =
     [(1750, 6, 32, 0.3), (10_000, 32, 64, 0.8), (100_000, 32, 64, 3.0)];
 
@@ -55,7 +55,7 @@ struct Aim {
 struct OnGpu {
     promised: Vec<Promised>,
     sweep: Vec<GpuRow>,
-    /// What ended the sweep of each grid, if anything did.
+    /// Error that ended the sweep of each grid, if there was one.
     refusals: Vec<String>,
 }
 
@@ -158,7 +158,7 @@ fn row(strand_count: usize, cells: u32, frames: u32) -> anyhow::Result<Row> {
 }
 
 fn on_gpu(device: &Device, frames: u32, quick: bool) -> anyhow::Result<OnGpu> {
-    print_line!("\non {}: what is promised of a data-centre GPU", device.adapter.name);
+    print_line!("\non {}: aims for a data-centre GPU", device.adapter.name);
     gpu_heading();
     let mut promised = Vec::new();
     let promises = if quick { &PROMISED[..1] } else { &PROMISED[..] };
@@ -195,7 +195,7 @@ fn promised_scene(strands: usize, points: usize, cells: u32, frames: u32) -> Sce
     scene
 }
 
-/// Whether there is only too little room.
+/// True if memory or a limit of the device is the only obstacle.
 fn is_refusal(error: &anyhow::Error) -> bool {
     let sim = error.downcast_ref::<SimError>().or(match error.downcast_ref::<Error>() {
         Some(Error::Sim(error)) => Some(error),

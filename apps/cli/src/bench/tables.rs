@@ -127,7 +127,7 @@ impl Tables<'_> {
         self.grids.iter().map(value).collect()
     }
 
-    /// Nothing when no GPU was measured.
+    /// Empty if no GPU was measured.
     fn gpu(&self, value: impl Fn(&GpuGrid) -> f64) -> Vec<f64> {
         self.grids.iter().filter_map(|grid| grid.gpu.as_ref()).map(value).collect()
     }
@@ -161,7 +161,7 @@ fn heading() {
     print_line!("{:<38}{:>10}{:>10}{:>10}", "", "16^3", "32^3", "64^3");
 }
 
-/// A row, unless there is nothing in it.
+/// A row, unless it is empty.
 fn row(name: &str, values: Vec<f64>, digits: usize) {
     if values.is_empty() {
         return;

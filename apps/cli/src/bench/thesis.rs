@@ -60,7 +60,7 @@ fn draw(scene: &Scene, overlap: bool) -> anyhow::Result<(Times, usize)> {
     let mut player = Player::new(scene, Backend::Cpu, true)?;
     player.set_overlap(overlap);
     let (mut pictures, mut segments) = (Collector::default(), 0);
-    // Nothing is simulated beside the last picture.
+    // No step runs beside the last picture.
     let drawn = 1..player.frames() - u32::from(overlap && player.frames() > 2);
     let mut progress = Progress::new(u64::from(player.frames()), "pictures", false);
     for event in player.by_ref() {

@@ -22,7 +22,7 @@ pub struct Grid {
     pub jacobi: SimReport,
     /// Simulated and drawn on the CPU.
     pub whole_on_cpu: Whole,
-    /// None when no GPU was measured.
+    /// `None` if no GPU was measured.
     pub gpu: Option<GpuGrid>,
     /// Simulated on the CPU and on a GPU.
     pub thesis_frames_per_second: [f64; 2],
@@ -32,7 +32,7 @@ pub struct Grid {
 pub struct GpuGrid {
     pub chebyshev: GpuRun,
     pub jacobi: GpuRun,
-    /// Simulated on the CPU, drawn on the GPU: what the thesis calls CPU.
+    /// Simulated on the CPU, drawn on the GPU: the thesis's "CPU".
     pub whole_simulated_on_cpu: Whole,
     /// Simulated and drawn on the GPU.
     pub whole: Whole,
@@ -48,11 +48,11 @@ pub struct Whole {
     pub frames_per_second: f64,
 }
 
-/// What a picture takes on the CPU.
+/// Cost of a picture on the CPU.
 #[derive(Debug, Serialize)]
 pub struct Pictures {
     /// While the next frame is simulated.
     pub ms_beside_simulation: Times,
-    /// With nothing else to do.
+    /// Without other work.
     pub ms_alone: Times,
 }

@@ -29,13 +29,13 @@ const SIZES: [(u32, u32, [f64; 6]); 4] = [
 ];
 /// Frames of a row; on a software adapter; in a short run.
 const FRAMES: [u32; 3] = [8, 2, 1];
-/// What is promised of a current GPU at 1280x968: follow strands, most ms a picture, most MB on the device.
+/// Aims for a current GPU at 1280x968: follow strands, most ms per picture, most MB on the device.
 const PROMISED: [(u32, f64, f64); 2] = [(16, 4.0, 200.0), (43, 10.0, 200.0)];
 
 #[derive(Debug, Serialize)]
 pub struct Results {
     backends: Vec<OnBackend>,
-    /// None when no GPU was measured.
+    /// `None` if no GPU was measured.
     promised: Vec<Promised>,
 }
 
@@ -104,7 +104,7 @@ impl View {
         Ok(Self { player, middle: 0.5 * (low + high) })
     }
 
-    /// Seconds until the next picture is there, and what it cost.
+    /// Seconds until the next picture, and its cost.
     fn frame(&mut self) -> anyhow::Result<(f64, FrameReport)> {
         let begin = Instant::now();
         loop {

@@ -1,5 +1,5 @@
-//! What a window on the demo shows under use: how soon there is a picture, how fast pictures come,
-//! how many pass from a hand's move to the one that shows it, and whether memory grows.
+//! Measures a window on the demo in use: the time to the first picture, pictures per second, pictures between
+//! a move of the hand and its effect, and the growth of memory.
 
 use std::time::{Duration, Instant};
 
@@ -20,7 +20,7 @@ use crate::statistics::{median, quantile};
 const SECONDS: [u64; 2] = [600, 6];
 /// The picture of a window of 1280 x 800 points.
 const SIZE: [u32; 2] = [960, 752];
-/// How long nothing is done.
+/// Idle time.
 const REST: Duration = Duration::from_millis(300);
 
 #[derive(Debug, Serialize)]
@@ -30,9 +30,9 @@ pub struct Results {
     seconds: f64,
     seconds_to_first_picture: f64,
     pictures_per_second: f64,
-    /// What changes the picture: view, look.
+    /// Changes of the picture: view, look.
     picture_moves: Shows,
-    /// What changes the motion: settings, length, a hand.
+    /// Changes of the motion: settings, length, a hand.
     motion_moves: Shows,
     /// Largest memory \[MB\] after a tenth of the time and at the end, where the system reports it.
     peak_memory_mb: [Option<f64>; 2],
@@ -60,17 +60,17 @@ pub fn run(device: Option<&Device>, options: &BenchOptions) -> anyhow::Result<Re
     Ok(results)
 }
 
-/// How soon moves show.
+/// Delay until moves show.
 #[derive(Debug, Default, Serialize)]
 struct Shows {
     /// Pictures that come after a move up to the one that shows it: the middle and the most. The first of
     /// them was under way.
     pictures: [f64; 2],
-    /// Time \[ms\]: the middle, and what 95 of 100 keep to.
+    /// Time \[ms\]: the median, and the 95th percentile.
     ms: [f64; 2],
 }
 
-/// Pictures and times \[ms\] from moves to what shows them.
+/// Pictures and times \[ms\] between moves and the pictures that show them.
 #[derive(Default)]
 struct Moves(Vec<(f64, f64)>);
 
@@ -84,7 +84,7 @@ impl Moves {
     }
 }
 
-/// Somebody at play.
+/// A simulated user.
 struct Play {
     live: Live,
     camera: Camera,
@@ -138,7 +138,7 @@ impl Play {
 
     /// Does something and waits for the picture that shows it.
     fn act(&mut self, change: Change) -> anyhow::Result<()> {
-        // Whatever is finished is seen before.
+        // Finished pictures are shown before.
         if let Some(shown) = self.live.take_shown() {
             self.shown = shown;
         }

@@ -1,4 +1,4 @@
-//! Two workers on one or two devices: what a frame takes when the next one is simulated while it is drawn,
+//! Two workers on one or two devices: cost of a frame if the next one is simulated while it is drawn,
 //! against the sum and the greater of both [Chen2011 §5].
 
 use std::time::Instant;
@@ -38,8 +38,8 @@ struct Pair {
     /// Over the sum of both, and over the greater of both.
     of_sum: f64,
     of_greater: f64,
-    /// What crosses from the host to the GPUs in a frame, counted \[byte\]: points where only pictures are
-    /// drawn there.
+    /// Counted transfer from the host to the GPUs per frame \[byte\]: points, if only pictures are drawn
+    /// there.
     bytes_to_gpus: u64,
     /// And back: the picture; where it is simulated there reports, and every `simulation.checkpoint_every` steps the
     /// state.

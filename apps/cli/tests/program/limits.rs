@@ -7,10 +7,10 @@ use std::process::{Command, Output};
 use glam::Vec3;
 use strandline::Groom;
 
-/// What the program is allowed to take \[MiB\].
+/// Memory allowed to the program \[MiB\].
 const ALLOWED: &str = "1024";
-/// What the system lets it take \[KiB\]: what is allowed, and the program itself with its libraries, stacks and
-/// allocator, which reserves 64 MiB of addresses a thread.
+/// Memory allowed by the system \[KiB\]: the program's own limit, its libraries, stacks and allocator, which
+/// reserves 64 MiB of addresses per thread.
 const SYSTEM: u64 = 2 << 20;
 
 fn limited(folder: &Path, arguments: &[&str]) -> Output {
@@ -19,7 +19,7 @@ fn limited(folder: &Path, arguments: &[&str]) -> Output {
         .args(["-c", &script, env!("CARGO_BIN_EXE_strandline")])
         .args(arguments)
         .env("STRANDLINE_MEMORY", ALLOWED)
-        // What each thread keeps for itself is scaled by the machine.
+        // The scratch of each thread grows with the machine.
         .env("RAYON_NUM_THREADS", "2")
         .current_dir(folder)
         .output()
@@ -52,7 +52,7 @@ fn render(keys: &str) -> Output {
 }
 
 const FEW: &str = "style = { strand_count = 30 }\n";
-/// What the refusal of too much memory says.
+/// Parts of the message that refuses too much memory.
 const TOO_MUCH: [&str; 2] = ["more than the 1024 MiB", "STRANDLINE_MEMORY"];
 
 #[test]

@@ -1,4 +1,4 @@
-//! What `sim --json` tells of motion, held to the hair that the same run wrote.
+//! Motion in the report of `sim --json`, compared with the hair that the same run wrote.
 
 use std::path::Path;
 use std::process::Command;
@@ -14,8 +14,8 @@ fn works(folder: &Path, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Where guides are after each step, the first of which are none, shape `[step][strand][point]` \[m\], and what a run of
-/// these steps reported.
+/// Positions of guides after each step, empty for the first ones, shape `[step][strand][point]` \[m\], and
+/// the report of a run of these steps.
 fn moved(folder: &Path, rest: &str, steps: usize) -> (Vec<Vec<Vec<Vec3>>>, serde_json::Value) {
     let scene = format!(
         "[style]\nstyle = \"wavy\"\nstrand_count = 16\n[motion]\nname = \"still\"\n[simulation.volume]\nenabled = false\n\
@@ -53,7 +53,7 @@ fn sim_tells_how_far_and_how_fast_hair_moved() {
     };
     let (rest, still) = moved(folder.path(), "sag_free", 3);
     assert_eq!(reported(&still, "drift"), [0.0; 2]);
-    // What a length adds under its root.
+    // Length added below the root.
     assert!(reported(&still, "speed").iter().all(|speed| *speed < 1e-12), "{still}");
     assert!(still["stiffened"].as_u64().unwrap() > 0 && still["stiffest"].as_f64().unwrap() > 1.0);
     // Hair without a load in its shape falls; a step is a frame, the last second is looked at.

@@ -1,4 +1,4 @@
-//! What is kept from run to run: it saves time and changes nothing else.
+//! Files kept from run to run save time and change nothing else.
 
 use std::fmt::Write;
 use std::path::Path;

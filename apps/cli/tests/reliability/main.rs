@@ -67,7 +67,7 @@ fn send(signal: &str, process: u32) {
         .status();
 }
 
-/// Whether a run ended as a signal has it, or had ended before; it may come before the program listens.
+/// True if a signal ended the run, or it had ended before; the signal may come before the program listens.
 fn ended_by(status: ExitStatus, number: i32) -> bool {
     status.success() || status.code() == Some(128 + number) || status.signal() == Some(number)
 }
@@ -89,7 +89,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Whether a file is whole as its format has it; files under a temporary name do not count.
+/// True if a file is complete in its format; files under a temporary name do not count.
 fn is_whole(path: &Path) -> bool {
     let bytes = std::fs::read(path).unwrap();
     match path.extension().and_then(|ending| ending.to_str()) {

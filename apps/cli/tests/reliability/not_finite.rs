@@ -30,7 +30,7 @@ fn a_run_says_where_goes_on_and_ends_with_3() {
         assert_eq!(output.status.code(), Some(3), "{arguments:?}: {error}");
         assert!(error.contains("frame 0, strand 0"), "{arguments:?}: {error}");
     }
-    // Whether anybody reads what is printed or not.
+    // The code is the same if nobody reads the output.
     let mut unread = strandline(at, &sim).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
     drop(unread.stdout.take());
     assert_eq!(unread.wait().unwrap().code(), Some(3));

@@ -37,10 +37,10 @@ fn a_reader_that_goes_away_ends_the_program_quietly() {
         let output = child.wait_with_output().unwrap();
         let error = error(&output);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
-        // What the format of a file cannot hold, or a missing ffmpeg, may be noted.
+        // Notes may name features that the format of a file cannot hold, or a missing ffmpeg.
         assert!(error.lines().all(|line| line.starts_with("note: ")), "{arguments:?}: {error}");
     }
-    // What was written before is there.
+    // Files that were written before exist.
     assert!(is_whole(&folder.path().join("b.tfx")) && is_whole(&folder.path().join("c.hair")));
     assert_eq!(names(&folder.path().join("out/small")).len(), 4 + 2);
     let head = format!("{} scene demo | head -n 1", env!("CARGO_BIN_EXE_strandline"));

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// What the shell ends with when the disk was there, whatever the line did.
+/// Exit code of the shell if the disk was mounted, for any result of the line.
 const MADE: i32 = 76;
 
 /// Runs a line of the shell in a folder on such a disk, where that may be made.
@@ -25,7 +25,7 @@ fn on_small_disk(line: &str) -> Option<Output> {
     None
 }
 
-/// What it prints last: a code, then the names and sizes that are left.
+/// The last output: a code, then the names and sizes of the files.
 fn outcome(output: &Output) -> (String, String) {
     let text = String::from_utf8(output.stdout.clone()).unwrap();
     let (code, left) = text.trim().split_once('\n').unwrap_or((text.trim(), ""));

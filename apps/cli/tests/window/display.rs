@@ -18,7 +18,7 @@ pub const SIZE: [usize; 2] = [1280, 800];
 /// The mouse rests as long as this around a click: a window that is drawn on two threads sees all that
 /// happens in between as one.
 const MOMENT: Duration = Duration::from_millis(400);
-/// How long anything may take.
+/// Time limit of every wait.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// An X server that draws into memory.
@@ -65,7 +65,7 @@ impl Display {
             .current_dir(folder)
             .env("DISPLAY", &self.name)
             .env_remove("WAYLAND_DISPLAY")
-            // What the window remembers is this test's alone.
+            // The window's stored state is this test's alone.
             .env("XDG_DATA_HOME", folder.join("data"));
         program
     }
@@ -88,7 +88,7 @@ impl Drop for Display {
     }
 }
 
-/// What is seen on the display: rows of red, green and blue.
+/// Pixels of the display: rows of red, green and blue.
 #[derive(Clone, PartialEq)]
 pub struct Screen(Vec<[u8; 3]>);
 
@@ -168,7 +168,7 @@ impl Person {
         focused.unwrap().check().unwrap();
     }
 
-    /// What the window shows now.
+    /// Current pixels of the window.
     pub fn screen(&mut self) -> Screen {
         let [width, height] = SIZE.map(|side| side as u16);
         let image = self
@@ -180,7 +180,7 @@ impl Person {
         Screen(image.data.chunks_exact(4).map(|pixel| [pixel[2], pixel[1], pixel[0]]).collect())
     }
 
-    /// What the X server takes for a press of a key (2), a button (4), its release (3, 5), or a move (6).
+    /// Sends an event to the X server: press of a key (2) or a button (4), its release (3, 5), or a move (6).
     pub fn fake(&mut self, kind: u8, detail: u8, [x, y]: [i16; 2]) {
         self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap();
         self.connection.flush().unwrap();
@@ -286,7 +286,7 @@ impl Person {
 }
 
 impl Person {
-    /// Whether the program still runs.
+    /// True while the program runs.
     pub fn is_open(&mut self) -> bool {
         self.program.try_wait().unwrap().is_none()
     }

@@ -29,7 +29,7 @@ film = { frames = 1, settle = 0.0, frames_per_second = 1000.0 }
 
 /// The picture's part of the window \[left, top, right, bottom\], without tools, messages and the wind's dial.
 const STAGE: [usize; 4] = [320, 60, 1150, 560];
-/// Where messages are.
+/// Rectangle of messages.
 const MESSAGES: [usize; 4] = [305, 560, 1150, 765];
 /// The slider of the strands' length where they are as groomed and where they are short, as the panel is laid out.
 const LENGTH: [[i16; 2]; 2] = [[76, 380], [40, 380]];
@@ -41,7 +41,7 @@ fn folder() -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// Whether there is a picture: its background is brighter than an empty window.
+/// True if there is a picture: its background is brighter than an empty window.
 fn has_picture(screen: &Screen) -> bool {
     let [red, green, blue] = screen.at(STAGE[0], STAGE[1]);
     red.min(green).min(blue) > 80

@@ -1,4 +1,4 @@
-//! How much is drawn.
+//! Controls of detail.
 
 use eframe::egui::Ui;
 use strandline::low_level::{

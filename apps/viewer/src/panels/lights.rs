@@ -52,7 +52,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// The controls of one light; true when it is to be removed.
+/// The controls of a light; true if it is to be removed.
 fn one(
     light: &mut Light,
     base: &Light,

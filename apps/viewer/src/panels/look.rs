@@ -1,4 +1,4 @@
-//! How hair looks.
+//! Controls of the look.
 
 use eframe::egui::Ui;
 use strandline::{
@@ -64,7 +64,7 @@ fn colours(look: &mut Look, base: &Look, ui: &mut Ui) {
     slide(ui, (&mut look.grey, base.grey), &rows.grey, "grey");
 }
 
-/// How one hair scatters light.
+/// Controls of the fibre.
 fn fibre(look: &mut Look, base: &Look, ui: &mut Ui) {
     if look.fibre.model == FibreModel::Scheuermann {
         let (own, base) = (&mut look.fibre.scheuermann, &base.fibre.scheuermann);

@@ -1,4 +1,4 @@
-//! What moves the hair: the head, the wind, the length of the strands, a hand.
+//! Controls of motion: the head, the wind, the length of the strands, a hand.
 
 use eframe::egui::{DragValue, Ui};
 use strandline::{
@@ -55,7 +55,7 @@ fn key((index, yaw): (usize, &f32)) -> KeyframeSection {
     KeyframeSection { time: index as f64, rotation, ..KeyframeSection::default() }
 }
 
-/// The poses, one in a row. A time stays between those before and after it; what is not moved stays.
+/// The poses, one per row. A time stays between those before and after it; the others stay.
 fn keyframes(motion: &mut MotionSection, ui: &mut Ui) {
     let times: Vec<f64> = motion.keyframes.iter().map(|key| key.time).collect();
     let mut gone = None;

@@ -1,4 +1,4 @@
-//! Buttons that save what is seen.
+//! Buttons that save the shown picture, scene and film.
 
 use eframe::egui::{self, DragValue, Ui};
 use strandline::low_level::{Target, What};
@@ -15,7 +15,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
         }
     });
     ui.horizontal(|ui| {
-        let tip = "the TOML that begins with what is seen, and the hair's pose beside it, into out/: ctrl S";
+        let tip = "a TOML scene that begins as shown, with the hair's pose beside it, into out/: ctrl S";
         if button(ui, "Scene", tip) {
             app.save_scene(None);
         }
@@ -30,7 +30,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
 fn moving(app: &mut App, ui: &mut Ui) {
     if let Some(export) = &app.exporting {
         ui.add(egui::ProgressBar::new(export.share()).show_percentage());
-        if button(ui, "Stop", "ends the file; what was done stays") {
+        if button(ui, "Stop", "ends the file; written frames stay") {
             app.export(None);
         }
         return;
@@ -38,7 +38,7 @@ fn moving(app: &mut App, ui: &mut Ui) {
     let wanted = &mut app.export_wanted;
     ui.horizontal(|ui| {
         for (value, name) in [(&mut wanted.from, "from"), (&mut wanted.to, "to")] {
-            let tip = "time of the film; it is simulated from its beginning, with the scene as it is now";
+            let tip = "time of the film; it is simulated from its beginning, with the current scene";
             ui.label(name);
             ui.add(DragValue::new(value).range(0.0..=3600.0).speed(0.05).suffix(" s")).on_hover_text(tip);
         }

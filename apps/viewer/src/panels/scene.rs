@@ -1,4 +1,4 @@
-//! What plays: styles, scenes and files.
+//! Controls of the scene: styles, scenes and files.
 
 use eframe::egui::{self, Ui};
 use strandline::{Scene, Style};

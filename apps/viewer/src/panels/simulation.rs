@@ -1,4 +1,4 @@
-//! How hair moves.
+//! Controls of the simulation.
 
 use eframe::egui::Ui;
 use strandline::low_level::{

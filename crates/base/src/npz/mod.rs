@@ -68,7 +68,7 @@ impl Kind {
         (row.1, row.2)
     }
 
-    /// What numpy calls it.
+    /// Type name in numpy.
     pub fn name(self) -> &'static str {
         self.row().0
     }
@@ -141,12 +141,12 @@ pub enum NpzError {
     /// The system could not read it.
     #[error(transparent)]
     Read(#[from] std::io::Error),
-    /// Its bytes are not what the format requires.
+    /// Its bytes violate the format.
     #[error("{found}, expected {expected}")]
     Malformed {
-        /// What was found, and where.
+        /// Content that was found, with its place.
         found: String,
-        /// What was expected there.
+        /// Content that was expected there.
         expected: String,
     },
 }

@@ -2,7 +2,7 @@
 
 use super::{Kind, NpzError};
 
-/// What every member begins with.
+/// First bytes of every member.
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// Headers are padded to a multiple of this \[byte\], as numpy has them: data that is mapped is aligned.
 pub const ALIGNMENT: u64 = 64;
@@ -13,7 +13,7 @@ const MAX_HEADER: usize = 4096;
 /// Most axes of an array.
 const MAX_AXES: usize = 32;
 
-/// What a member says of its array.
+/// Header of an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
     pub kind: Kind,
@@ -23,7 +23,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Bytes of the data; none when they are more than 64 bits count.
+    /// Bytes of the data; `None` beyond 64 bits.
     pub fn data_bytes(&self) -> Option<u64> {
         self.shape.iter().try_fold(self.kind.bytes(), |bytes, count| bytes.checked_mul(*count))
     }
@@ -32,7 +32,7 @@ impl Header {
 /// The header of an array, `least` bytes or more.
 pub fn header(kind: Kind, shape: &[u64], least: usize) -> Vec<u8> {
     let counts: String = shape.iter().map(|count| format!("{count}, ")).collect();
-    // A tuple of one needs its comma, others have none behind the last.
+    // A tuple of one needs its comma; longer ones end without.
     let counts = if shape.len() == 1 { counts.trim_end() } else { counts.trim_end_matches(", ") };
     let text = format!("{{'descr': '{}', 'fortran_order': False, 'shape': ({counts}), }}", kind.name());
     let length = (MAGIC.len() + 4 + text.len() + 1).next_multiple_of(ALIGNMENT as usize).max(least);
@@ -49,7 +49,7 @@ pub fn header(kind: Kind, shape: &[u64], least: usize) -> Vec<u8> {
 /// Reads a header through `read`, which fills what it is given.
 ///
 /// # Errors
-/// What `read` reports; what is no header of numbers in C order.
+/// Reads a header. An error reports anything but numbers in C order.
 pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<Header, NpzError> {
     let mut start = [0; 8];
     read(&mut start)?;

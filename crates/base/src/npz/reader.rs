@@ -13,7 +13,7 @@ use super::{
 
 /// Most bytes behind the last record: a comment of the longest kind.
 const MAX_COMMENT: u64 = 65_535;
-/// Bytes that one compressed byte may become: the format's own bound.
+/// Most bytes that a compressed byte may become, by the format.
 const MOST_INFLATED: u64 = 1032;
 /// Compressed bytes that are read at once.
 const CHUNK: usize = 1 << 16;
@@ -33,7 +33,7 @@ struct Member {
     compressed: u64,
     size: u64,
     crc: u32,
-    /// Where its local header begins.
+    /// Offset of the local header \[byte\].
     offset: u64,
 }
 
@@ -44,7 +44,7 @@ pub struct Rows {
     crc: u32,
     size: u64,
     deflated: bool,
-    /// Where the member's bytes begin and end in the file.
+    /// Begin and end of the member's bytes in the file.
     begin: u64,
     end: u64,
     /// The next of them.
@@ -113,7 +113,7 @@ impl<R: Read + Seek> Npz<R> {
         self.members.iter().map(|member| member.name.as_str())
     }
 
-    /// Opens an array; none where there is none of that name.
+    /// Opens an array; `None` if there is none of that name.
     ///
     /// # Errors
     /// The member is no array of numbers, or lies about its size.
@@ -181,7 +181,7 @@ impl<R: Read + Seek> Npz<R> {
         self.take(rows, bytes)
     }
 
-    /// Goes to a byte of an array's data; of a deflated one everything before it is unpacked.
+    /// Goes to a byte of an array's data; in a deflated array everything before it is unpacked.
     ///
     /// # Errors
     /// As [`Npz::read`].
@@ -214,7 +214,7 @@ impl<R: Read + Seek> Npz<R> {
         rows.restart();
         self.take(rows, &mut bytes)?;
         let (header, data) = (rows.header.length as usize, rows.bytes() as usize);
-        // A run that was ended while it added a row has the sum of one more than the header counts.
+        // A run that ended while it added a row has the sum of a row more than the header counts.
         if header + data == bytes.len() {
             let mut crc = Hasher::new();
             crc.update(&bytes);

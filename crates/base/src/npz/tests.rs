@@ -1,4 +1,4 @@
-//! What is written is read again, at every moment of the run and after its end.
+//! Written arrays are read again, at every moment of the run and after its end.
 
 use std::io::{Cursor, Write};
 use std::path::Path;

@@ -6,7 +6,7 @@
 //!
 //! The last growing array has the free end of the file before it; the tail, arrays that change with time, and the
 //! directory lie ahead of it. Before it reaches them they are written again farther ahead. So there is a sound
-//! directory at the end of the file at every moment, and what it names is not overwritten as long as it names it.
+//! directory at the end of the file at every moment, and members named in it are not overwritten.
 //! A row is first data, then the directory in place, then the headers of the arrays: between the last two
 //! `numpy.load` still reads one row less.
 
@@ -47,7 +47,7 @@ pub struct GrowingNpz {
     tail: Vec<Entry>,
     rows: u64,
     capacity: u64,
-    /// Where the tail begins, the directory begins and the file ends.
+    /// Begin of the tail, begin of the directory and end of the file \[byte\].
     tail_at: u64,
     directory_at: u64,
     end: u64,
@@ -60,7 +60,7 @@ struct Column {
     kind: Kind,
     row: Vec<u64>,
     row_bytes: u64,
-    /// Where the array's header begins.
+    /// Offset of the array's header \[byte\].
     start: u64,
     crc: Hasher,
 }
@@ -71,7 +71,7 @@ impl Column {
         npy::header(self.kind, &shape, npy::GROWING)
     }
 
-    /// Where the next row begins.
+    /// Offset of the next row \[byte\].
     fn end(&self, rows: u64) -> u64 {
         self.start + npy::GROWING as u64 + rows * self.row_bytes
     }
@@ -100,7 +100,7 @@ impl GrowingNpz {
     ) -> Result<Self> {
         let rows: u64 = growing.iter().map(row_bytes).fold(0, u64::saturating_add);
         let others: u64 = fixed.iter().chain(tail).map(|array| array.bytes.len() as u64).sum();
-        // What the tail takes later is not known yet: as much as a hundred rows.
+        // The final size of the tail is not known yet; a hundred rows are assumed.
         let most =
             rows.saturating_mul(capacity.saturating_add(100)).saturating_add(others.saturating_mul(ROOM));
         let mut npz = Self {
@@ -137,7 +137,7 @@ impl GrowingNpz {
         self.rows
     }
 
-    /// Where the file lies now.
+    /// Current path of the file.
     pub fn place(&self) -> &Path {
         self.file.place()
     }
@@ -219,7 +219,7 @@ impl GrowingNpz {
     /// tail has to be set. From the first row with a tail of its time on the file has its name.
     ///
     /// # Errors
-    /// Whatever the system reports, a full disk for example: the rows before stay.
+    /// Errors of the system, a full disk for example: the rows before stay.
     pub fn append(&mut self, row: &[&[u8]]) -> Result<()> {
         if self.rows >= self.capacity {
             return Err(Error::other("more rows than the file was begun for"));
@@ -241,12 +241,12 @@ impl GrowingNpz {
         if self.wants_tail() { Ok(()) } else { self.file.publish() }
     }
 
-    /// Whether the tail has to be set before the next row.
+    /// True if the tail must be written before the next row.
     pub fn wants_tail(&self) -> bool {
         self.wants_tail_after(0)
     }
 
-    /// Whether the tail will have to be set after so many more rows, before the one behind them.
+    /// True if the tail must be written after `more` further rows.
     pub fn wants_tail_after(&self, more: u64) -> bool {
         let rows = self.rows + more;
         rows < self.capacity && self.growing.last().is_some_and(|last| last.end(rows + 1) > self.tail_at)
@@ -255,7 +255,7 @@ impl GrowingNpz {
     /// Replaces the tail.
     ///
     /// # Errors
-    /// Whatever the system reports; the tail before stays.
+    /// Errors of the system; the tail before stays.
     pub fn set_tail(&mut self, tail: &[Array]) -> Result<()> {
         let Some(last) = self.growing.last() else { return Ok(()) };
         let length = tail_room(tail, self.zip64);
@@ -271,7 +271,7 @@ impl GrowingNpz {
         let Some(last) = self.growing.last() else { return Ok(()) };
         let at = last.end(self.rows).next_multiple_of(npy::ALIGNMENT);
         let length = tail_room(tail, self.zip64);
-        // What the directory at the end names lies from the tail on.
+        // Members named by the directory at the end lie after the tail.
         let directory = zip::directory(self.entries(), 0, self.zip64).len() as u64;
         let end = (at + length + 2 * directory).next_multiple_of(npy::ALIGNMENT);
         if end > self.tail_at {
@@ -286,7 +286,7 @@ impl GrowingNpz {
     /// Ends the file with its last tail, and gives it its name.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn finish(mut self, tail: &[Array]) -> Result<()> {
         self.close(tail)?;
         self.file.finish()
@@ -295,7 +295,7 @@ impl GrowingNpz {
     /// As [`GrowingNpz::finish`] for a run that was stopped early: the file stays where it lies, which is returned.
     ///
     /// # Errors
-    /// Whatever the system reports.
+    /// Errors of the system.
     pub fn leave(mut self, tail: &[Array]) -> Result<PathBuf> {
         self.close(tail)?;
         self.file.leave()

@@ -9,7 +9,7 @@ pub const END: u32 = 0x0605_4b50;
 pub const END_64: u32 = 0x0606_4b50;
 pub const LOCATOR_64: u32 = 0x0706_4b50;
 
-/// Bytes of the records without what varies.
+/// Bytes of the records without their variable fields.
 pub const LOCAL_BYTES: u64 = 30;
 pub const CENTRAL_BYTES: usize = 46;
 pub const END_BYTES: usize = 22;
@@ -33,7 +33,7 @@ const ATTRIBUTES: u32 = 0o100_644 << 16;
 pub struct Entry {
     /// With `.npy`.
     pub name: String,
-    /// Where its local header begins.
+    /// Offset of the local header \[byte\].
     pub offset: u64,
     pub size: u64,
     pub crc: u32,

@@ -1,5 +1,5 @@
 //! Parallel loops: rayon's, or loops of one thread under the same names where the feature `threads` is off, as in a
-//! browser page. What comes of them is the same to the bit, since it is so for any number of threads.
+//! browser page. Results have the same bits, as they do for any number of threads.
 
 pub mod serial;
 

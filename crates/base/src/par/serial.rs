@@ -12,7 +12,7 @@ pub fn current_num_threads() -> usize {
     1
 }
 
-/// Runs one, then the other.
+/// Runs both, in order.
 pub fn join<A, B>(one: impl FnOnce() -> A, other: impl FnOnce() -> B) -> (A, B) {
     (one(), other())
 }
@@ -22,7 +22,7 @@ pub fn awake<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Threads of their own for one piece of work: none, it runs on that of the caller.
+/// Threads of their own for one piece of work: here it runs on the thread of the caller.
 #[derive(Debug)]
 pub struct Pool;
 
@@ -38,7 +38,7 @@ impl Pool {
     }
 }
 
-/// A loop over what an iterator gives.
+/// A loop over an iterator.
 #[derive(Clone, Debug)]
 pub struct Serial<I>(I);
 
@@ -51,7 +51,7 @@ impl<I: Iterator> IntoIterator for Serial<I> {
     }
 }
 
-/// What loops run over.
+/// Ranges of loops.
 pub trait IntoParallelIterator: IntoIterator + Sized {
     /// The loop.
     fn into_par_iter(self) -> Serial<Self::IntoIter> {
@@ -61,7 +61,7 @@ pub trait IntoParallelIterator: IntoIterator + Sized {
 
 impl<T: IntoIterator> IntoParallelIterator for T {}
 
-/// What loops do: see rayon's methods of the same names.
+/// Methods of loops, named as in rayon.
 #[allow(missing_docs)]
 pub trait ParallelIterator: IntoIterator + Sized {
     fn map<R, F: Fn(Self::Item) -> R>(self, each: F) -> Serial<Map<Self::IntoIter, F>> {

@@ -8,7 +8,7 @@ use std::sync::{
 pub struct Pool(Option<rayon::ThreadPool>);
 
 impl Pool {
-    /// As many threads as the machine has cores, of a name. Where the system gives none the work shares those of all.
+    /// As many named threads as the machine has cores. If the system provides none, the work shares those of all.
     pub fn new(name: &'static str) -> Self {
         Self(rayon::ThreadPoolBuilder::new().thread_name(move |_| name.to_owned()).build().ok())
     }
@@ -28,7 +28,7 @@ const ROUNDS: u32 = 2048;
 
 /// Runs work of many short parallel loops with the threads awake in between, which else sleep where one of them does
 /// something alone and are late for the next loop. A thread that finds nothing for about a millisecond sleeps, and is
-/// woken by loops alone from then on. Nothing waits for the threads that wait.
+/// woken by loops alone from then on. Idle threads never delay completion.
 pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     // On a thread of the pool.
     rayon::scope(|_| {
@@ -45,7 +45,7 @@ pub fn awake<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     })
 }
 
-/// Takes part in what others begin, until something is done.
+/// Takes part in loops of others until a condition holds.
 fn wait(done: &AtomicBool) {
     let mut round = 0;
     while round < ROUNDS && !done.load(Ordering::Relaxed) {

@@ -53,7 +53,7 @@ pub(super) struct Ear {
     pub(super) head_from_ear: Mat3,
     /// The thin shell.
     pub(super) shell: Ellipsoid,
-    /// What joins the shell to the head.
+    /// Ellipsoid that joins the shell to the head.
     pub(super) stem: Ellipsoid,
     /// The lobe.
     pub(super) lobe: Ellipsoid,
@@ -77,7 +77,7 @@ impl Ear {
     #[inline]
     pub(super) fn add(&self, point: Vec3, head: &mut Field) {
         let offset = point - self.origin;
-        // A blend further away than its width changes nothing.
+        // A blend further away than its width has no effect.
         let reach = REACH + ROOT_BLEND + head.value.max(0.0);
         if offset.length_squared() > reach * reach {
             return;

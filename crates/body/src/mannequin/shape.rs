@@ -5,7 +5,7 @@ use super::field::{Ellipsoid, Field, RoundCone, Swelling, raise};
 
 /// Broad swellings of face and skull.
 pub(super) const MASS_COUNT: usize = 26;
-/// How many of them, from the first, belong to the skull; the others lie in front of
+/// Number of masses, from the first, that belong to the skull; the others lie in front of
 /// [`FACE_MASSES_BEGIN`] and below [`FACE_ENDS`].
 const SKULL_MASS_COUNT: usize = 11;
 const FACE_MASSES_BEGIN: f32 = -0.035;

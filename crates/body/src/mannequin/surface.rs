@@ -91,7 +91,7 @@ impl Slab<'_> {
         }
     }
 
-    /// A place \[m\] from one in the slab \[cells\].
+    /// A place \[m\] from a place in the slab \[cells\].
     fn place(&self, mut at: Vec3) -> Vec3 {
         at.z += self.first_layer as f32;
         self.origin + at * SPACING

@@ -1,4 +1,4 @@
-//! Signed distance of meshes against what is known of them.
+//! Signed distance of meshes against known values.
 
 use glam::Vec3;
 use strandline_body::{Aabb, BodyError, DistanceGrid, Mannequin, Mesh, SignedDistance};
@@ -63,8 +63,8 @@ fn what_a_grid_is_away_at_least_is_no_more_than_its_distance_and_not_much_less()
 
 /// Checks a grid against the exact ball, whose samples are `inexact` \[m\] wrong.
 fn check_ball(grid: &DistanceGrid, inexact: f32) {
-    // Where the field is smooth. Trilinear error: spacing^2 / 8 times the sum of the
-    // second derivatives, 2 / distance from the centre, here at least a third of the radius.
+    // Points of a smooth field. Trilinear error: spacing^2 / 8 times the sum of the second derivatives, 2 /
+    // distance from the centre, here at least a third of the radius.
     let tolerance = inexact + SPACING * SPACING / 8.0 * 2.0 / (RADIUS / 3.0) + 1e-6;
     for point in points(grid.bounds(), 20_000).filter(|point| point.distance(CENTER) > RADIUS / 3.0) {
         let (distance, gradient) = grid.distance_and_gradient(point);

@@ -35,7 +35,7 @@ pub fn scratch(name: &str, bytes: &[u8]) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-/// What comes of a file of this name and content.
+/// Result of loading a file of this name and content.
 pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Mesh, BodyError> {
     let (_folder, path) = scratch(name, bytes);
     Mesh::load(&path, 1.0)

@@ -1,4 +1,4 @@
-//! Reading bodies: what a file holds, and what is wrong with it.
+//! Reading bodies: contents and errors of files.
 
 use std::path::Path;
 
@@ -259,7 +259,7 @@ fn real_heads_are_read() {
     }
 }
 
-/// What every loaded mesh keeps to.
+/// Checks the invariants of every loaded mesh.
 fn check_sound(mesh: &Mesh) {
     assert!(!mesh.triangles.is_empty());
     assert_eq!(mesh.positions.len(), mesh.normals.len());

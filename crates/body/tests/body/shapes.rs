@@ -80,7 +80,7 @@ fn distance_to_triangle(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     }
 }
 
-/// How often the surface winds around a point: the sum of solid angles [Jacobson2013, eq. 5 and 6].
+/// Winding number of the surface around a point: the sum of solid angles [Jacobson2013, eq. 5 and 6].
 pub fn winding_number(mesh: &Mesh, point: Vec3) -> f64 {
     let point = point.as_dvec3();
     let angles = corners(mesh).map(|corners| {

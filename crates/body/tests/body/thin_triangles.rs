@@ -34,7 +34,8 @@ fn thousands_of_thin_triangles_around_a_vertex_are_exact_near_the_surface() {
         }
         // Single precision over the box.
         assert!(worst[0] < 1e-6, "{count}: {worst:?}");
-        // Where thousands overlap, neighbours offer what is nearest to them: two cells away at most a quarter too far.
+        // Of thousands of overlapping triangles neighbours offer their nearest: two cells away at most a
+        // quarter too far.
         let most = if count > 1000 { 0.25 * f64::from(SPACING) } else { 1e-6 };
         assert!(worst[1] < most, "{count}: {worst:?}");
     }

@@ -1,4 +1,4 @@
-//! How fast the device moves memory: what other kernels are measured by.
+//! Memory bandwidth of the device, to which other kernels are compared.
 
 use strandline_base::Stopwatch;
 

@@ -15,7 +15,7 @@ pub struct Buffer<T> {
     element: PhantomData<T>,
 }
 
-/// Memory that is given back with the last of those who use it.
+/// Memory that is returned with its last user.
 #[derive(Debug)]
 struct Lease {
     gpu: Gpu,
@@ -29,7 +29,7 @@ impl Drop for Lease {
 }
 
 impl<T: Pod> Buffer<T> {
-    /// A buffer of zeros; an empty one holds room for one element, which no binding can do without.
+    /// A buffer of zeros; an empty buffer has room for one element, since bindings need it.
     ///
     /// # Errors
     /// It is larger than WebGPU's default limits allow, or the device has no memory left.
@@ -37,7 +37,7 @@ impl<T: Pod> Buffer<T> {
         Self::with_bytes(gpu, name, len, len.max(1) * size_of::<T>())
     }
 
-    /// As [`Buffer::new`], with room for so many elements of another type behind the last; for one, where there is none.
+    /// As [`Buffer::new`], with room for elements of another type behind the last; for one at least.
     ///
     /// # Errors
     /// As [`Buffer::new`].
@@ -97,7 +97,7 @@ impl<T: Pod> Buffer<T> {
         self.len
     }
 
-    /// Whether there is no element.
+    /// True without elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
@@ -107,7 +107,7 @@ impl<T: Pod> Buffer<T> {
         &self.lease.gpu
     }
 
-    /// What it is called.
+    /// Its name.
     pub fn name(&self) -> &'static str {
         self.name
     }
@@ -169,7 +169,7 @@ impl<T: Pod> Buffer<T> {
 }
 
 impl<T> Buffer<T> {
-    /// As [`Buffer::raw`], whatever it holds.
+    /// As [`Buffer::raw`], for any type of element.
     pub(crate) fn raw_buffer(&self) -> &wgpu::Buffer {
         &self.raw
     }

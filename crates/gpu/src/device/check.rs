@@ -9,7 +9,7 @@ use wgpu::naga::{
 
 use crate::{Access, Binding, Declaration, Layout, Tail};
 
-/// Compares a declaration with its linked shader, without a device. Returns what differs; nothing
+/// Compares a declaration with its linked shader, without a device. Returns the differences; nothing
 /// when the two agree.
 pub fn check(declaration: &Declaration) -> Vec<String> {
     let named = |message: String| format!("{}::{}: {message}", declaration.module, declaration.entry);
@@ -78,7 +78,7 @@ fn entries(declaration: &Declaration) -> Vec<(ShaderStage, &'static str)> {
     std::iter::once((ShaderStage::Vertex, declaration.entry)).chain(fragment).collect()
 }
 
-/// What differs between the workgroups that are declared and the shader's.
+/// Differences between the declared workgroups and the shader's.
 fn threads(module: &Module, declaration: &Declaration) -> Vec<String> {
     if declaration.draws {
         return Vec::new();
@@ -144,8 +144,8 @@ fn compare_variable(
     compare_type(module, &declared.layout, element, declared.name, problems);
 }
 
-/// Whether a name is the declared one. The linker puts the names of modules before those of imported
-/// things, joined by underscores; a part that has underscores itself starts with their number, as in
+/// True if a name is the declared one. The linker puts the names of modules before those of imported items,
+/// joined by underscores. A part that has underscores itself starts with their number, as in
 /// `package_shadow__1body_depths`.
 fn is_named(found: &str, declared: &str) -> bool {
     if found == declared {
@@ -236,7 +236,7 @@ fn is_unsized(module: &Module, ty: Handle<Type>) -> bool {
     matches!(module.types[ty].inner, TypeInner::Array { size: ArraySize::Dynamic, .. })
 }
 
-/// Compares what a struct ends in with the array without a length that a shader has there.
+/// Compares the tail of a struct with the shader's array without a length.
 fn compare_tail(
     module: &Module,
     declared: Option<&Tail>,

@@ -9,7 +9,7 @@ use crate::{Bindings, Declaration, Gpu, GpuError};
 ///
 /// ```text
 /// drawing! {
-///     /// What it draws.
+///     /// Its purpose.
 ///     pub struct Name in "module" (LINKED_TEXT), vertex "name_vertex", fragment Some("name") {
 ///         0 frame: Read Frame,
 ///         1 samples: Texture f32,
@@ -30,16 +30,16 @@ macro_rules! drawing {
     };
 }
 
-/// What a drawing writes, and how.
+/// Target of a drawing, and its blending.
 #[derive(Clone, Debug, Default)]
 pub struct Output {
-    /// Format of the colours and how they join what is there; none where only depth is drawn.
+    /// Format of the colours and their blending; `None` if only depth is drawn.
     pub color: Option<(wgpu::TextureFormat, Option<wgpu::BlendState>)>,
     /// Test against a depth texture.
     pub depth: Option<wgpu::DepthStencilState>,
 }
 
-/// A compiled drawing; `B` is what [`drawing!`](crate::drawing) declared, with a static lifetime.
+/// A compiled drawing; `B` is the type declared by [`drawing!`](crate::drawing), with a static lifetime.
 #[derive(Debug)]
 pub struct Drawing<B> {
     pipeline: wgpu::RenderPipeline,

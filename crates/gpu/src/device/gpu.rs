@@ -6,8 +6,7 @@ use std::time::Duration;
 use super::wanted::Wanted;
 use crate::{Adapter, Crossed, GpuError};
 
-/// How long a submission may take before the device counts as hung: a software adapter on a busy
-/// machine takes seconds.
+/// Time after which a submission counts as hung: a software adapter on a busy machine takes seconds.
 pub(super) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A device and its queue. Clones share them.
@@ -38,7 +37,7 @@ pub(crate) struct Compiled {
     pub layout: wgpu::BindGroupLayout,
 }
 
-/// What buffers hold, and the most that they may.
+/// Allocated bytes, and the limit.
 #[derive(Debug)]
 struct Memory {
     used: u64,
@@ -49,7 +48,7 @@ impl Gpu {
     /// The first adapter that is real hardware, discrete before integrated.
     ///
     /// # Errors
-    /// There is none, or it does not offer WebGPU's default limits.
+    /// There is no adapter, or it does not offer WebGPU's default limits.
     pub fn auto() -> Result<Self, GpuError> {
         pollster::block_on(Self::request(Wanted::Hardware))
     }
@@ -57,7 +56,7 @@ impl Gpu {
     /// The first adapter of any kind, hardware before software.
     ///
     /// # Errors
-    /// There is none, or it does not offer WebGPU's default limits.
+    /// There is no adapter, or it does not offer WebGPU's default limits.
     pub fn any() -> Result<Self, GpuError> {
         pollster::block_on(Self::request(Wanted::Any))
     }
@@ -65,7 +64,7 @@ impl Gpu {
     /// An adapter by its number in [`Gpu::list`].
     ///
     /// # Errors
-    /// There is none of that number, or it does not offer WebGPU's default limits.
+    /// No adapter has that number, or it does not offer WebGPU's default limits.
     pub fn open(index: usize) -> Result<Self, GpuError> {
         pollster::block_on(Self::request(Wanted::Number(index)))
     }
@@ -78,7 +77,7 @@ impl Gpu {
     /// The first wanted adapter that starts, for hosts that cannot block, as in a browser page.
     ///
     /// # Errors
-    /// There is none, or it does not offer WebGPU's default limits: why the first of them did not start.
+    /// There is no adapter, or none offers WebGPU's default limits: the error of the first.
     pub async fn request(wanted: Wanted) -> Result<Self, GpuError> {
         let adapters = adapters().await;
         let offered: Vec<Adapter> = adapters.iter().map(|(_, adapter)| adapter.clone()).collect();
@@ -139,7 +138,7 @@ impl Gpu {
         let lost: Arc<Mutex<Option<String>>> = Arc::default();
         let (slot, first) = (lost.clone(), lost.clone());
         device.set_device_lost_callback(move |_, message| note(&slot, message));
-        // What no error scope caught: the device is of no use after it.
+        // An error that no scope caught makes the device useless.
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&first, error.to_string())));
         Ok(Self::new(device, queue, adapter, lost))
     }
@@ -154,7 +153,7 @@ impl Gpu {
         &self.shared.queue
     }
 
-    /// Whether both are one device.
+    /// True if both are one device.
     pub fn is_same(&self, other: &Self) -> bool {
         self.device() == other.device()
     }
@@ -164,13 +163,13 @@ impl Gpu {
         &self.shared.adapter
     }
 
-    /// Whether the device can tell how long its work takes.
+    /// True if the device can measure the time of its work.
     pub fn has_timestamps(&self) -> bool {
         self.device().features().contains(wgpu::Features::TIMESTAMP_QUERY)
     }
 
     /// Sets the most bytes that all buffers together may hold, so that a host can keep some for
-    /// itself. What is held already stays.
+    /// itself. Memory that is allocated already stays.
     pub fn set_memory_limit(&self, bytes: u64) {
         self.memory().most = bytes;
     }
@@ -199,7 +198,7 @@ impl Gpu {
         self.shared.crossed[1].fetch_add(bytes as u64, Relaxed);
     }
 
-    /// Gives the device up; whatever is asked of it afterwards is an error.
+    /// Gives the device up; every later use is an error.
     pub fn destroy(&self) {
         note(&self.shared.lost, "it was given up".to_owned());
         self.device().destroy();
@@ -216,7 +215,7 @@ impl Gpu {
         }
     }
 
-    /// Runs what may be refused and turns a refusal into an error.
+    /// Runs an operation that the device may refuse, and turns the refusal into an error.
     ///
     /// # Errors
     /// The device is lost, has no memory left, or finds a mistake.
@@ -242,7 +241,7 @@ impl Gpu {
         }
     }
 
-    /// Runs what ends in a panic when the driver says that the device is gone: wgpu takes that for
+    /// Runs an operation that panics when the device is lost: wgpu takes that for
     /// fatal where it waits. Nothing of ours is left half done, since it is not used afterwards.
     fn surviving<T>(&self, run: impl FnOnce() -> T) -> Result<T, GpuError> {
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).map_err(|panic| {
@@ -282,7 +281,7 @@ impl Gpu {
         polled.map(drop).map_err(|error| GpuError::Lost { adapter: self.name(), reason: error.to_string() })
     }
 
-    /// Sees what is done by now.
+    /// Processes finished work.
     pub(crate) fn poll(&self) -> Result<(), GpuError> {
         self.check()?;
         let polled = self.surviving(|| self.device().poll(wgpu::PollType::Poll))?;
@@ -339,7 +338,7 @@ impl Gpu {
     }
 }
 
-/// A lock that outlives a panic elsewhere: what it holds is plain data.
+/// A lock that outlives a panic elsewhere: its content is plain data.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -353,7 +352,7 @@ fn note(slot: &Mutex<Option<String>>, reason: String) {
 async fn adapters() -> Vec<(wgpu::Adapter, Adapter)> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
     descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
-    // The validation layers of old drivers report errors where there are none.
+    // The validation layers of old drivers report false errors.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);
     let mut found = instance.enumerate_adapters(wgpu::Backends::all()).await;

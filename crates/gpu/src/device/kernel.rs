@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use super::gpu::Compiled;
 use crate::{Gpu, GpuError, Layout};
 
-/// How a kernel uses a buffer.
+/// Use of a buffer by a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// `var<storage, read>`.
@@ -24,13 +24,13 @@ pub struct Binding {
     pub index: u32,
     /// The variable's name.
     pub name: &'static str,
-    /// How it is used.
+    /// Its use.
     pub access: Access,
-    /// What an element is.
+    /// Layout of an element.
     pub layout: Layout,
 }
 
-/// What is known of a kernel without a device.
+/// Declaration of a kernel, known without a device.
 #[derive(Clone, Debug)]
 pub struct Declaration {
     /// The shader module.
@@ -41,9 +41,9 @@ pub struct Declaration {
     pub entry: &'static str,
     /// The entry point of a drawing's fragments, where it has any.
     pub fragment: Option<&'static str>,
-    /// Whether it draws.
+    /// True for a drawing.
     pub draws: bool,
-    /// Threads of a workgroup, along its first axis; none where a constant of the pipeline chooses them, and for a
+    /// Threads of a workgroup, along its first axis; `None` if a constant of the pipeline chooses them, and for a
     /// drawing.
     pub threads: Option<usize>,
     /// Its buffers.
@@ -52,7 +52,7 @@ pub struct Declaration {
 
 /// The buffers of a kernel. [`kernel!`](crate::kernel) makes them.
 pub trait Bindings {
-    /// The kernel, whatever the lifetime of its buffers.
+    /// The kernel, for any lifetime of its buffers.
     type Kernel;
     /// The declaration.
     fn declaration() -> Declaration;
@@ -60,9 +60,9 @@ pub trait Bindings {
     fn resources(&self) -> Vec<wgpu::BindingResource<'_>>;
 }
 
-/// What may stand in a declaration: a buffer or a texture.
+/// A buffer or a texture of a declaration.
 pub trait Resource {
-    /// How it is bound.
+    /// Its binding.
     fn resource(&self) -> wgpu::BindingResource<'_>;
 }
 
@@ -86,7 +86,7 @@ macro_rules! field_type {
     ($access:ident $kind:ty) => { $crate::Buffer<$kind> };
 }
 
-/// What a kernel's and a drawing's declaration have in common.
+/// Common to the declarations of kernels and drawings.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! declare {
@@ -133,7 +133,7 @@ macro_rules! declare {
 ///
 /// ```text
 /// kernel! {
-///     /// What it does.
+///     /// Its purpose.
 ///     pub struct Name in "module" (LINKED_TEXT), entry "name" {
 ///         0 step: Read Step,
 ///         1 positions: Read f32,
@@ -165,7 +165,7 @@ macro_rules! kernel {
     };
 }
 
-/// A compiled kernel; `B` is what [`kernel!`](crate::kernel) declared, with a static lifetime.
+/// A compiled kernel; `B` is the type declared by [`kernel!`](crate::kernel), with a static lifetime.
 #[derive(Debug)]
 pub struct Kernel<B> {
     compiled: Compiled,
@@ -218,7 +218,7 @@ fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> R
     made.map_err(as_shader_error)
 }
 
-/// What the driver refuses about a pipeline is the shader's fault.
+/// An error of the driver about a pipeline is an error of the shader.
 pub(crate) fn as_shader_error(error: GpuError) -> GpuError {
     match error {
         GpuError::Refused { adapter, what, message } => GpuError::Shader { adapter, module: what, message },
@@ -297,17 +297,17 @@ fn entry_of(binding: &Binding, declaration: &Declaration) -> wgpu::BindGroupLayo
 pub struct Bound {
     pub(crate) pipeline: wgpu::ComputePipeline,
     pub(crate) group: wgpu::BindGroup,
-    /// Of a workgroup; none where a constant of the pipeline chose them.
+    /// Threads of a workgroup; `None` if a constant of the pipeline chose them.
     threads: Option<usize>,
 }
 
 impl Bound {
-    /// Workgroups for so many threads; where a constant of the pipeline chose their size, for so many workgroups.
+    /// Workgroups for a number of threads; if a constant of the pipeline chose their size, the number of workgroups itself.
     pub fn groups(&self, count: usize) -> [u32; 3] {
         groups(count, self.threads.unwrap_or(1))
     }
 
-    /// The kernel over so many threads, counted as [`Bound::groups`] counts them.
+    /// The kernel over a number of threads, counted as in [`Bound::groups`].
     pub fn over(self, count: usize) -> (Self, [u32; 3]) {
         let groups = self.groups(count);
         (self, groups)
@@ -318,7 +318,7 @@ impl Bound {
 pub type Dispatches = Vec<(Bound, [u32; 3])>;
 
 /// Workgroups for a number of threads, in rows of no more than WebGPU's 65,535: the index of a
-/// workgroup is `x + y * num_workgroups.x`. Never none: an empty dispatch would leave reports unwritten.
+/// workgroup is `x + y * num_workgroups.x`. At least one: an empty dispatch would leave reports unwritten.
 pub fn groups(threads: usize, workgroup_size: usize) -> [u32; 3] {
     const ROW: usize = 65_535;
     let count = threads.div_ceil(workgroup_size).max(1);

@@ -1,4 +1,4 @@
-//! What a type of the host looks like in a shader.
+//! Layout of a host type in a shader.
 
 use bytemuck::Pod;
 
@@ -14,11 +14,11 @@ pub enum Layout {
         /// 2 to 4.
         count: usize,
     },
-    /// So many vectors one after the other, within a struct.
+    /// An array of vectors within a struct.
     Array {
         /// An element.
         element: Box<Layout>,
-        /// How many.
+        /// Number of elements.
         count: usize,
     },
     /// Fields one after the other.
@@ -41,11 +41,11 @@ pub struct Field {
     pub name: &'static str,
     /// Bytes from the start of the struct.
     pub offset: usize,
-    /// What it is.
+    /// Its type.
     pub layout: Layout,
 }
 
-/// What lies behind a struct in its buffer: a shader's array without a length.
+/// Array without a length that follows a struct in its buffer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tail {
     /// Its name, the same on both sides.

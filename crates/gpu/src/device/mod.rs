@@ -1,4 +1,4 @@
-//! A device and what is made on it.
+//! A device and its resources.
 
 mod bandwidth;
 mod buffer;

@@ -22,7 +22,7 @@ pub struct Part<T> {
     element: PhantomData<T>,
 }
 
-/// What was copied.
+/// Copied bytes.
 #[derive(Debug)]
 pub struct Copied {
     pub(super) bytes: Vec<u8>,
@@ -113,12 +113,12 @@ impl Download {
         Ok(Self { held, staging })
     }
 
-    /// Where copies are to go.
+    /// Target of copies.
     pub fn raw(&self) -> &wgpu::Buffer {
         &self.staging
     }
 
-    /// Waits for the submission that copied, none for all of them, and shows what was copied.
+    /// Waits for the submission that copied (`None`: for all submissions), and gives the copied bytes.
     ///
     /// # Errors
     /// The device was lost.

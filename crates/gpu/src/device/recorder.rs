@@ -2,7 +2,7 @@
 
 use crate::{Bound, BoundDrawing, Buffer, Gpu, Timer};
 
-/// What drawings go to.
+/// Targets of drawings.
 #[derive(Clone, Copy)]
 pub struct Targets<'a> {
     /// A texture for colours, and whether it is cleared first.
@@ -11,21 +11,21 @@ pub struct Targets<'a> {
     pub depth: Option<(&'a wgpu::TextureView, wgpu::LoadOp<f32>)>,
 }
 
-/// How much a drawing draws.
+/// Number of vertices and instances of a drawing.
 #[derive(Clone, Copy)]
 pub enum Amount<'a> {
-    /// So many vertices, three a triangle, once, as an instance of this number.
+    /// A number of vertices, three per triangle, once, as the instance of a number.
     Vertices {
-        /// How many.
+        /// Number of vertices.
         count: u32,
         /// The number.
         instance: u32,
     },
-    /// The vertices of indices, so many times over.
+    /// The vertices of indices, for a number of instances.
     Instanced {
         /// Three a triangle.
         indices: &'a Buffer<u32>,
-        /// How often.
+        /// Number of instances.
         instances: u32,
     },
 }
@@ -50,7 +50,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records a stage: kernels and their numbers of workgroups, one after the other. Each sees
-    /// what those before it wrote.
+    /// the results of those before it.
     pub fn stage(&mut self, name: &'static str, kernels: &[(Bound, [u32; 3])]) {
         let timestamp_writes = self.timer.and_then(|timer| timer.next(name));
         let mut pass = self

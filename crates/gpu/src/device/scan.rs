@@ -52,7 +52,7 @@ impl Scan {
         })
     }
 
-    /// What is known of the kernels without a device.
+    /// Declarations of the kernels, known without a device.
     pub fn declarations() -> [Declaration; 3] {
         [ScanBlocks::declaration(), ScanTotals::declaration(), ScanAdd::declaration()]
     }

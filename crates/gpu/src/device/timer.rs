@@ -46,7 +46,7 @@ impl Timer {
     /// Bytes that [`Timer::resolve`] writes.
     pub const BYTES: u64 = (MARKS * size_of::<u64>()) as u64;
 
-    /// The marks of the next stage; none when there are too many.
+    /// The marks of the next stage; `None` if there are too many.
     pub(crate) fn next(&self, name: &'static str) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         let mut names = self.names();
         if names.len() == STAGES {
@@ -68,7 +68,7 @@ impl Timer {
         encoder.copy_buffer_to_buffer(self.marks.raw(), 0, into, offset, Self::BYTES);
     }
 
-    /// Stages and their seconds, from what [`Timer::resolve`] wrote; stages of one name add up.
+    /// Stages and their seconds, from the marks of [`Timer::resolve`]; stages of the same name add up.
     pub fn seconds(&self, marks: &[u64]) -> Vec<(&'static str, f64)> {
         let mut seconds: Vec<(&'static str, f64)> = Vec::new();
         for (name, pair) in self.names().iter().zip(marks.chunks_exact(2)) {

@@ -1,4 +1,4 @@
-//! Copies from the device on their way to the host, which nobody has to wait for.
+//! Copies from the device on their way to the host, without a wait.
 
 use std::future::Future;
 use std::pin::Pin;
@@ -9,19 +9,19 @@ use std::time::Duration;
 use super::gpu::PATIENCE;
 use crate::{Copied, Gpu, GpuError};
 
-/// How often a host that waits looks whether the device was lost.
+/// Interval at which a waiting host checks for a lost device.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// A copy on its way from the device: looked for now and then, waited for, or awaited.
 #[derive(Debug)]
 pub struct Transfer {
     held: Held,
-    /// Where it arrives; none where nothing is copied.
+    /// Buffer of the copy; `None` if nothing is copied.
     staging: Option<(wgpu::Buffer, Mapping)>,
 }
 
 impl Transfer {
-    /// The copy that a submission makes into a staging buffer; none copies nothing.
+    /// The copy of a submission into a staging buffer; `None` copies nothing.
     pub(super) fn new(held: Held, staging: Option<(wgpu::Buffer, wgpu::SubmissionIndex)>) -> Self {
         let staging = staging.map(|(staging, submission)| {
             let mapping = Mapping::new(&staging, Some(submission));
@@ -30,7 +30,7 @@ impl Transfer {
         Self { held, staging }
     }
 
-    /// Whether it has arrived; never waits.
+    /// True if it has arrived; never waits.
     ///
     /// # Errors
     /// The device was lost.
@@ -38,7 +38,7 @@ impl Transfer {
         self.staging.as_ref().map_or(Ok(true), |(_, mapping)| mapping.is_there(&self.held.gpu))
     }
 
-    /// What was copied, if it has arrived; never waits.
+    /// The copied bytes, if they have arrived; never waits.
     ///
     /// # Errors
     /// The device was lost.
@@ -51,7 +51,7 @@ impl Transfer {
         Ok(Some(Copied { bytes: view.to_vec() }))
     }
 
-    /// Waits until it arrives, and for nothing that was submitted later.
+    /// Waits until it arrives, and not for later submissions.
     ///
     /// # Errors
     /// The device was lost or does not answer.
@@ -104,7 +104,7 @@ impl Drop for Held {
 /// A buffer that becomes readable when a submission is done.
 #[derive(Debug)]
 pub(super) struct Mapping {
-    /// None is everything that was submitted.
+    /// `None` is all submissions.
     submission: Option<wgpu::SubmissionIndex>,
     arrival: Arc<Arrival>,
 }
@@ -147,7 +147,7 @@ impl Mapping {
         Self { submission, arrival }
     }
 
-    /// Whether it is readable by now.
+    /// True if it is readable by now.
     pub fn is_there(&self, gpu: &Gpu) -> Result<bool, GpuError> {
         if self.arrival.lock().mapped.is_none() {
             gpu.poll()?;
@@ -176,7 +176,7 @@ impl Mapping {
     }
 }
 
-/// What lies in a mapped buffer.
+/// Content of a mapped buffer.
 pub(super) fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<wgpu::BufferView, GpuError> {
     let view = staging.slice(..).get_mapped_range().map_err(|error| refused(gpu, &error.to_string()))?;
     gpu.count_from_device(view.len());

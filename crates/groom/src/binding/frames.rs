@@ -1,4 +1,4 @@
-//! Where guides are, as the strands that are bound to them see it.
+//! Frames of guides for the strands that are bound to them.
 
 use glam::{Mat3, Quat, Vec3, Vec4};
 
@@ -6,8 +6,8 @@ use glam::{Mat3, Quat, Vec3, Vec4};
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Frame {
-    /// Where the map has the three axes, and the translation \[m\], world space; the map is of places at rest \[m\],
-    /// head space.
+    /// Images of the three axes, and the translation \[m\], world space. The map is of positions at rest
+    /// \[m\], head space.
     pub(super) columns: [Vec4; 4],
 }
 
@@ -20,7 +20,7 @@ impl Frame {
     }
 }
 
-/// Where guides are, as the strands that are bound to them see it; used again from picture to picture.
+/// Frames of guides for the strands that are bound to them; reused from picture to picture.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
     /// Shape `[guide][point]`.

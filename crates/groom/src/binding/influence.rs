@@ -10,7 +10,7 @@ pub const MOST_INFLUENCES: usize = 3;
 pub struct Influence {
     /// The guide, by its place among the guides.
     pub guide: u32,
-    /// How much it is followed; those of a strand sum to 1.
+    /// Weight of the guide; those of a strand sum to 1.
     pub weight: f32,
     /// Points of the guide that a point of the strand is along: the strand's length over the guide's.
     pub pace: f32,

@@ -1,4 +1,4 @@
-//! Where bound strands are: eight at a time, one lane a strand.
+//! Positions of bound strands: eight at a time, one lane per strand.
 
 use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
@@ -32,9 +32,9 @@ impl Binding {
         self.place(frames, world_from_head, surface, out);
     }
 
-    /// Where all strands are \[m\], world space, shape `[block][point]` of lanes, given where the guides are
-    /// ([`Binding::follow`]). Roots move with the head, segments have the lengths that they have at rest, or that
-    /// share of them that those of the guides have; points inside the body are put onto its surface.
+    /// Positions of all strands \[m\], world space, shape `[block][point]` of lanes, from the frames of the
+    /// guides ([`Binding::follow`]). Roots move with the head. Segments have their rest lengths, scaled as
+    /// those of the guides are. Points inside the body are put onto its surface.
     pub fn place(
         &self,
         frames: &Frames,
@@ -65,9 +65,9 @@ fn place_block(
     let scale = scales(followed, frames);
     let mut here = Vec3x8::load(&rest[0]);
     let mut before = turn.points(here);
-    // Where the frames have the point before: segments lead as from one such place to the next.
+    // Place of the point before by the frames: segments lead from one such place to the next.
     let mut blended_before = before;
-    // How far \[m\] the surface is at least.
+    // Lower bound of the distance \[m\] to the surface.
     let mut clear = f32x8::ZERO;
     before.store(&mut places[0]);
     for point in 1..count {
@@ -96,7 +96,7 @@ fn place_block(
     }
 }
 
-/// How long the guides are that strands follow, over their lengths at rest.
+/// Lengths of the guides that strands follow, over their lengths at rest.
 fn scales(followed: &[Followed; MOST_INFLUENCES], frames: &Frames) -> f32x8 {
     followed.iter().fold(f32x8::ZERO, |sum, one| {
         let of_guides = one.guides.map(|guide| frames.scales[guide as usize]);
@@ -104,7 +104,7 @@ fn scales(followed: &[Followed; MOST_INFLUENCES], frames: &Frames) -> f32x8 {
     })
 }
 
-/// Where the guides have a point of their strands, which is at `rest` at rest \[m\].
+/// Place by the guides of a point that is at `rest` at rest \[m\].
 fn blend(
     followed: &[Followed; MOST_INFLUENCES],
     frames: &[Frame],

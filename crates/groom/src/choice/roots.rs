@@ -97,7 +97,7 @@ impl Roots {
                     }
                 }
             }
-            // What lies in rings further out is at least so far away.
+            // Roots in rings further out are at least so far away.
             if reach <= ring as f32 * self.cell {
                 return;
             }
@@ -131,7 +131,7 @@ mod tests {
         assert_eq!(roots.occupied().iter().map(|cell| roots.members(*cell).len()).sum::<usize>(), 40_000);
     }
 
-    /// What is nearest to each is found among about as many, however many there are, on a surface and in a box.
+    /// The number of roots searched for each is about constant for any total, on a surface and in a box.
     #[test]
     fn looks_for_each_do_not_grow_with_all() {
         let looks = |place: fn(i32) -> IVec3, count: i32| {

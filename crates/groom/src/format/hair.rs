@@ -204,7 +204,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
 /// The one diameter of all points, or else one for each.
 fn per_point_widths(groom: &Groom) -> Result<f32, Vec<f32>> {
     match &groom.widths {
-        // What was taken because a file had none is no width of its own.
+        // A default width, taken because a file had none, is no attribute.
         Widths::Constant(width) => Ok(if Part::Widths.is_in(groom) { *width } else { 0.0 }),
         Widths::PerPoint(widths) => Err(widths.clone()),
         Widths::PerStrand(widths) => {

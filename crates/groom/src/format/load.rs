@@ -82,10 +82,10 @@ choices! {
     default Auto
 }
 
-/// How a file is read.
+/// Options of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadOptions {
-    /// Whether a bad strand is an error; else it is left out and counted.
+    /// True if a bad strand is an error; otherwise it is left out and counted.
     pub strict: bool,
     /// Metres for each unit of the file.
     pub scale: Scale,
@@ -106,7 +106,7 @@ impl Default for LoadOptions {
 pub struct Loaded {
     /// The strands \[m\], y up.
     pub groom: Groom,
-    /// What the file holds.
+    /// Contents of the file.
     pub report: Report,
 }
 

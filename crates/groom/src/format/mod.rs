@@ -40,13 +40,13 @@ pub const MAX_COORDINATE: f32 = 1e7;
 /// Diameter of a human hair \[m\], for files that name none.
 pub const HAIR_WIDTH: f32 = 8e-5;
 
-/// What a reader found in bytes, before bad strands are sieved out; units and axes of the file.
+/// Strands of a reader before bad ones are left out, in units and axes of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parsed {
     /// Name and version of the format.
     pub format: &'static str,
     /// The strands, bad ones among them.
     pub groom: crate::Groom,
-    /// What was odd but could be read.
+    /// Oddities that did not prevent the reading.
     pub problems: Vec<String>,
 }

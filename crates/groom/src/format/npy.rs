@@ -111,7 +111,7 @@ fn number(kind: Kind, bytes: &[u8]) -> f64 {
     }
 }
 
-/// What stands behind a key of a header, which is a Python dictionary of three entries.
+/// Value of a key of a header, which is a Python dictionary of three entries.
 fn value<'a>(text: &'a str, key: &str) -> Option<&'a str> {
     let (_, rest) =
         text.split_once(&format!("'{key}'")).or_else(|| text.split_once(&format!("\"{key}\"")))?;
@@ -172,7 +172,7 @@ pub(super) fn strands(source: &Source, array: &Array, per_strand: Option<u32>) -
     even(source, count, each, |count| points(array, count))
 }
 
-/// How many strands `points` points make with `each` on one.
+/// Number of strands that `points` points make, with `each` per strand.
 pub(super) fn split(source: &Source, points: u64, each: u32) -> Result<(u64, u64), GroomError> {
     let each = u64::from(each);
     if each == 0 || !points.is_multiple_of(each) {

@@ -16,7 +16,7 @@ const PLACES: [&str; 3] = ["points", "positions", "strands"];
 /// Largest text with names \[byte\].
 const MAX_META: usize = 16 << 20;
 
-/// What `meta` says, as far as a groom goes.
+/// Fields of `meta` that concern a groom.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Meta {
@@ -40,7 +40,7 @@ impl Arrays<'_> {
         entry.map(|entry| zip::unpack(&self.source, entry)).transpose()
     }
 
-    /// What an array is turned into, where there is one of a name.
+    /// Result of a function of an array, if there is one of a name.
     fn with<T>(
         &self,
         name: &str,
@@ -208,7 +208,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         _ if Part::Widths.is_in(groom) => {
             files.push(("strand_widths.npy", npy::floats(&[strands], groom.root_widths())))
         }
-        // What was taken because a file had none is no width of its own.
+        // A default width, taken because a file had none, is no attribute.
         _ => {}
     }
     let mut add = |name, array: Option<Vec<u8>>| files.extend(array.map(|array| (name, array)));

@@ -12,7 +12,7 @@ use crate::{Groom, GroomError};
 /// Longest name of a group \[byte\].
 const MAX_NAME: usize = 4096;
 
-/// What the lines of a file said so far.
+/// Content of the lines read so far.
 #[derive(Default)]
 struct Reading {
     vertices: Vec<Vec3>,
@@ -110,7 +110,7 @@ impl Reading {
             return Err(format!("{MAX_STRANDS} strands at most"));
         }
         self.starts.push(self.points.len() as u32);
-        // What comes before any `g` is in a group of that name by the format's own rule.
+        // Lines before any `g` belong to a group of that name by the rule of the format.
         if self.group.is_none() {
             self.name("default")?;
         }
@@ -164,7 +164,7 @@ impl Reading {
     }
 }
 
-/// What a group without a name is called.
+/// Name of a group without a name.
 fn unnamed(number: u32) -> String {
     format!("group_{number}")
 }

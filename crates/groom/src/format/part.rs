@@ -1,4 +1,4 @@
-//! What a groom may have beside its points, and what of it a format holds.
+//! Attributes of a groom beside its points, and those that a format holds.
 
 use crate::{Groom, Widths};
 
@@ -68,8 +68,8 @@ impl Part {
         }
     }
 
-    /// Whether a groom has it. The width of a hair on every strand, which a reader gives where a file has no
-    /// widths, is not counted.
+    /// True if a groom has it. A default width of all strands, which a reader gives if a file has no widths,
+    /// does not count.
     pub fn is_in(self, groom: &Groom) -> bool {
         match self {
             Self::Widths => groom.widths != Widths::Constant(HAIR_WIDTH),

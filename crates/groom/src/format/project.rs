@@ -12,7 +12,7 @@ const MAX_PARTS: usize = 256;
 /// Longest name of a part \[byte\].
 const MAX_NAME: usize = 4096;
 
-/// What a project says of strands.
+/// Strands of a project.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Project {
     /// Names of files, beside the project's, and of the parts that they are.

@@ -6,12 +6,12 @@ use super::part::Part::{self, *};
 use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx};
 use crate::{Groom, GroomError};
 
-/// How bytes become strands; points of each strand where a file may leave them open.
+/// Parser of bytes; it takes the number of points per strand for files that leave it open.
 pub type Read = fn(&[u8], Option<u32>) -> Result<Parsed, GroomError>;
-/// How strands become bytes.
+/// Writer of bytes.
 pub type Write = fn(&Groom) -> Result<Vec<u8>, GroomError>;
 
-/// How the files of a format are read.
+/// Reader of a format.
 #[derive(Clone, Copy, Debug)]
 pub enum Reader {
     /// Strands from its bytes.
@@ -25,13 +25,13 @@ pub enum Reader {
 pub struct Format {
     /// The ending of its files, without the dot, in lower case.
     pub ending: &'static str,
-    /// What it is, human-readable.
+    /// Its description, human-readable.
     pub about: &'static str,
-    /// How it is read.
+    /// Its reader.
     pub read: Reader,
-    /// How it is written, where it can be.
+    /// Its writer, if there is one.
     pub write: Option<Write>,
-    /// What it holds beside points.
+    /// Attributes that it holds beside points.
     pub holds: &'static [Part],
     /// Memory that reading takes at most for each byte of a file \[byte\]: the file, and what it holds. Text is shorter
     /// than its numbers.
@@ -130,7 +130,7 @@ impl Format {
         })
     }
 
-    /// Whether the ending of a path names one.
+    /// True if the ending of a path names a format.
     pub fn is_of(path: &Path) -> bool {
         Self::of(path).is_ok()
     }

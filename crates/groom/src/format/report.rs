@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Part;
 use crate::Groom;
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Report {
     /// Name and version of the format.
@@ -22,11 +22,11 @@ pub struct Report {
     pub bounds_m: [[f32; 3]; 2],
     /// Metres for each unit of the file.
     pub scale: f32,
-    /// What it has beside points.
+    /// Attributes beside points.
     pub attributes: Vec<&'static str>,
     /// Its groups by their numbers: names, where they have some, and strands.
     pub groups: BTreeMap<u32, GroupOf>,
-    /// What was odd or left out, human-readable.
+    /// Oddities and omissions, human-readable.
     pub problems: Vec<String>,
 }
 

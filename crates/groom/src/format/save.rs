@@ -7,7 +7,7 @@ use strandline_base::WholeFile;
 use super::{Format, Part, endings};
 use crate::{Groom, GroomError};
 
-/// What writing left out.
+/// Attributes that the writer left out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Saved {
     /// Parts of the groom that the format cannot hold.

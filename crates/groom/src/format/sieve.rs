@@ -9,7 +9,7 @@ const SHORT: f32 = 1e-6;
 /// Bad strands that a problem names before it only counts.
 const NAMED: usize = 3;
 
-/// What may be wrong with a strand, and what it should be.
+/// Faults of strands, and their requirements.
 const FAULTS: [(&str, &str); 4] = [
     ("has fewer than two points", "two or more"),
     ("has a coordinate that is not a number or is too large", "finite coordinates below 1e7"),

@@ -154,7 +154,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         Some(uvs) => put(&mut body, uvs.iter().flat_map(|uv| uv.to_array())),
         None => put(&mut body, std::iter::repeat_n(0.0, 2 * strands)),
     }
-    // What was taken because a file had none is no width of its own.
+    // A default width, taken because a file had none, is no attribute.
     if Part::Widths.is_in(groom) {
         offsets[3] = here(&body);
         let starts = groom.starts.iter().take(strands);

@@ -1,4 +1,4 @@
-//! Where a comb leads the hair: a direction for every place on and around the head.
+//! Direction of a comb at every place on and around the head.
 
 use glam::{Vec2, Vec3};
 use strandline_base::math;
@@ -6,9 +6,9 @@ use strandline_body::Root;
 
 use super::{Style, StyleSettings};
 
-/// Where the whorl lies \[m\].
+/// Centre of the whorl \[m\].
 const WHORL: Vec3 = Vec3::new(0.012, 0.092, -0.062);
-/// Where a ponytail is tied \[m\], and where the hair leaves the tie.
+/// Tie of a ponytail \[m\]; hair leaves it there.
 pub const TIE: Vec3 = Vec3::new(0.0, 0.038, -0.117);
 /// Radius \[m\] of the tied hair.
 pub const TIE_RADIUS: f32 = 0.011;
@@ -19,7 +19,7 @@ const FRONT_FROM: f32 = 0.012;
 /// From this height \[m\] on the skull the hair no longer heeds the parting.
 const PARTED_ABOVE: f32 = 0.045;
 
-/// Where a strand has come to.
+/// End of a strand while it is combed.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     /// Place \[m\].
@@ -39,7 +39,7 @@ impl Place {
     }
 }
 
-/// What is known of a strand while it is combed.
+/// Constants of a strand while it is combed.
 #[derive(Clone, Copy, Debug)]
 pub struct Combed {
     /// Its root.
@@ -48,7 +48,7 @@ pub struct Combed {
     pub side: f32,
     /// Its place across the tie, in the unit disc.
     pub place: Vec2,
-    /// Whether it has passed the tie.
+    /// True if it has passed the tie.
     pub tied: bool,
 }
 

@@ -123,7 +123,7 @@ impl Bends {
         }
     }
 
-    /// How far \[m\] a strand is bent aside at a share of its length \[m\].
+    /// Distance \[m\] by which a strand is bent aside at a share of its length \[m\].
     fn offset(&self, settings: &StyleSettings, [side, up]: [Vec3; 2], share: f32, length: f32) -> Vec3 {
         let along = share * length;
         let wave = settings.wave_amplitude * smooth(0.02, 0.16, along);

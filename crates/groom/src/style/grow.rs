@@ -60,7 +60,7 @@ impl StyleSettings {
 }
 
 impl StyleSettings {
-    /// What growing takes at most: each strand as it is marched, shaped and at last a part of the groom.
+    /// Largest memory of growing: each strand as it is marched, shaped and finally a part of the groom.
     pub fn memory(&self) -> Need {
         let marched = 2 * (self.length / STEP).ceil() as u64;
         let each = 12 * (marched + 2 * self.points() as u64) + 3 * size_of::<Strand>() as u64;

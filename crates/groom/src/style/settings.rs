@@ -4,7 +4,7 @@ use super::Style;
 use crate::GroomError;
 
 settings! {
-    /// How to grow a style. The default of every number but the first two is that of the style.
+    /// Settings of a grown style. The default of every number but the first two is that of the style.
     pub struct StyleSettings {
         /// The style.
         style: Style = Style::default();
@@ -21,7 +21,7 @@ settings! {
         cut_height: f32 = -0.27, in [-10.0, 1.0] "m", slider [-0.5, 0.1], more "shorter hair";
         /// Height over which the cut is spread, hair from the crown ending highest; 0 cuts level.
         layering: f32 = 0.02, in [0.0, 0.5] "m", slider [0.0, 0.2], more "more steps in the cut";
-        /// How far the ends turn under, toward the neck.
+        /// Turn of the ends under, toward the neck.
         turn_under: f32 = 0.0, in [0.0, 2.0], more "ends that curl further in";
         /// Place of the parting, positive on the head's left.
         parting: f32 = 0.0, in [-0.07, 0.07] "m", more "a parting further left";
@@ -31,7 +31,7 @@ settings! {
         volume: f32 = 0.012, in [0.001, 0.1] "m", slider [0.001, 0.05], more "fuller hair";
         /// Width of a clump at the roots.
         clump_width: f32 = 0.020, in [0.002, 0.2] "m", slider [0.002, 0.06], more "fewer, broader locks";
-        /// How far strands are drawn to the middle of their clump at the tip.
+        /// Share of the way to the middle of its clump that a strand is drawn at the tip.
         clump_share: f32 = 0.35, in [0.0, 1.0], more "more pointed locks";
         /// Amplitude of waves.
         wave_amplitude: f32 = 0.0, in [0.0, 0.1] "m", slider [0.0, 0.03], more "deeper waves";
@@ -136,7 +136,7 @@ impl StyleSettings {
         }
     }
 
-    /// What a file does not give is that of its style.
+    /// A missing key has the value of its style.
     fn prepare(&mut self, given: &<Self as Value>::Given) {
         if let Some(style) = given.style {
             *self = Self::new(style);

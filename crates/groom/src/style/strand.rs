@@ -6,7 +6,7 @@ use strandline_body::{Mannequin, Root, SignedDistance};
 /// Distance \[m\] from the skin that all hair keeps once it has left the root.
 pub const CLEARANCE: f32 = 0.0015;
 
-/// What shaping needs to know of every strand.
+/// A strand with the inputs of its shaping.
 pub struct Strand {
     /// Its root.
     pub root: Root,

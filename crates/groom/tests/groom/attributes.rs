@@ -1,4 +1,4 @@
-//! What a groom has beyond points: kept by a format to the bit, or named as lost.
+//! Attributes of a groom beyond points: kept by a format to the bit, or named as lost.
 
 use std::path::PathBuf;
 
@@ -33,7 +33,7 @@ fn everything() -> Groom {
     groom
 }
 
-/// Whether two grooms are the same in one part.
+/// True if two grooms are the same in one attribute.
 fn agree(part: Part, one: &Groom, two: &Groom) -> bool {
     let along = |groom: &Groom| groom.point_widths().collect::<Vec<_>>();
     match part {

@@ -331,7 +331,7 @@ fn damaged(mut bytes: Vec<u8>, flips: &[(usize, u8)], cut: usize, extra: usize) 
     bytes
 }
 
-/// What was read from damaged bytes is no larger than they are.
+/// Strands read from damaged bytes are no larger than the bytes.
 fn bounded(read: Result<strandline_groom::format::Parsed, GroomError>, length: usize) {
     if let Ok(parsed) = read {
         assert!(parsed.groom.points.len() * 12 <= length);

@@ -91,7 +91,7 @@ fn projects_that_name_a_file_often() {
     }
 }
 
-/// What is asked for before a file is read is what reading takes, for the shortest numbers too.
+/// The memory requested before a file is read covers the reading, for the shortest numbers too.
 #[test]
 fn a_groom_takes_no_more_than_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();

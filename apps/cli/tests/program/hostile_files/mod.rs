@@ -20,7 +20,7 @@ const LARGEST: usize = 1 << 20;
 const SCENE: &str =
     "film = { frames = 1, settle = 0.0 }\nsimulation.backend = \"cpu\"\nstyle = { strand_count = 8 }\n";
 
-/// What a run of the program took: its code and the most memory \[MiB\].
+/// Result of a run of the program: its code, its largest memory \[MiB\], and its messages.
 fn run(folder: &Path, arguments: &[&str]) -> (Option<i32>, u64, String) {
     // Past its CPU time the system ends it: then there is no code.
     let script = format!("ulimit -t {SECONDS}; exec \"$0\" \"$@\"");

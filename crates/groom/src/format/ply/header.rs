@@ -79,7 +79,7 @@ pub struct Element {
     pub properties: Vec<Property>,
 }
 
-/// How numbers are written.
+/// Encoding of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     Text,
@@ -87,12 +87,12 @@ pub enum Encoding {
     Big,
 }
 
-/// What a header says.
+/// A parsed header.
 pub struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
     pub group_names: BTreeMap<u32, String>,
-    /// Where the rows begin \[byte\].
+    /// Offset of the rows \[byte\].
     pub length: usize,
 }
 

@@ -12,7 +12,7 @@ const MAX_LIST: f64 = 4096.0;
 pub struct Column {
     name: String,
     is_byte: bool,
-    /// Where the list of each row ends among the values; empty for numbers that are no lists.
+    /// End of the list of each row among the values; empty for numbers that are not lists.
     ends: Vec<usize>,
     is_list: bool,
     /// Numbers, or the lists one behind the other.
@@ -56,7 +56,7 @@ impl Table {
         self.columns.iter().find(|column| column.name == name && column.is_list)
     }
 
-    /// Whether a property is of single bytes.
+    /// True if a property is of single bytes.
     pub fn is_byte(&self, name: &str) -> bool {
         self.columns.iter().any(|column| column.name == name && column.is_byte)
     }
@@ -76,7 +76,7 @@ impl<'a> Rows<'a> {
 
     /// The rows of the next element; properties that are not among `names` are skipped.
     pub fn read(&mut self, element: &Element, names: &[&str]) -> Result<Table, GroomError> {
-        // What a row takes at least: nothing is taken that the file cannot fill.
+        // Least size of a row: no memory is taken that the file cannot fill.
         let least = |number: Number| if self.encoding == Encoding::Text { 1 } else { number.size() as u64 };
         let row: u64 =
             element.properties.iter().map(|property| least(property.length.unwrap_or(property.number))).sum();

@@ -74,7 +74,7 @@ fn header(groom: &Groom) -> String {
     out
 }
 
-/// Whether strands have widths of one number each: what was taken because a file had none is not written.
+/// True if strands have a width each; a default width, taken because a file had none, is not written.
 fn of_strands(groom: &Groom) -> bool {
     Part::Widths.is_in(groom) && !matches!(groom.widths, Widths::PerPoint(_))
 }
