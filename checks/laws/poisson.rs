@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use strandline_sim::cpu::Kind;
+use strandline_sim::cells::Kind;
 use strandline_sim::cpu::pcg::{Pcg, PcgSettings, Solution};
 use strandline_sim::cpu::poisson::Poisson;
 use strandline_sim::{Preconditioner, PressureReport};

@@ -4,10 +4,12 @@ use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Pose, Shape};
 use strandline_checks::gpu;
 use strandline_gpu::Gpu;
+use strandline_sim::cells::Kind;
+use strandline_sim::contact::Obstacles;
+use strandline_sim::cpu::Volume;
 use strandline_sim::cpu::mark::mark;
 use strandline_sim::cpu::solve_pressure::solve_pressure;
 use strandline_sim::cpu::splat::splat;
-use strandline_sim::cpu::{Kind, Obstacles, Volume};
 use strandline_sim::gpu::Probe;
 use strandline_sim::{Drive, Stage, VolumeSettings};
 

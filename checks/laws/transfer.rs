@@ -5,11 +5,12 @@ use strandline_body::{Carrier, Collider, Pose, Random, Shape};
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, LANES, Lanes, RestShape, Vec3Lanes, block_count};
+use strandline_sim::contact::Obstacles;
+use strandline_sim::cpu::Volume;
 use strandline_sim::cpu::gather::gather;
 use strandline_sim::cpu::mark::mark;
 use strandline_sim::cpu::solve_pressure::solve_pressure;
 use strandline_sim::cpu::splat::splat;
-use strandline_sim::cpu::{Obstacles, Volume};
 use strandline_sim::gpu::{GpuRunner, Probe};
 use strandline_sim::{Drive, Model, Settings, Stage, VolumeSettings};
 

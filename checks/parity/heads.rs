@@ -6,7 +6,8 @@ use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, LANES, Vec3Lanes};
-use strandline_sim::cpu::{Obstacles, Scratch};
+use strandline_sim::contact::Obstacles;
+use strandline_sim::cpu::Scratch;
 use strandline_sim::gpu::{GpuRunner, Probe};
 use strandline_sim::{CpuRunner, Drive, Model, Settings, State, StrandMethod, VolumeSettings};
 

@@ -137,7 +137,7 @@ fn a_device_may_fail_after_its_state_was_read() {
 }
 
 #[test]
-fn a_state_of_the_last_runs_is_seen_again_when_the_device_fails() {
+fn a_state_of_the_last_runs_is_computed_again_when_the_device_fails() {
     let head = &heads()[0];
     let expected = on_cpu(head);
     for step in [3, 6, 10] {
@@ -145,10 +145,11 @@ fn a_state_of_the_last_runs_is_seen_again_when_the_device_fails() {
         let mut simulator = simulator(head, &gpu, 120);
         runs().for_each(|drives| drop(simulator.run(&drives).unwrap()));
         gpu.destroy();
-        let mut seen = None;
-        assert!(simulator.fall_back_seeing(step, |state| seen = Some(state.positions.clone())));
-        assert_eq!(seen.unwrap(), expected[step as usize].positions);
-        assert!(!simulator.fall_back_seeing(step, |_| panic!("it is on the CPU")));
+        for _ in 0..2 {
+            let found = simulator.state_after(step).positions.clone();
+            assert_eq!(found, expected[step as usize].positions);
+            simulator.fall_back();
+        }
         assert_eq!(simulator.state().unwrap().positions, expected[STEPS].positions);
     }
     // A state that was read meanwhile does not hide those of the run before.
@@ -159,7 +160,45 @@ fn a_state_of_the_last_runs_is_seen_again_when_the_device_fails() {
         simulator.state().unwrap();
     }
     gpu.destroy();
-    let mut seen = None;
-    assert!(simulator.fall_back_seeing(STEPS as u64 - 1, |state| seen = Some(state.time)));
-    assert_eq!(seen, Some(expected[STEPS - 1].time));
+    assert_eq!(simulator.state_after(STEPS as u64 - 1).time, expected[STEPS - 1].time);
+    simulator.fall_back();
+    // What the CPU does next leaves the state that a picture under way shows.
+    let left = simulator.state().unwrap().positions.clone();
+    simulator.run(&[drive(STEPS + 1)]).unwrap();
+    assert_eq!(simulator.state_after(STEPS as u64).positions, left);
+    assert_ne!(simulator.state().unwrap().positions, left);
+}
+
+/// Settings and hands that change between the steps of a device change in the same place when these are computed again.
+#[test]
+fn a_loss_after_changes_gives_what_comes_without_one() {
+    for head in &heads() {
+        let play = |gpu: Option<&strandline_gpu::Gpu>, failing: usize| {
+            let mut simulator = Simulator::new(gpu, head.model()).unwrap();
+            let tip = simulator.last_state().positions[head.model().points_per_strand() - 1].get(0);
+            assert!(simulator.grab(tip, 0.01).unwrap() > 0);
+            for (run, drives) in runs().enumerate() {
+                let mut settings = simulator.model().settings().clone();
+                settings.gravity.x = run as f32;
+                settings.drag.across = 1.0 + run as f32;
+                simulator.set_settings(&settings).unwrap();
+                if run == failing {
+                    gpu.inspect(|gpu| gpu.destroy());
+                    simulator.fall_back();
+                }
+                simulator.run(&drives).unwrap();
+                if run == 2 {
+                    simulator.release().unwrap();
+                }
+                assert_eq!(simulator.grabbed() > 0, run < 2);
+            }
+            simulator.state().unwrap().positions.clone()
+        };
+        let expected = play(None, RUNS.len());
+        assert_ne!(expected, on_cpu(head)[STEPS].positions, "the changes matter");
+        for failing in [2, 5] {
+            let Some(gpu) = own_gpu() else { return };
+            assert!(play(Some(&gpu), failing) == expected, "a loss in run {failing}");
+        }
+    }
 }

@@ -2,9 +2,10 @@
 
 use strandline_checks::gpu;
 use strandline_groom::{LANES, Vec3Lanes};
+use strandline_sim::cells::Kind;
 use strandline_sim::cpu::{
-    Kind, Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark,
-    pose_roots::pose_roots, solve_pressure::solve_pressure, splat::splat,
+    Volume, constrain::constrain, gather::gather, integrate::integrate, mark::mark, pose_roots::pose_roots,
+    solve_pressure::solve_pressure, splat::splat,
 };
 use strandline_sim::gpu::{GpuRunner, Gradient, Probe, Spread};
 use strandline_sim::{Model, Preconditioner, Stage, State, VolumeSettings};
@@ -125,7 +126,7 @@ fn marked(head: &Head) -> (Model, Moving, Volume) {
 fn solved(model: &GpuRunner, state: &Moving, volume: &Volume, spread: Spread) -> Probe {
     let mut probe = state.probe(model);
     probe.runner.set_spread(spread);
-    probe.set_volume(volume).unwrap();
+    probe.set_volume(&volume.contents()).unwrap();
     probe.run(&drive(6), &[Stage::SolvePressure]).unwrap();
     probe
 }
@@ -175,7 +176,7 @@ fn solve_pressure_agrees_in_every_way_to_run_it() {
                 let mut probe = state.probe(&gpu_runner);
                 probe.runner.set_spread(spread);
                 probe.runner.set_gradient(gradient);
-                probe.set_volume(&volume).unwrap();
+                probe.set_volume(&volume.contents()).unwrap();
                 probe.run(&drive(6), &[Stage::SolvePressure]).unwrap();
                 let name = format!("{}, {preconditioner:?}, {spread:?}", head.name);
                 let (pressure, found) = probe.pressure().unwrap();
@@ -238,7 +239,7 @@ fn more_iterations_than_rounds_go_on_in_one_workgroup() {
     assert!(expected.iterations > 60, "{expected:?}");
     let gpu_runner = head.gpu_runner(&gpu);
     let mut probe = state.probe(&gpu_runner);
-    probe.set_volume(&volume).unwrap();
+    probe.set_volume(&volume.contents()).unwrap();
     probe.run(&drive(6), &[Stage::SolvePressure]).unwrap();
     let (_, found) = probe.pressure().unwrap();
     assert!(found.iterations > 55 && found.residual <= 1e-6 * found.first, "{found:?}");
@@ -302,7 +303,7 @@ fn gather_agrees() {
         solve_pressure(&mut volume);
         let gpu_runner = head.gpu_runner(&gpu);
         let mut probe = state.probe(&gpu_runner);
-        probe.set_volume(&volume).unwrap();
+        probe.set_volume(&volume.contents()).unwrap();
         probe.run(&drive(6), &[Stage::Gather]).unwrap();
         let before = state.velocities.clone();
         let predicted = state.predicted().to_vec();

@@ -1,6 +1,6 @@
 //! The worked example of figures 28 to 30: points sorted by cell \[Chen2011\].
 
-use strandline_sim::cpu::cell_sort::CellSort;
+use strandline_sim::cells::CellSort;
 
 /// Cell of each point, 4 x 3 x 1 cells.
 const CELLS: [u32; 6] = [9, 6, 6, 4, 6, 4];

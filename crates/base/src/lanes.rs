@@ -1,4 +1,4 @@
-//! Eight strands at a time, as they lie in memory.
+//! Eight strands at a time, as they lie in memory, and their points strand after strand, as files have them.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -9,6 +9,81 @@ pub const LANES: usize = 8;
 /// Blocks needed for a number of strands.
 pub const fn block_count(strand_count: usize) -> usize {
     strand_count.div_ceil(LANES)
+}
+
+/// Place of a strand's point in arrays of shape `[block][point]` of lanes: the index, and the lane there.
+#[inline]
+pub const fn lane_place(strand: usize, point: usize, points_per_strand: usize) -> (usize, usize) {
+    (strand / LANES * points_per_strand + point, strand % LANES)
+}
+
+/// Elements of shape `[block][point]` of lanes, strand after strand: shape `[strand][point]`.
+pub fn in_strand_order<L: LaneArray>(
+    lanes: &[L],
+    strand_count: usize,
+    points_per_strand: usize,
+) -> impl Iterator<Item = L::Element> + '_ {
+    let places = move |strand| (0..points_per_strand).map(move |point| (strand, point));
+    (0..strand_count).flat_map(places).map(move |(strand, point)| {
+        let (index, lane) = lane_place(strand, point, points_per_strand);
+        lanes[index].element(lane)
+    })
+}
+
+/// Fills lanes of shape `[block][point]` with the elements of strands, from (strand, point); lanes beyond the last strand
+/// repeat it.
+pub fn fill_lanes<L: LaneArray>(
+    lanes: &mut [L],
+    strand_count: usize,
+    points_per_strand: usize,
+    element: impl Fn(usize, usize) -> L::Element,
+) {
+    for (index, slot) in lanes.iter_mut().enumerate() {
+        for lane in 0..LANES {
+            let strand = (index / points_per_strand * LANES + lane).min(strand_count - 1);
+            slot.set_element(lane, element(strand, index % points_per_strand));
+        }
+    }
+}
+
+/// Elements of the strands of a block.
+pub trait LaneArray {
+    /// Element of one strand.
+    type Element;
+
+    /// The element of a lane.
+    fn element(&self, lane: usize) -> Self::Element;
+
+    /// Sets the element of a lane.
+    fn set_element(&mut self, lane: usize, element: Self::Element);
+}
+
+impl LaneArray for Lanes {
+    type Element = f32;
+
+    #[inline]
+    fn element(&self, lane: usize) -> f32 {
+        self.0[lane]
+    }
+
+    #[inline]
+    fn set_element(&mut self, lane: usize, element: f32) {
+        self.0[lane] = element;
+    }
+}
+
+impl LaneArray for Vec3Lanes {
+    type Element = Vec3;
+
+    #[inline]
+    fn element(&self, lane: usize) -> Vec3 {
+        self.get(lane)
+    }
+
+    #[inline]
+    fn set_element(&mut self, lane: usize, element: Vec3) {
+        self.set(lane, element);
+    }
 }
 
 /// One number for each strand of a block.
@@ -46,5 +121,28 @@ impl Vec3Lanes {
         self.x[lane] = vector.x;
         self.y[lane] = vector.y;
         self.z[lane] = vector.z;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strands_go_into_lanes_and_come_back_and_the_last_fills_its_block() {
+        let (strands, points) = (11, 3);
+        let element = |strand: usize, point: usize| Vec3::new(strand as f32, point as f32, 0.5);
+        let mut lanes = vec![Vec3Lanes::default(); block_count(strands) * points];
+        fill_lanes(&mut lanes, strands, points, element);
+        let found: Vec<Vec3> = in_strand_order(&lanes, strands, points).collect();
+        let wanted: Vec<Vec3> =
+            (0..strands * points).map(|index| element(index / points, index % points)).collect();
+        assert_eq!(found, wanted);
+        // The last lane of the second block repeats strand 10.
+        assert_eq!(lanes[points + 2].get(7), element(10, 2));
+        assert_eq!(lane_place(10, 2, points), (points + 2, 2));
+        let mut numbers = vec![Lanes::default(); block_count(strands) * points];
+        fill_lanes(&mut numbers, strands, points, |strand, point| (10 * strand + point) as f32);
+        assert_eq!(in_strand_order(&numbers, strands, points).nth(4 * points + 1), Some(41.0));
     }
 }

@@ -29,12 +29,12 @@ mod whole_file;
 
 pub use folder_lock::FolderLock;
 pub use growing_file::GrowingFile;
-pub use lanes::{LANES, Lanes, Vec3Lanes, block_count};
+pub use lanes::{LANES, LaneArray, Lanes, Vec3Lanes, block_count, fill_lanes, in_strand_order, lane_place};
 pub use parts::{Abandoned, abandon_parts};
 pub use plain_file::{open_plain, read_plain};
 pub use pose::Pose;
 pub use printable::printable;
 pub use random::Random;
-pub use setting::{Group, Key, Kind, Row, SettingError, Table, Value, Word, number};
+pub use setting::{Group, Items, Key, Kind, Overrides, Row, SettingError, Table, Value, Word, number};
 pub use stopwatch::{Stopwatch, timed};
 pub use whole_file::WholeFile;

@@ -79,7 +79,25 @@ impl Word {
     }
 }
 
-/// Values of a setting.
+/// The section of the items of a list. A function returns its table, since the items may take rows from the section
+/// that lists them.
+#[derive(Clone, Copy, Debug)]
+pub struct Items(pub(crate) fn() -> &'static Table);
+
+impl Items {
+    /// The settings of an item.
+    pub fn table(self) -> &'static Table {
+        self.0()
+    }
+}
+
+impl PartialEq for Items {
+    fn eq(&self, other: &Self) -> bool {
+        self.table() == other.table()
+    }
+}
+
+/// The values that a setting may hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// true or false.
@@ -97,7 +115,7 @@ pub enum Kind {
     /// A section of its own.
     Group(&'static Table),
     /// Any number of sections.
-    List(&'static Table),
+    List(Items),
 }
 
 /// Description of one setting.
@@ -192,7 +210,8 @@ impl Table {
         let row = self.rows.iter().find(|row| row.name == name)?;
         match (row.kind, rest) {
             (_, None) => Some(row),
-            (Kind::Group(table) | Kind::List(table), Some(rest)) => table.row(rest),
+            (Kind::Group(table), Some(rest)) => table.row(rest),
+            (Kind::List(items), Some(rest)) => items.table().row(rest),
             _ => None,
         }
     }
@@ -236,6 +255,13 @@ pub trait Group: Value {
     fn check_as(&self, name: &str) -> Result<(), SettingError> {
         self.check(&Row::NONE, &Key::root(name))
     }
+}
+
+/// A section of settings that replace those of another, `Base`; `overrides` in a
+/// [`settings!`](crate::settings) block makes it.
+pub trait Overrides<Base> {
+    /// A copy of `base` with the settings that are given here.
+    fn over(&self, base: &Base) -> Base;
 }
 
 /// A number as a person reads it.

@@ -21,6 +21,10 @@
 /// a setting that a file must give, `in [least, most] "unit"`, `slider [least, most]`, `more "effect of a larger value"`.
 /// * A number of a section that a file does not give keeps the default of the section *where it stands*: a
 ///   part of `springs.stretch` leaves the rest of the stretch spring as it is.
+/// * `shared Other { name: Type }` are settings that another section states: default, range, unit and sentence are
+///   those of `Other`.
+/// * `overrides Other { name: Type }` are settings of `Other` that this section may replace: [`Overrides::over`]
+///   merges those that are given into an `Other`. Each is an `Option`, absent by default.
 /// * `plain { name: Type }` are fields that no file has; `moved { name: Type => "new.key" }` are keys of
 ///   old files: read by a section around this one in its `prepare`, refused elsewhere with the new key.
 /// * After the struct, `prepare path;` names a `fn(&mut Self, &<Self as Value>::Given)` that runs before
@@ -40,6 +44,8 @@ macro_rules! settings {
                 $(, more $more:literal)?
                 ;
             )*
+            $(shared $Shared:ty { $($share:ident: $Share:ty),* $(,)? })*
+            $(overrides $Base:ty { $($over:ident: $Over:ty),* $(,)? })*
             $(plain { $($(#[$plain_meta:meta])* $plain:ident: $Plain:ty),* $(,)? })?
             $(moved { $($moved:ident: $Moved:ty => $new_key:literal),* $(,)? })?
         }
@@ -61,6 +67,16 @@ macro_rules! settings {
                 pub $field: $Type,
             )*
             $($(
+                #[doc = concat!("As [`", stringify!($Shared), "::", stringify!($share), "`].")]
+                #[serde(skip_serializing_if = "::strandline_base::Value::is_absent")]
+                pub $share: $Share,
+            )*)*
+            $($(
+                #[doc = concat!("In place of [`", stringify!($Base), "::", stringify!($over), "`].")]
+                #[serde(skip_serializing_if = "Option::is_none")]
+                pub $over: Option<$Over>,
+            )*)*
+            $($(
                 $(#[$plain_meta])*
                 #[serde(skip)]
                 pub $plain: $Plain,
@@ -68,19 +84,23 @@ macro_rules! settings {
         }
 
         const _: () = {
-            /// Settings of the section that a file gives.
+            /// The settings that a file gives.
             #[allow(missing_docs)]
             #[derive(Clone, Default, ::serde::Deserialize)]
             #[serde(deny_unknown_fields, default, expecting = "a section of settings")]
             pub struct Given {
                 $(pub $field: Option<<$Type as $crate::Value>::Given>,)*
+                $($(pub $share: Option<<$Share as $crate::Value>::Given>,)*)*
+                $($(pub $over: Option<$Over>,)*)*
                 $($(pub $moved: Option<$Moved>,)*)?
             }
 
-            /// Descriptions of the settings.
+            /// The row of each setting.
             #[allow(missing_docs)]
             pub struct Rows {
                 $(pub $field: $crate::Row,)*
+                $($(pub $share: $crate::Row,)*)*
+                $($(pub $over: $crate::Row,)*)*
             }
 
             impl $crate::Group for $Name {
@@ -96,10 +116,31 @@ macro_rules! settings {
                         more: concat!($($more)?),
                         required: false $(|| $required)?,
                     },)*
+                    $($($share: <$Shared as $crate::Group>::ROWS.$share,)*)*
+                    $($($over: $crate::Row {
+                        required: false,
+                        ..<$Base as $crate::Group>::ROWS.$over
+                    },)*)*
                 };
-                const TABLE: $crate::Table =
-                    $crate::Table { doc: concat!($($about, "\n"),*), rows: &[$(Self::ROWS.$field),*] };
+                const TABLE: $crate::Table = $crate::Table {
+                    doc: concat!($($about, "\n"),*),
+                    rows: &[
+                        $(Self::ROWS.$field,)*
+                        $($(Self::ROWS.$share,)*)*
+                        $($(Self::ROWS.$over,)*)*
+                    ],
+                };
             }
+
+            $(impl $crate::Overrides<$Base> for $Name {
+                fn over(&self, base: &$Base) -> $Base {
+                    let mut given = <<$Base as $crate::Value>::Given>::default();
+                    $(given.$over = self.$over.clone();)*
+                    let mut merged = base.clone();
+                    $crate::Value::take(&mut merged, given);
+                    merged
+                }
+            })*
 
             impl $crate::Value for $Name {
                 type Given = Given;
@@ -110,6 +151,12 @@ macro_rules! settings {
                     $(if let Some(part) = given.$field {
                         $crate::Value::take(&mut self.$field, part);
                     })*
+                    $($(if let Some(part) = given.$share {
+                        $crate::Value::take(&mut self.$share, part);
+                    })*)*
+                    $($(if given.$over.is_some() {
+                        self.$over = given.$over;
+                    })*)*
                 }
 
                 fn check(&self, _: &$crate::Row, key: &$crate::Key) -> Result<(), $crate::SettingError> {
@@ -118,6 +165,16 @@ macro_rules! settings {
                         &<Self as $crate::Group>::ROWS.$field,
                         &key.of(stringify!($field)),
                     )?;)*
+                    $($($crate::Value::check(
+                        &self.$share,
+                        &<Self as $crate::Group>::ROWS.$share,
+                        &key.of(stringify!($share)),
+                    )?;)*)*
+                    $($($crate::Value::check(
+                        &self.$over,
+                        &<Self as $crate::Group>::ROWS.$over,
+                        &key.of(stringify!($over)),
+                    )?;)*)*
                     $($also(self, key)?;)?
                     Ok(())
                 }
@@ -126,7 +183,12 @@ macro_rules! settings {
             impl Default for $Name {
                 #[allow(unused_mut)]
                 fn default() -> Self {
-                    let mut fresh = Self { $($field: $default,)* $($($plain: Default::default(),)*)? };
+                    let mut fresh = Self {
+                        $($field: $default,)*
+                        $($($share: <$Shared>::default().$share,)*)*
+                        $($($over: None,)*)*
+                        $($($plain: Default::default(),)*)?
+                    };
                     $($prepare(&mut fresh, &Given::default());)?
                     fresh
                 }
@@ -142,6 +204,9 @@ macro_rules! settings {
                     $(if (false $(|| $required)?) && given.$field.is_none() {
                         return Err(<D::Error as ::serde::de::Error>::missing_field(stringify!($field)));
                     })*
+                    $($(if <$Shared as $crate::Group>::ROWS.$share.required && given.$share.is_none() {
+                        return Err(<D::Error as ::serde::de::Error>::missing_field(stringify!($share)));
+                    })*)*
                     let mut value = Self::default();
                     $crate::Value::take(&mut value, given);
                     Ok(value)

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
+use crate::setting::Items;
 use crate::{Group, Key, Kind, Row, SettingError, Value};
 use serde::de::DeserializeOwned;
 
@@ -130,7 +131,7 @@ impl<T: Value<Given = T> + Clone + DeserializeOwned> Value for Option<T> {
 
 impl<T: Group + Clone + DeserializeOwned> Value for Vec<T> {
     type Given = Self;
-    const KIND: Kind = Kind::List(&T::TABLE);
+    const KIND: Kind = Kind::List(Items(|| &T::TABLE));
 
     fn take(&mut self, given: Self) {
         *self = given;

@@ -1,7 +1,7 @@
 //! A section of settings: reading, checks, description.
 
 use glam::Vec3;
-use strandline_base::{Group, Key, Kind, SettingError, Value, choices, settings};
+use strandline_base::{Group, Key, Kind, Overrides, SettingError, Value, choices, settings};
 
 choices! {
     /// A word.
@@ -146,4 +146,60 @@ fn everything_is_known_of_a_setting() {
     assert_eq!(Springs::TABLE.about(), "Two springs and more.");
     let error = "up".parse::<Way>().unwrap_err().to_string();
     assert_eq!(error, "way is `up`, expected one of this, that");
+}
+
+settings! {
+    /// Cloth.
+    pub struct Cloth: Copy {
+        /// Thickness.
+        thickness: f32 = 1.0, in [0.1, 10.0] "mm", slider [0.5, 2.0], more "stiffer cloth";
+        /// Shear stiffness.
+        shear: Option<f32> = None, in [1.0, 9.0] "Pa";
+        /// Weave.
+        count: u32 = 12, required true, in [1, 40];
+    }
+    prepare Cloth::prepare;
+}
+
+impl Cloth {
+    /// Thick cloth shears less.
+    fn prepare(&mut self, given: &<Self as Value>::Given) {
+        if given.thickness.is_some_and(|thickness| thickness > 5.0) {
+            self.shear = Some(2.0);
+        }
+    }
+}
+
+settings! {
+    /// A patch of other cloth.
+    pub struct Patch {
+        /// Its name.
+        name: String = String::new(), required true;
+        shared Cloth { count: u32 }
+        overrides Cloth { thickness: f32, shear: f32 }
+    }
+}
+
+#[test]
+fn settings_that_override_others_have_their_rows_and_merge() {
+    let (own, base) = (Patch::ROWS.thickness, Cloth::ROWS.thickness);
+    assert_eq!(own, base);
+    assert_eq!(Patch::ROWS.count, Cloth::ROWS.count);
+    let names: Vec<_> = Patch::TABLE.rows.iter().map(|row| row.name).collect();
+    assert_eq!(names, ["name", "count", "thickness", "shear"]);
+    let cloth = Cloth { shear: Some(3.0), ..Cloth::default() };
+    let patch: Patch = toml::from_str("name = 'a'\ncount = 3").unwrap();
+    assert_eq!((patch.over(&cloth), patch.count, patch.thickness), (cloth, 3, None));
+    assert_eq!(toml::to_string(&patch).unwrap(), "name = \"a\"\ncount = 3\n");
+    let patch: Patch = toml::from_str("name = 'a'\ncount = 3\nthickness = 6.0").unwrap();
+    // The base's own preparation counts, and its settings that are not overridden stay.
+    let wanted = Cloth { thickness: 6.0, shear: Some(2.0), ..cloth };
+    assert_eq!(patch.over(&cloth), wanted);
+    assert_eq!(toml::from_str::<Patch>(&toml::to_string(&patch).unwrap()).unwrap(), patch);
+    let refused = Patch { thickness: Some(11.0), ..patch.clone() }.check_as("patch").unwrap_err();
+    assert_eq!(refused.to_string(), "patch.thickness is 11, expected 0.1 to 10 mm");
+    let refused = Patch { count: 41, ..patch }.check_as("patch").unwrap_err();
+    assert_eq!(refused.to_string(), "patch.count is 41, expected 1 to 40");
+    assert!(toml::from_str::<Patch>("name = 'a'").unwrap_err().to_string().contains("missing field `count`"));
+    assert_eq!(Patch::default().count, 12);
 }

@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
-use strandline_base::SettingError;
 use strandline_base::par::prelude::*;
+use strandline_base::{SettingError, lane_place};
 
 use crate::arcs::equal_arcs;
 use crate::{Groom, GroomError, LANES, Vec3Lanes, Widths, attributes, block_count};
@@ -114,7 +114,8 @@ impl Guides {
 
     /// Rest position \[m\] of one point, head space.
     pub fn position(&self, strand: usize, point: usize) -> Vec3 {
-        self.positions[strand / LANES * self.points_per_strand + point].get(strand % LANES)
+        let (index, lane) = lane_place(strand, point, self.points_per_strand);
+        self.positions[index].get(lane)
     }
 
     /// Unit skin normals at the roots, head space, shape `[strand]`.

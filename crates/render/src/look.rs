@@ -3,10 +3,10 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::math;
-use strandline_base::{Key, SettingError, Value, settings};
+use strandline_base::{Key, Overrides, SettingError, Value, settings};
 
 use crate::Environment;
-use crate::fibre::{Fibre, FibreModel, Highlight, chiang::Pigment};
+use crate::fibre::{Chiang, Fibre, FibreModel, Highlight, chiang::Pigment};
 use crate::preset::Preset;
 use crate::surroundings::Surroundings;
 
@@ -54,7 +54,8 @@ settings! {
         color_map: Option<PathBuf> = None;
         /// A .png with the width of each strand as a share of its own: white is all of it, black none.
         width_map: Option<PathBuf> = None;
-        /// Groups of strands that look other than all, at most 256.
+        /// Groups of strands that look other than all, at most 256. A setting that a group does not give is that of all
+        /// but its tip colour, which is that of its root; a colour or a map of a group wins over its pigment.
         group: Vec<GroupLook> = Vec::new(), in [0, 256];
         /// Seed of every random choice of the look.
         seed: u32 = 0, in [0, u32::MAX];
@@ -78,40 +79,32 @@ settings! {
         /// Name of the group in the groom, or its number; of files that are brought together each is a group of
         /// its name.
         name: String = String::new(), required true;
-        /// Reflectance at the root, linear RGB.
-        root_color: Option<Vec3> = None, in [0.0, 1.0];
-        /// Reflectance at the tip, linear RGB; without it that at the root.
-        tip_color: Option<Vec3> = None, in [0.0, 1.0];
-        /// Brown to black pigment, as `look.fibre.chiang.eumelanin`; a colour or a map of the group wins.
-        eumelanin: Option<f32> = None, in [0.0, 100.0];
-        /// Red to yellow pigment, as `look.fibre.chiang.pheomelanin`.
-        pheomelanin: Option<f32> = None, in [0.0, 100.0];
-        /// Pigment at the tip as a share of that at the root.
-        tip_pigment: Option<f32> = None, in [0.0, 2.0];
-        /// Spread of brightness among strands as a share of it.
-        variation: Option<f32> = None, in [0.0, 1.0];
-        /// Share of strands that have turned white.
-        grey: Option<f32> = None, in [0.0, 1.0];
         /// Multiple of the groom's root diameters, on top of that of all.
         width_scale: f32 = 1.0, in [0.0, 1000.0], slider [0.1, 5.0], more "wider strands";
         /// Multiple of `look.clump`'s radii and of the waves of drawn strands. Without it one that fits groups whose
         /// roots stand closer than those of most hair, where the radii are fitted too.
         clump: Option<f32> = None, in [0.0, 10.0];
-        /// A .png with the colour of each strand, as `look.color_map`.
-        color_map: Option<PathBuf> = None;
-        /// A .png with the width of each strand, as `look.width_map`.
-        width_map: Option<PathBuf> = None;
+        overrides Look {
+            root_color: Vec3,
+            tip_color: Vec3,
+            variation: f32,
+            grey: f32,
+            color_map: PathBuf,
+            width_map: PathBuf,
+        }
+        overrides Chiang {
+            eumelanin: f32,
+            pheomelanin: f32,
+            tip_pigment: f32,
+        }
     }
 }
 
 impl GroupLook {
-    /// The look of all with what this group has of pigment, where it has some of its own.
+    /// The look of all with the pigment of this group; `None` where the group gives none.
     pub fn own_pigment(&self, all: &Look) -> Option<Look> {
-        let (mut look, fibre) = (all.clone(), &all.fibre.chiang);
-        let own = &mut look.fibre.chiang;
-        own.eumelanin = self.eumelanin.unwrap_or(fibre.eumelanin);
-        own.pheomelanin = self.pheomelanin.unwrap_or(fibre.pheomelanin);
-        own.tip_pigment = self.tip_pigment.unwrap_or(fibre.tip_pigment);
+        let mut look = all.clone();
+        look.fibre.chiang = self.over(&all.fibre.chiang);
         look.variation = self.variation.unwrap_or(all.variation);
         look.grey = self.grey.unwrap_or(all.grey);
         let has_melanin = [self.eumelanin, self.pheomelanin, self.tip_pigment].iter().any(Option::is_some);

@@ -1,7 +1,7 @@
 //! What a model takes from guides at rest.
 
 use glam::Vec3;
-use strandline_base::par::prelude::*;
+use strandline_base::{lane_place, par::prelude::*};
 use strandline_body::{Carrier, Collider, Pose};
 use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 
@@ -28,7 +28,10 @@ pub(crate) fn check_rest(guides: &Guides, rest: &RestShape) -> Result<(), SimErr
         }
     }
     for strand in 0..guides.strand_count() {
-        let at = |lanes: &[Lanes], point: usize| lanes[strand / LANES * points + point].0[strand % LANES];
+        let at = |lanes: &[Lanes], point: usize| {
+            let (index, lane) = lane_place(strand, point, points);
+            lanes[index].0[lane]
+        };
         for point in 0..points {
             let (length, mass) = (at(&rest.stretch, point), at(&rest.mass, point));
             if point + 1 < points && !(length > 0.0 && length.is_finite()) {

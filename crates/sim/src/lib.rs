@@ -9,6 +9,8 @@
 #![cfg_attr(not(feature = "gpu"), allow(dead_code))]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
+pub mod cells;
+pub mod contact;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -17,10 +19,12 @@ pub mod gpu;
 pub mod gpu;
 
 mod at_rest;
+mod chebyshev;
 mod checkpoint;
 mod clock;
 mod error;
 mod grab;
+mod journal;
 mod length_scale;
 mod masses;
 mod memory;

@@ -4,6 +4,7 @@ use strandline_body::Pose;
 use strandline_gpu::{Buffer, Gpu, GpuError};
 use strandline_groom::Vec3Lanes;
 
+use crate::grab::Grab;
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 
 /// A runner on a GPU.
@@ -100,7 +101,7 @@ impl GpuRunner {
         match *self {}
     }
 
-    pub fn write_grab(&mut self, _: &State) -> Result<(), SimError> {
+    pub(crate) fn write_grab(&mut self, _: &Grab) -> Result<(), SimError> {
         match *self {}
     }
 }

@@ -26,9 +26,11 @@ settings! {
             more "less skin that shows through, hair that floats over it";
         /// Drag of the air.
         drag: Drag = Drag::default();
-        /// What moves a strand within a step.
+        /// Mechanics of strands within a step.
         strands: StrandSettings = StrandSettings::default();
-        /// Groups of the groom whose hair, as rods, is made of something else, at most 1,024.
+        /// Groups of the groom whose hair, as rods, is made of something else, at most 1,024. A setting that a group does
+        /// not give is that of `[simulation.strands.rods]`, or of its own `hair`. A shear modulus that is not given keeps
+        /// its share of Young's modulus, or follows from Poisson's ratio where that is given.
         groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0];
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();

@@ -1,10 +1,14 @@
 //! A simulation on whichever backend runs it.
 
+use std::borrow::Cow;
+
 use glam::Vec3;
 use strandline_body::Pose;
 use strandline_gpu::{Buffer, Gpu};
 
-use crate::gpu::{ComingState, GpuRunner};
+use crate::gpu::GpuRunner;
+use crate::grab::Grab;
+use crate::journal::{Entry, Journal};
 use crate::{CpuRunner, Drive, Model, Settings, SimError, State, StepReport};
 
 /// A model, a state and the runner that advances it.
@@ -14,29 +18,36 @@ use crate::{CpuRunner, Drive, Model, Settings, SimError, State, StepReport};
 /// they have arrived.
 pub struct Simulator {
     runner: Runner,
-    /// The state on the CPU; of a device as it was when it was last read.
-    state: State,
-    /// What drove the steps that the device has made since then.
-    ahead: Vec<Drive>,
-    /// The state read before that one: a picture under way may still show steps after it.
-    older: Option<Older>,
-    /// A state on its way from the device, after so many of the steps `ahead`.
-    coming: Option<(ComingState, usize)>,
+    /// The state, of a device as it was last read, and what happened since.
+    journal: Journal,
     /// Whether a run of the device failed, so that nothing is known of its state.
     lost: bool,
-    /// Steps made, steps reported, and the step of the next report that comes from the device.
-    steps: u64,
+    reports: Reports,
+}
+
+/// What keeps reports in order: each step is reported once, also where it is computed again.
+#[derive(Default)]
+struct Reports {
+    /// Steps that were reported.
     reported: u64,
-    next_report: u64,
-    /// Reports to be returned next: of steps before a state that was read, and of those that the CPU made again for a
-    /// device that failed.
+    /// Steps before that of the next report from the device.
+    next: u64,
+    /// Reports to be returned next.
     kept: Vec<StepReport>,
 }
 
-/// A state, and what drove the steps from it to the next one that was read.
-struct Older {
-    state: State,
-    drives: Vec<Drive>,
+impl Reports {
+    /// Keeps those of the next steps that were not reported yet.
+    fn keep(&mut self, found: Vec<StepReport>) {
+        let known = self.reported.saturating_sub(self.next).min(found.len() as u64);
+        self.next += found.len() as u64;
+        self.reported = self.reported.max(self.next);
+        self.kept.extend(found.into_iter().skip(known as usize));
+    }
+
+    fn take(&mut self) -> Vec<StepReport> {
+        std::mem::take(&mut self.kept)
+    }
 }
 
 enum Runner {
@@ -59,23 +70,12 @@ impl Simulator {
     /// # Errors
     /// As [`GpuRunner::new`].
     pub fn new(gpu: Option<&Gpu>, model: Model) -> Result<Self, SimError> {
-        let state = model.rest_state(Pose::IDENTITY);
+        let journal = Journal::new(model.rest_state(Pose::IDENTITY), model.settings().clone());
         let runner = match gpu {
             Some(gpu) => Runner::Gpu(GpuRunner::new(gpu, model)?.into()),
             None => Runner::Cpu(Box::new(model.into())),
         };
-        Ok(Self {
-            runner,
-            state,
-            ahead: Vec::new(),
-            older: None,
-            coming: None,
-            lost: false,
-            steps: 0,
-            reported: 0,
-            next_report: 0,
-            kept: Vec::new(),
-        })
+        Ok(Self { runner, journal, lost: false, reports: Reports::default() })
     }
 
     /// The model.
@@ -102,114 +102,70 @@ impl Simulator {
     /// Time of the state \[s\].
     pub fn time(&self) -> f64 {
         match &self.runner {
-            Runner::Cpu(_) => self.state.time,
+            Runner::Cpu(_) => self.journal.state().time,
             Runner::Gpu(runner) => runner.time(),
         }
     }
 
     /// Steps made since the simulator was.
     pub fn steps(&self) -> u64 {
-        self.steps
+        self.journal.steps()
     }
 
-    /// The state. A device is waited for, unless it has made no step since it was last read.
+    /// The state. A device is waited for, unless nothing happened since it was last read.
     ///
     /// # Errors
     /// The device was lost.
     pub fn state(&mut self) -> Result<&State, SimError> {
-        if let Runner::Gpu(_) = &self.runner
-            && !self.ahead.is_empty()
+        self.find()?;
+        if let Runner::Gpu(runner) = &mut self.runner
+            && !self.journal.is_current()
         {
-            self.find()?;
-            let Runner::Gpu(runner) = &self.runner else { return Ok(&self.state) };
             let coming = runner.begin_read()?;
-            // Steps before the state are not made again: their reports are kept.
-            let reports = self.collect(GpuRunner::reports)?;
-            self.kept.extend(reports);
-            self.checkpoint(self.ahead.len(), |state| coming.write(state))?;
+            // Steps before the state are not computed again: their reports are kept.
+            self.reports.keep(runner.reports()?);
+            self.journal.read(coming)?;
         }
-        Ok(&self.state)
+        Ok(self.journal.state())
     }
 
-    /// Makes the state after so many of the steps `ahead` the one to resume from, once it is read.
-    fn checkpoint(
-        &mut self,
-        count: usize,
-        read: impl FnOnce(&mut State) -> Result<(), SimError>,
-    ) -> Result<(), SimError> {
-        // The state before the last one makes room.
-        let (mut state, drives) = match self.older.take() {
-            Some(Older { state, drives }) => (state, Some(drives)),
-            None => (self.state.clone(), None),
-        };
-        if let Err(failure) = read(&mut state) {
-            self.older = drives.map(|drives| Older { state, drives });
-            return Err(failure);
-        }
-        let state = std::mem::replace(&mut self.state, state);
-        self.older = Some(Older { state, drives: self.ahead.drain(..count).collect() });
-        self.coming = None;
-        Ok(())
+    /// The state as it was last read: what a lost device leaves.
+    pub fn last_state(&self) -> &State {
+        self.journal.state()
     }
 
-    /// Resumes from the state that is on its way from now on, if it has arrived; sends one on its way where many
-    /// steps were made since. What fails here fails in the next run, and these steps are made.
-    fn renew_checkpoint(&mut self) {
-        let before = self.steps - self.ahead.len() as u64;
-        // Steps before it are not made again, so that their reports come first.
-        if let Some((coming, count)) =
-            self.coming.take_if(|(_, count)| self.reported >= before + *count as u64)
-        {
-            match coming.has_arrived() {
-                Ok(true) => self.checkpoint(count, |state| coming.write(state)).unwrap_or_default(),
-                Ok(false) => self.coming = Some((coming, count)),
-                Err(_) => {}
-            }
-        }
-        let Runner::Gpu(runner) = &self.runner else { return };
-        if self.coming.is_none() && self.ahead.len() >= runner.model().settings().checkpoint_every as usize {
-            self.coming = runner.begin_read().ok().map(|coming| (coming, self.ahead.len()));
-        }
-    }
-
-    /// Takes reports from the device that were not returned yet.
-    fn collect(
-        &mut self,
-        take: impl FnOnce(&mut GpuRunner) -> Result<Vec<StepReport>, SimError>,
-    ) -> Result<Vec<StepReport>, SimError> {
-        let Runner::Gpu(runner) = &mut self.runner else { return Ok(Vec::new()) };
-        let mut found = take(runner)?;
-        let known = self.reported.saturating_sub(self.next_report).min(found.len() as u64);
-        self.next_report += found.len() as u64;
-        self.reported = self.reported.max(self.next_report);
-        found.drain(..known as usize);
-        Ok(found)
+    /// The state after a step, for a picture under way whose device was lost: the CPU computes those of the last runs
+    /// again. The last state that was read where the step lies too far back.
+    pub fn state_after(&self, step: u64) -> Cow<'_, State> {
+        self.journal.state_after(step, self.runner.model())
     }
 
     /// Brings a device of which nothing is known to where the simulation is.
     fn find(&mut self) -> Result<(), SimError> {
         let Runner::Gpu(runner) = &mut self.runner else { return Ok(()) };
-        if self.lost {
-            runner.forget_reports();
-            runner.write(&self.state)?;
-            self.next_report = self.steps - self.ahead.len() as u64;
-            self.coming = None;
-            for drive in &self.ahead {
-                runner.step(drive)?;
-            }
-            self.lost = false;
+        if !self.lost {
+            return Ok(());
         }
+        let (step, settings, state, entries) = self.journal.since();
+        runner.forget_reports();
+        runner.set_settings(settings)?;
+        runner.write(state)?;
+        self.reports.next = step;
+        for entry in entries {
+            match entry {
+                Entry::Step(drive) => runner.step(drive)?,
+                Entry::Settings(settings) => runner.set_settings(settings)?,
+                Entry::Hold(grab) => runner.write_grab(grab)?,
+            }
+        }
+        self.journal.recall();
+        self.lost = false;
         Ok(())
-    }
-
-    /// The state as it was last read: what a lost device leaves.
-    pub fn last_state(&self) -> &State {
-        &self.state
     }
 
     /// Strands in the hand.
     pub fn grabbed(&self) -> usize {
-        self.state.grabbed()
+        self.journal.grab().count()
     }
 
     /// Advances by a step for each drive, and reports the steps that are done: on a device those whose reports have
@@ -218,28 +174,29 @@ impl Simulator {
     /// # Errors
     /// The device has no memory left or was lost.
     pub fn run(&mut self, drives: &[Drive]) -> Result<Vec<StepReport>, SimError> {
-        if let Runner::Cpu(runner) = &mut self.runner {
-            let mut reports = std::mem::take(&mut self.kept);
-            reports.extend(drives.iter().map(|drive| runner.step(&mut self.state, drive)));
-            self.steps += drives.len() as u64;
-            self.reported = self.steps;
-            return Ok(reports);
-        }
         self.find()?;
-        self.lost = true;
-        if let Runner::Gpu(runner) = &mut self.runner {
-            for drive in drives {
-                runner.step(drive)?;
+        match &mut self.runner {
+            Runner::Cpu(runner) => {
+                let state = self.journal.advance(drives.len());
+                self.reports.keep(drives.iter().map(|drive| runner.step(state, drive)).collect());
+            }
+            Runner::Gpu(runner) => {
+                self.lost = true;
+                for drive in drives {
+                    runner.step(drive)?;
+                }
+                self.reports.keep(runner.arrived_reports()?);
+                self.lost = false;
+                self.journal.stepped(drives);
+                self.journal.receive(self.reports.reported);
+                if self.journal.is_due()
+                    && let Ok(coming) = runner.begin_read()
+                {
+                    self.journal.send(coming);
+                }
             }
         }
-        let arrived = self.collect(GpuRunner::arrived_reports)?;
-        let mut reports = std::mem::take(&mut self.kept);
-        reports.extend(arrived);
-        self.lost = false;
-        self.ahead.extend_from_slice(drives);
-        self.steps += drives.len() as u64;
-        self.renew_checkpoint();
-        Ok(reports)
+        Ok(self.reports.take())
     }
 
     /// The reports of all steps that were not returned yet; a device is waited for.
@@ -248,10 +205,10 @@ impl Simulator {
     /// The device was lost.
     pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
         self.find()?;
-        let found = self.collect(GpuRunner::reports)?;
-        let mut reports = std::mem::take(&mut self.kept);
-        reports.extend(found);
-        Ok(reports)
+        if let Runner::Gpu(runner) = &mut self.runner {
+            self.reports.keep(runner.reports()?);
+        }
+        Ok(self.reports.take())
     }
 
     /// Changes the settings between two steps.
@@ -259,13 +216,20 @@ impl Simulator {
     /// # Errors
     /// A setting outside its range, or one that a device has not, then nothing changes; or the device was lost.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
-        // Steps that were made with the old settings are made again with none other.
-        self.state()?;
-        self.older = None;
-        match &mut self.runner {
-            Runner::Cpu(runner) => runner.set_settings(settings),
-            Runner::Gpu(runner) => runner.set_settings(settings),
+        // Another strand solver has other states.
+        let other = settings.strands.method != self.model().settings().strands.method;
+        if other {
+            self.state()?;
         }
+        match &mut self.runner {
+            Runner::Cpu(runner) => runner.set_settings(settings)?,
+            Runner::Gpu(runner) => runner.set_settings(settings)?,
+        }
+        self.journal.set(settings);
+        if other {
+            self.runner.model().give_sections(self.journal.state_mut());
+        }
+        Ok(())
     }
 
     /// Replaces the state.
@@ -273,7 +237,7 @@ impl Simulator {
     /// # Errors
     /// The device was lost; the state is then this one.
     pub fn set_state(&mut self, state: State) -> Result<(), SimError> {
-        self.state = state;
+        *self.journal.state_mut() = state;
         self.write()
     }
 
@@ -286,31 +250,26 @@ impl Simulator {
         change: impl FnOnce(&mut State, &Model) -> Result<T, SimError>,
     ) -> Result<T, SimError> {
         self.state()?;
-        let model = self.runner.model();
-        let result = change(&mut self.state, model)?;
+        let result = change(self.journal.state_mut(), self.runner.model())?;
         self.write().map(|()| result)
     }
 
     /// Brings the state to the device.
     fn write(&mut self) -> Result<(), SimError> {
+        let Runner::Gpu(runner) = &mut self.runner else { return Ok(()) };
+        self.journal.restart();
         if self.lost {
             // Of steps that do not count.
-            if let Runner::Gpu(runner) = &mut self.runner {
-                runner.forget_reports();
-            }
-            self.next_report = self.steps;
+            runner.forget_reports();
+            runner.set_settings(self.journal.since().1)?;
+            self.reports.next = self.journal.steps();
         } else {
             // A device that failed shows below.
-            let reports = self.collect(GpuRunner::reports).unwrap_or_default();
-            self.kept.extend(reports);
+            self.reports.keep(runner.reports().unwrap_or_default());
         }
-        self.ahead.clear();
-        (self.older, self.coming) = (None, None);
-        if let Runner::Gpu(runner) = &mut self.runner {
-            self.lost = true;
-            runner.write(&self.state)?;
-            self.lost = false;
-        }
+        self.lost = true;
+        runner.write(self.journal.state())?;
+        self.lost = false;
         Ok(())
     }
 
@@ -320,67 +279,38 @@ impl Simulator {
     /// The device was lost.
     pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, SimError> {
         self.state()?;
-        let model = self.runner.model();
-        let count = self.state.grab(model, hand, radius);
-        self.hold().map(|()| count)
+        let mut grab = Grab::default();
+        if hand.is_finite() && radius.is_finite() {
+            grab = Grab::new(self.runner.model(), &self.journal.state().positions, hand, radius);
+        }
+        let count = grab.count();
+        self.hold(grab).map(|()| count)
     }
 
-    /// Lets go of it.
+    /// Lets go of it. A device is not waited for.
     ///
     /// # Errors
     /// The device was lost.
     pub fn release(&mut self) -> Result<(), SimError> {
-        self.state()?;
-        self.state.release();
-        self.hold()
+        self.hold(Grab::default())
     }
 
-    /// Holds on the device what the state's hand holds.
-    fn hold(&mut self) -> Result<(), SimError> {
-        self.older = None;
-        match &mut self.runner {
-            Runner::Cpu(_) => Ok(()),
-            Runner::Gpu(runner) => runner.write_grab(&self.state),
+    /// Holds something in the hand from now on.
+    fn hold(&mut self, grab: Grab) -> Result<(), SimError> {
+        if let Runner::Gpu(runner) = &mut self.runner {
+            runner.write_grab(&grab)?;
         }
+        self.journal.hold(grab);
+        Ok(())
     }
 
     /// Falls back to the CPU: from the state that was last read, through the steps that the device had made since.
     pub fn fall_back(&mut self) {
-        self.fall_back_seeing(self.steps, |_| ());
-    }
-
-    /// Falls back to the CPU and shows the state after so many steps when it comes by: one of the last runs before the
-    /// device failed. Returns whether it did; never on the CPU.
-    pub fn fall_back_seeing(&mut self, step: u64, mut see: impl FnMut(&State)) -> bool {
-        if let Runner::Cpu(_) = &self.runner {
-            return false;
+        if let Runner::Gpu(runner) = &self.runner {
+            let (runner, reports) = self.journal.fall_back(runner.model().clone());
+            self.reports.next = self.journal.steps() - reports.len() as u64;
+            self.reports.keep(reports);
+            (self.runner, self.lost) = (Runner::Cpu(runner.into()), false);
         }
-        let mut runner = CpuRunner::from(self.model().clone());
-        let mut drives = std::mem::take(&mut self.ahead);
-        let mut at = self.steps - drives.len() as u64;
-        if let Some(Older { state, drives: before }) = self.older.take()
-            && (at - before.len() as u64..at).contains(&step)
-        {
-            at -= before.len() as u64;
-            drives.splice(0..0, before);
-            self.state = state;
-        }
-        let mut seen = at == step;
-        if seen {
-            see(&self.state);
-        }
-        for drive in drives {
-            let report = runner.step(&mut self.state, &drive);
-            at += 1;
-            self.kept.extend((at > self.reported).then_some(report));
-            if at == step {
-                see(&self.state);
-                seen = true;
-            }
-        }
-        self.reported = self.steps;
-        self.runner = Runner::Cpu(runner.into());
-        (self.coming, self.lost) = (None, false);
-        seen
     }
 }

@@ -6,11 +6,11 @@ use strandline_base::par::prelude::*;
 use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
-use crate::cpu::contacts::Contacts;
-use crate::cpu::vec3x8::{Vec3x8, splat};
+use crate::contact::contacts::Contacts;
 use crate::grab::Grab;
 use crate::length_scale;
 use crate::{Model, SimError};
+use strandline_base::vec3x8::{Vec3x8, splat};
 
 /// What the world does to the hair during one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -9,12 +9,12 @@ use safetensors::{
     SafeTensors, serialize,
     tensor::{Dtype, TensorView},
 };
-use strandline_base::{WholeFile, read_plain};
+use strandline_base::{WholeFile, fill_lanes, in_strand_order, read_plain};
 
 use crate::{
     Error,
     body::Pose,
-    groom::{LANES, Vec3Lanes},
+    groom::Vec3Lanes,
     sim::{MOST_SPIN, State},
 };
 
@@ -50,25 +50,18 @@ impl HairPose {
     /// state moves.
     pub fn new(shape: [usize; 2], positions: &[Vec3Lanes], state: &State, world_from_head: &Pose) -> Self {
         let [strands, points] = shape;
-        let each = |lanes: &[Vec3Lanes]| {
-            (0..strands)
-                .flat_map(|strand| (0..points).map(move |point| (strand, point)))
-                .map(|(strand, point)| lanes[strand / LANES * points + point].get(strand % LANES))
-                .collect()
-        };
-        let spins = (0..strands)
-            .flat_map(|strand| (0..points).map(move |point| (strand, point)))
-            .map_while(|(strand, point)| {
-                state.spins.get(strand / LANES * points + point).map(|lanes| lanes.0[strand % LANES])
-            })
-            .collect();
+        let each = |lanes: &[Vec3Lanes]| in_strand_order(lanes, strands, points).collect();
         Self {
             shape,
             positions: each(positions),
             velocities: each(&state.velocities),
             corrections: each(&state.corrections),
             sections: if state.sections.is_empty() { Vec::new() } else { each(&state.sections) },
-            spins: if state.spins.is_empty() { Vec::new() } else { spins },
+            spins: if state.spins.is_empty() {
+                Vec::new()
+            } else {
+                in_strand_order(&state.spins, strands, points).collect()
+            },
             world_from_head: *world_from_head,
         }
     }
@@ -78,23 +71,20 @@ impl HairPose {
         self.world_from_head
     }
 
-    /// Puts the hair of a state there, now and one step ago; lanes without a strand take the last one.
+    /// Puts the hair of a state there, now and one step ago.
     pub fn place(&self, state: &mut State) {
         let [strands, points] = self.shape;
-        for index in 0..state.positions.len() {
-            for lane in 0..LANES {
-                let strand = (index / points * LANES + lane).min(strands - 1);
-                let from = strand * points + index % points;
-                state.positions[index].set(lane, self.positions[from]);
-                state.velocities[index].set(lane, self.velocities[from]);
-                state.corrections[index].set(lane, self.corrections[from]);
-                if let (Some(section), Some(spin)) = (self.sections.get(from), self.spins.get(from))
-                    && index < state.sections.len()
-                {
-                    state.sections[index].set(lane, *section);
-                    state.spins[index].0[lane] = *spin;
-                }
-            }
+        let vectors = |lanes: &mut [Vec3Lanes], from: &[Vec3]| {
+            fill_lanes(lanes, strands, points, |strand, point| from[strand * points + point]);
+        };
+        vectors(&mut state.positions, &self.positions);
+        vectors(&mut state.velocities, &self.velocities);
+        vectors(&mut state.corrections, &self.corrections);
+        if !self.sections.is_empty() && !self.spins.is_empty() {
+            vectors(&mut state.sections, &self.sections);
+            fill_lanes(&mut state.spins, strands, points, |strand, point| {
+                self.spins[strand * points + point]
+            });
         }
         state.previous_positions.clone_from(&state.positions);
     }

@@ -1,12 +1,14 @@
 //! Arrays in a zip of .npy members, as numpy's `savez` writes and `load` reads them: little endian, C order.
 //!
-//! [`GrowingNpz`] writes rows during a run and leaves a sound file at every moment; [`Npz`] reads stored
-//! and deflated members and takes no memory that the file does not have the bytes for.
+//! [`GrowingNpz`] writes rows during a run and leaves a sound file at every moment, [`pack`] writes arrays at once;
+//! [`Npz`] reads stored and deflated members and takes no memory that the file does not have the bytes for.
+//! [`Array::npy`] and [`Bare`] are one array alone, a .npy file.
 //!
 //! Layouts: the zip format's application note (APPNOTE 6.3.10, PKWARE) and the .npy format 1.0 to 3.0
 //! (`numpy.lib.format`).
 
 mod npy;
+mod pack;
 mod reader;
 #[cfg(test)]
 mod tests;
@@ -15,6 +17,8 @@ mod zip;
 
 use std::borrow::Cow;
 
+pub use npy::Bare;
+pub use pack::pack;
 pub use reader::{Npz, Rows};
 pub use writer::{Growing, GrowingNpz};
 
@@ -49,7 +53,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every kind, numpy's name of it, and the bytes of an element.
+    /// Every kind, numpy's name of it, and the bytes \[byte\] of an element.
     const ALL: [(Self, &'static str, u64); 10] = [
         (Self::U8, "|u1", 1),
         (Self::U16, "<u2", 2),
@@ -68,7 +72,7 @@ impl Kind {
         (row.1, row.2)
     }
 
-    /// Type name in numpy.
+    /// Name in numpy's headers.
     pub fn name(self) -> &'static str {
         self.row().0
     }
@@ -78,12 +82,34 @@ impl Kind {
         self.row().1
     }
 
+    /// The kind of a name; numpy's truth values are bytes of 0 and 1.
     fn of_name(name: &str) -> Option<Self> {
+        let name = if name == "|b1" { "|u1" } else { name };
         Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+
+    /// Elements in double precision; whole numbers of 64 bits are rounded to it.
+    pub fn numbers(self, bytes: &[u8]) -> impl Iterator<Item = f64> + '_ {
+        bytes.chunks_exact(self.bytes() as usize).map(move |element| self.number(element))
+    }
+
+    fn number(self, element: &[u8]) -> f64 {
+        let mut word = [0; 8];
+        word[..element.len()].copy_from_slice(element);
+        let unsigned = u64::from_le_bytes(word);
+        match self {
+            Self::U8 | Self::U16 | Self::U32 | Self::U64 => unsigned as f64,
+            Self::I8 | Self::I16 | Self::I32 | Self::I64 => {
+                let empty = 64 - 8 * element.len() as u32;
+                ((unsigned << empty) as i64 >> empty) as f64
+            }
+            Self::F32 => f64::from(f32::from_bits(unsigned as u32)),
+            Self::F64 => f64::from_bits(unsigned),
+        }
     }
 }
 
-/// An array that is written at once.
+/// An array that is written as a whole.
 #[derive(Clone, Debug)]
 pub struct Array<'a> {
     /// Its name, without `.npy`.

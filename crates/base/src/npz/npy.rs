@@ -2,18 +2,18 @@
 
 use super::{Kind, NpzError};
 
-/// First bytes of every member.
+/// First bytes of every array.
 const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// Headers are padded to a multiple of this \[byte\], as numpy has them: data that is mapped is aligned.
 pub const ALIGNMENT: u64 = 64;
 /// Length of a header whose first number may grow \[byte\]: room for 2^64 rows of three numbers each.
 pub const GROWING: usize = 128;
-/// Longest header that is read \[byte\].
-const MAX_HEADER: usize = 4096;
+/// Longest header that is read \[byte\]: numpy itself warns above 10,000.
+const MAX_HEADER: usize = 65_536;
 /// Most axes of an array.
 const MAX_AXES: usize = 32;
 
-/// Header of an array.
+/// The header of an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Header {
     pub kind: Kind,
@@ -23,7 +23,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Bytes of the data; `None` beyond 64 bits.
+    /// Bytes of the data; `None` when 64 bits cannot count them.
     pub fn data_bytes(&self) -> Option<u64> {
         self.shape.iter().try_fold(self.kind.bytes(), |bytes, count| bytes.checked_mul(*count))
     }
@@ -46,10 +46,10 @@ pub fn header(kind: Kind, shape: &[u64], least: usize) -> Vec<u8> {
     bytes
 }
 
-/// Reads a header through `read`, which fills what it is given.
+/// Reads a header through `read`, which fills the slice that it gets.
 ///
 /// # Errors
-/// Reads a header. An error reports anything but numbers in C order.
+/// Those of `read`; bytes that are no header of numbers in C order.
 pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<Header, NpzError> {
     let mut start = [0; 8];
     read(&mut start)?;
@@ -82,7 +82,8 @@ pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<H
     let kind = Kind::of_name(&name).ok_or_else(|| {
         let known: Vec<&str> = Kind::ALL.iter().map(|row| row.1).collect();
         let found = format!("elements of type `{}`", name.escape_default());
-        NpzError::new(found, format!("one of {}: convert it with numpy's astype", known.join(" ")))
+        let known = known.join(" ");
+        NpzError::new(found, format!("one of the little-endian {known}: convert it with numpy's astype"))
     })?;
     if fortran && header.shape.iter().filter(|count| **count != 1).count() > 1 {
         return Err(NpzError::new(
@@ -92,6 +93,40 @@ pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<H
     }
     header.shape.truncate(MAX_AXES);
     Ok(Header { kind, shape: header.shape, length: (prefix + length) as u64 })
+}
+
+/// The numbers of a .npy file.
+#[derive(Clone, Debug)]
+pub struct Bare<'a> {
+    /// Type of the elements.
+    pub kind: Kind,
+    /// Shape.
+    pub shape: Vec<u64>,
+    /// The elements in C order, little endian.
+    pub bytes: &'a [u8],
+}
+
+impl<'a> Bare<'a> {
+    /// Reads the bytes of a .npy file.
+    ///
+    /// # Errors
+    /// Bytes that are no array of numbers in C order, or more or fewer of them than the shape takes.
+    pub fn new(bytes: &'a [u8]) -> Result<Self, NpzError> {
+        let mut rest = bytes;
+        let header = read(|wanted| {
+            let cut = || NpzError::new(format!("a header cut off after {} bytes", bytes.len()), "all of it");
+            let (here, after) = rest.split_at_checked(wanted.len()).ok_or_else(cut)?;
+            wanted.copy_from_slice(here);
+            rest = after;
+            Ok(())
+        })?;
+        if header.data_bytes() != Some(rest.len() as u64) {
+            let (found, shape) = (format!("{} bytes behind the header", rest.len()), &header.shape);
+            let each = header.kind.bytes();
+            return Err(NpzError::new(found, format!("an array {shape:?} of numbers of {each} bytes")));
+        }
+        Ok(Self { kind: header.kind, shape: header.shape, bytes: rest })
+    }
 }
 
 /// The three entries.
@@ -125,7 +160,8 @@ impl Literal<'_> {
             }
         }
         self.rest.trim_ascii().is_empty().then_some(())?;
-        Some(Entries { descr: descr?, fortran_order: fortran_order?, shape: shape? })
+        // Some writers leave the order out where it is C order.
+        Some(Entries { descr: descr?, fortran_order: fortran_order.unwrap_or(false), shape: shape? })
     }
 
     fn take(&mut self, wanted: u8) -> bool {
@@ -188,6 +224,29 @@ mod tests {
             rest = after;
             Ok(())
         })
+    }
+
+    #[test]
+    fn bare_arrays_are_read_with_every_kind_and_refused_with_other_sizes() {
+        for (kind, name, each) in Kind::ALL {
+            let mut bytes = header(kind, &[3], 0);
+            let unsigned = [1_u64, 2, 3].map(|number| number.to_le_bytes());
+            let numbers: Vec<u8> = match kind {
+                Kind::F32 => [1.0_f32, 2.0, 3.0].map(f32::to_le_bytes).concat(),
+                Kind::F64 => [1.0_f64, 2.0, 3.0].map(f64::to_le_bytes).concat(),
+                _ => unsigned.iter().flat_map(|number| number[..each as usize].to_vec()).collect(),
+            };
+            bytes.extend(&numbers);
+            let bare = Bare::new(&bytes).unwrap();
+            assert_eq!(bare.kind.numbers(bare.bytes).collect::<Vec<_>>(), [1.0, 2.0, 3.0], "{name}");
+            let refused = |bytes: &[u8]| Bare::new(bytes).unwrap_err().to_string();
+            assert!(refused(&bytes[..bytes.len() - 1]).contains("bytes behind the header"));
+            bytes.push(0);
+            assert!(refused(&bytes).contains("expected an array [3]"));
+        }
+        assert_eq!(Kind::I16.numbers(&[0xfe, 0xff, 1, 0]).collect::<Vec<_>>(), [-2.0, 1.0]);
+        let truths = literal("{'descr': '|b1', 'fortran_order': False, 'shape': (1,), }");
+        assert_eq!(Bare::new(&[&truths[..], &[1]].concat()).unwrap().kind, Kind::U8);
     }
 
     fn literal(text: &str) -> Vec<u8> {

@@ -113,7 +113,12 @@ impl<R: Read + Seek> Npz<R> {
         self.members.iter().map(|member| member.name.as_str())
     }
 
-    /// Opens an array; `None` if there is none of that name.
+    /// Bytes of all members when unpacked, as the directory says.
+    pub fn unpacked_bytes(&self) -> u64 {
+        self.members.iter().map(|member| member.size).fold(0, u64::saturating_add)
+    }
+
+    /// Opens an array; `None` where no member has that name.
     ///
     /// # Errors
     /// The member is no array of numbers, or lies about its size.
@@ -214,14 +219,14 @@ impl<R: Read + Seek> Npz<R> {
         rows.restart();
         self.take(rows, &mut bytes)?;
         let (header, data) = (rows.header.length as usize, rows.bytes() as usize);
-        // A run that ended while it added a row has the sum of a row more than the header counts.
+        // A run that ended while it added a row leaves the checksum of one row more than the header counts.
         if header + data == bytes.len() {
             let mut crc = Hasher::new();
             crc.update(&bytes);
             let found = crc.finalize();
             if found != rows.crc {
-                let expected = format!("{:#010x}: it is damaged", rows.crc);
-                return Err(NpzError::new(format!("bytes of sum {found:#010x}"), expected));
+                let expected = format!("checksum {:#010x}: it is damaged", rows.crc);
+                return Err(NpzError::new(format!("bytes of checksum {found:#010x}"), expected));
             }
         }
         bytes.truncate(header + data);

@@ -17,14 +17,13 @@ use crc32fast::Hasher;
 
 use super::{
     Array, Kind, npy,
+    pack::{SMALL, file_name, member},
     zip::{self, Entry},
 };
 use crate::GrowingFile;
 
 /// Room between the growing array and the tail, over the size of the tail: the tail is written again that rarely.
 const ROOM: u64 = 8;
-/// Files that may become larger than this \[byte\] have sizes of 64 bits: 4 GiB without what records take.
-const SMALL: u64 = (4 << 30) - (64 << 20);
 
 /// An array that gets rows.
 #[derive(Clone, Debug)]
@@ -146,17 +145,7 @@ impl GrowingNpz {
     fn put(&mut self, arrays: &[Array], at: &mut u64) -> Result<Vec<Entry>> {
         let mut entries = Vec::new();
         for array in arrays {
-            let mut bytes = npy::header(array.kind, &array.shape, 0);
-            let mut crc = Hasher::new();
-            crc.update(&bytes);
-            crc.update(&array.bytes);
-            let entry = Entry {
-                name: file_name(array.name),
-                offset: *at,
-                size: (bytes.len() + array.bytes.len()) as u64,
-                crc: crc.finalize(),
-            };
-            bytes.splice(0..0, zip::local(&entry, self.zip64));
+            let (entry, bytes) = member(array, *at, self.zip64);
             self.file.write_at(*at, &bytes)?;
             self.file.write_at(*at + bytes.len() as u64, &array.bytes)?;
             *at += (bytes.len() + array.bytes.len()) as u64;
@@ -304,10 +293,6 @@ impl GrowingNpz {
 
 fn row_bytes(array: &Growing) -> u64 {
     array.row.iter().fold(array.kind.bytes(), |bytes, count| bytes.saturating_mul(*count))
-}
-
-fn file_name(name: &str) -> String {
-    format!("{name}.npy")
 }
 
 /// Bytes that a tail takes at most.

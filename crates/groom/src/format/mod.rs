@@ -19,7 +19,6 @@ mod report;
 mod save;
 mod sieve;
 pub mod tfx;
-mod zip;
 
 pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
 pub use part::Part;

@@ -1,22 +1,27 @@
 //! `.npz`, NumPy arrays by name in a zip archive: ours, those of research code, and frames of a moving cache.
 
 use std::collections::BTreeMap;
+use std::io::Cursor;
 
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
+use strandline_base::npz::{self, Kind, Npz};
 
 use super::bytes::Source;
-use super::npy::{self, Array};
-use super::zip::{self, Entry};
+use super::npy::{self as array, Array, refused};
 use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part};
 use crate::{Groom, GroomError, Influences, Widths};
 
-/// Arrays that hold points, the first that is there counts.
+/// Names of arrays of points; the first that is present counts.
 const PLACES: [&str; 3] = ["points", "positions", "strands"];
 /// Largest text with names \[byte\].
 const MAX_META: usize = 16 << 20;
+/// Arrays may be larger than the archive by this factor and so many bytes: real strands shrink to a third at
+/// best, constant attributes a thousandfold.
+const INFLATION: u64 = 64;
+const SPARE: u64 = 16 << 20;
 
-/// Fields of `meta` that concern a groom.
+/// The keys of `meta` that a groom reads and writes.
 #[derive(Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Meta {
@@ -30,29 +35,47 @@ struct Meta {
 /// The arrays of a file by their names.
 struct Arrays<'a> {
     source: Source<'a>,
-    entries: Vec<Entry>,
+    npz: Npz<Cursor<&'a [u8]>>,
 }
 
-impl Arrays<'_> {
-    /// The bytes of an array, where there is one of a name.
-    fn bytes(&self, name: &str) -> Result<Option<Vec<u8>>, GroomError> {
-        let entry = self.entries.iter().find(|entry| entry.name.strip_suffix(".npy") == Some(name));
-        entry.map(|entry| zip::unpack(&self.source, entry)).transpose()
+impl<'a> Arrays<'a> {
+    /// Reads the directory. The size of all arrays is bounded by that of the archive.
+    fn new(bytes: &'a [u8]) -> Result<Self, GroomError> {
+        let source = Source { bytes, format: ".npz" };
+        let npz = Npz::new(Cursor::new(bytes)).map_err(|error| refused(&source, error))?;
+        let (total, most) = (npz.unpacked_bytes(), INFLATION * bytes.len() as u64 + SPARE);
+        if total > most {
+            let found = format!("arrays of {total} bytes in an archive of {}", bytes.len());
+            return Err(source.error(found, format!("{most} bytes at most; store them with `numpy.savez`")));
+        }
+        Ok(Self { source, npz })
     }
 
-    /// Result of a function of an array, if there is one of a name.
+    /// Whether an array of this name is present.
+    fn has(&self, name: &str) -> bool {
+        self.npz.names().any(|found| found == name)
+    }
+
+    /// The array of a name, `None` where the file has none.
+    fn get(&mut self, name: &str) -> Result<Option<Array<'static>>, GroomError> {
+        let source = self.source;
+        let refused = |error| refused(&source, error);
+        let Some(mut rows) = self.npz.open(name).map_err(refused)? else { return Ok(None) };
+        let bytes = self.npz.all(&mut rows).map_err(refused)?.into();
+        Ok(Some(Array { shape: rows.shape().to_vec(), kind: rows.kind(), bytes }))
+    }
+
+    /// The result of `make` on the array of a name, `None` where the file has none.
     fn with<T>(
-        &self,
+        &mut self,
         name: &str,
         make: impl Fn(&Source, &Array) -> Result<T, GroomError>,
     ) -> Result<Option<T>, GroomError> {
-        let Some(bytes) = self.bytes(name)? else { return Ok(None) };
-        let source = Source { bytes: &bytes, format: ".npz" };
-        make(&source, &Array::new(&source)?).map(Some)
+        self.get(name)?.map(|array| make(&self.source, &array)).transpose()
     }
 
     /// The numbers of an array of rows of `columns` numbers.
-    fn floats(&self, name: &str, rows: usize, columns: usize) -> Result<Option<Vec<f32>>, GroomError> {
+    fn floats(&mut self, name: &str, rows: usize, columns: usize) -> Result<Option<Vec<f32>>, GroomError> {
         self.with(name, |source, array| {
             let is_rows = match array.shape[..] {
                 [found] => columns == 1 && found == rows as u64,
@@ -69,7 +92,7 @@ impl Arrays<'_> {
         })
     }
 
-    fn whole(&self, name: &str, rows: usize) -> Result<Option<Vec<u32>>, GroomError> {
+    fn whole(&mut self, name: &str, rows: usize) -> Result<Option<Vec<u32>>, GroomError> {
         self.with(name, |source, array| {
             if array.shape != [rows as u64] {
                 let found = format!("`{name}` of shape {:?}", array.shape);
@@ -78,6 +101,14 @@ impl Arrays<'_> {
             array.whole(source, name)
         })
     }
+
+    fn triples(&mut self, name: &str, rows: usize) -> Result<Option<Vec<[f32; 3]>>, GroomError> {
+        Ok(self.floats(name, rows, 3)?.map(|all| all.as_chunks().0.to_vec()))
+    }
+
+    fn vectors(&mut self, name: &str, rows: usize) -> Result<Option<Vec<Vec3>>, GroomError> {
+        Ok(self.triples(name, rows)?.map(|all| all.into_iter().map(Vec3::from_array).collect()))
+    }
 }
 
 /// Reads a `.npz` file. A moving cache gives the strands of its first frame.
@@ -85,51 +116,46 @@ impl Arrays<'_> {
 /// # Errors
 /// [`GroomError::Malformed`] with what is wrong; arrays that do not fit each other.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
-    let source = Source { bytes, format: ".npz" };
-    let arrays = Arrays { source, entries: zip::entries(&source)? };
+    let mut arrays = Arrays::new(bytes)?;
     let mut problems = Vec::new();
-    let mut groom = places(&arrays, per_strand, &mut problems)?;
+    let mut groom = places(&mut arrays, per_strand, &mut problems)?;
     let (strands, points) = (groom.strand_count(), groom.points.len());
     if let Some(widths) = arrays.floats("widths", points, 1)? {
         groom.widths = Widths::PerPoint(widths);
     } else if let Some(widths) = arrays.floats("strand_widths", strands, 1)? {
         groom.widths = Widths::PerStrand(widths);
     }
-    let triples = |name, rows| -> Result<Option<Vec<[f32; 3]>>, GroomError> {
-        Ok(arrays.floats(name, rows, 3)?.map(|all| all.as_chunks().0.to_vec()))
-    };
-    let vectors = |name, rows| -> Result<Option<Vec<Vec3>>, GroomError> {
-        Ok(triples(name, rows)?.map(|all| all.into_iter().map(Vec3::from_array).collect()))
-    };
-    groom.colors = triples("colors", points)?;
+    groom.colors = arrays.triples("colors", points)?;
     groom.transparencies = arrays.floats("transparencies", points, 1)?;
     let uvs = match arrays.floats("root_uv", strands, 2)? {
         None => arrays.floats("uv_coords", strands, 2)?,
         uvs => uvs,
     };
     groom.root_uvs = uvs.map(|all| all.chunks_exact(2).map(Vec2::from_slice).collect());
-    groom.root_normals = vectors("root_normals", strands)?;
+    groom.root_normals = arrays.vectors("root_normals", strands)?;
     groom.groups = arrays.whole("groups", strands)?;
     let flags = arrays.whole("guide_flags", strands)?;
     groom.guide_flags = flags.map(|all| all.into_iter().map(|flag| flag != 0).collect());
-    groom.influences = influences(&arrays, strands)?;
+    groom.influences = influences(&mut arrays, strands)?;
     groom.masses = arrays.floats("masses", points, 1)?;
-    groom.velocities = vectors("velocities", points)?;
-    groom.group_names = meta(&arrays)?.groups;
+    groom.velocities = arrays.vectors("velocities", points)?;
+    groom.group_names = meta(&mut arrays)?.groups;
     Ok(Parsed { format: ".npz", groom, problems })
 }
 
 /// The strands alone.
-fn places(arrays: &Arrays, per_strand: Option<u32>, problems: &mut Vec<String>) -> Result<Groom, GroomError> {
-    let name =
-        PLACES.iter().find(|name| arrays.entries.iter().any(|entry| entry.name == format!("{name}.npy")));
-    let Some(name) = name else {
-        let names: Vec<&str> = arrays.entries.iter().take(8).map(|entry| &entry.name[..]).collect();
+fn places(
+    arrays: &mut Arrays,
+    per_strand: Option<u32>,
+    problems: &mut Vec<String>,
+) -> Result<Groom, GroomError> {
+    let Some(name) = PLACES.iter().find(|name| arrays.has(name)) else {
+        let names: Vec<&str> = arrays.npz.names().take(8).collect();
         return Err(arrays.source.error(format!("the arrays {names:?}"), "one of `points` or `positions`"));
     };
     let starts = arrays.with("starts", |source, array| array.whole(source, "starts"))?;
     let placed = arrays.with(name, |source, array| match &starts {
-        None => Ok((npy::strands(source, array, per_strand)?, 1)),
+        None => Ok((array::strands(source, array, per_strand)?, 1)),
         Some(starts) => from_starts(source, array, starts),
     })?;
     let (groom, frames) = placed.expect("the array is there");
@@ -139,7 +165,7 @@ fn places(arrays: &Arrays, per_strand: Option<u32>, problems: &mut Vec<String>) 
     Ok(groom)
 }
 
-/// Strands that begin where `starts` says, in an array of points or of frames of points; how many frames.
+/// Strands that begin at `starts` in an array of points or of frames of points, and the number of frames.
 fn from_starts(source: &Source, array: &Array, starts: &[u32]) -> Result<(Groom, u64), GroomError> {
     let (frames, points) = match array.shape[..] {
         [points, 3] => (1, points),
@@ -155,11 +181,11 @@ fn from_starts(source: &Source, array: &Array, starts: &[u32]) -> Result<(Groom,
             source.error(found, "the first point of each strand, rising from 0, and the number of points")
         );
     }
-    let points = npy::points(array, points);
+    let points = array::points(array, points);
     Ok((Groom { starts: starts.to_vec(), points, ..Groom::empty(0.0) }, frames))
 }
 
-fn influences(arrays: &Arrays, strands: usize) -> Result<Option<Influences>, GroomError> {
+fn influences(arrays: &mut Arrays, strands: usize) -> Result<Option<Influences>, GroomError> {
     let guides = arrays.with("guide_indices", |source, array| {
         Ok((array.shape.clone(), array.whole(source, "guide_indices")?))
     })?;
@@ -179,57 +205,53 @@ fn influences(arrays: &Arrays, strands: usize) -> Result<Option<Influences>, Gro
     Influences::new(each as usize, guides, weights, strands).map(Some)
 }
 
-fn meta(arrays: &Arrays) -> Result<Meta, GroomError> {
-    let Some(bytes) = arrays.bytes("meta")? else { return Ok(Meta::default()) };
-    let source = Source { bytes: &bytes, format: ".npz" };
-    let array = Array::new(&source)?;
+fn meta(arrays: &mut Arrays) -> Result<Meta, GroomError> {
+    let Some(array) = arrays.get("meta")? else { return Ok(Meta::default()) };
     let text = array.raw().filter(|text| text.len() <= MAX_META);
-    // Names of groups alone are of interest here: a text that says something else says nothing.
+    // A groom reads the names of groups alone: other text is ignored.
     Ok(text.and_then(|text| serde_json::from_slice(text).ok()).unwrap_or_default())
 }
 
 /// Writes a `.npz` file.
 ///
 /// # Errors
-/// A groom of more than 4 GiB.
+/// None: the format holds every groom.
 pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
     let (strands, points) = (groom.strand_count(), groom.points.len());
-    let whole = |shape: &[usize], numbers: &[u32]| {
-        npy::array("<u4", shape, numbers.iter().flat_map(|number| number.to_le_bytes()))
+    let whole = |name, shape: &[usize], all: &[u32]| npz::Array::u32s(name, shape, all.iter().copied());
+    let floats = |name, shape: &[usize], all: &[f32]| npz::Array::f32s(name, shape, all.iter().copied());
+    let vectors = |name, rows, all: &[Vec3]| {
+        npz::Array::f32s(name, &[rows, 3], all.iter().flat_map(|vector| vector.to_array()))
     };
-    let mut files = vec![
-        ("points.npy", npy::floats(&[points, 3], groom.points.iter().flat_map(|point| point.to_array()))),
-        ("starts.npy", whole(&[strands + 1], &groom.starts)),
-    ];
+    let mut arrays =
+        vec![vectors("points", points, &groom.points), whole("starts", &[strands + 1], &groom.starts)];
     match &groom.widths {
-        Widths::PerPoint(widths) => {
-            files.push(("widths.npy", npy::floats(&[points], widths.iter().copied())))
-        }
+        Widths::PerPoint(widths) => arrays.push(floats("widths", &[points], widths)),
         _ if Part::Widths.is_in(groom) => {
-            files.push(("strand_widths.npy", npy::floats(&[strands], groom.root_widths())))
+            arrays.push(npz::Array::f32s("strand_widths", &[strands], groom.root_widths()));
         }
-        // A default width, taken because a file had none, is no attribute.
+        // The width that a reader gives where a file has none is left out.
         _ => {}
     }
-    let mut add = |name, array: Option<Vec<u8>>| files.extend(array.map(|array| (name, array)));
-    let triples = |rows, all: &mut dyn Iterator<Item = [f32; 3]>| npy::floats(&[rows, 3], all.flatten());
-    add("colors.npy", groom.colors.as_ref().map(|all| triples(points, &mut all.iter().copied())));
-    let one = |all: &Vec<f32>| npy::floats(&[points], all.iter().copied());
-    add("transparencies.npy", groom.transparencies.as_ref().map(one));
-    let pairs = |all: &Vec<Vec2>| npy::floats(&[strands, 2], all.iter().flat_map(|uv| uv.to_array()));
-    add("root_uv.npy", groom.root_uvs.as_ref().map(pairs));
-    let vectors = |rows, all: &Vec<Vec3>| triples(rows, &mut all.iter().map(|vector| vector.to_array()));
-    add("root_normals.npy", groom.root_normals.as_ref().map(|all| vectors(strands, all)));
-    add("groups.npy", groom.groups.as_ref().map(|all| whole(&[strands], all)));
-    let flags = |all: &Vec<bool>| npy::array("|u1", &[strands], all.iter().map(|flag| u8::from(*flag)));
-    add("guide_flags.npy", groom.guide_flags.as_ref().map(flags));
+    let colors = groom.colors.as_ref().map(|all| floats("colors", &[points, 3], all.as_flattened()));
+    arrays.extend(colors);
+    arrays.extend(groom.transparencies.as_ref().map(|all| floats("transparencies", &[points], all)));
+    let uvs =
+        |all: &Vec<Vec2>| npz::Array::f32s("root_uv", &[strands, 2], all.iter().flat_map(|uv| uv.to_array()));
+    arrays.extend(groom.root_uvs.as_ref().map(uvs));
+    arrays.extend(groom.root_normals.as_ref().map(|all| vectors("root_normals", strands, all)));
+    arrays.extend(groom.groups.as_ref().map(|all| whole("groups", &[strands], all)));
+    let flags = |all: &Vec<bool>| {
+        npz::Array::of("guide_flags", Kind::U8, &[strands], all.iter().map(|flag| u8::from(*flag)).collect())
+    };
+    arrays.extend(groom.guide_flags.as_ref().map(flags));
     if let Some(influences) = &groom.influences {
         let shape = [strands, influences.per_strand()];
-        add("guide_indices.npy", Some(whole(&shape, influences.guides())));
-        add("guide_weights.npy", Some(npy::floats(&shape, influences.weights().iter().copied())));
+        arrays.push(whole("guide_indices", &shape, influences.guides()));
+        arrays.push(floats("guide_weights", &shape, influences.weights()));
     }
-    add("masses.npy", groom.masses.as_ref().map(one));
-    add("velocities.npy", groom.velocities.as_ref().map(|all| vectors(points, all)));
+    arrays.extend(groom.masses.as_ref().map(|all| floats("masses", &[points], all)));
+    arrays.extend(groom.velocities.as_ref().map(|all| vectors("velocities", points, all)));
     let meta = Meta {
         version: 1,
         units: "m".to_owned(),
@@ -238,11 +260,6 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         groups: groom.group_names.clone(),
     };
     let meta = serde_json::to_vec(&meta).expect("plain text");
-    add("meta.npy", Some(npy::array("|u1", &[meta.len()], meta.iter().copied())));
-    zip::pack(&files).ok_or_else(|| GroomError::CannotHold {
-        format: ".npz",
-        found: format!("{strands} strands of {points} points"),
-        expected: "4 GiB at most",
-        mend: "resample it, or thin it",
-    })
+    arrays.push(npz::Array::of("meta", Kind::U8, &[meta.len()], meta));
+    Ok(npz::pack(&arrays))
 }

@@ -187,12 +187,15 @@ fn sizes_that_no_file_has_are_refused_before_memory_is_taken() {
     refused(obj::read(b"v 0 0 0\nf 1 1 1\n"), &["no line (`l`)", "--body"]);
 }
 
-/// A list of one file of so many bytes when unpacked, which a few stored bytes claim to be.
-fn archive(size: u32) -> Vec<u8> {
+/// An archive of one deflated file: `packed` bytes that claim to be `size` when unpacked.
+fn archive(size: u32, packed: usize) -> Vec<u8> {
     let name = b"points.npy";
     let head = [&words(&[20, 0x21_0000 << 8 >> 8, 0])[..2], &[0, 0, 8, 0, 0, 0, 33, 0]].concat();
-    let sizes = words(&[0, 4, size, name.len() as u32]);
-    let mut bytes = [&words(&[0x0403_4b50])[..], &head, &sizes, name, &[3, 0, 0, 0]].concat();
+    let sizes = words(&[0, packed as u32, size, name.len() as u32]);
+    let mut stored = vec![0; packed];
+    // The last block of the data, and nothing in it.
+    stored[0] = 3;
+    let mut bytes = [&words(&[0x0403_4b50])[..], &head, &sizes, name, &stored].concat();
     let list = bytes.len() as u32;
     bytes.extend(words(&[0x0201_4b50]));
     bytes.extend([20, 0]);
@@ -206,12 +209,16 @@ fn archive(size: u32) -> Vec<u8> {
 #[test]
 fn archives_that_would_unpack_to_more_than_they_can_are_refused() {
     refused(
-        npz::read(&archive(u32::MAX - 1), None),
-        &["arrays of 4294967294 bytes in an archive of", "at most"],
+        npz::read(&archive(u32::MAX - 1, 4), None),
+        &["points.npy: 4294967294 bytes in 4 deflated ones", "no more than the format packs"],
     );
-    // Not too large, and not there.
-    refused(npz::read(&archive(1 << 20), None), &["`points.npy` is damaged"]);
-    refused(npz::read(b"PK\x03\x04 and no list", None), &["no list of files at the end"]);
+    refused(
+        npz::read(&archive(64 << 20, 100_000), None),
+        &["arrays of 67108864 bytes in an archive of 1001", "at most"],
+    );
+    // Not too large, and absent.
+    refused(npz::read(&archive(1 << 20, 2000), None), &["points holds fewer bytes than its size"]);
+    refused(npz::read(b"PK\x03\x04 and no directory", None), &["no directory at the end"]);
     let mut good = npz::write(&everything()).unwrap();
     assert!(npz::read(&good, None).is_ok());
     // A coordinate: the header of the first array ends before byte 200.

@@ -6,10 +6,11 @@ use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::contacts::Solids;
-use super::vec3x8::{Vec3x8, load, splat};
-use super::{Obstacles, Scratch};
+use super::Scratch;
+use crate::contact::Obstacles;
+use crate::contact::contacts::Solids;
 use crate::{Model, State};
+use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// What a step did to the strands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -4,16 +4,17 @@ use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
+use super::Scratch;
 use super::advance::{Block, NonFinite, recover};
-use super::contacts::{Care, Plane, Query, Solids, Touch};
 use super::length_pass::Follow;
 use super::spans::Spans;
-use super::vec3x8::{Vec3x8, load, splat};
-use super::{Obstacles, Scratch};
+use crate::contact::Obstacles;
+use crate::contact::contacts::{Care, Plane, Query, Solids, Touch};
 use crate::grab::Pinned;
 use crate::strands::constrain::angles::{Bends, Joints, ROUNDS_PER_PASS};
 use crate::strands::constrain::lengths::Segments;
 use crate::{Model, State};
+use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Projects the predicted positions onto the constraints and derives the velocities from them.
 ///

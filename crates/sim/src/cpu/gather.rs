@@ -4,11 +4,11 @@ use strandline_base::par::prelude::*;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::cell_sort::NO_CELL;
 use super::faces::{Faces, Stencil};
-use super::vec3x8::Vec3x8;
 use super::volume::Volume;
 use crate::VolumeSettings;
+use crate::cells::NO_CELL;
+use strandline_base::vec3x8::Vec3x8;
 
 /// Updates the velocities of free points: `a` times (the velocity plus its change on the faces)
 /// plus (1 - `a`) times the velocity on the faces, with `a` the FLIP share of a step

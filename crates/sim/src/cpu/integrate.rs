@@ -7,9 +7,9 @@ use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::Scratch;
-use super::vec3x8::{Vec3x8, load, splat};
 use crate::strands::constrain::springs::{Elastic, Strand};
 use crate::{Model, State};
+use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Applies gravity, drag and the pull of springs to the velocities of free points and predicts their positions. `wind` is the velocity of the air \[m/s\], world space.
 pub fn integrate(model: &Model, state: &mut State, scratch: &mut Scratch, wind: Vec3) {

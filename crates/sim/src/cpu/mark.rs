@@ -2,10 +2,10 @@
 
 use strandline_base::par::prelude::*;
 
-use super::cell_kind::Kind;
-use super::grid::Grid;
-use super::obstacles::Obstacles;
 use super::volume::Volume;
+use crate::cells::Grid;
+use crate::cells::Kind;
+use crate::contact::Obstacles;
 
 /// Marks the cells, and gives the faces of solid cells the velocity of the solid
 /// [Chen2011 fig. 21, McAdams2009, Bridson2008].

@@ -1,16 +1,11 @@
 //! The stages in plain Rust, public so that checks can run each alone.
 
 pub mod advance;
-pub(crate) mod cell_kind;
-mod cell_set;
-pub mod cell_sort;
 pub mod constrain;
 pub mod faces;
 pub mod gather;
-pub mod grid;
 pub mod integrate;
 pub mod mark;
-pub mod obstacles;
 pub mod pcg;
 pub mod poisson;
 pub mod pose_roots;
@@ -21,16 +16,10 @@ pub mod solve_rods;
 pub mod splat;
 pub mod volume;
 
-pub(crate) mod contacts;
 pub(crate) mod length_pass;
 mod rod_pulls;
 pub(crate) mod spans;
-pub(crate) mod way;
 
-pub(crate) use strandline_base::vec3x8;
-
-pub use cell_kind::Kind;
-pub use obstacles::Obstacles;
 pub use runner::CpuRunner;
 pub use scratch::Scratch;
 pub use volume::Volume;

@@ -4,21 +4,13 @@
 //! chain by nature, and sums do not depend on the number of threads.
 
 use super::poisson::Poisson;
+use crate::chebyshev::{CHEBYSHEV_LEAST, CHEBYSHEV_MOST, CHEBYSHEV_STEPS};
 use crate::{Preconditioner, PressureReport};
 
 /// Share of the dropped fill-in that MIC(0) adds to the diagonal \[Bridson2008\].
 const TAU: f32 = 0.97;
 /// Least share of the diagonal that a pivot may keep \[Bridson2008\].
 const SIGMA: f32 = 0.25;
-
-/// Steps of the Chebyshev polynomial, each but the first a product with the matrix. On hair of the
-/// thesis two halve the iterations of the diagonal for an eighth more products; more steps save
-/// nothing further.
-pub(crate) const CHEBYSHEV_STEPS: usize = 2;
-/// Least and greatest eigenvalue of the scaled matrix that the polynomial is made for. None is above 2 (Gershgorin);
-/// below the least one it stays positive, only less helpful.
-const CHEBYSHEV_LEAST: f32 = 0.1;
-const CHEBYSHEV_MOST: f32 = 2.0;
 
 /// When to stop, and how to get there fast.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! The Poisson system of the pressure, compressed to the cells that hold hair.
 
-use super::cell_kind::Kind;
+use crate::cells::Kind;
 
 /// No unknown: points at the zero behind the last one.
 const NONE: u32 = u32::MAX;

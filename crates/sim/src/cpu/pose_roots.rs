@@ -4,8 +4,8 @@ use strandline_base::par::prelude::*;
 use strandline_body::Pose;
 
 use super::Scratch;
-use super::vec3x8::{Rigid, Vec3x8, load, splat};
 use crate::{Model, State};
+use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 
 /// Carries the rooted points to where the head is at the end of the step; their velocity is what
 /// takes them there. Writes the predicted positions and the velocities of rooted points only.

@@ -4,8 +4,8 @@ use glam::Vec3;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
-use super::contacts::{Care, Plane, Query};
 use super::solve_rods::Strands;
+use crate::contact::contacts::{Care, Plane, Query};
 use crate::grab::Pinned;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::Pull;

@@ -2,6 +2,7 @@
 
 use strandline_base::{Stopwatch, par};
 
+use super::Scratch;
 use super::advance::{NonFinite, advance};
 use super::constrain::constrain;
 use super::gather::gather;
@@ -11,7 +12,7 @@ use super::pose_roots::pose_roots;
 use super::solve_pressure::solve_pressure;
 use super::solve_rods::solve_rods;
 use super::splat::splat;
-use super::{Obstacles, Scratch};
+use crate::contact::Obstacles;
 use crate::step::{Stage, stages};
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 

@@ -6,7 +6,7 @@ use strandline_groom::{RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use super::Volume;
-use super::grid::Grid;
+use crate::cells::Grid;
 use crate::masses::Masses;
 use crate::strands::rods::rod::Node;
 use crate::{Model, State};

@@ -2,11 +2,11 @@
 
 use strandline_base::par::prelude::*;
 
-use super::cell_kind::Kind;
 use super::faces::change_by;
 use super::pcg::PcgSettings;
 use super::volume::Volume;
 use crate::PressureReport;
+use crate::cells::Kind;
 
 /// Solves for the pressure of the fluid cells and subtracts its gradient, one component at a time
 /// [Chen2011 eq. 4, 19-24].

@@ -6,11 +6,12 @@ use strandline_body::Pose;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
+use super::Scratch;
 use super::advance::{Block, NonFinite, recover};
-use super::contacts::{Plane, Solids};
 use super::integrate::Fall;
 use super::length_pass::Follow;
-use super::{Obstacles, Scratch};
+use crate::contact::Obstacles;
+use crate::contact::contacts::{Plane, Solids};
 use crate::grab::Pinned;
 use crate::strands::rods::hairs::Traits;
 use crate::strands::rods::real::{Real, Vector};

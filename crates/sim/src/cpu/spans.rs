@@ -10,8 +10,8 @@
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::contacts::Touch;
-use super::vec3x8::{Vec3x8, load, splat};
+use crate::contact::contacts::Touch;
+use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Turns between directions and points. A rope of 62 segments, its ends 0.95 lengths apart, then keeps
 /// lengths to 1e-4.

@@ -5,11 +5,11 @@ use strandline_base::par::{self, prelude::*};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::cell_sort::NO_CELL;
 use super::faces::{Carried, Faces, Stencil};
-use super::grid::REACH;
-use super::vec3x8::{Vec3x8, load, splat as all};
 use super::volume::Volume;
+use crate::cells::NO_CELL;
+use crate::cells::grid::REACH;
+use strandline_base::vec3x8::{Vec3x8, load, splat as all};
 
 /// Sorts the points by cell [Chen2011 fig. 26-30] and gives every face that they reach their mean
 /// velocity, weighted by mass and trilinearly \[Zhu2005\]. Momentum is kept exactly.

@@ -2,14 +2,12 @@
 
 use strandline_groom::LANES;
 
-use super::cell_kind::Kind;
-use super::cell_set::CellSet;
-use super::cell_sort::CellSort;
 use super::faces::{Carried, Faces};
-use super::grid::Grid;
 use super::pcg::{Pcg, Solution};
 use super::poisson::Poisson;
 use crate::VolumeSettings;
+use crate::cells::set::CellSet;
+use crate::cells::{CellSort, Contents, Grid, Kind};
 
 /// The fluid volume [Chen2011 §4.2, McAdams2009]. Its memory is kept from step to step; what a step
 /// costs follows the cells that hold hair, not the size of the box.
@@ -33,7 +31,7 @@ pub struct Volume {
     pub(super) touched: Vec<u32>,
     pub(super) touched_set: CellSet,
     pub(super) spare_set: CellSet,
-    /// What each cell is; cells that are not listed in `marked` are air.
+    /// Kind of each cell; cells that are not listed in `marked` are air.
     pub(super) kinds: Vec<Kind>,
     pub(super) marked: Vec<u32>,
     /// Signed distance \[m\] at the middle of every fluid cell; of other cells an old one.
@@ -86,7 +84,7 @@ impl Volume {
         }
     }
 
-    /// What a cell is.
+    /// The kind of a cell.
     pub fn kind(&self, cell: usize) -> Kind {
         self.kinds[cell]
     }
@@ -122,6 +120,20 @@ impl Volume {
     #[inline]
     pub(super) fn is_live(&self, block: usize, lane: usize) -> bool {
         block * LANES + lane < self.strand_count
+    }
+
+    /// The box, the faces and the kinds of all cells.
+    pub fn contents(&self) -> Contents {
+        let cells = self.grid.cell_count();
+        let face = |index: usize| {
+            let (axis, cell) = (index / cells, index % cells);
+            [self.faces.velocity(axis, cell), self.faces.change(axis, cell)]
+        };
+        Contents {
+            grid: self.grid.clone(),
+            faces: (0..3 * cells).map(face).collect(),
+            kinds: (0..cells).map(|cell| self.kind(cell)).collect(),
+        }
     }
 
     /// Largest divergence of a fluid cell: what flows out of it, over the area of a face \[m/s\].

@@ -5,7 +5,7 @@ use strandline_body::Pose;
 use strandline_gpu::{Rigid, mirror};
 
 use crate::constrain::Spring;
-use crate::cpu::contacts::Care;
+use crate::contact::contacts::Care;
 use crate::grab::Grab;
 use crate::strands::constrain::angles::bend_share;
 use crate::{Drive, Model, Preconditioner, VolumeSettings};

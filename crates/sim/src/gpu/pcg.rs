@@ -6,7 +6,7 @@ use super::inputs::Step;
 use super::records::{PressureState, Spread};
 use super::volume::{GridState, Volume};
 use crate::Preconditioner;
-use crate::cpu::pcg::CHEBYSHEV_STEPS;
+use crate::chebyshev::CHEBYSHEV_STEPS;
 
 kernel! {
     /// The next direction and its image.

@@ -5,8 +5,7 @@ use strandline_groom::{Lanes, Vec3Lanes};
 use super::buffers::{floats, floats_mut};
 use super::runner::GpuRunner;
 use super::volume::GridState;
-use crate::cpu::cell_kind::{AIR, FLUID, SOLID};
-use crate::cpu::{Kind, Volume};
+use crate::cells::{Contents, Kind};
 use crate::step::Stage;
 use crate::{Drive, SimError, State, StepReport};
 
@@ -102,32 +101,23 @@ impl Probe {
         Ok((velocities, corrections))
     }
 
-    /// Gives the device the cells and the faces of a volume of the host.
+    /// Replaces the box, the faces and the kinds of cells by those of a volume on the host.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn set_volume(&self, volume: &Volume) -> Result<(), SimError> {
+    pub fn set_volume(&self, contents: &Contents) -> Result<(), SimError> {
         let Some(device) = &self.runner.buffers.volume else { return Ok(()) };
-        let count = device.cell_count;
-        let grid = GridState {
-            origin: (volume.grid.low_corner() - volume.grid.spacing()).to_array(),
-            spacing: volume.grid.spacing(),
-            size: volume.grid.size().map(|count| count as u32),
-            cell_count: count as u32,
-        };
-        device.grid.write(&[grid])?;
-        let pair =
-            |axis: usize, cell: usize| [volume.faces.velocity(axis, cell), volume.faces.change(axis, cell)];
-        let faces: Vec<[f32; 2]> = (0..3 * count).map(|index| pair(index / count, index % count)).collect();
-        device.faces.write(&faces)?;
-        let number = |kind| match kind {
-            Kind::Air => AIR,
-            Kind::Fluid => FLUID,
-            Kind::Solid => SOLID,
-        };
-        let kinds: Vec<u32> = (0..count).map(|cell| number(volume.kind(cell))).collect();
+        let Contents { grid, faces, kinds } = contents;
+        device.grid.write(&[GridState {
+            origin: (grid.low_corner() - grid.spacing()).to_array(),
+            spacing: grid.spacing(),
+            size: grid.size().map(|count| count as u32),
+            cell_count: device.cell_count as u32,
+        }])?;
+        device.faces.write(faces)?;
+        let kinds: Vec<u32> = kinds.iter().map(|kind| kind.code()).collect();
         device.kinds.write(&kinds)?;
-        let mut fluid: Vec<u32> = kinds.iter().map(|kind| u32::from(*kind == 1)).collect();
+        let mut fluid: Vec<u32> = contents.kinds.iter().map(|kind| u32::from(*kind == Kind::Fluid)).collect();
         fluid.push(0);
         device.unknowns.write(&fluid)?;
         Ok(())
@@ -172,21 +162,16 @@ impl Probe {
         self.runner.buffers.volume.as_ref().map_or(Ok(Vec::new()), |volume| Ok(volume.faces.read()?))
     }
 
-    /// What each cell is.
+    /// Kind of each cell.
     ///
     /// # Errors
     /// The device was lost.
     pub fn kinds(&self) -> Result<Vec<Kind>, SimError> {
         let Some(volume) = &self.runner.buffers.volume else { return Ok(Vec::new()) };
-        let kind = |number| match number {
-            FLUID => Kind::Fluid,
-            SOLID => Kind::Solid,
-            _ => Kind::Air,
-        };
-        Ok(volume.kinds.read()?.into_iter().map(kind).collect())
+        Ok(volume.kinds.read()?.into_iter().map(Kind::of_code).collect())
     }
 
-    /// Pressure of the fluid cells, as [`Volume::pressure`] has it, and where the solve ended.
+    /// Pressure of the fluid cells, shape `[unknown]` with a zero behind the last, and the end of the solve.
     ///
     /// # Errors
     /// The device was lost.

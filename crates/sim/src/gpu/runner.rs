@@ -18,7 +18,7 @@ use crate::{Drive, Model, RodReport, Settings, SimError, State, StepReport};
 
 /// A model with its kernels and a state on a device.
 ///
-/// It agrees with a [`CpuRunner`](crate::cpu::CpuRunner) of the same model within rounding, as far as the order of
+/// It agrees with a [`CpuRunner`](crate::CpuRunner) of the same model within rounding, as far as the order of
 /// sums and the freshness of contact planes allow. An exact mannequin is sampled every 3 mm, since kernels know grids
 /// only.
 pub struct GpuRunner {

@@ -10,6 +10,7 @@ use strandline_groom::Vec3Lanes;
 use super::buffers::{floats, floats_mut, speeds};
 use super::runner::GpuRunner;
 use super::volume::GridState;
+use crate::grab::Grab;
 use crate::{SimError, State};
 
 impl GpuRunner {
@@ -75,16 +76,13 @@ impl GpuRunner {
         }
         self.world_from_head = state.world_from_head;
         self.time = state.time;
-        self.write_grab(state)
+        self.write_grab(&state.grab)
     }
 
-    /// Holds on the device what the hand of a state of the host holds: see [`State::grab`].
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn write_grab(&mut self, state: &State) -> Result<(), SimError> {
-        self.buffers.write_grips(&state.grab)?;
-        self.grab.clone_from(&state.grab);
+    /// Holds on the device what a hand holds: see [`State::grab`].
+    pub(crate) fn write_grab(&mut self, grab: &Grab) -> Result<(), SimError> {
+        self.buffers.write_grips(grab)?;
+        self.grab.clone_from(grab);
         Ok(())
     }
 }

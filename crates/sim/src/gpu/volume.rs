@@ -4,7 +4,7 @@ use strandline_gpu::{Buffer, Gpu, GpuError, Scan, THREADS, mirror};
 use strandline_groom::LANES;
 
 use super::records::{Gradient, MOST_WORKGROUPS, PressureState, Spread};
-use crate::cpu::grid::{Grid, MIN_SPACING, ladder};
+use crate::cells::grid::{Grid, MIN_SPACING, ladder};
 
 mirror! {
     /// The box. Mirrors `GridState` in grid.wesl.

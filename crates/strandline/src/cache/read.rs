@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use strandline_base::{
+    fill_lanes,
     memory::{self, Need},
     npz::{Kind, Npz, Rows, f32s, f64s},
     open_plain,
@@ -133,19 +134,15 @@ impl Cache {
         let strands = self.starts().len() - 1;
         let own = points.len() / strands;
         let step = (own - 1) as f32 / (points_per_strand - 1).max(1) as f32;
-        for (index, vectors) in lanes.iter_mut().enumerate() {
-            let point = index % points_per_strand;
-            for lane in 0..LANES {
-                let first = own * (index / points_per_strand * LANES + lane).min(strands - 1);
-                let place = if own == points_per_strand {
-                    points[first + point]
-                } else {
-                    let low = ((step * point as f32) as usize).min(own - 2);
-                    points[first + low].lerp(points[first + low + 1], step * point as f32 - low as f32)
-                };
-                vectors.set(lane, place);
+        fill_lanes(lanes, strands, points_per_strand, |strand, point| {
+            let first = own * strand;
+            if own == points_per_strand {
+                points[first + point]
+            } else {
+                let low = ((step * point as f32) as usize).min(own - 2);
+                points[first + low].lerp(points[first + low + 1], step * point as f32 - low as f32)
             }
-        }
+        });
         Ok(pose)
     }
 

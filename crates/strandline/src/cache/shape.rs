@@ -2,12 +2,12 @@
 //! attribute: fill it in [`Shape::new`]; the writers take all that is there.
 
 use glam::Vec3;
-use strandline_base::choices;
+use strandline_base::{choices, in_strand_order};
 
 use crate::{
     BoundStrands, Error, Scene,
     body::Pose,
-    groom::{Guides, LANES, MOST_INFLUENCES, Vec3Lanes},
+    groom::{Guides, MOST_INFLUENCES, Vec3Lanes},
     render::{DetailLevel, Growth, Look},
     tags::Tags,
 };
@@ -180,10 +180,7 @@ impl Shape {
         let strand_count = self.strand_count();
         match &mut self.source {
             Source::Guides { points_per_strand: each } => {
-                points.extend((0..strand_count).flat_map(|strand| {
-                    let block = &positions[strand / LANES * *each..][..*each];
-                    block.iter().map(move |lanes| lanes.get(strand % LANES))
-                }))
+                points.extend(in_strand_order(positions, strand_count, *each));
             }
             Source::Strands(drawn) => {
                 let Drawn { growth, look, level } = &mut **drawn;

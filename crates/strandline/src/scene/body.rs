@@ -76,7 +76,7 @@ settings! {
             more "a coarser surface for hair, at less time and memory";
         /// Whether hair hits the exact mannequin in place of samples of it; slower.
         exact: bool = false;
-        /// Coulomb friction coefficient of hair on the body. It acts once a step, by how deep gravity and
+        /// Coulomb friction coefficient of hair on the solid. It acts once a step, by how deep gravity and
         /// motion alone would take a point: neither the number of rounds nor the pull of the strand changes it.
         friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
     }
@@ -91,8 +91,7 @@ settings! {
         radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
         /// What it moves with.
         carrier: Carrier = Carrier::default();
-        /// Coulomb friction coefficient of hair on it; it acts once a step, whatever the number of rounds.
-        friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
+        shared BodySection { friction: f32 }
     }
 }
 
@@ -103,12 +102,7 @@ settings! {
         start: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
         /// The other end of a capsule.
         end: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
-        /// Radius.
-        radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
-        /// What it moves with.
-        carrier: Carrier = Carrier::default();
-        /// Coulomb friction coefficient of hair on it; it acts once a step, whatever the number of rounds.
-        friction: f32 = 0.3, in [0.0, 10.0], slider [0.0, 2.0], more "hair that slides less";
+        shared SphereSection { radius: f32, carrier: Carrier, friction: f32 }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The simulation, which falls back to the CPU when its GPU fails, if allowed.
 
+use std::borrow::Cow;
+
 use glam::Vec3;
 use strandline_gpu::{Buffer, Gpu};
 
@@ -18,8 +20,6 @@ pub(crate) struct Engine {
     pub fall_back: bool,
     /// What happened on the way, human-readable.
     pub notes: Vec<String>,
-    /// The state that the CPU resumed from, and the number of steps before it: a picture under way may show it.
-    left: Option<(u64, State)>,
 }
 
 impl Engine {
@@ -37,7 +37,7 @@ impl Engine {
             }
             (Err(error), None) => return Err(error),
         };
-        Ok(Self { simulator, fall_back, notes, left: None })
+        Ok(Self { simulator, fall_back, notes })
     }
 
     pub fn model(&self) -> &Model {
@@ -80,32 +80,9 @@ impl Engine {
         self.guarded(Simulator::reports)
     }
 
-    /// Shows the state after so many steps to who lost the device that had it. What the CPU cannot find again is the
-    /// last state, which lies a frame later.
-    ///
-    /// # Errors
-    /// The failure, where falling back is not allowed.
-    pub fn find_again(
-        &mut self,
-        step: u64,
-        failure: SimError,
-        mut see: impl FnMut(&State),
-    ) -> Result<(), SimError> {
-        if !self.fall_back {
-            return Err(failure);
-        }
-        if self.gpu().is_some() {
-            let found = self.simulator.fall_back_seeing(step, &mut see);
-            self.note(&failure);
-            if found {
-                return Ok(());
-            }
-        }
-        match &self.left {
-            Some((left, state)) if *left == step => see(state),
-            _ => see(self.simulator.last_state()),
-        }
-        Ok(())
+    /// The state after a step whose device was lost: see [`Simulator::state_after`].
+    pub fn state_after(&self, step: u64) -> Cow<'_, State> {
+        self.simulator.state_after(step)
     }
 
     /// How far the hair lies from the groom as loaded, which the head carries.
@@ -185,7 +162,6 @@ impl Engine {
         match act(&mut self.simulator) {
             Err(failure) if self.fall_back && failure.gpu().is_some() && self.gpu().is_some() => {
                 self.simulator.fall_back();
-                self.left = Some((self.simulator.steps(), self.simulator.last_state().clone()));
                 self.note(&failure);
                 act(&mut self.simulator)
             }

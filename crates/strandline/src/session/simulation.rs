@@ -259,14 +259,13 @@ impl Simulation {
         read
     }
 
-    /// Brings the points of a moment to the host. Where their device was lost the simulation falls back to the CPU, and
-    /// they are those that it computes again, or those of its last state where that lies later.
+    /// Brings the points of a moment to the host. Where their device was lost they are computed again, if falling back to
+    /// the CPU is allowed.
     pub fn bring_home(&mut self, moment: &mut Moment) -> Result<(), SimError> {
         match moment.bring_home() {
-            Ok(()) => Ok(()),
-            Err(failure) => {
-                self.engine.find_again(moment.at.step, failure.into(), |state| moment.fill(state))
-            }
+            Err(_) if self.engine.fall_back => moment.fill(&self.engine.state_after(moment.at.step)),
+            done => done?,
         }
+        Ok(())
     }
 }

@@ -11,7 +11,7 @@ use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use crate::constrain::Angles;
-use crate::cpu::vec3x8::{Vec3x8, load, splat};
+use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Rounds of length constraints from one pass over the angles to the next. A pass costs about as
 /// much as two rounds and lengths, not angles, need the many rounds: an angle correction is local

@@ -3,7 +3,7 @@
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use crate::cpu::vec3x8::{Vec3x8, load};
+use strandline_base::vec3x8::{Vec3x8, load};
 
 /// The segments of one block: rest lengths and how the ends share a correction.
 #[derive(Clone, Copy)]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use strandline_groom::{Lanes, RestShape, Vec3Lanes};
 
 use super::settings::{Spring, Springs};
-use crate::cpu::vec3x8::{Vec3x8, load, splat};
+use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// The springs that pull, each kind with its stride and rest lengths \[m\], shape `[block][point]` of lanes.
 pub struct Elastic<'a> {

@@ -1,6 +1,6 @@
 //! What a person may set of rods.
 
-use strandline_base::{Value, choices, settings};
+use strandline_base::{Overrides, Value, choices, settings};
 
 use super::hair_kind::HairKind;
 use super::material::{Along, Material};
@@ -84,34 +84,22 @@ settings! {
     pub struct GroupSettings {
         /// The group: its name in the groom, or its number.
         group: String = String::new(), required true;
-        /// What hair it is: the default of what follows.
-        hair: Option<HairKind> = None;
-        /// Radius of a hair.
-        radius: Option<f32> = None, in [1.0, 1000.0] "um", more "stiffer, heavier hair";
-        /// Young's modulus; the shear modulus keeps its share of it.
-        youngs_modulus: Option<f32> = None, in [1e-3, 1e5] "GPa", more "hair that bends and twists less";
-        /// Poisson's ratio.
-        poisson_ratio: Option<f32> = None, in [0.0, 0.5], more "curls that unwind a little more easily";
-        /// Shear modulus; without it that of Young's modulus and the ratio, where that is given here.
-        shear_modulus: Option<f32> = None, in [1e-3, 1e5] "GPa", more "hair that twists less";
-        /// Density.
-        density: Option<f32> = None, in [1.0, 20_000.0] "kg/m^3", more "heavier hair";
-        /// Mass of what hair carries over its own.
-        load: Option<f32> = None, in [0.0, 20.0], more "hair that gives way more easily";
-        /// Hairs that a guide stands for.
-        wisp_hairs: Option<u32> = None, in [1, 10_000], more "stiffer hair where `cohesion` is above 0";
-        /// How far the hairs of a guide share load.
-        cohesion: Option<f32> = None, in [0.0, 1.0], more "locks that bend as one";
-        /// Relaxation time of bends and twists.
-        damping: Option<f32> = None, in [0.0, 10.0] "s", more "bends that swing back more slowly and tremble less";
-        /// Second axis of the section over the first.
-        ellipticity: Option<f32> = None, in [0.1, 1.0], more "a rounder hair";
-        /// Radius at the tip over that at the root.
-        tip_radius: Option<f32> = None, in [0.05, 1.0], more "tips that are as stiff and heavy as the rest";
-        /// Share of the length where hair begins to taper.
-        taper_start: Option<f32> = None, in [0.0, 0.99], more "a shorter taper";
-        /// Stiffness at the root, in the middle and at the tip over that of the material.
-        profile: Option<[f32; 3]> = None, in [0.01, 100.0], more "hair that bends less there";
+        overrides RodSettings {
+            hair: HairKind,
+            radius: f32,
+            youngs_modulus: f32,
+            poisson_ratio: f32,
+            shear_modulus: f32,
+            density: f32,
+            load: f32,
+            wisp_hairs: u32,
+            cohesion: f32,
+            damping: f32,
+            ellipticity: f32,
+            tip_radius: f32,
+            taper_start: f32,
+            profile: [f32; 3],
+        }
     }
 }
 
@@ -146,30 +134,17 @@ impl RodSettings {
         }
     }
 
-    /// The same with what a group has of its own.
+    /// These settings with those that a group overrides.
     pub fn of_group(&self, group: &GroupSettings) -> Self {
-        let mut rods = *self;
+        let mut kind = *self;
         if let Some(hair) = group.hair {
-            rods.set_hair(hair);
+            kind.set_hair(hair);
         }
-        let modulus = rods.youngs_modulus;
-        rods.radius = group.radius.unwrap_or(rods.radius);
-        rods.youngs_modulus = group.youngs_modulus.unwrap_or(rods.youngs_modulus);
-        rods.density = group.density.unwrap_or(rods.density);
-        rods.load = group.load.unwrap_or(rods.load);
-        rods.wisp_hairs = group.wisp_hairs.unwrap_or(rods.wisp_hairs);
-        rods.cohesion = group.cohesion.unwrap_or(rods.cohesion);
-        rods.poisson_ratio = group.poisson_ratio.unwrap_or(rods.poisson_ratio);
-        rods.shear_modulus = match (group.shear_modulus, group.poisson_ratio) {
-            (Some(shear), _) => Some(shear),
-            (None, Some(_)) => None,
-            (None, None) => rods.shear_modulus.map(|shear| shear * rods.youngs_modulus / modulus),
-        };
-        rods.damping = group.damping.unwrap_or(rods.damping);
-        rods.ellipticity = group.ellipticity.unwrap_or(rods.ellipticity);
-        rods.tip_radius = group.tip_radius.unwrap_or(rods.tip_radius);
-        rods.taper_start = group.taper_start.unwrap_or(rods.taper_start);
-        rods.profile = group.profile.unwrap_or(rods.profile);
+        let mut rods = group.over(self);
+        if group.shear_modulus.is_none() {
+            let share = |shear| shear * rods.youngs_modulus / kind.youngs_modulus;
+            rods.shear_modulus = kind.shear_modulus.filter(|_| group.poisson_ratio.is_none()).map(share);
+        }
         rods
     }
 

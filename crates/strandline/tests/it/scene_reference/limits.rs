@@ -15,8 +15,8 @@ fn numbers(table: &'static Table, path: &str, before: &str, found: &mut Vec<(Str
         let inner = if path.is_empty() { row.name.to_owned() } else { format!("{path}.{}", row.name) };
         match row.kind {
             Kind::Group(table) => numbers(table, &inner, before, found),
-            Kind::List(table) => {
-                numbers(table, &format!("{inner}[0]"), &format!("[[{inner}]]\n"), found);
+            Kind::List(items) => {
+                numbers(items.table(), &format!("{inner}[0]"), &format!("[[{inner}]]\n"), found);
             }
             Kind::Number(_) | Kind::Whole(_) | Kind::NumberOr(_) => {
                 found.push((inner, before.to_owned(), row));

@@ -98,7 +98,7 @@ fn section(page: &mut String, table: &Table, path: &str, defaults: &toml::Table,
                 let own = defaults.get(row.name).and_then(|own| own.as_table().cloned());
                 (table, format!("[{path}]"), own.unwrap_or_default())
             }
-            Kind::List(table) => (table, format!("[[{path}]]"), item(&path)),
+            Kind::List(items) => (items.table(), format!("[[{path}]]"), item(&path)),
             _ => unreachable!("only sections are left"),
         };
         writeln!(page, "\n{} `{heading}`\n\n{}", "#".repeat(depth), row.sentence()).unwrap();

@@ -13,9 +13,9 @@ use strandline_body::{Carrier, Collider, Pose};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use super::Obstacles;
-use super::vec3x8::{Rigid, Vec3x8, load, splat};
+use super::obstacles::Obstacles;
 use super::way::{Seen, met};
+use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 
 /// How careful a look at the solids is.
 #[derive(Clone, Copy)]

@@ -1,9 +1,7 @@
 //! Points sorted by cell, a counting sort [Chen2011 fig. 26, 28-30].
 
-use super::cell_set::CellSet;
-
-/// The cell of a point that takes no part.
-pub const NO_CELL: u32 = u32::MAX;
+use super::grid::NO_CELL;
+use super::set::CellSet;
 
 /// Points sorted by the cell that holds them; points of one cell keep their order.
 ///

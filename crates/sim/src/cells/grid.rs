@@ -5,8 +5,10 @@ use strandline_base::math;
 use strandline_groom::LANES;
 use wide::{f32x8, i32x8};
 
-use super::cell_sort::NO_CELL;
-use super::vec3x8::{Vec3x8, splat};
+use strandline_base::vec3x8::{Vec3x8, splat};
+
+/// The cell of a point that takes no part.
+pub const NO_CELL: u32 = u32::MAX;
 
 /// Points further than this from the origin \[m\], or not finite, are left out of the volume: one
 /// stray point would stretch the cells until the hair sat in a single one.

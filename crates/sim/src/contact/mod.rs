@@ -1,0 +1,8 @@
+//! Contact of strands with solids, for both backends: solids over a step, the planes that points remember of them, and
+//! the way of a point through a step.
+
+pub(crate) mod contacts;
+mod obstacles;
+mod way;
+
+pub use obstacles::Obstacles;

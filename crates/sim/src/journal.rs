@@ -1,0 +1,252 @@
+//! States that were read from a device and what happened after each, so that the CPU can compute any later state again.
+
+use std::borrow::Cow;
+
+use crate::gpu::ComingState;
+use crate::grab::Grab;
+use crate::{CpuRunner, Drive, Model, Settings, SimError, State, StepReport};
+
+/// Checkpoints of a simulation and the entries between them.
+///
+/// On a device `past` holds the checkpoint before the last one, since a picture under way may show a step before the
+/// last. On the CPU every state is at hand: `past` then holds only what a device left, until the next but one run.
+pub(crate) struct Journal {
+    past: Vec<Span>,
+    last: Span,
+    /// A state on its way from the device, after so many entries of `last`.
+    coming: Option<(ComingState, usize)>,
+}
+
+/// What happened to a state, in order.
+pub(crate) enum Entry {
+    /// A step.
+    Step(Drive),
+    /// A change of the settings; the strands are solved by the same method.
+    Settings(Box<Settings>),
+    /// A change of what the hand holds.
+    Hold(Grab),
+}
+
+/// A state and what happened after it.
+struct Span {
+    /// Steps made before the state.
+    step: u64,
+    settings: Settings,
+    state: State,
+    entries: Vec<Entry>,
+}
+
+impl Span {
+    /// Steps made before its end.
+    fn end(&self) -> u64 {
+        self.step + steps(&self.entries)
+    }
+
+    /// The settings at its end.
+    fn settings_at_end(&self) -> &Settings {
+        let changed = self.entries.iter().rev().find_map(|entry| match entry {
+            Entry::Settings(settings) => Some(&**settings),
+            Entry::Step(_) | Entry::Hold(_) => None,
+        });
+        changed.unwrap_or(&self.settings)
+    }
+
+    /// What the hand holds at its end.
+    fn grab_at_end(&self) -> &Grab {
+        let changed = self.entries.iter().rev().find_map(|entry| match entry {
+            Entry::Hold(grab) => Some(grab),
+            Entry::Step(_) | Entry::Settings(_) => None,
+        });
+        changed.unwrap_or(&self.state.grab)
+    }
+
+    /// A span of its state without what happened after it.
+    fn begin(&self) -> Self {
+        let Self { step, settings, state, .. } = self;
+        Self { step: *step, settings: settings.clone(), state: state.clone(), entries: Vec::new() }
+    }
+
+    /// The span that follows, of the state at the end of this one.
+    fn next(&self, state: State, entries: Vec<Entry>) -> Self {
+        Self { step: self.end(), settings: self.settings_at_end().clone(), state, entries }
+    }
+
+    /// Computes its entries again on the CPU, as far as the state after a step.
+    fn replay(&self, model: Model, step: u64) -> (CpuRunner, State, Vec<StepReport>) {
+        let mut runner = CpuRunner::from(model);
+        // All of these settings were accepted before.
+        runner.set_settings(&self.settings).unwrap_or_default();
+        let (mut state, mut reports) = (self.state.clone(), Vec::new());
+        for entry in &self.entries {
+            match entry {
+                Entry::Step(_) if self.step + reports.len() as u64 == step => break,
+                Entry::Step(drive) => reports.push(runner.step(&mut state, drive)),
+                Entry::Settings(settings) => runner.set_settings(settings).unwrap_or_default(),
+                Entry::Hold(grab) => state.grab.clone_from(grab),
+            }
+        }
+        (runner, state, reports)
+    }
+}
+
+impl Journal {
+    /// Begins with a state.
+    pub fn new(state: State, settings: Settings) -> Self {
+        let last = Span { step: 0, settings, state, entries: Vec::new() };
+        Self { past: Vec::new(), last, coming: None }
+    }
+
+    /// Steps made.
+    pub fn steps(&self) -> u64 {
+        self.last.end()
+    }
+
+    /// The last checkpoint.
+    pub fn state(&self) -> &State {
+        &self.last.state
+    }
+
+    /// What the hand holds now.
+    pub fn grab(&self) -> &Grab {
+        self.last.grab_at_end()
+    }
+
+    /// The last checkpoint, to be changed. On a device [`Journal::restart`] has to follow.
+    pub fn state_mut(&mut self) -> &mut State {
+        &mut self.last.state
+    }
+
+    /// Whether nothing happened since the last checkpoint.
+    pub fn is_current(&self) -> bool {
+        self.last.entries.is_empty()
+    }
+
+    /// The last checkpoint: steps made before it, its settings, the state, and what happened since.
+    pub fn since(&self) -> (u64, &Settings, &State, &[Entry]) {
+        let Span { step, settings, state, entries } = &self.last;
+        (*step, settings, state, entries)
+    }
+
+    /// Writes down steps of a device.
+    pub fn stepped(&mut self, drives: &[Drive]) {
+        self.last.entries.extend(drives.iter().cloned().map(Entry::Step));
+    }
+
+    /// Writes down steps of the CPU, by which the caller advances the state that is returned.
+    pub fn advance(&mut self, steps: usize) -> &mut State {
+        if self.past.last().is_some_and(|left| left.step < self.last.step) {
+            self.past.clear();
+        }
+        self.last.step += steps as u64;
+        &mut self.last.state
+    }
+
+    /// Writes down a change of the settings.
+    pub fn set(&mut self, settings: &Settings) {
+        match self.last.entries.last_mut() {
+            None => self.last.settings.clone_from(settings),
+            Some(Entry::Settings(last)) => last.as_mut().clone_from(settings),
+            Some(_) => self.last.entries.push(Entry::Settings(Box::new(settings.clone()))),
+        }
+    }
+
+    /// Writes down what the hand holds from now on.
+    pub fn hold(&mut self, grab: Grab) {
+        match self.is_current() {
+            true => self.last.state.grab = grab,
+            false => self.last.entries.push(Entry::Hold(grab)),
+        }
+    }
+
+    /// Makes a state that was changed or replaced the first one.
+    pub fn restart(&mut self) {
+        (self.last.step, self.last.settings) = (self.last.end(), self.last.settings_at_end().clone());
+        self.last.entries.clear();
+        self.past.clear();
+        self.coming = None;
+    }
+
+    /// Writes down that a state was sent on its way from the device, as it is now.
+    pub fn send(&mut self, coming: ComingState) {
+        self.coming = Some((coming, self.last.entries.len()));
+    }
+
+    /// Forgets the state that is on its way.
+    pub fn recall(&mut self) {
+        self.coming = None;
+    }
+
+    /// Whether a state is to be sent on its way: none is, and `checkpoint_every` steps were made since the last one.
+    pub fn is_due(&self) -> bool {
+        let every = self.last.settings_at_end().checkpoint_every;
+        self.coming.is_none() && self.last.end() - self.last.step >= u64::from(every)
+    }
+
+    /// Takes the state that is on its way as a checkpoint, where it has arrived. Steps before it are not computed again,
+    /// so that it waits for their reports: `reported` steps have one. What fails here fails in the next run too.
+    pub fn receive(&mut self, reported: u64) {
+        let Some((coming, count)) = self.coming.take() else { return };
+        if self.last.step + steps(&self.last.entries[..count]) > reported {
+            self.coming = Some((coming, count));
+            return;
+        }
+        match coming.has_arrived() {
+            Ok(true) => self.renew(coming, count).unwrap_or_default(),
+            Ok(false) => self.coming = Some((coming, count)),
+            Err(_) => {}
+        }
+    }
+
+    /// Waits for the state of the device as it is now and takes it as a checkpoint.
+    ///
+    /// # Errors
+    /// The device was lost; nothing changes.
+    pub fn read(&mut self, coming: ComingState) -> Result<(), SimError> {
+        self.renew(coming, self.last.entries.len())
+    }
+
+    /// Takes the state after so many entries as a checkpoint; the one before the last makes room for it.
+    fn renew(&mut self, coming: ComingState, count: usize) -> Result<(), SimError> {
+        let mut spare = self.past.pop().unwrap_or_else(|| self.last.begin());
+        if let Err(failure) = coming.write(&mut spare.state) {
+            self.past.push(spare);
+            return Err(failure);
+        }
+        let entries = self.last.entries.split_off(count);
+        let hand = spare.state.grab.hand;
+        spare.state.grab = Grab { hand, ..self.last.grab_at_end().clone() };
+        let next = self.last.next(spare.state, entries);
+        self.past.push(std::mem::replace(&mut self.last, next));
+        self.coming = None;
+        Ok(())
+    }
+
+    /// Computes what happened since the last checkpoint again on the CPU, which continues from there. Returns the reports
+    /// of these steps too.
+    pub fn fall_back(&mut self, model: Model) -> (CpuRunner, Vec<StepReport>) {
+        let (runner, state, reports) = self.last.replay(model, u64::MAX);
+        let next = self.last.next(state, Vec::new());
+        self.past.push(std::mem::replace(&mut self.last, next));
+        self.past.push(self.last.begin());
+        self.coming = None;
+        (runner, reports)
+    }
+
+    /// The state after a step, computed again on the CPU where it is no checkpoint; the last checkpoint where the step
+    /// lies too far back.
+    pub fn state_after(&self, step: u64, model: &Model) -> Cow<'_, State> {
+        let spans = || self.past.iter().rev().chain([&self.last]);
+        if let Some(span) = spans().find(|span| span.step == step) {
+            return Cow::Borrowed(&span.state);
+        }
+        match spans().find(|span| (span.step..=span.end()).contains(&step)) {
+            Some(span) => Cow::Owned(span.replay(model.clone(), step).1),
+            None => Cow::Borrowed(&self.last.state),
+        }
+    }
+}
+
+/// Steps among entries.
+fn steps(entries: &[Entry]) -> u64 {
+    entries.iter().filter(|entry| matches!(entry, Entry::Step(_))).count() as u64
+}
