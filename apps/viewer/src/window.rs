@@ -4,11 +4,12 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 use strandline::{
-    Camera, Scene,
-    low_level::{Command, LiveEvent, Shown, body::Aabb},
+    Camera, ErrorKind, Scene,
+    live::{Command, LiveEvent, Shown},
+    mesh::Aabb,
 };
 
-use crate::{App, panels, stage, strip};
+use crate::{App, panels, status_bar, viewport};
 
 /// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
@@ -36,7 +37,7 @@ impl App {
                         self.give_up_pictures();
                     }
                 }
-                LiveEvent::Error(error) => self.error = Some(error),
+                LiveEvent::Error(kind, error) => self.error = Some(with_remedy(kind, error)),
                 LiveEvent::Paused => {
                     self.playing = false;
                     self.give_up_pictures();
@@ -105,15 +106,25 @@ impl App {
         self.take_saved();
         self.take_exported();
         self.keep_scene();
-        stage::keys(self, ui);
-        egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
+        viewport::keys(self, ui);
+        egui::Panel::bottom("status_bar").show(ui, |ui| status_bar::show(self, ui));
         egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
-        egui::CentralPanel::default().show(ui, |ui| stage::show(self, ui));
+        egui::CentralPanel::default().show(ui, |ui| viewport::show(self, ui));
     }
 }
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         self.show(ui);
+    }
+}
+
+/// The text of an error with what a person may do about it in the window.
+fn with_remedy(kind: ErrorKind, error: String) -> String {
+    match kind {
+        ErrorKind::DeviceLost | ErrorKind::OutOfMemory | ErrorKind::Refused => {
+            format!("{error}\nThe CPU can continue: choose cpu as the device.")
+        }
+        _ => error,
     }
 }

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use strandline::{
-    Backend, Camera, Live, Scene,
-    low_level::{Change, Command, LiveEvent, Ray, Shown},
+    Backend, Camera, Change, Live, Ray, Scene,
+    live::{Command, LiveEvent, Shown},
 };
 
 use super::gpu::Device;
@@ -121,7 +121,7 @@ impl Play {
             for news in self.live.take_events() {
                 match news {
                     LiveEvent::Loaded(_, _, camera, ..) => self.camera = camera,
-                    LiveEvent::NotLoaded(_, error) | LiveEvent::Error(error) => anyhow::bail!("{error}"),
+                    LiveEvent::NotLoaded(_, error) | LiveEvent::Error(_, error) => anyhow::bail!("{error}"),
                     _ => {}
                 }
             }

@@ -147,7 +147,7 @@ impl GpuRenderer {
         let with_width = strands.positions.iter().zip(&strands.widths);
         let points: Vec<_> = with_width.map(|(point, &width)| point.extend(width).to_array()).collect();
         self.strands.iter().try_for_each(|room| room.points.write(&points))?;
-        self.gpu.guarded("opacity maps", || {
+        self.gpu.ask("opacity maps", || {
             let mut recorder = Recorder::new(&self.gpu, None);
             opacity_depth(&mut recorder, &scene, stages, maps);
             opacity_layers(&mut recorder, &scene, stages);

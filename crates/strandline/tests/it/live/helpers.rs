@@ -2,8 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use strandline::low_level::{Command, LiveEvent, Shown};
-use strandline::{Backend, Live, Scene};
+use strandline::{
+    Backend, Live, Scene,
+    live::{Command, LiveEvent, Shown},
+};
 
 pub fn scene() -> Scene {
     let mut scene = Scene::demo();
@@ -58,7 +60,7 @@ pub fn still() -> (Live, Shown) {
 pub fn error(live: &Live) -> String {
     wait(|| {
         live.take_events().into_iter().find_map(|news| match news {
-            LiveEvent::Error(error) | LiveEvent::NotLoaded(_, error) => Some(error),
+            LiveEvent::Error(_, error) | LiveEvent::NotLoaded(_, error) => Some(error),
             _ => None,
         })
     })

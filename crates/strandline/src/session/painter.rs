@@ -5,12 +5,12 @@ use strandline_gpu::Gpu;
 use crate::{
     BoundStrands,
     body::Mesh,
-    devices::{Opened, place},
     groom::Guides,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
         gpu::{DevicePoints, GpuRenderer},
     },
+    scene::devices::{Opened, device_name},
 };
 
 /// A renderer and what it takes to start another one on the CPU.
@@ -27,9 +27,9 @@ pub(crate) struct Painter {
     settings: PictureSettings,
     /// The light whose layers colour the hair.
     pub layers_of: Option<usize>,
-    /// Whether pictures are drawn on the CPU when the GPU fails.
+    /// True where pictures are drawn on the CPU when the GPU fails.
     pub fall_back: bool,
-    /// What happened on the way, human-readable.
+    /// Notes, human-readable.
     pub notes: Vec<String>,
 }
 
@@ -77,9 +77,9 @@ impl Painter {
         })
     }
 
-    /// Where the last picture was drawn, human-readable.
+    /// Device of the last picture, human-readable.
     pub fn drawn_on(&self) -> String {
-        if self.stands_in { place(None) } else { place(self.gpu()) }
+        if self.stands_in { device_name(None) } else { device_name(self.gpu()) }
     }
 
     /// The device, unless all pictures are drawn on the CPU.

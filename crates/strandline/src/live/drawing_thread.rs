@@ -12,12 +12,12 @@ use super::messages::{Command, LiveEvent, Out, Shown};
 use super::playing::{Drafts, Playing, changes_cost, of_size};
 use super::recorder::Recorder;
 use crate::{
-    Error, FilmFiles, Scene,
+    Error, ErrorKind, FilmFiles, Scene, Sources,
     render::{FrameReport, Picture},
     session::{Change, Event, FRAME},
 };
 
-/// What the drawing thread receives.
+/// A message to the drawing thread.
 pub(super) enum Message {
     Command(Command),
     /// The scene of the load with this number.
@@ -33,7 +33,7 @@ pub(super) enum Message {
 }
 
 /// The drawing thread.
-pub(super) struct Desk {
+pub(super) struct DrawingThread {
     messages: Receiver<Message>,
     own: Sender<Message>,
     out: Arc<Mutex<Out>>,
@@ -41,7 +41,7 @@ pub(super) struct Desk {
     clock: LiveClock,
 }
 
-impl Desk {
+impl DrawingThread {
     pub fn new(
         messages: Receiver<Message>,
         own: Sender<Message>,
@@ -59,7 +59,7 @@ impl Desk {
         let mut playing = Playing::START;
         let played = catch_unwind(AssertUnwindSafe(|| self.play(&mut playing)));
         if played.is_err() {
-            self.emit(LiveEvent::Error(Error::WorkerGone.to_string()));
+            self.emit(Error::WorkerGone.into());
             self.emit(LiveEvent::Paused);
         }
         // Films under way are finished.
@@ -73,7 +73,7 @@ impl Desk {
         loop {
             let deadline = self.clock.after(playing.patience());
             if playing.is_idle() {
-                // Who waits for it may be gone.
+                // The caller that waits may be gone.
                 for idler in playing.idlers.drain(..) {
                     let _ = idler.send(());
                 }
@@ -96,9 +96,9 @@ impl Desk {
             }
             let draft = playing.adapts && playing.slow && !full && playing.recorder.is_none();
             if let Err(error) = self.frame(playing, draft) {
-                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(error.into());
                 self.emit(LiveEvent::Paused);
-                // What fails now fails again: it waits for another command.
+                // A frame that fails fails again: it waits for another command.
                 (playing.playing, playing.steps, playing.stale, playing.draft) = (false, 0, false, false);
             }
         }
@@ -118,10 +118,8 @@ impl Desk {
         };
         playing.received += 1;
         match command {
-            Command::Load(scene) => {
-                playing.load = playing.received;
-                self.load(playing, scene);
-            }
+            Command::Load(scene) => self.load(playing, scene, Box::default()),
+            Command::LoadSources(scene, sources) => self.load(playing, scene, sources),
             // Steps that were asked for before are among those it plays.
             Command::Play(true) => (playing.playing, playing.steps) = (true, 0),
             Command::Play(false) => playing.playing = false,
@@ -145,7 +143,7 @@ impl Desk {
         let Some(Loaded { session, .. }) = playing.scene.as_deref_mut() else { return };
         let change = if fixed { of_size(change, session.settings()) } else { change };
         if let Err(error) = session.change(change) {
-            self.emit(LiveEvent::Error(error.to_string()));
+            self.emit(error.into());
         }
     }
 
@@ -155,19 +153,20 @@ impl Desk {
             // Another scene was asked for since.
             _ if load != playing.load => {}
             Ok(mut loaded) => {
-                let Loaded { session, scene, notes } = &mut *loaded;
-                let (camera, bounds) = (session.studio.camera, session.studio.bounds);
-                self.emit(LiveEvent::Loaded(load, scene.clone(), camera, bounds, notes.clone()));
+                let Loaded { session, notes } = &mut *loaded;
+                let (camera, bounds) = (*session.view().camera(), session.view().bounds());
+                let scene = Box::new(session.scene().clone());
+                self.emit(LiveEvent::Loaded(load, scene, camera, bounds, notes.clone()));
                 if let (Some(old), Some(_)) = (&playing.scene, &playing.recorder) {
                     let picture = of_size(Change::Picture(session.settings()), old.session.settings());
                     if let Err(error) = session.change(picture) {
-                        self.emit(LiveEvent::Error(error.to_string()));
+                        self.emit(error.into());
                     }
                 }
-                // How long one takes is known once it is drawn: the first is there sooner when simple.
+                // The time of one is known once it is drawn: the first is there sooner when simple.
                 (playing.stale, playing.tried) = (true, false);
                 playing.drafts = Drafts::START;
-                playing.slow = session.studio.painter.gpu().is_none();
+                playing.slow = session.view().gpu().is_none();
                 (playing.scene, playing.loaded) = (Some(loaded), load);
                 (playing.step, playing.is_frame) = (None, false);
             }
@@ -176,11 +175,14 @@ impl Desk {
     }
 
     /// Loads on a thread of its own, so that what plays continues.
-    fn load(&self, playing: &mut Playing, scene: Box<Scene>) {
+    fn load(&self, playing: &mut Playing, scene: Box<Scene>, sources: Box<Sources>) {
+        playing.load = playing.received;
         playing.loading += 1;
         let (own, number) = (self.own.clone(), playing.load);
         let job = move || {
-            let loaded = catch_unwind(|| Loaded::new(&scene)).unwrap_or(Err(Error::WorkerGone)).map(Box::new);
+            let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources)))
+                .unwrap_or(Err(Error::WorkerGone))
+                .map(Box::new);
             // Nobody waits for it any more when the window is closed.
             let _ = own.send(Message::Loaded(number, loaded));
         };
@@ -203,7 +205,7 @@ impl Desk {
         match Recorder::new(folder, (1.0 / FRAME) as f32, done) {
             Ok(recorder) => playing.recorder = Some(recorder),
             Err(error) => {
-                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(error.into());
                 self.emit(LiveEvent::Recorded);
             }
         }
@@ -221,7 +223,7 @@ impl Desk {
                     // It may have ended by itself.
                     playing.finishing.extend(playing.recorder.take().map(Recorder::finish));
                 }
-                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(error.into());
             }
         }
         self.emit(LiveEvent::Recorded);
@@ -231,21 +233,24 @@ impl Desk {
     fn save(&self, playing: &mut Playing, scene: Scene, load: u64, path: PathBuf) {
         if let Err(error) = self.catch_up(playing).and_then(|()| self.make_steps(playing)) {
             // The last good state is still there.
-            self.emit(LiveEvent::Error(error.to_string()));
+            self.emit(error.into());
         }
-        self.emit(match &playing.scene {
+        self.emit(match &mut playing.scene {
             Some(loaded) if playing.loaded == load => match loaded.save(scene, &path) {
                 Ok(()) => LiveEvent::Saved(path),
-                Err(error) => LiveEvent::Error(error.to_string()),
+                Err(error) => error.into(),
             },
-            Some(_) => LiveEvent::Error("not saved, as another scene has just come: save again".to_owned()),
-            None => LiveEvent::Error("there is no hair to save yet".to_owned()),
+            Some(_) => LiveEvent::Error(
+                ErrorKind::Other,
+                "not saved, as another scene has just come: save again".to_owned(),
+            ),
+            None => LiveEvent::Error(ErrorKind::Other, "there is no hair to save yet".to_owned()),
         });
     }
 
     /// Waits for all that the simulation has begun.
     fn catch_up(&self, playing: &mut Playing) -> Result<(), Error> {
-        while playing.scene.as_ref().is_some_and(|loaded| loaded.session.place.started() > 0) {
+        while playing.scene.as_ref().is_some_and(|loaded| loaded.session.started() > 0) {
             playing.stale = true;
             self.take(playing)?;
         }
@@ -271,7 +276,7 @@ impl Desk {
     fn frame(&self, playing: &mut Playing, draft: bool) -> Result<(), Error> {
         let Some(loaded) = &mut playing.scene else { return Ok(()) };
         let moves = (playing.playing || playing.steps > 0) && !playing.is_frame;
-        if moves && loaded.session.place.started() == 0 {
+        if moves && loaded.session.started() == 0 {
             loaded.session.start_frame(playing.received)?;
             playing.steps = playing.steps.saturating_sub(1);
         }
@@ -295,7 +300,7 @@ impl Desk {
         let Some(loaded) = &mut playing.scene else { return Ok(()) };
         match loaded.session.take() {
             Ok(is_frame) => playing.is_frame |= is_frame,
-            Err(Error::Sim(error)) if error.gpu().is_none() => self.emit(LiveEvent::Error(error.to_string())),
+            Err(Error::Sim(error)) if error.gpu().is_none() => self.emit(Error::from(error).into()),
             Err(error) => return Err(error),
         }
         self.pass_on(playing, false);
@@ -325,13 +330,13 @@ impl Desk {
             picture,
             frame: playing.frame,
             drawn_after_command: playing.received,
-            simulated_after_command: session.simulated_after,
+            simulated_after_command: session.simulated_after(),
             draft: playing.draft,
             recorded: playing.recorder.as_ref().map(|recorder| recorder.frames),
             drawing,
             step: playing.step.take(),
-            grabbed: session.grabbed,
-            places: [session.simulated_on.clone(), session.studio.painter.drawn_on()],
+            grabbed: session.grabbed(),
+            places: [session.simulated_on().to_owned(), session.view().drawn_on()],
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
         // A step that was not seen is still reported.
