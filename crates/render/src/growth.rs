@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strandline_body::{Pose, Solids};
+use strandline_body::{BodyFrame, Solids};
 use strandline_groom::{Binding, Guides, Vec3Lanes};
 
 use crate::cpu::strands::bind::{Carried, bind};
@@ -35,17 +35,18 @@ impl Growth {
     pub fn at(
         &mut self,
         positions: &[Vec3Lanes],
-        world_from_head: &Pose,
+        body: &BodyFrame,
         look: &Look,
         level: &DetailLevel,
     ) -> &Strands {
         let Self { guides, carried, curves, strands } = self;
-        carried.iter_mut().for_each(|carried| bind(carried, positions, world_from_head));
+        carried.iter_mut().for_each(|carried| bind(carried, positions, body));
         let points = carried.as_ref().map_or(positions, Carried::places);
-        tessellate(points, guides, world_from_head, level, curves);
-        interpolate(curves, guides, world_from_head, look, level, strands);
+        let head = body.world_from_head();
+        tessellate(points, guides, &head, level, curves);
+        interpolate(curves, guides, &head, look, level, strands);
         if let Some(carried) = carried {
-            let solids = carried.solids().placed(*world_from_head);
+            let solids = carried.solids().placed(body);
             keep_outside(strands, curves, guides.points_per_strand(), &solids);
         }
         strands

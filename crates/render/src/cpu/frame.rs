@@ -80,9 +80,9 @@ impl Frame<'_> {
     pub fn run(&mut self, stage: Stage) {
         let Self { settings, input, level, picture, .. } = self;
         let Scratch { guides, carried, curves, strands, shadows, resolve, samples, .. } = &mut *self.scratch;
-        let pose = &input.world_from_head;
+        let pose = &input.body.world_from_head();
         match stage {
-            Stage::Bind => carried.iter_mut().for_each(|carried| bind(carried, input.positions, pose)),
+            Stage::Bind => carried.iter_mut().for_each(|carried| bind(carried, input.positions, input.body)),
             Stage::Tessellate => {
                 let points = carried.as_ref().map_or(input.positions, |carried| carried.places());
                 tessellate(points, guides, pose, level, curves);
@@ -90,7 +90,7 @@ impl Frame<'_> {
             Stage::Interpolate => {
                 interpolate(curves, guides, pose, input.look, level, strands);
                 if let Some(carried) = carried {
-                    let solids = carried.solids().placed(*pose);
+                    let solids = carried.solids().placed(input.body);
                     keep_outside(strands, curves, guides.points_per_strand(), &solids);
                 }
             }
@@ -106,14 +106,14 @@ impl Frame<'_> {
 
     /// Middle of the hair at rest \[m\], world space.
     fn middle(&self) -> Vec3 {
-        self.input.world_from_head.point(middle(self.scratch.bounds))
+        self.input.body.world_from_head().point(middle(self.scratch.bounds))
     }
 
     fn opacity_depth(&mut self) {
         let middle = self.middle();
-        let FrameInput { world_from_head, lights, look, .. } = *self.input;
+        let FrameInput { body, lights, look, .. } = *self.input;
         let Scratch { strands, shadows, draw, .. } = &mut *self.scratch;
-        draw.place_body(world_from_head);
+        draw.place_body(body.world_from_head());
         opacity_depth(strands, draw.shadow_body(), lights, middle, &look.hair_shadow(), shadows);
     }
 

@@ -153,7 +153,7 @@ impl Renderer {
 #[cfg(test)]
 mod tests {
     use glam::Vec3;
-    use strandline_body::Pose;
+    use strandline_body::BodyFrame;
     use strandline_groom::Groom;
 
     use super::*;
@@ -172,7 +172,7 @@ mod tests {
         let soft = Light { kind: LightKind::Rectangle, samples: 4, ..Light::default() };
         let input = FrameInput {
             positions: guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &Camera::front(),
             look: &look,
             body_look: &BodyLook::default(),
@@ -193,7 +193,7 @@ mod tests {
         let look = Look { follow_strands: 1, ..Look::brown() };
         let input = FrameInput {
             positions: guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &Camera::front(),
             look: &look,
             body_look: &BodyLook::default(),

@@ -296,7 +296,7 @@ impl GpuRenderer {
         settings: &'a PictureSettings,
         share: f32,
     ) -> Scene<'a> {
-        let middle = input.world_from_head.point(middle(self.bounds));
+        let middle = input.body.world_from_head().point(middle(self.bounds));
         Scene {
             input,
             settings,

@@ -6,7 +6,7 @@ use strandline_base::{choices, in_strand_order};
 
 use crate::{
     BoundStrands, Error, Scene,
-    body::Pose,
+    body::BodyFrame,
     groom::{Guides, MOST_INFLUENCES, Vec3Lanes},
     render::{DetailLevel, Growth, Look},
     strands::tags::Tags,
@@ -98,6 +98,8 @@ pub(crate) struct Leaving<'a> {
     /// All strands, where some are not simulated.
     pub bound: Option<&'a BoundStrands>,
     pub tags: &'a Tags,
+    /// Body at the beginning of the film.
+    pub body: &'a BodyFrame,
 }
 
 impl Shape {
@@ -112,7 +114,7 @@ impl Shape {
         }
     }
 
-    fn of_guides(Leaving { guides, bound, tags }: Leaving) -> Self {
+    fn of_guides(Leaving { guides, bound, tags, .. }: Leaving) -> Self {
         let (strands, points) = (guides.strand_count(), guides.points_per_strand());
         let share = |point: usize| guides.profiles().map_or(1.0, |profiles| profiles[point]);
         let widths = (0..strands * points).map(|point| guides.widths()[point / points] * share(point));
@@ -130,7 +132,7 @@ impl Shape {
         }
     }
 
-    fn of_strands(scene: &Scene, Leaving { guides, bound, tags }: Leaving) -> Result<Self, Error> {
+    fn of_strands(scene: &Scene, Leaving { guides, bound, tags, .. }: Leaving) -> Result<Self, Error> {
         let level =
             DetailLevel::full(scene.level_of_detail.segments_per_span, scene.look.follow_strands.max(1));
         let all = bound.map_or(guides, BoundStrands::strands);
@@ -146,7 +148,7 @@ impl Shape {
             None => Growth::new(guides),
         };
         let mut drawn = Drawn { growth, look: scene.look.clone(), level };
-        let grown = drawn.growth.at(guides.positions(), &Pose::IDENTITY, &drawn.look, &level);
+        let grown = drawn.growth.at(guides.positions(), &BodyFrame::REST, &drawn.look, &level);
         // The strands of a clump share their colours.
         let colors = grown.colors.chunks_exact(points).flat_map(|colors| {
             std::iter::repeat_n(colors, level.strand_count()).flatten().map(|color| color.to_array())
@@ -175,7 +177,7 @@ impl Shape {
     }
 
     /// Fills `points` \[m\] with the strands of guides that are somewhere, shape `[block][point]` of lanes.
-    pub fn place(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose, points: &mut Vec<Vec3>) {
+    pub fn place(&mut self, positions: &[Vec3Lanes], body: &BodyFrame, points: &mut Vec<Vec3>) {
         points.clear();
         let strand_count = self.strand_count();
         match &mut self.source {
@@ -184,7 +186,7 @@ impl Shape {
             }
             Source::Strands(drawn) => {
                 let Drawn { growth, look, level } = &mut **drawn;
-                let grown = growth.at(positions, world_from_head, look, level);
+                let grown = growth.at(positions, body, look, level);
                 points.extend_from_slice(&grown.positions);
             }
         }

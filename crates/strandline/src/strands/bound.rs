@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::{
-    body::{Collider, Pose, Shape, Solids},
+    body::{BodyFrame, Collider, Shape, Solids},
     groom::{Binding, Frames, Guides, Vec3Lanes},
 };
 
@@ -52,11 +52,11 @@ impl BoundStrands {
     pub fn place(
         &self,
         guides: &[Vec3Lanes],
-        world_from_head: &Pose,
+        body: &BodyFrame,
         frames: &mut Frames,
         out: &mut Vec<Vec3Lanes>,
     ) {
-        self.binding.carry(guides, world_from_head, &self.solids, frames, out);
+        self.binding.carry(guides, body, &self.solids, frames, out);
     }
 
     /// The solids that strands stay out of.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strandline_body::{Pose, Solids};
+use strandline_body::{BodyFrame, Solids};
 use strandline_groom::{Binding, Frames, Vec3Lanes};
 
 /// Strands that guides carry, with the memory that placing them takes.
@@ -32,7 +32,7 @@ impl Carried {
 }
 
 /// Places strands about their guides, whose points \[m\] are given in world space, shape `[block][point]` of lanes.
-pub fn bind(carried: &mut Carried, guides: &[Vec3Lanes], world_from_head: &Pose) {
+pub fn bind(carried: &mut Carried, guides: &[Vec3Lanes], body: &BodyFrame) {
     let Carried { binding, solids, frames, places } = carried;
-    binding.carry(guides, world_from_head, solids, frames, places);
+    binding.carry(guides, body, solids, frames, places);
 }
