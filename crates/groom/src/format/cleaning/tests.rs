@@ -35,7 +35,7 @@ fn an_ordinary_groom_is_left_alone() {
     fur.transform(0.004, glam::Quat::IDENTITY, Vec3::ZERO);
     assert!(fur.mend().is_empty() && fur.leave_out_strays().is_empty());
     let mut long = groom(300, Vec3::ZERO);
-    (0..10).for_each(|strand| long.push([Vec3::ZERO, Vec3::new(0.0, -0.8, 0.1 * strand as f32)]));
+    (0..10).for_each(|strand| long.push([Vec3::Y * 0.05, Vec3::new(0.0, -0.8, 0.02 * strand as f32)]));
     assert!(long.leave_out_strays().is_empty());
     let mut few = Groom::empty(0.0);
     few.push([Vec3::ZERO, Vec3::X]);
