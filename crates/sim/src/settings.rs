@@ -3,6 +3,7 @@ use strandline_base::{Group, SettingError, Value, choices, settings};
 use strandline_gpu::Backend;
 
 use crate::SimError;
+use crate::cells::Lattice;
 use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass, Springs};
 use crate::strands::rods::settings::{GroupSettings, RodSettings};
 
@@ -34,6 +35,11 @@ settings! {
         groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0];
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
+        plain {
+            /// Edge of the cells \[m\] by which the stage `cells` sorts points, 1e-4 to 100, for stages that look for
+            /// neighbours; `None` leaves the stage out.
+            cells: Option<f32>,
+        }
         moved {
             backend: Backend => "devices.simulation",
             iterations: u32 => "simulation.strands.constrain.iterations",
@@ -97,7 +103,8 @@ impl Settings {
     /// # Errors
     /// The first setting that does not.
     pub fn check(&self) -> Result<(), SimError> {
-        Ok(self.check_as("simulation")?)
+        self.check_as("simulation")?;
+        Ok(self.cells.map_or(Ok(()), Lattice::check)?)
     }
 }
 

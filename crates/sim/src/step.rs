@@ -36,6 +36,8 @@ macro_rules! stages {
 stages! {
     /// Roots follow the skin.
     PoseRoots = "pose_roots", always;
+    /// Points sorted by cell, by their positions alone, for stages that look for neighbours.
+    Cells = "cells", neighbours;
     /// Forces, then a prediction.
     Integrate = "integrate", constrained;
     /// Lengths, bends and solids.
@@ -56,6 +58,10 @@ stages! {
 
 fn always(_: &Settings) -> bool {
     true
+}
+
+fn neighbours(settings: &Settings) -> bool {
+    settings.cells.is_some()
 }
 
 fn constrained(settings: &Settings) -> bool {

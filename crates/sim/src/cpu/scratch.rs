@@ -6,6 +6,7 @@ use strandline_groom::{RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use super::Volume;
+use super::cells::Cells;
 use crate::cells::Grid;
 use crate::masses::Masses;
 use crate::strands::rods::rod::Node;
@@ -23,6 +24,8 @@ pub struct Scratch {
     pub(crate) nodes: Option<Vec<Node<f32x8>>>,
     /// The fluid volume; none while it is off.
     pub(crate) volume: Option<Volume>,
+    /// Points sorted by cell; `None` while nothing reads them.
+    pub(crate) cells: Option<Cells>,
     /// What masses and nodes were made from.
     made_from: Made,
 }
@@ -62,6 +65,7 @@ impl Scratch {
             nodes: nodes(model, state, &masses),
             masses,
             volume: None,
+            cells: None,
             made_from: Made::new(model, state),
         }
     }
@@ -76,6 +80,11 @@ impl Scratch {
         }
         self.predicted.resize(state.positions.len(), Vec3Lanes::default());
         self.refresh_volume(model, state.volume_box);
+        let old = self.cells.take();
+        self.cells = model
+            .settings
+            .cells
+            .map(|edge| Cells::keep_or_new(old, edge, model.strand_count, model.points_per_strand));
     }
 
     /// Makes the volume fit its settings, and its box that of the state: one of other cells, or of a state that has

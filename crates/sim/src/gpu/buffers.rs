@@ -3,6 +3,7 @@
 use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
+use super::cells::Cells;
 use super::inputs::Step;
 use super::records::{Outcome, PointBox, PressureState, Report};
 use super::rod_buffers::{NUMBERS, RodBuffers};
@@ -51,6 +52,7 @@ pub(super) struct Buffers {
     /// What a step without a volume reports.
     pub no_pressure: Buffer<PressureState>,
     pub volume: Option<Volume>,
+    pub cells: Option<Cells>,
     pub rods: Option<RodBuffers>,
 }
 
@@ -83,6 +85,7 @@ impl Buffers {
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,
+            cells: None,
             rods: match &model.rods {
                 Some(_) => Some(RodBuffers::new(gpu, lane_count, points)?),
                 None => None,

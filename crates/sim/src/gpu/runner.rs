@@ -7,6 +7,7 @@ use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Recorder, Timer};
 use strandline_groom::{LANES, Lanes, RestShape};
 
 use super::buffers::{Buffers, REPORTS};
+use super::cells::Cells;
 use super::inputs::Step;
 use super::kernels::Kernels;
 use super::pending::{Pending, Reported};
@@ -236,6 +237,9 @@ impl GpuRunner {
                 if let (Stage::Splat, Some(volume)) = (stage, &self.buffers.volume) {
                     recorder.clear(&volume.start_index);
                 }
+                if let (Stage::Cells, Some(cells)) = (stage, &self.buffers.cells) {
+                    recorder.clear(&cells.start_index);
+                }
                 recorder.stage(stage.name(), dispatches);
                 costs.dispatches += dispatches.len();
                 costs.solve_dispatches += if *stage == Stage::SolvePressure { dispatches.len() } else { 0 };
@@ -265,6 +269,14 @@ impl GpuRunner {
             }
             None => None,
         };
+        let edge = self.model.settings.cells;
+        let changed = changed || self.buffers.cells.as_ref().map(|cells| cells.edge) != edge;
+        if changed {
+            self.buffers.cells = match edge {
+                Some(edge) => Some(Cells::new(&self.gpu, edge, &self.buffers)?),
+                None => None,
+            };
+        }
         if let (Some(volume), Some(place)) = (&self.buffers.volume, self.volume_box.take()) {
             volume.put(place)?;
         }
