@@ -1,14 +1,13 @@
 //! The README's code: grow a style on the built-in head, shake it for a second, save a picture.
 //! `cargo run --release -p strandline --example hello`
 
-use strandline::{Camera, Error, Hair, Scene, Style, low_level::Prepared};
+use strandline::{Camera, Error, Hair, Scene, Style};
 
 fn hello() -> Result<(), Error> {
     let mut scene = Scene::demo(); // or Scene::load("scene.toml".as_ref())?
     scene.set_style(Style::Wavy); // or scene.groom.file = Some("own.hair".into())
-    let prepared = Prepared::new(&scene)?;
-    let (head, look) = (prepared.head.clone(), prepared.scene.look.clone());
-    let mut hair = Hair::from_scene(&scene, prepared, scene.devices)?;
+    let mut hair = Hair::open(&scene)?;
+    let (head, look) = (hair.head().clone(), hair.look().clone());
     for frame in 1..=60 {
         let seconds = 1.0 / 60.0;
         hair.step(seconds, &head.pose(seconds * f64::from(frame)))?;

@@ -1,7 +1,7 @@
 //! Cut hair and let it grow while it moves: one side is shortened to 60 %, the other is half as long again.
 //! `cargo run --release -p strandline --example length`
 
-use strandline::{Backend, Camera, Hair, Look, Pose, Settings, Style, low_level::groom::StyleSettings};
+use strandline::{Backend, Camera, Hair, Look, Pose, Settings, Style, settings::StyleSettings};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let quick = std::env::var_os("STRANDLINE_QUICK").is_some();

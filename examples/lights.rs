@@ -5,10 +5,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline::low_level::base::math;
-use strandline::low_level::render::surroundings::{Panorama, Surroundings};
-use strandline::low_level::render::{Light, LightKind, Picture, PictureSettings, Preset};
-use strandline::{Backend, Camera, Hair, Look, Scene, Style, low_level::Prepared};
+use strandline::{
+    Backend, Camera, Hair, Light, Look, Picture, PictureSettings, Prepared, Scene, Style,
+    look::{
+        LightKind, Preset,
+        surroundings::{Panorama, Surroundings},
+    },
+    math,
+};
 
 const COLOURS: [Preset; 5] = [Preset::Black, Preset::Brown, Preset::Red, Preset::Blonde, Preset::Grey];
 
@@ -21,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     scene.style.strand_count = if quick { 40 } else { 1000 };
     let (width, height) = if quick { (48, 52) } else { (240, 264) };
     scene.picture = PictureSettings { width, height, ..scene.picture };
-    let mut hair = Hair::from_scene(&scene, Prepared::new(&scene)?, Backend::Cpu)?;
+    let mut hair = Hair::from_prepared(Prepared::new(&scene)?, Backend::Cpu)?;
     let room = surroundings(room)?;
     let field = surroundings(field)?;
     let mut rows = Vec::new();
@@ -30,12 +34,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for colour in COLOURS {
             let mut look = Look { follow_strands: scene.look.follow_strands, ..Look::named(colour) };
             look.shadow.map_size = 512;
-            hair.lights = match lights {
+            hair.set_lights(match lights {
                 0 => vec![panel([-0.9, 1.1, 1.35], 0.9, 1.4)],
                 1 => vec![panel([0.3, 0.9, -1.4], 0.5, 3.0)],
                 2 => vec![panel([0.0, 1.7, 0.1], 0.6, 1.6)],
                 _ => Vec::new(),
-            };
+            })?;
             look.surroundings = match lights {
                 3 => Some(room.clone()),
                 4 => Some(field.clone()),

@@ -1,13 +1,13 @@
 //! Properties that hold for any bytes, for every reader. Fuzz targets and the test of the kept corpora share
 //! them.
 
-use strandline::Scene;
-use strandline::low_level::body::{DistanceGrid, Mesh, SignedDistance};
-use strandline::low_level::groom::format::{
-    LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx,
+use strandline::{
+    Groom, Mesh, Scene,
+    format::{LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx},
+    look::surroundings::{Panorama, Surroundings},
+    low_level::groom::{GroomError, Guides},
+    mesh::{DistanceGrid, SignedDistance},
 };
-use strandline::low_level::groom::{Groom, GroomError, Guides};
-use strandline::low_level::render::surroundings::{Panorama, Surroundings};
 
 /// A reader's target; whether it read the bytes.
 pub type Target = fn(&[u8]) -> bool;

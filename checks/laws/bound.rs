@@ -1,7 +1,7 @@
 //! Bound strands against the same strands simulated, on a groom and a head as artists make them.
 
 use glam::Vec3;
-use strandline::low_level::{BoundStrands, Prepared};
+use strandline::{Prepared, low_level::BoundStrands};
 use strandline_body::{Mesh, Pose};
 use strandline_checks::{On, Rig};
 use strandline_groom::{Frames, LANES, Vec3Lanes};
@@ -11,7 +11,7 @@ use strandline_render::{
 };
 use strandline_sim::{Drive, Model, Settings};
 
-/// Her hair with so many guides, to which the other strands are bound.
+/// Her hair with a number of guides, to which the other strands are bound.
 fn sintel(guides: Option<u32>) -> Option<Prepared> {
     strandline_checks::sintel(|scene| scene.groom.guides = guides)
 }

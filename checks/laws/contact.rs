@@ -1,4 +1,4 @@
-//! Solids: friction on a slope, nothing inside after settling.
+//! Solids: friction on a slope, no point inside after settling.
 
 use glam::{Quat, Vec3};
 use strandline_body::{Carrier, Collider, Mannequin, Motion, Shape};
@@ -40,7 +40,7 @@ law! {
     }
 }
 
-/// Strands by how they are solved, none with a volume: as rods, of constraints with exact lengths, and without.
+/// Strands by solver, without a volume: rods, constraints with exact lengths, constraints without.
 fn ways() -> [Settings; 3] {
     let mut loose = Settings::constrained();
     loose.strands.constrain.length_pass.enabled = false;

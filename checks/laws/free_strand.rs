@@ -1,4 +1,4 @@
-//! Strands that nothing holds: free fall, momentum, springs at rest.
+//! Free strands: free fall, momentum, springs at rest.
 
 use glam::Vec3;
 use strandline_body::Pose;

@@ -1,4 +1,4 @@
-//! Hair in a hand: it hangs from the hand as from a nail, and nothing else moves.
+//! Hair in a hand: it hangs from the hand as from a nail, and other hair stays.
 
 use glam::{Vec3, vec3};
 use strandline_body::{Carrier, Collider, Pose, Shape};
@@ -88,7 +88,7 @@ law! {
         for strand in 0..48 {
             let tip = |rig: &mut Rig| rig.state().positions[strand / 8 * 12 + 11].get(strand % 8);
             let (with, without) = (tip(&mut pulled), tip(&mut still));
-                // Strands of a block share what they remember of the solid.
+                // Strands of a block share their planes of the solid.
         same += usize::from(with.distance(without) < 1e-4);
             moved += usize::from(with.distance(without) > 0.02);
         }

@@ -70,7 +70,7 @@ law! {
         let strands = sheets(&[0.0, 0.008, 0.025, 0.06]);
         let shadows = shadows(on, &strands, shadow);
         let map = shadows.map(0).unwrap();
-        // Each sheet is half open. At the end of a layer all of it counts, and nothing of the next.
+        // Each sheet is half open. At the end of a layer all of it counts, and the next layer does not.
         for (depth, expected) in shadow.layers.into_iter().zip([1.0, 1.5, 2.0]) {
             let places = (0..400).map(|index| Vec3::new(0.005 + index as f32 * 1e-4, -depth, 0.025));
             let found = places.map(|place| map.crossings(place)).sum::<f32>() / 400.0;

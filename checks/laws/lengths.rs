@@ -1,4 +1,4 @@
-//! Lengths are kept by moving points, and what that costs is no motion of the hair.
+//! Lengths are kept by moving points, without adding motion to the hair.
 
 use std::f32::consts::TAU;
 

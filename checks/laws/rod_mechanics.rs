@@ -9,7 +9,7 @@ use strandline_sim::{Drive, Model, Settings, State, StrandMethod, rods::Rest};
 use crate::curl::curl;
 use crate::strands::{bare, first, line, one_strand};
 
-/// Rods of hair of 40 um in still air that takes nothing, that do not rub, without a volume.
+/// Rods of hair of 40 um without drag, friction and volume.
 pub fn rods(time_step: f32) -> Settings {
     let mut settings = bare(time_step, 1);
     settings.strands.method = StrandMethod::Rods;
@@ -27,7 +27,7 @@ pub fn model(
     Model::with_rest(guides, rest, |_, point| held(point), settings, solids).unwrap()
 }
 
-/// Droop over reach of a horizontal rod of so many segments with w L^3 / B = `gamma`, when it is still.
+/// Droop over reach of a horizontal rod of a number of segments with w L^3 / B = `gamma`, at rest.
 fn droop(on: &On, gamma: f32, count: usize, time_step: f32, newton_steps: u32) -> f32 {
     let (length, mut settings) = (0.1_f32, rods(time_step));
     let rod = &mut settings.strands.rods;
@@ -66,7 +66,7 @@ law! {
                 for newton_steps in [4, 16].into_iter().take(on.either(2, 1)) {
                     let found = droop(on, gamma, count, 1.0 / rate, newton_steps) / droop_of_chain - 1.0;
                     // The bound of the law. Found: 4e-4, at 1000 and 1/240 s, where the reach is a twentieth of the length
-                    // and what rounding hides of slow creep is most of it.
+                    // and slow creep hidden by rounding is most of it.
                     assert!(found.abs() < 1e-3, "{gamma}, {count} segments, 1/{rate} s, {newton_steps}: {found}");
                 }
             }

@@ -33,7 +33,7 @@ fn apart(model: &Model, one: &[Vec3], other: &[Vec3]) -> f32 {
 const STILL: f32 = 5e-4;
 /// Most that tips are from those at other steps, over the length of their strand: of the strand in the middle. A few of
 /// 24 come to rest elsewhere, on another side of an ear or a shoulder, up to half of their length away, which means over
-/// all tell alone. What rubbing of 0.2 m/s^2 holds aside is 2 % of a length by itself.
+/// all tell alone. Rubbing of 0.2 m/s^2 alone holds 2 % of a length aside.
 const APART: f32 = 2e-2;
 
 law! {

@@ -48,7 +48,7 @@ law! {
         }
         assert!(crossings.len() > 1, "it does not swing");
         let period = (crossings[crossings.len() - 1] - crossings[0]) / (crossings.len() - 1) as f32;
-        // The bound of the law. Found: 1.0004 on both, what implicit Euler takes of it (1 + (2 pi / 200)^2 / 3).
+        // The bound of the law. Found: 1.0004 on both, the error of implicit Euler (1 + (2 pi / 200)^2 / 3).
         assert!((period / 200.0 - 1.0).abs() < 0.02, "{} of its period", period / 200.0);
         // It moved its sections only.
         let aside = first(rig.state()).iter().zip(first(&rest)).map(|(now, rest)| now.distance(rest)).fold(0.0, f32::max);
@@ -60,7 +60,7 @@ law! {
     fn no_section_spins_faster_than_a_file_holds(on) {
         let mut settings = Settings { gravity: Vec3::ZERO, ..rods(1e-3) };
         let material = &mut settings.strands.rods;
-        // As soft and heavy as the shaft above: what spins goes on.
+        // As soft and heavy as the shaft above: the spin goes on.
         (material.damping, material.substeps) = (0.0, 1);
         (material.shear_modulus, material.density) = (Some(1e-3), 20_000.0);
         settings.time_step = 1e-5;
@@ -70,7 +70,7 @@ law! {
         rig.change(|state| (8..33).for_each(|segment| state.spins[segment].0[0] = 50.0 * MOST_SPIN));
         let report = rig.step(&Drive::default());
         assert_eq!((report.non_finite, fastest(rig.state())), (0, MOST_SPIN));
-        // A tenth of it is nothing to hold back.
+        // A tenth of the stiffness holds back too little.
         rig.change(|state| (8..33).for_each(|segment| state.spins[segment].0[0] = 0.1 * MOST_SPIN));
         rig.step(&Drive::default());
         let now = fastest(rig.state());

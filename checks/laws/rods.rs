@@ -1,7 +1,7 @@
 //! Rods: a style is an equilibrium, and hair comes to rest in it.
 
 use glam::{Quat, Vec3};
-use strandline::{Scene, low_level::Prepared};
+use strandline::{Prepared, Scene};
 use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Motion, Pose, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, LANES, Style, StyleSettings};
@@ -45,7 +45,7 @@ pub fn drift(model: &Model, state: &State) -> (f32, f32) {
     (sum / (model.strand_count() * points) as f32, most)
 }
 
-/// Mean speed \[m/s\] of the last step: of what moved, and as it is stored.
+/// Mean speed \[m/s\] of the last step: of the motion, and as stored.
 pub fn speeds(model: &Model, state: &State) -> (f32, f32) {
     let count = (state.positions.len() * LANES) as f32;
     let lanes = |index: usize| (0..LANES).map(move |lane| (index, lane));
@@ -135,7 +135,7 @@ law! {
         };
         let styles = [Style::Wavy, Style::Ponytail, Style::Bob, Style::Curly, Style::Long, Style::Pixie];
         for name in styles.into_iter().take(on.either(6, 2)) {
-            // Rubbing of 0.2 m/s^2 and a body that holds hair by 0.3 of its weight; and nothing that rubs.
+            // Rubbing of 0.2 m/s^2 and a body that holds hair by 0.3 of its weight; and without rubbing.
             for (friction, rubbing, bound) in [(0.3, 0.2, 3e-2), (0.0, 0.0, 1e-2)] {
                 let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
                 settings.strands.rods.rubbing = rubbing;

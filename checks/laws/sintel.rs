@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use glam::Vec3;
-use strandline::low_level::Prepared;
+use strandline::Prepared;
 use strandline_body::Pose;
 use strandline_checks::{On, Rig, law};
 use strandline_sim::{Drive, Model, Settings};
@@ -63,7 +63,7 @@ law! {
                 ..Pose::IDENTITY
             });
             let method = settings.strands.method;
-            // Found: 0.2 mm each, what may be left in the creases of her ears.
+            // Found: 0.2 mm each, in the creases of her ears.
             assert!(still < 1e-3, "{method:?}, still: {still} m deep");
             assert!(shaken < 1e-3, "{method:?}, shaken: {shaken} m deep");
             assert!(violent < 2e-3, "{method:?}, shaken at 20 g: {violent} m deep");

@@ -129,7 +129,7 @@ law! {
             assert!(points.iter().all(|point| point.length() < 0.6), "held at {held:?}: {points:?}");
         }
         for held in patterns.into_iter().take(on.either(7, 2)) {
-            // 20 g: Newton steps end at what single precision holds, whatever the motion.
+            // 20 g: Newton steps end at the limit of single precision, for any motion.
             let (_, worst) = swung(on, held, &Swing { far: 0.2, often: 5.0 });
             assert!(worst < 1e-4, "held at {held:?}, at 20 g: a segment is off by {worst}");
         }

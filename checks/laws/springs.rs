@@ -106,7 +106,7 @@ fn off(found: &[Vec3], expected: &[DVec3]) -> f64 {
     apart.fold(0.0, f64::max) / largest
 }
 
-/// Below what a step carries, m / (12 dt^2) = 0.3 N/m and m / (12 dt) = 0.005 N s/m.
+/// Below the limit of a step, m / (12 dt^2) = 0.3 N/m and m / (12 dt) = 0.005 N s/m.
 const ELASTIC: Spring = Spring { enabled: true, stiffness: 0.2, damping: 0.0 };
 const DAMPED: Spring = Spring { enabled: true, stiffness: 0.0, damping: 0.004 };
 
@@ -134,7 +134,7 @@ law! {
             Settings { gravity: Vec3::ZERO, ..bare(1.0 / 60.0, 1) }.with_constrain(|constrain| constrain.springs = only(Some(2), ELASTIC));
         let expected = expected_kicks(3, ELASTIC, 1.0 / 60.0);
         let found = kicks(on, &settings, 3);
-        // Nothing is rooted away: points 3 to 5 are pulled by the three that the head carries.
+        // No further point is rooted: points 3 to 5 are pulled by the three that the head carries.
         let off = off(&found[3..], &expected[3..]);
         assert!(off < 1e-3, "off by {off}");
         let held = &kicks(on, &settings.with_constrain(|constrain| constrain.springs = Springs::OFF), 3)[3..];

@@ -115,7 +115,7 @@ impl Cloud {
         }
     }
 
-    /// A solver with as many points; what they are is replaced by this cloud.
+    /// A solver with as many points, replaced by this cloud.
     pub fn stand_in(
         &self,
         gpu: &Gpu,

@@ -157,7 +157,7 @@ law! {
         let mass = |index: usize| 1e-6 * (1 + index % 4) as f32;
         let mut cloud = Cloud::new(&points);
         cloud.weigh(mass);
-        // Axes of different numbers of cells: none may be taken for another.
+        // Axes with different numbers of cells: a swap of axes must show.
         let cells = [8, 9, 11];
         let (origin, spacing, size, faces) = splatted(on, &cloud, cells);
         let mut expected = Vec::new();
@@ -171,7 +171,7 @@ law! {
                     sum += share;
                 }
                 let velocity = if sum > 0.0 { momentum / sum } else { 0.0 };
-                // A point that touches a face with next to nothing may miss it by rounding of its place in the
+                // A point that barely touches a face may miss it by rounding of its place in the
                 // cell, 1e-7 of 8 cells.
                 if sum > 1e-9 || sum == 0.0 {
                     let off = (f64::from(*found) - velocity).abs();

@@ -68,7 +68,7 @@ fn fewer_cells_of_scattered_light_agree_point_by_point() {
     agree(both, true);
 }
 
-/// Holds what a GPU makes of it to what the CPU does.
+/// Compares a GPU's result with the CPU's.
 fn agree(mut both: Both, body: bool) {
     // As many as a software adapter does in a short time.
     both.look.fibre.chiang.scatterings = 3;

@@ -11,7 +11,7 @@ use strandline_sim::cpu::Scratch;
 use strandline_sim::gpu::{GpuRunner, Probe};
 use strandline_sim::{CpuRunner, Drive, Model, Settings, State, StrandMethod, VolumeSettings};
 
-/// One kind of hair: what is compared on it.
+/// One kind of hair, with the comparisons made on it.
 pub struct Head {
     pub name: &'static str,
     pub guides: Guides,
@@ -28,7 +28,7 @@ impl Head {
         GpuRunner::new(gpu, self.model()).unwrap()
     }
 
-    /// The hair after some steps of a head that turns, with nothing remembered of the solids.
+    /// The hair after some steps of a head that turns, without planes of the solids.
     pub fn moving(&self, model: &Model) -> Moving {
         let mut state = model.rest_state(Pose::IDENTITY);
         let mut runner = CpuRunner::from(model.clone());

@@ -14,7 +14,7 @@ use strandline_render::{
     BodyLook, Camera, DetailLevel, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings,
 };
 
-/// Everything that a picture is made of, and what both backends make of it.
+/// All inputs of a picture, and the results of both backends.
 pub(crate) struct Both {
     pub(crate) guides: Guides,
     pub(crate) mesh: Mesh,
@@ -145,7 +145,7 @@ fn greatest(pairs: impl Iterator<Item = (Vec3, Vec3)>) -> f32 {
     pairs.fold(0.0, |most, (one, other)| most.max((one - other).abs().max_element()))
 }
 
-/// Twice the size of a head [m]: what 1e-6 is relative to.
+/// Twice the size of a head [m]: the unit of 1e-6.
 const SIZE: f32 = 0.5;
 
 #[test]

@@ -8,7 +8,7 @@ use strandline_sim::{Model, Settings, Stage, StrandMethod};
 use crate::heads::{Head, Moving, apart, drive, mean_apart, obstacles, rods, strands_apart};
 
 /// Rounding of positions of some decimetres \[m\], over the operations of up to sixteen Newton steps: they
-/// start from the same shape, and what they solve for is how far points move. 1.3e-6 were found on 64 points.
+/// start from the same shape, and solve for the motion of points. 1.3e-6 were found on 64 points.
 const PLACE: f32 = 2e-6;
 
 /// One step of rods on both, from the same state. `change` is done to it before, `others` to the settings of the

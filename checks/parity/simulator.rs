@@ -110,7 +110,7 @@ fn a_device_may_fail_after_any_run() {
     }
 }
 
-/// Reading a state makes it the one to resume from: what was reported before it is not made again.
+/// Reading a state makes it the one to resume from: steps reported before it are not repeated.
 #[test]
 fn a_device_may_fail_after_its_state_was_read() {
     let (head, every) = (&heads()[0], 120);
@@ -162,7 +162,7 @@ fn a_state_of_the_last_runs_is_computed_again_when_the_device_fails() {
     gpu.destroy();
     assert_eq!(simulator.state_after(STEPS as u64 - 1).time, expected[STEPS - 1].time);
     simulator.fall_back();
-    // What the CPU does next leaves the state that a picture under way shows.
+    // The CPU's next steps keep the state of a picture under way.
     let left = simulator.state().unwrap().positions.clone();
     simulator.run(&[drive(STEPS + 1)]).unwrap();
     assert_eq!(simulator.state_after(STEPS as u64).positions, left);

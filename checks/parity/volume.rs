@@ -34,7 +34,7 @@ fn gather_cpu(model: &Model, volume: &Volume, state: &mut State, positions: &[Ve
     gather(volume, time_step, model.inverse_mass(), positions, &mut state.velocities);
 }
 
-/// The fastest point \[m/s\], 1 at least: what velocities are rounded by.
+/// The fastest point \[m/s\], 1 at least: the unit of rounding of velocities.
 fn fastest(state: &State) -> f32 {
     let speeds = state.velocities.iter().flat_map(|lanes| (0..LANES).map(|lane| lanes.get(lane).length()));
     speeds.fold(1.0, f32::max)
@@ -254,7 +254,7 @@ fn rooms_without_air_are_levelled() {
     head.settings.volume.cells = [12; 3];
     let (_, state, volume) = marked(&head);
     let gpu_runner = head.gpu_runner(&gpu);
-    // Every air cell becomes solid: what is fluid is enclosed.
+    // Every air cell becomes solid: the fluid is enclosed.
     let mut closed = volume.clone();
     for cell in 0..closed.grid.cell_count() {
         if closed.kind(cell) == Kind::Air {
@@ -308,7 +308,7 @@ fn gather_agrees() {
         let before = state.velocities.clone();
         let predicted = state.predicted().to_vec();
         gather_cpu(&model, &volume, &mut state, &predicted);
-        // A lone strand's volume gives it back what it gave.
+        // A lone strand's volume returns its velocities.
         let changed = apart(&before, &state.velocities, &head.guides);
         assert!(changed > 1e-3 || head.guides.strand_count() == 1, "{}: {changed}", head.name);
         let speed = apart(&state.velocities, &probe.velocities().unwrap(), &head.guides);

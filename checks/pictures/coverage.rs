@@ -1,4 +1,4 @@
-//! `draw`: ribbons cover what they should, however thin, and the body hides what is behind it.
+//! `draw`: exact coverage of ribbons of any width, and hair hidden by the body.
 
 use glam::{Vec3, Vec4};
 use strandline_body::Mesh;
@@ -43,7 +43,7 @@ fn a_ribbon_covers_its_area_at_any_angle_place_and_width() {
             let shift = [random.unit(), random.unit()];
             for segments in [1, 3, 20] {
                 let share = coverage(angle, width, shift, segments);
-                // Every step covers the exact width; what is left are places rounded to f32 (1e-5 of a sample) at
+                // Every step covers the exact width; the rest are places rounded to f32 (1e-5 of a sample) at
                 // the two ends of 171 samples, and 256 sums of three roundings.
                 assert!((share - 1.0).abs() < 2e-5, "{angle} deg, {width}, {segments} segments: {share}");
             }

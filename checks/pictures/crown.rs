@@ -1,8 +1,8 @@
 //! The crown of a head of grown hair in the default look, with a soft box before it and with one behind it.
 //!
-//! The *crown* is what hair covers at least half of and lies less than 8 cm below the top of the head: what is seen of
-//! the head's hair above the brow. Its *rim* is what of it lies within 1 cm of the picture's empty part. Luminance is
-//! that of linear light, before exposure and tone map, of what covers a pixel.
+//! The *crown* is covered by hair to at least half and lies less than 8 cm below the top of the head: all visible hair of
+//! the head above the brow. Its *rim* is the part within 1 cm of the picture's empty part. Luminance is
+//! that of linear light, before exposure and tone map, of the covered part of a pixel.
 //!
 //! A lighting artist asks for 0.5 of the front-lit crown in the rim of brown hair, 1 in that of blonde hair, and a 99th
 //! percentile of 6 medians in a soft box. A light behind makes a rim of 3.3 times the front-lit crown in brown hair
@@ -41,7 +41,7 @@ impl Head {
         Self::of(2_000)
     }
 
-    /// With so many guides.
+    /// A head with a number of guides.
     pub(crate) fn of(strand_count: usize) -> Self {
         let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Long) }.grow().unwrap();
         Self {

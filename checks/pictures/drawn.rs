@@ -121,7 +121,7 @@ impl Drawn {
         self.reported(on, settings).0
     }
 
-    /// The whole picture, and what was drawn for it.
+    /// The whole picture, and its drawn strands.
     pub fn reported(&self, on: &On, settings: &PictureSettings) -> (Picture, FrameReport) {
         self.input(&self.guides, |input| match on {
             On::Cpu => Renderer::new(&self.guides, None, settings).unwrap().draw(input).unwrap(),

@@ -40,7 +40,7 @@ fn values_of_the_fibre_are_those_of_the_reference() {
     assert!(worst_value(-2.0) > 0.5);
 }
 
-/// Mean over the width of what each kind of path takes.
+/// Mean attenuation over the width of each kind of path.
 fn energies(lobes: &Lobes, eye: f64, absorption: f64) -> [f64; LOBES] {
     let count = 4000;
     let mut sums = [0.0; LOBES];
@@ -58,7 +58,7 @@ fn energy_goes_the_ways_that_rays_through_a_cylinder_take() {
         let found = energies(&Lobes::new(0.3, 0.3, 0.0, row[0]), row[2].to_radians(), row[1]);
         let whole: f64 = row[3..7].iter().sum();
         for (lobe, found) in found.into_iter().enumerate() {
-            // Quadrature and rays that were followed one by one, which differ by 0.1 %.
+            // Quadrature and single rays, which differ by 0.1 %.
             for expected in [row[3 + lobe], row[7 + lobe]] {
                 assert!((found - expected).abs() <= 0.01 * whole, "{row:?}: {found} in {lobe}");
             }

@@ -12,7 +12,7 @@ use strandline_render::{
 };
 use strandline_sim::{Drive, Model, Settings, VolumeSettings};
 
-/// A style of few guides, each with 16 follow strands, and what is needed to draw it.
+/// A style of few guides, each with 16 follow strands, and the inputs of its picture.
 struct Sitting {
     guides: Guides,
     /// The guides' points \[m\], world space.
@@ -89,7 +89,7 @@ impl Sitting {
         self.draw(|input| renderer.draw(input).unwrap().0)
     }
 
-    /// Checks what is promised of the pictures of two backends.
+    /// Checks the bounds on the pictures of two backends.
     fn check_on_gpu(self, gpu: &Gpu) {
         let sitting = self.of_thesis();
         compare(&sitting.on_gpu(gpu, &sized()), &sitting.on_cpu(&sized()), 0.01, 0.1).unwrap();
@@ -105,7 +105,7 @@ fn draw(style: Style, points_per_strand: usize, camera: Camera, settings: Pictur
 /// exceeds them (tested below).
 const MEAN: f32 = 0.01;
 const ONE_IN_A_HUNDRED: f32 = 0.15;
-/// Two simulations part by what they round, which contacts make more of in 30 steps: strands that lie a little aside
+/// Two simulations part by rounding, amplified by contacts in 30 steps: strands that lie a little aside
 /// move single pixels. Found 0.011 and 0.18; one step less makes 0.055 and 0.53 (tested below).
 const SIMULATED_MEAN: f32 = 0.02;
 const SIMULATED_ONE_IN_A_HUNDRED: f32 = 0.3;
@@ -144,7 +144,7 @@ fn short_hair_from_behind() {
 
 law! {
     /// Simulated on each backend, against one golden picture. Both states are drawn on the CPU: the golden's look
-    /// takes a software adapter minutes. What a GPU draws of its own state is held against what the CPU draws of it.
+    /// takes a software adapter minutes. A GPU's picture of its own state is compared with the CPU's of that state.
     fn long_hair_in_a_shake(on) {
         // Half a second: the head has turned and comes back, and the hair swings out.
         let shaken = |steps| Sitting::new(Style::Long, 16, Camera::three_quarter()).shaken(on, steps);

@@ -350,7 +350,7 @@ fn mean_in_the_sun(color: Option<Vec3>, change: impl FnOnce(&mut Look)) -> Vec3 
 fn colours_of_strands_colour_the_hair() {
     let (color, turned) = (Vec3::new(0.5, 0.1, 0.02), Vec3::new(0.02, 0.1, 0.5));
     let [one, other] = [color, turned].map(|color| mean_in_the_sun(Some(color), |_| ()));
-    // Channels know nothing of each other.
+    // Channels are independent.
     assert!((one - Vec3::new(other.z, other.y, other.x)).abs().max_element() < 1e-4 * one.x, "{one} {other}");
     assert!(one.x > 3.0 * one.z, "{one}");
     // The same colours as the look's.

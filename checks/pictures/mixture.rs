@@ -1,4 +1,4 @@
-//! Light that hair scatters takes the colour of the hair that it meets: of what lies in each place, and of all kinds of
+//! Scattered light takes the colour of the hair that it meets: of the hair in each place, and of all kinds of
 //! hair that lie there side by side; through `shade` with the fibre of [Chiang2016] on both backends.
 
 use glam::Vec3;
@@ -65,7 +65,7 @@ fn apart(found: Vec3, expected: Vec3) -> f32 {
 
 law! {
     fn hair_of_each_place_scatters_its_own_colour(on) {
-        // So far apart that one is hardly lit by the others.
+        // So far apart that they hardly light each other.
         let places = [Vec3::ZERO, Vec3::X * 0.25, Vec3::X * 0.5];
         let colors = [Vec3::new(0.012, 0.01, 0.008), Vec3::new(0.5, 0.2, 0.06), Vec3::new(0.9, 0.85, 0.8)];
         let strands = drawn(tufts(&places, |tuft, _| colors[tuft]), |_| ()).strands(on);
@@ -74,7 +74,7 @@ law! {
             let of_tuft = |strand: usize| strand / (SIDE * SIDE) == tuft;
             let (found, expected) = (mean(&strands, of_tuft), mean(&alone, of_tuft));
             // A colour between the others is a mixture of them, that gives back as much light but more of it forward:
-            // blue is 1.15 of what it should be there.
+            // blue is 1.15 times too bright there.
             let most = if tuft == 1 { 0.2 } else { 0.08 };
             assert!(apart(found, expected) < most, "{color}: {found}, expected {expected}");
         }
@@ -94,7 +94,7 @@ fn probed(on: &On, colors: [Vec3; 2], scatterings: u32) -> Vec3 {
 law! {
     fn hair_of_two_colours_scatters_the_mean_of_what_each_does(on) {
         let (black, white) = (Vec3::new(0.012, 0.01, 0.008), Vec3::new(0.9, 0.85, 0.8));
-        // Light that is scattered once is the sum of what every hair makes of it.
+        // Light that is scattered once is the sum over all hairs.
         let expected = 0.5 * (probed(on, [black; 2], 0) + probed(on, [white; 2], 0));
         let found = probed(on, [black, white], 0);
         assert!(apart(found, expected) < 0.03, "{found}, expected {expected}");

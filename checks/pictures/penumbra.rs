@@ -13,7 +13,7 @@ use strandline_render::{
 
 use crate::linear::Linear;
 
-/// Height \[m\] of what casts the shadow: all with x below 0.
+/// Height \[m\] of the caster of the shadow, which covers all x below 0.
 const EDGE: f32 = 0.3;
 /// Places on the floor that are looked at, and how far they reach to both sides \[m\].
 const PLACES: usize = 81;
@@ -46,7 +46,7 @@ fn body(caster: Caster) -> Mesh {
     Mesh::new(corners, triangles).unwrap()
 }
 
-/// A curtain of three layers of hair that lets next to nothing through, or one hair that is not seen.
+/// A curtain of three layers of hair that lets next to nothing through, or one invisible hair.
 fn hair(caster: Caster) -> Guides {
     if caster == Caster::Touching {
         return touching();
@@ -176,7 +176,7 @@ fn lights() -> impl Iterator<Item = Light> {
     })
 }
 
-/// Holds the light of the floor past an edge to what comes past it.
+/// Compares the light of the floor past an edge with the visible part of the light.
 fn hold(on: &On, caster: Caster) {
     for light in lights() {
         let (open, found) = (floor(on, Caster::Nothing, light), floor(on, caster, light));

@@ -1,4 +1,4 @@
-//! `resolve` on both backends: what becomes of samples on their way to the 8 bits of a picture.
+//! `resolve` on both backends: samples become the 8 bits of a picture.
 
 use glam::Vec3;
 use strandline_checks::law;
@@ -16,7 +16,7 @@ fn crossing(radiance: Vec3) -> Drawn {
         let (way, at) = (Vec3::new(cosine, sine, 0.0), Vec3::new(0.003 * strand as f32 - 0.006, 0.002, 0.0));
         vec![at - 0.012 * way, at + 0.012 * way]
     });
-    // Nothing hides the surroundings: a white hair shows them as they are.
+    // Unhidden surroundings: a white hair shows them as they are.
     let look = Look {
         environment: Environment { sky: Vec3::ONE, ground: Vec3::ONE },
         width_scale: 10.0,
@@ -26,7 +26,7 @@ fn crossing(radiance: Vec3) -> Drawn {
     Drawn { guides: guides(lines, 4), look, lights: Vec::new(), eye: Vec3::Z * 0.1, detail }
 }
 
-/// A picture of so many pixels a side, with opacity and without a tone map.
+/// A square picture with opacity and without a tone map.
 fn transparent(size: u32, supersampling: u32) -> PictureSettings {
     PictureSettings {
         transparent: true,

@@ -14,11 +14,11 @@ use crate::linear::{Linear, channel};
 use crate::terms::plain;
 
 const SIZE: u32 = 192;
-/// Distance of the eye \[m\], and what is seen of the plane through the strand \[m\].
+/// Distance of the eye \[m\], and the visible height of the plane through the strand \[m\].
 const DISTANCE: f32 = 5.0;
 const SEEN: f32 = 0.26;
 
-/// Light and coverage of the pixels of a strand so many pixels wide, at an angle \[degrees\] from upright: white hair in
+/// Light and coverage of the pixels of a strand of a width in pixels, at an angle \[degrees\] from upright: white hair in
 /// white surroundings, whose light is the same everywhere.
 fn pixels(on: &On, width: f32, angle: f32) -> (Vec<f32>, Vec<f32>) {
     let (sine, cosine) = angle.to_radians().sin_cos();

@@ -24,7 +24,7 @@ impl Maps {
         }
     }
 
-    /// Share of a light that reaches points of hair, with maps of so many texels a side.
+    /// Share of a light that reaches points of hair, with maps of a number of texels per side.
     fn transmittances(&mut self, lines: &[Vec<Vec3>], light: &Light, size: u32, points: &[Vec3]) -> Vec<f32> {
         let strands: Strands = strands(lines, DIAMETER);
         let shadow = Shadow { map_size: size, ..Shadow::default() };
@@ -92,7 +92,7 @@ fn swaying(lines: &[Vec<Vec3>], frame: usize) -> Vec<Vec<Vec3>> {
 law! {
     fn slow_hair_changes_its_shadow_slowly(on) {
         let rest = mop(1500);
-        // Near the roots nothing moves, and the shadow of what hangs above changes a little.
+        // Hair near the roots rests, and the shadow of the hair above it changes a little.
         let upper = |lines: &[Vec<Vec3>]| lines.iter().flat_map(|line| line[..5].to_vec()).collect::<Vec<_>>();
         let mut maps = Maps::new(on);
         let mut mean = |size: u32| {
@@ -141,7 +141,7 @@ law! {
         let mut maps = Maps::new(on);
         for (name, way) in [("over", over as fn(i32) -> Vec3), ("beside", beside)] {
             let way: Vec<Vec3> = (-4..=4).map(way).collect();
-            // The same hair in the same light, both laid on their side: what no map turns for.
+            // The same hair in the same light, both laid on their side: no map turns for it.
             let [changes, laid] = [Quat::IDENTITY, Quat::from_rotation_x(std::f32::consts::FRAC_PI_2)]
                 .map(|turn| lit_on_a_way(&mut maps, &lines, &way, turn));
             let (usual, most) = (changes[changes.len() / 2], changes[changes.len() - 1]);

@@ -15,7 +15,7 @@ const POINTS: usize = 4;
 /// Distance \[m\] from one strand of a curtain to the next.
 const SPACING: f32 = 2e-4;
 
-/// White hair, 0.4 mm thick, in white surroundings: what a point sends to the eye is the share of them that it sees.
+/// White hair, 0.4 mm thick, in white surroundings: the radiance of a point is the share of them that it sees.
 fn surrounded(guides: Guides) -> Drawn {
     let look = Look {
         environment: Environment { sky: Vec3::ONE, ground: Vec3::ONE },
@@ -58,7 +58,7 @@ law! {
             shares.iter().fold((1.0_f32, 0.0_f32), |(a, b), &share| (a.min(share), b.max(share)));
         assert!(greatest - least > 0.1, "{least} to {greatest}");
         // It comes and goes, each in some two cells, 20 frames: the steepest of them was 0.13 of the change, where
-        // hair that belongs to one cell alone made jumps of half of it.
+        // hair counted to a single cell made jumps of half of it.
         assert!(most < 0.2 * (greatest - least), "{most} in a frame, of {least} to {greatest}");
     }
 }

@@ -9,7 +9,7 @@ use strandline_render::{Clump, Environment, LevelOfDetail, Light, LightKind, Loo
 
 use crate::drawn::{Drawn, guides};
 
-/// A highlight that is switched off as far as its place goes: narrow, and far from where anybody looks.
+/// A highlight that is switched off by its place: narrow, and far from every view.
 const AWAY: Highlight = Highlight { shift: -45.0, width: 0.5, strength: 0.5 };
 const DARK: Environment = Environment { sky: Vec3::ZERO, ground: Vec3::ZERO };
 /// Half floats round by 2.4e-4 of the value, and `exp` and square roots of a GPU add some of their own.
@@ -82,7 +82,7 @@ law! {
         let (before, behind) = (lit(Vec3::Z), lit(Vec3::NEG_Z));
         for (strand, angle) in angles.into_iter().enumerate() {
             let (before, behind) = (of(&before, strand)[3], of(&behind, strand)[3]);
-            // Over both sides the turn about the strand drops out: what is left is the sine of [Kajiya1989
+            // Over both sides the turn about the strand drops out, leaving the sine of [Kajiya1989
             // eq. 14] over pi, twice, in the hair's colour.
             let expected = color * (2.0 / std::f32::consts::PI * angle.to_radians().cos());
             let sum = before + behind;
@@ -152,8 +152,8 @@ fn moments(profile: &[(f32, f32)]) -> (f32, f32) {
 
 law! {
     fn the_named_looks_lean_their_highlights_as_hair_does(on) {
-        // Cuticle scales lean toward the tip by 2 to 4 degrees: what is mirrored leans 5 to 10 degrees toward the root,
-        // what crosses the hair and comes back half again as much toward the tip [Marschner2003 table 1]. Lit from the
+        // Cuticle scales lean toward the tip by 2 to 4 degrees: mirrored light leans 5 to 10 degrees toward the root,
+        // light that crosses the hair and returns half again as much toward the tip [Marschner2003 table 1]. Lit from the
         // eye, a strand whose tip is nearer (which leans toward the eye) shows the second one.
         for look in [Look::brown(), Look::black(), Look::blonde(), Look::red(), Look::grey()] {
             let bare = plain(Vec3::ZERO);

@@ -125,7 +125,7 @@ fn curves_keep_to_the_guides_points() {
     let deepest = (0..curves.points_per_curve)
         .map(|point| 0.09 - curves.point(0, point)[0].length())
         .fold(f32::MIN, f32::max);
-    // The first and last spans, where nothing tells how the guide bends, dip by 2 mm; control points at the
+    // The first and last spans, whose bend is unknown, dip by 2 mm; control points at the
     // guide's own points would dip by 5.
     assert!(deepest < 2.5e-3, "{deepest} m");
 }
@@ -240,7 +240,7 @@ fn covered_area_is_the_same_at_every_distance() {
         let expected = 8e-5 * f64::from(look.hair_count) * 0.2;
         assert!(near > 0.5 * expected && near < 1.5 * expected, "{near} of about {expected}");
         for distance in [1.6, 2.0, 2.9, 4.1, 6.0, 20.0] {
-            // Widths make up for lengths; what is left is the length that coarser polylines cut off.
+            // Widths make up for lengths; the rest is the length that coarser polylines cut off.
             let ratio = area(distance) / near;
             assert!((ratio - 1.0).abs() < 0.01, "{follow_strands} at {distance} m: {ratio}");
         }

@@ -3,9 +3,9 @@
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use strandline::{Scene, low_level::Prepared};
+use strandline::{Prepared, Scene};
 
-/// Sintel's hair on her head, in a scene that is changed first; none, with a word, where the folder of grooms
+/// Sintel's hair on her head, in a scene that is changed first; `None`, with a note, if the folder of grooms
 /// (`STRANDLINE_GROOMS`) is not.
 ///
 /// # Panics
@@ -32,7 +32,7 @@ fn groom(files: [&str; 2], change: impl FnOnce(&mut Scene)) -> Option<Prepared> 
     Some(Prepared::new(&scene).unwrap())
 }
 
-/// The folder of references (`STRANDLINE_REFERENCE`) that holds some files; none, with a word, where it does not.
+/// The folder of references (`STRANDLINE_REFERENCE`) that holds some files; `None`, with a note, if it does not.
 ///
 /// # Panics
 /// It does not, and files are required.
@@ -54,8 +54,8 @@ fn folder(variable: &str, name: &str, files: &[&str]) -> Option<PathBuf> {
 /// Variable of the environment that makes missing data a failure.
 const REQUIRED: &str = "STRANDLINE_REQUIRE_GROOMS";
 
-/// Says in one line on stderr that the running test checks nothing, and why. The line is written past the capture of
-/// the test runner, which would hide what a test that passes prints.
+/// Prints a line to stderr that the running test checks nothing, with the reason. The line is written past the capture of
+/// the test runner, which would hide the output of a passing test.
 ///
 /// # Panics
 /// Data is required.

@@ -13,7 +13,7 @@ pub use rig::{On, Rig};
 use strandline_gpu::Gpu;
 
 /// The adapter that the checks of the GPU backend run on, any that there is; they share its device.
-/// Without one they say so and check nothing, unless `STRANDLINE_REQUIRE_GPU` is 1: then that fails.
+/// Without one they print a note and check nothing, or fail if `STRANDLINE_REQUIRE_GPU` is 1.
 ///
 /// # Panics
 /// There is no adapter, or it does not start, and one is required.

@@ -1,4 +1,4 @@
-//! The thesis's own examples, and what is cited from its text.
+//! The thesis's own examples, and citations of its text.
 
 mod citations;
 mod scene;

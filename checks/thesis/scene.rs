@@ -13,14 +13,14 @@ fn the_scene_has_as_many_points_segments_and_lights_as_printed() {
     let guides = Guides::resample(&groom, scene.groom.points_per_strand as usize).unwrap();
     let points = guides.strand_count() * guides.points_per_strand();
     assert_eq!((guides.strand_count(), points), (1_750, 10_500));
-    // Whatever the distance of the camera.
+    // At any distance of the camera.
     for distance in [0.2, 1.0, 3.0, 30.0] {
         let level = scene.level_of_detail.level(distance, scene.look.follow_strands);
         let segments = level.segment_count(guides.points_per_strand());
         assert_eq!((level.strand_count(), segments), (16, 20));
         assert_eq!(guides.strand_count() * level.strand_count() * segments, 560_000);
     }
-    // None named: the three usual ones.
+    // Without lights in the file: the three usual ones.
     assert!(scene.lights.is_empty());
     let lights = Light::three_point(glam::Vec3::ZERO);
     assert_eq!((lights.len(), lights.iter().filter(|light| light.shadow).count()), (3, 2));

@@ -1,11 +1,7 @@
 //! Figures of what is drawn: detail, samples, segments and follow strands.
 
 use glam::Vec3;
-use strandline::{
-    Camera, Look, Picture, Style,
-    low_level::render::{LevelOfDetail, PictureSettings},
-    scene::MotionName,
-};
+use strandline::{Camera, Look, Picture, PictureSettings, Style, look::LevelOfDetail, scene::MotionName};
 
 use crate::strip::{joined, magnified};
 use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
@@ -14,7 +10,7 @@ use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
 pub fn level_of_detail(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 240, 240)?;
     // The effect of distance alone, without that of the small pictures.
-    hair.level_of_detail.by_pixel = false;
+    hair.set_level_of_detail(LevelOfDetail { by_pixel: false, ..hair.level_of_detail() })?;
     let (mut natural, mut large) = (Vec::new(), Vec::new());
     for times in [1, 2, 4, 8] {
         let near = bust(THREE_QUARTER);
@@ -48,8 +44,9 @@ pub fn tessellation(studio: &Studio) -> Figure {
     let mut hair = studio.settled(&scene, 360, 240)?.hair;
     let mut draw = |segments| -> Figure {
         // So many, although it is close up.
-        let level = hair.level_of_detail;
-        hair.level_of_detail = LevelOfDetail { segments_per_span: segments, most_segments: 1.0, ..level };
+        let level = hair.level_of_detail();
+        let level = LevelOfDetail { segments_per_span: segments, most_segments: 1.0, ..level };
+        hair.set_level_of_detail(level)?;
         let camera = close(THREE_QUARTER, Vec3::new(0.1, -0.1, 0.06), 0.08);
         Ok(hair.picture(&camera, &Look::red())?)
     };

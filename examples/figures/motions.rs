@@ -1,9 +1,7 @@
 //! Sheets of hair in motion: strands of constraints above, rods below.
 
 use glam::Vec3;
-use strandline::{
-    Camera, Look, Picture, Pose, Scene, Style, low_level::sim::StrandMethod, scene::MotionName,
-};
+use strandline::{Camera, Look, Picture, Pose, Scene, Style, scene::MotionName, settings::StrandMethod};
 
 use crate::strip::{joined, stacked};
 use crate::studio::{FRAME, Figure, Moving, Studio, THREE_QUARTER, bust};

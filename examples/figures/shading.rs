@@ -3,7 +3,7 @@
 use glam::Vec3;
 use strandline::{
     Camera, Hair, Light, Look, Picture, Style,
-    low_level::render::{Environment, fibre::Highlight},
+    look::{Environment, fibre::Highlight},
 };
 
 use crate::strip::joined;
@@ -12,7 +12,7 @@ use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
 /// Hair by the layer of the key light's map, seen from that light, from the side and from behind it.
 pub fn layers(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Wavy, 288, 288)?;
-    let key = hair.lights[0];
+    let key = hair.lights()[0];
     hair.show_layers(Some(0));
     let along = key.position - key.target;
     let side = along.cross(Vec3::Y);
@@ -38,7 +38,7 @@ pub fn light_directions(studio: &Studio) -> Figure {
     let target = Vec3::new(0.0, -0.09, 0.0);
     let mut draw = |direction: [f32; 3]| -> Figure {
         let position = target + 2.0 * Vec3::from(direction).normalize();
-        hair.lights = vec![Light { position, target, intensity: 1.8, ..Light::default() }];
+        hair.set_lights(vec![Light { position, target, intensity: 1.8, ..Light::default() }])?;
         Ok(hair.picture(&bust(Vec3::new(0.0, 0.12, 1.0)), &look)?)
     };
     Ok(joined(&[
@@ -64,7 +64,7 @@ pub fn colors(studio: &Studio) -> Figure {
 pub fn highlights(studio: &Studio) -> Figure {
     let mut hair = studio.resting(Style::Bob, 304, 304)?;
     let position = Vec3::new(0.5, 1.2, -1.6);
-    hair.lights = vec![Light { position, intensity: 2.0, ..Light::default() }];
+    hair.set_lights(vec![Light { position, intensity: 2.0, ..Light::default() }])?;
     let environment = Environment { sky: Vec3::splat(0.12), ground: Vec3::splat(0.06) };
     let both = Look { environment, ..Look::thesis() };
     let none = |highlight: Highlight| Highlight { strength: 0.0, ..highlight };

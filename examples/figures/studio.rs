@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use strandline::{
-    Backend, Camera, Hair, Picture, Pose, Scene, Style,
-    low_level::{HeadMotion, Prepared, render::PictureSettings, sim::StrandMethod},
+    Backend, Camera, Hair, HeadMotion, Picture, PictureSettings, Pose, Prepared, Scene, Style,
     scene::{FilmSection, MotionName},
+    settings::StrandMethod,
 };
 
 /// A finished figure, or why there is none.
@@ -38,9 +38,8 @@ impl Studio {
         if self.quick {
             scene.style.strand_count = 50;
         }
-        let prepared = Prepared::new(&scene)?;
-        let head = prepared.head.clone();
-        let mut hair = Hair::from_scene(&scene, prepared, self.backend)?;
+        let mut hair = Hair::from_prepared(Prepared::new(&scene)?, self.backend)?;
+        let head = hair.head().clone();
         if scene.simulation.strands.method == StrandMethod::Constrain && !self.quick {
             hair.step(FilmSection::SETTLE.into(), &Pose::IDENTITY)?;
         }

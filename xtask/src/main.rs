@@ -23,11 +23,11 @@ use std::process::ExitCode;
 const USAGE: &str = "usage: cargo xtask COMMAND
 
   test     format, lints, names, all tests, doc tests, examples; closes with a summary.
-           Tests of the GPU backend run on any adapter, and say so where there is none.
-           --setup installs Debian's software Vulkan where there is no adapter, and Xvfb where
-           there is none to open windows on; what is still missing then fails the tests, as
-           with STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1. It also puts numpy
-           and usd-core into target/python where python3 has none, and says so where it cannot
+           Tests of the GPU backend run on any adapter, and print a note without one.
+           --setup installs Debian's software Vulkan if there is no adapter, and Xvfb if there
+           is no display; a device that is still missing then fails the tests, as with
+           STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1. It also puts numpy and
+           usd-core into target/python if python3 has none, and prints a note if it cannot
   ci       test --setup
   bless    record the golden pictures again; look at each before you commit it
   docs     write docs/scene.md from the settings table and docs/cli.md from the arguments
@@ -35,15 +35,14 @@ const USAGE: &str = "usage: cargo xtask COMMAND
   house    check the plan of the house: arrows between crates, circles of files, sizes
   faults   plant the faults of checks/faults in a copy of the tree, one after the other, and run
            the tests that have to see each. Results are kept: a run that was stopped early resumes,
-           and a fault with a result for the tree as it is is not run again unless it is named.
+           and a fault with a result for the current tree runs again only if it is named.
            [NAME..] these only, --cpu without the tests on a GPU, --list names and meanings,
            --table the page docs/faults.md
-  bare     build the program without GPUs and window, look what it is built from, simulate and draw
-           with it
-  long     bare, and the tests that `test` runs for a short time only for as long as they should:
-           kills, random use of the window; records the day in bench/long.json
+  bare     build the program without GPUs and window, check its crates, simulate and draw with it
+  long     bare, and the full length of the tests that `test` shortens: kills, random use of the
+           window; records the day in bench/long.json
   deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
-           faults where their list can be had; `test` does the first three where it is installed
+           faults if their list can be read; `test` does the first three if it is installed
   licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";
 
 /// A chore of the command line.

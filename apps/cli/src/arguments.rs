@@ -5,11 +5,11 @@ use std::str::FromStr;
 
 use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
-use strandline::low_level::groom::format::{FORMATS, Format, LoadOptions, Scale, Up, endings};
 use strandline::{
-    Backend, Style,
-    low_level::{Target, What, sim::rods::HairKind},
+    Backend, Style, Target, What,
+    format::{FORMATS, Format, LoadOptions, Scale, Up, endings},
     scene::MotionName,
+    settings::rods::HairKind,
 };
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
@@ -17,12 +17,12 @@ use strandline::{
 /// Without a command it opens the window on the demo; without a display a head of hair shakes for 4 s and
 /// pictures go to out/demo.
 #[derive(Debug, Parser)]
-#[command(version, about, long_about)]
+#[command(name = "strandline", version, about, long_about)]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Show messages of the libraries, wgpu's above all: error, warn, info, debug or trace. RUST_LOG can do so
-    /// for some of them (`wgpu_hal=warn`).
+    /// Show messages of the libraries, wgpu's above all: error, warn, info, debug or trace. RUST_LOG selects
+    /// some of them (`wgpu_hal=warn`).
     #[arg(long, global = true, value_name = "LEVEL", value_parser = parse_level)]
     pub log: Option<log::LevelFilter>,
 }
@@ -68,6 +68,16 @@ impl Command {
     }
 }
 
+/// Settings of a scene by their keys.
+#[derive(Args, Clone, Debug, Default)]
+pub struct Set {
+    /// Set a value of the scene, after all other options: simulation.gravity=[0,-1.6,0], motion.name=nod,
+    /// lights[0].intensity=2; docs/scene.md lists the keys. `strandline scene` takes it too. Given again: further
+    /// values. A key alone is explained.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub values: Vec<String>,
+}
+
 /// Inputs of a run: a scene, and replacements of parts of it.
 #[derive(Args, Clone, Debug)]
 pub struct Inputs {
@@ -106,6 +116,8 @@ pub struct Inputs {
     /// Device of the pictures, if it differs from that of the simulation.
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub render_device: Option<Backend>,
+    #[command(flatten)]
+    pub set: Set,
     /// Print a single JSON object to standard output.
     #[arg(long)]
     pub json: bool,
@@ -142,10 +154,10 @@ pub struct SimOptions {
     #[command(flatten)]
     pub inputs: Inputs,
     /// Write the hair as it moves: .npz (a moving cache), .usda (text USD for Blender, Houdini and Unreal), or a
-    /// groom file a frame, such as out/%04d.hair.
+    /// groom file per frame, such as out/%04d.hair.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Which strands are written: guides, those that are simulated, or strands, all that pictures draw
+    /// Strands to write: guides, the simulated ones, or strands, all that pictures draw
     /// [default: guides].
     #[arg(long, value_name = "NAME", requires = "written", value_parser = What::from_str)]
     pub what: Option<What>,
@@ -181,7 +193,7 @@ pub struct GroomOptions {
 }
 
 #[derive(Args, Debug)]
-#[command(after_help = formats())]
+#[command(after_help = formats(), override_usage = "strandline convert [OPTIONS] IN... OUT")]
 pub struct ConvertOptions {
     /// The files to read, each a group of one groom, and the file to write.
     #[arg(value_name = "IN... OUT", num_args = 2.., required = true)]
@@ -247,6 +259,8 @@ pub struct SceneOptions {
     /// demo, thesis, or a .toml file.
     #[arg(value_name = "NAME|FILE.toml", default_value = "demo")]
     pub scene: String,
+    #[command(flatten)]
+    pub set: Set,
 }
 
 #[derive(Args, Debug)]

@@ -2,11 +2,11 @@
 
 use anyhow::Context;
 use glam::Vec3;
-use strandline::low_level::base::math;
-use strandline::low_level::body::{DistanceGrid, Mesh, SignedDistance};
-use strandline::low_level::groom::{
-    Groom,
+use strandline::{
+    Groom, Mesh,
     format::{self, Scale},
+    math,
+    mesh::{DistanceGrid, SignedDistance},
 };
 
 use crate::arguments::ConvertOptions;
@@ -58,7 +58,7 @@ fn place(mesh: &mut Mesh, groom: &Groom, scale: Scale) {
         Scale::Factor(unit) => Some(unit),
         Scale::Auto => None,
     };
-    let (unit, apart) = strandline::low_level::mesh_unit(groom, mesh, given);
+    let (unit, apart) = strandline::mesh::mesh_unit(groom, mesh, given);
     mesh.positions.iter_mut().for_each(|position| *position *= unit);
     if given.is_none() && unit != 1.0 {
         output::note(&format!("a unit of the mesh is {unit} m; --mesh-scale says otherwise"));

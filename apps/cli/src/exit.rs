@@ -1,7 +1,7 @@
 //! The end of the program, and the codes that it ends with; docs/limits.md lists them.
 
 use signal_hook::low_level;
-use strandline::low_level::base::abandon_parts;
+use strandline::file::abandon_parts;
 
 /// Everything was done.
 pub const SUCCESS: i32 = 0;

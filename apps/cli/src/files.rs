@@ -1,6 +1,6 @@
 //! `strandline groom`, `info` and `scene`: files without motion.
 
-use strandline::low_level::groom::{Groom, StyleSettings, format};
+use strandline::{Groom, format, settings::StyleSettings};
 
 use crate::arguments::{GroomOptions, InfoOptions, SceneOptions};
 use crate::inputs;
@@ -72,6 +72,8 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
 
 /// Prints a scene with every key.
 pub fn scene(options: &SceneOptions) -> anyhow::Result<()> {
-    output::program(&inputs::scene(&options.scene)?.to_toml());
+    let mut scene = inputs::scene(&options.scene)?;
+    options.set.apply(&mut scene)?;
+    output::program(&scene.to_toml());
     Ok(())
 }

@@ -2,7 +2,8 @@
 
 use strandline::{
     Error,
-    low_level::{base::WholeFile, gpu::Gpu, render, sim},
+    device::{Gpu, shader_modules},
+    file::WholeFile,
 };
 
 use crate::arguments::ShaderOptions;
@@ -32,7 +33,7 @@ pub fn shaders(options: &ShaderOptions) -> anyhow::Result<()> {
         move |source| Error::Write { what: "the shader modules", path, source }
     };
     std::fs::create_dir_all(folder).map_err(failed(folder))?;
-    let modules: Vec<_> = sim::gpu::modules().into_iter().chain(render::gpu::modules()).collect();
+    let modules = shader_modules();
     for (name, text) in &modules {
         let path = folder.join(name).with_extension("wgsl");
         WholeFile::save(&path, text.as_bytes()).map_err(failed(&path))?;

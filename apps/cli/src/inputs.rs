@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use strandline::{
-    Scene,
-    low_level::{Cache, sim::StrandMethod},
+    Cache, Scene,
     scene::{BodyPart, GroomPart},
+    settings::{StrandMethod, Value},
 };
 
-use crate::arguments::{Inputs, Usage};
+use crate::arguments::{Inputs, Set, Usage};
 
 /// A scene by name or path.
 pub fn scene(name: &str) -> anyhow::Result<Scene> {
@@ -73,6 +73,7 @@ impl Inputs {
         if let Some(frames) = self.frames {
             scene.film.frames = frames;
         }
+        self.set.apply(&mut scene)?;
         Ok(scene)
     }
 
@@ -90,7 +91,60 @@ impl Inputs {
     }
 }
 
+impl Set {
+    /// Sets the values in a scene, in their order.
+    pub fn apply(&self, scene: &mut Scene) -> Result<(), Usage> {
+        self.values
+            .iter()
+            .try_for_each(|text| set(scene, text).map_err(|words| Usage(format!("--set {words}"))))
+    }
+}
+
+/// Sets one `KEY=VALUE`. Paths are relative to the current folder, not to the scene's.
+fn set(scene: &mut Scene, text: &str) -> Result<(), String> {
+    let words = |error: strandline::Error| error.to_string();
+    let Some((key, value)) = text.split_once('=') else {
+        return Err(format!("needs KEY=VALUE: {}", scene.explain(text).map_err(words)?));
+    };
+    let (key, value) = (key.trim(), value.trim());
+    if Scene::row(key).map_err(words)?.kind == <PathBuf as Value>::KIND {
+        let path = std::path::absolute(value.trim_matches('"')).map_err(|error| error.to_string())?;
+        return scene.set(key, &path.to_string_lossy()).map_err(words);
+    }
+    scene.set(key, value).map_err(words)
+}
+
 /// Further files; their paths are relative to the current folder, not to the scene's.
 fn parts<T>(files: &[PathBuf], part: impl Fn(PathBuf) -> T) -> anyhow::Result<Vec<T>> {
     files.iter().map(|file| Ok(part(std::path::absolute(file)?))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn applied(values: &[&str]) -> Result<Scene, String> {
+        let mut scene = Scene::demo();
+        let set = Set { values: values.iter().map(|text| (*text).to_owned()).collect() };
+        set.apply(&mut scene).map(|()| scene).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn values_are_set_in_order_and_paths_start_here() {
+        let scene = applied(&["film.frames=3", "film.frames = 7", "groom.file=a b.hair"]).unwrap();
+        assert_eq!(scene.film.frames, 7);
+        assert_eq!(scene.groom.file, std::path::absolute("a b.hair").ok());
+        let error = applied(&["film.frame=3"]).unwrap_err();
+        assert!(
+            error.starts_with("--set film.frame is no setting") && error.contains("`film.frames`"),
+            "{error}"
+        );
+        let error = applied(&["film.frames"]).unwrap_err();
+        assert!(
+            error.contains("needs KEY=VALUE: film.frames: ") && error.contains("1 to 1,000,000"),
+            "{error}"
+        );
+        let error = applied(&["film.frames=0"]).unwrap_err();
+        assert!(error.contains("film.frames is 0, expected 1 to"), "{error}");
+    }
 }

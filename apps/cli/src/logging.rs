@@ -4,7 +4,7 @@ use std::io::{Write, stderr};
 
 use env_filter::{Builder, Filter};
 use log::{LevelFilter, Log, Metadata, Record};
-use strandline::low_level::base::printable;
+use strandline::file::printable;
 
 use crate::output;
 

@@ -5,6 +5,8 @@
 mod arguments;
 mod bench;
 mod convert;
+#[cfg(test)]
+mod documents;
 mod exit;
 mod files;
 mod gpus;

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use serde::Serialize;
-use strandline::low_level::sim::StepReport;
+use strandline::StepReport;
 
 /// The points of a run that were not finite.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

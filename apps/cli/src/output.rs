@@ -3,7 +3,7 @@
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Result, Write, stderr, stdout};
 
-use strandline::low_level::base::printable;
+use strandline::file::printable;
 
 use crate::exit;
 

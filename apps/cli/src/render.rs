@@ -3,10 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{
-    Backend, Error, Event, Film, Player, Scene,
-    low_level::{Cache, PictureFiles},
-};
+use strandline::{Backend, Cache, Error, Event, Film, PictureFiles, Player, Scene};
 
 use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};

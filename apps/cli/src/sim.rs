@@ -3,13 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use strandline::{
-    Event, Player, Scene,
-    low_level::{
-        Cache, OutSettings, Written,
-        sim::{Drift, StepReport},
-    },
-};
+use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Written};
 
 use crate::arguments::SimOptions;
 use crate::interrupt::Stoppable;

@@ -1,7 +1,7 @@
 //! Medians of times, stage by stage, as they are printed and written.
 
 use serde::Serialize;
-use strandline::low_level::body::Random;
+use strandline::math::Random;
 
 /// Milliseconds in each stage, in the stages' order.
 #[derive(Clone, Debug, Default, PartialEq)]

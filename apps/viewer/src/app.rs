@@ -3,10 +3,11 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
-use strandline::low_level::groom::format::{Format, endings};
 use strandline::{
-    Backend, Camera, Error, Live, Scene,
-    low_level::{Change, Command, Shown, base::SettingError, render::PictureSettings},
+    Backend, Camera, Change, Error, Live, PictureSettings, Scene,
+    format::{Format, endings},
+    live::{Command, Shown},
+    settings::SettingError,
 };
 
 use crate::{export, files, messages, rescue, saves};

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use eframe::egui::{self, Response, Slider, SliderClamping, Ui, emath::Numeric};
 use glam::Vec3;
-use strandline::low_level::base::{Kind, Row};
+use strandline::settings::{Kind, Row};
 
 /// A section of the panel.
 pub fn section(ui: &mut Ui, name: &str, open: bool, add: impl FnOnce(&mut Ui)) {

@@ -7,11 +7,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
 use eframe::egui;
-use strandline::low_level::groom::format::Format;
-use strandline::{
-    Error, Player, Scene,
-    low_level::{OutSettings, Target, What, Written},
-};
+use strandline::{Error, OutSettings, Player, Scene, Target, What, Written, format::Format};
 
 /// Request to write moving hair.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use strandline::low_level::Written;
+use strandline::Written;
 
 use crate::App;
 use crate::export::{Export, numbered};

@@ -15,8 +15,8 @@ mod panels;
 mod rescue;
 mod saves;
 mod saving;
-mod stage;
-mod strip;
+mod status_bar;
+mod viewport;
 mod wind;
 mod window;
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use strandline::low_level::render::Picture;
+use strandline::Picture;
 
 /// Result of writing a picture: its path, or the error.
 pub type Saved = Result<PathBuf, String>;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use strandline::low_level::{Command, LiveEvent};
+use strandline::live::{Command, LiveEvent};
 
 use crate::App;
 

@@ -2,7 +2,7 @@
 
 use eframe::egui::{self, Align2, Color32, Rect, Sense, Stroke, Vec2};
 use glam::Vec3;
-use strandline::low_level::Change;
+use strandline::Change;
 
 use crate::App;
 

@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 use eframe::egui;
 use strandline::{
     Camera, Scene,
-    low_level::{Command, LiveEvent, Shown, body::Aabb},
+    live::{Command, LiveEvent, Shown},
+    mesh::Aabb,
 };
 
-use crate::{App, panels, stage, strip};
+use crate::{App, panels, status_bar, viewport};
 
 /// Interval at which the scene is kept.
 const KEPT_EVERY: Duration = Duration::from_secs(2);
@@ -105,10 +106,10 @@ impl App {
         self.take_saved();
         self.take_exported();
         self.keep_scene();
-        stage::keys(self, ui);
-        egui::Panel::bottom("strip").show(ui, |ui| strip::show(self, ui));
+        viewport::keys(self, ui);
+        egui::Panel::bottom("status_bar").show(ui, |ui| status_bar::show(self, ui));
         egui::Panel::left("panels").default_size(290.0).show(ui, |ui| panels::show(self, ui));
-        egui::CentralPanel::default().show(ui, |ui| stage::show(self, ui));
+        egui::CentralPanel::default().show(ui, |ui| viewport::show(self, ui));
     }
 }
 

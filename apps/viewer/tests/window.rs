@@ -220,7 +220,7 @@ fn dragging_turns_the_view() {
 fn a_dropped_groom_is_loaded_and_a_bad_file_shows_its_error_while_the_old_hair_stays() {
     let folder = tempfile::tempdir().unwrap();
     let groom = folder.path().join("strands.hair");
-    strandline::low_level::groom::StyleSettings { strand_count: 40, ..scene().style }
+    strandline::settings::StyleSettings { strand_count: 40, ..scene().style }
         .grow()
         .unwrap()
         .save(&groom)

@@ -35,7 +35,7 @@ pub(crate) fn channel<T>() -> (Sender<T>, Receiver<T>) {
 }
 
 impl<T> Sender<T> {
-    /// Puts a thing in; it comes back when nobody can receive it any more.
+    /// Sends a value; returns it if the receiver is gone.
     pub fn send(&self, thing: T) -> Result<(), SendError<T>> {
         self.change(|state| {
             if !state.receiver {
@@ -55,7 +55,7 @@ impl<T> Sender<T> {
 }
 
 impl<T> Receiver<T> {
-    /// Waits for the oldest thing; an error when there is none and will be none.
+    /// Waits for the oldest value; an error if there is none and the sender is gone.
     pub fn recv(&self) -> Result<T, RecvError> {
         let mut state = self.0.state.lock().unwrap();
         loop {

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 ///
 /// # Panics
 /// The model panics in one of them, comes to a standstill, leaves something behind, or has but one. A
-/// standstill of several threads ends the whole run: nobody is left to clear up.
+/// standstill of several threads ends the whole run, without a thread to clear up.
 #[allow(clippy::print_stdout)] // it tells how much was explored
 pub(crate) fn explore(model: impl Fn() + Send + Sync + 'static) {
     let orders = Arc::new(AtomicUsize::new(0));

@@ -1,4 +1,4 @@
-//! The primitives of `crates/strandline/src/sync.rs`, made of loom's.
+//! The primitives of `crates/strandline/src/session/sync.rs`, made of loom's.
 
 pub(crate) use loom::sync::{Arc, Mutex, MutexGuard};
 pub(crate) use std::sync::PoisonError;

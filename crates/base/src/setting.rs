@@ -178,6 +178,11 @@ impl Row {
             (Kind::Whole(count), false) if count > 1 => format!("{count} whole numbers of {limits}"),
             (_, false) => limits,
             (Kind::Text(form), true) => form.to_owned(),
+            (Kind::Flag, _) => "true or false".to_owned(),
+            (Kind::Words(words), _) => {
+                let names: Vec<&str> = words.iter().map(|word| word.name).collect();
+                format!("one of {}", names.join(", "))
+            }
             (_, true) => "a finite number".to_owned(),
         }
     }

@@ -29,6 +29,18 @@ impl Mesh {
         Ok(mesh)
     }
 
+    /// The mesh, with computed normals where it has none or another number than vertices.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`].
+    pub fn checked(self) -> Result<Self, BodyError> {
+        self.check_usable()?;
+        if self.normals.len() == self.positions.len() {
+            return Ok(self);
+        }
+        Self::new(self.positions, self.triangles)
+    }
+
     /// Adds the triangles of another mesh to these.
     ///
     /// # Errors

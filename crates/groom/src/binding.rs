@@ -25,7 +25,7 @@ pub struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// A body of which nothing is known but its distance.
+    /// A body known by its distance alone.
     pub fn of(at: &'a (dyn Fn(Vec3) -> (f32, Vec3) + Sync)) -> Self {
         Self { at, at_least: &|_| 0.0 }
     }
@@ -60,9 +60,9 @@ pub struct Binding {
     strands: Guides,
     /// Guides at rest, of the same number of points.
     guides: Guides,
-    /// Shape `[strand][MOST_INFLUENCES]`; weights of 0 stand for none.
+    /// Shape `[strand][MOST_INFLUENCES]`; a weight of 0 is an unused entry.
     influences: Vec<[Influence; MOST_INFLUENCES]>,
-    /// The same, one lane a strand, shape `[block][MOST_INFLUENCES]`.
+    /// The same, one lane per strand, shape `[block][MOST_INFLUENCES]`.
     blocks: Vec<[Followed; MOST_INFLUENCES]>,
 }
 
@@ -130,7 +130,7 @@ impl Binding {
         &self.guides
     }
 
-    /// The guides that each strand follows, shape `[strand][MOST_INFLUENCES]`; a weight of 0 stands for none.
+    /// The guides that each strand follows, shape `[strand][MOST_INFLUENCES]`; a weight of 0 is an unused entry.
     pub fn influences(&self) -> &[[Influence; MOST_INFLUENCES]] {
         &self.influences
     }
@@ -139,7 +139,7 @@ impl Binding {
     /// points, and how long they are.
     ///
     /// The first frame turns with the head, and as little more as takes the first segment where it is; each
-    /// further one turns as little as it can against the one before.
+    /// further one turns as little as possible against the one before.
     pub fn follow(&self, positions: &[Vec3Lanes], world_from_head: &Pose, frames: &mut Frames) {
         let count = self.guides.points_per_strand();
         frames.points.resize(self.guides.strand_count() * count, Frame::default());

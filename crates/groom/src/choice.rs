@@ -18,7 +18,7 @@ const SHAPE: f32 = 0.3;
 /// Distance \[m\] added between strands of different groups: more than a body is large.
 const GROUP: f32 = 10.0;
 
-/// A strand as a place where near means alike: its root, and what leads from there to places along it.
+/// A strand as a point of a space in which near strands are alike: its root, and vectors from there to places along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Feature {
     root: Vec3,
@@ -113,7 +113,7 @@ impl Groom {
             let start = (f32::NEG_INFINITY, 0);
             let cells = occupied.iter().map(|cell| farthest[*cell]);
             let most = cells.fold(start, |most, cell| if cell.0 > most.0 { cell } else { most });
-            // None is farther from those chosen than that: a new one is near to nothing beyond.
+            // No strand is farther from those chosen than that: a new one is near to none beyond.
             (reach, next) = (most.0.max(0.0).sqrt(), most.1);
         }
         let mut members = vec![Vec::new(); count];
@@ -133,7 +133,7 @@ impl Groom {
         chosen
     }
 
-    /// Distance \[m\] of roots from the nearest other one, of about so many strands.
+    /// Distance \[m\] of roots from the nearest other root, of about this many strands.
     pub fn nearest_roots(&self, count: usize) -> Vec<f32> {
         let features = features(self);
         let roots = Roots::new(&features);
@@ -143,7 +143,7 @@ impl Groom {
             let (root, mut nearest) = (features[strand].root, f32::INFINITY);
             roots.outward(root, |other| {
                 let distance = features[other].root.distance(root);
-                // Strands that share a root stand for one.
+                // Strands that share a root count as one.
                 if other != strand && distance > 0.0 {
                     nearest = nearest.min(distance);
                 }
@@ -155,7 +155,7 @@ impl Groom {
         found.filter(|distance| distance.is_finite()).collect()
     }
 
-    /// The strands that are marked as guides, by their indices; none when no strand is.
+    /// Indices of the strands marked as guides; `None` without marks.
     pub fn marked_guides(&self) -> Vec<usize> {
         let flags = self.guide_flags.as_deref().unwrap_or_default();
         (0..flags.len()).filter(|strand| flags[*strand]).collect()

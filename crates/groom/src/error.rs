@@ -15,7 +15,7 @@ pub enum GroomError {
     /// A groom without a strand.
     #[error("the groom has no strand that could be used")]
     Empty,
-    /// The bytes are not what the format requires.
+    /// The bytes violate the format.
     #[error("not a sound {format} file: {found}, expected {expected}; {mend}")]
     Malformed {
         /// The format.
@@ -54,7 +54,7 @@ pub enum GroomError {
     Ending {
         /// The ending.
         found: String,
-        /// The endings that name one.
+        /// The endings of the formats.
         expected: String,
         /// The file.
         path: PathBuf,

@@ -1,6 +1,7 @@
 use std::{collections::BTreeMap, ops::Range};
 
 use glam::{Quat, Vec2, Vec3};
+use strandline_base::SettingError;
 use strandline_body::Aabb;
 
 use crate::Influences;
@@ -42,7 +43,7 @@ pub struct Groom {
     pub root_normals: Option<Vec<Vec3>>,
     /// A group number for each strand, shape `[strand]`.
     pub groups: Option<Vec<u32>>,
-    /// Names of groups that have one.
+    /// Names of the named groups.
     pub group_names: BTreeMap<u32, String>,
     /// Which strands are guides, shape `[strand]`.
     pub guide_flags: Option<Vec<bool>>,
@@ -84,6 +85,52 @@ impl Groom {
         self.starts.push(self.points.len() as u32);
     }
 
+    /// Refuses a groom whose arrays do not belong together, as no file has it.
+    ///
+    /// # Errors
+    /// Starts that do not rise from 0 to the number of points; an attribute of another length than its shape.
+    pub fn check_lengths(&self) -> Result<(), SettingError> {
+        let points = self.points.len();
+        let rises = self.starts.is_sorted() && self.starts.first() == Some(&0);
+        if !rises || self.starts.last().is_none_or(|end| *end as usize != points) {
+            let expected =
+                format!("one for each strand and one more, rising from 0 to {points}, the number of points");
+            return Err(SettingError::new(
+                "groom.starts",
+                format!("{} numbers", self.starts.len()),
+                expected,
+            ));
+        }
+        let strands = self.strand_count();
+        let widths = match &self.widths {
+            Widths::Constant(_) => None,
+            Widths::PerStrand(widths) => Some((widths.len(), strands)),
+            Widths::PerPoint(widths) => Some((widths.len(), points)),
+        };
+        let of = |length: Option<usize>, expected: usize| length.map(|length| (length, expected));
+        for (name, lengths) in [
+            ("groom.widths", widths),
+            ("groom.root_uvs", of(self.root_uvs.as_ref().map(Vec::len), strands)),
+            ("groom.root_normals", of(self.root_normals.as_ref().map(Vec::len), strands)),
+            ("groom.groups", of(self.groups.as_ref().map(Vec::len), strands)),
+            ("groom.guide_flags", of(self.guide_flags.as_ref().map(Vec::len), strands)),
+            (
+                "groom.influences",
+                self.influences.as_ref().map(|all| (all.guides().len(), all.per_strand() * strands)),
+            ),
+            ("groom.colors", of(self.colors.as_ref().map(Vec::len), points)),
+            ("groom.transparencies", of(self.transparencies.as_ref().map(Vec::len), points)),
+            ("groom.masses", of(self.masses.as_ref().map(Vec::len), points)),
+            ("groom.velocities", of(self.velocities.as_ref().map(Vec::len), points)),
+        ] {
+            if let Some((length, expected)) = lengths.filter(|(length, expected)| length != expected) {
+                let expected = format!("{expected}: {strands} strands have {points} points");
+                return Err(SettingError::new(name, format!("{length} entries"), expected));
+            }
+        }
+        Ok(())
+    }
+
     /// Number of strands.
     pub fn strand_count(&self) -> usize {
         self.starts.len() - 1
@@ -105,7 +152,7 @@ impl Groom {
         (0..self.strand_count()).map(|strand| length(self.strand(strand))).collect()
     }
 
-    /// The box around all points \[m\]; inside out when there is none.
+    /// The box around all points \[m\]; inverted without points.
     pub fn bounds(&self) -> Aabb {
         let start = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
         let (min, max) =

@@ -155,15 +155,15 @@ impl Guides {
         self.velocities.as_deref()
     }
 
-    /// Multiples of how far drawn strands lie about each, shape `[strand]`; none where all have 1.
+    /// Factors of the distance of drawn strands about each guide, shape `[strand]`; `None` if all are 1.
     pub fn spreads(&self) -> Option<&[f32]> {
         self.spreads.as_deref()
     }
 
-    /// Sets how far drawn strands lie about each, as multiples of what a look says, shape `[strand]`.
+    /// Sets the distance of drawn strands about each guide, as factors of that of the look, shape `[strand]`.
     ///
     /// # Errors
-    /// Another number of them than strands; one that is not finite, or below 0.
+    /// Their number is not that of the strands; a factor is not finite, or below 0.
     pub fn set_spreads(&mut self, spreads: Option<Vec<f32>>) -> Result<(), GroomError> {
         if let Some(spreads) = &spreads {
             let is_bad = |spread: &f32| !(spread.is_finite() && *spread >= 0.0);
@@ -183,7 +183,7 @@ impl Guides {
         self.groups.as_deref()
     }
 
-    /// Names of groups that have one.
+    /// Names of the named groups.
     pub fn group_names(&self) -> &BTreeMap<u32, String> {
         &self.group_names
     }
@@ -192,7 +192,7 @@ impl Guides {
     /// counts.
     ///
     /// # Errors
-    /// Another number of masses than points; one that is not above 0.
+    /// Their number is not that of the points; a mass is not above 0.
     pub fn set_masses(&mut self, masses: Option<Vec<f32>>) -> Result<(), GroomError> {
         attributes::check_masses(masses.as_deref(), self.strand_count * self.points_per_strand)?;
         self.masses = masses;
@@ -203,7 +203,7 @@ impl Guides {
     /// none hair begins at rest.
     ///
     /// # Errors
-    /// Another number of velocities than points; one that is not finite.
+    /// Their number is not that of the points; a velocity is not finite.
     pub fn set_velocities(&mut self, velocities: Option<Vec<Vec3>>) -> Result<(), GroomError> {
         attributes::check_velocities(velocities.as_deref(), self.strand_count * self.points_per_strand)?;
         self.velocities = velocities;

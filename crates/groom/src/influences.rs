@@ -141,7 +141,7 @@ mod tests {
         let influences = influences.unwrap();
         assert_eq!(influences.weights(), [0.25, 0.75, 0.5, 0.5, 0.0, 0.0]);
         let selected = influences.select(&[2, 0]);
-        // Strand 1 is gone, and what was strand 2 is now strand 0.
+        // Strand 1 is gone, and strand 2 has become strand 0.
         assert_eq!(selected.of(1).collect::<Vec<_>>(), [(0, 0.0), (0, 1.0)]);
         assert_eq!(selected.of(0).map(|(_, weight)| weight).sum::<f32>(), 0.0);
     }

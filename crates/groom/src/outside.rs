@@ -28,7 +28,7 @@ pub struct Outside {
 
 impl Guides {
     /// Puts every point but the root that lies inside a body onto its surface. Segments keep their
-    /// lengths, so what follows on the strand is drawn along; strands without a point inside keep their bits.
+    /// lengths, so the rest of the strand is drawn along; strands without a point inside keep their bits.
     ///
     /// `surface` gives the signed distance \[m\] at a point \[m\], head space, negative inside, and its unit
     /// gradient.
@@ -184,7 +184,7 @@ mod tests {
         }
         // Lanes beyond the last strand repeat it.
         assert_eq!(moved.positions()[5].get(7), moved.position(2, 5));
-        // It comes back to where it was, but for what the detour took of its length: found 0.0127.
+        // It returns to its place, but for the length that the detour took: found 0.0127.
         let aside = moved.position(1, 11).distance(rest.position(1, 11));
         assert!(aside < 0.015, "{aside}");
     }

@@ -53,7 +53,7 @@ impl Groom {
         Ok(groom)
     }
 
-    /// Refuses what `count` points on every strand would be before they are made.
+    /// Refuses `count` points on every strand before they are made, if they are too many.
     fn check_resampled(&self, count: u64) -> Result<(), GroomError> {
         let strand_count = self.strand_count() as u64;
         let points = strand_count * count;
@@ -62,7 +62,7 @@ impl Groom {
             let found = format!("{count}, which makes {points} on {strand_count} strands");
             return Err(SettingError::new("the number of points", found, "268435456 in all at most").into());
         }
-        // A position, and what else the groom has at its points; then the bytes of a file.
+        // A position and the attributes of a point; then the bytes of a file.
         let bytes = |is_there: bool, bytes: u64| if is_there { bytes } else { 0 };
         let extra = bytes(self.colors.is_some(), 12)
             + bytes(self.transparencies.is_some(), 4)

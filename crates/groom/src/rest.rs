@@ -41,7 +41,7 @@ impl RestShape {
     }
 }
 
-/// Distance \[m\] from every point to the one `stride` further along; 0 where there is none.
+/// Distance \[m\] from every point to the one `stride` further along; 0 beyond the tip.
 fn distances(guides: &Guides, stride: usize) -> Vec<Lanes> {
     let points = guides.points_per_strand();
     let mut distances = vec![Lanes::default(); guides.positions().len()];

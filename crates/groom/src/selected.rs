@@ -1,4 +1,4 @@
-//! Grooms made of strands of others: some of one, or those of two.
+//! Grooms made of strands of others: a selection, or the union of two.
 
 use glam::Vec3;
 
@@ -37,7 +37,7 @@ impl Groom {
         groom
     }
 
-    /// Adds the strands of another groom behind these. What only one of the two has is lost, but for widths and
+    /// Adds the strands of another groom behind these. Attributes of only one of the two are lost, but for widths and
     /// names of groups.
     pub fn append(&mut self, other: Self) {
         self.widths = self.joined_widths(&other);

@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use strandline_base::SettingError;
+use strandline_base::{SettingError, memory::MemoryError};
 
 use crate::{body::BodyError, groom::GroomError, render::RenderError, sim::SimError};
 
@@ -13,7 +13,7 @@ pub enum Error {
     ReadScene {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The scene is not valid TOML, or a key is unknown or has a value of the wrong kind.
@@ -32,7 +32,7 @@ pub enum Error {
     HairPose {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// The problem.
         message: String,
     },
     /// The file with masses and velocities could not be read, or is for other hair.
@@ -40,7 +40,7 @@ pub enum Error {
     Attributes {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// The problem.
         message: String,
     },
     /// A picture with values over the scalp could not be read.
@@ -48,7 +48,7 @@ pub enum Error {
     Map {
         /// The file.
         path: PathBuf,
-        /// What was found and what was expected.
+        /// The problem and the expectation.
         message: String,
     },
     /// The file with hair that moved could not be read, or is for other hair.
@@ -56,7 +56,7 @@ pub enum Error {
     Cache {
         /// The file.
         path: PathBuf,
-        /// What was found.
+        /// The problem.
         message: String,
     },
     /// A name that no format of moving hair has.
@@ -79,21 +79,21 @@ pub enum Error {
     /// A scene, or where its hair is, could not be saved.
     #[error("cannot save {what}: {source}: {}", path.display())]
     Save {
-        /// What was being saved.
+        /// The content.
         what: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// An output file or folder could not be written.
     #[error("cannot write {what}: {source}: {}", path.display())]
     Write {
-        /// What was being written.
+        /// The content.
         what: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// Another run writes into the output folder.
@@ -108,6 +108,9 @@ pub enum Error {
     /// The simulation's thread ended in the middle: a fault of ours.
     #[error("the simulation stopped with an error of the program's own")]
     WorkerGone,
+    /// The scene takes more memory than a run may take.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// From the body.
     #[error(transparent)]
     Body(#[from] BodyError),
@@ -127,6 +130,11 @@ impl Error {
     pub(crate) fn save(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Save { what, path, source }
+    }
+
+    /// For a map over the scalp.
+    pub(crate) fn map(path: &Path, message: String) -> Self {
+        Self::Map { path: path.to_owned(), message }
     }
 
     /// For `map_err` on what writes to `path`.

@@ -22,31 +22,65 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
-mod attributes;
-mod bound;
 mod cache;
-mod devices;
 mod error;
 mod film;
 mod hair;
-mod hair_pose;
-mod head;
-mod live;
-mod memory;
-mod painter;
-mod pick;
+pub mod live;
 mod player;
 mod prepare;
 mod session;
-mod sync;
-mod tags;
-mod worker;
-#[cfg(test)]
-mod worker_tests;
-
-pub mod scene;
+mod strands;
 
 pub mod low_level;
+pub mod scene;
+
+/// Settings as data, and the sections of `[simulation]` and `[style]`. [`settings::Group::TABLE`] lists the settings of a
+/// section with name, kind, range, unit and sentence.
+pub mod settings {
+    pub use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word};
+
+    pub use crate::groom::StyleSettings;
+    pub use crate::sim::{
+        Drag, Preconditioner, StrandMethod, StrandSettings, VolumeSettings, constrain, rods,
+    };
+}
+
+/// Sections of `[look]` and of pictures.
+pub mod look {
+    pub use crate::render::{
+        Background, BodyLook, Clump, Environment, FrameReport, GroupLook, LevelOfDetail, LightKind, Preset,
+        ToneMap, fibre, surroundings,
+    };
+}
+
+/// Meshes and the distance to them.
+pub mod mesh {
+    pub use crate::body::{Aabb, DistanceGrid, SignedDistance};
+    pub use crate::prepare::mesh_unit;
+}
+
+/// GPUs.
+pub mod device {
+    pub use crate::gpu::{Crossed, Gpu, GpuError};
+
+    /// The linked shader modules, each with its name.
+    pub fn shader_modules() -> Vec<(&'static str, &'static str)> {
+        crate::sim::gpu::modules().into_iter().chain(crate::render::gpu::modules()).collect()
+    }
+}
+
+/// Files that are whole or not there, and text of files for terminals.
+pub mod file {
+    pub use strandline_base::{WholeFile, abandon_parts, printable, read_plain};
+}
+
+/// Mathematical functions and random numbers with the same bits on every machine.
+pub mod math {
+    pub use strandline_base::{Random, math::*};
+}
+
+pub use strandline_groom::format;
 
 pub(crate) use strandline_body as body;
 pub(crate) use strandline_gpu as gpu;
@@ -54,23 +88,38 @@ pub(crate) use strandline_groom as groom;
 pub(crate) use strandline_render as render;
 pub(crate) use strandline_sim as sim;
 
-pub use body::Pose;
+pub use body::{Mesh, Pose};
+pub use cache::{Cache, Out, OutSettings, Target, What, Written};
 pub use error::Error;
-pub use film::Film;
+pub use film::{Film, FilmFiles, PictureFiles};
 pub use groom::{Groom, Style};
 pub use hair::Hair;
 pub use live::Live;
 pub use player::Player;
-pub use render::{Camera, Light, Look, Picture};
-pub use scene::Scene;
-pub use session::Event;
-pub use sim::{Backend, Settings};
+pub use prepare::{Prepared, Sources};
+pub use render::{Camera, Light, Look, Picture, PictureSettings};
+pub use scene::{Devices, HeadMotion, Scene};
+pub use session::{Change, Event, Ray};
+pub use sim::{Backend, Drift, Settings, SimError, StepReport};
 
 // Names of this crate's own modules.
-pub(crate) use bound::BoundStrands;
-pub(crate) use cache::{Cache, OutSettings, What, Written};
-pub(crate) use devices::Devices;
-pub(crate) use film::FilmFiles;
-pub(crate) use head::HeadMotion;
-pub(crate) use pick::Ray;
-pub(crate) use prepare::Prepared;
+pub(crate) use strands::bound::BoundStrands;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Compiles where a type may be sent to other threads and shared by them.
+    fn shared<T: Send + Sync>() {}
+
+    #[test]
+    fn faces_and_loaded_scenes_may_be_shared_by_threads() {
+        shared::<Hair>();
+        shared::<Player>();
+        shared::<Live>();
+        shared::<Prepared>();
+        shared::<Sources>();
+        shared::<Cache>();
+        shared::<Out>();
+    }
+}

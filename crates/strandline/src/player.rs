@@ -1,15 +1,13 @@
 use crate::{
-    Cache, Devices, Error, OutSettings, Scene, What, Written,
-    cache::{Leaving, Out, drawn},
-    devices::place,
+    Cache, Devices, Error, Out, OutSettings, Prepared, Scene, Sources, What, Written,
+    cache::drawn,
     gpu::Gpu,
     groom::Guides,
-    prepare::Prepared,
     render::{Camera, Look, PictureSettings},
-    session::{Change, Event, Session, Simulation, Studio, Task, course::Course},
+    scene::devices::device_name,
+    session::worker::Worker,
+    session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
     sim::{Drift, Settings, State},
-    tags::Tags,
-    worker::Worker,
 };
 
 /// Plays a scene: an iterator of events, frame after frame, until the film is over.
@@ -18,28 +16,25 @@ use crate::{
 /// thread of its own, on another device or on the same.
 pub struct Player {
     session: Session<Worker<Simulation>>,
-    /// With what it leaves open chosen to fit its groom.
-    scene: Scene,
-    tags: Tags,
     /// Changed by [`Player::set_settings`] before the next frame is simulated.
     change: Option<Settings>,
-    course: Course,
+    timing: FilmTiming,
     draw: bool,
     overlap: bool,
     frames: u32,
     /// Frames whose simulation was started, and taken.
     started: u32,
     taken: u32,
-    /// Whether a frame was taken that is to be drawn.
+    /// True where a frame was taken that is to be drawn.
     undrawn: bool,
-    /// Whether the simulation failed.
+    /// True after the simulation failed.
     failed: bool,
     notes: Vec<String>,
-    /// Where frames are written as they are made.
+    /// File that frames are written to as they are made.
     out: Option<Out>,
-    /// Where frames come from in place of the simulation.
+    /// Cache that frames come from in place of the simulation.
     cache: Option<Cache>,
-    /// Whether no frame is begun any more.
+    /// True where no frame is begun any more.
     closing: bool,
 }
 
@@ -49,7 +44,20 @@ impl Player {
     /// # Errors
     /// Whatever the scene's parts refuse.
     pub fn new(scene: &Scene, devices: impl Into<Devices>, draw: bool) -> Result<Self, Error> {
-        Self::of(Prepared::new(scene)?, devices, draw)
+        Self::from_prepared(Prepared::new(scene)?, devices, draw)
+    }
+
+    /// As [`Player::new`], with grooms, meshes and maps from memory.
+    ///
+    /// # Errors
+    /// As [`Player::new`]; a source that the scene does not name, or that is unusable.
+    pub fn from_sources(
+        scene: &Scene,
+        sources: &Sources,
+        devices: impl Into<Devices>,
+        draw: bool,
+    ) -> Result<Self, Error> {
+        Self::from_prepared(Prepared::from_sources(scene, sources)?, devices, draw)
     }
 
     /// Draws the frames of a cache in place of a simulation, as many as the film of the scene that it was made with
@@ -58,7 +66,7 @@ impl Player {
     /// # Errors
     /// Whatever the scene's parts refuse; a cache of other hair.
     pub fn showing(scene: &Scene, devices: impl Into<Devices>, mut cache: Cache) -> Result<Self, Error> {
-        let mut player = Self::of(drawn::prepared(scene, &mut cache)?, devices, true)?;
+        let mut player = Self::from_prepared(drawn::prepared(scene, &mut cache)?, devices, true)?;
         if cache.what() == What::Guides {
             let guides = player.guides();
             cache.check_guides(guides.strand_count(), guides.points_per_strand())?;
@@ -68,24 +76,28 @@ impl Player {
         Ok(player)
     }
 
-    fn of(mut prepared: Prepared, devices: impl Into<Devices>, draw: bool) -> Result<Self, Error> {
-        let head = prepared.head.clone();
+    /// Plays a loaded scene; `draw` false leaves the pictures out.
+    ///
+    /// # Errors
+    /// A setting of the scene outside its range; a device that is named and not there.
+    pub fn from_prepared(
+        mut prepared: Prepared,
+        devices: impl Into<Devices>,
+        draw: bool,
+    ) -> Result<Self, Error> {
         let mut notes = std::mem::take(&mut prepared.notes);
-        let tags = std::mem::take(&mut prepared.tags);
-        let fitted = prepared.scene.clone();
-        let scene = &fitted;
-        let mut session = Session::of_scene(scene, prepared, devices.into())?;
+        let mut session = Session::open(prepared, devices.into())?;
         notes.extend(session.take_notes());
-        let here = session.place.simulation.end();
+        let here = session.simulation().end();
+        let timing = FilmTiming::new(session.scene(), session.head().clone(), here);
+        let frames = session.scene().film.frames;
         Ok(Self {
             session: session.beside()?,
-            scene: scene.clone(),
-            tags,
             change: None,
-            course: Course::new(scene, head, here),
+            timing,
             draw,
             overlap: true,
-            frames: scene.film.frames,
+            frames,
             started: 0,
             taken: 0,
             undrawn: false,
@@ -107,9 +119,7 @@ impl Player {
             let message = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
             return Err(Error::Cache { path: settings.path.clone(), message });
         }
-        let Studio { guides, painter, .. } = &self.session.studio;
-        let leaving = Leaving { guides, bound: painter.bound(), tags: &self.tags };
-        self.out = Some(Out::new(settings, &self.scene, leaving)?);
+        self.out = Some(self.session.begin_file(settings)?);
         Ok(())
     }
 
@@ -118,31 +128,8 @@ impl Player {
     /// # Errors
     /// A cache of other hair, without a state, or of a film that was over; a file that cannot be written.
     pub fn resume(&mut self, cache: &mut Cache) -> Result<(), Error> {
-        let guides = self.guides();
-        let (strands, points) = (guides.strand_count(), guides.points_per_strand());
-        if cache.what() == What::Guides {
-            cache.check_guides(strands, points)?;
-        }
-        let path = cache.path().to_owned();
-        let refuse = |message: String| Error::Cache { path, message };
-        let Some(state) = cache.snapshot(strands, points)? else {
-            return Err(refuse(
-                "it holds no state, expected the state_* arrays that `sim --out` writes".to_owned(),
-            ));
-        };
-        if state.frame + 1 >= self.frames {
-            return Err(refuse(format!(
-                "its run made {} frames, and the film has {}: ask for more with --frames",
-                state.frame + 1,
-                self.frames
-            )));
-        }
-        self.session.place.work().restore(&state)?;
-        (self.started, self.taken) = (state.frame + 1, state.frame + 1);
-        self.session.drawn = self.taken;
-        if let Some(out) = &mut self.out {
-            out.copy(cache, &state)?;
-        }
+        let made = self.session.resume(cache, self.frames, self.out.as_mut())?;
+        (self.started, self.taken) = (made, made);
         Ok(())
     }
 
@@ -153,16 +140,14 @@ impl Player {
     /// The file cannot be written; what was written before stays.
     pub fn close_out(&mut self) -> Result<Option<Written>, Error> {
         self.closing = true;
-        while self.out.is_some() && self.session.place.started() > 0 && !self.failed {
+        while self.out.is_some() && self.session.started() > 0 && !self.failed {
             self.take()?;
         }
         let Some(out) = self.out.take() else { return Ok(None) };
-        let state =
-            self.taken.checked_sub(1).map(|frame| self.session.place.work().snapshot(frame)).transpose()?;
-        out.close(self.taken == self.frames, state.as_ref()).map(Some)
+        self.session.end_file(out, self.taken, self.frames).map(Some)
     }
 
-    /// Whether a frame is simulated while the one before is drawn; on by default.
+    /// Simulates each frame while the one before is drawn; on by default.
     pub fn set_overlap(&mut self, overlap: bool) {
         self.overlap = overlap;
     }
@@ -183,17 +168,17 @@ impl Player {
 
     /// Changes the hair's look, from the next picture on.
     pub fn set_look(&mut self, look: Look) {
-        self.session.studio.look = look;
+        self.session.set_look(look);
     }
 
     /// Changes the view, from the next picture on.
     pub fn set_camera(&mut self, camera: Camera) {
-        self.session.studio.camera = camera;
+        self.session.set_camera(camera);
     }
 
     /// The simulated strands at rest.
     pub fn guides(&self) -> &Guides {
-        &self.session.studio.guides
+        self.session.view().guides()
     }
 
     /// The state of the simulation: as long as a frame is on its way, before it or after.
@@ -201,42 +186,41 @@ impl Player {
     /// # Errors
     /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn state(&self) -> Result<State, Error> {
-        Ok(self.session.place.work().engine.state()?.clone())
+        Ok(self.session.peek(|simulation| simulation.state().cloned())?)
     }
 
-    /// How far the hair lies from the groom as loaded, which the head carries.
+    /// Distance of the hair from the groom as loaded, which the head carries.
     ///
     /// # Errors
     /// As [`Player::state`].
     pub fn drift(&self) -> Result<Drift, Error> {
-        Ok(self.session.place.work().engine.drift()?)
+        Ok(self.session.peek(Simulation::drift)?)
     }
 
     /// Strands of rods that had to be stiffer for their shape to be stable, and how many times stiffer the stiffest
     /// of them is; 0 without rods.
     pub fn stiffened(&self) -> (usize, f32) {
-        let work = self.session.place.work();
-        work.engine.model().rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest))
+        self.session.peek(|simulation| simulation.stiffened())
     }
 
     /// The device that the hair is simulated on; none on the CPU.
     pub fn gpu(&self) -> Option<Gpu> {
-        self.session.place.work().engine.gpu().cloned()
+        self.session.peek(|simulation| simulation.gpu().cloned())
     }
 
     /// The device that the pictures are drawn on, the same way.
     pub fn picture_gpu(&self) -> Option<Gpu> {
-        self.session.studio.painter.gpu().cloned()
+        self.session.view().gpu().cloned()
     }
 
-    /// Where the hair is simulated: cpu, or the adapter's number and name.
+    /// Device of the simulation: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
-        place(self.session.place.work().engine.gpu())
+        device_name(self.gpu().as_ref())
     }
 
-    /// Where pictures are drawn, the same way.
+    /// Device of the pictures, likewise.
     pub fn drawn_on(&self) -> String {
-        self.session.studio.painter.drawn_on()
+        self.session.view().drawn_on()
     }
 
     /// Number of frames of the film.
@@ -249,7 +233,7 @@ impl Player {
         self.taken - u32::from(self.undrawn)
     }
 
-    /// What was mended or left out while loading.
+    /// Mends, guesses and omissions of the loading.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -263,10 +247,10 @@ impl Player {
         let task = match &mut self.cache {
             None => {
                 let settings = self.change.take().map(Box::new);
-                Task::Film { course: self.course.clone(), frame, settings }
+                Task::Film { timing: self.timing.clone(), frame, settings }
             }
             Some(cache) => {
-                let guides = &self.session.studio.guides;
+                let guides = self.session.view().guides();
                 let mut positions = guides.positions().to_vec();
                 let points = guides.points_per_strand();
                 let world_from_head = cache.read_lanes(frame as usize, points, &mut positions)?;
@@ -286,7 +270,7 @@ impl Player {
         self.taken += 1;
         let wanted = self.out.as_ref().is_some_and(|out| out.wants_state(frame));
         // Before the next frame begins.
-        let state = wanted.then(|| self.session.place.work().snapshot(frame)).transpose()?;
+        let state = if wanted { Some(self.session.snapshot(frame)?) } else { None };
         // A file has the reports of its frames.
         if self.taken == self.frames || self.out.is_some() {
             self.session.report_rest()?;
@@ -294,11 +278,11 @@ impl Player {
         if self.overlap {
             self.start()?;
         }
-        let time = self.course.time(frame);
+        let time = self.timing.time(frame);
         if let Some(mut out) = self.out.take() {
             let reports = self.session.reports_after(earlier);
             // A file that cannot be written ends with the frame before.
-            out.add(frame, time, self.session.shown(), &reports, state.as_ref())?;
+            self.session.add_to(&mut out, frame, time, &reports, state.as_ref())?;
             self.out = Some(out);
         }
         Ok(())
@@ -306,7 +290,7 @@ impl Player {
 
     /// Takes the next frame and starts the one after it.
     fn advance(&mut self) -> Result<(), Error> {
-        if self.session.place.started() == 0 {
+        if self.session.started() == 0 {
             self.start()?;
         }
         self.take()?;

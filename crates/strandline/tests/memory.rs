@@ -6,10 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicIsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use strandline::{
-    Camera, Live, Scene,
-    low_level::{Change, Ray, Shown},
-};
+use strandline::{Camera, Change, Live, Ray, Scene, live::Shown};
 
 /// The system's allocator, counted.
 struct Counted;
@@ -89,7 +86,7 @@ fn play_holds_no_more_than_at_its_beginning() {
     let last = (0..4).map(|_| play(&live, 60)).last().unwrap();
     // 2 % is promised over ten minutes: `strandline bench window` plays them.
     assert!(last as f64 <= 1.02 * first as f64, "{first} bytes, then {last}");
-    // What is kept is seen: a tenth of the room.
+    // Kept memory is seen: a tenth of the room.
     let kept = vec![0_u8; first as usize / 10];
     let more = play(&live, 36);
     assert!(more as f64 > 1.02 * first as f64, "{} bytes more are not noticed", kept.len());

@@ -5,11 +5,7 @@
 
 use std::fmt::Write;
 
-use strandline::{
-    Backend, Event, Player, Scene,
-    low_level::{Devices, groom::Style},
-    scene::MotionName,
-};
+use strandline::{Backend, Devices, Event, Player, Scene, Style, scene::MotionName};
 
 /// A scene, small: a few frames of few strands on a head that shakes.
 fn small(mut scene: Scene) -> Scene {

@@ -1,7 +1,7 @@
 //! Steps on a GPU, measured by its own clock.
 
 use serde::Serialize;
-use strandline::{Backend, low_level::gpu::Gpu};
+use strandline::{Backend, device::Gpu};
 
 use crate::output::print_line;
 use crate::sim::SimReport;

@@ -3,13 +3,10 @@
 use std::time::Instant;
 
 use strandline::{
-    Scene,
-    low_level::{
-        Prepared,
-        sim::{
-            Drive, Model, SimError,
-            gpu::{GpuRunner, Gradient},
-        },
+    Prepared, Scene, SimError,
+    low_level::sim::{
+        Drive, Model,
+        gpu::{GpuRunner, Gradient},
     },
 };
 
@@ -100,7 +97,7 @@ fn run(
     runner: &mut GpuRunner,
     count: usize,
     drive: impl Fn(usize) -> Drive,
-) -> Result<Vec<strandline::low_level::sim::StepReport>, SimError> {
+) -> Result<Vec<strandline::StepReport>, SimError> {
     for step in 0..count {
         runner.step(&drive(step))?;
     }

@@ -10,8 +10,7 @@ use std::time::{Duration, Instant};
 use anyhow::Context;
 use glam::Vec3;
 use serde::Serialize;
-use strandline::low_level::groom::Groom;
-use strandline::{Backend, Event, Player, Scene, low_level::OutSettings};
+use strandline::{Backend, Event, Groom, OutSettings, Player, Scene};
 
 use super::gpu::Device;
 use super::machine::peak_memory_mb_of;
@@ -187,7 +186,7 @@ fn place(pictures: Backend, [strands, guides]: [u32; 2], frames: u32) -> anyhow:
         (guides as usize, strands, 16);
     (scene.film.frames, scene.film.settle) = (frames + 1, 0.0);
     (scene.look.follow_strands, scene.picture.width, scene.picture.height) = (1, 64, 64);
-    scene.look.dress(strandline::low_level::render::Preset::Thesis);
+    scene.look.dress(strandline::look::Preset::Thesis);
     // Curves of more points exceed a buffer of WebGPU's default limits.
     scene.level_of_detail.segments_per_span = 1;
     (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, pictures);

@@ -25,7 +25,7 @@ pub use plot::plot;
 use std::path::Path;
 
 use serde::Serialize;
-use strandline::{Error, low_level::base::WholeFile};
+use strandline::{Error, file::WholeFile};
 
 use crate::arguments::{Bench, BenchOptions};
 use crate::output::print_line;

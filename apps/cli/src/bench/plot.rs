@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use serde::Deserialize;
 use strandline::{
     Error,
-    low_level::base::{WholeFile, read_plain},
+    file::{WholeFile, read_plain},
 };
 
 use super::chart::{Chart, Line, svg};

@@ -1,10 +1,7 @@
 //! Growth of the cost of a step with strands and with cells.
 
 use serde::Serialize;
-use strandline::{
-    Error, Scene, Settings,
-    low_level::{gpu::GpuError, sim::SimError},
-};
+use strandline::{Error, Scene, Settings, SimError, device::GpuError};
 
 use super::gpu::{Device, GpuRun};
 use super::measure::measure;

@@ -1,9 +1,6 @@
 //! The thesis's tables 1 to 4 beside ours [Chen2011 §4.2.3, §6].
 
-use strandline::{
-    Backend, Event, Player, Scene,
-    low_level::{Devices, sim::Preconditioner},
-};
+use strandline::{Backend, Devices, Event, Player, Scene, settings::Preconditioner};
 
 use super::gpu::Device;
 use super::measure::measure;

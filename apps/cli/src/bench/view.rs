@@ -6,11 +6,9 @@ use std::time::Instant;
 use glam::Vec3;
 use serde::Serialize;
 use strandline::{
-    Backend, Camera, Event, Player, Scene,
-    low_level::{
-        gpu::Gpu,
-        render::{FrameReport, LevelOfDetail, PictureSettings},
-    },
+    Backend, Camera, Event, PictureSettings, Player, Scene,
+    device::Gpu,
+    look::{FrameReport, LevelOfDetail},
 };
 
 use super::gpu::Device;

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use strandline::{
-    Backend, Camera, Live, Scene,
-    low_level::{Change, Command, LiveEvent, Ray, Shown},
+    Backend, Camera, Change, Live, Ray, Scene,
+    live::{Command, LiveEvent, Shown},
 };
 
 use super::gpu::Device;

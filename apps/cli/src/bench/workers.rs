@@ -5,11 +5,8 @@ use std::time::Instant;
 
 use serde::Serialize;
 use strandline::{
-    Backend, Event, Player, Scene,
-    low_level::{
-        Devices,
-        gpu::{Crossed, Gpu},
-    },
+    Backend, Devices, Event, Player, Scene,
+    device::{Crossed, Gpu},
 };
 
 use super::gpu::Device;

@@ -6,4 +6,5 @@ mod hostile_files;
 #[cfg(target_os = "linux")]
 mod limits;
 mod moved;
+mod set;
 mod sim_motion;

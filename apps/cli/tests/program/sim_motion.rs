@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::Vec3;
-use strandline::low_level::groom::format::{self, LoadOptions, Scale};
+use strandline::format::{self, LoadOptions, Scale};
 
 /// Standard output of a run that ends well.
 fn works(folder: &Path, arguments: &[&str]) -> String {

@@ -26,7 +26,7 @@ fn end_often(arguments: &[&str], prepare: &[&[&str]], wanted: &[&str], in_folder
     wanted.extend(moving(&target).and_then(|path| Some(path.file_name()?.to_str()?.to_owned())));
     wanted.sort();
     assert_eq!(names(&target), wanted);
-    let mut random = strandline::low_level::body::Random::new(7, 0);
+    let mut random = strandline::math::Random::new(7, 0);
     let kills = std::env::var("STRANDLINE_KILLS").map_or(KILLS, |text| text.parse().unwrap());
     let mut ended = [0; SIGNALS.len()];
     // A test that ends nothing finds nothing. A signal that may be heeded later may find the run over, so that
@@ -112,7 +112,7 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
     works(folder.path(), &sim("whole.npz"));
     let whole_time = begin.elapsed();
     let whole = std::fs::read(at("whole.npz")).unwrap();
-    let mut random = strandline::low_level::body::Random::new(3, 0);
+    let mut random = strandline::math::Random::new(3, 0);
     let (mut short, mut frames) = (0, Vec::new());
     for turn in 0..13 {
         let (name, number) = SIGNALS[turn % SIGNALS.len()];
@@ -135,7 +135,7 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
         let output = child.wait_with_output().unwrap();
         assert!(ended_by(output.status, number), "{name}: {:?}: {}", output.status, error(&output));
         let was_ended = !output.status.success();
-        let cache = strandline::low_level::Cache::open(&at("part.npz")).unwrap();
+        let cache = strandline::Cache::open(&at("part.npz")).unwrap();
         assert!(!cache.is_empty() && is_whole(&at("part.npz")), "{name}");
         frames.push(cache.len());
         if was_ended && name != "KILL" {

@@ -92,7 +92,7 @@ fn of_two_runs_that_write_one_cache_the_second_is_refused() {
     first.kill().unwrap();
     first.wait().unwrap();
     // Of the one that was killed everything stays until another is finished.
-    let before = strandline::low_level::Cache::open(&folder.path().join("a.npz")).unwrap().len();
+    let before = strandline::Cache::open(&folder.path().join("a.npz")).unwrap().len();
     assert!(before > 0);
     works(folder.path(), &["sim", "--scene", "small.toml", "--out", "a.npz"]);
     assert_eq!(names(folder.path()), ["a.npz", "small.toml"]);

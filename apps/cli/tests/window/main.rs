@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use display::{CONTROL, Display, Person, Screen};
-use strandline::{Picture, low_level::groom::StyleSettings};
+use strandline::{Picture, settings::StyleSettings};
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ConfigureWindowAux, ConnectionExt};
 

@@ -3,8 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use strandline::low_level::body::Random;
-use strandline::low_level::groom::StyleSettings;
+use strandline::{math::Random, settings::StyleSettings};
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ConfigureWindowAux, ConnectionExt};
 

@@ -1,10 +1,10 @@
 //! Controls of detail.
 
 use eframe::egui::Ui;
-use strandline::low_level::{
-    Change,
-    base::Group,
-    render::{Background, LevelOfDetail, PictureSettings, ToneMap},
+use strandline::{
+    Change, PictureSettings,
+    look::{Background, LevelOfDetail, ToneMap},
+    settings::Group,
 };
 
 use crate::{

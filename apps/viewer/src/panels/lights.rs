@@ -3,14 +3,7 @@
 
 use eframe::egui::{self, Color32, Sense, Stroke, Ui, Vec2};
 use glam::Vec3;
-use strandline::{
-    Camera,
-    low_level::{
-        Change,
-        base::Group,
-        render::{Light, LightKind},
-    },
-};
+use strandline::{Camera, Change, Light, look::LightKind, settings::Group};
 
 use crate::{
     App,

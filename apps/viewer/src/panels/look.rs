@@ -3,13 +3,11 @@
 use eframe::egui::Ui;
 use strandline::{
     Look,
-    low_level::{
-        base::Group,
-        render::{
-            Clump, Environment, Preset,
-            fibre::{Chiang, Fibre, FibreModel, Highlight, Pigment, Scheuermann},
-        },
+    look::{
+        Clump, Environment, Preset,
+        fibre::{Chiang, Fibre, FibreModel, Highlight, Pigment, Scheuermann},
     },
+    settings::Group,
 };
 
 use crate::{

@@ -9,7 +9,7 @@ mod scene;
 mod simulation;
 
 use eframe::egui::{self, Ui};
-use strandline::low_level::{Change, Command};
+use strandline::{Change, live::Command};
 
 use crate::{
     App,

@@ -2,8 +2,9 @@
 
 use eframe::egui::{DragValue, Ui};
 use strandline::{
-    low_level::{Change, base::Group},
+    Change,
     scene::{GroomSection, KeyframeSection, MotionName, MotionSection, WindSection},
+    settings::Group,
 };
 
 use crate::{

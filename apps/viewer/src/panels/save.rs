@@ -1,7 +1,7 @@
 //! Buttons that save the shown picture, scene and film.
 
 use eframe::egui::{self, DragValue, Ui};
-use strandline::low_level::{Target, What};
+use strandline::{Target, What};
 
 use crate::{App, controls::button, files::Wanted};
 

@@ -1,11 +1,10 @@
 //! Controls of the simulation.
 
 use eframe::egui::Ui;
-use strandline::low_level::{
-    Change,
-    base::Group,
-    sim::{
-        Drag, Settings, StrandMethod, StrandSettings, VolumeSettings,
+use strandline::{
+    Change, Settings,
+    settings::{
+        Drag, Group, StrandMethod, StrandSettings, VolumeSettings,
         constrain::{Angles, ConstrainSettings, LengthPass, Spring, Springs},
         rods::{HairKind, RodSettings},
     },

@@ -4,7 +4,7 @@ use crate::{LANES, block_count};
 
 /// Guides that a strand is bound to at most.
 pub const MOST_INFLUENCES: usize = 3;
-/// One guide that a bound strand follows.
+/// A guide that a bound strand follows.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Influence {

@@ -142,7 +142,7 @@ fn strands_follow_the_guides_that_the_groom_names() {
     let first = &binding.influences()[0];
     assert_eq!([first[0].guide, first[1].guide], [0, 2]);
     assert_eq!([first[0].weight, first[1].weight, first[2].weight], [0.75, 0.25, 0.0]);
-    // A guide follows itself, whatever it is said to follow.
+    // A guide follows itself, whatever its influences are.
     assert_eq!((binding.influences()[200][0].guide, binding.influences()[200][0].weight), (1, 1.0));
 }
 

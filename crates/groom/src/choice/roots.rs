@@ -1,4 +1,4 @@
-//! Strands by the cells of a grid in which their roots lie: what is near is found without asking all.
+//! Strands by the cells of a grid in which their roots lie, to find near ones without testing all.
 
 use glam::{IVec3, Vec3};
 

@@ -21,7 +21,7 @@ pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
 /// Writes a `.bin` file; normals and labels are 0.
 ///
 /// # Errors
-/// None for a groom in memory.
+/// `None` for a groom in memory.
 pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
     let mut out = Vec::with_capacity(4 + 4 * groom.strand_count() + 28 * groom.points.len());
     put_u32(&mut out, [groom.strand_count() as u32]);

@@ -24,7 +24,7 @@ pub(super) fn strands<const N: usize>(source: &Source) -> Result<(Groom, usize),
     if !(1..=MAX_STRANDS).contains(&count) {
         return Err(source.error(format!("{count} strands at byte 0"), format!("1 to {MAX_STRANDS}")));
     }
-    // Each strand has its own count at least: nothing is taken that the file cannot fill.
+    // Each strand takes its own count at least: no memory is taken that the file cannot fill.
     source.slice("counts of points", 4, count, 4)?;
     let mut groom = Groom::empty(0.0);
     groom.starts.reserve(count as usize);
@@ -53,7 +53,7 @@ pub(super) fn strands<const N: usize>(source: &Source) -> Result<(Groom, usize),
 /// Writes a `.data` file.
 ///
 /// # Errors
-/// None for a groom in memory.
+/// `None` for a groom in memory.
 pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
     let mut out = Vec::with_capacity(4 + 4 * groom.strand_count() + 12 * groom.points.len());
     put_u32(&mut out, [groom.strand_count() as u32]);

@@ -22,7 +22,7 @@ struct Header {
     color: [f32; 3],
 }
 
-/// Colours of the header that say nothing: what writers put there that have none.
+/// Colours of the header that mean none: placeholders of writers without colours.
 const NO_COLORS: [[f32; 3]; 2] = [[0.0; 3], [1.0; 3]];
 
 /// Reads a `.hair` file; thickness is taken as the diameter.
@@ -137,7 +137,7 @@ fn starts(
     let counts = counts.map(|bytes| u32::from(u16::from_le_bytes([bytes[0], bytes[1]])));
     let sum: u64 = counts.clone().map(|segments| u64::from(segments) + 1).sum();
     let empty = counts.clone().filter(|segments| *segments == 0).count() as u64;
-    // A strand without segments holds one point to some writers and none to others.
+    // A strand without segments has one point for some writers and no point for others.
     let lone = match header.points {
         points if points == sum => 1,
         points if points == sum - empty => 0,
@@ -201,7 +201,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
     Ok(out)
 }
 
-/// The one diameter of all points, or else one for each.
+/// The common diameter of all points, or a diameter for each.
 fn per_point_widths(groom: &Groom) -> Result<f32, Vec<f32>> {
     match &groom.widths {
         // A default width, taken because a file had none, is no attribute.

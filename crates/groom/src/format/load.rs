@@ -72,7 +72,7 @@ impl From<Scale> for ScaleText {
 choices! {
     /// The axis of a file that points up.
     pub enum Up as "up" {
-        /// The one that groom and body show, y where there is no body.
+        /// The axis that groom and body show, y without a body.
         Auto = "auto",
         /// y, as here; the face looks along +z.
         Y = "y",
@@ -101,7 +101,7 @@ impl Default for LoadOptions {
     }
 }
 
-/// A groom and what is to be said of it.
+/// A groom and its report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
     /// The strands \[m\], y up.
@@ -222,7 +222,15 @@ fn regroup(groom: &mut Groom, name: &str, first: u32) -> u32 {
     first + own.len() as u32
 }
 
-/// Sieves, scales and turns what a reader found.
+/// A groom from memory, prepared as one from a file: bad strands are left out or refused, the rest is scaled and turned.
+///
+/// # Errors
+/// A bad strand in strict mode; no strand left.
+pub fn sieved(groom: Groom, options: &LoadOptions) -> Result<Loaded, GroomError> {
+    prepare(Parsed { format: "memory", groom, problems: Vec::new() }, options)
+}
+
+/// Sieves, scales and turns the strands of a reader.
 ///
 /// # Errors
 /// A bad strand in strict mode; no strand left.

@@ -1,7 +1,7 @@
-//! Readers and writers of groom files: one file a format, listed in [`FORMATS`].
+//! Readers and writers of groom files: one module per format, listed in [`FORMATS`].
 //!
 //! Readers work on bytes in memory, check every size in 64-bit arithmetic before they allocate,
-//! and never allocate more than a small multiple of what they were given.
+//! and never allocate more than a small multiple of their input.
 
 pub mod bin;
 mod bytes;
@@ -20,7 +20,7 @@ mod save;
 mod sieve;
 pub mod tfx;
 
-pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare};
+pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
 pub use report::{Counts, GroupOf, Lengths, Report};

@@ -48,7 +48,7 @@ pub(super) fn refused(source: &Source, error: NpzError) -> GroomError {
 /// Reads a `.npy` file: an array \[strand, point, 3\], or \[point, 3\] with the points of each strand.
 ///
 /// # Errors
-/// [`GroomError::Malformed`] with what is wrong.
+/// [`GroomError::Malformed`] with the error.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".npy" };
     let Bare { kind, shape, bytes } = Bare::new(bytes).map_err(|error| refused(&source, error))?;

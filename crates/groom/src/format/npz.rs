@@ -51,7 +51,7 @@ impl<'a> Arrays<'a> {
         Ok(Self { source, npz })
     }
 
-    /// Whether an array of this name is present.
+    /// True if an array of this name is present.
     fn has(&self, name: &str) -> bool {
         self.npz.names().any(|found| found == name)
     }
@@ -114,7 +114,7 @@ impl<'a> Arrays<'a> {
 /// Reads a `.npz` file. A moving cache gives the strands of its first frame.
 ///
 /// # Errors
-/// [`GroomError::Malformed`] with what is wrong; arrays that do not fit each other.
+/// [`GroomError::Malformed`] with the error; arrays that do not fit each other.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let mut arrays = Arrays::new(bytes)?;
     let mut problems = Vec::new();

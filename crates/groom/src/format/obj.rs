@@ -16,7 +16,7 @@ const MAX_NAME: usize = 4096;
 #[derive(Default)]
 struct Reading {
     vertices: Vec<Vec3>,
-    /// Colours of the vertices that have one, and how many vertices have none.
+    /// Colours of the coloured vertices, and the number of the others.
     colors: Vec<[f32; 3]>,
     /// Numbers of groups by their names, and that of the strands to come.
     numbers: BTreeMap<String, u32>,
@@ -54,7 +54,7 @@ fn cut(line: &str) -> String {
 }
 
 impl Reading {
-    /// Takes a line; what was expected when it is wrong.
+    /// Parses a line; an error says what was expected.
     fn line(&mut self, line: &str) -> Result<(), String> {
         let mut words = line.split_whitespace();
         match words.next() {

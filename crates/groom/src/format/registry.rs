@@ -1,4 +1,4 @@
-//! Every format once: its ending, what it is, how it is read and written, and what of a groom it holds.
+//! Every format once: its ending, description, reader, writer and the attributes that it holds.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ pub struct Format {
     pub write: Option<Write>,
     /// Attributes that it holds beside points.
     pub holds: &'static [Part],
-    /// Memory that reading takes at most for each byte of a file \[byte\]: the file, and what it holds. Text is shorter
+    /// Most memory of reading for each byte of a file \[byte\]: the file and its content. Text is shorter
     /// than its numbers.
     pub taken: u64,
 }

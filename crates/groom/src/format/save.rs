@@ -15,7 +15,7 @@ pub struct Saved {
 }
 
 impl Groom {
-    /// Writes a file of the format that its ending names; says what the format could not hold.
+    /// Writes a file of the format that its ending names; returns the attributes that the format could not hold.
     ///
     /// # Errors
     /// See [`GroomError`].

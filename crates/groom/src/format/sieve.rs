@@ -4,7 +4,7 @@ use crate::{Groom, GroomError, Widths};
 
 use super::MAX_COORDINATE;
 
-/// A strand shorter than this share of the median length is as good as none.
+/// A strand shorter than this share of the median length is left out.
 const SHORT: f32 = 1e-6;
 /// Bad strands that a problem names before it only counts.
 const NAMED: usize = 3;

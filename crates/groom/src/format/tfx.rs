@@ -6,7 +6,7 @@ use crate::{Groom, GroomError, Widths};
 
 const HEADER_3: u64 = 296;
 const HEADER_4: u64 = 160;
-/// Diameter \[file units\] where a file names none.
+/// Diameter \[file units\] of a file without one.
 const DEFAULT_WIDTH: f32 = 0.0;
 
 /// Counts of a header and where its arrays begin; 0 is "not there".
@@ -148,7 +148,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         let free = if index % (each as usize) < 2 { 0.0 } else { 1.0 };
         put(&mut body, [point.x, point.y, point.z, free]);
     }
-    // AMD's runtime reads root coordinates even where a file has none.
+    // AMD's runtime reads root coordinates even if a file has none.
     offsets[1] = here(&body);
     match &groom.root_uvs {
         Some(uvs) => put(&mut body, uvs.iter().flat_map(|uv| uv.to_array())),

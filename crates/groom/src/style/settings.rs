@@ -48,7 +48,7 @@ settings! {
 }
 
 impl StyleSettings {
-    /// The style as it is meant to be.
+    /// The style with its own defaults.
     pub fn new(style: Style) -> Self {
         let plain = Self { style, ..Self::default() };
         match style {

@@ -1,4 +1,4 @@
-//! Bound strands of real grooms, and what a hundred thousand of them cost.
+//! Bound strands of real grooms, and the cost of a hundred thousand of them.
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use std::time::Instant;
@@ -52,7 +52,7 @@ fn processor_ms() -> Option<f64> {
     Some(10.0 * ticks)
 }
 
-/// 100,000 strands of 16 points bound to 2,000 guides about a ball for a head: prints what a frame takes.
+/// 100,000 strands of 16 points bound to 2,000 guides about a ball for a head: prints the time of a frame.
 #[test]
 fn a_hundred_thousand_strands_are_placed() {
     let mut groom = Groom::empty(8e-5);

@@ -1,11 +1,11 @@
-//! Readers and writers: layout byte by byte, round trips, and what must be refused.
+//! Readers and writers: layout byte by byte, round trips, and refusals.
 
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
 use strandline_groom::format::{LoadOptions, Scale, Up, hair, load, prepare, tfx};
 use strandline_groom::{Groom, GroomError, Widths};
 
-/// A header of a .hair file and nothing else.
+/// A .hair file of a header alone.
 fn hair_header(strands: u32, points: u32, arrays: u32, segments: u32) -> Vec<u8> {
     let mut bytes = b"HAIR".to_vec();
     for number in [strands, points, arrays, segments] {
@@ -123,7 +123,7 @@ fn what_is_not_taken_from_a_tfx_file_is_said() {
     groom.colors = Some(vec![[0.5; 3]; groom.points.len()]);
     let good = tfx::write(&groom).unwrap();
     let parsed = tfx::read(&good).unwrap();
-    // Coordinates of zeros stand for none.
+    // Coordinates of zeros mean none.
     assert!(parsed.problems.is_empty() && parsed.groom.root_uvs.is_none());
     let mut bytes = good.clone();
     let alpha = bytes.len() - 4;

@@ -7,13 +7,13 @@ use crate::{
     Error, Prepared, Scene,
     groom::{Groom, Guides, Widths},
     sim::StrandMethod,
-    tags::Tags,
+    strands::tags::Tags,
 };
 
 /// Most points of a strand that a simulation has; strands of more are drawn by so many, evenly along them.
 const POINTS: usize = 64;
 
-/// What a scene names with the strands of a cache in the place of its own, as far as a picture goes.
+/// Loads a scene for pictures, with the strands of a cache in the place of its own.
 ///
 /// # Errors
 /// Whatever the scene's parts refuse; strands of different numbers of points; more memory than may be taken.
@@ -39,7 +39,7 @@ pub(crate) fn prepared(scene: &Scene, cache: &mut Cache) -> Result<Prepared, Err
     look.group.clear();
     (look.color_map, look.width_map) = (None, None);
     scene.groom.length = 1.0;
-    crate::memory::check(&scene, groom.strand_count(), groom.strand_count())?;
+    crate::prepare::memory::check(&scene, groom.strand_count(), groom.strand_count())?;
     prepared.guides = Guides::resample(&groom, points.min(POINTS))?;
     (prepared.bound, prepared.pose, prepared.tags) = (None, None, Tags::default());
     prepared.notes.push(format!("drawn are the {} strands of the cache", groom.strand_count()));

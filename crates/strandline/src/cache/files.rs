@@ -13,7 +13,7 @@ use crate::{
 /// Frames as files of a folder.
 pub(super) struct Files {
     folder: PathBuf,
-    /// What stands before and behind the number, and its digits.
+    /// Text before and behind the number, and its digits.
     pattern: (String, usize, String),
     groom: Groom,
     left_out: Vec<String>,
@@ -34,7 +34,7 @@ pub(super) fn size(path: &Path) -> u64 {
     std::fs::metadata(path).map_or(0, |file| file.len())
 }
 
-/// Whether a path names a file for every frame.
+/// True where a path names a file for every frame.
 pub(super) fn is_sequence(path: &Path) -> bool {
     path.file_name().is_some_and(|name| pattern(&name.to_string_lossy()).is_some())
 }

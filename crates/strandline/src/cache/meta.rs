@@ -1,4 +1,4 @@
-//! What a cache says of itself, as JSON in its array `meta`.
+//! Metadata of a cache, as JSON in its array `meta`.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ pub(super) const LAYOUT: u32 = 1;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Meta {
     pub layout: u32,
-    /// What wrote it.
+    /// Program and version that wrote it.
     #[serde(default)]
     pub written_by: String,
     #[serde(default = "metres")]
@@ -81,7 +81,7 @@ pub(super) struct Open {
 impl Report {
     /// Adds a step.
     pub fn step(&mut self, step: &StepReport) {
-        // What is no number stays none, where a maximum would pass over it.
+        // A value that is no number stays none; a maximum would skip it.
         let first = self.open.steps == 0;
         let number = |so_far: Option<f32>, next: f32, join: fn(f32, f32) -> f32| {
             let joined = if first { next } else { join(so_far?, next) };

@@ -18,8 +18,7 @@ mod tests;
 mod usd;
 mod usd_text;
 
-pub(crate) use out::Out;
-pub use out::{OutSettings, Written};
+pub use out::{Out, OutSettings, Written};
 pub use read::{Cache, check_cache};
 pub(crate) use shape::Leaving;
 pub use shape::{Target, What};

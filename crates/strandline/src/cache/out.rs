@@ -1,4 +1,4 @@
-//! What a run writes as it goes.
+//! Writer of the frames of a run.
 
 use std::{
     path::{Path, PathBuf},
@@ -15,9 +15,9 @@ use super::{
     store::Store,
     usd::Usd,
 };
-use crate::{Error, Scene, session::moment::Moment, sim::StepReport};
+use crate::{Error, Scene, body::Pose, groom::Vec3Lanes, sim::StepReport};
 
-/// What is written and where.
+/// Frames, strands and file of a writer.
 #[derive(Clone, Debug)]
 pub struct OutSettings {
     /// The file: `.npz` is a moving cache, `.usda` text USD; a name with `%04d` in it a file for every frame.
@@ -32,10 +32,10 @@ pub struct OutSettings {
     pub target: Target,
 }
 
-/// What is there at the end.
+/// Summary of a finished file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
-    /// Where it lies: beside the name that was asked for when a run was stopped early and an earlier file is there.
+    /// Its path: beside the name that was asked for where a run was stopped early and an earlier file is there.
     pub place: PathBuf,
     /// Frames in it, strands of each and points of all of them.
     pub frames: usize,
@@ -51,7 +51,7 @@ pub struct Written {
     pub left_out: Vec<String>,
 }
 
-/// Hair on its way into a file.
+/// A file of moving hair that is being written.
 pub struct Out {
     shape: Shape,
     first: u32,
@@ -59,6 +59,10 @@ pub struct Out {
     writer: Writer,
     points: Vec<Vec3>,
     frames: usize,
+    /// Frames of the film so far, whether written or passed over.
+    offered: u32,
+    /// Time of the last of them \[s\].
+    last_time: f64,
     time: Duration,
 }
 
@@ -68,7 +72,7 @@ enum Writer {
     Files(Box<Files>),
 }
 
-/// What a format is, by the name of a file.
+/// A format, by the name of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
     Npz,
@@ -124,15 +128,51 @@ impl Out {
             Format::Usda => Writer::Usd(Usd::new(path, scene, &shape, settings.target)?.into()),
             Format::Sequence => Writer::Files(Files::new(path, &shape)?.into()),
         };
-        Ok(Self { shape, first, every, writer, points: Vec::new(), frames: 0, time: Duration::ZERO })
+        Ok(Self {
+            shape,
+            first,
+            every,
+            writer,
+            points: Vec::new(),
+            frames: 0,
+            offered: 0,
+            last_time: f64::NEG_INFINITY,
+            time: Duration::ZERO,
+        })
     }
 
-    /// Whether a frame is one of those that are written.
+    /// Frames of the film so far, whether written or passed over.
+    pub fn offered(&self) -> u32 {
+        self.offered
+    }
+
+    /// Refuses a frame more than the film has, and one at the time \[s\] of the last or before it.
+    pub(crate) fn check_next(&self, frames: u32, time: f64) -> Result<(), Error> {
+        let last = self.last_time;
+        let refused = if self.offered >= frames {
+            SettingError::new(
+                "film.frames",
+                frames,
+                "the number of all calls of `write`: a file has room for so many",
+            )
+        } else if !(last < time) {
+            SettingError::new(
+                "the time of a frame",
+                format!("{time} s"),
+                format!("more than {last} s, that of the last"),
+            )
+        } else {
+            return Ok(());
+        };
+        Err(refused.into())
+    }
+
+    /// True for frames that are written.
     pub(crate) fn takes(&self, frame: u32) -> bool {
         frame.checked_sub(self.first).is_some_and(|frame| frame.is_multiple_of(self.every))
     }
 
-    /// Whether the state of the simulation has to come with a frame.
+    /// True where the state of the simulation has to come with a frame.
     pub(crate) fn wants_state(&self, frame: u32) -> bool {
         match &self.writer {
             Writer::Store(store) => self.takes(frame) && store.wants_state(),
@@ -140,25 +180,27 @@ impl Out {
         }
     }
 
-    /// Adds a frame of the film, where it is one of those that are written: its points are on the host then.
+    /// Adds a frame of the film, where it is one of those that are written: guide points \[m\], world space, shape
+    /// `[block][point]` of lanes, and the pose of the head.
     pub(crate) fn add(
         &mut self,
         number: u32,
         time: f64,
-        moment: &Moment,
+        (positions, world_from_head): (&[Vec3Lanes], &Pose),
         steps: &[StepReport],
         state: Option<&Snapshot>,
     ) -> Result<(), Error> {
         if let Writer::Store(store) = &mut self.writer {
             store.step(steps);
         }
+        (self.offered, self.last_time) = (number + 1, time);
         if !self.takes(number) {
             return Ok(());
         }
         let watch = Stopwatch::start();
-        self.shape.place(moment.positions(), &moment.world_from_head, &mut self.points);
+        self.shape.place(positions, world_from_head, &mut self.points);
         let points = std::mem::take(&mut self.points);
-        let frame = Frame { number, time, points: &points, world_from_head: moment.world_from_head };
+        let frame = Frame { number, time, points: &points, world_from_head: *world_from_head };
         let added = self.write(&frame, state);
         self.points = points;
         self.time += watch.elapsed();
@@ -206,6 +248,7 @@ impl Out {
             let (number, time) = (self.first + index as u32 * self.every, cache.times()[index]);
             self.write(&Frame { number, time, points: &points, world_from_head }, None)?;
         }
+        (self.offered, self.last_time) = (state.frame + 1, state.time);
         if let Writer::Store(store) = &mut self.writer {
             store.inherit(steps, report);
             store.set_state(Some(state))?;

@@ -68,7 +68,7 @@ impl Cache {
         self.frames.times.len()
     }
 
-    /// Whether there is none.
+    /// True without frames.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -186,7 +186,7 @@ impl Cache {
         )))
     }
 
-    /// Where the run of guides of this shape stood; none in a cache without.
+    /// State of the run, for guides of this shape; none in a cache without it.
     pub(crate) fn snapshot(&mut self, strands: usize, points: usize) -> Result<Option<Snapshot>, Error> {
         let snapshot = self.frames.snapshot((block_count(strands) * LANES * points) as u64);
         snapshot.map_err(|message| Error::Cache { path: self.path.clone(), message })
@@ -198,10 +198,10 @@ impl Cache {
     }
 }
 
-/// Whether bytes are a moving cache of which every frame can be read.
+/// Checks that bytes are a moving cache of which every frame can be read.
 ///
 /// # Errors
-/// What they are instead.
+/// The reason why they are not.
 pub fn check_cache(bytes: &[u8]) -> Result<(), String> {
     let mut frames = Frames::new(Cursor::new(bytes))?;
     let mut points = Vec::new();
@@ -276,7 +276,7 @@ impl<R: Read + Seek> Frames<R> {
         }
     }
 
-    /// Where the run stood, of so many points with those that fill up the last block.
+    /// State of the run; the number of points includes those that fill up the last block.
     fn snapshot(&mut self, points: u64) -> Result<Option<Snapshot>, String> {
         let Some(mut clock) = self.npz.open("state_clock").map_err(text)? else { return Ok(None) };
         expect(&clock, "state_clock", Kind::F64, &[Some(3)])?;

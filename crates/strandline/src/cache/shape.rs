@@ -1,4 +1,4 @@
-//! What leaves: the strands that are written, and the attributes that they have. The one place to add an
+//! Strands that are written, and their attributes. The one place to add an
 //! attribute: fill it in [`Shape::new`]; the writers take all that is there.
 
 use glam::Vec3;
@@ -12,7 +12,7 @@ use crate::{
         DetailLevel, Look,
         cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
     },
-    tags::Tags,
+    strands::tags::Tags,
 };
 
 choices! {
@@ -39,14 +39,14 @@ choices! {
     default Any
 }
 
-/// What the strands of a file have beyond places; each where the groom has it.
+/// Attributes of the strands of a file; each where the groom has it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Attributes {
     /// Diameters \[m\], shape `[point]`.
     pub widths: Option<Vec<f32>>,
     /// Linear RGB, shape `[point]`.
     pub colors: Option<Vec<[f32; 3]>>,
-    /// Where each root lies on the scalp, 0 to 1, shape `[strand]`.
+    /// Coordinates of each root on the scalp, 0 to 1, shape `[strand]`.
     pub root_uvs: Option<Vec<[f32; 2]>>,
     /// The group of each strand, shape `[strand]`, and the groups' names.
     pub groups: Option<Vec<u16>>,
@@ -57,7 +57,7 @@ pub(crate) struct Attributes {
     pub binding: Option<Binding>,
 }
 
-/// How strands hang on guides: in a file of guides those that are not in it, in a file of all strands each of them.
+/// Binding of strands to guides: in a file of guides of those that are not in it, in a file of all strands of each.
 /// Guides are strands of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Binding {
@@ -80,13 +80,13 @@ pub(crate) struct Shape {
     source: Source,
 }
 
-/// Where points come from.
+/// Source of points.
 enum Source {
     Guides { points_per_strand: usize },
     Strands(Box<Drawn>),
 }
 
-/// What pictures grow strands from.
+/// Input from which pictures grow strands.
 struct Drawn {
     /// The strands that are drawn, at rest, and what carries them where guides do.
     drawn: Guides,

@@ -59,7 +59,7 @@ impl Store {
         Ok(Self { path: path.to_owned(), npz, meta, names, bytes: Vec::new() })
     }
 
-    /// Whether the state has to come with the next frame.
+    /// True where the state has to come with the next frame.
     pub fn wants_state(&self) -> bool {
         self.npz.wants_tail_after(1)
     }

@@ -1,4 +1,4 @@
-//! What the writers have that no groom of today shows, and how fast they are.
+//! Attributes that no groom of today has, and the speed of the writers.
 
 use std::time::Instant;
 
@@ -9,8 +9,7 @@ use super::{
 use crate::{
     Scene,
     groom::{Groom, Guides},
-    session::moment::Moment,
-    tags::Tags,
+    strands::tags::Tags,
 };
 
 /// No strand has a name, and all are simulated.
@@ -56,8 +55,7 @@ fn write(settings: &OutSettings, guides: &Guides, frames: u32) -> (u64, f64, f64
         for lanes in &mut positions {
             lanes.x.iter_mut().for_each(|x| *x += 1e-4 * (0.3 * frame as f32).sin());
         }
-        let moment = Moment::of(positions.clone());
-        out.add(frame, f64::from(frame) / 30.0, &moment, &[], Some(&state)).unwrap();
+        out.add(frame, f64::from(frame) / 30.0, (&positions, &Pose::IDENTITY), &[], Some(&state)).unwrap();
     }
     out.close(true, Some(&state)).unwrap();
     let bytes = u64::from(frames) * 12 * (guides.strand_count() * guides.points_per_strand()) as u64;

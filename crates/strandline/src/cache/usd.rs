@@ -31,7 +31,7 @@ pub(super) struct Usd {
     widest: f32,
     /// One frame, in pieces.
     texts: Vec<String>,
-    /// What is written behind the points: the box around them and the head, for each frame.
+    /// Text behind the points: the box around them and the head, for each frame.
     boxes: Vec<(u32, [Vec3; 2])>,
     heads: Vec<(u32, Pose)>,
 }
@@ -109,7 +109,7 @@ impl Usd {
         Ok(())
     }
 
-    /// What stands before the curves, and where in it the last time code is to stand.
+    /// Text before the curves, and the place in it of the last time code.
     fn head(&self, scene: &Scene, target: Target) -> (String, usize) {
         let mut text = "#usda 1.0\n(\n    defaultPrim = \"hair\"\n".to_owned();
         let about = format!("hair as it moved, written by strandline {}", env!("CARGO_PKG_VERSION"));
@@ -240,7 +240,7 @@ impl Usd {
     }
 }
 
-/// What Unreal needs too: which strands are guides, numbers, and three guides and weights of each.
+/// Attributes for Unreal: guides, numbers, and three guides and weights of each strand.
 fn of_unreal(shape: &Shape) -> Vec<Primvar> {
     let Attributes { guide_flags, binding, .. } = &shape.attributes;
     let mut all = Vec::new();

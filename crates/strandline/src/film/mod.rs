@@ -47,14 +47,14 @@ enum Moving {
     Animation(Animation),
 }
 
-/// What a finished film left behind.
+/// Files and notes of a finished film.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FilmFiles {
     /// Every file, in the order of writing.
     pub files: Vec<PathBuf>,
-    /// What could not be made and why, and what else lies in the folder; human-readable.
+    /// Failures with their reasons, and other files in the folder; human-readable.
     pub notes: Vec<String>,
-    /// Whether ffmpeg began a video and there is none.
+    /// True where ffmpeg began a video and made none.
     pub video_failed: bool,
 }
 
@@ -94,7 +94,7 @@ impl Film {
         self.files.len()
     }
 
-    /// Whether there is no picture yet.
+    /// True before the first picture.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }
@@ -308,7 +308,7 @@ mod tests {
         let left = broken.stop_early().unwrap();
         assert_eq!((fs::read(&moving).unwrap(), left.files.len()), (former, 2));
         assert!(left.notes.iter().any(|note| note.contains("of an earlier film there are still 4 files")));
-        // Where there is none, the frames so far make one.
+        // Without one the frames so far make one.
         fs::remove_file(&moving).unwrap();
         let mut broken = Film::new(folder.path(), 4, 30.0).unwrap();
         (0..2).for_each(|_| broken.add(&filled(32, 8)).unwrap());

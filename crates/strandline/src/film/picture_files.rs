@@ -36,7 +36,7 @@ impl PictureFiles {
         self.files.len()
     }
 
-    /// Whether there is no file yet.
+    /// True before the first file.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }

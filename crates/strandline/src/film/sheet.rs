@@ -16,7 +16,7 @@ const COLUMNS: u32 = 4;
 /// Width of a picture on the sheet \[pixel\].
 pub(super) const WIDTH: u32 = 320;
 
-/// Whether picture `index` of `count` is one of those spread evenly over the sheet.
+/// True for pictures spread evenly over the sheet: picture `index` of `count`.
 pub(super) fn is_shown(index: u32, count: u32) -> bool {
     let shown = count.min(PICTURES);
     (0..shown).any(|slot| slot * count / shown == index)

@@ -13,7 +13,7 @@ use strandline_base::WholeFile;
 
 use crate::render::Picture;
 
-/// How long ffmpeg may show no sign of progress before it counts as stuck.
+/// Time without a sign of progress after which ffmpeg counts as stuck.
 pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 /// Between two looks at whether it ended.
 const LOOK: Duration = Duration::from_millis(10);
@@ -136,7 +136,7 @@ impl Video {
         }
     }
 
-    /// What ffmpeg said, in one line.
+    /// Output of ffmpeg, in one line.
     fn last_words(&self) -> String {
         for _ in 0..20 {
             if self.hearing.is_finished() {
@@ -222,7 +222,7 @@ mod tests {
 
     use super::*;
 
-    /// What becomes of a video of three pictures with a program in the place of ffmpeg.
+    /// Makes a video of three pictures with a program in the place of ffmpeg.
     fn film(script: &str) -> (std::result::Result<(), String>, Vec<String>, Duration) {
         let folder = tempfile::tempdir().unwrap();
         let programs = tempfile::tempdir().unwrap();

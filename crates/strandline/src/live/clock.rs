@@ -15,7 +15,7 @@ pub struct LiveClock(Option<Arc<Mutex<Manual>>>);
 #[derive(Default)]
 struct Manual {
     now: Duration,
-    /// What a picture takes \[s\].
+    /// Time of a picture \[s\].
     picture_seconds: f64,
     /// Called when time moves on.
     wake: Option<Box<dyn Fn() + Send>>,

@@ -6,29 +6,25 @@ use std::path::{Path, PathBuf};
 use strandline_base::WholeFile;
 
 use crate::{
-    Error, Scene,
-    prepare::Prepared,
+    Error, Prepared, Scene, Sources,
+    session::worker::Worker,
     session::{Session, Simulation},
-    worker::Worker,
 };
 
 /// A scene that plays.
 pub(super) struct Loaded {
     pub session: Session<Worker<Simulation>>,
-    /// The scene as it was loaded, with what it left open.
-    pub scene: Box<Scene>,
-    /// What a person should read.
+    /// Notes for a person.
     pub notes: Vec<String>,
 }
 
 impl Loaded {
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
-        let mut prepared = Prepared::new(scene)?;
+    pub fn new(scene: &Scene, sources: &Sources) -> Result<Self, Error> {
+        let mut prepared = Prepared::from_sources(scene, sources)?;
         let mut notes = std::mem::take(&mut prepared.notes);
-        let scene = Box::new(prepared.scene.clone());
-        let mut session = Session::of_scene(&scene, prepared, scene.devices)?;
+        let mut session = Session::open(prepared, scene.devices)?;
         notes.extend(session.take_notes());
-        Ok(Self { session: session.beside()?, scene, notes })
+        Ok(Self { session: session.beside()?, notes })
     }
 
     /// Saves a scene that begins with the hair as it is, and with the motion at the time that it is at; all
@@ -36,13 +32,10 @@ impl Loaded {
     ///
     /// # Errors
     /// A file cannot be written; then what was there before stays, unless only the last renaming fails.
-    pub fn save(&self, mut scene: Scene, path: &Path) -> Result<(), Error> {
+    pub fn save(&mut self, mut scene: Scene, path: &Path) -> Result<(), Error> {
         let pose_path = pose_path(path);
-        let mut simulation = self.session.place.work();
-        let pose = simulation.hair_pose()?.write(&pose_path)?;
-        let step = f64::from(simulation.engine.model().settings().time_step);
-        drop(simulation);
-        scene.film.start = self.session.direction.time_shown(step);
+        let pose = self.session.with(Simulation::hair_pose)?.write(&pose_path)?;
+        scene.film.start = self.session.time_shown();
         scene.groom.pose = pose_path.file_name().map(PathBuf::from);
         let text = scene.to_toml();
         let scene = WholeFile::write(path, |file| file.write_all(text.as_bytes()));
@@ -53,7 +46,7 @@ impl Loaded {
     }
 }
 
-/// Where the pose of a scene's hair is saved: beside it, and not over a file that is not its own.
+/// Path of the pose of a scene's hair: beside the scene, and not over a file that is not its own.
 fn pose_path(scene: &Path) -> PathBuf {
     let folder = scene.parent().unwrap_or(Path::new(""));
     let before = Scene::load(scene).ok().and_then(|before| before.groom.pose).map(|pose| folder.join(pose));

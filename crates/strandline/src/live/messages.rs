@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 
 use crate::{
-    Scene,
+    Scene, Sources,
     body::Aabb,
     render::{Camera, FrameReport, Picture},
     session::Change,
@@ -15,6 +15,8 @@ use crate::{
 pub enum Command {
     /// Loads a scene; what plays continues until it is there, and stays when it cannot be loaded.
     Load(Box<Scene>),
+    /// Loads a scene with grooms, meshes and maps from memory, likewise.
+    LoadSources(Box<Scene>, Box<Sources>),
     /// Plays, or stands still.
     Play(bool),
     /// One frame, while it stands still.
@@ -25,7 +27,7 @@ pub enum Command {
     /// hair as it is then, which is what is seen where nothing moves; `film.start` is the time. Hair in a
     /// hand is let go in it. The number is that of the load that the scene goes back to.
     Save(Box<Scene>, u64, PathBuf),
-    /// Whether pictures are simpler while the hair moves or is changed and a full one takes longer than
+    /// Draws simpler pictures while the hair moves or is changed and a full one takes longer than
     /// 80 ms; off to begin with. What stands still is drawn in full after a moment.
     Adapt(bool),
     /// Writes every frame from the next one on, in full, to a folder: as pictures and a video. Frames are
@@ -41,7 +43,7 @@ impl From<Change> for Command {
     }
 }
 
-/// What a [`Live`](crate::Live) shows.
+/// A picture of a [`Live`](crate::Live).
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
     /// The picture.
@@ -53,21 +55,21 @@ pub struct Shown {
     /// Those of them that came before the step it shows: a picture behind, since the next step is made while
     /// one is drawn.
     pub simulated_after_command: u64,
-    /// Whether it is simpler than it was asked to be.
+    /// True where it is simpler than it was asked to be.
     pub draft: bool,
     /// Frames that the video has so far, while one is recorded.
     pub recorded: Option<u32>,
-    /// What the picture cost.
+    /// Cost of the picture.
     pub drawing: FrameReport,
     /// The last step that was not reported before.
     pub step: Option<StepReport>,
     /// Strands in the hand.
     pub grabbed: usize,
-    /// Where the hair is simulated and drawn.
+    /// Devices of simulation and pictures.
     pub places: [String; 2],
 }
 
-/// What happened to a [`Live`](crate::Live), in order.
+/// An event of a [`Live`](crate::Live).
 #[derive(Clone, Debug, PartialEq)]
 pub enum LiveEvent {
     /// The scene of the command with this number is there: with what it left open chosen to fit its groom, its

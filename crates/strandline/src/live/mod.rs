@@ -1,7 +1,7 @@
 //! Hair that plays on threads of its own, for windows: nothing here makes its caller wait.
 
 mod clock;
-mod desk;
+mod drawing_thread;
 mod loaded;
 mod messages;
 mod playing;
@@ -15,7 +15,7 @@ use std::thread::JoinHandle;
 pub use clock::LiveClock;
 pub use messages::{Command, LiveEvent, Shown};
 
-use desk::{Desk, Message};
+use drawing_thread::{DrawingThread, Message};
 use messages::Out;
 
 use crate::{Error, Scene};
@@ -48,10 +48,10 @@ impl Live {
     ) -> Result<Self, Error> {
         let (commands, messages) = channel();
         let out = Arc::new(Mutex::new(Out::default()));
-        let desk = Desk::new(messages, commands.clone(), out.clone(), Box::new(wake), clock);
+        let drawing = DrawingThread::new(messages, commands.clone(), out.clone(), Box::new(wake), clock);
         let thread = std::thread::Builder::new()
             .name("drawing".to_owned())
-            .spawn(move || desk.run())
+            .spawn(move || drawing.run())
             .map_err(Error::Thread)?;
         let live = Self { commands: Some(commands), sent: AtomicU64::new(0), out, thread: Some(thread) };
         live.send(Command::Load(Box::new(scene)));
@@ -82,7 +82,7 @@ impl Live {
         self.out().shown.take()
     }
 
-    /// What happened since the last call, in order.
+    /// Events since the last call, in order.
     pub fn take_events(&self) -> Vec<LiveEvent> {
         self.out().events.drain(..).collect()
     }

@@ -1,4 +1,4 @@
-//! What the drawing thread remembers from one message to the next.
+//! State of the drawing thread between two messages.
 
 use std::sync::mpsc::Sender;
 use std::thread::JoinHandle;
@@ -19,13 +19,13 @@ const SLOW: f64 = 0.08;
 const SLOW_DRAFT: f64 = 0.12;
 const QUICK_DRAFT: f64 = 0.06;
 const ALIKE: i32 = 3;
-/// How long \[s\] nothing may happen before what stands still is drawn in full.
+/// Time \[s\] without events after which hair that stands still is drawn in full.
 const MOMENT: Duration = Duration::from_millis(200);
 
 /// Which simpler pictures are drawn.
 pub(super) struct Drafts {
     pub now: Draft,
-    /// How many of the last took too long, or, below 0, were quick.
+    /// Number of the last that took too long, or, below 0, were quick.
     alike: i32,
 }
 
@@ -48,20 +48,20 @@ impl Drafts {
     }
 }
 
-/// What the drawing thread remembers.
+/// State of the drawing thread.
 pub(super) struct Playing {
     pub scene: Option<Box<Loaded>>,
     pub playing: bool,
     /// Frames to be made while it stands still.
     pub steps: u32,
-    /// Whether the picture is older than what it shows.
+    /// True where the picture is older than its hair.
     pub stale: bool,
-    /// Whether pictures may be simpler, and whether full ones take too long.
+    /// True where pictures may be simpler, and where full ones take too long.
     pub adapts: bool,
     pub slow: bool,
-    /// Whether that was seen of the scene and the look as they are.
+    /// True where that was measured with the scene and the look as they are.
     pub tried: bool,
-    /// Whether the last picture was simpler, and which simpler ones are drawn.
+    /// True where the last picture was simpler; the simpler ones that are drawn.
     pub draft: bool,
     pub drafts: Drafts,
     pub frame: u64,
@@ -78,7 +78,7 @@ pub(super) struct Playing {
     pub film: u64,
     /// Films that are being finished.
     pub finishing: Vec<JoinHandle<()>>,
-    /// Who waits until nothing is left to do.
+    /// Callers that wait until nothing is left to do.
     pub idlers: Vec<Sender<()>>,
 }
 
@@ -121,12 +121,12 @@ impl Playing {
         }
     }
 
-    /// Whether nothing is left to do but what only time brings.
+    /// True where only time brings further work.
     pub fn is_idle(&self) -> bool {
         self.loading == 0 && !self.patience().is_zero()
     }
 
-    /// How long to wait for a message before the next frame.
+    /// Time to wait for a message before the next frame.
     pub fn patience(&self) -> Duration {
         // Every message wakes it.
         const LONG: Duration = Duration::from_secs(3600);
@@ -138,7 +138,7 @@ impl Playing {
     }
 }
 
-/// Whether pictures may take another time after a change.
+/// True where pictures may take another time after a change.
 pub(super) fn changes_cost(change: &Change) -> bool {
     use Change::{LevelOfDetail, Lights, Look, Picture};
     matches!(change, Look(_) | LevelOfDetail(_) | Lights(_) | Picture(_))

@@ -49,7 +49,7 @@ impl Recorder {
 fn write(mut film: Film, pictures: &Receiver<Picture>) -> Result<FilmFiles, Error> {
     for picture in pictures {
         if let Err(error) = film.add(&picture) {
-            // What is there already becomes a film all the same; the error is what is reported.
+            // The frames so far become a film all the same; the error is reported.
             let _ = film.finish();
             return Err(error);
         }

@@ -1,10 +1,11 @@
-//! Settings that a scene leaves open, chosen to fit a groom from a file: points of strands, drawn strands about
-//! each, their widths and colours.
+//! Third stage of loading: settings that a scene leaves open, chosen to fit a groom: points of strands, drawn strands
+//! about each, their widths and colours.
 
 use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use super::loading::Loading;
 use crate::{
     Scene,
     body::Mesh,
@@ -44,10 +45,17 @@ const CLOSER: f32 = 0.7;
 /// Diameter of a hair over the distance of hairs on a head of a hundred thousand.
 const DENSITY: f32 = 0.095;
 
-/// Fills in what a scene leaves open, and says what was chosen.
+/// Chooses settings that the scene leaves open, to fit a groom from a source.
+pub(super) fn fit(loading: &mut Loading) {
+    if let Loading { scene, groom: Some(groom), mesh, notes, .. } = loading {
+        notes.extend(choose(scene, groom, mesh.as_ref()));
+    }
+}
+
+/// Chooses settings that a scene leaves open. Returns a note of the choices.
 ///
 /// A setting is open where no file gives it and it still has its default: that of the demo or of a groom file.
-pub(super) fn fit(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<String> {
+fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<String> {
     let (given, default) = (scene.given, Scene::default());
     let strands = groom.strand_count();
     let mut chosen = Vec::new();
@@ -160,7 +168,7 @@ fn points(groom: &Groom) -> u32 {
     POINTS.into_iter().find(|count| keeps(*count)).unwrap_or(most)
 }
 
-/// How far strands of so many points stray from themselves over what is allowed, of 95 in 100.
+/// Deviation of strands of so many points from themselves over the tolerance, for 95 in 100.
 fn astray(groom: &Groom, count: usize) -> f32 {
     let mut found: Vec<f32> = some(groom)
         .map(|strand| {
@@ -232,7 +240,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.groom.file = Some("a.hair".into());
         let mut given = scene.clone();
-        let note = fit(&mut scene, &groom, None).unwrap();
+        let note = choose(&mut scene, &groom, None).unwrap();
         let [brows] = &scene.look.group[..] else { panic!("{:?}", scene.look.group) };
         let clump = brows.clump.unwrap();
         assert!(
@@ -241,7 +249,7 @@ mod tests {
         );
         let own = GroupLook { name: "brows".to_owned(), clump: Some(0.5), ..GroupLook::default() };
         given.look.group = vec![own.clone()];
-        fit(&mut given, &groom, None);
+        choose(&mut given, &groom, None);
         assert_eq!(given.look.group, [own]);
     }
 
@@ -252,10 +260,10 @@ mod tests {
         let mut own = scene.clone();
         own.given = Given { follow_strands: true, ..Given::default() };
         own.look.clump.tip_radius = 0.002;
-        let note = fit(&mut scene, &groom(0.0), None).unwrap();
+        let note = choose(&mut scene, &groom(0.0), None).unwrap();
         assert_eq!(scene.look.follow_strands, 16, "40,000 of 2,500");
         assert!(note.contains("look.clump.tip_radius") && !note.contains("simulation"), "{note}");
-        let note = fit(&mut own, &groom(0.0), None).unwrap();
+        let note = choose(&mut own, &groom(0.0), None).unwrap();
         assert_eq!((own.look.follow_strands, own.look.clump.tip_radius), (16, 0.002));
         assert!(!note.contains("follow_strands") && !note.contains("tip_radius"), "{note}");
     }

@@ -2,14 +2,14 @@
 
 use glam::{Quat, Vec3};
 
+use super::guess;
 use super::head;
-use super::placing::{self, Placing, Placings};
+use super::placing::{Placing, Placings};
 use super::sample::{self, HEIGHTS};
 use super::skull::Skull;
-use super::wrap;
 use crate::{
     Scene,
-    body::{Mesh, Shape},
+    body::Mesh,
     groom::{
         Groom,
         format::{Scale, Up},
@@ -38,8 +38,8 @@ pub(super) fn placings(scene: &Scene, groom: &Groom, mesh: &Mesh, as_one: &Placi
     if apart <= APART && WIDTHS.contains(&(scalp.size.x / skull.size.x)) {
         return None;
     }
-    let alone = placing::guess(scene, &[groom], None).groom;
-    let body = placing::guess(scene, &[], Some(mesh)).body;
+    let alone = guess::placings(scene, &[groom], None).groom;
+    let body = guess::placings(scene, &[], Some(mesh)).body;
     let (roots, vertices) = (placed(groom.roots(), &alone), placed(mesh.positions.iter().copied(), &body));
     let tips = (0..groom.strand_count()).map(|strand| groom.strand(strand)[groom.strand(strand).len() - 1]);
     let (turn_hair, turn_body) = (front_of_hair(&roots, &placed(tips, &alone))?, head::front(&vertices)?);
@@ -48,7 +48,7 @@ pub(super) fn placings(scene: &Scene, groom: &Groom, mesh: &Mesh, as_one: &Placi
     Some(Placings { groom, body, note: None })
 }
 
-/// Whether a scene says nothing of where groom and body are.
+/// True where a scene leaves the placement of groom and body open.
 fn is_open(scene: &Scene) -> bool {
     let (groom, body) = (&scene.groom, &scene.body);
     let still = [groom.rotation, groom.translation, body.rotation, body.translation];
@@ -78,7 +78,7 @@ fn front_of_hair(roots: &[Vec3], tips: &[Vec3]) -> Option<Quat> {
 }
 
 /// Fits hair that is placed by [`placings`] to the head of a mesh, head space: crown on crown and back on back.
-/// What is to be said of it.
+/// Returns a note.
 pub(super) fn fit(groom: &mut Groom, mesh: &Mesh) -> Option<String> {
     let roots: Vec<Vec3> = groom.roots().collect();
     let (from, to) = (Skull::of(&roots)?, Skull::of(&mesh.positions)?);
@@ -95,13 +95,6 @@ pub(super) fn fit(groom: &mut Groom, mesh: &Mesh) -> Option<String> {
         100.0 * scale.x,
         100.0 * scale.z
     ))
-}
-
-/// Leads the roots of fitted hair to the surface.
-pub(super) fn lead(groom: &mut Groom, shape: Option<&Shape>) {
-    if let Some(shape) = shape {
-        wrap::lead(groom, shape);
-    }
 }
 
 #[cfg(test)]

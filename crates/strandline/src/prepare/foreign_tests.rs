@@ -4,6 +4,7 @@ use strandline_base::math;
 
 use super::*;
 use crate::groom::{Style, StyleSettings};
+use crate::prepare::placing::place_mesh;
 
 /// The built-in bust and a bob that grew on it, both elsewhere, in other units, turned by some angles.
 fn pair(groom_scale: f32, groom_turn: f32, body_turn: f32) -> (Groom, Mesh) {
@@ -12,7 +13,7 @@ fn pair(groom_scale: f32, groom_turn: f32, body_turn: f32) -> (Groom, Mesh) {
     groom.transform(groom_scale, math::rotation(Vec3::Y, groom_turn), Vec3::new(0.0, 1.5, 0.3) * groom_scale);
     let mut mesh = crate::body::Mannequin::new().mesh();
     let turn = math::rotation(Vec3::Y, body_turn);
-    placing::place_mesh(&mut mesh, Placing { scale: 1.0, turn }, Vec3::ZERO, Vec3::Y * -0.4);
+    place_mesh(&mut mesh, Placing { scale: 1.0, turn }, Vec3::ZERO, Vec3::Y * -0.4);
     (groom, mesh)
 }
 
@@ -26,9 +27,9 @@ fn scene() -> Scene {
 fn hair_of_another_head_is_fitted_to_this_one() {
     for (unit, groom_turn, body_turn) in [(1.0, 0.0, 0.0), (100.0, PI, 0.0), (1.2, 0.0, PI), (0.8, PI, PI)] {
         let (mut groom, mut mesh) = pair(unit, groom_turn, body_turn);
-        let as_one = placing::guess(&scene(), &[&groom], Some(&mesh));
+        let as_one = guess::placings(&scene(), &[&groom], Some(&mesh));
         let found = placings(&scene(), &groom, &mesh, &as_one).expect("they do not belong together");
-        placing::place_mesh(&mut mesh, found.body, Vec3::ZERO, Vec3::ZERO);
+        place_mesh(&mut mesh, found.body, Vec3::ZERO, Vec3::ZERO);
         groom.transform(found.groom.scale, found.groom.turn, Vec3::ZERO);
         let note = fit(&mut groom, &mesh).unwrap();
         assert!(note.contains("another head"), "{note}");
@@ -47,12 +48,12 @@ fn hair_of_another_head_is_fitted_to_this_one() {
 #[test]
 fn hair_of_this_head_stays_and_so_does_what_a_scene_places() {
     let (mut groom, mesh) = pair(1.0, 0.0, 0.0);
-    let as_one = placing::guess(&scene(), &[&groom], Some(&mesh));
+    let as_one = guess::placings(&scene(), &[&groom], Some(&mesh));
     let mut placed = scene();
     placed.groom.translation = Vec3::X;
     assert!(placings(&placed, &groom, &mesh, &as_one).is_none());
     groom.transform(1.0, Quat::IDENTITY, Vec3::new(0.0, -1.9, -0.3));
-    let as_one = placing::guess(&scene(), &[&groom], Some(&mesh));
+    let as_one = guess::placings(&scene(), &[&groom], Some(&mesh));
     assert!(placings(&scene(), &groom, &mesh, &as_one).is_none());
     // A fur is not the hair of a head.
     let mut fur = Groom::empty(8e-5);
@@ -60,6 +61,6 @@ fn hair_of_this_head_stays_and_so_does_what_a_scene_places() {
         let root = Vec3::new((0.37 * strand as f32).sin() * 0.2, 3.0, strand as f32 * 0.006);
         fur.push([root, root + Vec3::Y * 0.02]);
     }
-    let as_one = placing::guess(&scene(), &[&fur], Some(&mesh));
+    let as_one = guess::placings(&scene(), &[&fur], Some(&mesh));
     assert!(placings(&scene(), &fur, &mesh, &as_one).is_none());
 }

@@ -15,9 +15,9 @@ const FACE: [f32; 2] = [1.0, 1.4];
 /// Vertices whose mirrored places are looked for, and among how many.
 const MIRRORED: usize = 300;
 const AMONG: usize = 20_000;
-/// How far they lie from a vertex where an axis leads from left to right, over how far along the others.
+/// Distance of mirrored places from vertices along the axis from left to right, over that along the others.
 const ALIKE: f32 = 0.5;
-/// How much longer than high a body is that lies: one whose file has z up.
+/// Length over height of a body that lies: one whose file has z up.
 const LYING: f32 = 1.15;
 
 /// The axis along which both halves of a body are alike; none where no one is surely it.
@@ -76,7 +76,7 @@ pub(super) fn front(vertices: &[Vec3]) -> Option<Quat> {
     Some(turned_to_z(along_z, ahead))
 }
 
-/// Whether a head looks along z, or against it, by its shape: it is longer from front to back than from ear to ear.
+/// True where a head looks along z, or against it: heads are longer from front to back than from ear to ear.
 pub(super) fn is_long(skull: &Skull) -> bool {
     skull.size.y >= skull.size.x
 }

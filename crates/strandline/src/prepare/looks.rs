@@ -1,14 +1,13 @@
 //! Looks of groups and values of maps, as colours and widths of strands.
 
 use std::collections::BTreeMap;
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use image::{DynamicImage, ImageFormat, ImageReader};
-use strandline_base::{SettingError, math, memory, read_plain};
+use strandline_base::{SettingError, math};
 
+use super::{Sources, loading::Loading, map::Map};
 use crate::{
     Error, Scene,
     body::Random,
@@ -22,15 +21,22 @@ const MAX_PIXELS: u64 = 4 * (Scene::MAX_MAP_SIDE as u64).pow(2);
 const MOST: f32 = 0.99;
 
 /// Gives strands the colours and widths that the scene's maps and groups have for them.
+pub(super) fn colors(loading: &mut Loading) -> Result<(), Error> {
+    let Loading { scene, sources, groom, .. } = loading;
+    groom.as_mut().map_or(Ok(()), |groom| dress(scene, sources, groom))
+}
+
+/// Gives strands the colours and widths that the scene's maps and groups have for them.
 ///
 /// # Errors
 /// A group that the groom has not; a map that cannot be read, or a groom without places of roots for it.
-pub(super) fn dress(scene: &Scene, groom: &mut Groom) -> Result<(), Error> {
+fn dress(scene: &Scene, sources: &Sources, groom: &mut Groom) -> Result<(), Error> {
     let look = &scene.look;
     let groups = groups(look, groom)?;
     let mut maps = Maps::default();
     let mut both = |color: &Option<PathBuf>, width: &Option<PathBuf>| {
-        Ok::<_, Error>([maps.load(scene, color.as_deref())?, maps.load(scene, width.as_deref())?])
+        let mut load = |file: &Option<PathBuf>| maps.load(scene, sources, file.as_deref());
+        Ok::<_, Error>([load(color)?, load(width)?])
     };
     let of_all = both(&look.color_map, &look.width_map)?;
     let of_groups = look.group.iter().map(|group| both(&group.color_map, &group.width_map));
@@ -58,7 +64,7 @@ pub(super) fn dress(scene: &Scene, groom: &mut Groom) -> Result<(), Error> {
     if has(0)
         || look.group.iter().zip(&pigments).any(|(group, own)| group.root_color.is_some() || own.is_some())
     {
-        groom.colors = Some(colors(look, groom, dressed));
+        groom.colors = Some(strand_colors(look, groom, dressed));
     }
     if has(1) || look.group.iter().any(|group| group.width_scale != 1.0) {
         groom.widths = widths(groom, dressed);
@@ -75,7 +81,7 @@ pub(super) fn spreads(look: &Look, groom: &Groom) -> Result<Option<Vec<f32>>, Er
     Ok(Some(groups(look, groom)?.into_iter().map(of).collect()))
 }
 
-/// What one strand has of its own.
+/// Look of one strand.
 struct Dressed<'a> {
     look: Option<&'a GroupLook>,
     /// The look of all with its group's own pigment.
@@ -84,7 +90,7 @@ struct Dressed<'a> {
     width: Option<f32>,
 }
 
-fn colors<'a>(look: &Look, groom: &Groom, dressed: impl Fn(usize) -> Dressed<'a>) -> Vec<[f32; 3]> {
+fn strand_colors<'a>(look: &Look, groom: &Groom, dressed: impl Fn(usize) -> Dressed<'a>) -> Vec<[f32; 3]> {
     let mut colors = groom.colors.clone().unwrap_or_else(|| gradient(look, groom));
     for strand in 0..groom.strand_count() {
         let own = dressed(strand);
@@ -206,102 +212,26 @@ struct Maps {
 }
 
 impl Maps {
-    fn load(&mut self, scene: &Scene, file: Option<&Path>) -> Result<Option<Arc<Map>>, Error> {
-        let Some(path) = file.map(|file| scene.path(file)) else { return Ok(None) };
-        if let Some(map) = self.read.get(&path) {
+    fn load(
+        &mut self,
+        scene: &Scene,
+        sources: &Sources,
+        file: Option<&Path>,
+    ) -> Result<Option<Arc<Map>>, Error> {
+        let Some(name) = file else { return Ok(None) };
+        if let Some(map) = self.read.get(name) {
             return Ok(Some(map.clone()));
         }
-        let map = Arc::new(Map::load(&path)?);
-        self.pixels += u64::from(map.picture.width()) * u64::from(map.picture.height());
+        let map = sources.map(scene, name)?;
+        self.pixels += map.pixel_count();
         if self.pixels > MAX_PIXELS {
             let message =
                 format!("with it the maps have {} pixels, expected {MAX_PIXELS} in all", self.pixels);
-            return Err(Error::Map { path, message });
+            return Err(Error::map(&scene.path(name), message));
         }
-        self.read.insert(path, map.clone());
+        self.read.insert(name.to_owned(), map.clone());
         Ok(Some(map))
     }
-}
-
-/// The linear colour and the share of white that a map over the scalp, the bytes of its file, has at a place.
-///
-/// # Errors
-/// The bytes are no map.
-#[doc(hidden)]
-pub fn read_map(bytes: &[u8], uv: Vec2) -> Result<(Vec3, f32), String> {
-    let map = Map::parse(bytes.to_vec())?;
-    Ok((map.color(uv), map.share(uv)))
-}
-
-/// A picture over the scalp.
-struct Map {
-    picture: DynamicImage,
-}
-
-impl Map {
-    fn load(path: &Path) -> Result<Self, Error> {
-        let refuse = |message: String| Error::Map { path: path.to_owned(), message };
-        let bytes = read_plain(path, Scene::MAX_MAP_BYTES).map_err(|error| refuse(error.to_string()))?;
-        Self::parse(bytes).map_err(refuse)
-    }
-
-    fn parse(bytes: Vec<u8>) -> Result<Self, String> {
-        let most = memory::most_unpacked(bytes.len() as u64);
-        let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
-        let (mut limits, side) = (image::Limits::default(), Scene::MAX_MAP_SIDE);
-        (limits.max_image_width, limits.max_image_height) = (Some(side), Some(side));
-        limits.max_alloc = Some(most);
-        reader.limits(limits);
-        let expected = format!(
-            "expected a .png of at most {side} x {side} pixels that unpack to {} MiB at most",
-            most >> 20
-        );
-        let picture = reader.decode().map_err(|error| format!("{error}, {expected}"))?;
-        Ok(Self {
-            picture: if picture.color().has_color() {
-                picture.into_rgb8().into()
-            } else {
-                picture.into_luma16().into()
-            },
-        })
-    }
-
-    /// The colour at a place, linear RGB.
-    fn color(&self, uv: Vec2) -> Vec3 {
-        self.at(uv, linear)
-    }
-
-    /// The share of white at a place.
-    fn share(&self, uv: Vec2) -> f32 {
-        self.at(uv, |part| part).element_sum() / 3.0
-    }
-
-    /// What lies between the four pixels about a place; beyond the borders they repeat.
-    fn at(&self, uv: Vec2, part: impl Fn(f32) -> f32) -> Vec3 {
-        let size = Vec2::new(self.picture.width() as f32, self.picture.height() as f32);
-        // The first row of a picture is its upper border.
-        let at = (Vec2::new(uv.x, 1.0 - uv.y) * size - 0.5).clamp(Vec2::ZERO, size - 1.0);
-        let low = at.floor();
-        let share = at - low;
-        let pixel = |x: f32, y: f32| {
-            let [x, y] = [x.min(size.x - 1.0) as u32, y.min(size.y - 1.0) as u32];
-            let parts = match &self.picture {
-                DynamicImage::ImageRgb8(picture) => {
-                    picture.get_pixel(x, y).0.map(|part| f32::from(part) / 255.0)
-                }
-                DynamicImage::ImageLuma16(picture) => [f32::from(picture.get_pixel(x, y).0[0]) / 65_535.0; 3],
-                _ => [0.0; 3],
-            };
-            Vec3::from(parts.map(&part))
-        };
-        let row = |y: f32| pixel(low.x, y).lerp(pixel(low.x + 1.0, y), share.x);
-        row(low.y).lerp(row(low.y + 1.0), share.y)
-    }
-}
-
-/// A part of a colour of the screen \[IEC 61966-2-1\] as light.
-fn linear(part: f32) -> f32 {
-    if part <= 0.040_45 { part / 12.92 } else { math::powf((part + 0.055) / 1.055, 2.4) }
 }
 
 #[cfg(test)]

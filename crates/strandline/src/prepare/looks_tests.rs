@@ -27,7 +27,7 @@ fn groups_have_colours_and_widths_of_their_own() {
         GroupLook { root_color: Some(Vec3::X), tip_color: Some(Vec3::Y), ..group("5") },
         GroupLook { width_scale: 2.0, ..group("hair") },
     ];
-    dress(&scene, &mut groom).unwrap();
+    dress(&scene, &Sources::default(), &mut groom).unwrap();
     let colors = groom.colors.as_ref().unwrap();
     let melanin = scene.look.fibre.chiang;
     assert_eq!([colors[0], colors[2]], melanin.reflectances(1.0).map(|color| color.to_array()), "the look's");
@@ -49,7 +49,7 @@ fn groups_have_pigments_of_their_own() {
         GroupLook { eumelanin: Some(8.0), tip_pigment: Some(0.5), ..group("5") },
         GroupLook { grey: Some(1.0), ..group("hair") },
     ];
-    dress(&scene, &mut groom).unwrap();
+    dress(&scene, &Sources::default(), &mut groom).unwrap();
     let colors = groom.colors.as_ref().unwrap();
     let black = Chiang { eumelanin: 8.0, tip_pigment: 0.5, ..scene.look.fibre.chiang };
     assert_eq!([colors[6], colors[8]], black.reflectances(1.0).map(|color| color.to_array()));
@@ -57,7 +57,7 @@ fn groups_have_pigments_of_their_own() {
     assert_eq!([colors[0], colors[2]], white);
     // A colour wins.
     scene.look.group[0].root_color = Some(Vec3::X);
-    dress(&scene, &mut groom).unwrap();
+    dress(&scene, &Sources::default(), &mut groom).unwrap();
     assert_eq!(groom.colors.unwrap()[6], [0.99, 0.0, 0.0]);
 }
 
@@ -69,7 +69,7 @@ fn white_strands_stay_white_beside_a_group_with_a_colour() {
     groom.groups = Some((0..200).map(|strand| u32::from(strand == 0)).collect());
     (scene.look.grey, scene.look.variation) = (0.5, 0.0);
     scene.look.group = vec![GroupLook { root_color: Some(Vec3::X), ..group("1") }];
-    dress(&scene, &mut groom).unwrap();
+    dress(&scene, &Sources::default(), &mut groom).unwrap();
     let [root, _] = scene.look.fibre.chiang.reflectances(WHITE).map(|color| color.to_array());
     let white = groom.colors.unwrap().iter().step_by(2).filter(|color| **color == root).count();
     // Five standard deviations of 200 throws of a coin.
@@ -80,10 +80,12 @@ fn white_strands_stay_white_beside_a_group_with_a_colour() {
 fn a_group_that_is_not_there_is_refused_by_name() {
     let (mut scene, mut groom) = (Scene::default(), groom());
     scene.look.group = vec![group("hair"), group("beard")];
-    let error = dress(&scene, &mut groom).unwrap_err().to_string();
+    let error = dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string();
     assert!(error.contains("look.group[1].name") && error.contains("`hair`, 5"), "{error}");
     groom.groups = None;
-    assert!(dress(&scene, &mut groom).unwrap_err().to_string().contains("this one has none"));
+    assert!(
+        dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string().contains("this one has none")
+    );
 }
 
 #[test]
@@ -96,14 +98,21 @@ fn maps_are_read_over_the_scalp() {
     image::GrayImage::from_raw(2, 1, vec![51, 255]).unwrap().save(&shares).unwrap();
     let (mut scene, mut groom) = (Scene::default(), groom());
     (scene.look.color_map, scene.look.width_map) = (Some(colors.clone()), Some(shares));
-    dress(&scene, &mut groom).unwrap();
+    dress(&scene, &Sources::default(), &mut groom).unwrap();
     let at = |strand: usize| groom.colors.as_ref().unwrap()[3 * strand];
     assert_eq!([at(0), at(1), at(2), at(3)], [[0.0, 0.0, 1.0], [1.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     assert_eq!(groom.widths, Widths::PerStrand(vec![2e-5, 1e-4, 2e-5, 1e-4]));
     let middle = Map::load(&colors).unwrap().color(Vec2::splat(0.5));
     assert!((middle - Vec3::splat(0.5)).abs().max_element() < 1e-6, "{middle}");
     groom.root_uvs = None;
-    assert!(dress(&scene, &mut groom).unwrap_err().to_string().contains("root coordinates"));
+    assert!(
+        dress(&scene, &Sources::default(), &mut groom).unwrap_err().to_string().contains("root coordinates")
+    );
     std::fs::write(&colors, b"GIF89a").unwrap();
-    assert!(dress(&scene, &mut self::groom()).unwrap_err().to_string().contains("expected a .png"));
+    assert!(
+        dress(&scene, &Sources::default(), &mut self::groom())
+            .unwrap_err()
+            .to_string()
+            .contains("expected a .png")
+    );
 }

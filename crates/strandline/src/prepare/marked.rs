@@ -1,21 +1,21 @@
 //! A grown style on the scalp that a body's file marks: what grows over the built-in scalp is spread over that one.
 
 use std::f32::consts::{PI, TAU};
-use std::path::Path;
 
 use glam::Vec3;
 use strandline_base::{SettingError, math};
 
-use super::parts::part_placing;
-use super::placing::{self, Placing};
+use super::join::part_placing;
+use super::loading::Loading;
+use super::placing::place_mesh;
 use super::skull::Skull;
 use crate::{
-    Error, Scene,
+    Error,
     body::{Mannequin, Mesh},
     groom::Groom,
 };
 
-/// What a part is called that may be one.
+/// Name of a part that may be one.
 const LIKELY: &str = "scalp";
 /// Names that an error lists.
 const LISTED: usize = 12;
@@ -27,16 +27,17 @@ const PLACES: usize = 6;
 const ROOTS: usize = 4000;
 /// Times that a root is looked for on it again, from as far as it was found.
 const LOOKS: usize = 3;
-/// How far beside the marked scalp a root may lie, and from how far it is led there, as shares of the width of the skull.
+/// Distance of a root from the marked scalp that is allowed, and from which it is led there, as shares of the skull's width.
 const ASTRAY: f32 = 0.05;
 const OFF: f32 = 0.4;
 
-/// The scalp that a scene names in the files of its body, head space; none where it names none. A note where it does
-/// not, and there is something of that name.
+/// The scalp that a scene names among the meshes of its body, head space; none where it names none. Adds a note where
+/// it names none, and a mesh has that name.
 ///
 /// # Errors
-/// A file that cannot be read; none of them has the name that is asked for.
-pub(super) fn scalp(scene: &Scene, placing: Placing, notes: &mut Vec<String>) -> Result<Option<Mesh>, Error> {
+/// A file that cannot be read; no mesh of the name.
+pub(super) fn scalp(loading: &mut Loading) -> Result<Option<Mesh>, Error> {
+    let (scene, sources, placing) = (&loading.scene, loading.sources, loading.placings.body);
     let body = &scene.body;
     let Some(file) = &body.file else { return Ok(None) };
     let first = (file, placing, [body.rotation, body.translation]);
@@ -46,39 +47,38 @@ pub(super) fn scalp(scene: &Scene, placing: Placing, notes: &mut Vec<String>) ->
         .map(|part| (&part.file, part_placing(part, placing), [part.rotation, part.translation]));
     let files: Vec<_> = std::iter::once(first).chain(further).collect();
     let Some(name) = &body.scalp else {
-        let parts = Mesh::part_names(&scene.path(file))?;
+        let parts = sources.part_names(scene, file)?;
         if let Some(part) = parts.iter().find(|part| part.eq_ignore_ascii_case(LIKELY)) {
-            notes
-                .push(format!("the body has a part `{part}`: body.scalp = \"{part}\" grows the style on it"));
+            let note = format!("the body has a part `{part}`: body.scalp = \"{part}\" grows the style on it");
+            loading.notes.push(note);
         }
         return Ok(None);
     };
     for (file, placing, [turn, translation]) in &files {
-        if let Some(mut found) = Mesh::load_part(&scene.path(file), name)? {
-            placing::place_mesh(&mut found, *placing, *turn, *translation);
+        if let Some(mut found) = sources.mesh_part(scene, file, name)? {
+            place_mesh(&mut found, *placing, *turn, *translation);
             return Ok(Some(found));
         }
     }
-    let expected = known(files.iter().map(|(file, ..)| scene.path(file)))?;
-    Err(SettingError::new("body.scalp", format!("`{name}`"), expected).into())
+    let mut names = Vec::new();
+    for (file, ..) in &files {
+        names.extend(sources.part_names(scene, file)?);
+    }
+    Err(SettingError::new("body.scalp", format!("`{name}`"), known(names)).into())
 }
 
-/// What the parts of files are called, human-readable.
-fn known(files: impl Iterator<Item = impl AsRef<Path>>) -> Result<String, Error> {
-    let mut names = Vec::new();
-    for file in files {
-        names.extend(Mesh::part_names(file.as_ref())?);
-    }
+/// Lists the names of parts, human-readable.
+fn known(mut names: Vec<String>) -> String {
     let more = if names.len() > LISTED { " ..." } else { "" };
     names.truncate(LISTED);
-    Ok(if names.is_empty() {
+    if names.is_empty() {
         "a body with named parts: this one has none".to_owned()
     } else {
         format!("a part of the body: `{}`{more}", names.join("`, `"))
-    })
+    }
 }
 
-/// How far a scalp reaches down from the crown in each direction \[rad\], seen from within the skull.
+/// Extent of a scalp down from the crown in each direction \[rad\], seen from within the skull.
 #[derive(Clone, Debug)]
 struct Rim {
     polars: Vec<Option<f32>>,
@@ -187,7 +187,7 @@ pub(super) fn onto(
     Ok(format!("the style grows on the scalp that the body marks{left}"))
 }
 
-/// Where roots would lie as far from the middle of the skull as a mesh does, and the places of the mesh nearest there.
+/// Roots moved to the mesh's distance from the middle of the skull, and the points of the mesh nearest to them.
 fn seen_on(mesh: &Mesh, middle: Vec3, roots: &[Vec3]) -> (Vec<Vec3>, Vec<Vec3>) {
     let mut sought = roots.to_vec();
     let mut found = mesh.nearest_places(&sought);

@@ -1,42 +1,76 @@
-//! Where a file's places lie in head space.
+//! Second stage of loading: strands and body in head space, several files as one groom and one mesh.
 
-use std::f32::consts::FRAC_PI_2;
-
-use glam::{Quat, Vec3};
+use glam::Vec3;
 use strandline_base::math;
 
+use super::{
+    foreign, guess, join,
+    loading::Loading,
+    placing::{Placing, place_mesh},
+};
 use crate::{
-    body::{Aabb, Mesh},
-    groom::format::Up,
+    Error, Scene,
+    groom::{
+        Groom, Widths,
+        format::{HAIR_WIDTH, Part},
+    },
 };
 
-/// How a file's places become those of head space: scaled, then turned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Placing {
-    pub scale: f32,
-    pub turn: Quat,
+/// Guesses units, axes and front of grooms and meshes together, brings them into head space and joins them.
+pub(super) fn place(loading: &mut Loading) -> Result<(), Error> {
+    choose(loading);
+    place_body(loading)?;
+    place_hair(loading)
 }
 
-/// What leads from a file with an axis that points up to y up.
-pub(super) fn upright(up: Up) -> Quat {
-    match up {
-        Up::Auto | Up::Y => Quat::IDENTITY,
-        Up::Z => math::rotation(Vec3::X, -FRAC_PI_2),
-    }
+/// Chooses the placements.
+fn choose(loading: &mut Loading) {
+    let Loading { scene, groom, further_grooms: further, mesh, .. } = loading;
+    let together = groom.iter().chain(join::placed_as_first(scene, groom.as_ref(), further));
+    let placings = guess::placings(scene, &together.collect::<Vec<_>>(), mesh.as_ref());
+    let pair = groom.as_ref().zip(mesh.as_ref());
+    let foreign = pair.and_then(|(groom, mesh)| foreign::placings(scene, groom, mesh, &placings));
+    loading.is_foreign = foreign.is_some();
+    loading.placings = foreign.unwrap_or(placings);
+    loading.notes.extend(loading.placings.note.take());
 }
 
-/// Places a mesh: scaled and turned as guessed, then turned and moved as a scene says.
-pub(super) fn place_mesh(mesh: &mut Mesh, placing: Placing, turn: Vec3, translation: Vec3) {
-    let turn = math::pitch_yaw_roll(turn) * placing.turn;
-    for position in &mut mesh.positions {
-        *position = turn * (placing.scale * *position) + translation;
-    }
-    for normal in &mut mesh.normals {
-        *normal = turn * *normal;
-    }
+/// Brings the meshes into head space.
+fn place_body(loading: &mut Loading) -> Result<(), Error> {
+    let Some(mesh) = &mut loading.mesh else { return Ok(()) };
+    let (scene, placing) = (&loading.scene, loading.placings.body);
+    place_mesh(mesh, placing, scene.body.rotation, scene.body.translation);
+    let further = std::mem::take(&mut loading.further_meshes);
+    loading.solid_mesh = join::add_meshes(scene, mesh, further, placing)?;
+    Ok(())
 }
 
-/// The length of the diagonal of a box.
-pub(super) fn diagonal(bounds: Aabb) -> f32 {
-    bounds.min.distance(bounds.max)
+/// Brings the strands into head space.
+fn place_hair(loading: &mut Loading) -> Result<(), Error> {
+    let Loading { scene, groom: Some(groom), mesh, notes, placings, .. } = loading else { return Ok(()) };
+    if scene.body.scalp.is_some() {
+        notes.push("body.scalp is for styles: strands of a file stay where they grow".to_owned());
+    }
+    place_groom(groom, placings.groom, scene, scene.groom.rotation, scene.groom.translation);
+    if let Some(mesh) = mesh.as_ref().filter(|_| loading.is_foreign) {
+        notes.extend(foreign::fit(groom, mesh));
+    }
+    let further = std::mem::take(&mut loading.further_grooms);
+    let place = |groom: &mut Groom, placing, turn, by| place_groom(groom, placing, scene, turn, by);
+    notes.extend(join::add_grooms(scene, groom, further, placings.groom, mesh.as_ref(), place)?);
+    Ok(())
+}
+
+/// Places strands: scaled and turned as guessed, then turned (degrees) and moved \[m\] as the scene says.
+fn place_groom(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Vec3, translation: Vec3) {
+    if !scene.groom.own_look {
+        groom.colors = None;
+    }
+    let has_widths = scene.groom.own_look && Part::Widths.is_in(groom);
+    groom.transform(placing.scale, placing.turn, Vec3::ZERO);
+    groom.transform(1.0, math::pitch_yaw_roll(turn), translation);
+    // The width of a hair is in metres already.
+    if !has_widths {
+        groom.widths = Widths::Constant(HAIR_WIDTH);
+    }
 }

@@ -1,11 +1,11 @@
-//! How a groom and its body lie, estimated from roots, tips and vertices.
+//! Units and axes of a groom and its body, estimated from roots, tips and vertices.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
-use super::place::{Placing, diagonal, upright};
+use super::placing::{Placing, diagonal, upright};
 use crate::{
     body::{Aabb, Mesh, Random},
     groom::{Groom, format::Up},
@@ -89,7 +89,7 @@ impl Sample {
         middle / (body_unit * diagonal(self.bounds)).max(f32::MIN_POSITIVE)
     }
 
-    /// What speaks for an axis to point up, each -1 to 1: roots lie high on the body, and strands hang.
+    /// Evidence for an axis to point up, each -1 to 1: roots lie high on the body, and strands hang.
     pub fn upness(&self, axis: Vec3) -> [f32; 2] {
         let count = self.roots.len() as f32;
         let extent = (self.bounds.max - self.bounds.min).dot(axis).max(f32::MIN_POSITIVE);
@@ -150,7 +150,7 @@ impl Sample {
         if back.z.abs() >= back.x.abs() {
             if back.z > BEHIND { math::rotation(Vec3::Y, PI) } else { Quat::IDENTITY }
         } else if back.x.abs() > BEHIND {
-            // What is at +x comes to -z, or what is at -x.
+            // The back, at +x or -x, comes to -z.
             math::rotation(Vec3::Y, FRAC_PI_2.copysign(back.x))
         } else {
             Quat::IDENTITY

@@ -36,22 +36,22 @@ settings! {
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
         /// Moves the mesh, head space.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
-        /// Whether it is drawn.
+        /// Draws it.
         visible: bool = true;
-        /// Whether hair hits it; without this a closed mesh is hit, and one with an open rim, such as lashes, is
+        /// Makes it solid; without this a closed mesh is solid, and one with an open rim, such as lashes, is
         /// not.
         solid: Option<bool> = None;
     }
 }
 
 settings! {
-    /// What hair grows on and hits.
+    /// The body that hair grows on and hits.
     pub struct BodySection {
         /// The body when no file is named.
         model: Model = Model::default();
         /// An .obj, .gltf or .glb file.
         file: Option<PathBuf> = None;
-        /// Where a style grows on the body of a file: what has this name in its files, an object, a group or a material
+        /// Part of the body on which a style grows, by its name in the body's files: an object, a group or a material
         /// of an .obj, a node, a mesh or a material of a glTF. Without it the built-in scalp is brought onto the skull.
         scalp: Option<String> = None;
         /// A closed mesh that hair hits in place of the drawn one.
@@ -67,14 +67,14 @@ settings! {
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
         /// Further meshes of the same body, at most 64. They need a `file`.
         parts: Vec<BodyPart> = Vec::new(), in [0, 64];
-        /// Whether the body is drawn.
+        /// Draws the body.
         visible: bool = true;
-        /// Whether hair hits the body.
+        /// Makes the body solid.
         solid: bool = true;
         /// Distance between the samples of the body's signed distance.
         spacing: f32 = 0.004, in [5e-4, 0.1] "m", slider [0.002, 0.02],
             more "a coarser surface for hair, at less time and memory";
-        /// Whether hair hits the exact mannequin in place of samples of it; slower.
+        /// Uses the exact mannequin as the solid in place of samples of it; slower.
         exact: bool = false;
         /// Coulomb friction coefficient of hair on the solid. It acts once a step, by how deep gravity and
         /// motion alone would take a point: neither the number of rounds nor the pull of the strand changes it.
@@ -89,7 +89,7 @@ settings! {
         center: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
         /// Radius.
         radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
-        /// What it moves with.
+        /// Carrier that it moves with.
         carrier: Carrier = Carrier::default();
         shared BodySection { friction: f32 }
     }

@@ -35,7 +35,7 @@ impl Scene {
         self.level_of_detail.segments_per_span = segments;
     }
 
-    /// What goes with the look of the thesis in a picture.
+    /// Sets tone map and background that go with the look of the thesis.
     pub(super) fn dress_thesis(&mut self) {
         self.picture.tone_map = ToneMap::Filmic;
         self.picture.background =

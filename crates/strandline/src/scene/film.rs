@@ -31,13 +31,13 @@ impl View {
 }
 
 settings! {
-    /// Where the picture is taken from.
+    /// View of the pictures.
     pub struct CameraSection {
         /// From where it looks when its position is not given; hair and body fill the picture.
         view: View = View::default();
-        /// Where it stands, world space.
+        /// Position, world space.
         position: Option<Vec3> = None, in [-1e4, 1e4] "m";
-        /// What it looks at, world space; without it the middle of hair and body.
+        /// Target, world space; without it the middle of hair and body.
         target: Option<Vec3> = None, in [-1e4, 1e4] "m";
         /// Vertical field of view; without it that of the framing.
         field_of_view: Option<f32> = None, in [1.0, 170.0] "degrees", more "a wider view";
@@ -79,7 +79,7 @@ impl CameraSection {
 }
 
 settings! {
-    /// How many pictures, how fast.
+    /// Number and rate of the pictures.
     pub struct FilmSection: Copy {
         /// Number of pictures.
         frames: u32 = 120, in [1, 1_000_000], more "a longer film";

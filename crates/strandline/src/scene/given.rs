@@ -19,3 +19,23 @@ impl PartialEq for Given {
         true
     }
 }
+
+impl Given {
+    /// Notes that a setting was given.
+    pub fn note(&mut self, key: &str) {
+        let given = match key {
+            "look.follow_strands" => &mut self.follow_strands,
+            "look.hair_count" => &mut self.hair_count,
+            "look.width_scale" => &mut self.width_scale,
+            "look.clump.root_radius" => &mut self.root_radius,
+            "look.clump.tip_radius" => &mut self.tip_radius,
+            "look.clump.wave_amplitude" => &mut self.wave_amplitude,
+            "groom.points_per_strand" => &mut self.points_per_strand,
+            "level_of_detail.segments_per_span" => &mut self.segments_per_span,
+            "level_of_detail.full_distance" => &mut self.full_distance,
+            "body.spacing" => &mut self.spacing,
+            _ => return,
+        };
+        *given = true;
+    }
+}

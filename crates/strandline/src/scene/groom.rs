@@ -41,7 +41,7 @@ settings! {
         up: Up = Up::default();
         /// Points of each strand, for files that hold points and do not say which of them make a strand.
         per_strand: Option<u32> = None, in [1, 4096];
-        /// Whether colours and widths of the file are drawn in place of the look's.
+        /// Draws colours and widths of the file in place of the look's.
         own_look: bool = true;
         /// Turns the strands of a file: pitch (about x), yaw (about y), roll (about z). Where neither groom nor
         /// body is turned, both are when hair shows that the face does not look along +z.

@@ -2,9 +2,12 @@
 
 mod body;
 mod builtin;
+pub(crate) mod devices;
 mod film;
 mod given;
 mod groom;
+pub(crate) mod head;
+mod keys;
 mod motion;
 mod surroundings;
 
@@ -14,14 +17,16 @@ use glam::Vec3;
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
 pub use body::{BodyPart, BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
+pub use devices::Devices;
 pub use film::{CameraSection, FilmSection, View};
 pub(crate) use given::Given;
 pub use groom::{GroomPart, GroomSection};
+pub use head::HeadMotion;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 pub use surroundings::SurroundingsSection;
 
 use crate::{
-    Backend, Devices, Error,
+    Backend, Error,
     groom::StyleSettings,
     render::{BodyLook, LevelOfDetail, Light, Look, PictureSettings, Preset, memory::MAX_LIGHTS},
     sim::{Settings, StrandMethod},
@@ -37,31 +42,31 @@ settings! {
     /// Every key has a default; unknown keys are refused by name. Paths are relative to the file. Without a
     /// groom file, [`Scene::set_style`] says what the style sets beside strands.
     pub struct Scene {
-        /// Where hair is simulated and drawn.
+        /// Devices of simulation and pictures.
         devices: Devices = Devices::default();
         /// Strands from a file, and how guides are made of strands.
         groom: GroomSection = GroomSection::default();
         /// The style that is grown when no groom file is named. The default of every number but
         /// `strand_count` and `seed` is that of the style; those of "long" are shown.
         style: StyleSettings = StyleSettings::default();
-        /// What hair grows on and hits.
+        /// The body that hair grows on and hits.
         body: BodySection = BodySection::default();
-        /// How the head moves.
+        /// Motion of the head.
         motion: MotionSection = MotionSection::default();
-        /// How the air moves.
+        /// Motion of the air.
         wind: WindSection = WindSection::default();
         /// Solids beside the body, at most 1,024.
         colliders: Vec<ColliderSection> = Vec::new();
-        /// How hair moves.
+        /// Motion of the hair.
         simulation: Settings = Settings::default();
         /// Colour and shape of the drawn hair.
         look: Look = Look::default();
         /// Colour of the drawn body.
         body_look: BodyLook = BodyLook::default();
-        /// How detail follows distance and the size of a pixel. Without a groom file the default of
+        /// Detail by distance and the size of a pixel. Without a groom file the default of
         /// `segments_per_span` is that of the style.
         level_of_detail: LevelOfDetail = LevelOfDetail::default();
-        /// Where the picture is taken from.
+        /// View of the pictures.
         camera: CameraSection = CameraSection::default();
         /// The lights, at most 64; none named means a soft box before and a strip behind the head, or three lights of the
         /// look "thesis".
@@ -70,7 +75,7 @@ settings! {
         surroundings: SurroundingsSection = SurroundingsSection::default();
         /// Size and finish of a picture.
         picture: PictureSettings = PictureSettings::default();
-        /// How many pictures, how fast.
+        /// Number and rate of the pictures.
         film: FilmSection = FilmSection::default();
         plain {
             /// The folder that relative paths start from; not part of the file.
@@ -90,7 +95,7 @@ impl Scene {
     /// Its longest side \[pixels\].
     pub const MAX_MAP_SIDE: u32 = 8192;
 
-    /// What a file does not give depends on what it gives: strands of a style bring what the style needs.
+    /// Sets defaults that depend on the file: a style brings the settings that it needs.
     /// Files of before `[devices]` name the devices elsewhere.
     fn prepare(&mut self, given: &<Self as Value>::Given) {
         if given.groom.as_ref().is_none_or(|groom| groom.file.is_none()) {
@@ -223,7 +228,7 @@ impl Scene {
     }
 }
 
-/// Whether a path has the ending of a scene file.
+/// True where a path has the ending of a scene file.
 pub fn is_file(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"))
 }

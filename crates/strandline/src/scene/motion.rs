@@ -37,7 +37,7 @@ settings! {
 }
 
 settings! {
-    /// How the head moves.
+    /// Motion of the head.
     pub struct MotionSection {
         /// The motion.
         name: MotionName = MotionName::default();
@@ -79,7 +79,7 @@ impl KeyframeSection {
 }
 
 settings! {
-    /// How the air moves.
+    /// Motion of the air.
     pub struct WindSection: Copy {
         /// Mean velocity, world space.
         velocity: Vec3 = Vec3::ZERO, in [-100.0, 100.0] "m/s", slider [-10.0, 10.0];

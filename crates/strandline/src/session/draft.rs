@@ -1,6 +1,6 @@
 //! Simpler pictures, for hair that moves while full ones take too long.
 
-use super::studio::Studio;
+use super::view::View;
 use crate::render::{LevelOfDetail, Light, PictureSettings};
 
 /// A simpler picture has no more segments of a strand than these ask for, shadow maps of so many texels a side, one
@@ -42,25 +42,25 @@ impl Draft {
     }
 }
 
-/// Does something with a studio that draws simpler pictures meanwhile.
-pub(crate) fn simplified<T>(draft: Draft, studio: &mut Studio, act: impl FnOnce(&mut Studio) -> T) -> T {
-    let level = studio.level_of_detail;
-    let spans = studio.painter.points_per_strand().saturating_sub(1).max(1);
+/// Acts on a view whose pictures are simpler meanwhile.
+pub(crate) fn simplified<T>(draft: Draft, view: &mut View, act: impl FnOnce(&mut View) -> T) -> T {
+    let level = view.level_of_detail;
+    let spans = view.painter.points_per_strand().saturating_sub(1).max(1);
     let segments_per_span = level.segments_per_span.min(FEW_SEGMENTS.div_ceil(spans) as u32);
-    studio.level_of_detail = LevelOfDetail { segments_per_span, most_segments: 1.0, ..level };
-    let mut look = studio.look.clone();
+    view.level_of_detail = LevelOfDetail { segments_per_span, most_segments: 1.0, ..level };
+    let mut look = view.look.clone();
     look.follow_strands = look.follow_strands.min(STEPS[draft.step].1);
     look.shadow.map_size = look.shadow.map_size.min(SMALL_MAP);
     let scatterings = &mut look.fibre.chiang.scatterings;
     *scatterings = (*scatterings).min(FEW_SCATTERINGS);
     let cells = &mut look.fibre.chiang.cells;
     *cells = (*cells).min(FEW_CELLS);
-    let look = std::mem::replace(&mut studio.look, look);
+    let look = std::mem::replace(&mut view.look, look);
     let one_place = |light: &Light| Light { samples: 1, ..*light };
-    let simpler = studio.lights.iter().map(one_place).collect();
-    let lights = std::mem::replace(&mut studio.lights, simpler);
-    let done = act(studio);
-    (studio.look, studio.lights, studio.level_of_detail) = (look, lights, level);
+    let simpler = view.lights.iter().map(one_place).collect();
+    let lights = std::mem::replace(&mut view.lights, simpler);
+    let done = act(view);
+    (view.look, view.lights, view.level_of_detail) = (look, lights, level);
     done
 }
 
@@ -87,8 +87,7 @@ mod tests {
         (scene.picture.background.top, scene.picture.background.bottom) = Default::default();
         (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
         [scene.picture.width, scene.picture.height] = [160, 125];
-        let prepared = Prepared::new(&scene).unwrap();
-        let mut session = Session::of_scene(&scene, prepared, scene.devices).unwrap();
+        let mut session = Session::open(Prepared::new(&scene).unwrap(), scene.devices).unwrap();
         let full = session.picture(None).unwrap().0;
         let mut draft = Draft::FINEST;
         for size in [[80, 63], [80, 63], [64, 50], [53, 42]] {

@@ -9,16 +9,16 @@ use crate::{
     Error,
     body::Pose,
     groom::Vec3Lanes,
-    hair_pose::HairPose,
     sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
+    strands::hair_pose::HairPose,
 };
 
 /// A simulator that outlives its device.
 pub(crate) struct Engine {
     simulator: Simulator,
-    /// Whether the run falls back to the CPU when the GPU fails.
+    /// True where the run falls back to the CPU when the GPU fails.
     pub fall_back: bool,
-    /// What happened on the way, human-readable.
+    /// Notes, human-readable.
     pub notes: Vec<String>,
 }
 
@@ -85,7 +85,7 @@ impl Engine {
         self.simulator.state_after(step)
     }
 
-    /// How far the hair lies from the groom as loaded, which the head carries.
+    /// Distance of the hair from the groom as loaded, which the head carries.
     pub fn drift(&mut self) -> Result<Drift, SimError> {
         self.state()?;
         Ok(self.model().drift(self.simulator.last_state()))

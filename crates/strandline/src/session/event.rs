@@ -3,7 +3,7 @@ use crate::{
     sim::StepReport,
 };
 
-/// What playing hair emits.
+/// An event of hair that plays.
 #[derive(Clone, Debug)]
 pub enum Event {
     /// Something happened that a person should read; the film continues.
@@ -17,7 +17,7 @@ pub enum Event {
         frame: u32,
         /// The picture.
         picture: Picture,
-        /// What it cost.
+        /// Its cost.
         report: FrameReport,
     },
 }

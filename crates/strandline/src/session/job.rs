@@ -1,24 +1,24 @@
-//! What is asked of a simulation, as data, and where it is done: on the thread of the caller or beside it.
+//! Tasks of a simulation, as data, and the executors that perform them: on the thread of the caller or beside it.
 
 use glam::Vec3;
 use std::collections::VecDeque;
 use strandline_gpu::Gpu;
 
-use super::{course::Course, moment::Moment, simulation::Simulation};
+use super::{film_timing::FilmTiming, moment::Moment, simulation::Simulation};
 use crate::{
     HeadMotion,
     body::Pose,
-    devices::place,
     groom::Vec3Lanes,
     scene::WindSection,
+    scene::devices::device_name,
+    session::worker::{Gone, Work, Worker},
     sim::{Settings, SimError, StepReport},
-    worker::{Gone, Work, Worker},
 };
 
-/// What is asked of a simulation.
+/// A task of a simulation.
 pub(crate) enum Task {
     /// The frame of a film with this number, with settings that change before it.
-    Film { course: Course, frame: u32, settings: Option<Box<Settings>> },
+    Film { timing: FilmTiming, frame: u32, settings: Option<Box<Settings>> },
     /// A frame of a cache: guide points \[m\], world space, shape `[block][point]` of lanes.
     Cached { world_from_head: Pose, positions: Vec<Vec3Lanes> },
     /// A stretch of time that a person directs.
@@ -43,21 +43,21 @@ pub(crate) struct Live {
     pub most_steps: f64,
     pub head: HeadMotion,
     pub wind: WindSection,
-    /// Where the hand goes \[m\], world space.
+    /// Target of the hand \[m\], world space.
     pub hand: Option<Vec3>,
 }
 
 impl Task {
-    /// Whether a frame ends with it.
+    /// True where a frame ends with it.
     pub fn is_frame(&self) -> bool {
         matches!(self, Self::Film { .. } | Self::Cached { .. } | Self::Live(_))
     }
 
     fn perform(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
         let done = match self {
-            Self::Film { course, frame, settings } => {
+            Self::Film { timing, frame, settings } => {
                 settings.map_or(Ok(()), |settings| simulation.set_settings(&settings))?;
-                return course.run(simulation, frame);
+                return timing.run(simulation, frame);
             }
             Self::Live(live) => return live.run(simulation),
             Self::Cached { world_from_head, positions } => {
@@ -95,13 +95,13 @@ pub(crate) struct Job {
     pub moment: Moment,
     /// The device that the pictures are drawn on.
     pub gpu: Option<Gpu>,
-    /// Whether the host needs the points of the moment too.
+    /// True where the host needs the points of the moment too.
     pub home: bool,
     /// Commands that were received before.
     pub commands: u64,
 }
 
-/// What it led to; after a failure the moment is that of the last state.
+/// Result of a job; after a failure the moment is that of the last state.
 pub(crate) struct Done {
     pub moment: Moment,
     pub reports: Result<Vec<StepReport>, SimError>,
@@ -113,7 +113,7 @@ pub(crate) struct Done {
     pub is_frame: bool,
     /// As in the job.
     pub commands: u64,
-    /// Where it was done: cpu, or the adapter.
+    /// Device of the job: cpu, or the adapter.
     pub simulated_on: String,
 }
 
@@ -139,38 +139,53 @@ impl Work for Simulation {
             None => run(),
         };
         self.threads = threads;
-        let simulated_on = place(self.engine.gpu());
+        let simulated_on = device_name(self.engine.gpu());
         let (seconds, grabbed) = (self.passed - before, self.engine.grabbed());
         let notes = self.engine.take_notes();
         Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on }
     }
 }
 
-/// Where a simulation does its jobs.
-pub(crate) trait Place {
+/// Runs the jobs of a simulation: on the thread of the caller, or on one beside it.
+pub(crate) trait Executor {
     /// Hands a job over.
     fn start(&mut self, job: Job) -> Result<(), Gone>;
 
     /// Waits for the oldest job that was started.
     fn finish(&mut self) -> Result<Done, Gone>;
 
+    /// Jobs that were started and not finished.
+    fn started(&self) -> usize;
+
     /// The simulation between two jobs: waits for the one that runs.
     fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T;
 }
 
 /// A simulation on the thread of the caller.
-pub(crate) struct Here {
-    pub simulation: Simulation,
+pub(crate) struct Inline {
+    simulation: Simulation,
     done: VecDeque<Done>,
 }
 
-impl Here {
+impl Inline {
     pub fn new(simulation: Simulation) -> Self {
         Self { simulation, done: VecDeque::new() }
     }
+
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    pub fn simulation_mut(&mut self) -> &mut Simulation {
+        &mut self.simulation
+    }
+
+    pub fn into_simulation(self) -> Simulation {
+        self.simulation
+    }
 }
 
-impl Place for Here {
+impl Executor for Inline {
     fn start(&mut self, job: Job) -> Result<(), Gone> {
         self.done.push_back(self.simulation.run(job));
         Ok(())
@@ -180,18 +195,26 @@ impl Place for Here {
         self.done.pop_front().ok_or(Gone)
     }
 
+    fn started(&self) -> usize {
+        self.done.len()
+    }
+
     fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T {
         act(&mut self.simulation)
     }
 }
 
-impl Place for Worker<Simulation> {
+impl Executor for Worker<Simulation> {
     fn start(&mut self, job: Job) -> Result<(), Gone> {
         Worker::start(self, job)
     }
 
     fn finish(&mut self) -> Result<Done, Gone> {
         Worker::finish(self)
+    }
+
+    fn started(&self) -> usize {
+        Worker::started(self)
     }
 
     fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T {

@@ -1,193 +1,141 @@
-//! A session: hair that moves and is drawn, changed by commands that are data. `Hair`, `Player` and `Live` are its faces.
+//! A session: hair that moves and is drawn. Commands, which are data, go in; events come out. `Hair`, `Player` and
+//! `Live` are its faces.
 
 mod change;
-pub(crate) mod course;
 mod direction;
 mod draft;
 pub(crate) mod engine;
 mod event;
+mod files;
+pub(crate) mod film_timing;
 mod job;
 pub(crate) mod moment;
+mod open;
+mod painter;
+mod pick;
 mod simulation;
-mod studio;
+mod sync;
+mod view;
+pub(crate) mod worker;
+#[cfg(test)]
+mod worker_tests;
 
 pub use change::Change;
 pub(crate) use direction::FRAME;
+pub(crate) use draft::Draft;
 pub use event::Event;
-pub(crate) use job::{Here, Place, Task};
+pub(crate) use job::{Executor, Inline, Task};
+pub use pick::Ray;
 pub(crate) use simulation::Simulation;
-pub(crate) use studio::Studio;
+pub(crate) use view::View;
 
 use std::collections::VecDeque;
 
-use strandline_base::{Group, par::Pool};
+use glam::Vec3;
+use strandline_base::Group;
 
 use crate::{
-    BoundStrands, Devices, Error, Prepared, Ray, Scene,
-    body::{Collider, Mesh, Pose},
-    devices::{Opened, Pair, place},
-    groom::Guides,
-    painter::Painter,
-    pick::Picked,
-    prepare,
-    render::{
-        BodyLook, Camera, FrameReport, LevelOfDetail, Look, Picture, PictureSettings, memory::check_lights,
-    },
-    sim::{Model, Settings, StepReport},
-    worker::Worker,
+    Error, HeadMotion, Scene,
+    groom::LANES,
+    render::{Camera, FrameReport, Look, Picture, PictureSettings, memory::check_lights},
+    sim::StepReport,
+    strands::tags::Tags,
 };
 use direction::Direction;
-pub(crate) use draft::Draft;
 use draft::simplified;
-use engine::Engine;
 use job::{Done, Job};
 use moment::Moment;
+use pick::Picked;
 
-/// A simulation, what draws it, and the commands between them.
-pub(crate) struct Session<P> {
-    pub place: P,
-    pub studio: Studio,
-    pub direction: Direction,
-    /// Size and finish of full pictures, and which simpler ones the painter draws in their place.
+/// A simulation, its renderer, and the commands between them.
+pub(crate) struct Session<E> {
+    /// The scene, fitted to its groom.
+    scene: Scene,
+    tags: Tags,
+    executor: E,
+    view: View,
+    direction: Direction,
+    /// Size and finish of full pictures, and the simpler pictures that are drawn in their place.
     settings: PictureSettings,
     draft: Option<Draft>,
-    /// Where the hair of the last result was simulated: cpu, or the adapter.
-    pub simulated_on: String,
+    /// Device on which the hair of the last result was simulated: cpu, or the adapter.
+    simulated_on: String,
     /// Strands in the hand.
-    pub grabbed: usize,
-    /// Commands that the moment that is shown has received.
-    pub simulated_after: u64,
+    grabbed: usize,
+    /// Commands that the shown moment has received.
+    simulated_after: u64,
     /// Moments free for the next job, and the one that is shown.
     spare: Vec<Moment>,
     shown: Moment,
+    /// Points of the shown moment, strand after strand.
+    points: Vec<Vec3>,
     events: VecDeque<Event>,
     /// Pictures drawn so far.
-    pub drawn: u32,
+    drawn: u32,
 }
 
-impl Session<Here> {
-    /// Guides, and the strands that they carry, on a body: its drawn mesh and what hair hits.
-    ///
-    /// # Errors
-    /// A setting outside its range; a device that refuses.
-    pub fn new(
-        devices: Pair,
-        guides: Guides,
-        bound: Option<BoundStrands>,
-        mesh: Option<&Mesh>,
-        colliders: Vec<Collider>,
-        settings: &Settings,
-    ) -> Result<Self, Error> {
-        let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
-        let mut engine = Engine::new(gpu.as_ref(), Model::new(&guides, settings, colliders)?, fall_back)?;
-        engine.notes.extend(notes);
-        let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
-        let studio = Studio {
-            painter: Painter::new(pictures, &guides, bound, mesh)?,
-            guides,
-            bounds,
-            camera: Camera::front(),
-            look: Look::default(),
-            lights: Look::default().lights(prepare::center(bounds)),
-            body_look: BodyLook::default(),
-            level_of_detail: LevelOfDetail::default(),
-        };
-        let simulated_on = place(engine.gpu());
-        Ok(Self {
-            place: Here::new(Simulation::new(engine, settings.time_step)),
-            studio,
-            direction: Direction::default(),
-            settings: PictureSettings::default(),
-            draft: None,
-            simulated_on,
-            grabbed: 0,
-            simulated_after: 0,
-            spare: Vec::new(),
-            shown: Moment::default(),
-            events: VecDeque::new(),
-            drawn: 0,
-        })
+impl<E: Executor> Session<E> {
+    /// The scene, with the settings that it leaves open chosen to fit its groom.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
     }
 
-    /// Everything of a scene but its film and its devices.
-    ///
-    /// # Errors
-    /// A setting of the scene outside its range.
-    pub fn of_scene(scene: &Scene, prepared: Prepared, devices: Devices) -> Result<Self, Error> {
-        scene.check()?; // what only pictures need too, before the first one is drawn
-        let camera = prepared.camera(scene.picture.width as f32 / scene.picture.height as f32);
-        let Prepared { guides, bound, mesh, colliders, head, pose, scene: chosen, .. } = prepared;
-        let mut session =
-            Self::new(devices.open()?, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
-        let studio = &mut session.studio;
-        (studio.camera, studio.look) = (camera, scene.look.clone());
-        studio.lights = scene.look.lights(prepare::center(studio.bounds));
-        // A picture of surroundings, which was loaded when the scene was prepared, lights it alone.
-        if !scene.lights.is_empty() || chosen.look.surroundings.is_some() {
-            studio.lights.clone_from(&scene.lights);
-        }
-        (studio.body_look, studio.level_of_detail) = (scene.body_look, scene.level_of_detail);
-        session.set_picture(scene.picture)?;
-        let simulation = &mut session.place.simulation;
-        if scene.groom.length != 1.0 {
-            let scales = vec![scene.groom.length; session.studio.guides.strand_count()];
-            simulation.engine.set_length_scale(&scales)?;
-        }
-        // A head that is turned at first does not whip its hair there.
-        let start = head.pose(scene.film.start);
-        match &pose {
-            Some(pose) => simulation.place(pose)?,
-            None if start != Pose::IDENTITY => simulation.reset(start)?,
-            None => {}
-        }
-        session.direction = Direction::new(scene, head);
-        session.show()?;
-        Ok(session)
+    /// The motion of the head.
+    pub fn head(&self) -> &HeadMotion {
+        &self.direction.head
     }
 
-    /// The same with its simulation on a thread of its own [Chen2011 §5].
-    ///
-    /// # Errors
-    /// The system gives no thread.
-    pub fn beside(self) -> Result<Session<Worker<Simulation>>, Error> {
-        let mut simulation = self.place.simulation;
-        simulation.threads = Some(Pool::new("simulation"));
-        Ok(Session {
-            place: Worker::new(simulation).map_err(Error::Thread)?,
-            studio: self.studio,
-            direction: self.direction,
-            settings: self.settings,
-            draft: self.draft,
-            simulated_on: self.simulated_on,
-            grabbed: self.grabbed,
-            simulated_after: self.simulated_after,
-            spare: self.spare,
-            shown: self.shown,
-            events: self.events,
-            drawn: self.drawn,
-        })
+    /// The renderer, with the view, the look and the lights of its pictures.
+    pub fn view(&self) -> &View {
+        &self.view
     }
 
-    /// Takes the hair as it is now for the next picture.
-    ///
-    /// # Errors
-    /// The GPU failed, and falling back to the CPU is not allowed.
-    pub fn show(&mut self) -> Result<(), Error> {
-        Ok(self.place.simulation.show(self.studio.painter.gpu(), &mut self.shown)?)
+    /// Device on which the hair of the last result was simulated: cpu, or the adapter.
+    pub fn simulated_on(&self) -> &str {
+        &self.simulated_on
     }
-}
 
-impl<P: Place> Session<P> {
-    /// Hands a task over, whose points the host needs too where `home`.
+    /// Strands in the hand.
+    pub fn grabbed(&self) -> usize {
+        self.grabbed
+    }
+
+    /// Commands that the shown moment has received.
+    pub fn simulated_after(&self) -> u64 {
+        self.simulated_after
+    }
+
+    /// Time of motion and wind at which a film begins with the shown moment \[s\].
+    pub fn time_shown(&mut self) -> f64 {
+        let step = self.with(|simulation| f64::from(simulation.settings().time_step));
+        self.direction.time_shown(step)
+    }
+
+    /// Acts on the simulation between two jobs; waits for the one that runs.
+    pub fn with<T>(&mut self, act: impl FnOnce(&mut Simulation) -> T) -> T {
+        self.executor.with(act)
+    }
+
+    /// Jobs that were started and whose results were not taken.
+    pub fn started(&self) -> usize {
+        self.executor.started()
+    }
+
+    /// Colours hair by the layers of a light's opacity map.
+    pub fn show_layers(&mut self, light: Option<usize>) {
+        self.view.painter.layers_of = light;
+    }
+
+    /// Hands a task over; the host needs the points of its moment too where `home`.
     ///
     /// # Errors
     /// The simulation's thread has ended.
     pub fn start(&mut self, task: Task, home: bool, commands: u64) -> Result<(), Error> {
-        let (gpu, moment) = (self.studio.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
-        self.place.start(Job { task, moment, gpu, home, commands }).map_err(|_| Error::WorkerGone)
+        let (gpu, moment) = (self.view.painter.gpu().cloned(), self.spare.pop().unwrap_or_default());
+        self.executor.start(Job { task, moment, gpu, home, commands }).map_err(|_| Error::WorkerGone)
     }
 
-    /// Starts the next frame of what a person directs.
+    /// Starts the next frame under the direction of a person.
     ///
     /// # Errors
     /// As [`Session::start`].
@@ -196,13 +144,13 @@ impl<P: Place> Session<P> {
         self.start(task, false, commands)
     }
 
-    /// Takes the oldest result, which is shown from now on; whether it is a frame.
+    /// Takes the oldest result and shows its moment. Returns true where it is a frame.
     ///
     /// # Errors
-    /// What the task failed with; the simulation's thread has ended.
+    /// The error of the task; the simulation's thread has ended.
     pub fn take(&mut self) -> Result<bool, Error> {
         let Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on } =
-            self.place.finish().map_err(|_| Error::WorkerGone)?;
+            self.executor.finish().map_err(|_| Error::WorkerGone)?;
         if is_frame {
             self.direction.pass(seconds);
         }
@@ -219,12 +167,12 @@ impl<P: Place> Session<P> {
     /// # Errors
     /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn report_rest(&mut self) -> Result<(), Error> {
-        let reports = self.place.with(|simulation| simulation.engine.reports())?;
+        let reports = self.with(Simulation::reports)?;
         self.events.extend(reports.into_iter().map(Event::Stepped));
         Ok(())
     }
 
-    /// Draws what is shown, simpler where there is a `draft`, and emits the picture.
+    /// Draws the shown moment, simpler where there is a `draft`, and emits the picture.
     ///
     /// # Errors
     /// A setting outside its range; the GPU failed, and falling back to the CPU is not allowed.
@@ -232,57 +180,57 @@ impl<P: Place> Session<P> {
         let (picture, report) = self.picture(draft)?;
         self.events.push_back(Event::Drawn { frame: self.drawn, picture, report });
         self.drawn += 1;
-        self.events.extend(std::mem::take(&mut self.studio.painter.notes).into_iter().map(Event::Note));
+        self.events.extend(std::mem::take(&mut self.view.painter.notes).into_iter().map(Event::Note));
         Ok(())
     }
 
-    /// Draws what is shown, simpler where there is a `draft`.
+    /// Draws the shown moment, simpler where there is a `draft`.
     ///
     /// # Errors
     /// As [`Session::draw`].
     pub fn picture(&mut self, draft: Option<Draft>) -> Result<(Picture, FrameReport), Error> {
         if self.draft != draft {
             let settings = draft.map_or(self.settings, |draft| draft.settings(self.settings));
-            self.studio.painter.set_picture(&settings)?;
+            self.view.painter.set_picture(&settings)?;
             self.draft = draft;
         }
-        let Self { place, studio, shown, .. } = self;
-        let mut draw = |studio: &mut Studio| {
-            studio.draw(shown, |moment| place.with(|simulation| simulation.bring_home(moment)))
+        let Self { executor, view, shown, .. } = self;
+        let mut draw = |view: &mut View| {
+            view.draw(shown, |moment| executor.with(|simulation| simulation.bring_home(moment)))
         };
         match draft {
-            Some(draft) => simplified(draft, studio, draw),
-            None => draw(studio),
+            Some(draft) => simplified(draft, view, draw),
+            None => draw(view),
         }
     }
 
-    /// Does what a change says; what concerns the simulation becomes a task of its own.
+    /// Applies a change. A change of the simulation becomes a task of its own.
     ///
     /// # Errors
-    /// It cannot be done, and nothing has changed; or the simulation's thread has ended.
+    /// The change is refused, and nothing has changed; or the simulation's thread has ended.
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
-        let studio = &mut self.studio;
+        let view = &mut self.view;
         match change {
-            Change::Camera(camera) => camera.validate().map(|()| studio.camera = camera)?,
-            Change::Look(look) => look.validate().map(|()| studio.look = *look)?,
-            Change::BodyLook(look) => look.validate().map(|()| studio.body_look = look)?,
+            Change::Camera(camera) => camera.validate().map(|()| view.camera = camera)?,
+            Change::Look(look) => look.validate().map(|()| view.look = *look)?,
+            Change::BodyLook(look) => look.validate().map(|()| view.body_look = look)?,
             Change::Lights(lights) => {
                 check_lights(&lights)?;
-                studio.lights = lights;
+                view.lights = lights;
             }
-            Change::LevelOfDetail(level) => level.validate().map(|()| studio.level_of_detail = level)?,
+            Change::LevelOfDetail(level) => level.validate().map(|()| view.level_of_detail = level)?,
             Change::Picture(settings) => self.set_picture(settings)?,
             Change::Wind(wind) => wind.check_as("wind").map(|()| self.direction.wind = wind)?,
             Change::Motion(motion) => self.direction.set_motion(*motion)?,
             Change::Drag(ray) => {
                 let hand = &mut self.direction.hand;
-                *hand = hand.and_then(|hand| ray.at_depth_of(&studio.camera, hand)).or(*hand);
+                *hand = hand.and_then(|hand| ray.at_depth_of(&view.camera, hand)).or(*hand);
             }
             Change::Grab(ray, radius) => self.grab(&ray, radius)?,
             Change::Release => self.release()?,
             Change::Settings(settings) => self.start(Task::Settings(settings), false, 0)?,
             Change::Length(scale) => {
-                let scales = vec![scale; self.studio.guides.strand_count()];
+                let scales = vec![scale; self.view.guides.strand_count()];
                 self.start(Task::Lengths(scales), false, 0)?;
             }
             Change::Reset => {
@@ -294,12 +242,22 @@ impl<P: Place> Session<P> {
         Ok(())
     }
 
+    /// Changes the view without a check: the next picture refuses settings outside their range.
+    pub fn set_camera(&mut self, camera: Camera) {
+        self.view.camera = camera;
+    }
+
+    /// Changes the look of the hair without a check, likewise.
+    pub fn set_look(&mut self, look: Look) {
+        self.view.look = look;
+    }
+
     /// Changes size and finish of the pictures; nothing changes where that fails.
     fn set_picture(&mut self, settings: PictureSettings) -> Result<(), Error> {
-        // What is refused is refused at once, though it may be drawn only later.
+        // Refused at once, although a draft may be drawn with it only later.
         settings.validate()?;
         let drawn = self.draft.map_or(settings, |draft| draft.settings(settings));
-        self.studio.painter.set_picture(&drawn)?;
+        self.view.painter.set_picture(&drawn)?;
         self.settings = settings;
         Ok(())
     }
@@ -309,7 +267,7 @@ impl<P: Place> Session<P> {
         self.settings
     }
 
-    /// Takes the hair that a line of sight meets in what is shown into the hand.
+    /// Takes the hair that a line of sight meets in the shown moment into the hand.
     fn grab(&mut self, ray: &Ray, radius: f32) -> Result<(), Error> {
         let Some(Picked { point, index, lane }) = self.pick(ray, radius)? else { return self.release() };
         self.direction.hand = Some(point);
@@ -323,32 +281,48 @@ impl<P: Place> Session<P> {
         }
     }
 
-    /// The hair that a line of sight meets first in what is shown, before the body, within a radius \[m\] of it.
+    /// The hair that a line of sight meets first in the shown moment, before the body, within a radius \[m\] of it.
     ///
     /// # Errors
     /// The GPU that had its points failed, and falling back to the CPU is not allowed.
     pub fn pick(&mut self, ray: &Ray, radius: f32) -> Result<Option<Picked>, Error> {
-        let Self { place, shown, studio, .. } = self;
-        place.with(|simulation| simulation.bring_home(shown))?;
-        let Studio { guides, painter, .. } = studio;
+        let Self { executor, shown, view, .. } = self;
+        executor.with(|simulation| simulation.bring_home(shown))?;
+        let View { guides, painter, .. } = view;
         let body = painter.mesh().map(|mesh| (mesh, &shown.world_from_head));
         let shape = [guides.strand_count(), guides.points_per_strand()];
         Ok(ray.hair(shown.positions(), shape, radius, body))
     }
 
-    /// What happened to the devices, human-readable.
+    /// Points of the shown moment \[m\], world space, shape `[strand][point]`. A GPU is waited for.
+    ///
+    /// # Errors
+    /// As [`Session::pick`].
+    pub fn points(&mut self) -> Result<&[Vec3], Error> {
+        let Self { executor, shown, view, points, .. } = self;
+        executor.with(|simulation| simulation.bring_home(shown))?;
+        let (strands, each) = (view.guides.strand_count(), view.guides.points_per_strand());
+        points.clear();
+        points.extend((0..strands).flat_map(|strand| {
+            let block = &shown.positions()[strand / LANES * each..][..each];
+            block.iter().map(move |lanes| lanes.get(strand % LANES))
+        }));
+        Ok(&self.points)
+    }
+
+    /// Notes on the devices, human-readable.
     pub fn take_notes(&mut self) -> Vec<String> {
-        let mut notes = self.place.with(|simulation| simulation.engine.take_notes());
-        notes.append(&mut self.studio.painter.notes);
+        let mut notes = self.with(Simulation::take_notes);
+        notes.append(&mut self.view.painter.notes);
         notes
     }
 
-    /// Events that were not taken yet.
+    /// Number of events that were not taken.
     pub fn event_count(&self) -> usize {
         self.events.len()
     }
 
-    /// The reports among these events, but for the first so many of them.
+    /// The step reports among these events, without the first so many events.
     pub fn reports_after(&self, event_count: usize) -> Vec<StepReport> {
         let reports = self.events.iter().skip(event_count).filter_map(|event| match event {
             Event::Stepped(report) => Some(report.clone()),
@@ -360,10 +334,5 @@ impl<P: Place> Session<P> {
     /// The next event.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front()
-    }
-
-    /// What is shown.
-    pub fn shown(&self) -> &Moment {
-        &self.shown
     }
 }

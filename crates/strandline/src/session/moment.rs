@@ -34,12 +34,6 @@ struct OnDevice {
 }
 
 impl Moment {
-    /// A moment of points on the host.
-    #[cfg(test)]
-    pub fn of(positions: Vec<Vec3Lanes>) -> Self {
-        Self { positions, on_host: true, ..Self::default() }
-    }
-
     /// The points where they lie on a device.
     pub fn device_points(&self) -> Option<DevicePoints<'_>> {
         let OnDevice { before, after } = self.device.as_ref()?;

@@ -14,8 +14,8 @@ use crate::{
     body::Pose,
     cache::Snapshot,
     groom::Vec3Lanes,
-    hair_pose::HairPose,
-    sim::{Clock, Drive, Settings, SimError, StepReport, Ticks},
+    sim::{Clock, Drift, Drive, Settings, SimError, State, StepReport, Ticks},
+    strands::hair_pose::HairPose,
 };
 
 /// Steps that settling hair makes in one run.
@@ -25,7 +25,7 @@ const MOST_STEPS: u32 = 1_000_000;
 
 /// A simulation in time: steps of fixed length, and the moment between two of them that is shown.
 pub(crate) struct Simulation {
-    pub engine: Engine,
+    pub(super) engine: Engine,
     clock: Clock,
     /// Where the moment lies between the last two states.
     share: f32,
@@ -62,6 +62,52 @@ impl Simulation {
             self.clock.set_time_step(settings.time_step);
         }
         Ok(())
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &Settings {
+        self.engine.model().settings()
+    }
+
+    /// The device; none on the CPU.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.engine.gpu()
+    }
+
+    /// The state. A GPU is waited for.
+    pub fn state(&mut self) -> Result<&State, SimError> {
+        self.engine.state()
+    }
+
+    /// The reports of all steps that were not returned yet. A GPU is waited for.
+    pub fn reports(&mut self) -> Result<Vec<StepReport>, SimError> {
+        self.engine.reports()
+    }
+
+    /// Notes on the device, human-readable.
+    pub fn take_notes(&mut self) -> Vec<String> {
+        self.engine.take_notes()
+    }
+
+    /// Distance of the hair from the groom as loaded, which the head carries.
+    pub fn drift(&mut self) -> Result<Drift, SimError> {
+        self.engine.drift()
+    }
+
+    /// Strands of rods that had to be stiffer for their shape to be stable, and the stiffest of them over its own
+    /// stiffness; 0 and 1 without rods.
+    pub fn stiffened(&self) -> (usize, f32) {
+        self.engine.model().rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest))
+    }
+
+    /// Allows or forbids falling back to the CPU when the GPU fails.
+    pub fn set_fall_back(&mut self, fall_back: bool) {
+        self.engine.fall_back = fall_back;
+    }
+
+    /// Scales the length of every strand, shape `[strand]`.
+    pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), SimError> {
+        self.engine.set_length_scale(scales)
     }
 
     /// Goes back to rest under a pose of the head: what follows is what followed the first time.

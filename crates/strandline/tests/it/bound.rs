@@ -2,15 +2,9 @@
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
 use strandline::{
-    Backend, Event, Picture, Player, Scene,
-    low_level::{
-        Cache, Devices, OutSettings, Prepared, What,
-        groom::{
-            Groom,
-            format::{Part, Scale},
-        },
-        render::Preset,
-    },
+    Backend, Cache, Devices, Event, Groom, OutSettings, Picture, Player, Prepared, Scene, What,
+    format::{Part, Scale},
+    look::Preset,
     scene::{BodyPart, GroomPart, MotionName},
 };
 
@@ -62,7 +56,7 @@ fn all_strands_of_a_style_are_drawn_alike_on_both_backends() {
     let (without, strands, _) = last(&few, Backend::Cpu);
     assert_eq!(strands, 90);
     assert!(difference(&on_cpu, &without) > 2.0, "the comparison can fail");
-    if let Err(error) = strandline::low_level::gpu::Gpu::any() {
+    if let Err(error) = strandline::device::Gpu::any() {
         return eprintln!("not tested on a GPU: {error}");
     }
     let (on_gpu, strands, _) = last(&scene(), Backend::Gpu(Some(0)));
@@ -131,7 +125,7 @@ fn film(path: &std::path::Path) -> Scene {
     scene
 }
 
-/// What a film leaves in a cache: its path.
+/// Writes a film as a cache; returns its path.
 fn written(
     scene: &Scene,
     path: &std::path::Path,
@@ -215,11 +209,8 @@ fn all_strands_leave_with_the_guides_that_they_follow() {
         assert_eq!((&one.guide_flags, &one.influences), (&groom.guide_flags, &groom.influences));
     }
     let at = folder.path().join("all.usda");
-    let settings = OutSettings {
-        what: What::Strands,
-        target: strandline::low_level::Target::Unreal,
-        ..OutSettings::new(&at)
-    };
+    let settings =
+        OutSettings { what: What::Strands, target: strandline::Target::Unreal, ..OutSettings::new(&at) };
     let mut player = Player::new(&scene, scene.devices, false).unwrap();
     player.set_out(&settings).unwrap();
     player.by_ref().for_each(|event| drop(event.unwrap()));

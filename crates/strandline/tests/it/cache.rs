@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use strandline::{
-    Backend, Event, Picture, Player, Scene,
-    low_level::{Cache, OutSettings, Target, What, sim::StrandMethod},
-    scene::MotionName,
+    Backend, Cache, Event, OutSettings, Picture, Player, Scene, Target, What, scene::MotionName,
+    settings::StrandMethod,
 };
 
 const FRAMES: u32 = 14;
@@ -167,7 +166,7 @@ fn what_does_not_fit_is_refused_with_its_mend() {
     let scene = scene();
     whole(&scene, &OutSettings::new(&path));
     let other = Scene {
-        style: strandline::low_level::groom::StyleSettings { strand_count: 61, ..scene.style.clone() },
+        style: strandline::settings::StyleSettings { strand_count: 61, ..scene.style.clone() },
         ..scene.clone()
     };
     let mut player = Player::new(&other, Backend::Cpu, true).unwrap();

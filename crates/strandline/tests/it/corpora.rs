@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use strandline::low_level::body::Random;
+use strandline::math::Random;
 
 #[path = "../../../../fuzz/readers.rs"]
 mod readers;

@@ -11,3 +11,4 @@ mod readme;
 mod scene_reference;
 mod time;
 mod workers;
+mod written;

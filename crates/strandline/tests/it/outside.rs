@@ -3,14 +3,11 @@
 
 use glam::{Vec3, vec3};
 use strandline::{
-    Groom, Pose, Scene, Settings,
+    Groom, Pose, Prepared, Scene, Settings,
+    format::{Scale, Up},
     low_level::{
-        Prepared,
         body::Mannequin,
-        groom::{
-            Guides,
-            format::{Scale, Up},
-        },
+        groom::Guides,
         sim::{self, CpuRunner, Drive},
     },
     scene::Model,
@@ -45,7 +42,7 @@ fn inside(guides: &Guides, distance: impl Fn(Vec3) -> f32) -> (usize, usize, f32
     (points, strands, deepest)
 }
 
-/// How deep \[m\] hair comes to lie in half a second, as the report says: margins are never below 0.
+/// Greatest depth \[m\] of hair within half a second, as reported: margins are never below 0.
 fn simulated(prepared: &Prepared, settings: &Settings) -> f32 {
     let model = sim::Model::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap();
     let mut state = model.rest_state(Pose::IDENTITY);
@@ -91,7 +88,7 @@ fn strands_inside_the_body_are_put_outside_at_load_with_a_note() {
     assert_eq!(guides.position(0, 7), rest.position(0, 7), "what lies outside keeps its bits");
     for settings in [Settings::default(), Settings::constrained()] {
         let found = simulated(&prepared, &settings);
-        // What planes on the ears err by, which curve within 5 mm.
+        // Error of planes on the ears, which curve within 5 mm.
         assert!(found < 5e-4, "{:?}: {found} m deep", settings.strands.method);
     }
 }

@@ -4,10 +4,10 @@
 use strandline::{
     Backend, Error, Event, Hair, Picture, Player, Pose, Scene,
     low_level::{
-        Prepared,
         groom::{LANES, Vec3Lanes},
-        sim::{State, StrandMethod},
+        sim::State,
     },
+    settings::StrandMethod,
 };
 
 const STRANDS: usize = 60;
@@ -27,7 +27,7 @@ fn scene(backend: Backend) -> Scene {
 }
 
 fn hair(scene: &Scene) -> Result<Hair, Error> {
-    Hair::from_scene(scene, Prepared::new(scene)?, scene.devices)
+    Hair::open(scene)
 }
 
 /// The largest difference between the strands of two sets of lanes.
@@ -78,7 +78,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     // Velocities are those of the last state.
     let there = &left.velocities;
     assert_eq!(apart(there, &begun.velocities), 0.0);
-    // What a length pass gave back, or how rods are turned.
+    // Corrections of a length pass, or sections of rods.
     let kept_by = |state: &State| match method {
         StrandMethod::Constrain => state.corrections.clone(),
         StrandMethod::Rods => state.sections.clone(),
@@ -103,7 +103,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     posed.film.settle = 1.0;
     let shown = first_picture(&posed);
     let mut fresh = hair(&posed).unwrap();
-    let camera = strandline::low_level::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
+    let camera = strandline::Prepared::new(&posed).unwrap().camera(64.0 / 48.0);
     assert_eq!(shown, fresh.picture(&camera, &posed.look).unwrap());
     posed.begin_at_rest();
     assert!(first_picture(&posed) != shown);

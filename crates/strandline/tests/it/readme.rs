@@ -1,6 +1,6 @@
 //! The README's code is that of examples/hello.rs, which is compiled and run with the other examples.
 
-use strandline::{Hair, Scene, low_level::Prepared};
+use strandline::{Hair, Scene};
 
 #[test]
 fn the_readme_shows_the_example() {
@@ -16,7 +16,7 @@ fn the_readme_shows_the_example() {
 fn hair_is_opened_on_the_devices_that_a_file_names() {
     let open = |text: &str| {
         let scene = Scene::parse(&format!("style.strand_count = 8\n{text}"), "scene.toml").unwrap();
-        Hair::from_scene(&scene, Prepared::new(&scene).unwrap(), scene.devices).map(drop)
+        Hair::open(&scene).map(drop)
     };
     open("devices = { simulation = \"cpu\", pictures = \"cpu\" }").unwrap();
     // No machine has so many.

@@ -3,8 +3,9 @@
 
 use glam::Vec3;
 use strandline::{
-    Backend, Event, Live, Player, Pose, Scene,
-    low_level::{Change, Command, LiveEvent, groom::Vec3Lanes, sim::State},
+    Backend, Change, Event, Live, Player, Pose, Scene,
+    live::{Command, LiveEvent},
+    low_level::{groom::Vec3Lanes, sim::State},
     scene::{MotionName, WindSection},
 };
 
@@ -109,16 +110,16 @@ fn a_head_with_few_steps_is_where_its_motion_has_it() {
     slow.simulation.volume.enabled = false;
     let (steps, state) = play(&slow, Backend::Cpu);
     assert_eq!(steps, 5);
-    let pivot = strandline::low_level::Prepared::new(&slow).unwrap().head.pivot();
-    let expected = strandline::low_level::HeadMotion::new(&slow.motion, pivot).unwrap().pose(0.5);
+    let pivot = strandline::Prepared::new(&slow).unwrap().head.pivot();
+    let expected = strandline::HeadMotion::new(&slow.motion, pivot).unwrap().pose(0.5);
     assert_eq!(state.world_from_head, expected);
 }
 
 #[test]
 fn a_frame_without_time_moves_nothing_but_the_head() {
     let scene = scene(1.0 / 60.0, 60.0, 1.0);
-    let prepared = strandline::low_level::Prepared::new(&scene).unwrap();
-    let mut hair = strandline::Hair::from_scene(&scene, prepared, Backend::Cpu).unwrap();
+    let prepared = strandline::Prepared::new(&scene).unwrap();
+    let mut hair = strandline::Hair::from_prepared(prepared, Backend::Cpu).unwrap();
     let turned = Pose { rotation: glam::Quat::from_rotation_y(0.01), ..Pose::IDENTITY };
     for seconds in [0.0, -1.0, f64::NAN] {
         assert!(hair.step(seconds, &turned).unwrap().is_empty());
@@ -143,8 +144,8 @@ fn hair_that_begins_in_a_pose_moves_alike_at_every_frame_rate() {
         scene
     };
     let start = film(10.0);
-    let prepared = strandline::low_level::Prepared::new(&start).unwrap();
-    let mut hair = strandline::Hair::from_scene(&start, prepared, Backend::Cpu).unwrap();
+    let prepared = strandline::Prepared::new(&start).unwrap();
+    let mut hair = strandline::Hair::from_prepared(prepared, Backend::Cpu).unwrap();
     let turned = Pose { rotation: glam::Quat::from_rotation_y(0.2), ..Pose::IDENTITY };
     (0..20).for_each(|_| drop(hair.step(1.0 / 60.0, &turned).unwrap()));
     hair.save_pose(&file).unwrap();
@@ -184,13 +185,10 @@ fn a_window_with_very_short_steps_slows_time_down_and_the_head_with_it() {
     // Five frames of 16 steps, seen a step later; at the full rate the motion would be at 83 ms.
     let saved = Scene::load(&path).unwrap();
     assert!((saved.film.start - 79e-4).abs() < 1e-8, "{} s", saved.film.start);
-    let head = strandline::low_level::Prepared::new(&slow).unwrap().head;
-    let prepared = strandline::low_level::Prepared::new(&saved).unwrap();
-    let found = strandline::Hair::from_scene(&saved, prepared, Backend::Cpu)
-        .unwrap()
-        .state()
-        .unwrap()
-        .world_from_head;
+    let head = strandline::Prepared::new(&slow).unwrap().head;
+    let prepared = strandline::Prepared::new(&saved).unwrap();
+    let found =
+        strandline::Hair::from_prepared(prepared, Backend::Cpu).unwrap().state().unwrap().world_from_head;
     let away = |time: f64| found.rotation.angle_between(head.pose(time).rotation);
     // Between the ends of a frame the head goes straight.
     assert!(away(saved.film.start) < 0.1 * away(80e-3), "{} rad", away(saved.film.start));

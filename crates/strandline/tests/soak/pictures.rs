@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use glam::{Vec2, Vec3};
-use strandline::low_level::render::{BodyLook, LevelOfDetail, PictureSettings, fibre::FibreModel};
-use strandline::scene::{Model, MotionName, MotionSection, WindSection};
 use strandline::{
-    Backend, Camera, Event, Light, Live, Look, Picture, Scene,
-    low_level::{Change, Command, LiveEvent, Ray, Shown, body},
+    Backend, Camera, Change, Event, Light, Live, Look, Picture, PictureSettings, Ray, Scene,
+    live::{Command, LiveEvent, Shown},
+    look::{BodyLook, LevelOfDetail, fibre::FibreModel},
+    low_level::body,
+    scene::{Model, MotionName, MotionSection, WindSection},
 };
 
 const PICTURES: u64 = 10_000;
@@ -346,7 +347,7 @@ fn ten_thousand_pictures_with_changes_at_random() {
             let now = person.begin_again();
             assert_eq!(apart(&now[0], &first[0]), 0, "at rest it is what it was");
             assert_eq!(apart(&now[1], &first[1]), 0, "it moves as it did the first time");
-            // What is refused is reported once, and nothing else; a scene that goes away takes its last errors along.
+            // Refusals alone are reported, each once; a scene that goes away takes its last errors along.
             let untold = person.refused - person.errors;
             assert!(untold <= 3 * person.loads, "{untold} of {}, {} loads", person.refused, person.loads);
             person.tell(Command::Play(true));

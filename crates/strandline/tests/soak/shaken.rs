@@ -3,8 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use strandline::low_level::sim::StrandMethod;
-use strandline::{Backend, Hair, Pose, Scene, low_level::Prepared};
+use strandline::{Backend, Hair, Pose, Scene, settings::StrandMethod};
 
 /// Shakes in a second, and how far to each side \[m\]: 20 times 9.81 m/s^2 at the turning points.
 const RATE: f64 = 5.0;
@@ -37,7 +36,7 @@ fn shake(method: StrandMethod, seconds: f64) {
     let seconds = hours.as_ref().map_or(seconds, |hours| 3600.0 * hours.parse::<f64>().unwrap());
     let mut scene = scene();
     scene.simulation.strands.method = method;
-    let mut hair = Hair::from_scene(&scene, Prepared::new(&scene).unwrap(), scene.devices).unwrap();
+    let mut hair = Hair::open(&scene).unwrap();
     let at = |time: f64| Pose {
         translation: glam::Vec3::X * (REACH * (TAU * RATE * time).sin()) as f32,
         ..Pose::IDENTITY

@@ -27,7 +27,7 @@ fn written(ending: &str, strands: usize) -> Vec<u8> {
     }
     let path = tempfile::tempdir().unwrap();
     let path = path.path().join(format!("groom.{ending}"));
-    strandline::low_level::groom::format::save(&groom, &path).unwrap();
+    strandline::format::save(&groom, &path).unwrap();
     std::fs::read(path).unwrap()
 }
 
@@ -107,7 +107,7 @@ fn a_groom_takes_no_more_than_is_asked_for() {
     let itself = 30;
     for (name, text) in files {
         std::fs::write(folder.path().join(name), &text).unwrap();
-        let format = strandline::low_level::groom::format::Format::of(Path::new(name)).unwrap();
+        let format = strandline::format::Format::of(Path::new(name)).unwrap();
         let (code, peak, error) = run(folder.path(), &["convert", name, "out.hair", "--per-strand", "2"]);
         assert!(matches!(code, Some(0 | 1)), "{name}: {error}");
         let length = (text.len() >> 20) as u64;

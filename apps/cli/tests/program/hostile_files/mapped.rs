@@ -9,7 +9,7 @@ pub fn write_mapped(folder: &Path, name: &str) {
         groom.push((0..4).map(|point| glam::Vec3::new(0.01 * x as f32, -0.02 * point as f32, 0.1)));
     }
     groom.root_uvs = Some(vec![glam::Vec2::splat(0.5); 8]);
-    strandline::low_level::groom::format::save(&groom, &folder.join("mapped.npz")).unwrap();
+    strandline::format::save(&groom, &folder.join("mapped.npz")).unwrap();
     let scene = format!(
         "film = {{ frames = 1, settle = 0.0 }}\npicture = {{ width = 16, height = 16 }}\nlook.color_map = \"{name}\"\n\
          groom.file = \"mapped.npz\"\n[devices]\nsimulation = \"cpu\"\npictures = \"cpu\"\n"

@@ -83,7 +83,7 @@ fn give(name: &str, bytes: &[u8]) {
 
 /// Numbers between 0 and 1, the same ones every time, at no special places.
 fn numbers() -> impl FnMut() -> f64 {
-    let mut random = strandline::low_level::base::Random::new(1, 0);
+    let mut random = strandline::math::Random::new(1, 0);
     move || f64::from(random.bits()) / (1_u64 << 32) as f64
 }
 

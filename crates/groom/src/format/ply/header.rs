@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::super::bytes::Source;
 use crate::GroomError;
 
-/// Longest header \[byte\], and most elements and properties of one.
+/// Longest header \[byte\], and its most elements and properties.
 const MAX_HEADER: usize = 1 << 20;
 const MAX_PROPERTIES: usize = 256;
 
@@ -37,7 +37,7 @@ impl Number {
         })
     }
 
-    /// Bytes of one.
+    /// Bytes of a number.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -125,7 +125,7 @@ impl Header {
         }
     }
 
-    /// Takes a line; what was expected when it is wrong.
+    /// Parses a line; an error says what was expected.
     fn line(&mut self, line: &str) -> Result<(), &'static str> {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words[..] {

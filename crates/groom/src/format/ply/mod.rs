@@ -35,7 +35,7 @@ struct Tables {
 /// strand.
 ///
 /// # Errors
-/// [`GroomError::Malformed`] with what is wrong.
+/// [`GroomError::Malformed`] with the error.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".ply" };
     let header = Header::new(&source)?;
@@ -81,7 +81,7 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
 /// First point of each strand, and the vertex of each point unless they are in order.
 type Chains = (Vec<u32>, Option<Vec<u32>>);
 
-/// Strands of so many segments each, along edges where there are some.
+/// Strands of a number of segments each, along edges if there are any.
 fn chains(source: &Source, segments: &[f64], edges: &Table, vertices: u64) -> Result<Chains, GroomError> {
     let strands = segments.len() as u64;
     if !(1..=MAX_STRANDS).contains(&strands) {
@@ -157,7 +157,7 @@ fn indices(source: &Source, order: &[f64], vertices: u64) -> Result<Vec<u32>, Gr
     }
 }
 
-/// Gives points what vertices have; `order` names the vertex of each point.
+/// Gives points the attributes of their vertices; `order` names the vertex of each point.
 fn of_vertices(groom: &mut Groom, vertices: &Table, order: Option<&[u32]>) {
     fn placed<T: Copy>(values: Vec<T>, order: Option<&[u32]>) -> Vec<T> {
         match order {

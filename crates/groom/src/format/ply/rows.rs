@@ -15,7 +15,7 @@ pub struct Column {
     /// End of the list of each row among the values; empty for numbers that are not lists.
     ends: Vec<usize>,
     is_list: bool,
-    /// Numbers, or the lists one behind the other.
+    /// Numbers, or the concatenated lists.
     pub values: Vec<f64>,
 }
 

@@ -1,9 +1,6 @@
-//! What happens when the GPU goes away or has no memory left.
+//! Loss of a GPU, and a GPU without memory.
 
-use strandline::{
-    Backend, Event, Film, Hair, Player, Settings,
-    low_level::{gpu::Gpu, sim::VolumeSettings},
-};
+use strandline::{Backend, Event, Film, Hair, Player, Settings, device::Gpu, settings::VolumeSettings};
 
 use super::{apart, gpu, hair, scene, turned};
 
@@ -62,7 +59,7 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
         let mut hair = match gpu {
             Some(gpu) => hair(gpu),
             None => {
-                let prepared = strandline::low_level::Prepared::new(&scene()).unwrap();
+                let prepared = strandline::Prepared::new(&scene()).unwrap();
                 let settings = scene().simulation;
                 Hair::with_body(Backend::Cpu, prepared.guides, None, prepared.colliders, &settings).unwrap()
             }

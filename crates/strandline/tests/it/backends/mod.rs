@@ -4,12 +4,11 @@
 mod lost;
 
 use strandline::{
-    Backend, Event, Hair, Picture, Player, Pose, Scene,
+    Backend, Devices, Event, Hair, Picture, Player, Pose, Scene,
+    device::Gpu,
+    look::Preset,
     low_level::{
-        Devices,
-        gpu::Gpu,
         groom::{LANES, Vec3Lanes},
-        render::Preset,
         sim::State,
     },
     scene::MotionName,
@@ -46,11 +45,11 @@ fn scene() -> Scene {
 
 fn hair(gpu: &Gpu) -> Hair {
     let scene = scene();
-    let prepared = strandline::low_level::Prepared::new(&scene).unwrap();
+    let prepared = strandline::Prepared::new(&scene).unwrap();
     let hair = Hair::with_device(gpu, prepared.guides, None, prepared.colliders, &scene.simulation);
     let mut hair = hair.unwrap();
     // Two lights with shadow and one without, each shining from one place.
-    hair.lights = scene.look.lights(glam::Vec3::ZERO);
+    hair.set_lights(scene.look.lights(glam::Vec3::ZERO)).unwrap();
     hair
 }
 
@@ -167,14 +166,15 @@ fn a_scene_looks_alike_wherever_it_is_simulated_and_drawn() {
 fn more_lights_than_a_gpu_draws_are_refused_or_drawn_on_the_cpu() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
-    hair.lights = vec![hair.lights[0]; 9];
+    let light = hair.lights()[0];
+    hair.set_lights(vec![light; 9]).unwrap();
     let camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
     let look = strandline::Look { follow_strands: 1, ..strandline::Look::thesis() };
     let error = hair.picture(&camera, &look).unwrap_err().to_string();
     assert!(error.contains("9 lights with shadow, at most 8"), "{error}");
-    hair.lights.truncate(8);
+    hair.set_lights(vec![light; 8]).unwrap();
     hair.picture(&camera, &look).unwrap();
-    hair.lights.push(hair.lights[0]);
+    hair.set_lights(vec![light; 9]).unwrap();
     hair.set_fall_back(true);
     hair.take_notes();
     for _ in 0..2 {
@@ -184,7 +184,7 @@ fn more_lights_than_a_gpu_draws_are_refused_or_drawn_on_the_cpu() {
     }
     let notes = hair.take_notes();
     assert!(notes.len() == 1 && notes[0].contains("as long as it is so: 9 lights"), "{notes:?}");
-    hair.lights.truncate(8);
+    hair.set_lights(vec![light; 8]).unwrap();
     hair.picture(&camera, &look).unwrap();
     assert!(hair.drawn_on().starts_with("gpu:"), "{}", hair.drawn_on());
 }
@@ -202,19 +202,16 @@ fn a_second_picture_asks_for_no_more_memory() {
     gpu.set_memory_limit(used);
     for distance in [0.5, 0.2] {
         camera.position *= distance;
-        hair.lights.truncate(2);
+        hair.set_lights(hair.lights()[..2].to_vec()).unwrap();
         hair.picture(&camera, &look).unwrap();
         assert_eq!(gpu.memory_used(), used);
     }
-    let wider = strandline::low_level::render::PictureSettings::sized(4096, 4096);
+    let wider = strandline::PictureSettings::sized(4096, 4096);
     let error = hair.set_picture(&wider).unwrap_err().to_string();
     assert!(error.contains("out of memory"), "{error}");
     assert!(hair.picture(&camera, &look).is_ok(), "the old size stays");
     gpu.set_memory_limit(u64::MAX);
-    let error = hair
-        .set_picture(&strandline::low_level::render::PictureSettings::sized(8192, 64))
-        .unwrap_err()
-        .to_string();
+    let error = hair.set_picture(&strandline::PictureSettings::sized(8192, 64)).unwrap_err().to_string();
     assert!(error.contains("samples") && error.contains("8192"), "{error}");
 }
 
@@ -296,8 +293,8 @@ fn a_hand_holds_on_a_gpu_and_when_it_goes_away() {
 fn mic0_is_for_the_cpu_and_auto_takes_it_there() {
     let Some(gpu) = gpu() else { return };
     let mut scene = scene();
-    scene.simulation.volume.preconditioner = strandline::low_level::sim::Preconditioner::Mic0;
-    let prepared = strandline::low_level::Prepared::new(&scene).unwrap();
+    scene.simulation.volume.preconditioner = strandline::settings::Preconditioner::Mic0;
+    let prepared = strandline::Prepared::new(&scene).unwrap();
     let made = Hair::with_device(&gpu, prepared.guides, None, Vec::new(), &scene.simulation);
     let error = made.err().unwrap().to_string();
     assert!(error.contains("mic0") && error.contains("chebyshev"), "{error}");

@@ -1,8 +1,9 @@
-//! What leaves hair that plays: videos and scenes.
+//! Videos and scenes of hair that plays.
 
-use strandline::low_level::render::PictureSettings;
-use strandline::low_level::{Change, Command, LiveEvent};
-use strandline::{Live, Scene};
+use strandline::{
+    Change, Live, PictureSettings, Scene,
+    live::{Command, LiveEvent},
+};
 
 use super::helpers::{error, next, scene, still, wait, waking};
 
@@ -46,7 +47,7 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
     let start = Scene::load(&folder.path().join("saved.toml")).unwrap().film.start;
     // Three frames, seen a step later.
     assert!((start - 2.0 / 60.0).abs() < 1e-6, "{start}");
-    // Where nothing can be written, that is reported, and it plays on.
+    // An unwritable folder is reported, and it plays on.
     let live = Live::new(scene(), waking()).unwrap();
     std::fs::write(folder.path().join("file"), b"x").unwrap();
     live.send(Command::Record(folder.path().join("file/three")));
@@ -69,7 +70,7 @@ fn a_scene_is_saved_even_when_nobody_waits_for_it() {
     let refused = error(&live);
     assert!(refused.starts_with("cannot save the hair"), "{refused}");
     live.send(Command::Save(Box::new(scene()), 1, path.clone()));
-    // What comes behind it does not count, in whatever batch it arrives.
+    // Later commands do not count, in whatever batch they arrive.
     live.send(Change::Reset);
     drop(live);
     let saved = Scene::load(&path).unwrap();

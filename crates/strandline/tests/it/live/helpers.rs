@@ -2,8 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use strandline::low_level::{Command, LiveEvent, Shown};
-use strandline::{Backend, Live, Scene};
+use strandline::{
+    Backend, Live, Scene,
+    live::{Command, LiveEvent, Shown},
+};
 
 pub fn scene() -> Scene {
     let mut scene = Scene::demo();

@@ -5,10 +5,11 @@ mod helpers;
 
 use std::time::Duration;
 
-use strandline::low_level::render::PictureSettings;
-use strandline::low_level::{Change, Command, LiveClock, LiveEvent, Prepared, Ray, Shown};
-use strandline::scene::{MotionName, MotionSection};
-use strandline::{Camera, Live, Look, Settings};
+use strandline::{
+    Camera, Change, Live, Look, PictureSettings, Prepared, Ray, Settings,
+    live::{Command, LiveClock, LiveEvent, Shown},
+    scene::{MotionName, MotionSection},
+};
 
 use helpers::{error, next, scene, settled, still, wait, waking};
 
@@ -20,7 +21,7 @@ fn it_plays_and_stands_still_and_makes_single_steps() {
     assert!(seen[3].picture != seen[0].picture && seen[3].step.is_some());
     assert_eq!(seen[3].places, ["cpu", "cpu"]);
     live.send(Command::Play(false));
-    // What was on its way is shown, three pictures at most; then nothing comes.
+    // Pictures on their way are shown, three at most; then nothing comes.
     live.wait_idle();
     let resting = live.take_shown().unwrap_or(seen[3].clone());
     assert!(resting.frame <= seen[3].frame + 3, "it does not stand still");
@@ -105,7 +106,7 @@ fn first_camera() -> Camera {
 
 #[test]
 fn it_may_be_left_at_any_moment_under_any_commands() {
-    let mut random = strandline::low_level::base::Random::new(7, 0);
+    let mut random = strandline::math::Random::new(7, 0);
     for round in 0..12 {
         let live = Live::new(scene(), waking()).unwrap();
         for _ in 0..round * 4 {
@@ -130,7 +131,7 @@ fn it_may_be_left_at_any_moment_under_any_commands() {
     }
 }
 
-/// How often of twenty times a command shows within so many pictures that come after it. The machine
+/// Number of times out of twenty that a command shows within so many pictures after it. The machine
 /// may be busy: then pictures pass that this thread does not see.
 fn in_time(pictures: u64, tell: impl Fn(&Live, u64) -> u64, shows: impl Fn(&Shown, u64) -> bool) -> usize {
     let live = Live::new(scene(), waking()).unwrap();
@@ -235,7 +236,7 @@ fn a_slow_picture_is_simpler_while_it_moves_and_full_when_it_rests() {
     assert!(settled(&live).draft, "what changes is simpler too");
     clock.advance(Duration::from_secs(1));
     assert!(!next(&live).draft);
-    // What takes 70 ms is not slow.
+    // A picture of 70 ms is not slow.
     clock.set_picture_seconds(0.07);
     live.send(Command::Adapt(false));
     live.send(Change::Camera(Camera::front()));

@@ -1,13 +1,8 @@
 //! docs/limits.md has the limits of inputs as the code has them.
 
 use strandline::{
-    Scene,
-    low_level::{
-        base::Group,
-        groom::format,
-        render::{memory::MAX_LIGHTS, surroundings::Panorama},
-    },
-    scene,
+    Scene, format, look::surroundings::Panorama, low_level::render::memory::MAX_LIGHTS, scene,
+    settings::Group,
 };
 
 /// Most items of a list, by its key.

@@ -2,11 +2,8 @@
 //! is no number are refused by its key, in every component, before anything is grown.
 
 use strandline::{
-    Error, Scene,
-    low_level::{
-        Prepared,
-        base::{Group, Kind, Row, Table},
-    },
+    Error, Prepared, Scene,
+    settings::{Group, Kind, Row, Table},
 };
 
 /// Every number with the key that a file names it by and the lines that have to stand before it.
@@ -142,7 +139,7 @@ fn both_ends_of_every_range_are_taken_and_nothing_beyond() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What was reported, as it was reported.
+/// Reported cases.
 #[test]
 fn what_passed_or_failed_once_does_not_again() {
     let taken = [

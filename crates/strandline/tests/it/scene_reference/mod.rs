@@ -9,7 +9,7 @@ use std::path::Path;
 
 use strandline::{
     Backend, Scene, Style,
-    low_level::{groom::StyleSettings, sim::StrandMethod},
+    settings::{StrandMethod, StyleSettings},
 };
 
 /// docs/scene.md as it is; recorded again with STRANDLINE_BLESS=1, as `cargo xtask docs` does.
@@ -66,7 +66,7 @@ fn a_style_in_a_file_is_the_style_of_the_command_line() {
     );
 }
 
-/// What held a style before there were rods.
+/// Settings that held a style before there were rods.
 #[test]
 fn what_rods_replace_is_refused_and_other_keys_of_older_files_are_taken() {
     let old = "[simulation.angles]\nhold = 8.0\n";
@@ -142,9 +142,12 @@ fn devices_of_older_files_are_taken_and_newer_ones_win() {
 
 #[test]
 fn colours_and_looks_that_a_file_gives_are_meant() {
-    use strandline::low_level::render::{
-        Look, ToneMap,
-        fibre::{FibreModel, Pigment},
+    use strandline::{
+        Look,
+        look::{
+            ToneMap,
+            fibre::{FibreModel, Pigment},
+        },
     };
     let read = |text: &str| Scene::parse(text, "scene").unwrap();
     assert_eq!(read("[look]\npreset = 'red'").look, Look::red());

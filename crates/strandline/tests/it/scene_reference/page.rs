@@ -4,13 +4,10 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use strandline::{
-    Scene, Style,
-    low_level::{
-        base::{Group, Kind, Row, Table},
-        render::{GroupLook, Light},
-        sim::rods::GroupSettings,
-    },
+    Light, Scene, Style,
+    look::GroupLook,
     scene::{BodyPart, CapsuleSection, ColliderSection, GroomPart, KeyframeSection, SphereSection},
+    settings::{Group, Kind, Row, Table, rods::GroupSettings},
 };
 
 const HEAD: &str = r#"# Scene files
@@ -62,7 +59,7 @@ pub fn written() -> String {
     page
 }
 
-/// What a style sets beside strands.
+/// Settings of a style beside strands.
 fn styles() -> String {
     let mut text = "Without a groom file the `[style]` is grown, and two keys of other sections take their default from it:\n\n\
                     | style | `groom.points_per_strand` | `level_of_detail.segments_per_span` |\n|---|---|---|\n"

@@ -6,12 +6,12 @@ use strandline_gpu::Gpu;
 use crate::{
     BoundStrands,
     body::Mesh,
-    devices::{Opened, place},
     groom::{Frames, Guides, Vec3Lanes},
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
         gpu::{DevicePoints, GpuRenderer},
     },
+    scene::devices::{Opened, device_name},
 };
 
 /// A renderer and what it takes to start another one on the CPU.
@@ -22,7 +22,7 @@ pub(crate) struct Painter {
     stands_in: bool,
     /// The strands that are drawn, at rest.
     strands: Guides,
-    /// What moves them where they are not the simulated ones, and where it has them.
+    /// Binding that moves them where they are not the simulated ones, and their positions.
     bound: Option<BoundStrands>,
     frames: Frames,
     places: Vec<Vec3Lanes>,
@@ -30,9 +30,9 @@ pub(crate) struct Painter {
     settings: PictureSettings,
     /// The light whose layers colour the hair.
     pub layers_of: Option<usize>,
-    /// Whether pictures are drawn on the CPU when the GPU fails.
+    /// True where pictures are drawn on the CPU when the GPU fails.
     pub fall_back: bool,
-    /// What happened on the way, human-readable.
+    /// Notes, human-readable.
     pub notes: Vec<String>,
 }
 
@@ -82,9 +82,9 @@ impl Painter {
         })
     }
 
-    /// Where the last picture was drawn, human-readable.
+    /// Device of the last picture, human-readable.
     pub fn drawn_on(&self) -> String {
-        if self.stands_in { place(None) } else { place(self.gpu()) }
+        if self.stands_in { device_name(None) } else { device_name(self.gpu()) }
     }
 
     /// The device, unless all pictures are drawn on the CPU.

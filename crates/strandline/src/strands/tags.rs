@@ -1,14 +1,14 @@
-//! What a groom says of its strands beyond their points: for files, not for pictures.
+//! Attributes of strands beyond their points: for files, not for pictures.
 
 use crate::groom::Groom;
 
 /// Largest group number that is kept as it is: names lie in a list by their numbers.
 const MOST_NUMBER: u32 = 4095;
 
-/// What strands of a groom are called and where they grow.
+/// Groups and root coordinates of the strands of a groom.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tags {
-    /// Where each root lies on the scalp, 0 to 1, shape `[strand]`.
+    /// Coordinates of each root on the scalp, 0 to 1, shape `[strand]`.
     pub root_uvs: Option<Vec<[f32; 2]>>,
     /// The group of each strand, shape `[strand]`.
     pub groups: Option<Vec<u16>>,

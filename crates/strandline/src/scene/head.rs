@@ -7,7 +7,7 @@ use crate::{
     scene::MotionSection,
 };
 
-/// Where a head is at every time: a motion about a pivot, and a turn added to it.
+/// Pose of a head at every time: a motion about a pivot, and a turn added to it.
 #[derive(Clone, Debug)]
 pub struct HeadMotion {
     motion: Motion,
@@ -16,7 +16,7 @@ pub struct HeadMotion {
 }
 
 impl HeadMotion {
-    /// What a section says about a pivot \[m\], head space.
+    /// The motion of a section about a pivot \[m\], head space.
     ///
     /// # Errors
     /// Keyframes that are missing, not finite or not in the order of their times.

@@ -16,10 +16,8 @@ use crate::{
 };
 
 use super::{
-    looks,
-    place::diagonal,
-    placing::{self, Placing},
-    strands,
+    guess, looks,
+    placing::{Placing, diagonal, place_mesh, upright},
 };
 
 /// Times that files of one groom are as large as each other at most: brows, and hair to the hips.
@@ -27,23 +25,17 @@ const ALIKE: f32 = 30.0;
 /// Least guides of a file that marks none, where others mark some.
 const LEAST_GUIDES: usize = 16;
 
-/// The meshes of a body, head space.
-pub(super) struct Meshes {
-    /// What is drawn.
-    pub drawn: Mesh,
-    /// What hair hits, where that is something else.
-    pub solid: Option<Mesh>,
-}
-
-/// The mesh of a scene's body with its further ones; `mesh` is as its file has it.
-pub(super) fn meshes(scene: &Scene, mut mesh: Mesh, placing: Placing) -> Result<Meshes, Error> {
-    let body = &scene.body;
-    placing::place_mesh(&mut mesh, placing, body.rotation, body.translation);
-    let mut drawn = mesh;
-    let mut solid = (!body.parts.is_empty()).then(|| drawn.clone());
-    for part in &body.parts {
-        let mut mesh = Mesh::load(&scene.path(&part.file), 1.0)?;
-        placing::place_mesh(&mut mesh, part_placing(part, placing), part.rotation, part.translation);
+/// Adds a scene's further meshes to the first, which is in head space. Returns the mesh that hair hits, where it is not
+/// the drawn one.
+pub(super) fn add_meshes(
+    scene: &Scene,
+    drawn: &mut Mesh,
+    further: Vec<Mesh>,
+    first: Placing,
+) -> Result<Option<Mesh>, Error> {
+    let mut solid = (!further.is_empty()).then(|| drawn.clone());
+    for (part, mut mesh) in scene.body.parts.iter().zip(further) {
+        place_mesh(&mut mesh, part_placing(part, first), part.rotation, part.translation);
         if part.visible {
             drawn.append(&mesh)?;
         }
@@ -53,27 +45,21 @@ pub(super) fn meshes(scene: &Scene, mut mesh: Mesh, placing: Placing) -> Result<
             solid.append(&mesh)?;
         }
     }
-    Ok(Meshes { drawn, solid })
+    Ok(solid)
 }
 
-/// The place of a further mesh, where that of the first is known.
+/// Placement of a further mesh, given that of the first.
 pub(super) fn part_placing(part: &BodyPart, first: Placing) -> Placing {
     let scale = match part.scale {
         Scale::Auto => first.scale,
         Scale::Factor(factor) => factor,
     };
-    let turn = if part.up == Up::Auto { first.turn } else { placing::upright(part.up) };
+    let turn = if part.up == Up::Auto { first.turn } else { upright(part.up) };
     Placing { scale, turn }
 }
 
-/// The strands of a scene's further files, each in its own units and axes.
-pub(super) fn read(scene: &Scene, notes: &mut Vec<String>) -> Result<Vec<Groom>, Error> {
-    let parts = scene.groom.parts.iter();
-    parts.map(|part| strands::read(scene, &part.file, part.per_strand, notes)).collect()
-}
-
-/// Those of further files that seem to be in the units and axes of the first: a scene says nothing else of them, they
-/// are of its size, and near.
+/// Further grooms that seem to have the units and axes of the first: the scene gives them none of their own, they have
+/// its size, and they are near it.
 pub(super) fn placed_as_first<'a>(
     scene: &'a Scene,
     first: Option<&Groom>,
@@ -97,26 +83,28 @@ pub(super) fn placed_as_first<'a>(
     parts.filter(move |(groom, part)| is_open(part) && is_beside(groom)).map(|(groom, _)| groom)
 }
 
-/// Adds the strands of a scene's further files to those of the first, head space: each is a group.
+/// Adds the strands of a scene's further files, each a group, to those of the first, which are in head space; `place`
+/// brings them there. Returns notes.
 pub(super) fn add_grooms(
     scene: &Scene,
     groom: &mut Groom,
     further: Vec<Groom>,
     first: Placing,
     mesh: Option<&Mesh>,
-    notes: &mut Vec<String>,
-) -> Result<(), Error> {
+    place: impl Fn(&mut Groom, Placing, Vec3, Vec3),
+) -> Result<Vec<String>, Error> {
+    let mut notes = Vec::new();
     if scene.groom.parts.is_empty() {
-        return Ok(());
+        return Ok(notes);
     }
     name_groups(groom, 0, stem(scene.groom.file.as_deref()));
     for (part, mut further) in scene.groom.parts.iter().zip(further) {
-        let placing = placing::of_part(&further, part, first, mesh);
+        let placing = guess::of_part(&further, part, first, mesh);
         if placing != first {
             notes.push(format!("{}: a unit is {} m", part.file.display(), placing.scale));
         }
-        strands::place(&mut further, placing, scene, part.rotation, part.translation);
-        let apart = mesh.and_then(|mesh| placing::apart(&further, mesh));
+        place(&mut further, placing, part.rotation, part.translation);
+        let apart = mesh.and_then(|mesh| guess::apart(&further, mesh));
         notes.extend(apart.map(|said| format!("{}: {said}", part.file.display())));
         let next = groom.groups.iter().flatten().max().map_or(0, |group| group.saturating_add(1));
         name_groups(&mut further, next, part.name.clone().unwrap_or_else(|| stem(Some(&part.file))));
@@ -139,7 +127,7 @@ pub(super) fn add_grooms(
         }
         groom.append(further);
     }
-    Ok(())
+    Ok(notes)
 }
 
 fn stem(file: Option<&Path>) -> String {

@@ -4,11 +4,11 @@ use strandline_gpu::{Gpu, GpuError};
 use crate::Backend;
 
 settings! {
-    /// Where the simulation runs and where pictures are drawn. When both are on one GPU, points stay there.
+    /// Devices of the simulation and of pictures. When both are on one GPU, points stay there.
     pub struct Devices: Copy {
-        /// Where hair is simulated.
+        /// Device of the simulation.
         simulation: Backend = Backend::Auto;
-        /// Where pictures are drawn.
+        /// Device of the pictures.
         pictures: Backend = Backend::Auto;
     }
 }
@@ -72,7 +72,7 @@ fn open(backend: Backend, doing: &str, notes: &mut Vec<String>) -> Result<Opened
     Ok(Opened { gpu, fall_back })
 }
 
-/// Where something runs, human-readable.
-pub(crate) fn place(gpu: Option<&Gpu>) -> String {
+/// Name of a device, human-readable: cpu, or the adapter's number and name.
+pub(crate) fn device_name(gpu: Option<&Gpu>) -> String {
     gpu.map_or_else(|| "cpu".to_owned(), |gpu| gpu.adapter().to_string())
 }

@@ -1,12 +1,9 @@
-//! What a whole scene takes, asked before anything of it is grown.
+//! Memory of a scene, checked before anything of it is grown.
 
 use glam::Vec3;
-use strandline_base::memory::{self, MemoryError};
+use strandline_base::memory;
 
-use crate::{
-    Error, Scene,
-    render::{RenderError, memory::Drawn},
-};
+use crate::{Error, Scene, render::memory::Drawn};
 
 /// Refuses a scene of so many strands that are simulated, and that others are grown about for pictures, that would
 /// take more memory than a run may.
@@ -21,8 +18,15 @@ pub(crate) fn check(scene: &Scene, simulated: usize, drawn: usize) -> Result<(),
     Ok(memory::check(&needs)?)
 }
 
-impl From<MemoryError> for Error {
-    fn from(error: MemoryError) -> Self {
-        Self::Render(RenderError::TooMuch(error))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_that_takes_too_much_is_refused_as_a_matter_of_memory() {
+        let mut scene = Scene::demo();
+        scene.groom.points_per_strand = 64;
+        let error = check(&scene, 8_000_000, 8_000_000).unwrap_err();
+        assert!(matches!(error, Error::Memory(_)), "{error:?}");
     }
 }

@@ -39,10 +39,10 @@ fn give(bytes: &[u8], guides: &mut Guides) -> Result<(), String> {
     guides.set_velocities(velocities).map_err(|error| error.to_string())
 }
 
-/// Whether the bytes of a file hold masses or velocities for guides.
+/// Checks that the bytes of a file hold masses or velocities for guides.
 ///
 /// # Errors
-/// What they are instead.
+/// The reason why they are not.
 #[doc(hidden)]
 pub fn check_attributes(bytes: &[u8], guides: &mut Guides) -> Result<(), String> {
     give(bytes, guides)

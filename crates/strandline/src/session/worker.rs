@@ -6,16 +6,16 @@
 //! thing back with the next start is the *acknowledgement*.
 //!
 //! `checks/loom` compiles this very file with primitives of its own and walks through all orders in which
-//! the two sides can take turns; hence `crate::sync`.
+//! the two sides can take turns; hence `super::sync`.
 
-use crate::sync::thread::{Builder, JoinHandle};
-use crate::sync::{Arc, Mutex, MutexGuard, PoisonError, Receiver, Sender, channel};
+use super::sync::thread::{Builder, JoinHandle};
+use super::sync::{Arc, Mutex, MutexGuard, PoisonError, Receiver, Sender, channel};
 
 /// Something that jobs are done on.
 pub(crate) trait Work: Send + 'static {
-    /// What is handed over.
+    /// Input of a job.
     type Job: Send + 'static;
-    /// What comes back.
+    /// Result of a job.
     type Done: Send + 'static;
 
     /// Does a job.
@@ -44,7 +44,7 @@ impl<W: Work> Worker<W> {
         let own = work.clone();
         let thread = Builder::new().name("simulation".to_owned()).spawn(move || {
             // Ends with the senders, or when the receiver of results is gone.
-            for job in waiting {
+            while let Ok(job) = waiting.recv() {
                 let result = lock(&own).run(job);
                 if done.send(result).is_err() {
                     break;
@@ -78,13 +78,13 @@ impl<W: Work> Worker<W> {
         Ok(result)
     }
 
-    /// What is worked on, between two jobs: waits for the one that runs.
+    /// The worker's object between two jobs; waits for the one that runs.
     pub fn work(&self) -> MutexGuard<'_, W> {
         lock(&self.work)
     }
 }
 
-/// What a panic left is plain data.
+/// Data that a panic left is plain.
 fn lock<W>(work: &Mutex<W>) -> MutexGuard<'_, W> {
     work.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use strandline_base::Random;
 
-use crate::worker::{Gone, Work, Worker};
+use crate::session::worker::{Gone, Work, Worker};
 
 /// Writes its settings and the number of its frame all over a page.
-struct Scribe {
+struct Writer {
     setting: u64,
     frame: u64,
     ended: Arc<Mutex<bool>>,
@@ -21,7 +21,7 @@ struct Order {
     panic: bool,
 }
 
-impl Work for Scribe {
+impl Work for Writer {
     type Job = Order;
     type Done = Vec<[u64; 2]>;
 
@@ -41,15 +41,15 @@ impl Work for Scribe {
     }
 }
 
-impl Drop for Scribe {
+impl Drop for Writer {
     fn drop(&mut self) {
         *self.ended.lock().unwrap() = true;
     }
 }
 
-fn scribe() -> (Scribe, Arc<Mutex<bool>>) {
+fn writer() -> (Writer, Arc<Mutex<bool>>) {
     let ended = Arc::new(Mutex::new(false));
-    (Scribe { setting: 0, frame: 0, ended: ended.clone() }, ended)
+    (Writer { setting: 0, frame: 0, ended: ended.clone() }, ended)
 }
 
 fn order(page: Vec<[u64; 2]>) -> Order {
@@ -65,12 +65,12 @@ fn random(state: &mut Random) -> u64 {
 /// change at random; checks that no frame is torn, lost, repeated or out of order, and that a setting
 /// shows from the first frame that was started after it.
 fn play(frames: u64, slow: impl Fn(u64) -> [u64; 2], seed: u64) {
-    let (work, ended) = scribe();
+    let (work, ended) = writer();
     let mut worker = Worker::new(work).unwrap();
     let (mut state, mut setting) = (Random::new(seed, 0), 0);
     let mut settings = std::collections::VecDeque::new();
     let mut spare = vec![Vec::new(), Vec::new()];
-    let mut start = |worker: &mut Worker<Scribe>, page, state: &mut Random| {
+    let mut start = |worker: &mut Worker<Writer>, page, state: &mut Random| {
         let number = random(state);
         let change = number.is_multiple_of(5).then_some(number);
         setting = change.unwrap_or(setting);
@@ -110,7 +110,7 @@ fn ten_thousand_frames_come_whole_and_in_order_whichever_side_is_slow() {
 #[test]
 fn ending_in_the_middle_waits_for_the_job_and_no_longer() {
     for wait in [0, 2000] {
-        let (work, ended) = scribe();
+        let (work, ended) = writer();
         let mut worker = Worker::new(work).unwrap();
         let wait = Duration::from_micros(wait);
         worker.start(Order { wait, ..order(Vec::new()) }).unwrap();
@@ -122,7 +122,7 @@ fn ending_in_the_middle_waits_for_the_job_and_no_longer() {
 
 #[test]
 fn a_panic_is_reported_and_the_last_state_stays() {
-    let (work, _) = scribe();
+    let (work, _) = writer();
     let mut worker = Worker::new(work).unwrap();
     worker.start(order(Vec::new())).unwrap();
     worker.start(Order { panic: true, ..order(Vec::new()) }).unwrap();

@@ -1,4 +1,4 @@
-//! Where the head and the wind of a film are, and the steps that lead to each frame.
+//! Timing of a film: head and wind at every time, and the steps that lead to each frame.
 
 use std::sync::Arc;
 
@@ -12,26 +12,26 @@ use crate::{
     sim::{SimError, StepReport},
 };
 
-/// Where the head and the wind are at every time.
+/// Head and wind of a film at every time, and the times of its frames.
 #[derive(Clone)]
-pub(crate) struct Course {
+pub(crate) struct FilmTiming {
     pose: Arc<dyn Fn(f64) -> Pose + Send + Sync>,
     wind: Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
     frames_per_second: f64,
     settle_seconds: f64,
     /// Time of motion and wind at the beginning \[s\].
     start: f64,
-    /// Whether the first picture shows hair as it begins.
+    /// True where the first picture shows hair as it begins.
     posed: bool,
-    /// What carries the head from where the motion begins to where it is with such hair.
+    /// Transform from the head at the beginning of the motion to the head of a pose of hair.
     aside: Pose,
 }
 
 /// Time \[s\] in which a head that a pose of hair has elsewhere than the motion comes to where that has it.
 const JOINING: f64 = 1.0 / 30.0;
 
-impl Course {
-    /// The course of a scene whose head moves so and is `here` at the beginning.
+impl FilmTiming {
+    /// The timing of a scene whose head moves so and is `here` at the beginning.
     pub fn new(scene: &Scene, head: HeadMotion, here: Pose) -> Self {
         let (wind, there) = (scene.wind, head.pose(scene.film.start));
         Self {
@@ -75,7 +75,7 @@ impl Course {
     }
 }
 
-/// What carries a head that is in one pose into another.
+/// Transform that carries a head from one pose to another.
 fn carrying(from: &Pose, to: &Pose) -> Pose {
     let back = from.inverse();
     Pose { rotation: to.rotation * back.rotation, translation: to.point(back.translation) }

@@ -12,12 +12,12 @@ use super::messages::{Command, LiveEvent, Out, Shown};
 use super::playing::{Drafts, Playing, changes_cost, of_size};
 use super::recorder::Recorder;
 use crate::{
-    Error, FilmFiles, Scene,
+    Error, FilmFiles, Scene, Sources,
     render::{FrameReport, Picture},
     session::{Change, Event, FRAME},
 };
 
-/// What the drawing thread receives.
+/// A message to the drawing thread.
 pub(super) enum Message {
     Command(Command),
     /// The scene of the load with this number.
@@ -33,7 +33,7 @@ pub(super) enum Message {
 }
 
 /// The drawing thread.
-pub(super) struct Desk {
+pub(super) struct DrawingThread {
     messages: Receiver<Message>,
     own: Sender<Message>,
     out: Arc<Mutex<Out>>,
@@ -41,7 +41,7 @@ pub(super) struct Desk {
     clock: LiveClock,
 }
 
-impl Desk {
+impl DrawingThread {
     pub fn new(
         messages: Receiver<Message>,
         own: Sender<Message>,
@@ -73,7 +73,7 @@ impl Desk {
         loop {
             let deadline = self.clock.after(playing.patience());
             if playing.is_idle() {
-                // Who waits for it may be gone.
+                // The caller that waits may be gone.
                 for idler in playing.idlers.drain(..) {
                     let _ = idler.send(());
                 }
@@ -98,7 +98,7 @@ impl Desk {
             if let Err(error) = self.frame(playing, draft) {
                 self.emit(LiveEvent::Error(error.to_string()));
                 self.emit(LiveEvent::Paused);
-                // What fails now fails again: it waits for another command.
+                // A frame that fails fails again: it waits for another command.
                 (playing.playing, playing.steps, playing.stale, playing.draft) = (false, 0, false, false);
             }
         }
@@ -118,10 +118,8 @@ impl Desk {
         };
         playing.received += 1;
         match command {
-            Command::Load(scene) => {
-                playing.load = playing.received;
-                self.load(playing, scene);
-            }
+            Command::Load(scene) => self.load(playing, scene, Box::default()),
+            Command::LoadSources(scene, sources) => self.load(playing, scene, sources),
             // Steps that were asked for before are among those it plays.
             Command::Play(true) => (playing.playing, playing.steps) = (true, 0),
             Command::Play(false) => playing.playing = false,
@@ -155,19 +153,20 @@ impl Desk {
             // Another scene was asked for since.
             _ if load != playing.load => {}
             Ok(mut loaded) => {
-                let Loaded { session, scene, notes } = &mut *loaded;
-                let (camera, bounds) = (session.studio.camera, session.studio.bounds);
-                self.emit(LiveEvent::Loaded(load, scene.clone(), camera, bounds, notes.clone()));
+                let Loaded { session, notes } = &mut *loaded;
+                let (camera, bounds) = (*session.view().camera(), session.view().bounds());
+                let scene = Box::new(session.scene().clone());
+                self.emit(LiveEvent::Loaded(load, scene, camera, bounds, notes.clone()));
                 if let (Some(old), Some(_)) = (&playing.scene, &playing.recorder) {
                     let picture = of_size(Change::Picture(session.settings()), old.session.settings());
                     if let Err(error) = session.change(picture) {
                         self.emit(LiveEvent::Error(error.to_string()));
                     }
                 }
-                // How long one takes is known once it is drawn: the first is there sooner when simple.
+                // The time of one is known once it is drawn: the first is there sooner when simple.
                 (playing.stale, playing.tried) = (true, false);
                 playing.drafts = Drafts::START;
-                playing.slow = session.studio.painter.gpu().is_none();
+                playing.slow = session.view().gpu().is_none();
                 (playing.scene, playing.loaded) = (Some(loaded), load);
                 (playing.step, playing.is_frame) = (None, false);
             }
@@ -176,11 +175,14 @@ impl Desk {
     }
 
     /// Loads on a thread of its own, so that what plays continues.
-    fn load(&self, playing: &mut Playing, scene: Box<Scene>) {
+    fn load(&self, playing: &mut Playing, scene: Box<Scene>, sources: Box<Sources>) {
+        playing.load = playing.received;
         playing.loading += 1;
         let (own, number) = (self.own.clone(), playing.load);
         let job = move || {
-            let loaded = catch_unwind(|| Loaded::new(&scene)).unwrap_or(Err(Error::WorkerGone)).map(Box::new);
+            let loaded = catch_unwind(AssertUnwindSafe(|| Loaded::new(&scene, &sources)))
+                .unwrap_or(Err(Error::WorkerGone))
+                .map(Box::new);
             // Nobody waits for it any more when the window is closed.
             let _ = own.send(Message::Loaded(number, loaded));
         };
@@ -233,7 +235,7 @@ impl Desk {
             // The last good state is still there.
             self.emit(LiveEvent::Error(error.to_string()));
         }
-        self.emit(match &playing.scene {
+        self.emit(match &mut playing.scene {
             Some(loaded) if playing.loaded == load => match loaded.save(scene, &path) {
                 Ok(()) => LiveEvent::Saved(path),
                 Err(error) => LiveEvent::Error(error.to_string()),
@@ -245,7 +247,7 @@ impl Desk {
 
     /// Waits for all that the simulation has begun.
     fn catch_up(&self, playing: &mut Playing) -> Result<(), Error> {
-        while playing.scene.as_ref().is_some_and(|loaded| loaded.session.place.started() > 0) {
+        while playing.scene.as_ref().is_some_and(|loaded| loaded.session.started() > 0) {
             playing.stale = true;
             self.take(playing)?;
         }
@@ -271,7 +273,7 @@ impl Desk {
     fn frame(&self, playing: &mut Playing, draft: bool) -> Result<(), Error> {
         let Some(loaded) = &mut playing.scene else { return Ok(()) };
         let moves = (playing.playing || playing.steps > 0) && !playing.is_frame;
-        if moves && loaded.session.place.started() == 0 {
+        if moves && loaded.session.started() == 0 {
             loaded.session.start_frame(playing.received)?;
             playing.steps = playing.steps.saturating_sub(1);
         }
@@ -325,13 +327,13 @@ impl Desk {
             picture,
             frame: playing.frame,
             drawn_after_command: playing.received,
-            simulated_after_command: session.simulated_after,
+            simulated_after_command: session.simulated_after(),
             draft: playing.draft,
             recorded: playing.recorder.as_ref().map(|recorder| recorder.frames),
             drawing,
             step: playing.step.take(),
-            grabbed: session.grabbed,
-            places: [session.simulated_on.clone(), session.studio.painter.drawn_on()],
+            grabbed: session.grabbed(),
+            places: [session.simulated_on().to_owned(), session.view().drawn_on()],
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);
         // A step that was not seen is still reported.

@@ -14,7 +14,7 @@ use crate::{
 const CLEARANCE: f32 = 0.25;
 const MOST_CLEARANCE: f32 = 0.002;
 
-/// How far \[m\] bound strands stay away from a solid.
+/// Distance \[m\] that bound strands keep from a solid.
 pub(crate) fn clearance(shape: &Shape) -> f32 {
     match shape {
         Shape::Grid(grid) => (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE),
@@ -49,7 +49,7 @@ impl BoundStrands {
         &self.binding
     }
 
-    /// Where all strands are \[m\], world space, shape `[block][point]` of lanes, given where the guides are, in
+    /// Positions of all strands \[m\], world space, shape `[block][point]` of lanes, from those of the guides, in
     /// the same shape. `frames` is used again from picture to picture.
     pub fn place(
         &self,

@@ -1,43 +1,67 @@
+mod files;
+
 use std::path::Path;
 
 use glam::Vec3;
 
 use crate::{
-    Devices, Error, Ray, Scene,
+    Devices, Error, HeadMotion, Prepared, Ray, Scene, Sources,
     body::{Aabb, Collider, Mesh, Pose},
-    devices::{Opened, Pair, place},
     gpu::Gpu,
     groom::{Groom, Guides},
-    prepare::Prepared,
     render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
-    session::{Change, Here, Session, Simulation, Studio},
+    scene::GroomSection,
+    scene::devices::{Opened, Pair, device_name},
+    session::{Change, Inline, Session},
     sim::{Settings, State, StepReport},
+    strands::tags::Tags,
 };
-
-/// Points of a guide when nothing else is said.
-const POINTS_PER_STRAND: usize = 16;
 
 /// A head of hair that moves and can be drawn: simulator and renderer in one.
 pub struct Hair {
-    session: Session<Here>,
+    session: Session<Inline>,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
-    /// The lights; two to begin with.
-    pub lights: Vec<Light>,
-    /// Colour of the body.
-    pub body_look: BodyLook,
-    /// How detail follows distance and the size of a pixel.
-    pub level_of_detail: LevelOfDetail,
+    /// Reports of steps since the last frame that was written, from the first file on.
+    unwritten: Option<Vec<StepReport>>,
 }
 
 impl Hair {
-    /// Hair of a groom, without a body.
+    /// Hair of a groom in head space \[m\], without a body. [`Hair::from_sources`] also guesses units and axes, chooses
+    /// a look and brings a groom onto a body.
     ///
     /// # Errors
     /// A setting outside its range, or a groom without strands.
     pub fn new(devices: impl Into<Devices>, groom: &Groom, settings: &Settings) -> Result<Self, Error> {
-        let guides = Guides::resample(groom, POINTS_PER_STRAND)?;
-        Self::with_body(devices, guides, None, Vec::new(), settings)
+        let guides = Guides::resample(groom, GroomSection::default().points_per_strand as usize)?;
+        let mut hair = Self::with_body(devices, guides, None, Vec::new(), settings)?;
+        hair.session.set_tags(Tags::new(groom, None));
+        Ok(hair)
+    }
+
+    /// Everything of a scene but its film, from files, on the devices that it names.
+    ///
+    /// # Errors
+    /// A file that cannot be read, a setting outside its range, a device that is named and not there.
+    pub fn open(scene: &Scene) -> Result<Self, Error> {
+        Self::from_sources(scene, &Sources::default())
+    }
+
+    /// As [`Hair::open`], with grooms, meshes and maps from memory.
+    ///
+    /// # Errors
+    /// As [`Hair::open`]; a source that the scene does not name, or that is unusable.
+    pub fn from_sources(scene: &Scene, sources: &Sources) -> Result<Self, Error> {
+        Self::from_prepared(Prepared::from_sources(scene, sources)?, scene.devices)
+    }
+
+    /// A loaded scene on any devices. [`Prepared::scene`] holds the settings, chosen to fit the groom where the scene
+    /// left them open.
+    ///
+    /// # Errors
+    /// A setting of the scene outside its range; a device that is named and not there.
+    pub fn from_prepared(prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
+        Ok(Self::of(Session::open(prepared, devices.into())?))
     }
 
     /// Guides on a body: its drawn mesh, and the solids that hair hits.
@@ -52,7 +76,7 @@ impl Hair {
         settings: &Settings,
     ) -> Result<Self, Error> {
         let pair = devices.into().open()?;
-        Self::placed(pair, guides, mesh, colliders, settings)
+        Ok(Self::of(Session::new(pair, guides, None, mesh, colliders, settings)?))
     }
 
     /// As [`Hair::with_body`], simulated and drawn on a device that the host owns.
@@ -68,35 +92,11 @@ impl Hair {
     ) -> Result<Self, Error> {
         let opened = || Opened { gpu: Some(gpu.clone()), fall_back: false };
         let pair = Pair { simulation: opened(), pictures: opened(), notes: Vec::new() };
-        Self::placed(pair, guides, mesh, colliders, settings)
+        Ok(Self::of(Session::new(pair, guides, None, mesh, colliders, settings)?))
     }
 
-    fn placed(
-        devices: Pair,
-        guides: Guides,
-        mesh: Option<&Mesh>,
-        colliders: Vec<Collider>,
-        settings: &Settings,
-    ) -> Result<Self, Error> {
-        Ok(Self::of(Session::new(devices, guides, None, mesh, colliders, settings)?))
-    }
-
-    fn simulation(&mut self) -> &mut Simulation {
-        &mut self.session.place.simulation
-    }
-
-    fn of(session: Session<Here>) -> Self {
-        let Studio { lights, body_look, level_of_detail, .. } = &session.studio;
-        let (lights, body_look, level_of_detail) = (lights.clone(), *body_look, *level_of_detail);
-        Self { session, wind: Vec3::ZERO, lights, body_look, level_of_detail }
-    }
-
-    /// Everything of a scene but its film and its devices: these are given, `scene.devices` for those of the file.
-    ///
-    /// # Errors
-    /// A setting of the scene outside its range.
-    pub fn from_scene(scene: &Scene, prepared: Prepared, devices: impl Into<Devices>) -> Result<Self, Error> {
-        Ok(Self::of(Session::of_scene(scene, prepared, devices.into())?))
+    fn of(session: Session<Inline>) -> Self {
+        Self { session, wind: Vec3::ZERO, unwritten: None }
     }
 
     /// Lets `seconds` pass while the head moves evenly to `world_from_head`. Steps have a fixed
@@ -108,7 +108,7 @@ impl Hair {
     /// More than a million steps at once; or the GPU failed and [`Hair::set_fall_back`] was not asked for. The
     /// hair keeps its last state.
     pub fn step(&mut self, seconds: f64, world_from_head: &Pose) -> Result<Vec<StepReport>, Error> {
-        let (start, end) = (self.simulation().end(), *world_from_head);
+        let (start, end) = (self.session.simulation().end(), *world_from_head);
         self.step_along(seconds, |share| start.toward(&end, share))
     }
 
@@ -118,7 +118,10 @@ impl Hair {
     /// As [`Hair::step`].
     pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Result<Vec<StepReport>, Error> {
         let wind = self.wind;
-        Ok(self.simulation().step_along(seconds, &|share| (pose(share), wind))?)
+        let simulation = self.session.simulation_mut();
+        let reports = simulation.step_along(seconds, &|share| (pose(share), wind))?;
+        self.note_reports(&reports);
+        Ok(reports)
     }
 
     /// Takes hair into a hand, and lets go of what it held: the strands that come within `radius` \[m\]
@@ -127,7 +130,7 @@ impl Hair {
     /// # Errors
     /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
     pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, Error> {
-        Ok(self.simulation().grab(hand, radius)?)
+        Ok(self.session.simulation_mut().grab(hand, radius)?)
     }
 
     /// The hair that a line of sight meets first before the body \[m\], world space: where a hand takes
@@ -142,7 +145,7 @@ impl Hair {
 
     /// Moves the hand to a place \[m\], world space, evenly over the next [`Hair::step`].
     pub fn move_hand(&mut self, hand: Vec3) {
-        self.simulation().move_hand(hand);
+        self.session.simulation_mut().move_hand(hand);
     }
 
     /// Lets go of the hair in the hand.
@@ -150,32 +153,31 @@ impl Hair {
     /// # Errors
     /// As [`Hair::grab`].
     pub fn release(&mut self) -> Result<(), Error> {
-        Ok(self.simulation().release()?)
+        Ok(self.session.simulation_mut().release()?)
     }
 
-    /// Whether the hair falls back to the CPU, resuming from its last state, when the GPU fails; it does for
+    /// Allows or forbids falling back to the CPU from the last state when the GPU fails; it is allowed for
     /// [`Backend::Auto`](crate::Backend::Auto).
     pub fn set_fall_back(&mut self, fall_back: bool) {
-        self.simulation().engine.fall_back = fall_back;
-        self.session.studio.painter.fall_back = fall_back;
+        self.session.set_fall_back(fall_back);
     }
 
     /// The device that the hair is simulated on; none on the CPU.
     pub fn gpu(&self) -> Option<&Gpu> {
-        self.session.place.simulation.engine.gpu()
+        self.session.simulation().gpu()
     }
 
-    /// Where the hair is simulated: cpu, or the adapter's number and name.
+    /// Device of the simulation: cpu, or the adapter's number and name.
     pub fn simulated_on(&self) -> String {
-        place(self.gpu())
+        device_name(self.gpu())
     }
 
-    /// Where pictures are drawn, the same way.
+    /// Device of the pictures, likewise.
     pub fn drawn_on(&self) -> String {
-        self.session.studio.painter.drawn_on()
+        self.session.view().drawn_on()
     }
 
-    /// What happened to the backend since the last call, human-readable.
+    /// Notes on the devices since the last call, human-readable.
     pub fn take_notes(&mut self) -> Vec<String> {
         self.session.take_notes()
     }
@@ -185,7 +187,9 @@ impl Hair {
     /// # Errors
     /// As [`Hair::step`].
     pub fn reports(&mut self) -> Result<Vec<StepReport>, Error> {
-        Ok(self.simulation().engine.reports()?)
+        let reports = self.session.simulation_mut().reports()?;
+        self.note_reports(&reports);
+        Ok(reports)
     }
 
     /// Changes how the hair moves; its state stays.
@@ -193,7 +197,76 @@ impl Hair {
     /// # Errors
     /// A setting outside its range, then nothing changes; or the GPU failed.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), Error> {
-        Ok(self.simulation().set_settings(settings)?)
+        Ok(self.session.simulation_mut().set_settings(settings)?)
+    }
+
+    /// Points of the guides as they are now \[m\], world space, shape `[strand][point]`: between the last two states, as
+    /// pictures show them. A GPU is waited for.
+    ///
+    /// # Errors
+    /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
+    pub fn points(&mut self) -> Result<&[Vec3], Error> {
+        self.session.show()?;
+        self.session.points()
+    }
+
+    /// The scene, with the settings that it leaves open chosen to fit its groom.
+    pub fn scene(&self) -> &Scene {
+        self.session.scene()
+    }
+
+    /// The motion of the head in the scene.
+    pub fn head(&self) -> &HeadMotion {
+        self.session.head()
+    }
+
+    /// The view of the last picture; before the first that of the scene.
+    pub fn camera(&self) -> &Camera {
+        self.session.view().camera()
+    }
+
+    /// The look of the last picture; before the first that of the scene.
+    pub fn look(&self) -> &Look {
+        self.session.view().look()
+    }
+
+    /// The lights.
+    pub fn lights(&self) -> &[Light] {
+        self.session.view().lights()
+    }
+
+    /// Changes the lights, from the next picture on.
+    ///
+    /// # Errors
+    /// More lights than a picture may have, or a setting outside its range; the lights then stay.
+    pub fn set_lights(&mut self, lights: Vec<Light>) -> Result<(), Error> {
+        self.session.change(Change::Lights(lights))
+    }
+
+    /// The look of the body.
+    pub fn body_look(&self) -> &BodyLook {
+        self.session.view().body_look()
+    }
+
+    /// Changes the look of the body, from the next picture on.
+    ///
+    /// # Errors
+    /// A setting outside its range; the look then stays.
+    pub fn set_body_look(&mut self, look: BodyLook) -> Result<(), Error> {
+        self.session.change(Change::BodyLook(look))
+    }
+
+    /// The rule by which detail follows distance and the size of a pixel.
+    pub fn level_of_detail(&self) -> LevelOfDetail {
+        self.session.view().level_of_detail()
+    }
+
+    /// Changes how detail follows distance and the size of a pixel, from the next picture on.
+    ///
+    /// # Errors
+    /// A setting outside its range; the rule then stays.
+    pub fn set_level_of_detail(&mut self, level: LevelOfDetail) -> Result<(), Error> {
+        self.session.change(Change::LevelOfDetail(level))
     }
 
     /// Draws the hair as it is now.
@@ -214,10 +287,8 @@ impl Hair {
         look: &Look,
     ) -> Result<(Picture, FrameReport), Error> {
         self.session.show()?;
-        let studio = &mut self.session.studio;
-        (studio.camera, studio.look) = (*camera, look.clone());
-        studio.lights.clone_from(&self.lights);
-        (studio.body_look, studio.level_of_detail) = (self.body_look, self.level_of_detail);
+        self.session.set_camera(*camera);
+        self.session.set_look(look.clone());
         self.session.picture(None)
     }
 
@@ -225,7 +296,7 @@ impl Hair {
     /// next picture on [Chen2011 fig. 8]: red, green and blue from the first layer to the third, grey behind
     /// it. `None`, the default, lights it, and so does a light without shadow.
     pub fn show_layers(&mut self, light: Option<usize>) {
-        self.session.studio.painter.layers_of = light;
+        self.session.show_layers(light);
     }
 
     /// The opacity map of a light as it was for the last picture [Chen2011 fig. 9]: the share of light that
@@ -236,7 +307,7 @@ impl Hair {
     /// # Errors
     /// The GPU that drew it was lost.
     pub fn opacity_map(&self, light: usize) -> Result<Option<Picture>, Error> {
-        Ok(self.session.studio.painter.maps(light)?.map(|[opacity, _]| opacity))
+        Ok(self.session.view().maps(light)?.map(|[opacity, _]| opacity))
     }
 
     /// The depth of the first hair in that map as grey, white the nearest; `None` as there.
@@ -244,7 +315,7 @@ impl Hair {
     /// # Errors
     /// As there.
     pub fn depth_map(&self, light: usize) -> Result<Option<Picture>, Error> {
-        Ok(self.session.studio.painter.maps(light)?.map(|[_, depth]| depth))
+        Ok(self.session.view().maps(light)?.map(|[_, depth]| depth))
     }
 
     /// Changes size and finish of the pictures; where they are drawn stays.
@@ -261,12 +332,12 @@ impl Hair {
     /// # Errors
     /// Another number of scales than strands, or a scale outside 0.05 to 2.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), Error> {
-        Ok(self.simulation().engine.set_length_scale(scales)?)
+        Ok(self.session.simulation_mut().set_length_scale(scales)?)
     }
 
     /// The simulated strands at rest.
     pub fn guides(&self) -> &Guides {
-        &self.session.studio.guides
+        self.session.view().guides()
     }
 
     /// The state of the simulation. On a GPU this waits, unless nothing has moved since the last call.
@@ -274,7 +345,7 @@ impl Hair {
     /// # Errors
     /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
     pub fn state(&mut self) -> Result<&State, Error> {
-        Ok(self.simulation().engine.state()?)
+        Ok(self.session.simulation_mut().state()?)
     }
 
     /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Four tensors of the
@@ -285,17 +356,17 @@ impl Hair {
     /// # Errors
     /// The file cannot be written.
     pub fn save_pose(&mut self, path: &Path) -> Result<(), Error> {
-        let file = self.simulation().hair_pose()?.write(path)?;
+        let file = self.session.simulation_mut().hair_pose()?.write(path)?;
         file.keep().map_err(Error::save("the hair", path))
     }
 
     /// The settings of the simulation.
     pub fn settings(&self) -> &Settings {
-        self.session.place.simulation.engine.model().settings()
+        self.session.simulation().settings()
     }
 
     /// The box around hair and body at rest \[m\], head space.
     pub fn bounds(&self) -> Aabb {
-        self.session.studio.bounds
+        self.session.view().bounds()
     }
 }

@@ -1,4 +1,4 @@
-//! What lies under a place of the picture.
+//! The hair under a point of the picture.
 
 use glam::{Vec2, Vec3};
 
@@ -11,7 +11,7 @@ use crate::{
 /// A line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins \[m\], world space.
+    /// Its origin \[m\], world space.
     pub origin: Vec3,
     /// Its unit direction, world space.
     pub direction: Vec3,
@@ -25,7 +25,7 @@ impl Ray {
         Self { origin: camera.position, direction: direction.normalize_or(Vec3::NEG_Z) }
     }
 
-    /// Where it meets the plane through a point that faces the camera \[m\]; none behind it.
+    /// Intersection with the plane through a point that faces the camera \[m\]; none behind the origin.
     pub(crate) fn at_depth_of(&self, camera: &Camera, point: Vec3) -> Option<Vec3> {
         let forward = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
         let along = (point - self.origin).dot(forward) / self.direction.dot(forward);
@@ -75,7 +75,7 @@ impl Ray {
             for lane in 0..live {
                 let ends = [index - 1, index].map(|index| positions[index].get(lane));
                 let (along, aside, share) = self.to_segment(ends);
-                // What is off the line counts as farther away, so that the hand takes what it points at.
+                // Points beside the line count as farther away, so that the hand takes the hair that it points at.
                 let cost = along + 2.0 * aside;
                 let before = along > 0.0 && along < limit && aside < radius;
                 if before && nearest.as_ref().is_none_or(|(least, _)| cost < *least) {
@@ -88,7 +88,7 @@ impl Ray {
         nearest.map(|(_, picked)| picked)
     }
 
-    /// Where a segment comes nearest to the line: how far along the line, how far aside \[m\], and at which
+    /// The nearest approach of a segment to the line: the distance along it, the distance aside \[m\], and the
     /// share of the segment.
     fn to_segment(self, [start, end]: [Vec3; 2]) -> (f32, f32, f32) {
         let across = end - start;
@@ -104,7 +104,7 @@ impl Ray {
 /// A point of a guide under the mouse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Picked {
-    /// Where it is \[m\], world space.
+    /// Its position \[m\], world space.
     pub point: Vec3,
     /// Its place in `[block][point]`, and its lane.
     pub index: usize,

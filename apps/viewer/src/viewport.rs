@@ -3,9 +3,7 @@
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Rect};
 use glam::Vec2;
 use strandline::{
-    Camera,
-    low_level::{Change, Command, Ray, base::Group, render::PictureSettings},
-    scene::MotionSection,
+    Camera, Change, PictureSettings, Ray, live::Command, scene::MotionSection, settings::Group,
 };
 
 use crate::{App, Tool, controls::button, files::Wanted, messages, wind};

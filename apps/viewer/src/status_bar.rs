@@ -1,4 +1,4 @@
-//! The strip at the foot of the window: devices, speed and quality.
+//! The status bar at the foot of the window: devices, speed and quality.
 
 use eframe::egui;
 

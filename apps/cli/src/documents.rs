@@ -1,0 +1,160 @@
+//! docs/cli.md is written from the arguments of the program, and measured figures of README.md are those of bench.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, Args, Command, CommandFactory};
+use serde_json::Value;
+
+use crate::arguments::{Arguments, Inputs};
+
+/// Rows of measured figures: words of the row, file of bench, place in it, decimals and unit.
+const MEASURED: [(&str, &str, &str, usize, &str); 5] = [
+    ("11,400 strands of 16 points", "scaling", "/results/aims/2/run/ms_per_step/median", 0, "ms"),
+    ("1,750 strands of 6 points", "scaling", "/results/aims/1/run/ms_per_step/median", 1, "ms"),
+    ("560,000 segments", "thesis", "/results/pictures_on_cpu/ms_alone/median", 0, "ms"),
+    ("placed by 2,000 guides", "groom", "/results/bound/0/ms", 0, "ms"),
+    ("48,000 strands", "groom", "/results/first_pictures/0/seconds", 1, "s"),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap()
+}
+
+/// The page of all commands.
+fn page() -> String {
+    let mut program = Arguments::command();
+    program.build();
+    let mut page =
+        "# Commands\n\n<!-- Written by `cargo xtask docs` from the arguments of the program. -->\n\n"
+            .to_owned();
+    let about = program.get_long_about().or(program.get_about()).unwrap();
+    writeln!(page, "{about}\n\n| argument of every command | meaning |\n|---|---|").unwrap();
+    page.extend(program.get_arguments().filter(|argument| argument.is_global_set()).map(row));
+    let inputs = Inputs::augment_args(Command::new("inputs"));
+    page.push_str("\n| input of `view`, `render` and `sim` | meaning |\n|---|---|\n");
+    page.extend(inputs.get_arguments().map(row));
+    for command in program.get_subcommands().filter(|command| command.get_name() != "help") {
+        page.push_str(&section(command, &inputs));
+    }
+    page
+}
+
+/// A command: its purpose, its usage, and a row for each argument that is no input of several commands.
+fn section(command: &Command, inputs: &Command) -> String {
+    let is_input = |argument: &Arg| {
+        let same =
+            |input: &Arg| input.get_id() == argument.get_id() && input.get_help() == argument.get_help();
+        inputs.get_arguments().any(same)
+    };
+    let usage = command.clone().render_usage().to_string();
+    let mut section = format!(
+        "\n## {}\n\n{}\n\n```\n{}\n```\n",
+        command.get_name(),
+        command.get_about().unwrap(),
+        usage.trim_start_matches("Usage: ").trim()
+    );
+    let own = command.get_arguments().filter(|argument| !argument.is_global_set() && !is_input(argument));
+    let rows: String = own.map(row).collect();
+    if !rows.is_empty() {
+        write!(section, "\n| argument | meaning |\n|---|---|\n{rows}").unwrap();
+    }
+    if let Some(after) = command.get_after_help() {
+        write!(section, "\n```\n{}\n```\n", after.to_string().trim_end()).unwrap();
+    }
+    section
+}
+
+/// An argument with its help, its choices and its default; empty for `--help`.
+fn row(argument: &Arg) -> String {
+    if ["help", "version"].contains(&argument.get_id().as_str()) {
+        return String::new();
+    }
+    let values = argument.get_value_names().unwrap_or_default().join(" ");
+    let name = match argument.get_long() {
+        Some(long) if argument.get_action().takes_values() => format!("--{long} {values}"),
+        Some(long) => format!("--{long}"),
+        None => values,
+    };
+    let help = argument.get_long_help().or(argument.get_help()).unwrap().to_string();
+    let choices: Vec<String> = argument
+        .get_possible_values()
+        .iter()
+        .filter(|_| argument.get_action().takes_values())
+        .map(|choice| format!("`{}`: {}", choice.get_name(), choice.get_help().unwrap()))
+        .collect();
+    let default: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
+    let mut cell = help.trim_end_matches('.').to_owned() + ".";
+    if !choices.is_empty() {
+        write!(cell, " {}", choices.join(" ")).unwrap();
+    }
+    if !default.is_empty() && argument.get_action().takes_values() {
+        write!(cell, " [default: {}]", default.join(" ")).unwrap();
+    }
+    format!("| `{}` | {} |\n", name.replace('|', "\\|"), cell.replace('|', "\\|"))
+}
+
+/// Rows of a document that do not show the figure of bench.
+fn other_figures(document: &str) -> Vec<String> {
+    let wrong = MEASURED.iter().filter_map(|&(words, file, place, decimals, unit)| {
+        let bench: Value = serde_json::from_str(&read(&format!("bench/{file}.json"))).unwrap();
+        let figure = bench.pointer(place).and_then(Value::as_f64).unwrap();
+        let cell = format!("| {figure:.decimals$} {unit}");
+        let shown = document.lines().any(|line| line.contains(words) && line.contains(&cell));
+        (!shown).then(|| format!("no row of \"{words}\" has `{cell}`"))
+    });
+    wrong.collect()
+}
+
+#[test]
+fn the_page_of_commands_is_that_of_the_program() {
+    let expected = page();
+    if std::env::var_os("STRANDLINE_BLESS").is_some() {
+        std::fs::write(root().join("docs/cli.md"), &expected).unwrap();
+    }
+    let found = read("docs/cli.md");
+    let first = found.lines().zip(expected.lines()).find(|(found, expected)| found != expected);
+    assert!(found == expected, "docs/cli.md differs: run `cargo xtask docs`; first at {first:?}");
+}
+
+#[test]
+fn measured_figures_of_the_readme_are_those_of_bench() {
+    let readme = read("README.md");
+    assert_eq!(other_figures(&readme), [""; 0]);
+    assert_eq!(other_figures(&readme.replace("| 34 ms", "| 33 ms")).len(), 1);
+}
+
+#[test]
+fn links_of_the_documents_lead_to_files() {
+    let folders = ["", "docs", "docs/methods"];
+    let mut count = 0;
+    for folder in folders {
+        for entry in std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path()) {
+            if entry.extension().is_none_or(|ending| ending != "md") {
+                continue;
+            }
+            for link in links(&std::fs::read_to_string(&entry).unwrap()) {
+                count += 1;
+                assert!(entry.parent().unwrap().join(&link).exists(), "{link} in {}", entry.display());
+            }
+        }
+    }
+    assert!(count > 60, "only {count} links found");
+}
+
+/// Files that a page links to, without addresses of the web and places within pages.
+fn links(page: &str) -> Vec<String> {
+    let targets = page.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let files = targets.map(|target| target.split('#').next().unwrap_or_default());
+    files.filter(|file| !file.is_empty() && !file.contains("://")).map(str::to_owned).collect()
+}
+
+#[test]
+fn links_are_found_in_pages() {
+    let page = "[a](b.md#c) ![d](e/f.png) [g](https://h.i) [j](#k)";
+    assert_eq!(links(page), ["b.md", "e/f.png"]);
+}

@@ -1,0 +1,46 @@
+//! `--set KEY=VALUE` of every command that takes a scene.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn strandline(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_strandline")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+#[test]
+fn values_are_set_in_every_command_that_takes_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let printed = |arguments: &[&str]| {
+        let output = strandline(folder.path(), arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let set = ["--set", "simulation.gravity=[0,-1.6,0]", "--set", "lights[0].position=[0,1,2]"];
+    let scene = printed(&[&["scene", "demo"][..], &set].concat());
+    assert!(scene.contains("gravity = [0.0, -1.6, 0.0]"), "{scene}");
+    assert!(scene.contains("[[lights]]"), "{scene}");
+    let small = ["--frames", "9", "--set", "film.frames=2", "--set", "style.strand_count=5"];
+    let report =
+        printed(&[&["sim", "--json", "--backend", "cpu", "--set", "film.settle=0"][..], &small].concat());
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    // The value comes after the options.
+    assert_eq!((report["frames"].as_u64(), report["strands"].as_u64()), (Some(2), Some(5)), "{report}");
+}
+
+#[test]
+fn mistakes_are_told_with_the_nearest_key_and_the_range() {
+    let folder = tempfile::tempdir().unwrap();
+    for (value, words) in [
+        ("simulation.gravty=1", ["no setting of a scene", "`simulation.gravity`"]),
+        ("film.frames=0", ["film.frames is 0", "expected 1 to"]),
+        ("film.frames", ["needs KEY=VALUE", "1 to 1,000,000"]),
+        ("motion.name=jump", ["`jump`", "one of still"]),
+    ] {
+        for command in [&["scene"][..], &["sim"], &["render"]] {
+            let output = strandline(folder.path(), &[command, &["--set", value]].concat());
+            let error = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(2), "{command:?} {value}: {error}");
+            assert!(words.iter().all(|words| error.contains(words)), "{command:?} {value}: {error}");
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Seventh stage of loading: the simulated strands, resampled, at rest outside of all solids.
+
+use crate::{
+    Error, Scene,
+    body::{Carrier, Collider, Pose, Shape, Solids},
+    groom::{Groom, Guides, Outside},
+    strands::attributes,
+};
+
+use super::{loading::Loading, looks, memory};
+
+/// Depth \[m\] up to which no note is made: less than the error of a sampled body.
+const WORTH_A_NOTE: f32 = 1e-4;
+/// Strands of a file above which some stand for all, when nothing else is said, and how many then do.
+const MANY: usize = 3000;
+const GUIDES: usize = 2000;
+
+/// Chooses the strands that are simulated and resamples them.
+pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
+    let Loading { scene, groom: Some(groom), notes, .. } = loading else { return Ok(()) };
+    let chosen = choose(scene, groom, notes);
+    let simulated = chosen.as_ref().map_or(groom.strand_count(), Vec::len);
+    memory::check(scene, simulated, groom.strand_count())?;
+    let mut all = resampled(scene, groom, loading.shape.as_ref())?;
+    let mut guides = match &chosen {
+        None => all.clone(),
+        Some(chosen) => resampled(scene, &groom.select(chosen), loading.shape.as_ref())?,
+    };
+    let spreads = looks::spreads(&scene.look, groom)?;
+    if chosen.is_none() {
+        guides.set_spreads(spreads.clone())?;
+    }
+    all.set_spreads(spreads)?;
+    if let Some(file) = &scene.groom.attributes {
+        attributes::load(&scene.path(file), &mut guides)?;
+    }
+    notes.extend(move_outside(&mut guides, &loading.colliders, |_| 0.0));
+    (loading.strands, loading.chosen, loading.guides) = (Some(all), chosen, Some(guides));
+    Ok(())
+}
+
+/// Strands as they are simulated and drawn; roots without a normal take that of the body.
+fn resampled(scene: &Scene, groom: &Groom, body: Option<&Shape>) -> Result<Guides, Error> {
+    let mut guides = Guides::resample(groom, scene.groom.points_per_strand as usize)?;
+    if groom.root_normals.is_none()
+        && let Some(shape) = body
+    {
+        let normal = |strand| shape.distance_and_gradient(guides.position(strand, 0)).1;
+        guides.set_root_normals((0..guides.strand_count()).map(normal).collect());
+    }
+    Ok(guides)
+}
+
+/// Indices of the simulated strands, in rising order; none where all are simulated.
+fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<usize>> {
+    let count = groom.strand_count();
+    let marked = groom.marked_guides();
+    let every = scene.groom.guide_every as usize;
+    let (guides, how) = match scene.groom.guides {
+        Some(wanted) => (groom.representatives(wanted as usize), "chosen"),
+        None if every > 1 => ((0..count).step_by(every).collect(), "every n-th"),
+        None if scene.groom.file.is_none() => (groom.representatives(scene.style.strand_count), "chosen"),
+        None if !marked.is_empty() => (marked, "marked in the file"),
+        None if count > MANY => (groom.representatives(GUIDES), "chosen"),
+        None => return None,
+    };
+    if guides.len() >= count || guides.is_empty() {
+        return None;
+    }
+    let bound = count - guides.len();
+    notes.push(format!("{} strands are simulated ({how}), {bound} are bound to them", guides.len()));
+    Some(guides)
+}
+
+/// Moves points that rest inside the solids that the head carries to their surface. Returns a note where there were some.
+pub(super) fn move_outside(
+    guides: &mut Guides,
+    colliders: &[Collider],
+    clearance: impl Fn(&Shape) -> f32,
+) -> Option<String> {
+    let on_head = colliders.iter().filter(|solid| solid.carrier == Carrier::Head);
+    let solids = Solids::new(on_head.map(|solid| (solid.clone(), clearance(&solid.shape))));
+    let at_rest = solids.placed(Pose::IDENTITY);
+    let found = guides.move_outside(|point| at_rest.at(point));
+    let Outside { point_count, strand_count, depth, depth_left } = found;
+    let mut note = format!(
+        "{point_count} points of {strand_count} strands rested inside solids, by up to {:.2} mm: moved to the \
+         surface, lengths kept",
+        1e3 * depth
+    );
+    if depth_left > 1e-4 {
+        note +=
+            &format!("; up to {:.2} mm of that is left where segments do not reach out", 1e3 * depth_left);
+    }
+    (depth > WORTH_A_NOTE).then_some(note)
+}

@@ -1,0 +1,87 @@
+//! The value that is handed from stage to stage while a scene is loaded.
+
+use glam::Vec3;
+
+use super::Sources;
+use super::memory;
+use super::placing::{Placing, Placings};
+use crate::{
+    Error, Scene,
+    body::{Collider, Mesh, Shape},
+    groom::{Groom, Guides},
+};
+
+/// A scene while it is loaded. Each stage fills in fields that later stages read.
+pub(super) struct Loading<'a> {
+    pub sources: &'a Sources,
+    /// The scene; `fit` chooses the settings that it leaves open.
+    pub scene: Scene,
+    /// Mends, guesses and omissions, human-readable, in the order of the stages.
+    pub notes: Vec<String>,
+    /// Strands: in their own units and axes from `read`, in head space from `place`, grown by `roots` where the scene
+    /// names none.
+    pub groom: Option<Groom>,
+    /// Strands of `groom.parts`, until `place` adds them to the groom.
+    pub further_grooms: Vec<Groom>,
+    /// The drawn body: in its own units and axes from `read`, in head space and with `body.parts` from `place`, the
+    /// mannequin from `solids`.
+    pub mesh: Option<Mesh>,
+    /// Meshes of `body.parts`, until `place` adds them.
+    pub further_meshes: Vec<Mesh>,
+    /// The mesh that hair hits, where it is not the drawn one.
+    pub solid_mesh: Option<Mesh>,
+    /// Placements of files, from `place`.
+    pub placings: Placings,
+    /// True where the groom was made for another head, from `place`.
+    pub is_foreign: bool,
+    /// Signed distance of the body, from `solids`.
+    pub shape: Option<Shape>,
+    /// Everything that hair hits, from `solids`.
+    pub colliders: Vec<Collider>,
+    /// Pivot of the head's motion \[m\], head space, where the body has one, from `solids`.
+    pub pivot: Option<Vec3>,
+    /// All strands at rest, resampled, from `guides`.
+    pub strands: Option<Guides>,
+    /// Indices of the simulated strands, from `guides`; none where all are simulated.
+    pub chosen: Option<Vec<usize>>,
+    /// The simulated strands at rest, from `guides`.
+    pub guides: Option<Guides>,
+}
+
+impl<'a> Loading<'a> {
+    /// Checks a scene before anything of it is loaded.
+    ///
+    /// # Errors
+    /// A setting outside its range, a source that the scene does not name, more memory than may be taken.
+    pub fn new(scene: &Scene, sources: &'a Sources) -> Result<Self, Error> {
+        scene.check()?;
+        sources.check(scene)?;
+        if scene.groom.file.is_none() {
+            let drawn = scene.style.strand_count.max(scene.groom.bound as usize);
+            memory::check(scene, scene.style.strand_count, drawn)?;
+        }
+        Ok(Self {
+            sources,
+            scene: scene.clone(),
+            notes: Vec::new(),
+            groom: None,
+            further_grooms: Vec::new(),
+            mesh: None,
+            further_meshes: Vec::new(),
+            solid_mesh: None,
+            placings: Placings { groom: Placing::IDENTITY, body: Placing::IDENTITY, note: None },
+            is_foreign: false,
+            shape: None,
+            colliders: Vec::new(),
+            pivot: None,
+            strands: None,
+            chosen: None,
+            guides: None,
+        })
+    }
+
+    /// The drawn body, where it comes from a source.
+    pub fn own_mesh(&self) -> Option<&Mesh> {
+        self.mesh.as_ref().filter(|_| self.scene.body.file.is_some())
+    }
+}

@@ -1,0 +1,24 @@
+//! First stage of loading: grooms, meshes and surroundings, each in its own units and axes.
+
+use super::loading::Loading;
+use crate::Error;
+
+/// Reads the grooms, the meshes and the surroundings that a scene names.
+pub(super) fn read(loading: &mut Loading) -> Result<(), Error> {
+    let Loading { sources, scene, notes, .. } = loading;
+    scene.load_surroundings()?;
+    let mut groom = |name, per_strand| {
+        let (groom, problems) = sources.groom(scene, name, per_strand)?;
+        notes.extend(problems);
+        Ok::<_, Error>(groom)
+    };
+    let section = &scene.groom;
+    loading.groom = section.file.as_ref().map(|file| groom(file, section.per_strand)).transpose()?;
+    let body = &scene.body;
+    loading.mesh = body.file.as_ref().map(|file| sources.mesh(scene, file)).transpose()?;
+    let parts = section.parts.iter().map(|part| groom(&part.file, part.per_strand));
+    loading.further_grooms = parts.collect::<Result<_, _>>()?;
+    let parts = body.parts.iter().map(|part| sources.mesh(scene, &part.file));
+    loading.further_meshes = parts.collect::<Result<_, _>>()?;
+    Ok(())
+}

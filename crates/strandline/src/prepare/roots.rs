@@ -1,0 +1,42 @@
+//! Fifth stage of loading: roots on the skin.
+
+use super::{guess, loading::Loading, marked, wrap};
+use crate::{Error, Scene, groom::Groom};
+
+/// Grows the style where the scene names no groom, and leads roots of a style or of another head's hair to the skin.
+pub(super) fn roots(loading: &mut Loading) -> Result<(), Error> {
+    match &mut loading.groom {
+        Some(groom) => {
+            if let Some(shape) = loading.shape.as_ref().filter(|_| loading.is_foreign) {
+                wrap::lead(groom, shape);
+            }
+        }
+        None => loading.groom = Some(grown(loading)?),
+    }
+    let pair = loading.groom.as_ref().zip(loading.own_mesh());
+    let apart = pair.and_then(|(groom, mesh)| guess::apart(groom, mesh));
+    loading.notes.extend(apart);
+    Ok(())
+}
+
+/// The style, on the body of a source or on the mannequin.
+fn grown(loading: &mut Loading) -> Result<Groom, Error> {
+    let mut groom = style(&loading.scene)?;
+    if loading.own_mesh().is_none() {
+        return Ok(groom);
+    }
+    let marked = marked::scalp(loading)?;
+    let note = match loading.own_mesh() {
+        Some(mesh) => wrap::onto(&mut groom, mesh, marked.as_ref(), loading.shape.as_ref())?,
+        None => None,
+    };
+    loading.notes.extend(note);
+    Ok(groom)
+}
+
+/// A grown style: its guides, or as many strands as are bound to guides among them.
+fn style(scene: &Scene) -> Result<Groom, Error> {
+    let mut style = scene.style.clone();
+    style.strand_count = style.strand_count.max(scene.groom.bound as usize);
+    Ok(style.grow()?)
+}

@@ -1,0 +1,93 @@
+//! Fourth stage of loading: everything that hair hits.
+
+use std::sync::Arc;
+
+use strandline_base::cache;
+
+use super::loading::Loading;
+use super::placing::place_mesh;
+use crate::{
+    Error,
+    body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape},
+    scene::Model,
+};
+
+/// Air around a loaded body that its signed distance covers \[m\].
+const DISTANCE_PADDING: f32 = 0.02;
+
+/// Makes the signed distance of the body and the solids beside it; brings in the mannequin where the scene has it.
+pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
+    let body = &loading.scene.body;
+    let (is_grown, is_solid) = (loading.scene.groom.file.is_none(), body.solid);
+    match (body.file.is_some(), body.model) {
+        (true, _) if is_solid => loading.shape = Some(own_shape(loading)?),
+        (true, _) => {}
+        (false, Model::Mannequin) => mannequin(loading)?,
+        (false, Model::Auto) if is_grown => mannequin(loading)?,
+        (false, Model::Auto | Model::None) => {}
+    }
+    let scene = &loading.scene;
+    if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
+        loading.colliders.push(Collider::new(shape, Carrier::Head, scene.body.friction)?);
+    }
+    for section in &scene.colliders {
+        loading.colliders.push(section.collider()?);
+    }
+    Ok(())
+}
+
+/// Adds the mannequin. Hair hits its signed distance sampled at `spacing`, or the exact one, whose lookups take four
+/// times as long.
+fn mannequin(loading: &mut Loading) -> Result<(), Error> {
+    let (mannequin, body) = (Mannequin::new(), &loading.scene.body);
+    let shape = if body.exact {
+        Shape::Mannequin(mannequin.clone())
+    } else {
+        let grid = DistanceGrid::from_field(&*mannequin, body.spacing, DISTANCE_PADDING)?;
+        grid_shape(loading, grid)
+    };
+    (loading.mesh, loading.pivot) = (Some(mannequin.mesh()), Some(mannequin.neck_pivot()));
+    loading.shape = Some(shape);
+    Ok(())
+}
+
+/// The grid of a mesh, from the folder of kept grids where it is there.
+fn kept_grid(mesh: &Mesh, spacing: f32) -> Result<DistanceGrid, Error> {
+    Ok(match cache::folder() {
+        Some(folder) => DistanceGrid::kept(mesh, spacing, DISTANCE_PADDING, &folder.join("grids"))?,
+        None => DistanceGrid::of_mesh(mesh, spacing, DISTANCE_PADDING)?,
+    })
+}
+
+/// The signed distance of a body from a source: of a closed mesh as it is, of an open one with its holes closed.
+fn own_shape(loading: &mut Loading) -> Result<Shape, Error> {
+    let (scene, placing) = (&loading.scene, loading.placings.body);
+    let (body, drawn) = (&scene.body, loading.mesh.as_ref());
+    let grid = match (&body.collider_file, loading.solid_mesh.as_ref().or(drawn)) {
+        (Some(file), _) => {
+            let mut mesh = loading.sources.mesh(scene, file)?;
+            place_mesh(&mut mesh, placing, body.rotation, body.translation);
+            if body.parts.iter().any(|part| part.solid == Some(true)) {
+                loading.notes.push(
+                    "body.collider_file is all that hair hits: solid body.parts are only drawn".to_owned(),
+                );
+            }
+            kept_grid(&mesh, body.spacing)?
+        }
+        (None, mesh) => kept_grid(mesh.unwrap_or(&Mesh::default()), body.spacing)?,
+    };
+    Ok(grid_shape(loading, grid))
+}
+
+/// A grid as a solid. Adds a note where it is coarser than the scene asks for.
+fn grid_shape(loading: &mut Loading, grid: DistanceGrid) -> Shape {
+    let (asked, spacing) = (loading.scene.body.spacing, grid.spacing());
+    if spacing > asked {
+        let [x, y, z] = grid.cells().to_array();
+        loading.notes.push(format!(
+            "body.spacing is {asked} m, which is too fine for a body of this size: {spacing:.4} m is taken, \
+             {x} x {y} x {z} cells"
+        ));
+    }
+    Shape::Grid(Arc::new(grid))
+}

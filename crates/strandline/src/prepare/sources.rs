@@ -1,0 +1,225 @@
+//! Sources of a scene: what stands behind the names in it.
+
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use strandline_base::SettingError;
+
+use super::map::Map;
+use crate::{
+    Error, Scene,
+    body::Mesh,
+    groom::{
+        Groom,
+        format::{self, LoadOptions, Scale, Up},
+    },
+    render::Picture,
+};
+
+/// Grooms, meshes and maps in memory, each under a name.
+///
+/// A scene names its grooms, meshes and maps. A name that is listed here stands for the entry of this list, any other
+/// name for a file. Both kinds are placed, fitted and checked alike: units, axes and front are guessed from the same
+/// properties, and the sections `[groom]` and `[body]` overrule the guesses. `look.surroundings` is given to the scene
+/// itself.
+///
+/// ```
+/// # fn main() -> Result<(), strandline::Error> {
+/// # let mut groom = strandline::Groom::empty(8e-5);
+/// # groom.push((0..16).map(|point| glam::Vec3::new(0.0, 0.01 * point as f32, 0.0)));
+/// use strandline::{Hair, Scene, Sources};
+///
+/// let mut scene = Scene::default();
+/// scene.groom.file = Some("mine".into());
+/// let sources = Sources::default().with_groom("mine", groom);
+/// let hair = Hair::from_sources(&scene, &sources)?;
+/// # assert_eq!(hair.guides().strand_count(), 1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Default)]
+pub struct Sources {
+    grooms: BTreeMap<PathBuf, Arc<Groom>>,
+    meshes: BTreeMap<PathBuf, Arc<Mesh>>,
+    maps: BTreeMap<PathBuf, Arc<Map>>,
+}
+
+impl Sources {
+    /// Adds a groom, in its own units and axes: for `groom.file` and `groom.parts[..].file`.
+    #[must_use]
+    pub fn with_groom(mut self, name: impl Into<PathBuf>, groom: impl Into<Arc<Groom>>) -> Self {
+        self.grooms.insert(name.into(), groom.into());
+        self
+    }
+
+    /// Adds a mesh, in its own units and axes: for `body.file`, `body.parts[..].file`, `body.collider_file`, and for
+    /// `body.scalp` where the body is in memory too.
+    #[must_use]
+    pub fn with_mesh(mut self, name: impl Into<PathBuf>, mesh: impl Into<Arc<Mesh>>) -> Self {
+        self.meshes.insert(name.into(), mesh.into());
+        self
+    }
+
+    /// Adds a picture over the scalp, sRGB, the first row at v = 1: for `look.color_map` and `look.width_map`, and those
+    /// of groups.
+    ///
+    /// # Errors
+    /// A picture without pixels, with more than [`Scene::MAX_MAP_SIDE`] on a side, or of another length than its size.
+    pub fn with_map(mut self, name: impl Into<PathBuf>, picture: &Picture) -> Result<Self, Error> {
+        let name = name.into();
+        let map = Map::of_picture(picture).map_err(|message| Error::map(&name, message))?;
+        self.maps.insert(name, Arc::new(map));
+        Ok(self)
+    }
+
+    /// A groom, in its own units and axes, with a note for each problem that was mended.
+    pub(super) fn groom(
+        &self,
+        scene: &Scene,
+        name: &Path,
+        per_strand: Option<u32>,
+    ) -> Result<(Groom, Vec<String>), Error> {
+        let options = LoadOptions { strict: false, scale: Scale::Factor(1.0), up: Up::Y, per_strand };
+        let loaded = match self.grooms.get(name) {
+            Some(groom) => {
+                groom.check_lengths()?;
+                format::sieved(Groom::clone(groom), &options)?
+            }
+            None => format::load(&scene.path(name), &options)?,
+        };
+        let noted = |problem: &String| format!("{}: {problem}", name.display());
+        Ok((loaded.groom, loaded.report.problems.iter().map(noted).collect()))
+    }
+
+    /// A mesh, in its own units and axes.
+    pub(super) fn mesh(&self, scene: &Scene, name: &Path) -> Result<Mesh, Error> {
+        Ok(match self.meshes.get(name) {
+            Some(mesh) => Mesh::clone(mesh).checked()?,
+            None => Mesh::load(&scene.path(name), 1.0)?,
+        })
+    }
+
+    /// The part of a mesh that has a name: of a mesh in memory the entry of that name.
+    pub(super) fn mesh_part(&self, scene: &Scene, mesh: &Path, part: &str) -> Result<Option<Mesh>, Error> {
+        if !self.meshes.contains_key(mesh) {
+            return Ok(Mesh::load_part(&scene.path(mesh), part)?);
+        }
+        let part = self.meshes.get(Path::new(part));
+        Ok(part.map(|mesh| Mesh::clone(mesh).checked()).transpose()?)
+    }
+
+    /// Names of the parts of a mesh: of a mesh in memory those of all entries.
+    pub(super) fn part_names(&self, scene: &Scene, mesh: &Path) -> Result<Vec<String>, Error> {
+        if !self.meshes.contains_key(mesh) {
+            return Ok(Mesh::part_names(&scene.path(mesh))?);
+        }
+        Ok(self.meshes.keys().map(|name| name.display().to_string()).collect())
+    }
+
+    /// A map over the scalp.
+    pub(super) fn map(&self, scene: &Scene, name: &Path) -> Result<Arc<Map>, Error> {
+        match self.maps.get(name) {
+            Some(map) => Ok(map.clone()),
+            None => Map::load(&scene.path(name)).map(Arc::new),
+        }
+    }
+
+    /// Refuses entries that the scene does not name: a misspelt name would stand for a file.
+    pub(super) fn check(&self, scene: &Scene) -> Result<(), Error> {
+        let mut named: Vec<PathBuf> = scene.clone().paths_mut().map(|path| path.clone()).collect();
+        named.extend(scene.body.scalp.as_ref().map(PathBuf::from));
+        let own = self.grooms.keys().chain(self.meshes.keys()).chain(self.maps.keys());
+        let unused = |name: &&PathBuf| !named.contains(name);
+        let Some(name) = own.clone().find(unused) else { return Ok(()) };
+        let listed = named.iter().map(|name| format!("`{}`", name.display())).collect::<Vec<_>>();
+        let expected: &dyn Display =
+            if listed.is_empty() { &"none: the scene names none" } else { &listed.join(", ") };
+        let found = format!("`{}`", name.display());
+        Err(SettingError::new("a source", found, format!("a name of the scene: {expected}")).into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::{Prepared, body::Mannequin};
+
+    /// Hair in centimetres on the mannequin in millimetres, as files and in memory.
+    fn both(folder: &Path) -> [(Scene, Sources); 2] {
+        let mut style = crate::groom::StyleSettings::new(crate::Style::Bob);
+        style.strand_count = 60;
+        let mut groom = style.grow().unwrap();
+        groom.transform(100.0, glam::Quat::IDENTITY, Vec3::ZERO);
+        let mut mesh = Mannequin::new().mesh();
+        mesh.positions.iter_mut().for_each(|place| *place *= 1000.0);
+        let text: String =
+            mesh.positions.iter().map(|place| format!("v {} {} {}\n", place.x, place.y, place.z)).collect();
+        let faces = mesh.triangles.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1));
+        std::fs::write(folder.join("head.obj"), text + &faces.collect::<String>()).unwrap();
+        format::save(&groom, &folder.join("bob.hair")).unwrap();
+        let groom = format::load(
+            &folder.join("bob.hair"),
+            &LoadOptions { scale: Scale::Factor(1.0), ..LoadOptions::default() },
+        );
+        let mesh = Mesh::load(&folder.join("head.obj"), 1.0).unwrap();
+        let scene = |names: [PathBuf; 2]| {
+            let [groom, body] = names.map(Some);
+            let mut scene = Scene::default();
+            (scene.groom.file, scene.body.file, scene.body.spacing) = (groom, body, 0.01);
+            scene
+        };
+        let sources = Sources::default().with_groom("bob", groom.unwrap().groom).with_mesh("head", mesh);
+        let files = ["bob.hair", "head.obj"].map(|name| folder.join(name));
+        [(scene(files), Sources::default()), (scene(["bob", "head"].map(PathBuf::from)), sources)]
+    }
+
+    #[test]
+    fn a_scene_in_memory_is_placed_and_fitted_as_one_of_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let loaded =
+            both(folder.path()).map(|(scene, sources)| Prepared::from_sources(&scene, &sources).unwrap());
+        let [file, memory] = &loaded;
+        assert!(file.guides.positions() == memory.guides.positions(), "other strands");
+        assert!(file.bounds.min == memory.bounds.min && file.bounds.max == memory.bounds.max, "another body");
+        assert!(memory.bounds.max.y < 1.0, "metres, not {}", memory.bounds.max);
+        let [mut of_file, of_memory] = [&file.scene, &memory.scene].map(Scene::clone);
+        (of_file.groom.file, of_file.body.file) = (of_memory.groom.file.clone(), of_memory.body.file.clone());
+        assert_eq!(of_file, of_memory);
+        assert_eq!(file.notes, memory.notes);
+        assert!(file.notes.iter().any(|note| note.contains("unit")), "{:?}", file.notes);
+    }
+
+    #[test]
+    fn sources_that_are_not_named_or_not_sound_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let [_, (scene, sources)] = both(folder.path());
+        let refused = |scene: &Scene, sources: &Sources| match Prepared::from_sources(scene, sources) {
+            Ok(_) => panic!("it was taken"),
+            Err(error) => error.to_string(),
+        };
+        let mut misspelt = scene.clone();
+        misspelt.groom.file = Some("bobb".into());
+        let error = refused(&misspelt, &sources);
+        assert!(error.contains("`bob`") && error.contains("`bobb`, `head`"), "{error}");
+        let mut torn = Groom::empty(8e-5);
+        torn.push([Vec3::ZERO, Vec3::Y]);
+        torn.starts[1] = 7;
+        let error = refused(&scene, &sources.clone().with_groom("bob", torn));
+        assert!(error.contains("rising from 0 to 2"), "{error}");
+        let mut bare = Groom::empty(8e-5);
+        bare.push([Vec3::ZERO, Vec3::Y]);
+        bare.colors = Some(vec![[0.5; 3]]);
+        let error = refused(&scene, &sources.clone().with_groom("bob", bare));
+        assert!(error.contains("groom.colors is 1 entries"), "{error}");
+        let flat = Mesh { positions: vec![Vec3::ZERO], triangles: vec![[0, 1, 2]], ..Mesh::default() };
+        let error = refused(&scene, &sources.clone().with_mesh("head", flat));
+        assert!(error.contains("vertices 0, 1, 2 of 1"), "{error}");
+        let picture = Picture { width: 2, height: 2, pixels: vec![0; 11], alpha: None };
+        let error = sources.with_map("map", &picture).err().unwrap().to_string();
+        assert!(error.contains("2 x 2 pixels in 11 bytes"), "{error}");
+    }
+}

@@ -1,0 +1,156 @@
+use glam::Vec3;
+
+use super::*;
+use crate::{Style, render::LightKind, scene::MotionName};
+
+fn refused(key: &str, value: &str) -> String {
+    let mut scene = full();
+    let before = scene.clone();
+    let error = scene.set(key, value).expect_err(&format!("{key} = {value} was taken")).to_string();
+    assert!(scene == before, "{key}: a refused value has changed the scene");
+    error
+}
+
+/// A scene with one item in every list, so that each key of the table has a value or may have one.
+fn full() -> Scene {
+    let text = "groom = { file = \"a.hair\", parts = [{ file = \"b.hair\" }] }\n\
+                body = { file = \"a.obj\", parts = [{ file = \"b.obj\" }] }\n\
+                colliders = [{ shape = \"capsule\", start = [0,0,0], end = [0,0,1], radius = 0.1 }]\n\
+                lights = [{ position = [0,1,2] }]\n\
+                look.group = [{ name = \"brows\" }]\n\
+                simulation.groups = [{ group = \"fringe\" }]\n\
+                motion.keyframes = [{ time = 0 }]";
+    Scene::parse(text, "scene").unwrap()
+}
+
+/// Every key with its row.
+fn all() -> Vec<(String, &'static Row)> {
+    let mut found = Vec::new();
+    keys(&Scene::TABLE, "", &mut found);
+    found.into_iter().map(|key| (key.clone(), Scene::row(&key).unwrap())).collect()
+}
+
+#[test]
+fn every_key_takes_the_value_that_it_has() {
+    let scene = full();
+    let mut set = 0;
+    for (key, row) in all() {
+        let value = scene.get(&key).unwrap();
+        // An absent value, and settings that bring others along or let hair begin at rest.
+        let brings = ["style.style", "groom.file", "body.file", "look.root_color", "look.tip_color"];
+        if value.is_empty() || matches!(row.kind, Kind::Group(_)) || brings.contains(&key.as_str()) {
+            continue;
+        }
+        let mut same = scene.clone();
+        same.set(&key, &value).unwrap_or_else(|error| panic!("{key} = {value}: {error}"));
+        assert!(same == scene, "{key} = {value} has changed the scene");
+        set += 1;
+    }
+    assert!(set > 200, "{set} settings");
+}
+
+#[test]
+fn every_number_outside_its_range_is_refused_with_key_and_range() {
+    for (key, row) in all() {
+        let (Some([least, most]), true) =
+            (row.range, matches!(row.kind, Kind::Number(_) | Kind::Whole(_) | Kind::NumberOr(_)))
+        else {
+            continue;
+        };
+        let count = match row.kind {
+            Kind::Number(count) | Kind::Whole(count) => count,
+            _ => 1,
+        };
+        let beyond = 2.0 * (least.abs() + most.abs()) + 1.0;
+        for value in [beyond, -beyond] {
+            let one =
+                if matches!(row.kind, Kind::Whole(_)) { format!("{value:.0}") } else { format!("{value:e}") };
+            let value = if count > 1 { format!("[{}]", vec![one; count].join(", ")) } else { one };
+            let error = refused(&key, &value);
+            let names = error.contains(&key) || error.contains(&key.replace("[0]", ""));
+            assert!(names, "{key} = {value}: {error}");
+        }
+        let error = refused(&key, "[true]");
+        assert!(error.contains(&key), "{key}: {error}");
+    }
+}
+
+#[test]
+fn values_need_no_quotes_and_lists_grow_by_index() {
+    let mut scene = Scene::default();
+    for (key, value) in [
+        ("simulation.gravity", "[0, -1.6, 0]"),
+        ("motion.name", "nod"),
+        ("groom.file", "hair of 2026.npz"),
+        ("lights[0].kind", "rectangle"),
+        ("lights[0].position", "[0, 1, 2]"),
+        ("lights[1].position", "[3, 1, 2]"),
+        ("look.shadow.layers", "[0.001, 0.002, 0.003]"),
+    ] {
+        scene.set(key, value).unwrap_or_else(|error| panic!("{key} = {value}: {error}"));
+    }
+    assert_eq!(scene.simulation.gravity, Vec3::new(0.0, -1.6, 0.0));
+    assert_eq!((scene.motion.name, scene.lights.len()), (MotionName::Nod, 2));
+    assert_eq!(scene.groom.file.as_deref(), Some("hair of 2026.npz".as_ref()));
+    assert_eq!((scene.lights[0].kind, scene.lights[1].position.x), (LightKind::Rectangle, 3.0));
+    assert!(refused("lights[2].position", "[0, 0, 0]").contains("up to 1"));
+}
+
+#[test]
+fn words_bring_along_what_they_bring_in_a_file() {
+    let mut scene = Scene::default();
+    scene.set("style.style", "curly").unwrap();
+    let mut expected = Scene::default();
+    expected.set_style(Style::Curly);
+    assert_eq!(scene, expected);
+    scene.set("look.preset", "thesis").unwrap();
+    let file = Scene::parse("style.style = \"curly\"\nlook.preset = \"thesis\"", "scene").unwrap();
+    assert_eq!(scene, file);
+    scene.set("simulation.strands.method", "constrain").unwrap();
+    assert_eq!(scene.film.settle, FilmSection::SETTLE);
+    // Nothing else changes with it.
+    scene.set("style.strand_count", "77").unwrap();
+    assert_eq!((scene.style.strand_count, scene.style.style), (77, Style::Curly));
+    assert!(scene.given.follow_strands == file.given.follow_strands);
+    scene.set("look.follow_strands", "3").unwrap();
+    assert!(scene.given.follow_strands, "a groom does not choose it");
+}
+
+#[test]
+fn mistakes_are_refused_with_the_nearest_key_or_the_values_that_may_be() {
+    for (key, near) in [
+        ("simulation.gravty", "`simulation.gravity`"),
+        ("gravity", "`simulation.gravity`"),
+        ("look.shadow.layer", "`look.shadow.layers`"),
+        ("lights[0].colour", "`lights[0].color`"),
+        ("simulation.gravity[0]", "`simulation.gravity`"),
+        ("lights[x].color", "`lights[0].color`"),
+        ("simulation.gravity.x", "`simulation.gravity`"),
+    ] {
+        let error = refused(key, "1");
+        assert!(error.contains("no setting of a scene") && error.contains(near), "{key}: {error}");
+    }
+    for (key, value, words) in [
+        ("motion.name", "jump", "still"),
+        ("simulation.volume.enabled", "maybe", "true or false"),
+        ("simulation.gravity", "down", "3 numbers of"),
+        ("simulation.gravity", "[0, 1]", "3 numbers of"),
+        ("look.grey", "0.5\nvariation = 1", "0 to 1"),
+        ("lights", "3", "invalid type"),
+        ("film.frames", "-1", "1 to"),
+    ] {
+        let error = refused(key, value);
+        assert!(error.contains(words) && error.contains(key), "{key} = {value}: {error}");
+    }
+}
+
+#[test]
+fn settings_explain_themselves() {
+    let text = Scene::default().explain("simulation.gravity").unwrap();
+    assert!(
+        text.starts_with("simulation.gravity: ") && text.contains("-9.81") && text.contains("m/s^2"),
+        "{text}"
+    );
+    let text = Scene::default().explain("wind").unwrap();
+    assert!(text.lines().count() > 2 && text.contains("  wind."), "{text}");
+}

@@ -1,0 +1,224 @@
+//! Construction of sessions.
+
+use std::collections::VecDeque;
+
+use strandline_base::par::Pool;
+
+use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
+use crate::{
+    BoundStrands, Devices, Error, Prepared, Scene,
+    body::{Collider, Mesh, Pose},
+    groom::Guides,
+    prepare,
+    render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
+    scene::devices::{Opened, Pair, device_name},
+    session::painter::Painter,
+    session::worker::Worker,
+    sim::{Model, Settings},
+    strands::tags::Tags,
+};
+
+impl Session<Inline> {
+    /// Guides, and the strands that they carry, on a body: its drawn mesh and the solids that hair hits.
+    ///
+    /// # Errors
+    /// A setting outside its range; a device that refuses.
+    pub fn new(
+        devices: Pair,
+        guides: Guides,
+        bound: Option<BoundStrands>,
+        mesh: Option<&Mesh>,
+        colliders: Vec<Collider>,
+        settings: &Settings,
+    ) -> Result<Self, Error> {
+        let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
+        let mut engine = Engine::new(gpu.as_ref(), Model::new(&guides, settings, colliders)?, fall_back)?;
+        engine.notes.extend(notes);
+        let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
+        let view = View {
+            painter: Painter::new(pictures, &guides, bound, mesh)?,
+            guides,
+            bounds,
+            camera: Camera::front(),
+            look: Look::default(),
+            lights: Look::default().lights(prepare::center(bounds)),
+            body_look: BodyLook::default(),
+            level_of_detail: LevelOfDetail::default(),
+        };
+        let mut scene = Scene { simulation: settings.clone(), ..Scene::default() };
+        scene.groom.points_per_strand = view.guides.points_per_strand() as u32;
+        let simulated_on = device_name(engine.gpu());
+        Ok(Self {
+            scene,
+            tags: Tags::default(),
+            executor: Inline::new(Simulation::new(engine, settings.time_step)),
+            view,
+            direction: Direction::default(),
+            settings: PictureSettings::default(),
+            draft: None,
+            simulated_on,
+            grabbed: 0,
+            simulated_after: 0,
+            spare: Vec::new(),
+            shown: Moment::default(),
+            points: Vec::new(),
+            events: VecDeque::new(),
+            drawn: 0,
+        })
+    }
+
+    /// Everything of a scene but its film and its devices. The scene is the prepared one, which fits its groom.
+    ///
+    /// # Errors
+    /// A setting of the scene outside its range.
+    pub fn open(prepared: Prepared, devices: Devices) -> Result<Self, Error> {
+        // Settings of pictures too are refused before the first picture.
+        prepared.scene.check()?;
+        let picture = prepared.scene.picture;
+        let camera = prepared.camera(picture.width as f32 / picture.height as f32);
+        let Prepared { guides, bound, mesh, colliders, head, pose, scene, tags, .. } = prepared;
+        let pair = devices.open()?;
+        let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
+        let view = &mut session.view;
+        view.lights = lights(&scene, view);
+        (view.camera, view.look) = (camera, scene.look.clone());
+        (view.body_look, view.level_of_detail) = (scene.body_look, scene.level_of_detail);
+        session.set_picture(picture)?;
+        let scales = vec![scene.groom.length; session.view.guides.strand_count()];
+        let simulation = session.executor.simulation_mut();
+        if scene.groom.length != 1.0 {
+            simulation.set_length_scale(&scales)?;
+        }
+        // A head that is turned at first does not whip its hair there.
+        let start = head.pose(scene.film.start);
+        match &pose {
+            Some(pose) => simulation.place(pose)?,
+            None if start != Pose::IDENTITY => simulation.reset(start)?,
+            None => {}
+        }
+        session.direction = Direction::new(&scene, head);
+        (session.scene, session.tags) = (scene, tags);
+        session.show()?;
+        Ok(session)
+    }
+
+    /// The session with its simulation on a thread of its own [Chen2011 §5].
+    ///
+    /// # Errors
+    /// The system gives no thread.
+    pub fn beside(self) -> Result<Session<Worker<Simulation>>, Error> {
+        let mut simulation = self.executor.into_simulation();
+        simulation.threads = Some(Pool::new("simulation"));
+        Ok(Session {
+            scene: self.scene,
+            tags: self.tags,
+            executor: Worker::new(simulation).map_err(Error::Thread)?,
+            view: self.view,
+            direction: self.direction,
+            settings: self.settings,
+            draft: self.draft,
+            simulated_on: self.simulated_on,
+            grabbed: self.grabbed,
+            simulated_after: self.simulated_after,
+            spare: self.spare,
+            shown: self.shown,
+            points: self.points,
+            events: self.events,
+            drawn: self.drawn,
+        })
+    }
+
+    /// The simulation.
+    pub fn simulation(&self) -> &Simulation {
+        self.executor.simulation()
+    }
+
+    /// The simulation, to be changed.
+    pub fn simulation_mut(&mut self) -> &mut Simulation {
+        self.executor.simulation_mut()
+    }
+
+    /// Takes the hair as it is now for the next picture.
+    ///
+    /// # Errors
+    /// The GPU failed, and falling back to the CPU is not allowed.
+    pub fn show(&mut self) -> Result<(), Error> {
+        let Self { executor, view, shown, .. } = self;
+        Ok(executor.simulation_mut().show(view.painter.gpu(), shown)?)
+    }
+
+    /// Allows or forbids falling back to the CPU when a GPU fails.
+    pub fn set_fall_back(&mut self, fall_back: bool) {
+        self.executor.simulation_mut().set_fall_back(fall_back);
+        self.view.painter.fall_back = fall_back;
+    }
+
+    /// Sets the strands' attributes that files are given.
+    pub fn set_tags(&mut self, tags: Tags) {
+        self.tags = tags;
+    }
+}
+
+impl Session<Worker<Simulation>> {
+    /// Looks at the simulation between two jobs; waits for the one that runs.
+    pub fn peek<T>(&self, look: impl FnOnce(&mut Simulation) -> T) -> T {
+        look(&mut self.executor.work())
+    }
+}
+
+/// The lights of a scene: its own, else those of its surroundings, else those of its look.
+fn lights(scene: &Scene, view: &View) -> Vec<Light> {
+    if scene.lights.is_empty() && scene.look.surroundings.is_none() {
+        return scene.look.lights(prepare::center(view.bounds));
+    }
+    scene.lights.clone()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::{Backend, groom::Groom};
+
+    #[test]
+    fn a_session_draws_with_what_was_chosen_to_fit_the_groom() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("few.hair");
+        let mut groom = Groom::empty(8e-5);
+        for strand in 0..20 {
+            let root = Vec3::X * 0.01 * strand as f32;
+            groom.push((0..8).map(|point| root + Vec3::NEG_Y * 0.03 * point as f32));
+        }
+        crate::groom::format::save(&groom, &path).unwrap();
+        let mut scene = Scene::demo();
+        scene.groom.file = Some(path);
+        let prepared = Prepared::new(&scene).unwrap();
+        let fitted = prepared.scene.clone();
+        assert_ne!(fitted.look.follow_strands, scene.look.follow_strands);
+        scene.level_of_detail.segments_per_span = 7;
+        let session = Session::open(prepared, Backend::Cpu.into()).unwrap();
+        assert_eq!(session.view.level_of_detail, fitted.level_of_detail);
+        assert_eq!(session.view.look, fitted.look);
+        assert_eq!(session.scene, fitted);
+    }
+
+    #[test]
+    fn hair_of_a_scene_is_lit_by_the_surroundings_that_were_loaded_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("even.hdr");
+        let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n".to_vec();
+        bytes.extend([128, 128, 128, 129].repeat(8));
+        std::fs::write(&path, bytes).unwrap();
+        let mut scene = Scene::demo();
+        (scene.style.strand_count, scene.body.spacing) = (4, 0.05);
+        scene.surroundings.file = Some(path);
+        let prepared = Prepared::new(&scene).unwrap();
+        assert!(prepared.scene.look.surroundings.is_some());
+        let loaded = prepared.scene.look.clone();
+        let session = Session::open(prepared, Backend::Cpu.into()).unwrap();
+        // An even sky has no sun, and lamps beside it only where the scene has some.
+        assert!(session.view.lights.is_empty(), "{:?}", session.view.lights);
+        assert_eq!(session.view.look, loaded, "the look has the surroundings that light it");
+    }
+}

@@ -1,0 +1,106 @@
+//! Renderer of a session, with view, look and lights.
+
+use crate::{
+    Error,
+    body::Aabb,
+    gpu::Gpu,
+    groom::Guides,
+    render::{BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, RenderError},
+    session::painter::Painter,
+    sim::SimError,
+};
+
+use super::moment::Moment;
+
+/// A renderer, with the view, the look and the lights of its pictures.
+pub(crate) struct View {
+    pub(super) guides: Guides,
+    pub(super) bounds: Aabb,
+    pub(super) painter: Painter,
+    pub(super) camera: Camera,
+    pub(super) look: Look,
+    pub(super) lights: Vec<Light>,
+    pub(super) body_look: BodyLook,
+    pub(super) level_of_detail: LevelOfDetail,
+}
+
+impl View {
+    /// The simulated strands at rest.
+    pub fn guides(&self) -> &Guides {
+        &self.guides
+    }
+
+    /// The box around hair and body at rest \[m\], head space.
+    pub fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// The view.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// The look of the hair.
+    pub fn look(&self) -> &Look {
+        &self.look
+    }
+
+    /// The lights.
+    pub fn lights(&self) -> &[Light] {
+        &self.lights
+    }
+
+    /// The look of the body.
+    pub fn body_look(&self) -> &BodyLook {
+        &self.body_look
+    }
+
+    /// The rule by which detail follows distance and the size of a pixel.
+    pub fn level_of_detail(&self) -> LevelOfDetail {
+        self.level_of_detail
+    }
+
+    /// The device of the pictures; none on the CPU.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        self.painter.gpu()
+    }
+
+    /// Device of the last picture, human-readable.
+    pub fn drawn_on(&self) -> String {
+        self.painter.drawn_on()
+    }
+
+    /// The opacity map of a light, and the depths of its first hair.
+    pub fn maps(&self, light: usize) -> Result<Option<[Picture; 2]>, RenderError> {
+        self.painter.maps(light)
+    }
+
+    /// Draws a moment where its points are: on their device, or from the host where `at_home`.
+    fn draw_from(&mut self, moment: &Moment, at_home: bool) -> Result<(Picture, FrameReport), RenderError> {
+        let input = FrameInput {
+            positions: moment.positions(),
+            world_from_head: moment.world_from_head,
+            camera: &self.camera,
+            look: &self.look,
+            body_look: &self.body_look,
+            lights: &self.lights,
+            level_of_detail: &self.level_of_detail,
+        };
+        self.painter.draw(&input, moment.device_points().filter(|_| !at_home))
+    }
+
+    /// Draws a moment; where the GPU fails, and that is allowed, on the CPU: `bring_home` then has the points.
+    pub fn draw(
+        &mut self,
+        moment: &mut Moment,
+        bring_home: impl FnOnce(&mut Moment) -> Result<(), SimError>,
+    ) -> Result<(Picture, FrameReport), Error> {
+        let failure = match self.draw_from(moment, false) {
+            Ok(drawn) => return Ok(drawn),
+            Err(failure) => failure,
+        };
+        self.painter.recover_from(failure)?;
+        bring_home(moment)?;
+        Ok(self.draw_from(moment, true)?)
+    }
+}
