@@ -3,7 +3,7 @@
 use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
-use super::cells::Cells;
+use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::records::{Outcome, PointBox, PressureState, Report};
 use super::rod_buffers::{NUMBERS, RodBuffers};

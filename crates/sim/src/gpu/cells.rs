@@ -2,23 +2,12 @@
 
 use std::sync::OnceLock;
 
-use strandline_gpu::{
-    Bindings, Buffer, Declaration, Dispatches, Gpu, GpuError, Kernel, Scan, kernel, mirror,
-};
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
-use super::buffers::Buffers;
+use super::cell_buffers::{Cells, LatticeState};
 use super::inputs::Step;
 use super::splat::{ListPoints, RankPoints};
 use super::stage::{StageKernels, Target};
-use crate::cells::Lattice;
-
-mirror! {
-    /// The cells and their buckets. Mirrors `LatticeState` in cells.wesl.
-    pub(super) struct LatticeState {
-        pub per_metre: f32,
-        pub mask: u32,
-    }
-}
 
 kernel! {
     /// The histogram; one thread is one point.
@@ -28,35 +17,6 @@ kernel! {
         4 lattice: Read LatticeState,
         5 positions: Read f32,
         6 counts: ReadWrite u32,
-    }
-}
-
-/// The buffers of the sort.
-pub(super) struct Cells {
-    /// Edge of a cell \[m\].
-    pub edge: f32,
-    lattice: Buffer<LatticeState>,
-    /// Points of each bucket while they are counted, then their first place in the order; one more than buckets.
-    pub start_index: Buffer<u32>,
-    totals: Buffer<u32>,
-    cell_ranks: Buffer<[u32; 2]>,
-    /// Indices of points, bucket after bucket.
-    pub order: Buffer<u32>,
-}
-
-impl Cells {
-    pub fn new(gpu: &Gpu, edge: f32, buffers: &Buffers) -> Result<Self, GpuError> {
-        let lattice = Lattice::new(edge, buffers.strand_count * buffers.points);
-        let (buckets, points) = (lattice.bucket_count(), buffers.point_count());
-        let state = LatticeState { per_metre: lattice.per_metre(), mask: buckets as u32 - 1 };
-        Ok(Self {
-            edge,
-            lattice: Buffer::from_slice(gpu, "cells", &[state])?,
-            start_index: Buffer::new(gpu, "starts of buckets", buckets + 1)?,
-            totals: Scan::totals(gpu, buckets + 1)?,
-            cell_ranks: Buffer::new(gpu, "buckets of points", points)?,
-            order: Buffer::new(gpu, "order of points", points)?,
-        })
     }
 }
 
@@ -98,11 +58,11 @@ impl StageKernels for Stage {
         let Target { gpu, buffers, scan, side, .. } = *to;
         let Some(cells) = &buffers.cells else { return Ok(Vec::new()) };
         let kernels = self.kernels(gpu)?;
-        let Cells { lattice, start_index, cell_ranks, order, .. } = cells;
+        let Cells { lattice, start_index, totals, cell_ranks, order, .. } = cells;
         let (step, positions, points) = (&buffers.step, &buffers.places[side], buffers.point_count());
         let find = FindBuckets { step, cell_ranks, lattice, positions, counts: start_index };
         let mut dispatches = vec![kernels.find_buckets.bind(gpu, &find)?.over(points)];
-        dispatches.extend(scan.bind(gpu, start_index, &cells.totals)?);
+        dispatches.extend(scan.bind(gpu, start_index, totals)?);
         let list = ListPoints { step, cell_ranks, start_index, counted: order };
         let list = kernels.list_points.bind(gpu, &list)?.over(points);
         let rank = RankPoints { step, cell_ranks, start_index, counted: order };

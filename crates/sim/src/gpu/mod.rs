@@ -7,6 +7,7 @@ mod advance;
 mod alone;
 mod between;
 mod buffers;
+mod cell_buffers;
 mod cells;
 mod constrain;
 mod gather;

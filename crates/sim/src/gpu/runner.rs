@@ -7,7 +7,7 @@ use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Recorder, Timer};
 use strandline_groom::{LANES, Lanes, RestShape};
 
 use super::buffers::{Buffers, REPORTS};
-use super::cells::Cells;
+use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::kernels::Kernels;
 use super::pending::{Pending, Reported};
@@ -273,7 +273,10 @@ impl GpuRunner {
         let changed = changed || self.buffers.cells.as_ref().map(|cells| cells.edge) != edge;
         if changed {
             self.buffers.cells = match edge {
-                Some(edge) => Some(Cells::new(&self.gpu, edge, &self.buffers)?),
+                Some(edge) => {
+                    let Buffers { strand_count, lane_count, points, .. } = self.buffers;
+                    Some(Cells::new(&self.gpu, edge, [strand_count, lane_count], points)?)
+                }
                 None => None,
             };
         }
