@@ -15,6 +15,7 @@ mod layers;
 mod length_scale;
 mod lengths;
 mod pendulum;
+mod pieces;
 mod poisson;
 mod projection;
 mod recovery;

@@ -1,7 +1,7 @@
 //! A few guides drawn on either backend: the light that each point sends to the eye, and whole pictures.
 
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_body::{BodyFrame, Pose};
 use strandline_checks::On;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::{
@@ -140,7 +140,7 @@ impl Drawn {
     fn input<T>(&self, moved: &Guides, draw: impl FnOnce(&FrameInput) -> T) -> T {
         draw(&FrameInput {
             positions: moved.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &Camera { position: self.eye, target: Vec3::ZERO, ..Camera::front() },
             look: &self.look,
             body_look: &BodyLook::default(),

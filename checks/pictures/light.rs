@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use glam::Vec3;
-use strandline_body::{Mesh, Pose};
+use strandline_body::{BodyFrame, Mesh};
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides};
@@ -122,7 +122,7 @@ impl Scene {
     fn input(&self) -> FrameInput<'_> {
         FrameInput {
             positions: self.guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &self.camera,
             look: &self.look,
             body_look: &self.body_look,

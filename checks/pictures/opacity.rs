@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, Style, StyleSettings};
@@ -64,7 +64,7 @@ pub fn shadows_in(renderer: &mut GpuRenderer, strands: &Strands, light: &Light, 
     let guides = guides();
     let input = FrameInput {
         positions: guides.positions(),
-        world_from_head: Pose::IDENTITY,
+        body: &BodyFrame::REST,
         camera: &Camera::front(),
         look,
         body_look: &BodyLook::default(),

@@ -154,7 +154,7 @@ impl Renderer {
         let (given, lights) = (input, at_samples(input.lights, input.look.suns()));
         let layers_of = self.layers_of.map(|light| first_sample(input.lights, light));
         let input = &FrameInput { lights: &lights, ..*input };
-        let middle = input.world_from_head.point(middle(self.bounds));
+        let middle = input.body.world_from_head().point(middle(self.bounds));
         let level = input.level(self.bounds, self.settings.height, &self.guides);
         // It counts the places of the lights itself.
         let (strand_count, points) = (self.guides.strand_count(), self.guides.points_per_strand());
@@ -207,11 +207,11 @@ impl Renderer {
     /// Finds all drawn strands, and what every light sees of them; `middle` is the middle of their box \[m\].
     fn lay_strands(&mut self, input: &FrameInput, level: &DetailLevel, middle: Vec3, seconds: &mut Seconds) {
         let Self { guides, solids, curves, strands, shadows, draw, .. } = self;
-        let pose = &input.world_from_head;
+        let pose = &input.body.world_from_head();
         timed(seconds, "tessellate", || tessellate(input.positions, guides, pose, level, curves));
         timed(seconds, "interpolate", || {
             interpolate(curves, guides, pose, input.look, level, strands);
-            keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(*pose));
+            keep_outside(strands, curves, guides.points_per_strand(), &solids.placed(input.body));
         });
         timed(seconds, "opacity_depth", || {
             draw.place_body(*pose);
@@ -289,7 +289,7 @@ pub(crate) fn bounds(guides: &Guides) -> Aabb {
 mod tests {
     use strandline_groom::Groom;
 
-    use strandline_body::Pose;
+    use strandline_body::BodyFrame;
 
     use super::*;
     use crate::surroundings::Surroundings;
@@ -307,7 +307,7 @@ mod tests {
         let soft = Light { kind: LightKind::Rectangle, samples: 4, ..Light::default() };
         let input = FrameInput {
             positions: guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &Camera::front(),
             look: &look,
             body_look: &BodyLook::default(),
@@ -328,7 +328,7 @@ mod tests {
         let look = Look { follow_strands: 1, ..Look::brown() };
         let input = FrameInput {
             positions: guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &Camera::front(),
             look: &look,
             body_look: &BodyLook::default(),

@@ -23,8 +23,8 @@ fn values_are_set_in_every_command_that_takes_a_scene() {
     let report =
         printed(&[&["sim", "--json", "--backend", "cpu", "--set", "film.settle=0"][..], &small].concat());
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
-    // The value comes after the options.
-    assert_eq!((report["frames"].as_u64(), report["strands"].as_u64()), (Some(2), Some(5)), "{report}");
+    // Values replace those of options: two frames of two steps each, not nine.
+    assert_eq!((report["steps"].as_u64(), report["strands"].as_u64()), (Some(4), Some(5)), "{report}");
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn mistakes_are_told_with_the_nearest_key_and_the_range() {
         ("simulation.gravty=1", ["no setting of a scene", "`simulation.gravity`"]),
         ("film.frames=0", ["film.frames is 0", "expected 1 to"]),
         ("film.frames", ["needs KEY=VALUE", "1 to 1,000,000"]),
-        ("motion.name=jump", ["`jump`", "one of still"]),
+        ("motion.name=jump", ["is \"jump\"", "one of still"]),
     ] {
         for command in [&["scene"][..], &["sim"], &["render"]] {
             let output = strandline(folder.path(), &[command, &["--set", value]].concat());

@@ -102,7 +102,7 @@ impl Renderer {
 
 #[cfg(test)]
 mod tests {
-    use strandline_body::Pose;
+    use strandline_body::BodyFrame;
     use strandline_groom::{Groom, Guides};
 
     use crate::{Camera, LevelOfDetail, Light, Look};
@@ -121,7 +121,7 @@ mod tests {
         let camera = Camera { position: Vec3::Z * 0.5, target: Vec3::ZERO, ..Camera::front() };
         let input = FrameInput {
             positions: guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &camera,
             look: &look,
             body_look: &BodyLook::default(),

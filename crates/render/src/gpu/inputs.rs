@@ -216,7 +216,7 @@ impl Frame {
         let (width, height) = (settings.width as f32, settings.height as f32);
         let (scale, map_size) = (settings.supersampling as f32, input.look.hair_shadow().map_size);
         Self {
-            world_from_head: Rigid::from(&input.world_from_head),
+            world_from_head: Rigid::from(&input.body.world_from_head()),
             view_from_world: Rigid::from(&input.camera.view_from_world()),
             eye: input.camera.position.to_array(),
             share: scene.share,
@@ -295,7 +295,7 @@ impl LightSource {
     /// The lights of a frame; those with shadow are numbered in their order.
     pub fn all(scene: &Scene) -> Vec<Self> {
         let (center, radius) = scene.body_ball;
-        let center = scene.input.world_from_head.point(center);
+        let center = scene.input.body.world_from_head().point(center);
         let mut slot = 0;
         let mut casters = Vec::new();
         let mut sources = Vec::new();

@@ -38,10 +38,10 @@ impl Cells {
         let state = LatticeState { per_metre: lattice.per_metre(), mask: buckets as u32 - 1 };
         Ok(Self {
             edge,
-            pub lattice: Buffer::from_slice(gpu, "cells", &[state])?,
+            lattice: Buffer::from_slice(gpu, "cells", &[state])?,
             start_index: Buffer::new(gpu, "starts of buckets", buckets + 1)?,
             totals: Scan::totals(gpu, buckets + 1)?,
-            pub cell_ranks: Buffer::new(gpu, "buckets of points", points)?,
+            cell_ranks: Buffer::new(gpu, "buckets of points", points)?,
             order: Buffer::new(gpu, "order of points", points)?,
         })
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Recorder, Timer};
 use strandline_groom::{LANES, Lanes, RestShape};
 
@@ -12,6 +12,7 @@ use super::inputs::Step;
 use super::kernels::Kernels;
 use super::pending::{Pending, Reported};
 use super::records::{Gradient, Spread};
+use super::solids;
 use super::volume::Volume;
 use crate::grab::Grab;
 use crate::step::{Stage, stages};
@@ -33,7 +34,7 @@ pub struct GpuRunner {
     pub(super) side: usize,
     /// The stages bound to the buffers, in order, for both sides; none after a change.
     bound: Option<[Vec<(Stage, Dispatches)>; 2]>,
-    pub(super) world_from_head: Pose,
+    pub(super) body: BodyFrame,
     pub(super) time: f64,
     pub(super) length_scale: Vec<Lanes>,
     /// The rest shape with these lengths.
@@ -70,7 +71,7 @@ impl GpuRunner {
     pub fn new(gpu: &Gpu, model: Model) -> Result<Self, SimError> {
         model.settings.check_on_gpu()?;
         let kernels = Kernels::new(gpu, model.points_per_strand)?;
-        let state = model.rest_state(Pose::IDENTITY);
+        let state = model.rest_state(BodyFrame::REST);
         Self::with_kernels(gpu, model, Arc::new(kernels), &state)
     }
 
@@ -83,7 +84,7 @@ impl GpuRunner {
     }
 
     fn with_kernels(gpu: &Gpu, model: Model, kernels: Arc<Kernels>, state: &State) -> Result<Self, SimError> {
-        Ok(Self {
+        let made = Self {
             gpu: gpu.clone(),
             kernels,
             buffers: Buffers::new(gpu, &model, state)?,
@@ -91,7 +92,7 @@ impl GpuRunner {
             model,
             side: 0,
             bound: None,
-            world_from_head: state.world_from_head,
+            body: state.body.clone(),
             time: state.time,
             length_scale: state.length_scale.clone(),
             lengths: Arc::clone(&state.lengths),
@@ -102,7 +103,9 @@ impl GpuRunner {
             gradient: Gradient::default(),
             spread: Spread::default(),
             costs: Costs::default(),
-        })
+        };
+        gpu.check()?;
+        Ok(made)
     }
 
     /// The model.
@@ -120,9 +123,9 @@ impl GpuRunner {
         self.time
     }
 
-    /// Pose of the head now.
-    pub fn world_from_head(&self) -> Pose {
-        self.world_from_head
+    /// Body now.
+    pub fn body(&self) -> &BodyFrame {
+        &self.body
     }
 
     /// Positions \[m\] now and one step ago, world space, `[block][point][component][lane]`: for a
@@ -148,31 +151,37 @@ impl GpuRunner {
         self.bound = None;
     }
 
-    /// Changes the settings between two steps.
+    /// Changes the settings between two steps: uploads what the change invalidates and waits only for another strand
+    /// solver.
     ///
     /// # Errors
     /// A setting outside its range or MIC(0), then nothing changes; or the device was lost.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check_on_gpu()?;
         self.gpu.check()?;
-        let had_rods = self.model.rods.is_some();
-        let host = if settings.has_rods() == had_rods {
-            None
-        } else {
-            self.drain()?;
-            Some(self.state()?)
-        };
-        self.model.set_settings(settings)?;
-        self.bound = None;
-        match host {
-            // Another strand solver has other buffers.
-            Some(host) => {
-                self.buffers = Buffers::new(&self.gpu, &self.model, &host)?;
-                self.side = 0;
-            }
-            // Masses may have changed.
-            None => self.buffers.write_rest(&self.model, &self.lengths)?,
+        let change = self.model.settings.change_to(settings);
+        if change.buffers {
+            return self.rebuild(settings);
         }
+        self.model.set_settings(settings)?;
+        if change.masses {
+            self.buffers.write_rest(&self.model, &self.lengths)?;
+        } else if change.rest_shape {
+            self.buffers.write_rods(&self.model, &self.lengths)?;
+        }
+        if change.stages {
+            self.bound = None;
+        }
+        Ok(())
+    }
+
+    /// Waits for the state and begins with it in other buffers: another strand solver has others.
+    fn rebuild(&mut self, settings: &Settings) -> Result<(), SimError> {
+        self.drain()?;
+        let (state, mut model) = (self.state()?, self.model.clone());
+        model.set_settings(settings)?;
+        self.buffers = Buffers::new(&self.gpu, &model, &state)?;
+        (self.model, self.side, self.bound) = (model, 0, None);
         Ok(())
     }
 
@@ -185,7 +194,7 @@ impl GpuRunner {
     pub fn step(&mut self, drive: &Drive) -> Result<(), SimError> {
         self.run(drive, |_| true)?;
         self.side = 1 - self.side;
-        self.world_from_head = drive.or_still_at(self.world_from_head).world_from_head;
+        self.body = drive.or_still_at(&self.body, self.model.strand_count).body;
         self.time += f64::from(self.model.settings.time_step);
         self.pending.count += 1;
         Ok(())
@@ -221,13 +230,16 @@ impl GpuRunner {
     /// Records and submits the stages of a step that are wanted.
     pub(super) fn run(&mut self, drive: &Drive, wanted: impl Fn(Stage) -> bool) -> Result<(), SimError> {
         self.prepare()?;
-        let drive = drive.or_still_at(self.world_from_head);
+        let drive = drive.or_still_at(&self.body, self.model.strand_count);
         self.grab.hand = drive.hand.unwrap_or(self.grab.hand);
-        let uniform = Step::new(&self.model, &self.world_from_head, &drive, &self.grab, self.pending.count);
+        let uniform = Step::new(&self.model, &self.body, &drive, &self.grab, self.pending.count);
         self.buffers.step.write(&[uniform])?;
+        let bodies = [&self.body, &drive.body];
+        solids::write_pieces(&self.buffers.step, &self.model, bodies)?;
+        self.buffers.write_roots(&self.model, bodies)?;
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
         let Pending { timer, marks, count, .. } = &self.pending;
-        self.gpu.guarded("a step", || {
+        self.gpu.ask("a step", || {
             let mut recorder = Recorder::new(&self.gpu, timer.as_ref());
             timer.iter().for_each(Timer::restart);
             for (stage, dispatches) in self.bound.iter().flat_map(|sides| &sides[self.side]) {
@@ -284,8 +296,8 @@ impl GpuRunner {
             volume.put(place)?;
         }
         if changed || self.bound.is_none() {
-            // Times of stages that are no longer there cannot be distinguished later.
-            self.drain()?;
+            // Reports of other stages go first.
+            self.pending.send(&self.gpu, &self.buffers.reports)?;
             if let Some(volume) = &mut self.buffers.volume {
                 volume.gradient = self.gradient;
                 volume.spread = self.spread;

@@ -6,7 +6,7 @@ use strandline_base::{choices, in_strand_order};
 
 use crate::{
     BoundStrands, Error, Scene,
-    body::Pose,
+    body::BodyFrame,
     groom::{Frames, Guides, MOST_INFLUENCES, Vec3Lanes},
     render::{
         DetailLevel, Look,
@@ -107,6 +107,8 @@ pub(crate) struct Leaving<'a> {
     /// All strands, where some are not simulated.
     pub bound: Option<&'a BoundStrands>,
     pub tags: &'a Tags,
+    /// Body at the beginning of the film.
+    pub body: &'a BodyFrame,
 }
 
 impl Shape {
@@ -121,7 +123,7 @@ impl Shape {
         }
     }
 
-    fn of_guides(Leaving { guides, bound, tags }: Leaving) -> Self {
+    fn of_guides(Leaving { guides, bound, tags, .. }: Leaving) -> Self {
         let (strands, points) = (guides.strand_count(), guides.points_per_strand());
         let share = |point: usize| guides.profiles().map_or(1.0, |profiles| profiles[point]);
         let widths = (0..strands * points).map(|point| guides.widths()[point / points] * share(point));
@@ -139,7 +141,7 @@ impl Shape {
         }
     }
 
-    fn of_strands(scene: &Scene, Leaving { guides, bound, tags }: Leaving) -> Result<Self, Error> {
+    fn of_strands(scene: &Scene, Leaving { guides, bound, tags, .. }: Leaving) -> Result<Self, Error> {
         let level =
             DetailLevel::full(scene.level_of_detail.segments_per_span, scene.look.follow_strands.max(1));
         let all = bound.map_or(guides, BoundStrands::strands);
@@ -160,7 +162,7 @@ impl Shape {
             curves: Curves::default(),
             strands: Strands::default(),
         };
-        drawn.grow(guides.positions(), &Pose::IDENTITY);
+        drawn.grow(guides.positions(), &BodyFrame::REST);
         let grown = &drawn.strands;
         // The strands of a clump share their colours.
         let colors = grown.colors.chunks_exact(points).flat_map(|colors| {
@@ -190,7 +192,7 @@ impl Shape {
     }
 
     /// Fills `points` \[m\] with the strands of guides that are somewhere, shape `[block][point]` of lanes.
-    pub fn place(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose, points: &mut Vec<Vec3>) {
+    pub fn place(&mut self, positions: &[Vec3Lanes], body: &BodyFrame, points: &mut Vec<Vec3>) {
         points.clear();
         let strand_count = self.strand_count();
         match &mut self.source {
@@ -198,7 +200,7 @@ impl Shape {
                 points.extend(in_strand_order(positions, strand_count, *each));
             }
             Source::Strands(drawn) => {
-                drawn.grow(positions, world_from_head);
+                drawn.grow(positions, body);
                 points.extend_from_slice(&drawn.strands.positions);
             }
         }
@@ -206,19 +208,20 @@ impl Shape {
 }
 
 impl Drawn {
-    fn grow(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose) {
+    fn grow(&mut self, positions: &[Vec3Lanes], body: &BodyFrame) {
         let Self { drawn, bound, frames, places, look, level, curves, strands } = self;
         let positions = match bound {
             None => positions,
             Some(bound) => {
-                bound.place(positions, world_from_head, frames, places);
+                bound.place(positions, body, frames, places);
                 places
             }
         };
-        tessellate(positions, drawn, world_from_head, level, curves);
-        interpolate(curves, drawn, world_from_head, look, level, strands);
+        let head = body.world_from_head();
+        tessellate(positions, drawn, &head, level, curves);
+        interpolate(curves, drawn, &head, look, level, strands);
         if let Some(bound) = bound {
-            let solids = bound.solids().placed(*world_from_head);
+            let solids = bound.solids().placed(body);
             keep_outside(strands, curves, drawn.points_per_strand(), &solids);
         }
     }

@@ -157,7 +157,7 @@ impl Painter {
     fn draw_on_cpu(&mut self, input: &FrameInput, picture: &mut Picture) -> Result<FrameReport, RenderError> {
         let watch = Stopwatch::start();
         let bind = self.bound.as_ref().map(|bound| {
-            bound.place(input.positions, &input.world_from_head, &mut self.frames, &mut self.places);
+            bound.place(input.positions, input.body, &mut self.frames, &mut self.places);
             ("bind", watch.seconds())
         });
         let positions = if bind.is_some() { &self.places } else { input.positions };

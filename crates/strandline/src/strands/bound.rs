@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::{
-    body::{Collider, Pose, Shape, Solids},
+    body::{BodyFrame, Collider, Shape, Solids},
     groom::{Binding, Frames, Guides, Surface, Vec3Lanes},
 };
 
@@ -54,17 +54,17 @@ impl BoundStrands {
     pub fn place(
         &self,
         guides: &[Vec3Lanes],
-        world_from_head: &Pose,
+        body: &BodyFrame,
         frames: &mut Frames,
         out: &mut Vec<Vec3Lanes>,
     ) {
-        let solids = self.solids.placed(*world_from_head);
+        let solids = self.solids.placed(body);
         let at = |point: Vec3| solids.at(point);
         let at_least = |point: Vec3| solids.at_least(point);
         let surface = Surface { at: &at, at_least: &at_least };
         let surface = (!self.solids.all().is_empty()).then_some(&surface);
-        self.binding.follow(guides, world_from_head, frames);
-        self.binding.place(frames, world_from_head, surface, out);
+        self.binding.follow(guides, body, frames);
+        self.binding.place(frames, body, surface, out);
     }
 
     /// The solids that strands stay out of.
