@@ -31,7 +31,7 @@ fn model(cells: Option<f32>) -> Model {
 fn drive(step: usize) -> Drive {
     let rotation = Quat::from_rotation_y(0.05 * step as f32);
     let world_from_head = Pose { rotation, translation: Vec3::new(0.01 * step as f32, 0.0, 0.0) };
-    Drive { world_from_head, wind: Vec3::new(0.5, 0.0, 0.3), ..Drive::default() }
+    Drive { body: world_from_head.into(), wind: Vec3::new(0.5, 0.0, 0.3), ..Drive::default() }
 }
 
 /// The state after some steps, from the one that is given.
