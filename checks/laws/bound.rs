@@ -6,8 +6,8 @@ use strandline_body::{BodyFrame, Mesh, Pose};
 use strandline_checks::{On, Rig};
 use strandline_groom::{Frames, LANES, Vec3Lanes};
 use strandline_render::{
-    DetailLevel,
-    cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
+    DetailLevel, Strands,
+    cpu::{Curves, interpolate, keep_outside, tessellate},
 };
 use strandline_sim::{Drive, Model, Settings};
 

@@ -4,11 +4,12 @@ use glam::Vec3;
 use strandline_body::BodyFrame;
 use strandline_checks::{On, law};
 use strandline_groom::{Groom, Guides};
-use strandline_render::cpu::{Shadows, Strands, opacity_depth, opacity_layers};
+use strandline_render::cpu::{opacity_depth, opacity_layers};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings, Shadow,
 };
+use strandline_render::{Shadows, Strands};
 
 use crate::strands::line;
 

@@ -4,7 +4,8 @@ use glam::{Quat, Vec3};
 use strandline_body::{BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
 use strandline_checks::gpu;
 use strandline_groom::{Binding, Frames, Guides, LANES, Style, StyleSettings, Surface, Vec3Lanes};
-use strandline_render::cpu::{Curves, Strands, interpolate, keep_outside, tessellate};
+use strandline_render::Strands;
+use strandline_render::cpu::{Curves, interpolate, keep_outside, tessellate};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
 
@@ -98,7 +99,7 @@ fn apart(one: &[Vec3Lanes], two: &[Vec3Lanes], strands: usize) -> Vec<f32> {
 }
 
 #[test]
-fn bound_strands_lie_where_the_cpu_has_them() {
+fn bind_places_strands_where_the_cpu_has_them() {
     let binding = binding();
     let Some((on_gpu, _)) = on_gpu(&binding, &Solids::default()) else { return };
     let on_cpu = on_cpu(&binding, &Solids::default());
@@ -113,7 +114,7 @@ fn bound_strands_lie_where_the_cpu_has_them() {
 }
 
 #[test]
-fn they_stay_out_of_solids_as_on_the_cpu() {
+fn bind_keeps_strands_out_of_solids_as_on_the_cpu() {
     let (binding, solids) = (binding(), solids());
     let Some((on_gpu, _)) = on_gpu(&binding, &solids) else { return };
     let on_cpu = on_cpu(&binding, &solids);

@@ -4,10 +4,10 @@ use glam::Vec3;
 use strandline_groom::Style;
 use strandline_render::Look;
 use strandline_render::cpu::{
-    Curves, Lit, Occlusion, OwnColors, Scattering, ShadowBody, Shadows, Strands, interpolate, opacity_depth,
-    opacity_layers, tessellate,
+    Curves, Lit, Occlusion, Scattering, ShadowBody, interpolate, opacity_depth, opacity_layers, tessellate,
 };
 use strandline_render::fibre::Pigment;
+use strandline_render::{OwnColors, Shadows, Strands};
 
 use crate::picture::{Both, drawn_on_gpu};
 

@@ -6,13 +6,13 @@ use strandline_checks::gpu;
 use strandline_groom::{Guides, Style, StyleSettings, Widths};
 use strandline_render::cpu::shadow::layer_colors::{LAYER_COLORS, layer_colors};
 use strandline_render::cpu::{
-    Curves, Occlusion, ShadowBody, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade,
-    tessellate,
+    Curves, Occlusion, ShadowBody, interpolate, opacity_depth, opacity_layers, shade, tessellate,
 };
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, DetailLevel, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings,
 };
+use strandline_render::{Shadows, Strands};
 
 /// All inputs of a picture, and the results of both backends.
 pub(crate) struct Both {

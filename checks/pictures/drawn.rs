@@ -5,8 +5,7 @@ use strandline_body::{BodyFrame, Pose};
 use strandline_checks::On;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::{
-    Curves, Lit, Occlusion, OwnColors, Scattering, Shadows, Strands, interpolate, opacity_depth,
-    opacity_layers, shade, tessellate,
+    Curves, Lit, Occlusion, Scattering, interpolate, opacity_depth, opacity_layers, shade, tessellate,
 };
 use strandline_render::fibre::FibreModel;
 use strandline_render::gpu::GpuRenderer;
@@ -14,6 +13,7 @@ use strandline_render::{
     BodyLook, Camera, DetailLevel, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture,
     PictureSettings, Renderer,
 };
+use strandline_render::{OwnColors, Shadows, Strands};
 
 /// Contents of a picture.
 pub struct Drawn {

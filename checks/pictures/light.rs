@@ -8,9 +8,9 @@ use strandline_body::{BodyFrame, Mesh};
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides};
-use strandline_render::cpu::resolve_linear;
 use strandline_render::fibre::{Chiang, Fibre, FibreModel, Pigment};
 use strandline_render::gpu::GpuRenderer;
+use strandline_render::resolve_linear;
 use strandline_render::{
     Background, BodyLook, Camera, Clump, Environment, FrameInput, LevelOfDetail, Light, LightKind, Look,
     PictureSettings, Renderer, ToneMap,

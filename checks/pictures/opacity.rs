@@ -7,11 +7,12 @@ use strandline_body::BodyFrame;
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, Style, StyleSettings};
-use strandline_render::cpu::{ShadowBody, Shadows, Strands, opacity_depth, opacity_layers};
+use strandline_render::cpu::{ShadowBody, opacity_depth, opacity_layers};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings, Shadow,
 };
+use strandline_render::{Shadows, Strands};
 
 use crate::grooms::Random;
 

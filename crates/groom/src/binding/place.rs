@@ -1,9 +1,9 @@
 //! Positions of bound strands: eight at a time, one lane per strand.
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::{Rigid, Vec3x8};
-use strandline_body::BodyFrame;
+use strandline_body::{BodyFrame, Solids};
 use wide::f32x8;
 
 use super::frames::{Frame, Frames};
@@ -12,6 +12,26 @@ use super::{Binding, Surface};
 use crate::{LANES, Vec3Lanes, outside::placed_outside};
 
 impl Binding {
+    /// Fills `out` with the points of all strands \[m\], world space, shape `[block][point]` of lanes, given those of
+    /// the guides in the same shape: [`Binding::follow`], then [`Binding::place`] out of solids. `frames` is used
+    /// again from call to call.
+    pub fn carry(
+        &self,
+        guides: &[Vec3Lanes],
+        body: &BodyFrame,
+        solids: &Solids,
+        frames: &mut Frames,
+        out: &mut Vec<Vec3Lanes>,
+    ) {
+        let placed = solids.placed(body);
+        let at = |point: Vec3| placed.at(point);
+        let at_least = |point: Vec3| placed.at_least(point);
+        let surface = Surface { at: &at, at_least: &at_least };
+        let surface = (!placed.is_empty()).then_some(&surface);
+        self.follow(guides, body, frames);
+        self.place(frames, body, surface, out);
+    }
+
     /// Positions of all strands \[m\], world space, shape `[block][point]` of lanes, from the frames of the
     /// guides ([`Binding::follow`]). Roots move with the head, or with the guides of their strands where these have
     /// root frames of their own. Segments have their rest lengths, scaled as those of the guides are. Points inside the

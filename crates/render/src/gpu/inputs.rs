@@ -6,9 +6,9 @@ use strandline_gpu::{Rigid, mirror};
 
 use super::scene::Scene;
 use super::{MAX_SHADOWS, codes};
-use crate::cpu::shadow::LightView;
 use crate::fibre::{Pigment, scheuermann::Numbers};
 use crate::level_of_detail::EveryFew;
+use crate::shadow::LightView;
 use crate::{LightKind, Look, ToneMap};
 
 mirror! {
@@ -225,7 +225,7 @@ impl Frame {
             near: input.camera.near,
             background_top: settings.background.top.to_array(),
             background_bottom: settings.background.bottom.to_array(),
-            widening: crate::cpu::strands::interpolate::widening(input.look, scene.guide_count),
+            widening: crate::strands::clump::widening(input.look, scene.guide_count),
             guide_count: scene.guide_count as u32,
             guide_points: scene.guide_points as u32,
             curve_points: scene.curve_points() as u32,

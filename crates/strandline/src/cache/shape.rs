@@ -7,11 +7,8 @@ use strandline_base::{choices, in_strand_order};
 use crate::{
     BoundStrands, Error, Scene,
     body::BodyFrame,
-    groom::{Frames, Guides, MOST_INFLUENCES, Vec3Lanes},
-    render::{
-        DetailLevel, Look,
-        cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
-    },
+    groom::{Guides, MOST_INFLUENCES, Vec3Lanes},
+    render::{DetailLevel, Growth, Look},
     strands::tags::Tags,
 };
 
@@ -86,17 +83,11 @@ enum Source {
     Strands(Box<Drawn>),
 }
 
-/// Input from which pictures grow strands.
+/// Strands as pictures grow them.
 struct Drawn {
-    /// The strands that are drawn, at rest, and what carries them where guides do.
-    drawn: Guides,
-    bound: Option<BoundStrands>,
-    frames: Frames,
-    places: Vec<Vec3Lanes>,
+    growth: Growth,
     look: Look,
     level: DetailLevel,
-    curves: Curves,
-    strands: Strands,
 }
 
 /// The hair of a scene that may leave.
@@ -152,18 +143,12 @@ impl Shape {
             let expected = "268435456 points in all at most: take fewer look.follow_strands";
             return Err(strandline_base::SettingError::new("what = strands", found, expected).into());
         }
-        let mut drawn = Drawn {
-            drawn: all.clone(),
-            bound: bound.cloned(),
-            frames: Frames::default(),
-            places: Vec::new(),
-            look: scene.look.clone(),
-            level,
-            curves: Curves::default(),
-            strands: Strands::default(),
+        let growth = match bound {
+            Some(bound) => Growth::bound(bound.binding(), bound.solids()),
+            None => Growth::new(guides),
         };
-        drawn.grow(guides.positions(), &BodyFrame::REST);
-        let grown = &drawn.strands;
+        let mut drawn = Drawn { growth, look: scene.look.clone(), level };
+        let grown = drawn.growth.at(guides.positions(), &BodyFrame::REST, &drawn.look, &level);
         // The strands of a clump share their colours.
         let colors = grown.colors.chunks_exact(points).flat_map(|colors| {
             std::iter::repeat_n(colors, level.strand_count()).flatten().map(|color| color.to_array())
@@ -200,29 +185,10 @@ impl Shape {
                 points.extend(in_strand_order(positions, strand_count, *each));
             }
             Source::Strands(drawn) => {
-                drawn.grow(positions, body);
-                points.extend_from_slice(&drawn.strands.positions);
+                let Drawn { growth, look, level } = &mut **drawn;
+                let grown = growth.at(positions, body, look, level);
+                points.extend_from_slice(&grown.positions);
             }
-        }
-    }
-}
-
-impl Drawn {
-    fn grow(&mut self, positions: &[Vec3Lanes], body: &BodyFrame) {
-        let Self { drawn, bound, frames, places, look, level, curves, strands } = self;
-        let positions = match bound {
-            None => positions,
-            Some(bound) => {
-                bound.place(positions, body, frames, places);
-                places
-            }
-        };
-        let head = body.world_from_head();
-        tessellate(positions, drawn, &head, level, curves);
-        interpolate(curves, drawn, &head, look, level, strands);
-        if let Some(bound) = bound {
-            let solids = bound.solids().placed(body);
-            keep_outside(strands, curves, drawn.points_per_strand(), &solids);
         }
     }
 }

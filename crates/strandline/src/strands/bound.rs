@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
-
 use crate::{
     body::{BodyFrame, Collider, Shape, Solids},
-    groom::{Binding, Frames, Guides, Surface, Vec3Lanes},
+    groom::{Binding, Frames, Guides, Vec3Lanes},
 };
 
 /// Share of the distance between samples of a solid that strands stay away from it, and how far at most \[m\]: samples
@@ -45,7 +43,7 @@ impl BoundStrands {
     }
 
     /// Which guides each strand follows.
-    pub fn binding(&self) -> &Binding {
+    pub fn binding(&self) -> &Arc<Binding> {
         &self.binding
     }
 
@@ -58,13 +56,7 @@ impl BoundStrands {
         frames: &mut Frames,
         out: &mut Vec<Vec3Lanes>,
     ) {
-        let solids = self.solids.placed(body);
-        let at = |point: Vec3| solids.at(point);
-        let at_least = |point: Vec3| solids.at_least(point);
-        let surface = Surface { at: &at, at_least: &at_least };
-        let surface = (!self.solids.all().is_empty()).then_some(&surface);
-        self.binding.follow(guides, body, frames);
-        self.binding.place(frames, body, surface, out);
+        self.binding.carry(guides, body, &self.solids, frames, out);
     }
 
     /// The solids that strands stay out of.
