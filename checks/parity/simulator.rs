@@ -1,10 +1,14 @@
 //! A simulator on a device: reports and checkpoints come by themselves, and a device may fail at any time.
 
+use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{gpu, own_gpu};
-use strandline_sim::{CpuRunner, Drive, Settings, Simulator, State, StepReport};
+use strandline_sim::rods::Rest;
+use strandline_sim::{
+    CpuRunner, Drive, Model, Preconditioner, Settings, Simulator, State, StepReport, StrandMethod,
+};
 
-use crate::heads::{Head, drive, heads};
+use crate::heads::{Head, drive, heads, rods};
 
 /// Steps of each run.
 const RUNS: [usize; 6] = [2, 1, 3, 0, 4, 2];
@@ -172,7 +176,8 @@ fn a_state_of_the_last_runs_is_computed_again_when_the_device_fails() {
 /// Settings and hands that change between the steps of a device change in the same place when these are computed again.
 #[test]
 fn a_loss_after_changes_gives_what_comes_without_one() {
-    for head in &heads() {
+    for head in [heads().swap_remove(1), rods().swap_remove(3)] {
+        let head = &head;
         let play = |gpu: Option<&strandline_gpu::Gpu>, failing: usize| {
             let mut simulator = Simulator::new(gpu, head.model()).unwrap();
             let tip = simulator.last_state().positions[head.model().points_per_strand() - 1].get(0);
@@ -200,5 +205,83 @@ fn a_loss_after_changes_gives_what_comes_without_one() {
             let Some(gpu) = own_gpu() else { return };
             assert!(play(Some(&gpu), failing) == expected, "a loss in run {failing}");
         }
+    }
+}
+
+/// A setting that is a number of a step costs that number: no wait, no upload of a rest shape that stays.
+#[test]
+fn a_change_of_settings_waits_for_nothing_and_uploads_what_it_changes() {
+    let Some(gpu) = own_gpu() else { return };
+    let unstressed = |mut head: Head| {
+        head.settings.strands.rods.rest = Rest::Unstressed;
+        head
+    };
+    let few = 4096;
+    let sagging = rods().swap_remove(0);
+    let nodes = 4 * 10 * 304 * 16;
+    for (head, gravity) in [
+        (heads().swap_remove(0), 0..few),
+        (unstressed(rods().swap_remove(0)), 0..few),
+        (sagging, nodes..2 * nodes),
+    ] {
+        let mut simulator = Simulator::new(Some(&gpu), head.model()).unwrap();
+        simulator.run(&[drive(1), drive(2)]).unwrap();
+        simulator.state().unwrap();
+        let mut cost = |change: &dyn Fn(&mut Settings)| {
+            let (waits, crossed) = (gpu.waits(), gpu.crossed().to_device);
+            let mut settings = simulator.model().settings().clone();
+            change(&mut settings);
+            simulator.set_settings(&settings).unwrap();
+            simulator.run(&[drive(3)]).unwrap();
+            assert_eq!(gpu.waits(), waits, "{}", head.name);
+            gpu.crossed().to_device - crossed
+        };
+        let moved = cost(&|settings| settings.gravity.y = -3.0);
+        assert!(gravity.contains(&moved), "{}: {moved} bytes for gravity", head.name);
+        for change in [
+            |settings: &mut Settings| settings.damping = 2.0,
+            |settings: &mut Settings| settings.drag.across = 2.0,
+            |settings: &mut Settings| settings.volume.flip_share = 0.5,
+            |settings: &mut Settings| settings.volume.preconditioner = Preconditioner::Jacobi,
+            |settings: &mut Settings| settings.volume.enabled = false,
+        ] {
+            let moved = cost(&change);
+            assert!(moved < few, "{}: {moved} bytes", head.name);
+        }
+    }
+}
+
+/// Settings that change between steps give the same hair as settings from the start, whatever a change uploads.
+#[test]
+fn a_runner_whose_settings_changed_steps_like_one_that_was_made_with_them() {
+    let Some(gpu) = own_gpu() else { return };
+    type Change = fn(&mut Settings);
+    let changes: [Change; 6] = [
+        |settings| settings.gravity = Vec3::new(3.0, -2.0, 0.0),
+        |settings| settings.strands.rods.youngs_modulus *= 0.1,
+        |settings| settings.strands.rods.damping = 0.05,
+        |settings| settings.strands.rods.radius = 80.0,
+        |settings| settings.strands.constrain.mass_per_length *= 3.0,
+        |settings| settings.strands.method = StrandMethod::Constrain,
+    ];
+    let head = rods().swap_remove(3);
+    let mut other = Settings { volume: head.settings.volume, ..head.settings.clone() };
+    let mut simulator = Simulator::new(Some(&gpu), head.model()).unwrap();
+    for change in changes {
+        change(&mut other);
+        simulator.set_settings(&other).unwrap();
+        let fresh = Model::new(&head.guides, &other, head.colliders.clone()).unwrap();
+        let state = fresh.rest_state(Pose::IDENTITY);
+        simulator.set_state(state.clone()).unwrap();
+        let mut expected = Simulator::new(Some(&gpu), fresh).unwrap();
+        expected.set_state(state).unwrap();
+        for step in 1..=3 {
+            for simulator in [&mut simulator, &mut expected] {
+                simulator.run(&[drive(step)]).unwrap();
+            }
+        }
+        let [found, expected] =
+            [&mut simulator, &mut expected].map(|one| one.state().unwrap().positions.clone());
+        assert!(found == expected);
     }
 }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use eframe::egui;
 use strandline::{
-    Camera, Scene,
+    Camera, ErrorKind, Scene,
     live::{Command, LiveEvent, Shown},
     mesh::Aabb,
 };
@@ -37,7 +37,7 @@ impl App {
                         self.give_up_pictures();
                     }
                 }
-                LiveEvent::Error(error) => self.error = Some(error),
+                LiveEvent::Error(kind, error) => self.error = Some(with_remedy(kind, error)),
                 LiveEvent::Paused => {
                     self.playing = false;
                     self.give_up_pictures();
@@ -116,5 +116,15 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         self.show(ui);
+    }
+}
+
+/// The text of an error with what a person may do about it in the window.
+fn with_remedy(kind: ErrorKind, error: String) -> String {
+    match kind {
+        ErrorKind::DeviceLost | ErrorKind::OutOfMemory | ErrorKind::Refused => {
+            format!("{error}\nThe CPU can continue: choose cpu as the device.")
+        }
+        _ => error,
     }
 }

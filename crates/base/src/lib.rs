@@ -9,6 +9,7 @@
 pub mod cache;
 mod folder_lock;
 mod growing_file;
+mod invalidates;
 mod lanes;
 pub mod math;
 pub mod memory;
@@ -29,6 +30,7 @@ mod whole_file;
 
 pub use folder_lock::FolderLock;
 pub use growing_file::GrowingFile;
+pub use invalidates::Invalidates;
 pub use lanes::{LANES, LaneArray, Lanes, Vec3Lanes, block_count, fill_lanes, in_strand_order, lane_place};
 pub use parts::{Abandoned, abandon_parts};
 pub use plain_file::{open_plain, read_plain};

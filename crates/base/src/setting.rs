@@ -5,6 +5,8 @@ use std::fmt;
 
 use serde::de::DeserializeOwned;
 
+use crate::Invalidates;
+
 /// A value outside its range.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{key} is {found}, expected {expected}")]
@@ -137,6 +139,8 @@ pub struct Row {
     pub more: &'static str,
     /// True if a file must give it.
     pub required: bool,
+    /// Parts that a change of it invalidates.
+    pub invalidates: Invalidates,
 }
 
 impl Row {
@@ -150,6 +154,7 @@ impl Row {
         slider: None,
         more: "",
         required: false,
+        invalidates: Invalidates::NOTHING,
     };
 
     /// Its sentence, without the marks of a doc comment.
@@ -223,7 +228,7 @@ impl Table {
 }
 
 /// Types of settings: numbers, vectors, words, sections.
-pub trait Value: Sized {
+pub trait Value: Sized + PartialEq {
     /// Part that a file gives: for a section only the settings that it names.
     type Given: Clone + DeserializeOwned;
     /// Allowed values.
@@ -237,6 +242,11 @@ pub trait Value: Sized {
     /// # Errors
     /// The first setting outside its range.
     fn check(&self, row: &Row, key: &Key) -> Result<(), SettingError>;
+
+    /// Parts that a change to another value invalidates.
+    fn change_to(&self, other: &Self, row: &Row) -> Invalidates {
+        if self == other { Invalidates::NOTHING } else { row.invalidates }
+    }
 
     /// True if a file may leave it out.
     fn is_absent(&self) -> bool {

@@ -42,6 +42,7 @@ macro_rules! settings {
                 $(, in [$least:expr, $most:expr] $($unit:literal)?)?
                 $(, slider [$left:expr, $right:expr])?
                 $(, more $more:literal)?
+                $(, invalidates $invalid:ident)?
                 ;
             )*
             $(shared $Shared:ty { $($share:ident: $Share:ty),* $(,)? })*
@@ -115,6 +116,10 @@ macro_rules! settings {
                         slider: $crate::settings!(@ends $($left, $right)?),
                         more: concat!($($more)?),
                         required: false $(|| $required)?,
+                        invalidates: $crate::Invalidates {
+                            $($invalid: true,)?
+                            ..$crate::Invalidates::NOTHING
+                        },
                     },)*
                     $($($share: <$Shared as $crate::Group>::ROWS.$share,)*)*
                     $($($over: $crate::Row {
@@ -177,6 +182,15 @@ macro_rules! settings {
                     )?;)*)*
                     $($also(self, key)?;)?
                     Ok(())
+                }
+
+                fn change_to(&self, other: &Self, _: &$crate::Row) -> $crate::Invalidates {
+                    let nothing = $crate::Invalidates::NOTHING;
+                    let rows = <Self as $crate::Group>::ROWS;
+                    nothing
+                        $(.and($crate::Value::change_to(&self.$field, &other.$field, &rows.$field)))*
+                        $($(.and($crate::Value::change_to(&self.$share, &other.$share, &rows.$share)))*)*
+                        $($(.and($crate::Value::change_to(&self.$over, &other.$over, &rows.$over)))*)*
                 }
             }
 

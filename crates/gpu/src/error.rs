@@ -15,6 +15,9 @@ pub enum GpuError {
     /// This build has no GPUs.
     #[error("this build is without GPUs: use the CPU backend, or build it with the feature `gpu`")]
     NotBuilt,
+    /// A page opens no device without waiting for it.
+    #[error("a page cannot wait for a GPU: await `Gpu::request`")]
+    Page,
     /// The adapter or WebGPU's default limits do not allow it.
     #[error("{adapter}: {what} needs {needed}, but the limit is {limit}")]
     Limit {

@@ -1,5 +1,7 @@
 //! The kit on a device: results and refusals.
 
+use std::task::{Context, Poll, Waker};
+
 use strandline_gpu::{Buffer, Gpu, GpuError, Kernel, Readback, Recorder, Timer, groups, kernel, wgpu};
 
 const NUMBERS: &str = "
@@ -46,12 +48,20 @@ fn gpu() -> Option<Gpu> {
     }
 }
 
+/// The output of a future that is ready, as all of a native system are.
+fn at_once<T>(future: impl Future<Output = T>) -> T {
+    match std::pin::pin!(future).poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(found) => found,
+        Poll::Pending => panic!("a native system answers at once"),
+    }
+}
+
 /// Counts into a buffer of `len` numbers.
 fn count(gpu: &Gpu, len: usize, factor: u32) -> Result<Vec<u32>, GpuError> {
     let numbers = Buffer::new(gpu, "numbers", len)?;
     let bound = Kernel::<Count<'static>>::new(gpu, &[("FACTOR", f64::from(factor))])?
         .bind(gpu, &Count { numbers: &numbers })?;
-    gpu.guarded("counting", || {
+    gpu.ask("counting", || {
         let mut recorder = Recorder::new(gpu, None);
         recorder.stage("count", &[(bound, groups(len, 64))]);
         gpu.queue().submit([recorder.finish(|_| ())]);
@@ -146,7 +156,7 @@ fn a_lost_device_answers_everything_with_an_error() {
         numbers.read().unwrap_err(),
         kernel.bind(&gpu, &Count { numbers: &numbers }).unwrap_err(),
         Kernel::<Count<'static>>::new(&gpu, &[("FACTOR", 9.0)]).unwrap_err(),
-        gpu.guarded("a submission", || gpu.queue().submit([])).unwrap_err(),
+        gpu.ask("a submission", || gpu.queue().submit([])).unwrap_err(),
         gpu.copy_bandwidth(1).unwrap_err(),
     ];
     for error in errors {
@@ -155,14 +165,28 @@ fn a_lost_device_answers_everything_with_an_error() {
     }
 }
 
+/// A write that the device refuses has no error scope: it shows in the next call, once, and the device continues.
+#[test]
+fn a_refused_write_is_filed_and_reported_once() {
+    let Some(gpu) = gpu() else { return };
+    let numbers = Buffer::from_slice(&gpu, "numbers", &[1_u32, 2]).unwrap();
+    gpu.queue().write_buffer(numbers.raw(), 0, &[0; 64]);
+    let error = count(&gpu, 2, 1).unwrap_err();
+    assert!(matches!(error, GpuError::Refused { .. }), "{error:?}");
+    assert!(error.to_string().contains("numbers"), "{error}");
+    gpu.check().unwrap();
+    assert_eq!(numbers.read().unwrap(), [1, 2]);
+    assert_eq!(count(&gpu, 2, 1).unwrap(), [0, 1]);
+}
+
 #[test]
 fn a_hosts_own_device_is_taken() {
     let Some(found) = gpu() else { return };
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let adapters = at_once(instance.enumerate_adapters(wgpu::Backends::all()));
     let adapter =
         adapters.into_iter().find(|adapter| adapter.get_info().name == found.adapter().name).unwrap();
-    let (device, queue) = pollster::block_on(adapter.request_device(&Default::default())).unwrap();
+    let (device, queue) = at_once(adapter.request_device(&Default::default())).unwrap();
     let gpu = Gpu::from_parts(device, queue);
     assert_eq!(count(&gpu, 3, 2).unwrap(), [0, 2, 4]);
     // It was asked for without timestamps.
@@ -200,7 +224,7 @@ fn stages_are_timed_and_those_of_one_name_add_up() {
     let kernel = Kernel::<Count<'static>>::new(&gpu, &[]).unwrap();
     let work = [(kernel.bind(&gpu, &Count { numbers: &numbers }).unwrap(), groups(100_000, 64))];
     let marks = Buffer::<u64>::new(&gpu, "marks", Timer::BYTES as usize / 8).unwrap();
-    gpu.guarded("timing", || {
+    gpu.ask("timing", || {
         let mut recorder = Recorder::new(&gpu, Some(&timer));
         timer.restart();
         for name in ["first", "second", "first"] {

@@ -17,7 +17,7 @@ pub(crate) struct Journal {
     coming: Option<(ComingState, usize)>,
 }
 
-/// What happened to a state, in order.
+/// A change of a state.
 pub(crate) enum Entry {
     /// A step.
     Step(Drive),
@@ -51,7 +51,7 @@ impl Span {
         changed.unwrap_or(&self.settings)
     }
 
-    /// What the hand holds at its end.
+    /// The hair in the hand at its end.
     fn grab_at_end(&self) -> &Grab {
         let changed = self.entries.iter().rev().find_map(|entry| match entry {
             Entry::Hold(grab) => Some(grab),
@@ -106,7 +106,7 @@ impl Journal {
         &self.last.state
     }
 
-    /// What the hand holds now.
+    /// The hair in the hand now.
     pub fn grab(&self) -> &Grab {
         self.last.grab_at_end()
     }
@@ -116,7 +116,7 @@ impl Journal {
         &mut self.last.state
     }
 
-    /// Whether nothing happened since the last checkpoint.
+    /// True if nothing happened since the last checkpoint.
     pub fn is_current(&self) -> bool {
         self.last.entries.is_empty()
     }
@@ -176,7 +176,7 @@ impl Journal {
         self.coming = None;
     }
 
-    /// Whether a state is to be sent on its way: none is, and `checkpoint_every` steps were made since the last one.
+    /// True if a state is to be sent on its way: none is, and `checkpoint_every` steps were made since the last one.
     pub fn is_due(&self) -> bool {
         let every = self.last.settings_at_end().checkpoint_every;
         self.coming.is_none() && self.last.end() - self.last.step >= u64::from(every)

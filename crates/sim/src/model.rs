@@ -120,7 +120,8 @@ impl Model {
             rods: None,
         };
         model.weigh();
-        Ok(model.with_rods())
+        model.compile_rods();
+        Ok(model)
     }
 
     /// Sets the masses of points from those that were compiled and the settings, unless the guides have their own.
@@ -154,13 +155,12 @@ impl Model {
     }
 
     /// Compiles the rods, where the settings ask for them.
-    fn with_rods(mut self) -> Self {
+    fn compile_rods(&mut self) {
         let settings = &self.settings.strands;
         self.rods = match settings.method {
             StrandMethod::Constrain => None,
             StrandMethod::Rods => Some(Rods::new(&self.rods_at_rest(), &self.hairs, settings.rods.rest)),
         };
-        self
     }
 
     fn rods_at_rest(&self) -> RodsAtRest<'_> {
@@ -210,17 +210,14 @@ impl Model {
         settings.check()?;
         memory::check(&settings.memory(self.strand_count, self.points_per_strand))?;
         let hairs = self.hairs.changed(settings)?;
-        let same = self.settings.strands == settings.strands
-            && self.settings.groups == settings.groups
-            && self.settings.gravity == settings.gravity;
-        let weighs = settings.line_density() == self.settings.line_density();
+        let change = self.settings.change_to(settings);
         self.settings = settings.clone();
         self.hairs = hairs;
-        if !(same && weighs) {
+        if change.masses || change.buffers {
             self.weigh();
         }
-        if !same {
-            *self = self.clone().with_rods();
+        if change.rest_shape || change.masses || change.buffers {
+            self.compile_rods();
         }
         Ok(())
     }

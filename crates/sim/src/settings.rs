@@ -1,10 +1,10 @@
 use glam::Vec3;
-use strandline_base::{Group, SettingError, Value, choices, settings};
+use strandline_base::{Group, Invalidates, Row, SettingError, Value, choices, settings};
 use strandline_gpu::Backend;
 
 use crate::SimError;
 use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass, Springs};
-use crate::strands::rods::settings::{GroupSettings, RodSettings};
+use crate::strands::rods::settings::{GroupSettings, Rest, RodSettings};
 
 settings! {
     /// How hair moves.
@@ -31,7 +31,7 @@ settings! {
         /// Groups of the groom whose hair, as rods, is made of something else, at most 1,024. A setting that a group does
         /// not give is that of `[simulation.strands.rods]`, or of its own `hair`. A shear modulus that is not given keeps
         /// its share of Young's modulus, or follows from Poisson's ratio where that is given.
-        groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0];
+        groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0], invalidates masses;
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
         moved {
@@ -53,6 +53,15 @@ impl Settings {
             StrandMethod::Constrain => self.strands.constrain.mass_per_length,
             StrandMethod::Rods => self.strands.rods.mass_per_length(),
         }
+    }
+
+    /// Parts of a model, a runner and its state that a change to other settings invalidates.
+    pub fn change_to(&self, other: &Self) -> Invalidates {
+        // A shape that is an equilibrium carries its gravity.
+        let carries = other.has_rods() && other.strands.rods.rest == Rest::SagFree;
+        let rest_shape = carries && self.gravity != other.gravity;
+        let change = Value::change_to(self, other, &Row::NONE);
+        change.and(Invalidates { rest_shape, ..Invalidates::NOTHING })
     }
 
     /// Whether strands are rods.
@@ -105,7 +114,7 @@ settings! {
     /// What moves a strand within a step.
     pub struct StrandSettings: Copy {
         /// How strands are solved.
-        method: StrandMethod = StrandMethod::default();
+        method: StrandMethod = StrandMethod::default(), invalidates buffers;
         /// Material and solve of rods.
         rods: RodSettings = RodSettings::default();
         /// Springs and constraints of strands that are no rods.
@@ -147,10 +156,10 @@ settings! {
     /// The fluid volume, which keeps the density of hair [Chen2011 §4.2, McAdams2009].
     pub struct VolumeSettings: Copy {
         /// Keeps the density of hair: pressed hair spreads again. Single locks still pass through each other.
-        enabled: bool = true;
+        enabled: bool = true, invalidates stages;
         /// Cells along x, y and z.
         cells: [u32; 3] = [32; 3], in [4, 512], slider [8, 128],
-            more "a finer volume at a cost that grows with the cells that hold hair";
+            more "a finer volume at a cost that grows with the cells that hold hair", invalidates stages;
         /// FLIP share of the velocity update in a step of 1/60 s, 0 is PIC and 1 is FLIP
         /// [Chen2011 eq. 5]. A step of another length takes as much of PIC in a second, and no more than
         /// all.
@@ -160,7 +169,7 @@ settings! {
         /// Most iterations of the pressure solve; on a GPU at most 2,000.
         max_iterations: u32 = 200, in [1, 100_000], slider [1, 500], more "a solve that gives up later";
         /// Preconditioner of the conjugate gradients.
-        preconditioner: Preconditioner = Preconditioner::default();
+        preconditioner: Preconditioner = Preconditioner::default(), invalidates stages;
     }
 }
 
@@ -252,5 +261,36 @@ mod tests {
         );
         assert!(name(|settings| settings.strands.constrain.angles.limit = 4.0).contains("angles.limit"));
         assert!(name(|settings| settings.volume.cells[1] = 3).contains("volume.cells"));
+    }
+
+    #[test]
+    fn each_material_number_compiles_rods_again_and_no_number_of_a_step_does() {
+        let read_each_step = ["hair", "rubbing", "substeps", "newton_steps", "tolerance"];
+        for row in RodSettings::TABLE.rows {
+            let compiles = row.invalidates != Invalidates::NOTHING;
+            assert_ne!(compiles, read_each_step.contains(&row.name), "{}", row.name);
+        }
+    }
+
+    #[test]
+    fn a_change_invalidates_what_was_compiled_from_it() {
+        let change = |from: &Settings, change: fn(&mut Settings)| {
+            let mut to = from.clone();
+            change(&mut to);
+            from.change_to(&to)
+        };
+        let rest_shape = Invalidates { rest_shape: true, ..Invalidates::NOTHING };
+        let gravity: fn(&mut Settings) = |settings| settings.gravity.y = -1.0;
+        let rods = Settings::default();
+        assert_eq!(change(&rods, |_| ()), Invalidates::NOTHING);
+        assert_eq!(change(&rods, |settings| settings.damping = 1.0), Invalidates::NOTHING);
+        assert_eq!(change(&rods, gravity), rest_shape, "an equilibrium carries gravity");
+        assert_eq!(change(&Settings::constrained(), gravity), Invalidates::NOTHING);
+        let masses = change(&rods, |settings| {
+            settings.strands.rods.radius = 60.0;
+            settings.volume.enabled = false;
+        });
+        assert_eq!(masses, Invalidates { masses: true, stages: true, ..Invalidates::NOTHING });
+        assert!(change(&rods, |settings| settings.strands.method = StrandMethod::Constrain).buffers);
     }
 }

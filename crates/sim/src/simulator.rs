@@ -25,7 +25,7 @@ pub struct Simulator {
     reports: Reports,
 }
 
-/// What keeps reports in order: each step is reported once, also where it is computed again.
+/// Reports in order: each step is reported once, also where it is computed again.
 #[derive(Default)]
 struct Reports {
     /// Steps that were reported.
@@ -117,10 +117,11 @@ impl Simulator {
     /// # Errors
     /// The device was lost.
     pub fn state(&mut self) -> Result<&State, SimError> {
+        if self.journal.is_current() {
+            return Ok(self.journal.state());
+        }
         self.find()?;
-        if let Runner::Gpu(runner) = &mut self.runner
-            && !self.journal.is_current()
-        {
+        if let Runner::Gpu(runner) = &mut self.runner {
             let coming = runner.begin_read()?;
             // Steps before the state are not computed again: their reports are kept.
             self.reports.keep(runner.reports()?);

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use strandline_base::{SettingError, memory::MemoryError};
+use strandline_gpu::GpuError;
 
 use crate::{body::BodyError, groom::GroomError, render::RenderError, sim::SimError};
 
@@ -123,9 +124,51 @@ pub enum Error {
     /// From the renderer.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// From a GPU that was asked for something beside steps and pictures: to be opened, or to copy points.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+}
+
+/// Kind of an error, by what a program may do about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A GPU is gone: the CPU can continue, or the program opens the device again.
+    DeviceLost,
+    /// A GPU has no memory left, or no room within its limits: smaller settings or the CPU help.
+    OutOfMemory,
+    /// A GPU refused something else: the CPU helps.
+    Refused,
+    /// A value is outside its range: another value helps.
+    Value,
+    /// Anything else: its message says what helps.
+    Other,
 }
 
 impl Error {
+    /// The GPU's refusal, if it is one, whichever part asked.
+    pub fn gpu(&self) -> Option<&GpuError> {
+        match self {
+            Self::Gpu(source) | Self::Render(RenderError::Gpu(source)) => Some(source),
+            Self::Sim(error) => error.gpu(),
+            _ => None,
+        }
+    }
+
+    /// Its kind: what may be done about it.
+    pub fn kind(&self) -> ErrorKind {
+        match (self, self.gpu()) {
+            (_, Some(GpuError::Lost { .. })) => ErrorKind::DeviceLost,
+            (_, Some(GpuError::OutOfMemory { .. } | GpuError::Limit { .. })) => ErrorKind::OutOfMemory,
+            (_, Some(_)) | (Self::Render(RenderError::TooMany { .. }), None) => ErrorKind::Refused,
+            (
+                Self::Value(_) | Self::Sim(SimError::Setting(_)) | Self::Render(RenderError::Setting(_)),
+                None,
+            ) => ErrorKind::Value,
+            (_, None) => ErrorKind::Other,
+        }
+    }
+
     /// For `map_err` on what saves to `path`.
     pub(crate) fn save(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
@@ -141,5 +184,33 @@ impl Error {
     pub(crate) fn write(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Write { what, path, source }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failure_of_a_gpu_has_its_kind_whichever_part_asked() {
+        let lost = GpuError::Lost { adapter: String::new(), reason: "gone".to_owned() };
+        let full = GpuError::OutOfMemory { adapter: String::new(), what: "points".to_owned(), bytes: 4 };
+        for (source, kind) in [(&lost, ErrorKind::DeviceLost), (&full, ErrorKind::OutOfMemory)] {
+            let errors: [Error; 3] = [
+                source.clone().into(),
+                SimError::from(source.clone()).into(),
+                RenderError::from(source.clone()).into(),
+            ];
+            for error in errors {
+                assert_eq!(error.kind(), kind, "{error:?}");
+                assert_eq!(error.to_string(), source.to_string());
+            }
+        }
+        let cells = SimError::Cells { cells: [64; 3], source: full };
+        assert_eq!(Error::from(cells).kind(), ErrorKind::OutOfMemory);
+        let value = SettingError::new("wind", "NaN", "a finite number");
+        assert_eq!(Error::from(SimError::from(value.clone())).kind(), ErrorKind::Value);
+        assert_eq!(Error::from(value).kind(), ErrorKind::Value);
+        assert_eq!(Error::WorkerGone.kind(), ErrorKind::Other);
     }
 }

@@ -90,7 +90,7 @@ pub(crate) use strandline_sim as sim;
 
 pub use body::{Mesh, Pose};
 pub use cache::{Cache, Out, OutSettings, Target, What, Written};
-pub use error::Error;
+pub use error::{Error, ErrorKind};
 pub use film::{Film, FilmFiles, PictureFiles};
 pub use groom::{Groom, Style};
 pub use hair::Hair;

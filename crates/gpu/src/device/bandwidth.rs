@@ -17,7 +17,7 @@ impl Gpu {
         let source = Buffer::<u32>::new(self, "copied from", BYTES / 4)?;
         let target = Buffer::<u32>::new(self, "copied to", BYTES / 4)?;
         let run = |count: usize| {
-            self.guarded("copying", || {
+            self.ask("copying", || {
                 let mut encoder = self.device().create_command_encoder(&Default::default());
                 for _ in 0..count {
                     encoder.copy_buffer_to_buffer(source.raw(), 0, target.raw(), 0, BYTES as u64);

@@ -65,7 +65,7 @@ impl<T: Pod> Buffer<T> {
                 | wgpu::BufferUsages::QUERY_RESOLVE,
             mapped_at_creation: false,
         };
-        let made = gpu.guarded(name, || gpu.device().create_buffer(&descriptor));
+        let made = gpu.ask(name, || gpu.device().create_buffer(&descriptor));
         match made {
             Ok(raw) => Ok(Self { lease, raw, name, len, element: PhantomData }),
             Err(GpuError::OutOfMemory { adapter, what, .. }) => {
@@ -145,8 +145,15 @@ impl<T: Pod> Buffer<T> {
         if bytes.is_empty() {
             return Ok(());
         }
-        self.gpu().count_to_device(bytes.len());
-        self.gpu().guarded(self.name, || self.gpu().queue().write_buffer(&self.raw, first as u64, bytes))
+        let (gpu, end) = (self.gpu(), (first + bytes.len()) as u64);
+        gpu.check_lost()?;
+        if end > self.raw.size() {
+            let message = format!("a write ends at byte {end} of {}", self.raw.size());
+            return Err(GpuError::Refused { adapter: gpu.name(), what: self.name.to_owned(), message });
+        }
+        gpu.count_to_device(bytes.len());
+        gpu.queue().write_buffer(&self.raw, first as u64, bytes);
+        Ok(())
     }
 
     /// Waits for the device and copies all elements back.
@@ -181,7 +188,7 @@ impl Gpu {
     /// # Errors
     /// The device was lost, or a buffer is another device's.
     pub fn copy<T: Pod>(&self, what: &str, pairs: [[&Buffer<T>; 2]; 2]) -> Result<(), GpuError> {
-        self.guarded(what, || {
+        self.ask(what, || {
             let mut encoder = self.device().create_command_encoder(&Default::default());
             for [from, to] in pairs {
                 encoder.copy_buffer_to_buffer(from.raw(), 0, to.raw(), 0, from.raw().size());

@@ -61,7 +61,7 @@ impl<B: Bindings<Kernel = B>> Drawing<B> {
     /// The driver does not take it, or the device was lost.
     pub fn new(gpu: &Gpu, output: &Output, constants: &[(&str, f64)]) -> Result<Self, GpuError> {
         let declaration = B::declaration();
-        let made = gpu.guarded(declaration.module, || pipeline(gpu, &declaration, output, constants));
+        let made = gpu.ask(declaration.module, || pipeline(gpu, &declaration, output, constants));
         let (pipeline, layout) = made.map_err(as_shader_error)?;
         Ok(Self { pipeline, layout, bindings: PhantomData })
     }

@@ -3,6 +3,7 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use super::errors::{Errors, Refusal, answered, now};
 use super::wanted::Wanted;
 use crate::{Adapter, Crossed, GpuError};
 
@@ -20,8 +21,7 @@ struct Shared {
     device: wgpu::Device,
     queue: wgpu::Queue,
     adapter: Adapter,
-    /// Why the device is gone, once it is.
-    lost: Arc<Mutex<Option<String>>>,
+    errors: Arc<Errors>,
     memory: Mutex<Memory>,
     /// Bytes that went to the device and came from it.
     crossed: [AtomicU64; 2],
@@ -50,7 +50,7 @@ impl Gpu {
     /// # Errors
     /// There is no adapter, or it does not offer WebGPU's default limits.
     pub fn auto() -> Result<Self, GpuError> {
-        pollster::block_on(Self::request(Wanted::Hardware))
+        at_once(Self::request(Wanted::Hardware))?
     }
 
     /// The first adapter of any kind, hardware before software.
@@ -58,7 +58,7 @@ impl Gpu {
     /// # Errors
     /// There is no adapter, or it does not offer WebGPU's default limits.
     pub fn any() -> Result<Self, GpuError> {
-        pollster::block_on(Self::request(Wanted::Any))
+        at_once(Self::request(Wanted::Any))?
     }
 
     /// An adapter by its number in [`Gpu::list`].
@@ -66,12 +66,13 @@ impl Gpu {
     /// # Errors
     /// No adapter has that number, or it does not offer WebGPU's default limits.
     pub fn open(index: usize) -> Result<Self, GpuError> {
-        pollster::block_on(Self::request(Wanted::Number(index)))
+        at_once(Self::request(Wanted::Number(index)))?
     }
 
     /// All adapters, hardware before software.
     pub fn list() -> Vec<Adapter> {
-        pollster::block_on(adapters()).into_iter().map(|(_, adapter)| adapter).collect()
+        let found = at_once(adapters()).unwrap_or_default();
+        found.into_iter().map(|(_, adapter)| adapter).collect()
     }
 
     /// The first wanted adapter that starts, for hosts that cannot block, as in a browser page.
@@ -100,15 +101,10 @@ impl Gpu {
         Self::new(device, queue, adapter, Arc::default())
     }
 
-    fn new(
-        device: wgpu::Device,
-        queue: wgpu::Queue,
-        adapter: Adapter,
-        lost: Arc<Mutex<Option<String>>>,
-    ) -> Self {
+    fn new(device: wgpu::Device, queue: wgpu::Queue, adapter: Adapter, errors: Arc<Errors>) -> Self {
         let memory = Mutex::new(Memory { used: 0, most: u64::MAX });
         let (crossed, waits, kernels) = Default::default();
-        Self { shared: Arc::new(Shared { device, queue, adapter, lost, memory, crossed, waits, kernels }) }
+        Self { shared: Arc::new(Shared { device, queue, adapter, errors, memory, crossed, waits, kernels }) }
     }
 
     async fn start(found: &wgpu::Adapter, adapter: Adapter) -> Result<Self, GpuError> {
@@ -135,12 +131,14 @@ impl Gpu {
             let what = "starting the device".to_owned();
             GpuError::Refused { adapter: adapter.to_string(), what, message: error.to_string() }
         })?;
-        let lost: Arc<Mutex<Option<String>>> = Arc::default();
-        let (slot, first) = (lost.clone(), lost.clone());
-        device.set_device_lost_callback(move |_, message| note(&slot, message));
-        // An error that no scope caught makes the device useless.
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&first, error.to_string())));
-        Ok(Self::new(device, queue, adapter, lost))
+        let errors: Arc<Errors> = Arc::default();
+        let (of_loss, of_writes) = (errors.clone(), errors.clone());
+        device.set_device_lost_callback(move |_, message| of_loss.lose(message));
+        // Writes have no error scope.
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            of_writes.file(Refusal::new("writing", &error));
+        }));
+        Ok(Self::new(device, queue, adapter, errors))
     }
 
     /// The device.
@@ -200,67 +198,60 @@ impl Gpu {
 
     /// Gives the device up; every later use is an error.
     pub fn destroy(&self) {
-        note(&self.shared.lost, "it was given up".to_owned());
+        self.shared.errors.lose("it was given up".to_owned());
         self.device().destroy();
     }
 
-    /// Tells whether the device still works.
+    /// Tells whether the device still works and did all that was asked of it. A refusal that was filed is reported once.
     ///
     /// # Errors
-    /// It was lost.
+    /// The device was lost; else the first refusal that was not reported yet.
     pub fn check(&self) -> Result<(), GpuError> {
-        match &*lock(&self.shared.lost) {
-            None => Ok(()),
-            Some(reason) => Err(GpuError::Lost { adapter: self.name(), reason: reason.clone() }),
-        }
+        self.check_lost()?;
+        self.shared.errors.take().map_or(Ok(()), |refusal| Err(refusal.on(self.name())))
     }
 
-    /// Runs an operation that the device may refuse, and turns the refusal into an error.
-    ///
-    /// # Errors
-    /// The device is lost, has no memory left, or finds a mistake.
-    pub fn guarded<T>(&self, what: &str, run: impl FnOnce() -> T) -> Result<T, GpuError> {
-        // A native device answers at once.
-        pollster::block_on(self.scoped(what, run))
+    /// Tells whether the device was lost.
+    pub(crate) fn check_lost(&self) -> Result<(), GpuError> {
+        let lost = self.shared.errors.lost();
+        lost.map_or(Ok(()), |reason| Err(GpuError::Lost { adapter: self.name(), reason }))
     }
 
-    /// As [`Gpu::guarded`], for hosts that cannot block.
+    /// Asks for something that the device may refuse, under a name, and does not wait for the answer. A native device
+    /// answers at once; the answer of another one is filed for the next [`Gpu::check`].
     ///
     /// # Errors
-    /// As [`Gpu::guarded`].
-    pub async fn scoped<T>(&self, what: &str, run: impl FnOnce() -> T) -> Result<T, GpuError> {
+    /// The device is lost, has no memory left, or finds a mistake, in this or in what was asked before.
+    pub fn ask<T>(&self, what: &str, run: impl FnOnce() -> T) -> Result<T, GpuError> {
         self.check()?;
         let memory = self.device().push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.device().push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.device().push_error_scope(wgpu::ErrorFilter::Validation);
-        let ran = self.surviving(run);
-        let pops = [validation.pop().await, internal.pop().await, memory.pop().await];
-        match pops.into_iter().flatten().next().filter(|_| ran.is_ok()) {
-            None => ran.and_then(|result| self.check().map(|()| result)),
-            Some(error) => Err(self.refusal(what, &error)),
+        let result = run();
+        let answers = [answered(validation.pop()), answered(internal.pop()), answered(memory.pop())];
+        let mut refused = None;
+        for answer in answers {
+            match answer {
+                Ok(error) => refused = refused.or(error),
+                Err(coming) => self.shared.errors.file_answers(what, [coming]),
+            }
+        }
+        self.check_lost()?;
+        match refused {
+            None => Ok(result),
+            Some(error) => Err(Refusal::new(what, &error).on(self.name())),
         }
     }
 
-    /// Runs an operation that panics when the device is lost: wgpu takes that for
-    /// fatal where it waits. Nothing of ours is left half done, since it is not used afterwards.
-    fn surviving<T>(&self, run: impl FnOnce() -> T) -> Result<T, GpuError> {
-        std::panic::catch_unwind(std::panic::AssertUnwindSafe(run)).map_err(|panic| {
+    /// Polls the device, which wgpu ends with a panic where a native driver says that the device is gone: nothing of ours
+    /// is left half done then, since the device is not used afterwards.
+    fn surviving<T>(&self, poll: impl FnOnce() -> T) -> Result<T, GpuError> {
+        std::panic::catch_unwind(std::panic::AssertUnwindSafe(poll)).map_err(|panic| {
             let said = panic.downcast_ref::<String>().map(String::as_str);
             let said = said.or(panic.downcast_ref::<&str>().copied()).unwrap_or("the driver gave up");
-            note(&self.shared.lost, said.to_owned());
+            self.shared.errors.lose(said.to_owned());
             GpuError::Lost { adapter: self.name(), reason: said.to_owned() }
         })
-    }
-
-    fn refusal(&self, what: &str, error: &wgpu::Error) -> GpuError {
-        if let Err(lost) = self.check() {
-            return lost;
-        }
-        let (adapter, what) = (self.name(), what.to_owned());
-        match error {
-            wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory { adapter, what, bytes: 0 },
-            other => GpuError::Refused { adapter, what, message: other.to_string() },
-        }
     }
 
     /// Waits until everything that was submitted is done.
@@ -343,15 +334,19 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps the first reason.
-fn note(slot: &Mutex<Option<String>>, reason: String) {
-    lock(slot).get_or_insert(reason);
+/// The output of a request that a native system answers at once.
+fn at_once<F: Future>(request: F) -> Result<F::Output, GpuError> {
+    now(std::pin::pin!(request)).ok_or(GpuError::Page)
 }
 
 /// All adapters, the fastest kind first.
 async fn adapters() -> Vec<(wgpu::Adapter, Adapter)> {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    descriptor.backends = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+    // A page has the last one and no other.
+    descriptor.backends = wgpu::Backends::VULKAN
+        | wgpu::Backends::METAL
+        | wgpu::Backends::DX12
+        | wgpu::Backends::BROWSER_WEBGPU;
     // The validation layers of old drivers report false errors.
     descriptor.flags = wgpu::InstanceFlags::empty();
     let instance = wgpu::Instance::new(descriptor);

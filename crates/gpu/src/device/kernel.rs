@@ -197,7 +197,7 @@ impl<B: Bindings<Kernel = B>> Kernel<B> {
 
 fn compile(gpu: &Gpu, declaration: &Declaration, constants: &[(&str, f64)]) -> Result<Compiled, GpuError> {
     let Declaration { module, entry, .. } = declaration;
-    let made = gpu.guarded(module, || {
+    let made = gpu.ask(module, || {
         let device = gpu.device();
         let (layout, pipeline_layout) = layouts(device, declaration);
         let shader = shader_module(device, declaration);
@@ -256,7 +256,7 @@ pub(crate) fn bind_group<C: Bindings>(
 ) -> Result<wgpu::BindGroup, GpuError> {
     let declaration = C::declaration();
     let resources = buffers.resources();
-    gpu.guarded(declaration.entry, || {
+    gpu.ask(declaration.entry, || {
         let bindings = declaration.bindings.iter().zip(resources);
         let entries: Vec<_> = bindings
             .map(|(binding, resource)| wgpu::BindGroupEntry { binding: binding.index, resource })

@@ -2,8 +2,11 @@
 
 mod bandwidth;
 mod buffer;
+// A page has no naga.
+#[cfg(not(target_family = "wasm"))]
 mod check;
 mod drawing;
+mod errors;
 mod gpu;
 mod kernel;
 mod layout;
@@ -18,6 +21,7 @@ mod transfer;
 mod wanted;
 
 pub use buffer::Buffer;
+#[cfg(not(target_family = "wasm"))]
 pub use check::check;
 pub use drawing::{BoundDrawing, Drawing, Output};
 pub use gpu::Gpu;

@@ -63,7 +63,7 @@ impl<'a> Readback<'a> {
         if self.bytes == 0 {
             return Ok(Transfer::new(held, None));
         }
-        gpu.guarded("readback", || {
+        gpu.ask("readback", || {
             let staging = gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),
                 size: self.bytes as u64,
@@ -102,7 +102,7 @@ impl Download {
     /// The device was lost or has no memory left.
     pub fn new(gpu: &Gpu, bytes: u64) -> Result<Self, GpuError> {
         let held = Held::new(gpu, bytes)?;
-        let staging = gpu.guarded("readback", || {
+        let staging = gpu.ask("readback", || {
             gpu.device().create_buffer(&wgpu::BufferDescriptor {
                 label: Some("readback"),
                 size: bytes,
@@ -128,7 +128,7 @@ impl Download {
         look: impl FnOnce(&[u8]) -> T,
     ) -> Result<T, GpuError> {
         let gpu = &self.held.gpu;
-        let mut mapping = gpu.guarded("readback", || Mapping::new(&self.staging, submission))?;
+        let mut mapping = Mapping::new(&self.staging, submission);
         mapping.wait(gpu)?;
         let view = mapped(gpu, &self.staging)?;
         let result = look(&view);

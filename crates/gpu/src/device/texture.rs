@@ -29,7 +29,7 @@ impl Texture {
         let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
         let bytes = u64::from(width) * u64::from(height) * texel;
         gpu.take_memory(name, bytes)?;
-        let made = gpu.guarded(name, || {
+        let made = gpu.ask(name, || {
             let raw = gpu.device().create_texture(&wgpu::TextureDescriptor {
                 label: Some(name),
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },

@@ -26,7 +26,7 @@ impl Timer {
         if !gpu.has_timestamps() {
             return Ok(None);
         }
-        let set = gpu.guarded("timestamps", || {
+        let set = gpu.ask("timestamps", || {
             gpu.device().create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("stages"),
                 ty: wgpu::QueryType::Timestamp,
@@ -68,10 +68,20 @@ impl Timer {
         encoder.copy_buffer_to_buffer(self.marks.raw(), 0, into, offset, Self::BYTES);
     }
 
-    /// Stages and their seconds, from the marks of [`Timer::resolve`]; stages of the same name add up.
+    /// Stages of the last recording, in order.
+    pub fn stages(&self) -> Vec<&'static str> {
+        self.names().clone()
+    }
+
+    /// Stages of the last recording and their seconds, from what [`Timer::resolve`] wrote; stages of one name add up.
     pub fn seconds(&self, marks: &[u64]) -> Vec<(&'static str, f64)> {
+        self.seconds_of(&self.names(), marks)
+    }
+
+    /// As [`Timer::seconds`], for a recording of other stages.
+    pub fn seconds_of(&self, stages: &[&'static str], marks: &[u64]) -> Vec<(&'static str, f64)> {
         let mut seconds: Vec<(&'static str, f64)> = Vec::new();
-        for (name, pair) in self.names().iter().zip(marks.chunks_exact(2)) {
+        for (name, pair) in stages.iter().zip(marks.chunks_exact(2)) {
             let ticks = pair[1].saturating_sub(pair[0]);
             let time = ticks as f64 * f64::from(self.period) * 1e-9;
             match seconds.iter_mut().find(|(other, _)| other == name) {

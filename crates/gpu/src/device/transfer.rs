@@ -184,7 +184,7 @@ pub(super) fn mapped(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<wgpu::BufferVi
 }
 
 fn refused(gpu: &Gpu, message: &str) -> GpuError {
-    if let Err(lost) = gpu.check() {
+    if let Err(lost) = gpu.check_lost() {
         return lost;
     }
     GpuError::Refused { adapter: gpu.name(), what: "reading back".to_owned(), message: message.to_owned() }

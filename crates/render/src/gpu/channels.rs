@@ -73,7 +73,7 @@ impl GpuRenderer {
         let buffers = Numbers { frame, points: &strands.points, radiances: &strands.radiances };
         let numbers = kernels[kind].bind(&self.gpu, &buffers)?;
         let points = scene.strand_count() * scene.curve_points();
-        self.gpu.guarded("channels", || {
+        self.gpu.ask("channels", || {
             let mut recorder = Recorder::new(&self.gpu, None);
             recorder.stage("shade", &[numbers.over(points)]);
             samples(&mut recorder, &scene, &self.held(stages));
@@ -116,7 +116,7 @@ fn texels<T: bytemuck::Pod>(
     let own_bytes = width as usize * size_of::<T>();
     let row_bytes = own_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
     let download = Download::new(gpu, row_bytes as u64 * u64::from(height))?;
-    let submission = gpu.guarded("channels", || {
+    let submission = gpu.ask("channels", || {
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(row_bytes as u32),

@@ -146,7 +146,7 @@ impl GpuRenderer {
         let with_width = strands.positions.iter().zip(&strands.widths);
         let points: Vec<_> = with_width.map(|(point, &width)| point.extend(width).to_array()).collect();
         self.strands.iter().try_for_each(|room| room.points.write(&points))?;
-        self.gpu.guarded("opacity maps", || {
+        self.gpu.ask("opacity maps", || {
             let mut recorder = Recorder::new(&self.gpu, None);
             record_opacity(&mut recorder, &scene, stages, maps);
             self.gpu.queue().submit([recorder.finish(|_| ())]);

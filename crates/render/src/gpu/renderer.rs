@@ -81,7 +81,7 @@ impl GpuRenderer {
         settings: &PictureSettings,
     ) -> Result<Self, RenderError> {
         settings.validate()?;
-        Ok(Self {
+        let made = Self {
             bounds: bounds(guides),
             body_ball: ball(body),
             vertex_count: body.map_or(0, |mesh| mesh.positions.len()),
@@ -108,7 +108,9 @@ impl GpuRenderer {
             own_colors: OwnColors::of(guides),
             guides: guides.clone(),
             gpu: gpu.clone(),
-        })
+        };
+        gpu.check()?;
+        Ok(made)
     }
 
     /// The device.
@@ -247,7 +249,7 @@ impl GpuRenderer {
             target,
             held: self.held(stages),
         };
-        let submission = self.gpu.guarded("a frame", || {
+        let submission = self.gpu.ask("a frame", || {
             let mut recorder = Recorder::new(&self.gpu, self.timer.as_ref());
             self.timer.iter().for_each(Timer::restart);
             record(&mut recorder, &scene, &bounds);

@@ -23,7 +23,7 @@ impl GpuRunner {
         let repeated: Vec<_> = (0..count).flat_map(|_| once.iter().cloned()).collect();
         let marks =
             Buffer::<u64>::new(&self.gpu, "times of the gradient", Timer::BYTES as usize / size_of::<u64>())?;
-        self.gpu.guarded("the gradient", || {
+        self.gpu.ask("the gradient", || {
             let mut recorder = Recorder::new(&self.gpu, Some(&timer));
             recorder.stage("solve_pressure", &repeated);
             let recorded = recorder.finish(|encoder| timer.resolve(encoder, marks.raw(), 0));

@@ -134,11 +134,15 @@ impl Buffers {
         self.rest.write(&rest)?;
         self.springs.write(&springs)?;
         self.mass.write(bytemuck::cast_slice(&masses.mass))?;
-        self.write_rods(model, lengths, &masses)
+        self.write_nodes(model, lengths, &masses)
     }
 
     /// Writes the nodes of rods with lengths of their strands.
-    fn write_rods(&self, model: &Model, lengths: &RestShape, masses: &Masses) -> Result<(), SimError> {
+    pub fn write_rods(&self, model: &Model, lengths: &RestShape) -> Result<(), SimError> {
+        self.write_nodes(model, lengths, &Masses::new(model, lengths))
+    }
+
+    fn write_nodes(&self, model: &Model, lengths: &RestShape, masses: &Masses) -> Result<(), SimError> {
         let (Some(buffers), Some(nodes)) = (&self.rods, model.nodes_with(lengths, &masses.mass)) else {
             return Ok(());
         };

@@ -92,7 +92,7 @@ pub fn lengths_alone(
     let dispatches = vec![(bound, groups(input.points.len() / per_strand, strands)); count];
     let timer = Timer::new(gpu)?;
     let marks = Buffer::<u64>::new(gpu, "times of lengths", Timer::BYTES as usize / size_of::<u64>())?;
-    gpu.guarded("lengths alone", || {
+    gpu.ask("lengths alone", || {
         let mut recorder = Recorder::new(gpu, timer.as_ref());
         recorder.stage("constrain", &dispatches);
         let recorded = recorder.finish(|encoder| {

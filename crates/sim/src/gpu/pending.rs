@@ -26,6 +26,8 @@ struct OnWay {
     reports: Part<Report>,
     marks: Part<u64>,
     count: usize,
+    /// Stages of these steps, as they were recorded.
+    stages: Vec<&'static str>,
     watch: Stopwatch,
 }
 
@@ -53,7 +55,9 @@ impl Pending {
         let marks = batch.add(&self.marks, self.count * self.stride());
         let transfer = batch.begin(gpu)?;
         let count = std::mem::take(&mut self.count);
-        self.on_way.push_back(OnWay { transfer, reports, marks, count, watch: Stopwatch::start() });
+        let stages = self.timer.as_ref().map(Timer::stages).unwrap_or_default();
+        let watch = Stopwatch::start();
+        self.on_way.push_back(OnWay { transfer, reports, marks, count, stages, watch });
         Ok(())
     }
 
@@ -88,12 +92,12 @@ impl Pending {
 
     /// Waits for reports. Without timestamps a step took at most the time until its report was there.
     fn take(&self, on_way: OnWay) -> Result<Vec<Reported>, GpuError> {
-        let OnWay { transfer, reports, marks, count, watch } = on_way;
+        let OnWay { transfer, reports, marks, count, stages, watch } = on_way;
         let copied = transfer.wait()?;
         let (reports, marks, stride) = (copied.take(reports), copied.take(marks), self.stride());
         let until_here = watch.seconds() / count as f64;
         let seconds = |slot: usize| match &self.timer {
-            Some(timer) => timer.seconds(&marks[slot * stride..(slot + 1) * stride]),
+            Some(timer) => timer.seconds_of(&stages, &marks[slot * stride..(slot + 1) * stride]),
             None => vec![("step", until_here)],
         };
         Ok(reports.into_iter().enumerate().map(|(slot, report)| (report, seconds(slot))).collect())

@@ -82,7 +82,7 @@ impl GpuRunner {
     }
 
     fn with_kernels(gpu: &Gpu, model: Model, kernels: Arc<Kernels>, state: &State) -> Result<Self, SimError> {
-        Ok(Self {
+        let made = Self {
             gpu: gpu.clone(),
             kernels,
             buffers: Buffers::new(gpu, &model, state)?,
@@ -101,7 +101,9 @@ impl GpuRunner {
             gradient: Gradient::default(),
             spread: Spread::default(),
             costs: Costs::default(),
-        })
+        };
+        gpu.check()?;
+        Ok(made)
     }
 
     /// The model.
@@ -147,31 +149,37 @@ impl GpuRunner {
         self.bound = None;
     }
 
-    /// Changes the settings between two steps.
+    /// Changes the settings between two steps: uploads what the change invalidates and waits only for another strand
+    /// solver.
     ///
     /// # Errors
     /// A setting outside its range or MIC(0), then nothing changes; or the device was lost.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check_on_gpu()?;
         self.gpu.check()?;
-        let had_rods = self.model.rods.is_some();
-        let host = if settings.has_rods() == had_rods {
-            None
-        } else {
-            self.drain()?;
-            Some(self.state()?)
-        };
-        self.model.set_settings(settings)?;
-        self.bound = None;
-        match host {
-            // Another strand solver has other buffers.
-            Some(host) => {
-                self.buffers = Buffers::new(&self.gpu, &self.model, &host)?;
-                self.side = 0;
-            }
-            // Masses may have changed.
-            None => self.buffers.write_rest(&self.model, &self.lengths)?,
+        let change = self.model.settings.change_to(settings);
+        if change.buffers {
+            return self.rebuild(settings);
         }
+        self.model.set_settings(settings)?;
+        if change.masses {
+            self.buffers.write_rest(&self.model, &self.lengths)?;
+        } else if change.rest_shape {
+            self.buffers.write_rods(&self.model, &self.lengths)?;
+        }
+        if change.stages {
+            self.bound = None;
+        }
+        Ok(())
+    }
+
+    /// Waits for the state and begins with it in other buffers: another strand solver has others.
+    fn rebuild(&mut self, settings: &Settings) -> Result<(), SimError> {
+        self.drain()?;
+        let (state, mut model) = (self.state()?, self.model.clone());
+        model.set_settings(settings)?;
+        self.buffers = Buffers::new(&self.gpu, &model, &state)?;
+        (self.model, self.side, self.bound) = (model, 0, None);
         Ok(())
     }
 
@@ -226,7 +234,7 @@ impl GpuRunner {
         self.buffers.step.write(&[uniform])?;
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
         let Pending { timer, marks, count, .. } = &self.pending;
-        self.gpu.guarded("a step", || {
+        self.gpu.ask("a step", || {
             let mut recorder = Recorder::new(&self.gpu, timer.as_ref());
             timer.iter().for_each(Timer::restart);
             for (stage, dispatches) in self.bound.iter().flat_map(|sides| &sides[self.side]) {
@@ -269,8 +277,8 @@ impl GpuRunner {
             volume.put(place)?;
         }
         if changed || self.bound.is_none() {
-            // Times of stages that are no longer there cannot be distinguished later.
-            self.drain()?;
+            // Reports of other stages go first.
+            self.pending.send(&self.gpu, &self.buffers.reports)?;
             if let Some(volume) = &mut self.buffers.volume {
                 volume.gradient = self.gradient;
                 volume.spread = self.spread;

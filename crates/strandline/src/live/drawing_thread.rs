@@ -12,7 +12,7 @@ use super::messages::{Command, LiveEvent, Out, Shown};
 use super::playing::{Drafts, Playing, changes_cost, of_size};
 use super::recorder::Recorder;
 use crate::{
-    Error, FilmFiles, Scene, Sources,
+    Error, ErrorKind, FilmFiles, Scene, Sources,
     render::{FrameReport, Picture},
     session::{Change, Event, FRAME},
 };
@@ -59,7 +59,7 @@ impl DrawingThread {
         let mut playing = Playing::START;
         let played = catch_unwind(AssertUnwindSafe(|| self.play(&mut playing)));
         if played.is_err() {
-            self.emit(LiveEvent::Error(Error::WorkerGone.to_string()));
+            self.emit(Error::WorkerGone.into());
             self.emit(LiveEvent::Paused);
         }
         // Films under way are finished.
@@ -96,7 +96,7 @@ impl DrawingThread {
             }
             let draft = playing.adapts && playing.slow && !full && playing.recorder.is_none();
             if let Err(error) = self.frame(playing, draft) {
-                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(error.into());
                 self.emit(LiveEvent::Paused);
                 // A frame that fails fails again: it waits for another command.
                 (playing.playing, playing.steps, playing.stale, playing.draft) = (false, 0, false, false);
@@ -143,7 +143,7 @@ impl DrawingThread {
         let Some(Loaded { session, .. }) = playing.scene.as_deref_mut() else { return };
         let change = if fixed { of_size(change, session.settings()) } else { change };
         if let Err(error) = session.change(change) {
-            self.emit(LiveEvent::Error(error.to_string()));
+            self.emit(error.into());
         }
     }
 
@@ -160,7 +160,7 @@ impl DrawingThread {
                 if let (Some(old), Some(_)) = (&playing.scene, &playing.recorder) {
                     let picture = of_size(Change::Picture(session.settings()), old.session.settings());
                     if let Err(error) = session.change(picture) {
-                        self.emit(LiveEvent::Error(error.to_string()));
+                        self.emit(error.into());
                     }
                 }
                 // The time of one is known once it is drawn: the first is there sooner when simple.
@@ -205,7 +205,7 @@ impl DrawingThread {
         match Recorder::new(folder, (1.0 / FRAME) as f32, done) {
             Ok(recorder) => playing.recorder = Some(recorder),
             Err(error) => {
-                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(error.into());
                 self.emit(LiveEvent::Recorded);
             }
         }
@@ -223,7 +223,7 @@ impl DrawingThread {
                     // It may have ended by itself.
                     playing.finishing.extend(playing.recorder.take().map(Recorder::finish));
                 }
-                self.emit(LiveEvent::Error(error.to_string()));
+                self.emit(error.into());
             }
         }
         self.emit(LiveEvent::Recorded);
@@ -233,15 +233,18 @@ impl DrawingThread {
     fn save(&self, playing: &mut Playing, scene: Scene, load: u64, path: PathBuf) {
         if let Err(error) = self.catch_up(playing).and_then(|()| self.make_steps(playing)) {
             // The last good state is still there.
-            self.emit(LiveEvent::Error(error.to_string()));
+            self.emit(error.into());
         }
         self.emit(match &mut playing.scene {
             Some(loaded) if playing.loaded == load => match loaded.save(scene, &path) {
                 Ok(()) => LiveEvent::Saved(path),
-                Err(error) => LiveEvent::Error(error.to_string()),
+                Err(error) => error.into(),
             },
-            Some(_) => LiveEvent::Error("not saved, as another scene has just come: save again".to_owned()),
-            None => LiveEvent::Error("there is no hair to save yet".to_owned()),
+            Some(_) => LiveEvent::Error(
+                ErrorKind::Other,
+                "not saved, as another scene has just come: save again".to_owned(),
+            ),
+            None => LiveEvent::Error(ErrorKind::Other, "there is no hair to save yet".to_owned()),
         });
     }
 
@@ -297,7 +300,7 @@ impl DrawingThread {
         let Some(loaded) = &mut playing.scene else { return Ok(()) };
         match loaded.session.take() {
             Ok(is_frame) => playing.is_frame |= is_frame,
-            Err(Error::Sim(error)) if error.gpu().is_none() => self.emit(LiveEvent::Error(error.to_string())),
+            Err(Error::Sim(error)) if error.gpu().is_none() => self.emit(Error::from(error).into()),
             Err(error) => return Err(error),
         }
         self.pass_on(playing, false);

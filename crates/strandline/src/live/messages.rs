@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 
 use crate::{
-    Scene, Sources,
+    Error, ErrorKind, Scene, Sources,
     body::Aabb,
     render::{Camera, FrameReport, Picture},
     session::Change,
@@ -79,14 +79,20 @@ pub enum LiveEvent {
     Note(String),
     /// The scene of the command with this number could not be loaded; what was there stays.
     NotLoaded(u64, String),
-    /// Something could not be done; what was there stays.
-    Error(String),
+    /// Something could not be done, what may be done about it and why; what was there stays.
+    Error(ErrorKind, String),
     /// It stands still, since a frame failed: its error came before.
     Paused,
     /// The scene is saved there.
     Saved(PathBuf),
     /// The video is over.
     Recorded,
+}
+
+impl From<Error> for LiveEvent {
+    fn from(error: Error) -> Self {
+        Self::Error(error.kind(), error.to_string())
+    }
 }
 
 #[derive(Default)]

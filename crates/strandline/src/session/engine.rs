@@ -6,7 +6,6 @@ use glam::Vec3;
 use strandline_gpu::{Buffer, Gpu};
 
 use crate::{
-    Error,
     body::Pose,
     groom::Vec3Lanes,
     sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
@@ -184,10 +183,4 @@ fn rest(state: &State, model: &Model, pose: Pose) -> Result<State, SimError> {
         state.set_length_scale(model, &scales)?;
     }
     Ok(state)
-}
-
-impl From<strandline_gpu::GpuError> for Error {
-    fn from(error: strandline_gpu::GpuError) -> Self {
-        Self::Sim(error.into())
-    }
 }

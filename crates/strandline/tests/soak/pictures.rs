@@ -97,8 +97,8 @@ impl Person {
                     (self.loaded, self.loads) = (number, self.loads + 1);
                 }
                 LiveEvent::NotLoaded(_, error) => assert!(error.contains("bad.hair"), "{error}"),
-                LiveEvent::Error(error) if error.contains("save again") => self.saved += 1,
-                LiveEvent::Error(error) => {
+                LiveEvent::Error(_, error) if error.contains("save again") => self.saved += 1,
+                LiveEvent::Error(_, error) => {
                     // Of all that it does only settings outside their ranges may be refused.
                     assert!(error.contains(", expected "), "{error}");
                     assert!(!error.contains("cannot"), "{error}");

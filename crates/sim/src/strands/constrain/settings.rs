@@ -11,7 +11,7 @@ settings! {
         /// Mass of hair per length; the default is that of a hair 80 um thick. Points with masses of their own keep
         /// them.
         mass_per_length: f32 = 6.5e-6, in [1e-9, 1.0] "kg/m", slider [1e-6, 5e-5],
-            more "springs that move hair less";
+            more "springs that move hair less", invalidates masses;
         /// Elastic springs, each can be off.
         springs: Springs = Springs::default();
         /// Bends at the points of a strand.

@@ -15,44 +15,44 @@ settings! {
         hair: HairKind = HairKind::default();
         /// Radius of a hair.
         radius: f32 = 40.0, in [1.0, 1000.0] "um", slider [15.0, 100.0],
-            more "stiffer, heavier hair";
+            more "stiffer, heavier hair", invalidates masses;
         /// Young's modulus.
         youngs_modulus: f32 = 3.5, in [1e-3, 1e5] "GPa", slider [0.1, 20.0],
-            more "hair that bends and twists less, at the same weight";
+            more "hair that bends and twists less, at the same weight", invalidates rest_shape;
         /// Poisson's ratio: twisting stiffness over bending stiffness is 1 over 1 plus it.
-        poisson_ratio: f32 = 0.35, in [0.0, 0.5], more "curls that unwind a little more easily";
+        poisson_ratio: f32 = 0.35, in [0.0, 0.5], more "curls that unwind a little more easily", invalidates rest_shape;
         /// Shear modulus; without it that of Young's modulus and Poisson's ratio.
-        shear_modulus: Option<f32> = None, in [1e-3, 1e5] "GPa", more "hair that twists less";
+        shear_modulus: Option<f32> = None, in [1e-3, 1e5] "GPa", more "hair that twists less", invalidates rest_shape;
         /// Density.
         density: f32 = 1300.0, in [1.0, 20_000.0] "kg/m^3", slider [200.0, 4000.0],
-            more "heavier hair that swings more slowly";
+            more "heavier hair that swings more slowly", invalidates masses;
         /// Mass of what hair carries, water or lacquer, over its own.
-        load: f32 = 0.0, in [0.0, 20.0], slider [0.0, 3.0], more "hair that gives way more easily";
+        load: f32 = 0.0, in [0.0, 20.0], slider [0.0, 3.0], more "hair that gives way more easily", invalidates masses;
         /// Hairs that a guide stands for: they weigh and resist together.
         wisp_hairs: u32 = 1, in [1, 10_000], slider [1, 200],
-            more "stiffer hair where `cohesion` is above 0, and no other motion where it is 0";
+            more "stiffer hair where `cohesion` is above 0, and no other motion where it is 0", invalidates masses;
         /// How far the hairs of a guide share load: 0 lets each bend by itself, so that n hairs are n times as stiff as
         /// one; 1 glues them to one, n^2 times; between, n^(1 + cohesion).
-        cohesion: f32 = 0.0, in [0.0, 1.0], more "locks that bend as one";
+        cohesion: f32 = 0.0, in [0.0, 1.0], more "locks that bend as one", invalidates rest_shape;
         /// Relaxation time of bends and twists: what they lag behind their rest.
         damping: f32 = 0.002, in [0.0, 10.0] "s", slider [0.0, 0.1],
-            more "bends that swing back more slowly and tremble less";
+            more "bends that swing back more slowly and tremble less", invalidates rest_shape;
         /// Second axis of the section over the first; 1 is round. The first axis, the radius, lies across the
         /// root in the direction of the coordinate axis that the root is farthest from.
-        ellipticity: f32 = 1.0, in [0.1, 1.0], more "a rounder hair";
+        ellipticity: f32 = 1.0, in [0.1, 1.0], more "a rounder hair", invalidates masses;
         /// Radius at the tip over that at the root: it falls evenly from `taper_start` on.
-        tip_radius: f32 = 1.0, in [0.05, 1.0], more "tips that are as stiff and heavy as the rest";
+        tip_radius: f32 = 1.0, in [0.05, 1.0], more "tips that are as stiff and heavy as the rest", invalidates masses;
         /// Share of the length where hair begins to taper.
-        taper_start: f32 = 0.5, in [0.0, 0.99], more "a shorter taper";
+        taper_start: f32 = 0.5, in [0.0, 0.99], more "a shorter taper", invalidates masses;
         /// Stiffness at the root, in the middle and at the tip over that of the material, evenly between.
         profile: [f32; 3] = [1.0; 3], in [0.01, 100.0], slider [0.1, 10.0],
-            more "hair that bends less there";
+            more "hair that bends less there", invalidates rest_shape;
         /// Deceleration of slow hair by hairs that rub against each other, relative to the head. A shape at rest may be
         /// off by what this much gravity bends it.
         rubbing: f32 = 0.2, in [0.0, 100.0] "m/s^2", slider [0.0, 1.0],
             more "hair that comes to rest sooner after its last small swings";
         /// What the shape of the groom is.
-        rest: Rest = Rest::default();
+        rest: Rest = Rest::default(), invalidates rest_shape;
         /// Parts of a step that are solved one after the other.
         substeps: u32 = 2, in [1, 64], slider [1, 8], more "hair that swings longer, at a higher cost";
         /// Most Newton steps of each part; strands that move gently need one or two. With one, hair that comes down onto

@@ -56,7 +56,7 @@ fn a_video_is_recorded_frame_by_frame_and_finished_when_it_is_left() {
         events.extend(live.take_events());
         events.contains(&LiveEvent::Recorded).then_some(())
     });
-    assert!(events.iter().any(|event| matches!(event, LiveEvent::Error(text) if text.contains("three"))));
+    assert!(events.iter().any(|event| matches!(event, LiveEvent::Error(_, text) if text.contains("three"))));
     assert_eq!(next(&live).recorded, None);
 }
 

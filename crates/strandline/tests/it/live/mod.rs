@@ -187,7 +187,7 @@ fn a_setting_that_is_refused_does_not_stop_it() {
     let live = Live::new(scene(), waking()).unwrap();
     next(&live);
     live.send(Change::Settings(Box::new(Settings { time_step: -1.0, ..scene().simulation })));
-    wait(|| live.take_events().into_iter().find(|news| matches!(news, LiveEvent::Error(_))));
+    wait(|| live.take_events().into_iter().find(|news| matches!(news, LiveEvent::Error(..))));
     let frame = next(&live).frame;
     wait(|| live.take_shown().filter(|shown| shown.frame > frame + 3 && shown.step.is_some()));
     assert!(!live.take_events().contains(&LiveEvent::Paused));
