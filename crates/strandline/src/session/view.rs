@@ -79,7 +79,7 @@ impl View {
     fn draw_from(&mut self, moment: &Moment, at_home: bool) -> Result<(Picture, FrameReport), RenderError> {
         let input = FrameInput {
             positions: moment.positions(),
-            world_from_head: moment.world_from_head,
+            body: &moment.body,
             camera: &self.camera,
             look: &self.look,
             body_look: &self.body_look,
