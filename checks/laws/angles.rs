@@ -20,7 +20,7 @@ fn pulled_aside(on: &On, limit: f32) -> f32 {
     let settings = Settings { gravity: Vec3::X * 9.81, damping: 5.0, ..bare(1.0 / 60.0, 20) }
         .with_constrain(|constrain| constrain.angles = Angles { limit, stiffness: 0.0 });
     let mut rig = hanging(on, &settings);
-    rig.steps(&[Drive::default(); 180]);
+    rig.steps(&vec![Drive::default(); 180]);
     let points = first(rig.state());
     (points[2] - points[1]).angle_between(points[3] - points[2])
 }

@@ -54,7 +54,7 @@ fn drift(on: &On) -> [f32; 2] {
     let mut rig = Rig::new(on, model);
     let kinds: [fn(usize) -> f32; 2] = [mass, |_| 1.0];
     let start = kinds.map(|mass| mean_velocity(&mut rig, mass));
-    rig.steps(&[Drive::default(); 30]);
+    rig.steps(&vec![Drive::default(); 30]);
     let end = kinds.map(|mass| mean_velocity(&mut rig, mass));
     [0, 1].map(|kind| (end[kind] - start[kind]).length() / start[kind].length())
 }
@@ -81,7 +81,7 @@ law! {
             let found = rig.state().velocities[point].get(0);
             assert!((found - expected(point)).length() < 1e-4, "point {point}: {found}");
         }
-        rig.step(&Drive { world_from_head: turned, ..Drive::default() });
+        rig.step(&Drive::of(turned));
         // Far along the strand lengths hold its points, but not across it.
         let moved = first(rig.state())[5] - before[5];
         let expected = expected(5) / 60.0;

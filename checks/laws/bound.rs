@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 use strandline::{Prepared, low_level::BoundStrands};
-use strandline_body::{Mesh, Pose};
+use strandline_body::{BodyFrame, Mesh, Pose};
 use strandline_checks::{On, Rig};
 use strandline_groom::{Frames, LANES, Vec3Lanes};
 use strandline_render::{
-    DetailLevel,
-    cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
+    DetailLevel, Strands,
+    cpu::{Curves, interpolate, keep_outside, tessellate},
 };
 use strandline_sim::{Drive, Model, Settings};
 
@@ -23,7 +23,7 @@ fn shaken(prepared: &Prepared) -> (Vec<Vec3Lanes>, Pose) {
     let mut rig = Rig::new(&On::Cpu, model);
     let pose = |step: usize| prepared.head.pose(step as f64 * f64::from(settings.time_step));
     let steps = (2.0 / settings.time_step) as usize;
-    let drive = |step| Drive { world_from_head: pose(step), ..Drive::default() };
+    let drive = |step| Drive::of(pose(step));
     rig.steps(&(1..=steps).map(drive).collect::<Vec<_>>());
     (rig.state().positions.clone(), pose(steps))
 }
@@ -76,7 +76,7 @@ fn bound_strands_go_where_they_would_go_and_stay_out_of_the_head() {
     assert_eq!(strands, all.guides.strand_count());
 
     let (mut frames, mut placed) = (Frames::default(), Vec::new());
-    bound.place(some.guides.positions(), &Pose::IDENTITY, &mut frames, &mut placed);
+    bound.place(some.guides.positions(), &BodyFrame::REST, &mut frames, &mut placed);
     let at_rest = (0..strands)
         .map(|strand| {
             let own = (0..points).map(|point| bound.strands().position(strand, point));
@@ -87,7 +87,7 @@ fn bound_strands_go_where_they_would_go_and_stay_out_of_the_head() {
         .fold(0.0, f32::max);
     let (truth, pose) = shaken(&all);
     let (guides, _) = shaken(&some);
-    bound.place(&guides, &pose, &mut frames, &mut placed);
+    bound.place(&guides, &pose.into(), &mut frames, &mut placed);
     let still: Vec<Vec3Lanes> = all.guides.positions().to_vec();
     let share = |found: &dyn Fn(usize, usize) -> Vec3| {
         let mut sum = 0.0;

@@ -25,7 +25,7 @@ fn slide(on: &On, degrees: f32, friction: f32) -> f32 {
     let rest = RestShape::new(&guides, 6.5e-6);
     let model = Model::with_rest(&guides, rest, |_, _| false, &settings, vec![floor]).unwrap();
     let mut rig = Rig::new(on, model);
-    rig.steps(&[Drive::default(); 60]);
+    rig.steps(&vec![Drive::default(); 60]);
     first(rig.state())[4].distance(points[4])
 }
 
@@ -71,7 +71,7 @@ fn depth_below(
     let steps = on.either(240, 120);
     for step in 1..=steps {
         let world_from_head = motion.pose(f64::from(step) / 60.0, Vec3::NEG_Y * 0.1);
-        let report = rig.step(&Drive { world_from_head, ..Drive::default() });
+        let report = rig.step(&Drive::of(world_from_head));
         assert_eq!(report.non_finite, 0);
         if step < steps / 2 {
             continue;
@@ -130,7 +130,7 @@ law! {
                 (0..8).map(|lane| -shape.distance_and_gradient(point.get(lane)).0).fold(0.0, f32::max)
             });
         let resting = resting.fold(0.0, f32::max);
-        let collider = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
+        let collider = Collider { shape, carrier: Carrier::HEAD, friction: 0.3 };
         // At rest what planes on the ears err by, which curve within 5 mm; shaken also what is left in
         // the creases of ears and neck, where two planes and a length cannot all be kept.
         let [rods, exact, _] = ways();

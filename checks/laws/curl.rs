@@ -28,7 +28,7 @@ fn hung(on: &On, rest: Rest, youngs_modulus: f32) -> (f32, f32) {
     let guides = curl();
     let model = Model::new(&guides, &settings, Vec::new()).unwrap();
     let mut rig = Rig::new(on, model);
-    rig.steps(&[Drive::default(); 120]);
+    rig.steps(&vec![Drive::default(); 120]);
     let points: Vec<Vec3> = rig.state().positions.iter().map(|lanes| lanes.get(0)).collect();
     let axis = |point: &Vec3| vec3(point.x, 0.0, point.z).length();
     let radius = points.iter().skip(16).map(axis).sum::<f32>() / (points.len() - 16) as f32;

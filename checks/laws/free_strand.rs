@@ -55,7 +55,7 @@ law! {
     fn wind_carries_a_loose_strand_along(on) {
         let settings = Settings { gravity: Vec3::ZERO, drag: Drag::default(), ..bare(1.0 / 60.0, 20) };
         let mut rig = loose(on, &line(Vec3::ZERO, Vec3::NEG_Y * 0.3, 8), &settings);
-        rig.steps(&[Drive { wind: Vec3::new(2.0, 2.0, 0.0), ..Drive::default() }; 60]);
+        rig.steps(&vec![Drive { wind: Vec3::new(2.0, 2.0, 0.0), ..Drive::default() }; 60]);
         let velocity = rig.state().velocities[4].get(0);
         // Across the strand 1 - exp(-1.5), along it 1 - exp(-0.75), for 1 s; rounding of 60 steps.
         assert!((velocity.x - 2.0 * (1.0 - (-1.5_f32).exp())).abs() < 1e-3, "{velocity}");
@@ -145,8 +145,8 @@ law! {
         let report = rig.step(&Drive::default());
         assert!(report.stretch_max.is_finite() && report.non_finite == 0, "{report:?}");
         let nowhere = Pose { translation: Vec3::NAN, ..Pose::IDENTITY };
-        rig.change(|state| state.world_from_head = nowhere);
-        let report = rig.step(&Drive { world_from_head: nowhere, ..Drive::default() });
+        rig.change(|state| state.body = nowhere.into());
+        let report = rig.step(&Drive::of(nowhere));
         // Every point, by each of the stages that look.
         assert!(report.non_finite >= 16, "{report:?}");
         assert!(report.stretch_max.is_nan() && report.stretch_mean.is_nan(), "{report:?}");

@@ -31,13 +31,13 @@ fn slid(on: &On, rounds: u32, friction: f32) -> f32 {
     let masses: Vec<f32> = model.rest().mass.iter().map(|lanes| lanes.0[0]).collect();
     let mut rig = Rig::new(on, model);
     // Let it settle, then push it.
-    rig.steps(&[Drive::default(); 30]);
+    rig.steps(&vec![Drive::default(); 30]);
     rig.change(|state| {
         for velocity in &mut state.velocities {
             (0..8).for_each(|lane| velocity.set(lane, Vec3::Z));
         }
     });
-    rig.steps(&[Drive::default(); 6]);
+    rig.steps(&vec![Drive::default(); 6]);
     let speeds = rig.state().velocities.iter().zip(&masses).map(|(v, mass)| v.get(0).z * mass);
     speeds.sum::<f32>() / masses.iter().sum::<f32>()
 }

@@ -64,7 +64,7 @@ law! {
         carry(&mut rig, Vec3::X * 0.6, 60);
         let held = first(rig.state())[LINKS];
         rig.change(strandline_sim::State::release);
-        rig.steps(&[Drive { hand: Some(Vec3::X * 0.6), ..Drive::default() }; 12]);
+        rig.steps(&vec![Drive { hand: Some(Vec3::X * 0.6), ..Drive::default() }; 12]);
         let fallen = held.y - first(rig.state())[LINKS].y;
         // Free fall over 0.2 s is 0.2 m; the rope holds it back.
         assert!(fallen > 0.1, "{fallen}");
@@ -82,8 +82,8 @@ law! {
         let count = pulled.grab(hand, 0.05);
         assert!((1..24).contains(&count), "{count} strands are held");
         let away = Drive { hand: Some(hand * 1.3), ..Drive::default() };
-        pulled.steps(&[away; 30]);
-        still.steps(&[Drive::default(); 30]);
+        pulled.steps(&vec![away; 30]);
+        still.steps(&vec![Drive::default(); 30]);
         let (mut moved, mut same) = (0, 0);
         for strand in 0..48 {
             let tip = |rig: &mut Rig| rig.state().positions[strand / 8 * 12 + 11].get(strand % 8);
@@ -127,17 +127,17 @@ law! {
         let mut settings = Settings::default();
         settings.volume.enabled = false;
         let mut rig = Rig::new(on, Model::new(&curl(), &settings, Vec::new()).unwrap());
-        rig.steps(&[Drive::default(); 120]);
+        rig.steps(&vec![Drive::default(); 120]);
         let tip = |rig: &mut Rig| rig.state().positions[63].get(0);
         let hung = tip(&mut rig);
         let hand = hung + vec3(0.05, -0.08, 0.0);
         rig.grab(hung, 0.001);
-        rig.steps(&[Drive { hand: Some(hand), ..Drive::default() }; 60]);
+        rig.steps(&vec![Drive { hand: Some(hand), ..Drive::default() }; 60]);
         let missed = tip(&mut rig).distance(hand);
 
         assert!(missed < 0.005, "the shape wins by {missed} m");
         rig.change(strandline_sim::State::release);
-        rig.steps(&[Drive::default(); 240]);
+        rig.steps(&vec![Drive::default(); 240]);
         let back = tip(&mut rig).distance(hung);
 
         assert!(back < 0.01, "{back}");

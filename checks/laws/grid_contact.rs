@@ -49,7 +49,7 @@ fn curtain() -> Guides {
 /// Depth \[m\] of the free points of a rig inside a ball that stays or that the head carries.
 fn depth(rig: &mut Rig, ball: &Ball, head: Pose, carrier: Carrier) -> f32 {
     let points = rig.model().points_per_strand();
-    let from_world = if carrier == Carrier::Head { head.inverse() } else { Pose::IDENTITY };
+    let from_world = if carrier == Carrier::HEAD { head.inverse() } else { Pose::IDENTITY };
     let blocks = rig.state().positions.chunks(points);
     let free = blocks.flat_map(|block| &block[Model::ROOTED_POINTS..]);
     let lanes = free.flat_map(|lanes| (0..8).map(|lane| lanes.get(lane)));
@@ -67,7 +67,7 @@ fn lowered(on: &On, ball: &Ball, colliders: Vec<Collider>, settings: &Settings) 
     for (from, to, steps) in [(away, onto, 40), (onto, aside, 40), (aside, onto, 40)] {
         for step in 1..=steps {
             let head = Pose { translation: from.lerp(to, step as f32 / steps as f32), ..Pose::IDENTITY };
-            let report = rig.step(&Drive { world_from_head: head, ..Drive::default() });
+            let report = rig.step(&Drive::of(head));
             let found = depth(&mut rig, ball, head, Carrier::World);
             deepest = deepest.max(found);
             unseen = unseen.max((report.penetration_max - found).abs());
@@ -118,7 +118,7 @@ law! {
             for step in 1..=60 {
                 let way = vec3(-0.105, -0.7, -0.105) * (step as f32 / 60.0);
                 let head = Pose { translation: way, ..Pose::IDENTITY };
-                let report = rig.step(&Drive { world_from_head: head, ..Drive::default() });
+                let report = rig.step(&Drive::of(head));
                 let found = depth(&mut rig, &ball, head, Carrier::World);
                 // Error of the samples, 1.5 cm and more from the middle.
                 let off = (report.penetration_max - found).abs();
@@ -146,7 +146,7 @@ law! {
         let mut deepest = 0.0_f32;
         for step in 1..=60 {
             let head = Pose { translation: ball.center * (step as f32 / 60.0), ..Pose::IDENTITY };
-            let report = rig.step(&Drive { world_from_head: head, ..Drive::default() });
+            let report = rig.step(&Drive::of(head));
             let found = depth(&mut rig, &ball, head, Carrier::World);
             // Rounding of places of some decimetres.
             let off = (report.penetration_max - found).abs();
@@ -168,9 +168,9 @@ fn shaken(on: &On, collider: Collider, settings: &Settings) -> f32 {
     for step in 1..=on.either(120, 48) {
         let aside = Vec3::X * amplitude * (speed * step as f32 / 60.0).sin();
         let head = Pose { translation: aside, ..Pose::IDENTITY };
-        let report = rig.step(&Drive { world_from_head: head, ..Drive::default() });
+        let report = rig.step(&Drive::of(head));
         assert_eq!(report.non_finite, 0, "step {step}");
-        deepest = deepest.max(depth(&mut rig, &ball, head, Carrier::Head));
+        deepest = deepest.max(depth(&mut rig, &ball, head, Carrier::HEAD));
     }
     deepest
 }
@@ -179,8 +179,8 @@ law! {
     fn a_violent_shake_takes_no_hair_into_the_head(on) {
         let ball = Ball { center: Vec3::ZERO, radius: 0.1 };
         let shape = Shape::Sphere { center: Vec3::ZERO, radius: 0.1 };
-        let exact = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
-        for solid in [exact, sampled(&ball, Carrier::Head)] {
+        let exact = Collider { shape, carrier: Carrier::HEAD, friction: 0.3 };
+        for solid in [exact, sampled(&ball, Carrier::HEAD)] {
             let deepest = shaken(on, solid.clone(), &Settings::constrained());
             assert!(deepest < 2e-3, "{deepest} m deep in {:?}", solid.shape);
             let rods = shaken(on, solid.clone(), &Settings::default());

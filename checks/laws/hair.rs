@@ -84,7 +84,7 @@ law! {
         // In mid-swing, where damping shows.
         let tips = |settings: &Settings| {
             let mut rig = Rig::new(on, Model::new(&guides, settings, Vec::new()).unwrap());
-            rig.steps(&[Drive::default(); 5]);
+            rig.steps(&vec![Drive::default(); 5]);
             let tip = &rig.state().positions[guides.points_per_strand() - 1];
             [0, 1].map(|lane| tip.get(lane))
         };

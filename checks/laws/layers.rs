@@ -1,14 +1,15 @@
 //! Opacity maps: hair counts to the layer behind the first hair that it lies in.
 
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_checks::{On, law};
 use strandline_groom::{Groom, Guides};
-use strandline_render::cpu::{Shadows, Strands, opacity_depth, opacity_layers};
+use strandline_render::cpu::{opacity_depth, opacity_layers};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings, Shadow,
 };
+use strandline_render::{Shadows, Strands};
 
 use crate::strands::line;
 
@@ -51,7 +52,7 @@ fn shadows(on: &On, strands: &Strands, shadow: Shadow) -> Shadows {
             let mut renderer = GpuRenderer::new(gpu, &guides, None, &PictureSettings::sized(16, 16)).unwrap();
             let input = FrameInput {
                 positions: guides.positions(),
-                world_from_head: Pose::IDENTITY,
+                body: &BodyFrame::REST,
                 camera: &Camera::front(),
                 look: &Look { follow_strands: 1, shadow, ..Look::thesis() },
                 body_look: &BodyLook::default(),

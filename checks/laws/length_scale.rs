@@ -48,7 +48,7 @@ fn drift(on: &On, scale: f32) -> [f32; 2] {
         }
     });
     let start = [&scaled, &even].map(|masses| mean_velocity(&mut rig, masses));
-    rig.steps(&[Drive::default(); 30]);
+    rig.steps(&vec![Drive::default(); 30]);
     let end = [&scaled, &even].map(|masses| mean_velocity(&mut rig, masses));
     [0, 1].map(|which| (end[which] - start[which]).length() / start[which].length())
 }
@@ -72,7 +72,7 @@ law! {
                 let model = Model::new(&guides, &settings, Vec::new()).unwrap();
                 let mut rig = Rig::new(on, model.clone());
                 rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
-                rig.steps(&[Drive::default(); 60]);
+                rig.steps(&vec![Drive::default(); 60]);
                 let tip = first(rig.state())[POINTS - 1];
                 // The length pass is exact but for rounding.
                 assert!((tip.y + 0.2 * scale).abs() < 1e-5, "{:?}, {scale}: {tip}", settings.strands.method);
@@ -105,7 +105,7 @@ law! {
             let mut rig = Rig::new(on, model.clone());
             let before = first(rig.state());
             rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
-            rig.steps(&[Drive::default(); 240]);
+            rig.steps(&vec![Drive::default(); 240]);
             let after = first(rig.state());
             // The segments of the first half keep their lengths. In single precision the weight of what is left
             // is carried to 1e-4 of the length; with that of what is gone the half's end moves by 0.22 of it.

@@ -56,7 +56,7 @@ law! {
             for step in 1..=30 {
                 let aside = Vec3::X * 0.05 * (TAU * 2.0 * step as f32 / 60.0).sin();
                 let world_from_head = Pose { translation: aside, ..Pose::IDENTITY };
-                rig.step(&Drive { world_from_head, ..Drive::default() });
+                rig.step(&Drive::of(world_from_head));
                 let (apart, fastest) = motion(rig.state(), 1.0 / 60.0);
                 assert!(apart < 2e-5, "{hair:?}, shaken: {apart} m/s in step {step}");
                 swung = swung.max(fastest);

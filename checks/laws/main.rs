@@ -14,6 +14,7 @@ mod layers;
 mod length_scale;
 mod lengths;
 mod pendulum;
+mod pieces;
 mod poisson;
 mod projection;
 mod recovery;

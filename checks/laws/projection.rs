@@ -1,7 +1,7 @@
 //! The pressure's result: no flow leaves a cell.
 
 use glam::{Vec3, vec3};
-use strandline_body::{Carrier, Collider, Pose, Shape};
+use strandline_body::{BodyFrame, Carrier, Collider, Pose, Shape};
 use strandline_checks::gpu;
 use strandline_gpu::Gpu;
 use strandline_sim::cells::Kind;
@@ -22,9 +22,9 @@ fn projected(tolerance: f32) -> (Volume, f32, strandline_sim::PressureReport) {
     let settings = VolumeSettings { tolerance, ..VolumeSettings::default() };
     let mut volume = Volume::new(&settings, cloud.strands, POINTS);
     let shape = Shape::sphere(Vec3::ZERO, 0.05).unwrap();
-    let colliders = [Collider::new(shape, Carrier::Head, 0.0).unwrap()];
+    let colliders = [Collider::new(shape, Carrier::HEAD, 0.0).unwrap()];
     let end = Pose { translation: vec3(0.002, 0.0, 0.0), ..Pose::IDENTITY };
-    let obstacles = Obstacles { colliders: &colliders, start: Pose::IDENTITY, end, time_step: 0.01 };
+    let obstacles = Obstacles::new(&colliders, BodyFrame::REST, end.into(), 0.01);
     splat(&mut volume, &cloud.positions, &cloud.velocities, &cloud.mass);
     mark(&mut volume, &obstacles);
     let before = volume.largest_divergence();
@@ -37,12 +37,12 @@ fn projected_on(gpu: &Gpu, tolerance: f32) -> [f32; 2] {
     let points: Vec<_> = ball(9.0, 3, 4).into_iter().map(|(at, spin)| (at, 0.1 * spin + 12.0 * at)).collect();
     let cloud = Cloud::new(&points);
     let shape = Shape::sphere(Vec3::ZERO, 0.05).unwrap();
-    let collider = Collider::new(shape, Carrier::Head, 0.0).unwrap();
+    let collider = Collider::new(shape, Carrier::HEAD, 0.0).unwrap();
     let settings = VolumeSettings { tolerance, ..VolumeSettings::default() };
     let runner = cloud.stand_in(gpu, settings, 0.01, vec![collider]);
     let mut probe = cloud.probe(&runner);
     let end = Pose { translation: vec3(0.002, 0.0, 0.0), ..Pose::IDENTITY };
-    let drive = Drive { world_from_head: end, ..Drive::default() };
+    let drive = Drive::of(end);
     let size = 34;
     let largest = |probe: &Probe| {
         let (faces, kinds) = (probe.faces().unwrap(), probe.kinds().unwrap());

@@ -65,7 +65,7 @@ law! {
 law! {
     fn a_strand_that_recovers_leaves_no_streak(on) {
         let mut rig = strand(on);
-        rig.steps(&[Drive::default(); 20]);
+        rig.steps(&vec![Drive::default(); 20]);
         rig.change(|state| state.velocities[7].set(0, Vec3::NAN));
         let report = rig.step(&Drive::default());
         assert!(report.non_finite > 0);

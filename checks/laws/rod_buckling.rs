@@ -30,7 +30,7 @@ fn aside(on: &On, along: Vec3, across: Vec3, settings: &Settings) -> f32 {
             state.velocities[point].set(0, across * (0.03 * share * share));
         }
     });
-    rig.steps(&[Drive::default(); 300]);
+    rig.steps(&vec![Drive::default(); 300]);
     rig.state().positions.iter().map(|lanes| lanes.get(0).dot(across).abs()).fold(0.0, f32::max) / LENGTH
 }
 

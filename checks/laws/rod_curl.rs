@@ -38,7 +38,7 @@ fn let_go(on: &On, rest: Rest) -> (f32, f32) {
     let drawn = tip(&mut rig).y / start.y;
     assert!(drawn > 1.2, "drawn out to {drawn} of its height");
     rig.change(State::release);
-    rig.steps(&[Drive::default(); 180]);
+    rig.steps(&vec![Drive::default(); 180]);
     let end = tip(&mut rig);
     (end.y / start.y, end.distance(start) / HEIGHT)
 }

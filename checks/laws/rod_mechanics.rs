@@ -1,7 +1,7 @@
 //! Rods against mechanics: one strand at a time, without a volume.
 
 use glam::{Vec3, vec3};
-use strandline_body::{Carrier, Collider, Shape};
+use strandline_body::{Carrier, Collider, Pose, Shape};
 use strandline_checks::{On, Rig, law};
 use strandline_groom::{Guides, RestShape};
 use strandline_sim::{Drive, Model, Settings, State, StrandMethod, rods::Rest};
@@ -100,7 +100,7 @@ law! {
             }).collect();
             let held = |point| point == 0 || point == 16;
             let mut rig = Rig::new(on, model(&one_strand(&points), &settings, held, Vec::new()));
-            rig.steps(&[Drive::default(); 300]);
+            rig.steps(&vec![Drive::default(); 300]);
             let lowest = first(rig.state()).iter().fold(0.0_f32, |low, point| low.max(-point.y));
             assert!((lowest / sag - 1.0).abs() < 2e-3, "span {span}: {lowest}, expected {sag}");
         }
@@ -121,9 +121,9 @@ fn slid(on: &On, slope: f32, friction: f32) -> (f32, f32) {
     let points = line(vec3(-0.05, 1e-5, 0.0), vec3(0.05, 1e-5, 0.0), 9);
     let mut rig = Rig::new(on, model(&one_strand(&points), &settings, |_| false, vec![plane]));
     let start = first(rig.state())[5].x;
-    rig.steps(&[Drive::default(); 15]);
+    rig.steps(&vec![Drive::default(); 15]);
     let before = first(rig.state())[5].x;
-    rig.steps(&[Drive::default(); 1]);
+    rig.steps(&vec![Drive::default(); 1]);
     let now = first(rig.state())[5].x;
     (now - start, (now - before) * 60.0)
 }
@@ -185,7 +185,7 @@ law! {
         // The segment that is held has its share.
         let scale = (0.5 + 1.0 / count as f32) / (1.0 + 1.0 / count as f32);
         rig.change(|state| state.set_length_scale(&model, &[scale]).unwrap());
-        rig.steps(&[Drive::default(); 240]);
+        rig.steps(&vec![Drive::default(); 240]);
         // The last 3 mm are the rest of the other half.
         let tip = first(rig.state())[count / 2 + 1];
         // reference/cantilever_elastica.csv gives 0.12456 for 1 and 0.58572 for 5; that of 1.25 by the same program
@@ -347,18 +347,18 @@ law! {
 law! {
     fn a_rod_that_is_not_finite_goes_back_to_rest(on) {
         let mut rig = Rig::new(on, Model::new(&curl(), &rods(1.0 / 60.0), Vec::new()).unwrap());
-        rig.steps(&[Drive { wind: Vec3::X, ..Drive::default() }; 10]);
+        rig.steps(&vec![Drive { wind: Vec3::X, ..Drive::default() }; 10]);
         rig.change(|state| state.velocities[20].set(0, Vec3::NAN));
         let report = rig.step(&Drive::default());
         assert!(report.non_finite > 0);
         let report = rig.step(&Drive::default());
         assert_eq!(report.non_finite, 0);
-        let rest = rig.model().rest_state(Default::default());
+        let rest = rig.model().rest_state(Pose::IDENTITY);
         for (found, rest) in rig.state().positions.iter().zip(&rest.positions) {
             // Sag-free: it stays there.
             assert!(found.get(0).distance(rest.get(0)) < 1e-5, "{}", found.get(0).distance(rest.get(0)));
         }
-        let report = rig.steps(&[Drive::default(); 60]).pop().unwrap();
+        let report = rig.steps(&vec![Drive::default(); 60]).pop().unwrap();
         assert_eq!(report.rods.unwrap().resting, 1, "{report:?}");
     }
 }
@@ -377,7 +377,7 @@ law! {
         // Ten minutes; mean square speed at every phase of the shake.
         let (mut squares, mut most) = (Vec::new(), 0.0_f32);
         for part in 0..on.either(36_000, 236) / 59 {
-            let drive = |step: usize| Drive { world_from_head: pose(part * 59 + step), ..Drive::default() };
+            let drive = |step: usize| Drive::of(pose(part * 59 + step));
             for report in rig.steps(&(1..=59).map(drive).collect::<Vec<_>>()) {
                 assert_eq!(report.non_finite, 0);
                 most = most.max(report.stretch_max);

@@ -128,7 +128,7 @@ law! {
             let reach = 3.0 * 9.81 / (rate * rate);
             let drive = |step: usize| {
                 let translation = Vec3::X * (reach * (rate * step as f32 / 60.0).sin());
-                Drive { world_from_head: Pose { translation, ..Pose::default() }, ..Drive::default() }
+                Drive::of(Pose { translation, ..Pose::default() })
             };
             let mut whip = 0.0_f32;
             for report in rig.steps(&(1..=on.either(600, 120)).map(drive).collect::<Vec<_>>()) {

@@ -31,7 +31,7 @@ fn on_a_body(style: Style, settings: &Settings, strands: usize, friction: f32) -
 /// Mean and largest distance of points from where they rest on the head, over their strands' lengths.
 pub fn drift(model: &Model, state: &State) -> (f32, f32) {
     let points = model.points_per_strand();
-    let rest = model.rest_state(state.world_from_head);
+    let rest = model.rest_state(&state.body);
     let (mut sum, mut most) = (0.0, 0.0_f32);
     for strand in 0..model.strand_count() {
         let (block, lane) = (strand / LANES * points, strand % LANES);
@@ -64,7 +64,7 @@ pub fn stepped(on: &On, model: &Model, seconds: f32, motion: impl Fn(f64) -> Pos
     let step = model.settings().time_step;
     let drive = |index: u32| {
         let world_from_head = motion(f64::from(index) * f64::from(step));
-        Drive { world_from_head, ..Drive::default() }
+        Drive::of(world_from_head)
     };
     let drives: Vec<_> = (1..=(seconds / step).round() as u32).map(drive).collect();
     for report in rig.steps(&drives) {
@@ -111,7 +111,7 @@ fn creased(style: Style, inward: f32) -> Model {
     guides.move_outside(|point| shape.distance_and_gradient(point));
     let mut settings = settings(StrandMethod::Rods, 1.0 / 60.0);
     settings.volume.enabled = false;
-    Model::new(&guides, &settings, vec![Collider { shape, carrier: Carrier::Head, friction: 0.3 }]).unwrap()
+    Model::new(&guides, &settings, vec![Collider { shape, carrier: Carrier::HEAD, friction: 0.3 }]).unwrap()
 }
 
 law! {

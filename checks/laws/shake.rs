@@ -33,7 +33,7 @@ fn shaken(on: &On, settings: &Settings) -> f32 {
         let time = (f64::from(step) / 60.0 * 5.0).fract() as f32 / 5.0;
         let aside = Vec3::X * amplitude * (speed * time).sin();
         let world_from_head = Pose { translation: aside, ..Pose::IDENTITY };
-        let report = rig.step(&Drive { world_from_head, ..Drive::default() });
+        let report = rig.step(&Drive::of(world_from_head));
         assert_eq!(report.non_finite, 0, "step {step}");
         largest = largest.max(mean_square_speed(rig.state()));
     }
@@ -62,7 +62,7 @@ fn shake_for(clock: &mut Clock, model: &Model, frames: usize, rate: f64) -> Stat
         for step in ticks.first..ticks.first + u64::from(ticks.count) {
             let time = clock.step_time(step + 1);
             let world_from_head = Motion::Shake.pose(time, Vec3::NEG_Y * 0.1);
-            runner.step(&mut state, &Drive { world_from_head, ..Drive::default() });
+            runner.step(&mut state, &Drive::of(world_from_head));
         }
     }
     state

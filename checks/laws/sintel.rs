@@ -21,7 +21,7 @@ fn depth(on: &On, prepared: &Prepared, settings: &Settings, steps: usize, pose: 
     let model = Model::new(&prepared.guides, settings, prepared.colliders.clone()).unwrap();
     let points = model.points_per_strand();
     let mut rig = Rig::new(on, model);
-    let drive = |step: usize| Drive { world_from_head: pose(step as f64 / 60.0), ..Drive::default() };
+    let drive = |step: usize| Drive::of(pose(step as f64 / 60.0));
     let reports = rig.steps(&(1..=steps).map(drive).collect::<Vec<_>>());
     let head_from_world = pose(steps as f64 / 60.0).inverse();
     let free = rig.state().positions.chunks(points).flat_map(|block| &block[Model::ROOTED_POINTS..]);

@@ -112,7 +112,7 @@ fn swung(on: &On, held: &[usize], swing: &Swing) -> (Vec<Vec3>, f32) {
         let time = step as f32 / 60.0;
         let aside = Vec3::new(1.0, 0.0, 1.0).normalize() * swing.far * (TAU * swing.often * time).sin();
         let world_from_head = Pose { translation: aside, ..Pose::IDENTITY };
-        rig.step(&Drive { world_from_head, ..Drive::default() });
+        rig.step(&Drive::of(world_from_head));
         let points = first(rig.state());
         worst = worst.max(off(&points, length));
     }
@@ -149,7 +149,7 @@ law! {
         }
         let held = |_, point| point == 0 || point == 20;
         let mut rig = Rig::new(on, Model::with_rest(&guides, rest, held, &settings(), Vec::new()).unwrap());
-        rig.steps(&[Drive::default(); 120]);
+        rig.steps(&vec![Drive::default(); 120]);
         let points = first(rig.state());
         for (pair, length) in points.windows(2).zip(&lengths) {
             let stretch = pair[0].distance(pair[1]) / length - 1.0;
@@ -172,7 +172,7 @@ law! {
         let rest = RestShape::new(&guides, 1e-5);
         let held = |_, point| point == 0 || point == 24;
         let mut rig = Rig::new(on, Model::with_rest(&guides, rest, held, &settings(), vec![ball]).unwrap());
-        let reports = rig.steps(&[Drive::default(); 240]);
+        let reports = rig.steps(&vec![Drive::default(); 240]);
         let last = reports.last().unwrap();
         assert!(last.penetration_max < 1e-3 && last.stretch_max < 1e-3, "{last:?}");
         let lowest = first(rig.state())[12].y;
@@ -194,7 +194,7 @@ law! {
             let report = rig.step(&Drive { hand: Some(hand), ..Drive::default() });
             assert!(report.stretch_max < 2e-3, "step {step}: {}", report.stretch_max);
         }
-        rig.steps(&[Drive { hand: Some(middle), ..Drive::default() }; 60]);
+        rig.steps(&vec![Drive { hand: Some(middle), ..Drive::default() }; 60]);
         let missed = first(rig.state())[12].distance(middle);
         assert!(missed < 1e-3, "the hand missed by {missed} m");
     }

@@ -93,5 +93,5 @@ fn combed_down(normal: Vec3, length: f32, pieces: usize) -> Vec<Vec3> {
 
 /// The skull under [`ball_of_hair`].
 pub fn skull(friction: f32) -> Collider {
-    Collider { shape: Shape::Sphere { center: Vec3::ZERO, radius: 0.1 }, carrier: Carrier::Head, friction }
+    Collider { shape: Shape::Sphere { center: Vec3::ZERO, radius: 0.1 }, carrier: Carrier::HEAD, friction }
 }

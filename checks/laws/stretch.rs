@@ -24,7 +24,7 @@ fn stretch(on: &On, links: usize, amplitude: f32, settings: &Settings) -> (f32, 
         let time = step as f32 / 60.0;
         let aside = Vec3::X * amplitude * (2.0 * PI * 2.0 * time).sin();
         let world_from_head = Pose { translation: aside, ..Pose::IDENTITY };
-        rig.step(&Drive { world_from_head, ..Drive::default() });
+        rig.step(&Drive::of(world_from_head));
         if step > 300 {
             let points = first(rig.state());
             let lengths: Vec<f32> = points.windows(2).map(|pair| pair[0].distance(pair[1])).collect();

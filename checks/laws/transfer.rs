@@ -1,7 +1,7 @@
 //! Quantities that the transfer to the grid and back conserves: momentum, angular momentum, volume.
 
 use glam::{Vec3, vec3};
-use strandline_body::{Carrier, Collider, Pose, Random, Shape};
+use strandline_body::{BodyFrame, Carrier, Collider, Pose, Random, Shape};
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, LANES, Lanes, RestShape, Vec3Lanes, block_count};
@@ -98,8 +98,7 @@ impl Cloud {
         match on {
             On::Cpu => {
                 let mut volume = Volume::new(&settings, self.strands, POINTS);
-                let start = Pose::IDENTITY;
-                let obstacles = Obstacles { colliders: solids, start, end, time_step };
+                let obstacles = Obstacles::new(solids, BodyFrame::REST, end.into(), time_step);
                 splat(&mut volume, &self.positions, &self.velocities, &self.mass);
                 mark(&mut volume, &obstacles);
                 solve_pressure(&mut volume);
@@ -108,7 +107,7 @@ impl Cloud {
             On::Gpu(gpu) => {
                 let runner = self.stand_in(gpu, settings, time_step, solids.to_vec());
                 let mut probe = self.probe(&runner);
-                let drive = Drive { world_from_head: end, ..Drive::default() };
+                let drive = Drive::of(end);
                 probe.run(&drive, &[Stage::Splat, Stage::Mark, Stage::SolvePressure, Stage::Gather]).unwrap();
                 self.velocities = probe.velocities().unwrap();
             }
@@ -365,9 +364,9 @@ fn flip_keeps_the_spin_and_pic_loses_it() {
 // cases of the kernels.
 #[test]
 fn edge_cases_do_no_harm() {
-    let still = Obstacles { colliders: &[], start: Pose::IDENTITY, end: Pose::IDENTITY, time_step: 0.0 };
+    let still = Obstacles::new(&[], BodyFrame::REST, BodyFrame::REST, 0.0);
     let inside = [Collider::new(Shape::sphere(Vec3::ZERO, 9.0).unwrap(), Carrier::World, 0.0).unwrap()];
-    let buried = Obstacles { colliders: &inside, ..still };
+    let buried = Obstacles::new(&inside, BodyFrame::REST, BodyFrame::REST, 0.0);
     let one = vec![(vec3(0.1, 0.2, 0.3), vec3(1.0, 2.0, 3.0))];
     let odd = vec![(Vec3::ZERO, Vec3::ONE), (Vec3::splat(1e9), Vec3::ONE), (Vec3::NAN, Vec3::ONE)];
     for points in [one, odd, ball(3.0, 1, 2)] {

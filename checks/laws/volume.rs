@@ -59,7 +59,7 @@ law! {
         for way in [Vec3::X, Vec3::NEG_Y, Vec3::Z] {
             // 0.2 mm in a step, so that the cells are those of a ball that rests. It pushes the hair before it
             // and draws the hair behind it.
-            for share in share_of_the_flow(on, Carrier::Head, way, 0.0, 0.012) {
+            for share in share_of_the_flow(on, Carrier::HEAD, way, 0.0, 0.012) {
                 // A ball of five cells is made of steps: its wall lies up to half a cell off, which is 0.75 to 1.3 of
                 // the flow, and points between the faces take the mean of some.
                 assert!((0.6..1.4).contains(&share), "{way}: {share} of the flow");
@@ -70,7 +70,7 @@ law! {
 
 law! {
     fn a_wall_that_rests_stops_hair(on) {
-        for carrier in [Carrier::World, Carrier::Head] {
+        for carrier in [Carrier::World, Carrier::HEAD] {
             for share in share_of_the_flow(on, carrier, Vec3::NEG_Y, 1.0, 0.0) {
                 assert!((0.6..1.4).contains(&share), "{carrier:?}: {share} of the flow");
             }
@@ -231,7 +231,7 @@ fn pressed_together(on: &On, enabled: bool) -> [f32; 2] {
             (0..8).for_each(|lane| velocities.set(lane, SPEED * toward));
         }
     });
-    rig.steps(&[Drive::default(); (2.0 * APART / SPEED * 120.0) as usize]);
+    rig.steps(&vec![Drive::default(); (2.0 * APART / SPEED * 120.0) as usize]);
     let mean = |state: &State, wanted: usize| {
         let points: Vec<f32> = state
             .positions

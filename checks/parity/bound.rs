@@ -1,10 +1,11 @@
 //! Bound strands placed on a GPU against the same on the CPU.
 
 use glam::{Quat, Vec3};
-use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
+use strandline_body::{BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
 use strandline_checks::gpu;
 use strandline_groom::{Binding, Frames, Guides, LANES, Style, StyleSettings, Surface, Vec3Lanes};
-use strandline_render::cpu::{Curves, Strands, interpolate, keep_outside, tessellate};
+use strandline_render::Strands;
+use strandline_render::cpu::{Curves, interpolate, keep_outside, tessellate};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
 
@@ -41,11 +42,11 @@ fn blown(guides: &Guides) -> Vec<Vec3Lanes> {
 /// A head that is sampled, a ball in it and a bar beside it that stays where it is.
 fn solids() -> Solids {
     let grid = DistanceGrid::from_field(&*Mannequin::new(), 0.006, 0.02).unwrap();
-    let head = Collider::new(Shape::Grid(grid.into()), Carrier::Head, 0.3).unwrap();
+    let head = Collider::new(Shape::Grid(grid.into()), Carrier::HEAD, 0.3).unwrap();
     let ball = Shape::Sphere { center: Vec3::new(0.0, -0.1, 0.05), radius: 0.1 };
     let bar =
         Shape::Capsule { start: Vec3::new(0.1, -0.3, 0.1), end: Vec3::new(0.7, -0.3, 0.2), radius: 0.06 };
-    let others = [(ball, Carrier::Head), (bar, Carrier::World)]
+    let others = [(ball, Carrier::HEAD), (bar, Carrier::World)]
         .map(|(shape, carrier)| (Collider::new(shape, carrier, 0.3).unwrap(), 0.0));
     Solids::new([(head, 0.0015)].into_iter().chain(others))
 }
@@ -56,8 +57,8 @@ fn on_cpu(binding: &Binding, solids: &Solids) -> Vec<Vec3Lanes> {
     let surface = Surface::of(&surface);
     let surface = (!placed.is_empty()).then_some(&surface);
     let (mut frames, mut places) = (Frames::default(), Vec::new());
-    binding.follow(&blown(binding.guides()), &pose(), &mut frames);
-    binding.place(&frames, &pose(), surface, &mut places);
+    binding.follow(&blown(binding.guides()), &pose().into(), &mut frames);
+    binding.place(&frames, &pose().into(), surface, &mut places);
     places
 }
 
@@ -73,7 +74,7 @@ fn on_gpu(binding: &Binding, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec
     let look = look();
     let input = FrameInput {
         positions: &blown(binding.guides()),
-        world_from_head: pose(),
+        body: &pose().into(),
         camera: &Camera::front(),
         look: &look,
         body_look: &BodyLook::default(),
@@ -98,7 +99,7 @@ fn apart(one: &[Vec3Lanes], two: &[Vec3Lanes], strands: usize) -> Vec<f32> {
 }
 
 #[test]
-fn bound_strands_lie_where_the_cpu_has_them() {
+fn bind_places_strands_where_the_cpu_has_them() {
     let binding = binding();
     let Some((on_gpu, _)) = on_gpu(&binding, &Solids::default()) else { return };
     let on_cpu = on_cpu(&binding, &Solids::default());
@@ -107,13 +108,13 @@ fn bound_strands_lie_where_the_cpu_has_them() {
     // Rotations that are carried along twelve points, as quaternions and as matrices, on strands of 0.4 m.
     assert!(apart_most < 1e-5, "{apart_most} m");
     let (mut frames, mut still) = (Frames::default(), Vec::new());
-    binding.follow(binding.guides().positions(), &Pose::IDENTITY, &mut frames);
-    binding.place(&frames, &Pose::IDENTITY, None, &mut still);
+    binding.follow(binding.guides().positions(), &BodyFrame::REST, &mut frames);
+    binding.place(&frames, &BodyFrame::REST, None, &mut still);
     assert!(apart(&on_cpu, &still, strands)[strands * POINTS / 2] > 0.05, "the comparison can fail");
 }
 
 #[test]
-fn they_stay_out_of_solids_as_on_the_cpu() {
+fn bind_keeps_strands_out_of_solids_as_on_the_cpu() {
     let (binding, solids) = (binding(), solids());
     let Some((on_gpu, _)) = on_gpu(&binding, &solids) else { return };
     let on_cpu = on_cpu(&binding, &solids);

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use strandline_body::Pose;
 use strandline_checks::gpu;
 use strandline_groom::Style;
 use strandline_render::gpu::GpuRenderer;
@@ -87,7 +88,7 @@ fn channels_notice_hair_elsewhere_and_other_light() {
     let both = Both::new(Style::Bob, 8);
     let Some([on_cpu, _]) = channels(&both, true) else { return };
     let mut moved = Both::new(Style::Bob, 8);
-    moved.pose.translation.z += 0.01;
+    moved.body = moved.body.carried_by(&Pose { translation: Vec3::Z * 0.01, ..Pose::IDENTITY });
     let mut dim = Both::new(Style::Bob, 8);
     dim.lights.truncate(1);
     let Some([_, moved]) = channels(&moved, true) else { return };

@@ -4,10 +4,10 @@ use glam::Vec3;
 use strandline_groom::Style;
 use strandline_render::Look;
 use strandline_render::cpu::{
-    Curves, Lit, Occlusion, OwnColors, Scattering, ShadowBody, Shadows, Strands, interpolate, opacity_depth,
-    opacity_layers, tessellate,
+    Curves, Lit, Occlusion, Scattering, ShadowBody, interpolate, opacity_depth, opacity_layers, tessellate,
 };
 use strandline_render::fibre::Pigment;
+use strandline_render::{OwnColors, Shadows, Strands};
 
 use crate::picture::{Both, drawn_on_gpu};
 
@@ -21,8 +21,8 @@ impl Both {
         let (mut curves, mut strands, mut shadows) =
             (Curves::default(), Strands::default(), Shadows::default());
         let level = self.level();
-        tessellate(positions, &self.guides, &self.pose, &level, &mut curves);
-        interpolate(&curves, &self.guides, &self.pose, &self.look, &level, &mut strands);
+        tessellate(positions, &self.guides, &self.body.world_from_head(), &level, &mut curves);
+        interpolate(&curves, &self.guides, &self.body.world_from_head(), &self.look, &level, &mut strands);
         let settings = self.look.hair_shadow();
         opacity_depth(&strands, body, &self.lights, self.middle(), &settings, &mut shadows);
         opacity_layers(&strands, &mut shadows);
@@ -75,7 +75,8 @@ fn agree(mut both: Both, body: bool) {
     let positions = both.positions();
     let Some(renderer) = drawn_on_gpu(&both, &positions, body) else { return };
     let found = renderer.strands().unwrap().radiances;
-    let placed: Vec<Vec3> = both.mesh.positions.iter().map(|&point| both.pose.point(point)).collect();
+    let placed: Vec<Vec3> =
+        both.mesh.positions.iter().map(|&point| both.body.world_from_head().point(point)).collect();
     let shape = body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles });
     let strands = both.scattered_on_cpu(&positions, shape);
     let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();

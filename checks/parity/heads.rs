@@ -35,7 +35,7 @@ impl Head {
         for step in 1..=5 {
             runner.step(&mut state, &drive(step));
         }
-        let mut fresh = model.rest_state(state.world_from_head);
+        let mut fresh = model.rest_state(&state.body);
         fresh.positions = state.positions;
         fresh.previous_positions = state.previous_positions;
         fresh.velocities = state.velocities;
@@ -89,7 +89,7 @@ impl DerefMut for Moving {
 pub fn drive(step: usize) -> Drive {
     let turned = Quat::from_rotation_y(0.03 * step as f32) * Quat::from_rotation_x(0.01 * step as f32);
     Drive {
-        world_from_head: Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), turned),
+        body: Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), turned).into(),
         wind: Vec3::new(0.4, 0.1, -0.2),
         hand: None,
     }
@@ -97,12 +97,7 @@ pub fn drive(step: usize) -> Drive {
 
 /// The solids in the sixth step.
 pub fn obstacles<'a>(model: &'a Model, state: &State) -> Obstacles<'a> {
-    Obstacles {
-        colliders: model.colliders(),
-        start: state.world_from_head,
-        end: drive(6).world_from_head,
-        time_step: model.settings().time_step,
-    }
+    Obstacles::new(model.colliders(), state.body.clone(), drive(6).body, model.settings().time_step)
 }
 
 pub fn volume(cells: u32) -> VolumeSettings {
@@ -128,7 +123,7 @@ pub fn ball(strands: usize, points: usize) -> Guides {
 }
 
 pub fn skull(friction: f32) -> Collider {
-    Collider::new(Shape::sphere(Vec3::ZERO, 0.09).unwrap(), Carrier::Head, friction).unwrap()
+    Collider::new(Shape::sphere(Vec3::ZERO, 0.09).unwrap(), Carrier::HEAD, friction).unwrap()
 }
 
 /// A ball in the head, a capsule in the world and a grid: every kind of solid.
@@ -139,7 +134,7 @@ pub fn solids() -> Vec<Collider> {
     vec![
         skull(0.3),
         Collider::new(capsule, Carrier::World, 0.5).unwrap(),
-        Collider::new(Shape::Grid(grid.into()), Carrier::Head, 0.2).unwrap(),
+        Collider::new(Shape::Grid(grid.into()), Carrier::HEAD, 0.2).unwrap(),
     ]
 }
 

@@ -1,24 +1,24 @@
 //! The stages before a picture is drawn, on both backends.
 
 use glam::{Quat, Vec3, Vec4};
-use strandline_body::{Mannequin, Mesh, Pose};
+use strandline_body::{BodyFrame, Mannequin, Mesh, Pose};
 use strandline_checks::gpu;
 use strandline_groom::{Guides, Style, StyleSettings, Widths};
 use strandline_render::cpu::shadow::layer_colors::{LAYER_COLORS, layer_colors};
 use strandline_render::cpu::{
-    Curves, Occlusion, ShadowBody, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade,
-    tessellate,
+    Curves, Occlusion, ShadowBody, interpolate, opacity_depth, opacity_layers, shade, tessellate,
 };
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, DetailLevel, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings,
 };
+use strandline_render::{Shadows, Strands};
 
 /// All inputs of a picture, and the results of both backends.
 pub(crate) struct Both {
     pub(crate) guides: Guides,
     pub(crate) mesh: Mesh,
-    pub(crate) pose: Pose,
+    pub(crate) body: BodyFrame,
     pub(crate) look: Look,
     pub(crate) lights: Vec<Light>,
     pub(crate) camera: Camera,
@@ -42,7 +42,8 @@ impl Both {
             guides: Guides::resample(&groom, points).unwrap(),
             mesh: Mannequin::new().mesh(),
             // Turned, so that head and world space differ.
-            pose: Pose { rotation: Quat::from_rotation_y(0.4), translation: Vec3::new(0.02, -0.01, 0.03) },
+            body: Pose { rotation: Quat::from_rotation_y(0.4), translation: Vec3::new(0.02, -0.01, 0.03) }
+                .into(),
             look: Look { grey: 0.2, ..Look::thesis() },
             lights,
             camera,
@@ -70,7 +71,7 @@ impl Both {
         let mut placed = self.guides.positions().to_vec();
         for lanes in &mut placed {
             for lane in 0..strandline_groom::LANES {
-                lanes.set(lane, self.pose.point(lanes.get(lane)));
+                lanes.set(lane, self.body.world_from_head().point(lanes.get(lane)));
             }
         }
         placed
@@ -79,7 +80,7 @@ impl Both {
     pub(crate) fn input<'a>(&'a self, positions: &'a [strandline_groom::Vec3Lanes]) -> FrameInput<'a> {
         FrameInput {
             positions,
-            world_from_head: self.pose,
+            body: &self.body,
             camera: &self.camera,
             look: &self.look,
             body_look: const {
@@ -102,7 +103,7 @@ impl Both {
                 .flat_map(|strand| (0..count).map(move |point| (strand, point)))
                 .fold(start, |known, (strand, point)| f(known, self.guides.position(strand, point)))
         };
-        self.pose.point(0.5 * (all(Vec3::min, Vec3::MAX) + all(Vec3::max, Vec3::MIN)))
+        self.body.world_from_head().point(0.5 * (all(Vec3::min, Vec3::MAX) + all(Vec3::max, Vec3::MIN)))
     }
 
     /// Result of the CPU's stages up to `shade`, without a body's shadow.
@@ -118,8 +119,8 @@ impl Both {
         let (mut curves, mut strands, mut shadows) =
             (Curves::default(), Strands::default(), Shadows::default());
         let level = self.level();
-        tessellate(positions, &self.guides, &self.pose, &level, &mut curves);
-        interpolate(&curves, &self.guides, &self.pose, &self.look, &level, &mut strands);
+        tessellate(positions, &self.guides, &self.body.world_from_head(), &level, &mut curves);
+        interpolate(&curves, &self.guides, &self.body.world_from_head(), &self.look, &level, &mut strands);
         opacity_depth(&strands, body, &self.lights, self.middle(), &self.look.shadow, &mut shadows);
         opacity_layers(&strands, &mut shadows);
         let mut occlusion = Occlusion::default();
@@ -276,7 +277,8 @@ fn shade_agrees_in_the_shadow_of_the_body() {
     both.look.shadow.map_size = 300;
     let positions = both.positions();
     let Some(mut renderer) = drawn_on_gpu(&both, &positions, true) else { return };
-    let placed: Vec<Vec3> = both.mesh.positions.iter().map(|&point| both.pose.point(point)).collect();
+    let placed: Vec<Vec3> =
+        both.mesh.positions.iter().map(|&point| both.body.world_from_head().point(point)).collect();
     // Another size of the maps in the same renderer, and back.
     for map_size in [300, 128, 300] {
         both.look.shadow.map_size = map_size;

@@ -32,7 +32,7 @@ fn both(
     let mut probe = state.probe(&gpu_runner);
     probe.run(&drive, &[Stage::PoseRoots, Stage::SolveRods, Stage::Advance]).unwrap();
     let obstacles = obstacles(&model, &state);
-    state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.world_from_head));
+    state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.body));
     let (bad, report) =
         state.run(|state, scratch| solve_rods(&model, state, scratch, &obstacles, drive.wind));
     assert_eq!(bad.count, 0);

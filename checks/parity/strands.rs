@@ -39,7 +39,7 @@ fn both_from(
         let obstacles = obstacles(&model, &state);
         match stage {
             Stage::PoseRoots => {
-                state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.world_from_head));
+                state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.body));
             }
             Stage::Integrate => state.run(|state, scratch| integrate(&model, state, scratch, drive.wind)),
             _ => {
@@ -136,7 +136,7 @@ fn advance_measures_the_same() {
         let mut state = head.moving(&model);
         let drive = drive(6);
         let obstacles = obstacles(&model, &state);
-        state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.world_from_head));
+        state.run(|state, scratch| pose_roots(&model, state, scratch, &drive.body));
         state.run(|state, scratch| integrate(&model, state, scratch, drive.wind));
         // Not constrained: stretched strands, some inside the solids.
         let mut probe = state.probe(&gpu_runner);
@@ -169,7 +169,7 @@ fn a_bad_strand_goes_back_to_rest_and_is_counted() {
     runner.write(&sound).unwrap();
     runner.step(&drive(6)).unwrap();
     let other = runner.state().unwrap();
-    let rest = model.rest_state(drive(6).world_from_head);
+    let rest = model.rest_state(drive(6).body);
     for (index, lanes) in found.positions.iter().enumerate() {
         for lane in 0..8 {
             let bad = (index / 16, lane) == (0, 3) || (index / 16, lane) == (2, 1);

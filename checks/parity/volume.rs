@@ -17,7 +17,7 @@ fn constrained(head: &Head) -> (Model, Moving, Volume) {
     let model = head.model();
     let mut state = head.moving(&model);
     let obstacles = obstacles(&model, &state);
-    state.run(|state, scratch| pose_roots(&model, state, scratch, &drive(6).world_from_head));
+    state.run(|state, scratch| pose_roots(&model, state, scratch, &drive(6).body));
     state.run(|state, scratch| integrate(&model, state, scratch, drive(6).wind));
     state.run(|state, scratch| constrain(&model, state, scratch, &obstacles));
     let volume =

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline_checks::{On, law};
-use strandline_render::cpu::Strands;
+use strandline_render::Strands;
 use strandline_render::{Clump, LevelOfDetail, Look};
 
 use crate::drawn::{Drawn, guides};

@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec4};
 use strandline_body::Mesh;
 use strandline_render::PictureSettings;
-use strandline_render::cpu::{Samples, resolve_linear};
+use strandline_render::{Samples, resolve_linear};
 
 use crate::grooms::Random;
 use crate::screen::{Screen, covered, line, white};

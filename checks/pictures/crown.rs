@@ -12,7 +12,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_body::{Mannequin, Mesh, Pose};
+use strandline_body::{BodyFrame, Mannequin, Mesh};
 use strandline_checks::{On, law};
 use strandline_groom::{Guides, Style, StyleSettings};
 use strandline_render::gpu::GpuRenderer;
@@ -65,7 +65,7 @@ impl Head {
         };
         let input = FrameInput {
             positions: self.guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &self.camera,
             look: &Look::named(preset),
             body_look: &BodyLook::default(),

@@ -1,12 +1,11 @@
 //! A few guides drawn on either backend: the light that each point sends to the eye, and whole pictures.
 
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_body::{BodyFrame, Pose};
 use strandline_checks::On;
 use strandline_groom::{Groom, Guides};
 use strandline_render::cpu::{
-    Curves, Lit, Occlusion, OwnColors, Scattering, Shadows, Strands, interpolate, opacity_depth,
-    opacity_layers, shade, tessellate,
+    Curves, Lit, Occlusion, Scattering, interpolate, opacity_depth, opacity_layers, shade, tessellate,
 };
 use strandline_render::fibre::FibreModel;
 use strandline_render::gpu::GpuRenderer;
@@ -14,6 +13,7 @@ use strandline_render::{
     BodyLook, Camera, DetailLevel, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture,
     PictureSettings, Renderer,
 };
+use strandline_render::{OwnColors, Shadows, Strands};
 
 /// Contents of a picture.
 pub struct Drawn {
@@ -140,7 +140,7 @@ impl Drawn {
     fn input<T>(&self, moved: &Guides, draw: impl FnOnce(&FrameInput) -> T) -> T {
         draw(&FrameInput {
             positions: moved.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &Camera { position: self.eye, target: Vec3::ZERO, ..Camera::front() },
             look: &self.look,
             body_look: &BodyLook::default(),

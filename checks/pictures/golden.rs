@@ -1,7 +1,7 @@
 //! Whole pictures of grown styles on the mannequin.
 
 use glam::Vec3;
-use strandline_body::{Carrier, Collider, Mannequin, Mesh, Motion, Pose, Shape};
+use strandline_body::{BodyFrame, Carrier, Collider, Mannequin, Mesh, Motion, Shape};
 use strandline_checks::flip::{assert_flip, compare, golden};
 use strandline_checks::{On, Rig, gpu, law};
 use strandline_gpu::Gpu;
@@ -17,7 +17,7 @@ struct Sitting {
     guides: Guides,
     /// The guides' points \[m\], world space.
     positions: Vec<Vec3Lanes>,
-    world_from_head: Pose,
+    body: BodyFrame,
     mesh: Mesh,
     camera: Camera,
     look: Look,
@@ -30,7 +30,7 @@ impl Sitting {
         let guides = Guides::resample(&groom, points_per_strand).unwrap();
         Self {
             positions: guides.positions().to_vec(),
-            world_from_head: Pose::IDENTITY,
+            body: BodyFrame::REST,
             guides,
             mesh: Mannequin::new().mesh(),
             camera,
@@ -50,26 +50,26 @@ impl Sitting {
     /// The hair after some steps of the whole simulation, on a backend, on a head that shakes.
     fn shaken(mut self, on: &On, steps: u32) -> Self {
         let shape = Shape::Mannequin(Mannequin::new());
-        let solid = Collider { shape, carrier: Carrier::Head, friction: 0.3 };
+        let solid = Collider { shape, carrier: Carrier::HEAD, friction: 0.3 };
         let volume = VolumeSettings { cells: [24; 3], ..VolumeSettings::default() };
         let settings = Settings { volume, ..Settings::default() };
         let mut rig = Rig::new(on, Model::new(&self.guides, &settings, vec![solid]).unwrap());
         let drive = |step: u32| {
             let time = f64::from(step) * f64::from(settings.time_step);
-            Drive { world_from_head: Motion::Shake.pose(time, Vec3::NEG_Y * 0.1), ..Drive::default() }
+            Drive::of(Motion::Shake.pose(time, Vec3::NEG_Y * 0.1))
         };
         let reports = rig.steps(&(1..=steps).map(drive).collect::<Vec<_>>());
         assert!(reports.iter().all(|report| report.non_finite == 0));
         let state = rig.state();
         self.positions.clone_from(&state.positions);
-        self.world_from_head = state.world_from_head;
+        self.body = state.body.clone();
         self
     }
 
     fn draw(&self, draw: impl FnOnce(&FrameInput) -> Picture) -> Picture {
         draw(&FrameInput {
             positions: &self.positions,
-            world_from_head: self.world_from_head,
+            body: &self.body,
             camera: &self.camera,
             look: &self.look,
             body_look: &BodyLook::default(),

@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use glam::Vec3;
-use strandline_body::{Mesh, Pose};
+use strandline_body::{BodyFrame, Mesh};
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides};
-use strandline_render::cpu::resolve_linear;
 use strandline_render::fibre::{Chiang, Fibre, FibreModel, Pigment};
 use strandline_render::gpu::GpuRenderer;
+use strandline_render::resolve_linear;
 use strandline_render::{
     Background, BodyLook, Camera, Clump, Environment, FrameInput, LevelOfDetail, Light, LightKind, Look,
     PictureSettings, Renderer, ToneMap,
@@ -122,7 +122,7 @@ impl Scene {
     fn input(&self) -> FrameInput<'_> {
         FrameInput {
             positions: self.guides.positions(),
-            world_from_head: Pose::IDENTITY,
+            body: &BodyFrame::REST,
             camera: &self.camera,
             look: &self.look,
             body_look: &self.body_look,

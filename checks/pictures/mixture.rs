@@ -4,7 +4,7 @@
 use glam::Vec3;
 use strandline_checks::{On, law};
 use strandline_groom::{Groom, Guides};
-use strandline_render::cpu::Strands;
+use strandline_render::Strands;
 use strandline_render::fibre::{Chiang, FibreModel, Pigment};
 use strandline_render::{LevelOfDetail, Light, LightKind, Look};
 

@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec3};
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides, Style, StyleSettings};
-use strandline_render::cpu::{ShadowBody, Shadows, Strands, opacity_depth, opacity_layers};
+use strandline_render::cpu::{ShadowBody, opacity_depth, opacity_layers};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{
     BodyLook, Camera, FrameInput, LevelOfDetail, Light, LightKind, Look, PictureSettings, Shadow,
 };
+use strandline_render::{Shadows, Strands};
 
 use crate::grooms::Random;
 
@@ -64,7 +65,7 @@ pub fn shadows_in(renderer: &mut GpuRenderer, strands: &Strands, light: &Light, 
     let guides = guides();
     let input = FrameInput {
         positions: guides.positions(),
-        world_from_head: Pose::IDENTITY,
+        body: &BodyFrame::REST,
         camera: &Camera::front(),
         look,
         body_look: &BodyLook::default(),

@@ -2,7 +2,7 @@
 //! is seen from there, without steps, on both backends.
 
 use glam::Vec3;
-use strandline_body::{Mesh, Pose};
+use strandline_body::{BodyFrame, Mesh};
 use strandline_checks::{On, law};
 use strandline_groom::{Groom, Guides};
 use strandline_render::gpu::GpuRenderer;
@@ -109,7 +109,7 @@ fn floor(on: &On, caster: Caster, light: Light) -> Vec<f32> {
     let (guides, mesh, look) = (hair(caster), body(caster), look());
     let input = FrameInput {
         positions: guides.positions(),
-        world_from_head: Pose::IDENTITY,
+        body: &BodyFrame::REST,
         camera: &camera,
         look: &look,
         body_look: &BodyLook {

@@ -2,7 +2,7 @@
 //! whole pictures on both backends.
 
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_checks::{On, law};
 use strandline_groom::{Groom, Guides};
 use strandline_render::gpu::GpuRenderer;
@@ -43,7 +43,7 @@ fn pixels(on: &On, width: f32, angle: f32) -> (Vec<f32>, Vec<f32>) {
     };
     let input = FrameInput {
         positions: guides.positions(),
-        world_from_head: Pose::IDENTITY,
+        body: &BodyFrame::REST,
         camera: &camera,
         look: &look,
         body_look: &BodyLook::default(),

@@ -3,8 +3,9 @@
 use glam::Vec3;
 use strandline_body::{Mesh, Pose};
 use strandline_render::cpu::shade::skin::Skin;
-use strandline_render::cpu::{Draw, DrawInput, Occlusion, Radiances, Samples, Shadows, Strands};
+use strandline_render::cpu::{Draw, DrawInput, Occlusion, Radiances};
 use strandline_render::{BodyLook, Camera, Environment};
+use strandline_render::{Samples, Shadows, Strands};
 
 /// Distance \[m\] of the plane z = 0 from the camera.
 pub const DISTANCE: f32 = 1.0;

@@ -4,10 +4,11 @@ use glam::Vec3;
 use strandline_body::Pose;
 use strandline_groom::Guides;
 use strandline_render::cpu::{
-    Curves, Occlusion, Shadows, Strands, interpolate, opacity_depth, opacity_layers, shade, tessellate,
+    Curves, Occlusion, interpolate, opacity_depth, opacity_layers, shade, tessellate,
 };
 use strandline_render::fibre::scheuermann::reflectance;
 use strandline_render::{DetailLevel, Environment, Light, Look, Preset};
+use strandline_render::{Shadows, Strands};
 
 use crate::grooms::{Random, arcs};
 

@@ -2,9 +2,10 @@
 
 use glam::{Quat, Vec3};
 use strandline_checks::{On, law};
-use strandline_render::cpu::{Shadows, Strands, opacity_depth, opacity_layers};
+use strandline_render::cpu::{opacity_depth, opacity_layers};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{Light, LightKind, Look, Shadow};
+use strandline_render::{Shadows, Strands};
 
 use crate::opacity::{mop, renderer, shadows_in, strands};
 

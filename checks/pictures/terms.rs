@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use strandline_checks::law;
-use strandline_render::cpu::Strands;
+use strandline_render::Strands;
 use strandline_render::fibre::Highlight;
 use strandline_render::{Clump, Environment, LevelOfDetail, Light, LightKind, Look, Shadow};
 

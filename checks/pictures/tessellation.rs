@@ -4,7 +4,8 @@ use glam::{DVec3, Quat, Vec3};
 use strandline_body::Pose;
 use strandline_checks::law;
 use strandline_groom::{Groom, Guides};
-use strandline_render::cpu::{Curves, Strands, interpolate, tessellate};
+use strandline_render::Strands;
+use strandline_render::cpu::{Curves, interpolate, tessellate};
 use strandline_render::{DetailLevel, LevelOfDetail, Look, PictureSettings};
 
 use crate::drawn::Drawn;

@@ -3,12 +3,12 @@
 use glam::Vec3;
 use strandline::{Camera, Look, Picture, PictureSettings, Style, look::LevelOfDetail, scene::MotionName};
 
+use crate::setup::{Figure, Setup, THREE_QUARTER, bust, close};
 use crate::strip::{joined, magnified};
-use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
 
 /// The same hair from 1, 2, 4 and 8 times as far: as large as it is, then the far ones magnified.
-pub fn level_of_detail(studio: &Studio) -> Figure {
-    let mut hair = studio.resting(Style::Wavy, 240, 240)?;
+pub fn level_of_detail(setup: &Setup) -> Figure {
+    let mut hair = setup.resting(Style::Wavy, 240, 240)?;
     // The effect of distance alone, without that of the small pictures.
     hair.set_level_of_detail(LevelOfDetail { by_pixel: false, ..hair.level_of_detail() })?;
     let (mut natural, mut large) = (Vec::new(), Vec::new());
@@ -26,8 +26,8 @@ pub fn level_of_detail(studio: &Studio) -> Figure {
 }
 
 /// One sample a pixel, and two by two; four times magnified.
-pub fn supersampling(studio: &Studio) -> Figure {
-    let mut moving = studio.settled(&studio.scene(Style::Wavy, MotionName::Still), 300, 300)?;
+pub fn supersampling(setup: &Setup) -> Figure {
+    let mut moving = setup.settled(&setup.scene(Style::Wavy, MotionName::Still), 300, 300)?;
     let mut pictures = Vec::new();
     for supersampling in [1, 2] {
         moving.hair.set_picture(&PictureSettings { supersampling, ..moving.picture })?;
@@ -38,10 +38,10 @@ pub fn supersampling(studio: &Studio) -> Figure {
 }
 
 /// One segment on each span between two points, and four.
-pub fn tessellation(studio: &Studio) -> Figure {
-    let mut scene = studio.scene(Style::Wavy, MotionName::Still);
+pub fn tessellation(setup: &Setup) -> Figure {
+    let mut scene = setup.scene(Style::Wavy, MotionName::Still);
     scene.groom.points_per_strand = 12;
-    let mut hair = studio.settled(&scene, 360, 240)?.hair;
+    let mut hair = setup.settled(&scene, 360, 240)?.hair;
     let mut draw = |segments| -> Figure {
         // So many, although it is close up.
         let level = hair.level_of_detail();
@@ -59,19 +59,19 @@ fn with_follow_strands(count: u32) -> Look {
     Look { follow_strands: count, hair_count: whole.hair_count * count / 16, ..whole }
 }
 
-fn with_counts(studio: &Studio, size: [u32; 2], camera: &Camera, counts: &[u32]) -> Figure {
-    let mut hair = studio.resting(Style::Wavy, size[0], size[1])?;
+fn with_counts(setup: &Setup, size: [u32; 2], camera: &Camera, counts: &[u32]) -> Figure {
+    let mut hair = setup.resting(Style::Wavy, size[0], size[1])?;
     let mut draw = |&count| hair.picture(camera, &with_follow_strands(count));
     Ok(joined(&counts.iter().map(&mut draw).collect::<Result<Vec<Picture>, _>>()?))
 }
 
 /// Guides alone, and 16 strands a guide, near.
-pub fn follow_strands(studio: &Studio) -> Figure {
+pub fn follow_strands(setup: &Setup) -> Figure {
     let camera = close(THREE_QUARTER, Vec3::new(0.05, -0.12, 0.05), 0.25);
-    with_counts(studio, [400, 266], &camera, &[1, 16])
+    with_counts(setup, [400, 266], &camera, &[1, 16])
 }
 
 /// 1, 4, 8 and 16 strands a guide.
-pub fn follow_counts(studio: &Studio) -> Figure {
-    with_counts(studio, [256, 256], &bust(THREE_QUARTER), &[1, 4, 8, 16])
+pub fn follow_counts(setup: &Setup) -> Figure {
+    with_counts(setup, [256, 256], &bust(THREE_QUARTER), &[1, 4, 8, 16])
 }

@@ -5,17 +5,17 @@
 mod geometry;
 mod motion;
 mod motions;
+mod setup;
 mod shading;
 mod strip;
-mod studio;
 
 use std::time::Instant;
 
+use setup::{Figure, Setup};
 use strandline::{Backend, Style};
-use studio::{Figure, Studio};
 
 /// Draws a figure.
-type Draw = fn(&Studio) -> Figure;
+type Draw = fn(&Setup) -> Figure;
 
 /// Every figure by the name of its file, with its number in the thesis where it has one.
 const FIGURES: [(&str, &str, Draw); 20] = [
@@ -33,28 +33,28 @@ const FIGURES: [(&str, &str, Draw); 20] = [
     ("lengths", "45", motion::lengths),
     ("front", "46", motion::front),
     ("back", "47", motion::back),
-    ("motion_bob", "", |studio| motions::sheet(studio, Style::Bob)),
-    ("motion_long", "", |studio| motions::sheet(studio, Style::Long)),
-    ("motion_wavy", "", |studio| motions::sheet(studio, Style::Wavy)),
-    ("motion_curly", "", |studio| motions::sheet(studio, Style::Curly)),
-    ("motion_pixie", "", |studio| motions::sheet(studio, Style::Pixie)),
-    ("motion_ponytail", "", |studio| motions::sheet(studio, Style::Ponytail)),
+    ("motion_bob", "", |setup| motions::sheet(setup, Style::Bob)),
+    ("motion_long", "", |setup| motions::sheet(setup, Style::Long)),
+    ("motion_wavy", "", |setup| motions::sheet(setup, Style::Wavy)),
+    ("motion_curly", "", |setup| motions::sheet(setup, Style::Curly)),
+    ("motion_pixie", "", |setup| motions::sheet(setup, Style::Pixie)),
+    ("motion_ponytail", "", |setup| motions::sheet(setup, Style::Ponytail)),
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let backend: Backend = arguments.next().as_deref().unwrap_or("auto").parse()?;
     let wanted: Vec<String> = arguments.collect();
-    let studio = Studio { backend, quick: std::env::var_os("STRANDLINE_QUICK").is_some() };
+    let setup = Setup { backend, quick: std::env::var_os("STRANDLINE_QUICK").is_some() };
     let folder =
-        std::path::Path::new(if studio.quick { "out/examples/figures" } else { "docs/gallery/figures" });
+        std::path::Path::new(if setup.quick { "out/examples/figures" } else { "docs/gallery/figures" });
     std::fs::create_dir_all(folder)?;
     for (name, number, draw) in FIGURES {
         if !wanted.is_empty() && !wanted.iter().any(|wanted| wanted == name) {
             continue;
         }
         let start = Instant::now();
-        let picture = draw(&studio)?;
+        let picture = draw(&setup)?;
         assert!(!picture.is_blank(), "{name} shows nothing");
         picture.save(folder.join(format!("{name}.png")))?;
         let of = if number.is_empty() { String::new() } else { format!("[Chen2011 fig. {number}]") };

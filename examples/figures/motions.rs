@@ -3,8 +3,8 @@
 use glam::Vec3;
 use strandline::{Camera, Look, Picture, Pose, Scene, Style, scene::MotionName, settings::StrandMethod};
 
+use crate::setup::{FRAME, Figure, Moving, Setup, THREE_QUARTER, bust};
 use crate::strip::{joined, stacked};
-use crate::studio::{FRAME, Figure, Moving, Studio, THREE_QUARTER, bust};
 
 /// Size of a picture \[pixel\].
 const SIZE: u32 = 128;
@@ -29,22 +29,22 @@ enum Drive {
 }
 
 /// Two rows for each way to be moved: with constraints and as rods.
-pub fn sheet(studio: &Studio, style: Style) -> Figure {
+pub fn sheet(setup: &Setup, style: Style) -> Figure {
     let heads = [MotionName::Shake, MotionName::Nod, MotionName::Turn].map(Drive::Head);
     let mut rows = Vec::new();
     for drive in heads.into_iter().chain([Drive::Wind, Drive::Hand]) {
         for method in [StrandMethod::Constrain, StrandMethod::Rods] {
-            rows.push(row(studio, style, drive, method)?);
+            rows.push(row(setup, style, drive, method)?);
         }
     }
     Ok(stacked(&rows))
 }
 
-fn row(studio: &Studio, style: Style, drive: Drive, method: StrandMethod) -> Figure {
+fn row(setup: &Setup, style: Style, drive: Drive, method: StrandMethod) -> Figure {
     let motion = if let Drive::Head(name) = drive { name } else { MotionName::Still };
-    let mut scene = studio.scene(style, motion);
+    let mut scene = setup.scene(style, motion);
     scene.simulation.strands.method = method;
-    let mut moving = studio.settled(&scene, SIZE, SIZE)?;
+    let mut moving = setup.settled(&scene, SIZE, SIZE)?;
     let camera = bust(THREE_QUARTER);
     let mut pictures = Vec::new();
     for time in TIMES {

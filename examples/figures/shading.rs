@@ -6,12 +6,12 @@ use strandline::{
     look::{Environment, fibre::Highlight},
 };
 
+use crate::setup::{Figure, Setup, THREE_QUARTER, bust, close};
 use crate::strip::joined;
-use crate::studio::{Figure, Studio, THREE_QUARTER, bust, close};
 
 /// Hair by the layer of the key light's map, seen from that light, from the side and from behind it.
-pub fn layers(studio: &Studio) -> Figure {
-    let mut hair = studio.resting(Style::Wavy, 288, 288)?;
+pub fn layers(setup: &Setup) -> Figure {
+    let mut hair = setup.resting(Style::Wavy, 288, 288)?;
     let key = hair.lights()[0];
     hair.show_layers(Some(0));
     let along = key.position - key.target;
@@ -21,18 +21,18 @@ pub fn layers(studio: &Studio) -> Figure {
 }
 
 /// The map of one light: opacity down to the end of each layer as red, green and blue, and the first depth.
-pub fn opacity_map(studio: &Studio) -> Figure {
-    let mut hair = studio.resting(Style::Wavy, 288, 288)?;
+pub fn opacity_map(setup: &Setup) -> Figure {
+    let mut hair = setup.resting(Style::Wavy, 288, 288)?;
     let mut look = Look::thesis();
-    look.shadow.map_size = if studio.quick { 60 } else { 288 };
+    look.shadow.map_size = if setup.quick { 60 } else { 288 };
     let picture = hair.picture(&bust(THREE_QUARTER), &look)?;
     let maps = [hair.opacity_map(0)?, hair.depth_map(0)?];
     Ok(joined(&maps.into_iter().flatten().chain([picture]).collect::<Vec<_>>()))
 }
 
 /// One light from the head's left, the front, the right and behind.
-pub fn light_directions(studio: &Studio) -> Figure {
-    let mut hair = studio.resting(Style::Wavy, 256, 256)?;
+pub fn light_directions(setup: &Setup) -> Figure {
+    let mut hair = setup.resting(Style::Wavy, 256, 256)?;
     let environment = Environment { sky: Vec3::splat(0.06), ground: Vec3::splat(0.04) };
     let look = Look { environment, ..Look::thesis() };
     let target = Vec3::new(0.0, -0.09, 0.0);
@@ -55,14 +55,14 @@ fn with_looks(hair: &mut Hair, camera: &Camera, looks: &[Look]) -> Figure {
 }
 
 /// Brown, black and blonde.
-pub fn colors(studio: &Studio) -> Figure {
-    let mut hair = studio.resting(Style::Wavy, 304, 304)?;
+pub fn colors(setup: &Setup) -> Figure {
+    let mut hair = setup.resting(Style::Wavy, 304, 304)?;
     with_looks(&mut hair, &bust(THREE_QUARTER), &[Look::brown(), Look::black(), Look::blonde()])
 }
 
 /// The first highlight, the second, and both, in one light from behind and above.
-pub fn highlights(studio: &Studio) -> Figure {
-    let mut hair = studio.resting(Style::Bob, 304, 304)?;
+pub fn highlights(setup: &Setup) -> Figure {
+    let mut hair = setup.resting(Style::Bob, 304, 304)?;
     let position = Vec3::new(0.5, 1.2, -1.6);
     hair.set_lights(vec![Light { position, intensity: 2.0, ..Light::default() }])?;
     let environment = Environment { sky: Vec3::splat(0.12), ground: Vec3::splat(0.06) };

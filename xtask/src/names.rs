@@ -1,5 +1,5 @@
-//! One stage, one stem: a stage listed in a recipe has files of its name, a timer label and a row
-//! in ARCHITECTURE.md's stage table, and every row there has a stage.
+//! One stage, one stem: a stage that is listed has files of its name, a check in checks/parity and a row in
+//! ARCHITECTURE.md's stage table, and no row there is without a stage. Timers take their labels from the list.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -7,33 +7,19 @@ use std::path::{Path, PathBuf};
 use crate::cargo::root;
 use crate::comments;
 
-/// A crate with stages: its CPU backend says which there are.
+/// A crate with stages, and the file that lists them in order, with their names: one list for both backends.
 struct Recipe {
     crate_folder: &'static str,
-    cpu: Backend,
-    gpu: Backend,
-}
-
-/// A backend of a crate: its folder, the file that lists its stages in order, each with its timer label, and the
-/// endings of the files of a stage.
-struct Backend {
-    folder: &'static str,
     list: &'static str,
-    endings: &'static [&'static str],
 }
 
 const RECIPES: [Recipe; 2] = [
-    Recipe {
-        crate_folder: "crates/sim",
-        cpu: Backend { folder: "cpu", list: "src/step.rs", endings: &["rs"] },
-        gpu: Backend { folder: "gpu", list: "src/step.rs", endings: &["rs", "wesl"] },
-    },
-    Recipe {
-        crate_folder: "crates/render",
-        cpu: Backend { folder: "cpu", list: "src/frame.rs", endings: &["rs"] },
-        gpu: Backend { folder: "gpu", list: "src/gpu/frame.rs", endings: &["rs", "wesl"] },
-    },
+    Recipe { crate_folder: "crates/sim", list: "src/step.rs" },
+    Recipe { crate_folder: "crates/render", list: "src/frame/mod.rs" },
 ];
+
+/// The folder of each backend, and the endings of the files of a stage there.
+const BACKENDS: [(&str, &[&str]); 2] = [("cpu", &["rs"]), ("gpu", &["rs", "wesl"])];
 
 /// Prints every stage that lacks its file, its line or its row. True if all are complete.
 pub fn check() -> bool {
@@ -54,13 +40,12 @@ fn problems(root: &Path) -> Vec<String> {
     let mut known = BTreeSet::new();
     let mut found = Vec::new();
     for recipe in &RECIPES {
-        let stages = timed(&read(&root.join(recipe.list(&recipe.cpu))));
+        let list = format!("{}/{}", recipe.crate_folder, recipe.list);
+        let stages = listed(&read(&root.join(&list)));
         if stages.is_empty() {
-            found.push(format!("no stage is timed in {}", recipe.list(&recipe.cpu)));
+            found.push(format!("no stage is listed in {list}"));
         }
-        for backend in [&recipe.cpu, &recipe.gpu] {
-            found.extend(recipe.missing(root, backend, &stages));
-        }
+        found.extend(recipe.missing(root, &stages));
         for stage in stages {
             if !parity.contains(&format!("fn {stage}_")) {
                 found.push(format!("{stage}: no check in checks/parity named after it"));
@@ -78,42 +63,32 @@ fn problems(root: &Path) -> Vec<String> {
 }
 
 impl Recipe {
-    /// The file in which a backend lists its stages.
-    fn list(&self, backend: &Backend) -> String {
-        format!("{}/{}", self.crate_folder, backend.list)
-    }
-
-    /// Stages without their files or their timer label in one backend. The files may lie in any folder of the
-    /// backend; a folder that is called after its stage has it in its `mod.rs`.
-    fn missing(&self, root: &Path, backend: &Backend, stages: &[String]) -> Vec<String> {
-        let list = read(&root.join(self.list(backend)));
-        let folder = format!("{}/src/{}", self.crate_folder, backend.folder);
-        let files = files_below(&root.join(&folder));
+    /// Files that stages lack in either backend. The files may lie in any folder of it; a folder that is called after
+    /// its stage has it in its `mod.rs`.
+    fn missing(&self, root: &Path, stages: &[String]) -> Vec<String> {
         let mut found = Vec::new();
-        for stage in stages {
-            for ending in backend.endings {
-                let file = format!("{stage}.{ending}");
-                let room = format!("{stage}/mod.{ending}");
-                if !files.iter().any(|path| path.ends_with(&file) || path.ends_with(&room)) {
-                    found.push(format!("{stage}: no file {file} below {folder}"));
+        for (backend, endings) in BACKENDS {
+            let folder = format!("{}/src/{backend}", self.crate_folder);
+            let files = files_below(&root.join(&folder));
+            for stage in stages {
+                for ending in endings {
+                    let file = format!("{stage}.{ending}");
+                    let room = format!("{stage}/mod.{ending}");
+                    if !files.iter().any(|path| path.ends_with(&file) || path.ends_with(&room)) {
+                        found.push(format!("{stage}: no file {file} below {folder}"));
+                    }
                 }
-            }
-            if !list.contains(&format!("\"{stage}\"")) {
-                found.push(format!("{stage}: no timer label \"{stage}\" in {}", self.list(backend)));
             }
         }
         found
     }
 }
 
-/// The stages that a text lists: the names in its calls of `timed`, or in its lines of `stages!`.
-fn timed(text: &str) -> Vec<String> {
+/// The stages that a text lists: the names in its lines of `stages!`.
+fn listed(text: &str) -> Vec<String> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
-    let calls = code.split("timed(").skip(1);
-    let called = calls.filter_map(|call| Some(call.split(';').next()?.split('"').nth(1)?.to_owned()));
     let lines = code.lines().filter(|line| line.ends_with(';'));
-    let named = lines.filter_map(|line| Some(line.split_once(" = \"")?.1.split_once("\", ")?.0.to_owned()));
-    called.chain(named).collect()
+    lines.filter_map(|line| Some(line.split_once(" = \"")?.1.split_once("\", ")?.0.to_owned())).collect()
 }
 
 /// The files below a folder.
@@ -153,28 +128,27 @@ mod tests {
     }
 
     #[test]
-    fn stages_are_those_that_are_timed() {
-        let list = "use x::timed;\ntimed(seconds, \"splat\", || splat());\nlet a = timed(\n    s,\n    \"mark\", f);\n\
-                    fn timed(s: S);\n#[cfg(test)]\nmod tests { timed(s, \"no\", f); }";
-        assert_eq!(timed(list), ["splat", "mark"]);
-        assert_eq!(timed("stages! {\n    /// Sorted.\n    Splat = \"splat\", volume;\n}\n"), ["splat"]);
+    fn stages_are_the_lines_of_the_list() {
+        let list = "stages! {\n    /// Sorted.\n    Splat = \"splat\", volume;\n    Mark = \"mark\", always;\n}\n\
+                    fn f() { g(\"no\", h); }\n#[cfg(test)]\nmod tests {\n    No = \"no\", always;\n}";
+        assert_eq!(listed(list), ["splat", "mark"]);
     }
 
     #[test]
     fn a_stage_lies_in_any_folder_of_its_backend_and_a_longer_name_is_another() {
         let folder = tempfile::tempdir().unwrap();
-        let backend = Backend { folder: "cpu", list: "list.rs", endings: &["rs"] };
-        let recipe =
-            Recipe { crate_folder: "a", cpu: backend, gpu: Backend { folder: "gpu", ..RECIPES[0].gpu } };
-        let cpu = folder.path().join("a/src/cpu");
-        for file in ["draw/mod.rs", "shadow/depth.rs", "shadow/other_sort.rs"] {
-            std::fs::create_dir_all(cpu.join(file).parent().unwrap()).unwrap();
-            std::fs::write(cpu.join(file), "").unwrap();
+        let files = ["cpu/draw/mod.rs", "cpu/shadow/depth.rs", "cpu/shadow/other_sort.rs"];
+        let all = files.into_iter().chain(["gpu/draw/mod.rs", "gpu/draw/draw.wesl", "gpu/depth.rs"]);
+        for file in all.map(|file| folder.path().join("a/src").join(file)) {
+            std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+            std::fs::write(file, "").unwrap();
         }
-        std::fs::write(folder.path().join("a/list.rs"), "\"draw\" \"depth\" \"sort\"").unwrap();
-        let stages = ["draw", "depth", "sort"].map(str::to_owned);
-        let missing = recipe.missing(folder.path(), &recipe.cpu, &stages);
-        assert_eq!(missing, ["sort: no file sort.rs below a/src/cpu"]);
+        let recipe = Recipe { crate_folder: "a", list: "list.rs" };
+        let missing = recipe.missing(folder.path(), &["draw", "depth", "sort"].map(str::to_owned));
+        let expected = ["sort.rs below a/src/cpu", "depth.wesl below a/src/gpu", "sort.rs below a/src/gpu"];
+        let expected = expected.map(|file| format!("{}: no file {file}", file.split('.').next().unwrap()));
+        assert_eq!(missing[..3], expected);
+        assert_eq!(missing.len(), 4);
     }
 
     #[test]
@@ -187,7 +161,7 @@ mod tests {
     fn a_stage_that_has_nothing_else_is_missed_everywhere() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir_all(folder.path().join("crates/sim/src")).unwrap();
-        std::fs::write(folder.path().join("crates/sim/src/step.rs"), "timed(s, \"new\", f);").unwrap();
+        std::fs::write(folder.path().join("crates/sim/src/step.rs"), "    New = \"new\", always;").unwrap();
         // A file on the CPU; two files on the GPU; a check and a row; and no stage of pictures.
         assert_eq!(problems(folder.path()).len(), 1 + 2 + 2 + 1);
     }

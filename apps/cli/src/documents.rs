@@ -158,3 +158,50 @@ fn links_are_found_in_pages() {
     let page = "[a](b.md#c) ![d](e/f.png) [g](https://h.i) [j](#k)";
     assert_eq!(links(page), ["b.md", "e/f.png"]);
 }
+
+#[test]
+fn files_that_the_documents_name_exist() {
+    let mut files = Vec::new();
+    for folder in ["apps", "bench", "checks", "crates", "docs", "examples", "fuzz", "xtask"] {
+        below(&root().join(folder), &mut files);
+    }
+    let mut documents = vec!["ARCHITECTURE.md".to_owned(), "CONTRIBUTING.md".to_owned()];
+    let methods = std::fs::read_dir(root().join("docs/methods")).unwrap();
+    documents.extend(methods.map(|page| format!("docs/methods/{}", page.unwrap().file_name().display())));
+    let mut count = 0;
+    for document in documents {
+        for name in paths(&read(&document)) {
+            count += 1;
+            let endings = ["", ".rs", ".wesl"].map(|ending| format!("/{name}{ending}"));
+            let exists = files.iter().any(|file| endings.iter().any(|end| file.ends_with(end.as_str())));
+            assert!(exists, "{name} in {document}");
+        }
+    }
+    assert!(count > 20, "only {count} files found");
+}
+
+/// Names in backquotes that are paths: words of small letters with slashes between them.
+fn paths(page: &str) -> Vec<&str> {
+    let quoted = page.split('`').skip(1).step_by(2);
+    let is_word = |word: &str| {
+        !["", ".."].contains(&word)
+            && word.chars().all(|letter| letter.is_ascii_lowercase() || "_.0123456789".contains(letter))
+    };
+    quoted.filter(|text| text.contains('/') && text.split('/').all(is_word)).collect()
+}
+
+/// Adds all files and folders below a folder.
+fn below(folder: &Path, found: &mut Vec<String>) {
+    for entry in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        found.push(entry.display().to_string().replace('\\', "/"));
+        if entry.is_dir() && !entry.ends_with("target") {
+            below(&entry, found);
+        }
+    }
+}
+
+#[test]
+fn paths_are_found_in_pages() {
+    let page = "`cpu/a_b.rs` and `x::y`, `A/b`, `c/d`, cpu/e `f` `../g`";
+    assert_eq!(paths(page), ["cpu/a_b.rs", "c/d"]);
+}

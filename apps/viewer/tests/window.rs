@@ -137,7 +137,7 @@ fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays
     let hair =
         (picture.height as usize * width / 2..picture.height as usize * width).find(|index| is_hair(*index));
     let hair = hair.expect("hair in the picture");
-    // Between the panels, the strip and the margins.
+    // Between the panels, the status bar and the margins.
     let room = egui::Rect::from_min_max(egui::pos2(303.0, 8.0), egui::pos2(892.0, 567.0));
     let scale = egui::vec2(room.width() / width as f32, room.height() / picture.height as f32);
     let place = room.min + egui::vec2((hair % width) as f32 + 0.5, (hair / width) as f32 + 0.5) * scale;

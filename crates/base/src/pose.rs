@@ -39,6 +39,20 @@ impl Pose {
         Self { rotation, translation: -(rotation * self.translation) }
     }
 
+    /// The motion from this pose to another, in the space that both lead to.
+    pub fn motion_to(&self, end: &Self) -> Self {
+        let back = self.inverse();
+        Self { rotation: end.rotation * back.rotation, translation: end.point(back.translation) }
+    }
+
+    /// One of `count` equal parts of the way to `end`, counted from 0: the pose at its end, and the motion through it,
+    /// which is the identity between equal poses.
+    pub fn part_of_way(&self, end: &Self, part: u32, count: u32) -> (Self, Self) {
+        let pose = |part: u32| self.toward(end, part as f32 / count as f32);
+        let (before, after) = (pose(part), pose(part + 1));
+        (after, if before == after { Self::IDENTITY } else { before.motion_to(&after) })
+    }
+
     /// The pose on the way to `end`: linear in translation, spherical in rotation;
     /// `share` is 0 here and 1 at `end`. Between equal poses the result is exact.
     pub fn toward(&self, end: &Self, share: f32) -> Self {
@@ -61,6 +75,18 @@ impl Default for Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_parts_of_a_way_lead_to_its_end() {
+        let start = Pose::rotation_about(Vec3::X, Quat::from_rotation_y(0.7));
+        let end = Pose { translation: Vec3::Z, ..Pose::rotation_about(Vec3::Y, Quat::from_rotation_x(0.4)) };
+        let point = Vec3::new(0.3, 0.2, 0.9);
+        let goes = (0..5).fold(start.point(point), |at, part| start.part_of_way(&end, part, 5).1.point(at));
+        assert!(goes.distance(end.point(point)) < 1e-6);
+        assert!(start.motion_to(&end).point(start.point(point)).distance(end.point(point)) < 1e-6);
+        assert_eq!(start.part_of_way(&end, 4, 5).0.translation, end.translation);
+        assert_eq!(start.part_of_way(&start, 1, 5), (start, Pose::IDENTITY));
+    }
 
     #[test]
     fn the_inverse_undoes() {

@@ -4,7 +4,7 @@ use glam::{Mat3, Vec3};
 use wide::f32x8;
 
 use crate::real::Vector;
-use crate::{Lanes, Pose, Vec3Lanes};
+use crate::{LANES, Lanes, Pose, Vec3Lanes};
 
 /// One vector for each strand of a block, in registers.
 pub type Vec3x8 = Vector<f32x8>;
@@ -78,6 +78,45 @@ impl Vec3x8 {
     }
 }
 
+/// A rigid transform in each lane.
+#[derive(Clone, Copy)]
+pub struct RigidLanes {
+    columns: [Vec3x8; 3],
+    translation: Vec3x8,
+}
+
+impl RigidLanes {
+    /// The transforms of poses, one a lane.
+    pub fn new(poses: &[Pose; LANES]) -> Self {
+        let axis = |axis: usize| lanes(poses.map(|pose| Mat3::from_quat(pose.rotation).col(axis)));
+        Self { columns: [axis(0), axis(1), axis(2)], translation: lanes(poses.map(|pose| pose.translation)) }
+    }
+
+    /// Carries points \[m\]: the bits of [`Rigid::points`] where all lanes have one pose.
+    #[inline(always)]
+    pub fn points(&self, points: Vec3x8) -> Vec3x8 {
+        self.columns[0] * points.x
+            + self.columns[1] * points.y
+            + self.columns[2] * points.z
+            + self.translation
+    }
+}
+
+/// A vector for each lane.
+pub fn lanes(vectors: [Vec3; LANES]) -> Vec3x8 {
+    Vec3x8 {
+        x: f32x8::from(vectors.map(|vector| vector.x)),
+        y: f32x8::from(vectors.map(|vector| vector.y)),
+        z: f32x8::from(vectors.map(|vector| vector.z)),
+    }
+}
+
+impl From<Rigid> for RigidLanes {
+    fn from(rigid: Rigid) -> Self {
+        Self { columns: rigid.columns.map(Vec3x8::splat), translation: Vec3x8::splat(rigid.translation) }
+    }
+}
+
 /// A rigid transform of all lanes.
 #[derive(Clone, Copy)]
 pub struct Rigid {
@@ -90,6 +129,12 @@ impl Rigid {
     pub fn new(pose: &Pose) -> Self {
         let Mat3 { x_axis, y_axis, z_axis } = Mat3::from_quat(pose.rotation);
         Self { columns: [x_axis, y_axis, z_axis], translation: pose.translation }
+    }
+
+    /// The transform of a pose, by the axes that it turns: as rods carry their points, to the bit.
+    pub fn of_axes(pose: &Pose) -> Self {
+        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| pose.direction(axis));
+        Self { columns, translation: pose.translation }
     }
 
     /// Carries points \[m\].

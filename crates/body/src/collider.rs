@@ -1,19 +1,21 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_base::choices;
 
 use crate::{Aabb, BodyError, DistanceGrid, Mannequin, SignedDistance};
 
-choices! {
-    /// Space in which a collider is fixed.
-    pub enum Carrier as "carrier" {
-        /// The head: the shape is given in head space.
-        Head = "head",
-        /// World space: the shape stays.
-        World = "world",
-    }
-    default Head
+/// The carrier of a collider.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Carrier {
+    /// A piece of the body, by its number in a [`BodyFrame`](crate::BodyFrame): the shape is given in head space.
+    Piece(u16),
+    /// Nothing: the shape is given in world space and stays.
+    World,
+}
+
+impl Carrier {
+    /// The head.
+    pub const HEAD: Self = Self::Piece(0);
 }
 
 /// A solid that hair cannot enter.
@@ -149,7 +151,7 @@ fn positive(what: &'static str, value: f32) -> Result<(), BodyError> {
 pub struct Collider {
     /// The solid.
     pub shape: Shape,
-    /// Its space.
+    /// Its carrier.
     pub carrier: Carrier,
     /// Coulomb friction coefficient, 0 is frictionless. It acts once per step, for any number of rounds.
     pub friction: f32,
@@ -258,10 +260,10 @@ mod tests {
         }
         assert!(Shape::capsule(Vec3::NAN, Vec3::X, 1.0).is_err());
         let shape = Shape::Sphere { center: Vec3::ZERO, radius: -1.0 };
-        assert!(Collider::new(shape, Carrier::Head, 0.3).is_err());
+        assert!(Collider::new(shape, Carrier::HEAD, 0.3).is_err());
         let shape = Shape::Sphere { center: Vec3::ZERO, radius: 1.0 };
-        assert!(Collider::new(shape.clone(), Carrier::Head, -0.1).is_err());
-        assert!(Collider::new(shape.clone(), Carrier::Head, f32::NAN).is_err());
-        assert!(Collider::new(shape, Carrier::Head, 0.0).is_ok());
+        assert!(Collider::new(shape.clone(), Carrier::HEAD, -0.1).is_err());
+        assert!(Collider::new(shape.clone(), Carrier::HEAD, f32::NAN).is_err());
+        assert!(Collider::new(shape, Carrier::HEAD, 0.0).is_ok());
     }
 }

@@ -2,7 +2,7 @@
 //! distance, colliders and the motion of the head. No GPU, no hair.
 //!
 //! Units are SI; y is up and the face looks along +z. *Head space* is the space in which a body
-//! and a groom are at rest; [`Pose`] carries it into the world.
+//! and a groom are at rest; a [`BodyFrame`] carries it into the world.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
@@ -14,6 +14,7 @@ mod distance;
 mod distance_grid;
 mod error;
 mod far_nodes;
+mod frame;
 mod gltf;
 mod gltf_buffers;
 mod inside;
@@ -42,6 +43,7 @@ pub use collider::{Carrier, Collider, Shape};
 pub use distance::{Aabb, SignedDistance};
 pub use distance_grid::DistanceGrid;
 pub use error::BodyError;
+pub use frame::BodyFrame;
 pub use keyframes::Keyframe;
 pub use mannequin::Mannequin;
 pub use mesh::Mesh;

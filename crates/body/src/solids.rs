@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::{Carrier, Collider, Pose};
+use crate::{BodyFrame, Carrier, Collider, Pose};
 
-/// Solids, and how far \[m\] strands stay away from each.
+/// Solids, each with the distance \[m\] that strands keep from it.
 #[derive(Clone, Debug, Default)]
 pub struct Solids(Arc<[(Collider, f32)]>);
 
@@ -21,18 +21,28 @@ impl Solids {
         &self.0
     }
 
-    /// The solids as the head has them.
-    pub fn placed(&self, world_from_head: Pose) -> PlacedSolids<'_> {
-        PlacedSolids { solids: &self.0, world_from_head, head_from_world: world_from_head.inverse() }
+    /// The solids at a time: a frame of the body, or the pose of a rigid head.
+    pub fn placed(&self, body: impl Into<BodyFrame>) -> PlacedSolids<'_> {
+        let body = body.into();
+        let piece = |(solid, _): &(Collider, f32)| match solid.carrier {
+            Carrier::Piece(piece) => usize::from(piece) + 1,
+            Carrier::World => 0,
+        };
+        let count = self.0.iter().map(piece).max().unwrap_or(0);
+        let place = |piece| {
+            let world_from_piece = body.piece(piece);
+            [world_from_piece, world_from_piece.inverse()]
+        };
+        PlacedSolids { solids: &self.0, pieces: (0..count).map(place).collect() }
     }
 }
 
-/// Solids, some of them carried by a head.
-#[derive(Clone, Copy, Debug)]
+/// Solids at a time.
+#[derive(Clone, Debug)]
 pub struct PlacedSolids<'a> {
     solids: &'a [(Collider, f32)],
-    world_from_head: Pose,
-    head_from_world: Pose,
+    /// Transform and inverse of each piece that carries solids.
+    pieces: Vec<[Pose; 2]>,
 }
 
 impl PlacedSolids<'_> {
@@ -44,25 +54,32 @@ impl PlacedSolids<'_> {
     /// Signed distance \[m\] of a point \[m\], world space, to the nearest solid, less how far strands stay away from
     /// it, and its unit gradient.
     pub fn at(&self, point: Vec3) -> (f32, Vec3) {
-        let in_head = self.head_from_world.point(point);
         let start = (f32::INFINITY, Vec3::Y, Carrier::World);
         let (distance, gradient, carrier) = self.solids.iter().fold(start, |best, (solid, away)| {
-            let place = if solid.carrier == Carrier::Head { in_head } else { point };
-            let (distance, gradient) = solid.shape.distance_and_gradient(place);
+            let (distance, gradient) = solid.shape.distance_and_gradient(self.local(solid.carrier, point));
             if distance - away < best.0 { (distance - away, gradient, solid.carrier) } else { best }
         });
-        let turned =
-            if carrier == Carrier::Head { self.world_from_head.direction(gradient) } else { gradient };
+        let turned = match carrier {
+            Carrier::Piece(piece) => self.pieces[usize::from(piece)][0].direction(gradient),
+            Carrier::World => gradient,
+        };
         (distance, turned)
+    }
+
+    /// A point \[m\] in the space of a carrier.
+    fn local(&self, carrier: Carrier, point: Vec3) -> Vec3 {
+        match carrier {
+            Carrier::Piece(piece) => self.pieces[usize::from(piece)][1].point(point),
+            Carrier::World => point,
+        }
     }
 
     /// No more than that distance, and 0 where the point may be inside: quick.
     pub fn at_least(&self, point: Vec3) -> f32 {
-        let in_head = self.head_from_world.point(point);
-        let least = self.solids.iter().map(|(solid, away)| {
-            let place = if solid.carrier == Carrier::Head { in_head } else { point };
-            solid.shape.distance_at_least(place) - away
-        });
+        let least = self
+            .solids
+            .iter()
+            .map(|(solid, away)| solid.shape.distance_at_least(self.local(solid.carrier, point)) - away);
         least.fold(f32::INFINITY, f32::min)
     }
 }

@@ -8,7 +8,7 @@
 use glam::{Quat, Vec3};
 use strandline_base::SettingError;
 use strandline_base::par::prelude::*;
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 
 use crate::{
     Groom, GroomError, Guides, LANES, Vec3Lanes,
@@ -138,9 +138,9 @@ impl Binding {
     /// Notes where the guides are \[m\], world space, shape `[block][point]` of lanes: a frame of each of their
     /// points, and how long they are.
     ///
-    /// The first frame turns with the head, and as little more as takes the first segment where it is; each
-    /// further one turns as little as possible against the one before.
-    pub fn follow(&self, positions: &[Vec3Lanes], world_from_head: &Pose, frames: &mut Frames) {
+    /// The first frame turns with the root frame of its guide, and as little more as takes the first segment where it
+    /// is; each further one turns as little as possible against the one before.
+    pub fn follow(&self, positions: &[Vec3Lanes], body: &BodyFrame, frames: &mut Frames) {
         let count = self.guides.points_per_strand();
         frames.points.resize(self.guides.strand_count() * count, Frame::default());
         frames.scales.resize(self.guides.strand_count(), 1.0);
@@ -148,7 +148,7 @@ impl Binding {
         guides.for_each(|(guide, (frames, scale))| {
             let now = |point: usize| positions[guide / LANES * count + point].get(guide % LANES);
             let rest = |point: usize| self.guides.position(guide, point);
-            let mut rotation = world_from_head.rotation;
+            let mut rotation = body.root(guide).rotation;
             let (mut length, mut own) = (0.0, 0.0);
             for (point, frame) in frames.iter_mut().enumerate() {
                 // The last point has no segment of its own.

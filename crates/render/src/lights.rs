@@ -3,7 +3,7 @@ use strandline_base::math;
 use strandline_base::{Group, Key, SettingError, choices, settings};
 
 use crate::RenderError;
-use crate::cpu::scatter::light_field::Field;
+use crate::light_field::Field;
 
 choices! {
     /// How a light's rays spread.

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use strandline_base::{Group, Value};
 
-use crate::cpu::scatter::light_field::{self, Field};
 use crate::fibre::{FibreModel, Scheuermann, chiang::Pigment};
+use crate::light_field::{self, Field};
 use crate::{Environment, Light, Look, Preset, RenderError, Shadow};
 
 impl Look {

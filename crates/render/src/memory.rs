@@ -1,16 +1,18 @@
-//! What a picture takes, and what more than one can draw.
+//! Memory of a picture, and limits of what can be drawn.
 
 use strandline_base::{
     SettingError,
     memory::{self, Need},
 };
 
-use crate::cpu::draw::ribbons::Segment;
+use crate::shadow::part_count;
 use crate::{DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
 /// Most lights of a picture: each point that is drawn asks every one of them.
 pub const MAX_LIGHTS: usize = 64;
 
+/// Most points that the segments of a picture can name on the CPU.
+pub(crate) const MOST_POINTS: usize = 1 << 26;
 /// Points left to segments that are cut by the near plane.
 const CUT_POINTS: u64 = 1 << 22;
 /// Bytes of a drawn point: position, tangent, width, radiance, and that with those beside it; its place on the screen;
@@ -61,7 +63,7 @@ impl Drawn<'_> {
         let shadows: u64 = casting.map(|light| light.sample_count() as u64).sum::<u64>() + suns;
         let size = u64::from(self.look.shadow.map_size);
         let maps = format!("look.shadow.map_size = {size} for each of {shadows} lights with shadow");
-        let texel = TEXEL_BYTES + PART_BYTES * crate::cpu::shadow::hair::part_count() as u64;
+        let texel = TEXEL_BYTES + PART_BYTES * part_count() as u64;
         let PictureSettings { width, height, supersampling, .. } = self.picture;
         let picture = format!("a picture of {width} x {height} pixels at supersampling {supersampling}");
         let scatters = self.look.fibre.model.scatters_many_times();
@@ -78,7 +80,7 @@ impl Drawn<'_> {
 
     /// Refuses more than can be drawn on the CPU.
     pub(crate) fn check(&self, level: &DetailLevel) -> Result<(), RenderError> {
-        let most = Segment::MAX_POINTS as u64 - CUT_POINTS;
+        let most = MOST_POINTS as u64 - CUT_POINTS;
         let points = self.points(level);
         if points > most {
             let found = format!("{}, which makes {points} points", self.look.follow_strands);

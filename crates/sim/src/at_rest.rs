@@ -1,4 +1,4 @@
-//! What a model takes from guides at rest.
+//! Quantities that a model takes from guides at rest.
 
 use glam::Vec3;
 use strandline_base::{lane_place, par::prelude::*};
@@ -7,11 +7,11 @@ use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 
 use crate::SimError;
 
-/// Rest positions of a block carried by a pose.
-pub(crate) fn carried(lanes: &Vec3Lanes, world_from_head: &Pose) -> Vec3Lanes {
+/// Rest positions of a block, each lane carried by its pose.
+pub(crate) fn carried(lanes: &Vec3Lanes, world_from_root: &[Pose; LANES]) -> Vec3Lanes {
     let mut carried = Vec3Lanes::default();
     for lane in 0..LANES {
-        carried.set(lane, world_from_head.point(lanes.get(lane)));
+        carried.set(lane, world_from_root[lane].point(lanes.get(lane)));
     }
     carried
 }
@@ -92,11 +92,11 @@ pub(crate) fn velocities(guides: &Guides, rooted: impl Fn(usize, usize) -> bool)
     lanes
 }
 
-/// Distance \[m\] of a point from the solids of the head, 0 inside.
+/// Distance \[m\] of a point from the solids of the body at rest, 0 inside.
 pub(crate) fn clearance(colliders: &[Collider], point: Vec3) -> f32 {
     colliders
         .iter()
-        .filter(|collider| collider.carrier == Carrier::Head)
+        .filter(|collider| collider.carrier != Carrier::World)
         .map(|collider| collider.shape.distance(point))
         .fold(f32::INFINITY, f32::min)
         .max(0.0)

@@ -1,7 +1,7 @@
 //! All that the next step depends on, as named arrays of numbers: a run that is taken up from them makes the
 //! same bits as one that never stopped.
 
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use crate::{Model, SimError, State};
@@ -11,8 +11,8 @@ use crate::{Model, SimError, State};
 pub struct Checkpoint {
     /// The arrays of which the state has any, in one order.
     pub parts: Vec<Part>,
-    /// Pose of the head.
-    pub world_from_head: Pose,
+    /// Body.
+    pub body: BodyFrame,
     /// Time of the state \[s\].
     pub time: f64,
 }
@@ -103,7 +103,7 @@ impl State {
             previous_positions,
             sections,
             spins,
-            world_from_head,
+            body,
             time,
             length_scale,
             contacts,
@@ -134,7 +134,7 @@ impl State {
         let planes = contacts.blocks.first().map_or(0, Vec::len);
         add(CONTACTS, &[blocks, planes, contacts.numbers_per_plane(), LANES], contacts.numbers());
         add(VOLUME, &[4], volume_box.iter().flatten().copied().collect());
-        Checkpoint { parts, world_from_head: *world_from_head, time: *time }
+        Checkpoint { parts, body: body.clone(), time: *time }
     }
 
     /// Becomes the state of a checkpoint. A hand that holds hair lets go.
@@ -144,7 +144,7 @@ impl State {
     pub fn restore(&mut self, model: &Model, from: &Checkpoint) -> Result<(), SimError> {
         let points = model.points_per_strand;
         let blocks = model.positions.len() / points;
-        let mut state = model.rest_state(from.world_from_head);
+        let mut state = model.rest_state(from.body.clone());
         let scales = from.finite(LENGTH_SCALE, &[blocks, LANES])?;
         if scales.iter().any(|scale| *scale != 1.0) {
             state.set_length_scale(model, &scales[..model.strand_count])?;
@@ -182,7 +182,7 @@ impl State {
 #[cfg(test)]
 mod tests {
     use glam::{Quat, Vec3};
-    use strandline_body::{Carrier, Collider, Shape};
+    use strandline_body::{Carrier, Collider, Pose, Shape};
     use strandline_groom::{Groom, Guides};
 
     use super::*;
@@ -198,7 +198,7 @@ mod tests {
         let guides = Guides::resample(&groom, 8).unwrap();
         let volume = VolumeSettings { cells: [8; 3], ..VolumeSettings::default() };
         let ball = Shape::Sphere { center: Vec3::ZERO, radius: 0.1 };
-        let solids = vec![Collider::new(ball, Carrier::Head, 0.3).unwrap()];
+        let solids = vec![Collider::new(ball, Carrier::HEAD, 0.3).unwrap()];
         let mut settings = Settings { volume, ..Settings::default() };
         settings.strands.method = method;
         let model = Model::new(&guides, &settings, solids).unwrap();
@@ -212,8 +212,7 @@ mod tests {
         let mut runner = CpuRunner::from(model.clone());
         for step in steps {
             let rotation = Quat::from_rotation_y(0.4 * (step as f32 * 0.3).sin());
-            let world_from_head = Pose { rotation, translation: Vec3::ZERO };
-            runner.step(state, &Drive { world_from_head, ..Drive::default() });
+            runner.step(state, &Drive::of(Pose { rotation, translation: Vec3::ZERO }));
         }
     }
 

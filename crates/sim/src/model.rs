@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
 use strandline_base::memory;
-use strandline_body::Collider;
+use strandline_body::{BodyFrame, Collider, Pose};
 use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 use wide::f32x8;
 
@@ -251,6 +251,11 @@ impl Model {
     /// Lanes of a block that hold strands.
     pub(crate) fn live_lanes(&self, block: usize) -> usize {
         (self.strand_count - block * LANES).min(LANES)
+    }
+
+    /// Root frames of a block of strands, `world_from_root`; lanes without a strand take that of the last one.
+    pub(crate) fn roots(&self, body: &BodyFrame, block: usize) -> [Pose; LANES] {
+        std::array::from_fn(|lane| body.root((block * LANES + lane).min(self.strand_count - 1)))
     }
 
     /// Points on each strand.

@@ -1,6 +1,6 @@
 //! What stands for the runner on a GPU in a build without GPUs: nothing of it can be made.
 
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_gpu::{Buffer, Gpu, GpuError};
 use strandline_groom::Vec3Lanes;
 
@@ -57,7 +57,7 @@ impl GpuRunner {
         match *self {}
     }
 
-    pub fn world_from_head(&self) -> Pose {
+    pub fn body(&self) -> &BodyFrame {
         match *self {}
     }
 

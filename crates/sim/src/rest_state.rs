@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
-use strandline_body::Pose;
+use strandline_body::{BodyFrame, Pose};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use crate::at_rest::carried;
@@ -14,24 +14,24 @@ use crate::grab::Grab;
 use crate::{Drift, Model, State};
 
 impl Model {
-    /// The guides at rest, carried by a pose of the head; those with velocities of their own begin with them.
-    pub fn rest_state(&self, world_from_head: Pose) -> State {
-        let positions: Vec<Vec3Lanes> =
-            self.positions.par_iter().map(|lanes| carried(lanes, &world_from_head)).collect();
+    /// The guides at rest, carried by the root frames of a body: a frame, or the pose of a rigid head. Guides with
+    /// velocities of their own begin with them.
+    pub fn rest_state(&self, body: impl Into<BodyFrame>) -> State {
+        let body = body.into();
+        let positions = self.carried(&self.positions, &body, |pose| pose);
         let blocks = positions.len() / self.points_per_strand;
-        let turn = Pose { translation: Vec3::ZERO, ..world_from_head };
         let rods = self.rods.as_ref().map_or(0, |rods| rods.sections.len());
         State {
-            sections: self.sections(&turn),
+            sections: self.sections(&body),
             spins: vec![Lanes::default(); rods],
             corrections: vec![Vec3Lanes::default(); positions.len()],
             velocities: if self.velocities.is_empty() {
                 vec![Vec3Lanes::default(); positions.len()]
             } else {
-                self.velocities.par_iter().map(|lanes| carried(lanes, &turn)).collect()
+                self.carried(&self.velocities, &body, turn)
             },
             previous_positions: positions.clone(),
-            world_from_head,
+            body,
             time: 0.0,
             length_scale: vec![Lanes([1.0; LANES]); blocks],
             lengths: Arc::clone(&self.rest),
@@ -42,7 +42,16 @@ impl Model {
         }
     }
 
-    /// How far a state lies from the hair at rest that the head of the state carries.
+    /// Vectors of all points at rest, shape `[block][point]` of lanes, carried by motions that follow from root frames.
+    fn carried(&self, rest: &[Vec3Lanes], body: &BodyFrame, motion: fn(Pose) -> Pose) -> Vec<Vec3Lanes> {
+        let points = self.points_per_strand;
+        let of_point = |(index, lanes): (usize, &Vec3Lanes)| {
+            carried(lanes, &self.roots(body, index / points).map(motion))
+        };
+        rest.par_iter().enumerate().map(of_point).collect()
+    }
+
+    /// Distance of a state from the hair at rest, carried by the root frames of the state.
     pub fn drift(&self, state: &State) -> Drift {
         let points = self.points_per_strand;
         let (mut sum, mut max) = (0.0, 0.0_f32);
@@ -50,7 +59,7 @@ impl Model {
             let (first, lane) = (strand / LANES * points, strand % LANES);
             let length: f32 = (first..first + points).map(|index| self.rest.stretch[index].0[lane]).sum();
             for index in first..first + points {
-                let home = state.world_from_head.point(self.positions[index].get(lane));
+                let home = state.body.root(strand).point(self.positions[index].get(lane));
                 let apart = state.positions[index].get(lane).distance(home) / length;
                 sum += f64::from(apart);
                 max = max.max(apart);
@@ -73,8 +82,7 @@ impl Model {
     pub(crate) fn give_sections(&self, state: &mut State) {
         let count = self.section_count();
         if state.sections.len() != count {
-            let turn = Pose { translation: Vec3::ZERO, ..state.world_from_head };
-            state.sections = self.sections(&turn);
+            state.sections = self.sections(&state.body);
             state.spins = vec![Lanes::default(); count];
         }
     }
@@ -83,10 +91,14 @@ impl Model {
         self.rods.as_ref().map_or(0, |rods| rods.sections.len())
     }
 
-    fn sections(&self, turn: &Pose) -> Vec<Vec3Lanes> {
-        let rods = self.rods.iter();
-        rods.flat_map(|rods| rods.sections.iter().map(|lanes| carried(lanes, turn))).collect()
+    fn sections(&self, body: &BodyFrame) -> Vec<Vec3Lanes> {
+        self.rods.as_ref().map_or(Vec::new(), |rods| self.carried(&rods.sections, body, turn))
     }
+}
+
+/// The rotation of a pose alone.
+fn turn(pose: Pose) -> Pose {
+    Pose { translation: Vec3::ZERO, ..pose }
 }
 
 #[cfg(test)]

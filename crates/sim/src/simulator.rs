@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_gpu::{Buffer, Gpu};
 
 use crate::gpu::GpuRunner;
@@ -70,7 +70,7 @@ impl Simulator {
     /// # Errors
     /// As [`GpuRunner::new`].
     pub fn new(gpu: Option<&Gpu>, model: Model) -> Result<Self, SimError> {
-        let journal = Journal::new(model.rest_state(Pose::IDENTITY), model.settings().clone());
+        let journal = Journal::new(model.rest_state(BodyFrame::REST), model.settings().clone());
         let runner = match gpu {
             Some(gpu) => Runner::Gpu(GpuRunner::new(gpu, model)?.into()),
             None => Runner::Cpu(Box::new(model.into())),

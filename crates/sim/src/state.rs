@@ -3,7 +3,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use strandline_base::SettingError;
 use strandline_base::par::prelude::*;
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
 use crate::contact::contacts::Contacts;
@@ -12,25 +12,30 @@ use crate::length_scale;
 use crate::{Model, SimError};
 use strandline_base::vec3x8::{Vec3x8, splat};
 
-/// What the world does to the hair during one step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// The world during one step: body, air and hand.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drive {
-    /// Pose of the head at the end of the step.
-    pub world_from_head: Pose,
+    /// Body at the end of the step; from the state's it moves there evenly.
+    pub body: BodyFrame,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
-    /// Where the hand that holds hair is at the end of the step \[m\], world space; with none it
-    /// stays where it is. See [`State::grab`].
+    /// Position of the hand that holds hair at the end of the step \[m\], world space; `None` leaves the hand in
+    /// place. See [`State::grab`].
     pub hand: Option<Vec3>,
 }
 
 impl Drive {
-    /// This drive, where it is finite; else a head and a hand that stay and air that rests.
-    pub(crate) fn or_still_at(&self, start: Pose) -> Self {
-        let pose = &self.world_from_head;
-        let posed = pose.rotation.is_finite() && pose.translation.is_finite();
+    /// A drive of a body alone: no wind, no hand.
+    pub fn of(body: impl Into<BodyFrame>) -> Self {
+        Self { body: body.into(), ..Self::default() }
+    }
+
+    /// This drive, each part replaced where it is unusable: a body that fails [`BodyFrame::check`] or a hand that is
+    /// not finite stays, wind that is not finite is none.
+    pub(crate) fn or_still_at(&self, start: &BodyFrame, strand_count: usize) -> Self {
+        let sound = self.body.check(Some(strand_count), None).is_ok();
         Self {
-            world_from_head: if posed { *pose } else { start },
+            body: if sound { self.body.clone() } else { start.clone() },
             wind: if self.wind.is_finite() { self.wind } else { Vec3::ZERO },
             hand: self.hand.filter(|hand| hand.is_finite()),
         }
@@ -41,7 +46,7 @@ impl Drive {
 /// hundredths of a radian.
 pub const MOST_SPIN: f32 = 1e6;
 
-/// All that changes with time.
+/// The quantities that change with time.
 #[derive(Clone, Debug)]
 pub struct State {
     /// Positions \[m\], world space, shape `[block][point]` of lanes.
@@ -60,8 +65,8 @@ pub struct State {
     /// How fast each section turns beside its segment \[rad/s\], shape as above; a step leaves no more than
     /// [`MOST_SPIN`].
     pub spins: Vec<Lanes>,
-    /// Pose of the head now.
-    pub world_from_head: Pose,
+    /// Body now.
+    pub body: BodyFrame,
     /// Time \[s\].
     pub time: f64,
     /// Length over rest length of each strand, shape `[block]` of lanes.
@@ -161,6 +166,7 @@ impl State {
 
 #[cfg(test)]
 mod tests {
+    use strandline_body::Pose;
     use strandline_groom::{Groom, Guides};
 
     use super::*;
@@ -254,7 +260,7 @@ mod tests {
     fn pictures_lie_between_the_last_two_steps() {
         let (model, mut state) = two_strands();
         let pose = Pose { translation: Vec3::new(0.1, 0.0, 0.0), ..Pose::IDENTITY };
-        CpuRunner::from(model).step(&mut state, &Drive { world_from_head: pose, ..Drive::default() });
+        CpuRunner::from(model).step(&mut state, &Drive::of(pose));
         let mut between = Vec::new();
         state.interpolated(0.25, &mut between);
         assert!((between[0].get(0).x - 0.025).abs() < 1e-6);
@@ -281,9 +287,13 @@ mod tests {
     fn a_drive_that_is_not_finite_leaves_the_head_where_it_is() {
         let (model, mut state) = two_strands();
         let pose = Pose { translation: Vec3::splat(f32::NAN), ..Pose::IDENTITY };
-        let report = CpuRunner::from(model)
-            .step(&mut state, &Drive { world_from_head: pose, wind: Vec3::NAN, hand: Some(Vec3::NAN) });
+        let report = CpuRunner::from(model.clone())
+            .step(&mut state, &Drive { body: pose.into(), wind: Vec3::NAN, hand: Some(Vec3::NAN) });
         assert_eq!(report.non_finite, 0);
-        assert_eq!(state.world_from_head, Pose::IDENTITY);
+        assert_eq!(state.body, BodyFrame::REST);
+        // Root frames of other hair.
+        let other = BodyFrame::from(Pose { translation: Vec3::X, ..Pose::IDENTITY }).with_roots([pose; 3]);
+        CpuRunner::from(model).step(&mut state, &Drive::of(other));
+        assert_eq!(state.body, BodyFrame::REST);
     }
 }

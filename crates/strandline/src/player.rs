@@ -88,7 +88,7 @@ impl Player {
         let mut notes = std::mem::take(&mut prepared.notes);
         let mut session = Session::open(prepared, devices.into())?;
         notes.extend(session.take_notes());
-        let here = session.simulation().end();
+        let here = session.simulation().end().world_from_head();
         let timing = FilmTiming::new(session.scene(), session.head().clone(), here);
         let frames = session.scene().film.frames;
         Ok(Self {
@@ -119,7 +119,7 @@ impl Player {
             let message = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
             return Err(Error::Cache { path: settings.path.clone(), message });
         }
-        self.out = Some(self.session.begin_file(settings)?);
+        self.out = Some(self.session.begin_file(settings, &self.timing.body(0.0))?);
         Ok(())
     }
 
@@ -253,8 +253,8 @@ impl Player {
                 let guides = self.session.view().guides();
                 let mut positions = guides.positions().to_vec();
                 let points = guides.points_per_strand();
-                let world_from_head = cache.read_lanes(frame as usize, points, &mut positions)?;
-                Task::Cached { world_from_head, positions }
+                let body = cache.read_lanes(frame as usize, points, &mut positions)?;
+                Task::Cached { body, positions }
             }
         };
         self.started += 1;

@@ -1,9 +1,18 @@
-//! Which file of a crate imports which, and the circles among them.
+//! Imports between the files of a crate, and the circles among files and among folders.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::text::{blanked, without_tests};
+
+/// Imports by the names of both ends.
+pub type Graph = BTreeMap<String, BTreeSet<String>>;
+
+/// Adds an import to a graph.
+fn add(graph: &mut Graph, from: String, to: String) {
+    graph.entry(to.clone()).or_default();
+    graph.entry(from).or_default().insert(to);
+}
 
 /// The files of a crate as modules.
 #[derive(Default)]
@@ -44,30 +53,62 @@ impl Modules {
     }
 
     /// The files that each file imports.
-    pub fn imports(&self) -> BTreeMap<String, BTreeSet<String>> {
-        let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-        for (path, module) in &self.files {
-            let found = imports.entry(module.file.clone()).or_default();
-            for target in self.named(path, &module.code) {
-                if let Some(other) = self.owner(&target, 0).filter(|other| other.file != module.file) {
-                    found.insert(other.file.clone());
-                }
-            }
+    pub fn imports(&self) -> Graph {
+        let mut imports = Graph::new();
+        for (path, target) in self.edges() {
+            let file = |path: &[String]| self.files[path].file.clone();
+            add(&mut imports, file(path), file(target));
         }
         imports
     }
 
+    /// The circles among folders, each as its members without endings. On every level the members of a folder are its
+    /// files and folders, each with all that lies below it; one imports another where any of its files does. The file
+    /// of a folder (`mod.rs`, or the one of its name beside it) is part of that folder, so that a parent may import its
+    /// children and they may import it. Circles of files alone are left to [`Modules::imports`].
+    pub fn folder_circles(&self) -> Vec<Vec<String>> {
+        let mut levels: BTreeMap<&[String], Graph> = BTreeMap::new();
+        for (path, target) in self.edges() {
+            let shared = path.iter().zip(target).take_while(|(one, other)| one == other).count();
+            if path.len() > shared && target.len() > shared {
+                let member = |path: &[String]| path[..=shared].join("/");
+                add(levels.entry(&path[..shared]).or_default(), member(path), member(target));
+            }
+        }
+        let is_folder = |member: &String| {
+            let below = format!("{member}/");
+            self.files.keys().any(|path| path.join("/").starts_with(&below))
+        };
+        levels.values().flat_map(circles).filter(|circle| circle.iter().any(is_folder)).collect()
+    }
+
+    /// The files of a folder of the crate that import from another, by name.
+    pub fn between(&self, folder: &str, other: &str) -> BTreeSet<&str> {
+        let lies_in = |path: &[String], folder: &str| path.first().is_some_and(|first| first == folder);
+        let wrong = self.edges().filter(|(path, target)| lies_in(path, folder) && lies_in(target, other));
+        wrong.map(|(path, _)| self.files[path].file.as_str()).collect()
+    }
+
+    /// Each import of a module from another, as their paths.
+    fn edges(&self) -> impl Iterator<Item = (&[String], &[String])> {
+        self.files.iter().flat_map(move |(path, module)| {
+            let targets = self.named(path, &module.code);
+            let owners = targets.into_iter().filter_map(|target| self.owner(&target, 0));
+            owners.filter(move |other| *other != path.as_slice()).map(move |other| (path.as_slice(), other))
+        })
+    }
+
     /// The module that a path of the crate leads to, through names that are given on.
-    fn owner(&self, path: &[String], depth: usize) -> Option<&Module> {
+    fn owner(&self, path: &[String], depth: usize) -> Option<&[String]> {
         let known = (0..=path.len()).rev().find(|length| self.files.contains_key(&path[..*length]))?;
-        let module = self.files.get(&path[..known])?;
-        let Some(name) = path.get(known) else { return Some(module) };
+        let (owner, module) = self.files.get_key_value(&path[..known])?;
+        let Some(name) = path.get(known) else { return Some(owner) };
         match module.given_on.get(name) {
             Some(further) if depth < 8 => {
                 let further = [further.clone(), path[known + 1..].to_vec()].concat();
                 self.owner(&further, depth + 1)
             }
-            _ => Some(module),
+            _ => Some(owner),
         }
     }
 
@@ -206,8 +247,8 @@ fn paths(code: &str) -> Vec<Vec<String>> {
     found
 }
 
-/// The circles of a graph: files that all reach each other, sorted.
-pub fn circles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>> {
+/// The circles of a graph: members that all reach each other, sorted.
+pub fn circles(imports: &Graph) -> Vec<Vec<String>> {
     let reach: BTreeMap<&String, BTreeSet<&String>> =
         imports.keys().map(|file| (file, reached(imports, file))).collect();
     let mut circles = BTreeSet::new();
@@ -224,7 +265,7 @@ pub fn circles(imports: &BTreeMap<String, BTreeSet<String>>) -> Vec<Vec<String>>
     circles.into_iter().collect()
 }
 
-fn reached<'a>(imports: &'a BTreeMap<String, BTreeSet<String>>, file: &String) -> BTreeSet<&'a String> {
+fn reached<'a>(imports: &'a Graph, file: &String) -> BTreeSet<&'a String> {
     let mut found = BTreeSet::new();
     let mut waiting: Vec<&String> = imports.get(file).into_iter().flatten().collect();
     while let Some(next) = waiting.pop() {
@@ -239,10 +280,14 @@ fn reached<'a>(imports: &'a BTreeMap<String, BTreeSet<String>>, file: &String) -
 mod tests {
     use super::*;
 
-    fn found(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+    fn modules(files: &[(&str, &str)]) -> Modules {
         let files: Vec<_> =
             files.iter().map(|(file, code)| ((*file).to_owned(), (*code).to_owned())).collect();
-        circles(&Modules::read(&files).imports())
+        Modules::read(&files)
+    }
+
+    fn found(files: &[(&str, &str)]) -> Vec<Vec<String>> {
+        circles(&modules(files).imports())
     }
 
     #[test]
@@ -271,5 +316,63 @@ mod tests {
         let a = "use crate::{\n    b::{self, X as Y},\n};";
         let circle = found(&[("lib.rs", ""), ("a.rs", a), ("b.rs", "fn f() { crate::a::g() }")]);
         assert_eq!(circle, [["a.rs", "b.rs"]]);
+    }
+
+    #[test]
+    fn folders_that_import_each_other_are_a_circle_though_no_files_are() {
+        let planted = [
+            ("lib.rs", "mod a;\nmod b;\npub use a::one::One;\n"),
+            ("a/mod.rs", "pub mod one;\npub mod two;"),
+            ("a/one.rs", "pub struct One;"),
+            ("a/two.rs", "use crate::b::three::Three;"),
+            ("b/mod.rs", "pub mod three;"),
+            ("b/three.rs", "use crate::One;\npub struct Three;"),
+        ];
+        assert!(found(&planted).is_empty());
+        assert_eq!(modules(&planted).folder_circles(), [["a", "b"]]);
+    }
+
+    #[test]
+    fn a_file_beside_a_folder_makes_a_circle_with_it() {
+        let planted = [
+            ("lib.rs", "mod a;\nmod lights;"),
+            ("lights.rs", "use crate::a::one::One;\npub struct Light;"),
+            ("a/mod.rs", "pub mod one;\npub mod two;"),
+            ("a/one.rs", "pub struct One;"),
+            ("a/two.rs", "fn f() { crate::lights::Light }"),
+        ];
+        assert_eq!(modules(&planted).folder_circles(), [["a", "lights"]]);
+        // Below the root too.
+        let below: Vec<_> = planted[1..]
+            .iter()
+            .map(|(file, code)| (format!("x/{file}"), code.replace("crate::", "crate::x::")))
+            .collect();
+        let mut below: Vec<_> = below.iter().map(|(file, code)| (file.as_str(), code.as_str())).collect();
+        below.extend([("lib.rs", "mod x;"), ("x/mod.rs", "mod a;\nmod lights;")]);
+        assert_eq!(modules(&below).folder_circles(), [["x/a", "x/lights"]]);
+    }
+
+    #[test]
+    fn a_folder_and_its_own_file_are_one() {
+        let child = "use super::Size;\npub fn f() {}";
+        let parent = "mod part;\npub struct Size;\nfn g() { part::f() }";
+        for own in ["a/mod.rs", "a.rs"] {
+            let planted = [("lib.rs", "mod a;\nfn h() { a::g() }"), (own, parent), ("a/part.rs", child)];
+            assert!(modules(&planted).folder_circles().is_empty());
+        }
+    }
+
+    #[test]
+    fn imports_from_one_folder_to_another_are_found_through_names_that_are_given_on() {
+        let planted = [
+            ("lib.rs", "mod cpu;\nmod gpu;\npub use cpu::step::Step;"),
+            ("cpu/mod.rs", "pub mod step;"),
+            ("cpu/step.rs", "pub struct Step;"),
+            ("gpu/mod.rs", "mod wrong;\nmod right;"),
+            ("gpu/wrong.rs", "use crate::Step;"),
+            ("gpu/right.rs", "use super::Kernel;"),
+        ];
+        assert_eq!(modules(&planted).between("gpu", "cpu"), BTreeSet::from(["gpu/wrong.rs"]));
+        assert!(modules(&planted).between("cpu", "gpu").is_empty());
     }
 }

@@ -54,9 +54,7 @@ fn artifacts(messages: &str) -> impl Iterator<Item = Value> {
     let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     messages.filter(|message| {
         let own = message["package_id"].as_str().is_some_and(|id| id.starts_with("path+"));
-        own && ["compiler-artifact", "build-script-executed"]
-            .iter()
-            .any(|reason| message["reason"] == *reason)
+        own && message["reason"] == "compiler-artifact"
     })
 }
 

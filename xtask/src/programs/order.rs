@@ -7,10 +7,20 @@ use std::path::PathBuf;
 use super::Program;
 use crate::cargo::root;
 
-/// Seconds by the clock on a quiet machine of two cores, for programs of which no run is kept here.
-const USUAL: [(&str, u32); 0] = [];
-/// Seconds of a program of which nothing is known: early, so that it is never the one that all wait for.
-const UNKNOWN: u32 = 60;
+/// Programs that start first while no run is kept, in this order: by the work and the waiting in their tests.
+const LONG: [&str; 9] = [
+    "strandline-checks/laws",
+    "strandline-checks/parity",
+    "strandline-cli/window",
+    "strandline-cli/reliability",
+    "strandline/it",
+    "strandline-checks/pictures",
+    "strandline/soak",
+    "strandline-cli/program",
+    "strandline-viewer/window",
+];
+/// Seconds that such a program is taken for, and every other one without a kept run.
+const UNKNOWN: [f64; 2] = [600.0, 30.0];
 
 /// Seconds by program of the runs before.
 type Kept = BTreeMap<String, f64>;
@@ -41,12 +51,12 @@ pub fn sort(programs: &mut [Program]) {
 }
 
 fn sort_by(programs: &mut [Program], kept: &Kept) {
-    let usual =
-        |name: &str| USUAL.iter().find(|(known, _)| *known == name).map_or(UNKNOWN, |(_, usual)| *usual);
-    programs.sort_by_cached_key(|program| {
-        let seconds = kept.get(&program.name).copied().unwrap_or_else(|| usual(&program.name).into());
-        Reverse((1000.0 * seconds) as u64)
-    });
+    // The order within `LONG` holds because sorting is stable.
+    let place = |name: &str| LONG.iter().position(|long| *long == name).unwrap_or(LONG.len());
+    programs.sort_by_key(|program| place(&program.name));
+    let seconds =
+        |name: &str| kept.get(name).copied().unwrap_or(UNKNOWN[usize::from(place(name) == LONG.len())]);
+    programs.sort_by_cached_key(|program| Reverse((1000.0 * seconds(&program.name)) as u64));
 }
 
 #[cfg(test)]
@@ -62,9 +72,15 @@ mod tests {
             tests: true,
         };
         let kept = Kept::from([("a/short".into(), 0.5), ("a/long".into(), 90.0), ("a/middle".into(), 7.0)]);
-        let mut programs = ["a/short", "a/middle", "a/new", "a/long"].map(program).to_vec();
-        sort_by(&mut programs, &kept);
-        let names: Vec<_> = programs.iter().map(|program| program.name.as_str()).collect();
-        assert_eq!(names, ["a/long", "a/new", "a/middle", "a/short"]);
+        let sorted = |names: &[&str], kept: &Kept| {
+            let mut programs: Vec<_> = names.iter().map(|name| program(name)).collect();
+            sort_by(&mut programs, kept);
+            programs.into_iter().map(|program| program.name).collect::<Vec<_>>()
+        };
+        let names = ["a/short", "a/middle", "a/new", "a/long"];
+        assert_eq!(sorted(&names, &kept), ["a/long", "a/new", "a/middle", "a/short"]);
+        // Without a kept run.
+        let names = ["a/new", "strandline/it", "strandline-checks/laws"];
+        assert_eq!(sorted(&names, &Kept::new()), ["strandline-checks/laws", "strandline/it", "a/new"]);
     }
 }

@@ -1,9 +1,9 @@
 //! Positions of bound strands: eight at a time, one lane per strand.
 
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::{Rigid, Vec3x8};
-use strandline_body::Pose;
+use strandline_body::{BodyFrame, Solids};
 use wide::f32x8;
 
 use super::frames::{Frame, Frames};
@@ -12,39 +12,62 @@ use super::{Binding, Surface};
 use crate::{LANES, Vec3Lanes, outside::placed_outside};
 
 impl Binding {
+    /// Fills `out` with the points of all strands \[m\], world space, shape `[block][point]` of lanes, given those of
+    /// the guides in the same shape: [`Binding::follow`], then [`Binding::place`] out of solids. `frames` is used
+    /// again from call to call.
+    pub fn carry(
+        &self,
+        guides: &[Vec3Lanes],
+        body: &BodyFrame,
+        solids: &Solids,
+        frames: &mut Frames,
+        out: &mut Vec<Vec3Lanes>,
+    ) {
+        let placed = solids.placed(body);
+        let at = |point: Vec3| placed.at(point);
+        let at_least = |point: Vec3| placed.at_least(point);
+        let surface = Surface { at: &at, at_least: &at_least };
+        let surface = (!placed.is_empty()).then_some(&surface);
+        self.follow(guides, body, frames);
+        self.place(frames, body, surface, out);
+    }
+
     /// Positions of all strands \[m\], world space, shape `[block][point]` of lanes, from the frames of the
-    /// guides ([`Binding::follow`]). Roots move with the head. Segments have their rest lengths, scaled as
-    /// those of the guides are. Points inside the body are put onto its surface.
+    /// guides ([`Binding::follow`]). Roots move with the head, or with the guides of their strands where these have
+    /// root frames of their own. Segments have their rest lengths, scaled as those of the guides are. Points inside the
+    /// body are put onto its surface.
     pub fn place(
         &self,
         frames: &Frames,
-        world_from_head: &Pose,
+        body: &BodyFrame,
         surface: Option<&Surface>,
         out: &mut Vec<Vec3Lanes>,
     ) {
         let count = self.strands.points_per_strand();
-        let turn = Rigid::new(world_from_head);
+        let turn = Rigid::new(&body.world_from_head());
+        let rides = body.roots().is_none();
         out.resize(self.strands.positions().len(), Vec3Lanes::default());
         let blocks = out.par_chunks_mut(count).zip_eq(self.strands.positions().par_chunks(count));
         blocks.zip_eq(&self.blocks).for_each(|((places, rest), followed)| {
-            place_block(rest, followed, frames, &turn, surface, places);
+            place_block(rest, followed, frames, (&turn, rides), surface, places);
         });
     }
 }
 
-/// Places the strands of a block, at rest at `rest` \[m\].
+/// Places the strands of a block, at rest at `rest` \[m\]; `rides` tells whether their roots ride the head.
 fn place_block(
     rest: &[Vec3Lanes],
     followed: &[Followed; MOST_INFLUENCES],
     frames: &Frames,
-    turn: &Rigid,
+    (turn, rides): (&Rigid, bool),
     surface: Option<&Surface>,
     places: &mut [Vec3Lanes],
 ) {
     let count = rest.len();
     let scale = scales(followed, frames);
     let mut here = Vec3x8::load(&rest[0]);
-    let mut before = turn.points(here);
+    let mut before =
+        if rides { turn.points(here) } else { blend(followed, &frames.points, 0, count, &rest[0]) };
     // Place of the point before by the frames: segments lead from one such place to the next.
     let mut blended_before = before;
     // Lower bound of the distance \[m\] to the surface.

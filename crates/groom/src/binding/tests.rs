@@ -1,3 +1,5 @@
+use strandline_body::Pose;
+
 use super::*;
 use crate::Influences;
 
@@ -22,7 +24,7 @@ fn bound(groom: &Groom, guides: &[usize]) -> Binding {
     Binding::new(groom, guides, resample(groom), resample(&groom.select(guides))).unwrap()
 }
 
-fn places(binding: &Binding, positions: &[Vec3Lanes], pose: &Pose) -> Vec<Vec3Lanes> {
+fn places(binding: &Binding, positions: &[Vec3Lanes], pose: &BodyFrame) -> Vec<Vec3Lanes> {
     let (mut frames, mut out) = (Frames::default(), Vec::new());
     binding.follow(positions, pose, &mut frames);
     binding.place(&frames, pose, None, &mut out);
@@ -42,7 +44,7 @@ fn a_groom_at_rest_is_itself_wherever_the_head_is() {
     let groom = groom();
     let binding = bound(&groom, &groom.representatives(30));
     let pose = Pose { rotation: Quat::from_rotation_y(0.7), translation: Vec3::new(1.0, -2.0, 0.5) };
-    let found = places(&binding, &moved(binding.guides(), |point| pose.point(point)), &pose);
+    let found = places(&binding, &moved(binding.guides(), |point| pose.point(point)), &pose.into());
     let mut worst = 0.0_f32;
     for strand in 0..groom.strand_count() {
         for point in 0..POINTS {
@@ -64,7 +66,7 @@ fn bound_strands_keep_their_lengths_and_go_where_their_guides_go() {
         let angle = 6.0 * point.y;
         Vec3::new(point.x + (1.0 - angle.cos()) / 6.0, angle.sin() / 6.0, point.z)
     };
-    let found = places(&binding, &moved(binding.guides(), lean), &Pose::IDENTITY);
+    let found = places(&binding, &moved(binding.guides(), lean), &BodyFrame::REST);
     let place = |strand: usize, point: usize| found[strand / LANES * POINTS + point].get(strand % LANES);
     let (mut sum, mut count) = (0.0, 0.0);
     for strand in 0..groom.strand_count() {
@@ -92,9 +94,9 @@ fn guides_that_are_cut_cut_the_strands_about_them() {
     let binding = bound(&groom, &groom.representatives(30));
     let half = moved(binding.guides(), |point| Vec3::new(point.x, 0.5 * point.y, point.z));
     let mut frames = Frames::default();
-    binding.follow(&half, &Pose::IDENTITY, &mut frames);
+    binding.follow(&half, &BodyFrame::REST, &mut frames);
     let scales = frames.scales();
-    let found = places(&binding, &half, &Pose::IDENTITY);
+    let found = places(&binding, &half, &BodyFrame::REST);
     let length: f32 = (1..POINTS).map(|point| found[point].get(3).distance(found[point - 1].get(3))).sum();
     let share = length / groom.lengths()[3];
     let mean = scales.iter().sum::<f32>() / scales.len() as f32;
@@ -118,8 +120,8 @@ fn points_come_out_of_the_body() {
     let sunk = moved(binding.guides(), |point| Vec3::new(point.x, -0.3 * point.y, point.z + point.y));
     let deep = |surface_of: Option<&Surface>| {
         let (mut frames, mut out) = (Frames::default(), Vec::new());
-        binding.follow(&sunk, &Pose::IDENTITY, &mut frames);
-        binding.place(&frames, &Pose::IDENTITY, surface_of, &mut out);
+        binding.follow(&sunk, &BodyFrame::REST, &mut frames);
+        binding.place(&frames, &BodyFrame::REST, surface_of, &mut out);
         let place = |strand: usize, point: usize| out[strand / LANES * POINTS + point].get(strand % LANES);
         let strands = (0..groom.strand_count()).filter(|strand| surface(place(*strand, 0)).0 >= 0.0);
         strands
@@ -152,7 +154,7 @@ fn a_guide_that_is_no_number_spoils_its_own_strands_alone() {
     let binding = bound(&groom, &[0, 150, 399]);
     let mut positions = moved(binding.guides(), |point| point);
     (0..POINTS).for_each(|point| positions[point].set(0, Vec3::NAN));
-    let found = places(&binding, &positions, &Pose::IDENTITY);
+    let found = places(&binding, &positions, &BodyFrame::REST);
     let is_finite = |strand: usize| {
         (0..POINTS).all(|point| found[strand / LANES * POINTS + point].get(strand % LANES).is_finite())
     };

@@ -1,5 +1,5 @@
 use glam::Vec3;
-use strandline_body::{Aabb, Pose};
+use strandline_body::{Aabb, BodyFrame};
 use strandline_groom::{Guides, Vec3Lanes};
 
 use super::middle;
@@ -12,8 +12,8 @@ use crate::{BodyLook, Camera, DetailLevel, LevelOfDetail, Light, Look, PictureSe
 pub struct FrameInput<'a> {
     /// Guide points \[m\], world space, shape `[block][point]` of lanes.
     pub positions: &'a [Vec3Lanes],
-    /// Pose of the head.
-    pub world_from_head: Pose,
+    /// The body.
+    pub body: &'a BodyFrame,
     /// The camera.
     pub camera: &'a Camera,
     /// The hair's look.
@@ -42,7 +42,7 @@ impl FrameInput<'_> {
     /// What is drawn of guides that lie in a box at rest \[m\], head space, in a picture of so many rows.
     pub(crate) fn level(&self, bounds: Aabb, rows: u32, guides: &Guides) -> DetailLevel {
         let (detail, eye) =
-            (self.level_of_detail, self.world_from_head.inverse().point(self.camera.position));
+            (self.level_of_detail, self.body.world_from_head().inverse().point(self.camera.position));
         let outside = (bounds.min - eye).max(eye - bounds.max).max(Vec3::ZERO).length();
         let distances = [eye.distance(middle(bounds)), outside];
         let scale = detail.view_scale(self.camera, rows);

@@ -10,8 +10,8 @@ use super::records::{Curve, Root, Tap, Vertex};
 use super::scene::Scene;
 use super::shadow::fit::BOX;
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
-use crate::cpu::strands::scalp::root_densities;
-use crate::cpu::strands::tessellate::skin_axes;
+use crate::strands::curve::skin_axes;
+use crate::strands::scalp::root_densities;
 use crate::{PictureSettings, RenderError};
 
 /// Format of the samples: the widest that blends on every device.

@@ -9,10 +9,11 @@ use super::frame::samples;
 use super::inputs::Frame;
 use super::probe::from_half;
 use super::shade::Numbers;
-use crate::cpu::Samples;
-use crate::cpu::draw::known::{body_depths, nearest_strands};
-use crate::cpu::resolve_linear;
+use crate::frame::filter::resolve_linear;
+use crate::frame::known::{body_depths, nearest_strands};
+use crate::frame::samples::Samples;
 use crate::frame::{
+    Stage,
     channels::{BLACK, Known},
     middle,
 };
@@ -41,7 +42,7 @@ impl GpuRenderer {
         let bodies = body_depths(&found, scale);
         let strands = nearest_strands(&self.strands()?, input.camera, &found, scale);
         let mut covered = self.with_numbers(input, COVERAGE_AND_DEPTH, &mut found)?;
-        let middle = input.world_from_head.point(middle(self.bounds));
+        let middle = input.body.world_from_head().point(middle(self.bounds));
         let depth = -input.camera.view_from_world().transform_point3(middle).z;
         covered.iter_mut().for_each(|hair| hair.y += depth * hair.x);
         let directions = self.with_numbers(input, TANGENT, &mut found)?;
@@ -75,7 +76,7 @@ impl GpuRenderer {
         let points = scene.strand_count() * scene.curve_points();
         self.gpu.ask("channels", || {
             let mut recorder = Recorder::new(&self.gpu, None);
-            recorder.stage("shade", &[numbers.over(points)]);
+            recorder.stage(Stage::Shade.name(), &[numbers.over(points)]);
             samples(&mut recorder, &scene, &self.held(stages));
             self.gpu.queue().submit([recorder.finish(|_| ())]);
         })?;

@@ -1,4 +1,4 @@
-//! A frame as a list of stages, recorded into one submission.
+//! The stages of a frame, recorded into one submission.
 
 use strandline_gpu::{Amount, Bound, BoundDrawing, Buffer, Recorder, Targets, groups, wgpu};
 
@@ -9,16 +9,17 @@ use super::scene::Scene;
 use super::shadow::fit;
 use super::stages::Stages;
 use super::{buffers, draw};
-use crate::cpu::scatter::lattice::DIRECTIONS;
+use crate::frame::{Drawn, Stage, stages};
+use crate::scatter::lattice::DIRECTIONS;
 
-/// What a frame is recorded from.
+/// Kernels, drawings and buffers of a frame.
 pub(super) struct Bounds<'a> {
-    /// What places strands that guides carry; nothing without such.
+    /// Places strands that guides carry; empty without such.
     pub bound: Vec<(Bound, [u32; 3])>,
     pub tessellate: Bound,
-    /// What keeps such strands out of solids.
+    /// Keeps such strands out of solids.
     pub keep_outside: Option<(Bound, [u32; 3])>,
-    /// What colours the hair by layers, where that is asked for.
+    /// Colours the hair by layers, where that is asked for.
     pub layer_colors: Option<Bound>,
     pub resolve: &'a BoundDrawing,
     pub maps: &'a Maps,
@@ -26,7 +27,7 @@ pub(super) struct Bounds<'a> {
     pub held: Held<'a>,
 }
 
-/// What a renderer keeps from frame to frame.
+/// Kernels and buffers that a renderer keeps from frame to frame.
 #[derive(Clone, Copy)]
 pub(super) struct Held<'a> {
     pub groom: &'a Groom,
@@ -34,46 +35,80 @@ pub(super) struct Held<'a> {
     /// Scattered light, once a look asked for it.
     pub light_grid: Option<&'a LightGrid>,
     pub indices: &'a Buffer<u32>,
-    /// What samples are drawn into.
+    /// Textures that samples are drawn into.
     pub samples: &'a buffers::Targets,
+}
+
+/// A frame while it is recorded.
+struct Frame<'a> {
+    scene: &'a Scene<'a>,
+    bounds: &'a Bounds<'a>,
 }
 
 /// Records every stage in order.
 pub(super) fn record(recorder: &mut Recorder, scene: &Scene, bounds: &Bounds) {
-    let Held { stages, groom, .. } = bounds.held;
-    let (strands, segments) = (scene.strand_count(), scene.strand_count() * (scene.curve_points() - 1));
-    let points = scene.strand_count() * scene.curve_points();
-    let one = |bound: &Bound, threads: usize| [bound.clone().over(threads)];
+    let frame = Frame { scene, bounds };
+    let drawn = if bounds.bound.is_empty() { Drawn::Guides } else { Drawn::Carried };
+    stages(drawn).for_each(|stage| frame.record(recorder, stage));
+}
 
-    if !bounds.bound.is_empty() {
-        recorder.stage("bind", &bounds.bound);
-    }
-    recorder.stage("tessellate", &one(&bounds.tessellate, scene.guide_count));
-    let interpolate = one(&stages.interpolate, points).into_iter().chain(bounds.keep_outside.clone());
-    recorder.stage("interpolate", &interpolate.collect::<Vec<_>>());
-    record_opacity(recorder, scene, stages, bounds.maps);
-    recorder.clear(&groom.areas);
-    recorder.stage("shade", &one(&stages.sum_areas, segments));
-    recorder.stage("shade", &[(stages.sweep.clone(), [6, 1, 1])]);
-    match &scattering(scene, &bounds.held) {
-        Some((grid, light)) => {
-            recorder.clear(grid.sums());
-            recorder.stage("shade", &light_stages(scene, light, segments));
-            recorder.stage("shade", &one(&light.shade, points));
+impl Frame<'_> {
+    fn record(&self, recorder: &mut Recorder, stage: Stage) {
+        let Self { scene, bounds } = *self;
+        let (stages, name) = (bounds.held.stages, stage.name());
+        match stage {
+            Stage::Bind => recorder.stage(name, &bounds.bound),
+            Stage::Tessellate => {
+                recorder.stage(name, &[bounds.tessellate.clone().over(scene.guide_count)]);
+            }
+            Stage::Interpolate => {
+                let placed = [stages.interpolate.clone().over(scene.point_count())];
+                let list: Vec<_> = placed.into_iter().chain(bounds.keep_outside.clone()).collect();
+                recorder.stage(name, &list);
+            }
+            Stage::OpacityDepth => opacity_depth(recorder, scene, stages, bounds.maps),
+            Stage::OpacityLayers => opacity_layers(recorder, scene, stages),
+            Stage::Shade => self.shade(recorder),
+            Stage::Draw => self.draw(recorder),
+            Stage::Resolve => self.resolve(recorder),
         }
-        None => recorder.stage("shade", &one(&stages.shade, points)),
     }
-    if let Some(layer_colors) = &bounds.layer_colors {
-        recorder.stage("shade", &one(layer_colors, points));
+
+    fn shade(&self, recorder: &mut Recorder) {
+        let Self { scene, bounds } = *self;
+        let (Held { stages, groom, .. }, name) = (bounds.held, Stage::Shade.name());
+        let one = |bound: &Bound, threads: usize| [bound.clone().over(threads)];
+        let points = scene.point_count();
+        recorder.clear(&groom.areas);
+        recorder.stage(name, &one(&stages.sum_areas, scene.segment_count()));
+        recorder.stage(name, &[(stages.sweep.clone(), [6, 1, 1])]);
+        match &scattering(scene, &bounds.held) {
+            Some((grid, light)) => {
+                recorder.clear(grid.sums());
+                recorder.stage(name, &light_stages(scene, light));
+                recorder.stage(name, &one(&light.shade, points));
+            }
+            None => recorder.stage(name, &one(&stages.shade, points)),
+        }
+        bounds.layer_colors.iter().for_each(|layers| recorder.stage(name, &one(layers, points)));
     }
-    recorder.clear(&groom.starts);
-    recorder.stage("draw", &one(&stages.list_segments, strands));
-    recorder.stage("draw", &stages.scan);
-    recorder.stage("draw", &one(&stages.order_segments, segments));
-    samples(recorder, scene, &bounds.held);
-    let target =
-        Targets { color: Some((bounds.target, wgpu::LoadOp::Clear(wgpu::Color::BLACK))), depth: None };
-    recorder.draw("resolve", &target, &[(bounds.resolve, Amount::Vertices { count: 3, instance: 0 })]);
+
+    fn draw(&self, recorder: &mut Recorder) {
+        let Self { scene, bounds } = *self;
+        let (Held { stages, groom, .. }, name) = (bounds.held, Stage::Draw.name());
+        recorder.clear(&groom.starts);
+        recorder.stage(name, &[stages.list_segments.clone().over(scene.strand_count())]);
+        recorder.stage(name, &stages.scan);
+        recorder.stage(name, &[stages.order_segments.clone().over(scene.segment_count())]);
+        samples(recorder, scene, &bounds.held);
+    }
+
+    fn resolve(&self, recorder: &mut Recorder) {
+        let color = Some((self.bounds.target, wgpu::LoadOp::Clear(wgpu::Color::BLACK)));
+        let corners = Amount::Vertices { count: 3, instance: 0 };
+        let list = [(self.bounds.resolve, corners)];
+        recorder.draw(Stage::Resolve.name(), &Targets { color, depth: None }, &list);
+    }
 }
 
 /// Scattered light, where the look has it.
@@ -84,8 +119,8 @@ fn scattering<'a>(scene: &Scene, held: &Held<'a>) -> Option<(&'a LightGrid, &'a 
 }
 
 /// Hair and skin summed into cells, and light carried through them.
-fn light_stages(scene: &Scene, light: &light_grid::Bounds, segments: usize) -> Vec<(Bound, [u32; 3])> {
-    let mut list = vec![light.sum_hair.clone().over(segments)];
+fn light_stages(scene: &Scene, light: &light_grid::Bounds) -> Vec<(Bound, [u32; 3])> {
+    let mut list = vec![light.sum_hair.clone().over(scene.segment_count())];
     if scene.triangle_count > 0 {
         list.push(light.sum_skin.clone().over(scene.triangle_count));
     }
@@ -101,30 +136,35 @@ fn light_stages(scene: &Scene, light: &light_grid::Bounds, segments: usize) -> V
     list
 }
 
-/// Records the deep opacity maps of every light with shadow.
-pub(super) fn record_opacity(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &Maps) {
-    let strands = scene.strand_count();
-    let segments = strands * (scene.curve_points() - 1);
-    let lit = |bound: &Bound| [for_each_light(bound, segments, scene)];
-    recorder.stage("opacity_depth", &fitting(scene, stages, strands * scene.curve_points()));
+/// Records the windows of the maps, and the first depths in those of every light with shadow.
+pub(super) fn opacity_depth(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &Maps) {
+    let name = Stage::OpacityDepth.name();
+    recorder.stage(name, &fitting(scene, stages));
     if scene.shadow_count() > 0 {
         body_depths(recorder, scene, stages, maps);
-        recorder.stage("opacity_depth", &lit(&stages.opacity_depth));
-        recorder.stage("opacity_layers", &lit(&stages.opacity_layers));
+        recorder.stage(name, &[for_each_light(&stages.opacity_depth, scene.segment_count(), scene)]);
     }
 }
 
-/// So many threads for every light with shadow.
+/// Records the layers in the maps of every light with shadow.
+pub(super) fn opacity_layers(recorder: &mut Recorder, scene: &Scene, stages: &Stages) {
+    if scene.shadow_count() > 0 {
+        let layers = for_each_light(&stages.opacity_layers, scene.segment_count(), scene);
+        recorder.stage(Stage::OpacityLayers.name(), &[layers]);
+    }
+}
+
+/// A number of threads for each light with shadow.
 fn for_each_light(bound: &Bound, threads: usize, scene: &Scene) -> (Bound, [u32; 3]) {
     let [x, y, _] = bound.groups(threads);
     (bound.clone(), [x, y, scene.shadow_count().max(1) as u32])
 }
 
-/// Where everything lies, and empty maps.
-fn fitting(scene: &Scene, stages: &Stages, points: usize) -> Vec<(Bound, [u32; 3])> {
+/// Boxes of hair and body, windows of the maps in them, and empty maps.
+fn fitting(scene: &Scene, stages: &Stages) -> Vec<(Bound, [u32; 3])> {
     let measured = |bound: &Bound, count: usize| for_each_light(bound, count.div_ceil(fit::RUN), scene);
     let texels = scene.shadow_count() * (scene.input.look.shadow.map_size as usize).pow(2);
-    let mut list = vec![measured(&stages.measure_hair, points)];
+    let mut list = vec![measured(&stages.measure_hair, scene.point_count())];
     if scene.vertex_count > 0 && scene.shadow_count() > 0 {
         list.push(measured(&stages.measure_body, scene.vertex_count));
     }
@@ -143,7 +183,8 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
     for slot in 0..scene.shadow_count() {
         let depth = Some((maps.body_depth.view(), wgpu::LoadOp::Clear(1.0)));
         let amount = Amount::Vertices { count, instance: slot as u32 };
-        recorder.draw("opacity_depth", &Targets { color: None, depth }, &[(&stages.body_depth, amount)]);
+        let targets = Targets { color: None, depth };
+        recorder.draw(Stage::OpacityDepth.name(), &targets, &[(&stages.body_depth, amount)]);
         let layout = wgpu::TexelCopyBufferLayout {
             offset: slot as u64 * u64::from(row_bytes) * u64::from(maps.size),
             bytes_per_row: Some(row_bytes),
@@ -162,8 +203,7 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
 
 /// Background, body and hair, in this order.
 pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, held: &Held) {
-    let segments = scene.strand_count() * (scene.curve_points() - 1);
-    let instances = segments.div_ceil(draw::BATCH) as u32;
+    let instances = scene.segment_count().div_ceil(draw::BATCH) as u32;
     let mut list = Vec::new();
     if !scene.settings.transparent {
         list.push((&held.stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
@@ -178,5 +218,5 @@ pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, held: &Held) {
         color: Some((held.samples.samples.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))),
         depth: Some((held.samples.depth.view(), wgpu::LoadOp::Clear(0.0))),
     };
-    recorder.draw("draw", &targets, &list);
+    recorder.draw(Stage::Draw.name(), &targets, &list);
 }

@@ -6,9 +6,9 @@ use strandline_gpu::{Rigid, mirror};
 
 use super::scene::Scene;
 use super::{MAX_SHADOWS, codes};
-use crate::cpu::shadow::LightView;
 use crate::fibre::{Pigment, scheuermann::Numbers};
 use crate::level_of_detail::EveryFew;
+use crate::shadow::LightView;
 use crate::{LightKind, Look, ToneMap};
 
 mirror! {
@@ -216,7 +216,7 @@ impl Frame {
         let (width, height) = (settings.width as f32, settings.height as f32);
         let (scale, map_size) = (settings.supersampling as f32, input.look.hair_shadow().map_size);
         Self {
-            world_from_head: Rigid::from(&input.world_from_head),
+            world_from_head: Rigid::from(&input.body.world_from_head()),
             view_from_world: Rigid::from(&input.camera.view_from_world()),
             eye: input.camera.position.to_array(),
             share: scene.share,
@@ -225,7 +225,7 @@ impl Frame {
             near: input.camera.near,
             background_top: settings.background.top.to_array(),
             background_bottom: settings.background.bottom.to_array(),
-            widening: crate::cpu::strands::interpolate::widening(input.look, scene.guide_count),
+            widening: crate::strands::clump::widening(input.look, scene.guide_count),
             guide_count: scene.guide_count as u32,
             guide_points: scene.guide_points as u32,
             curve_points: scene.curve_points() as u32,
@@ -295,7 +295,7 @@ impl LightSource {
     /// The lights of a frame; those with shadow are numbered in their order.
     pub fn all(scene: &Scene) -> Vec<Self> {
         let (center, radius) = scene.body_ball;
-        let center = scene.input.world_from_head.point(center);
+        let center = scene.input.body.world_from_head().point(center);
         let mut slot = 0;
         let mut casters = Vec::new();
         let mut sources = Vec::new();

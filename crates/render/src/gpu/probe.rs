@@ -5,12 +5,13 @@ use strandline_gpu::{Buffer, Recorder};
 use strandline_groom::Vec3Lanes;
 
 use super::GpuRenderer;
-use super::frame::record_opacity;
+use super::frame::{opacity_depth, opacity_layers};
 use super::records::Curve;
 use super::renderer::Drawn;
 use super::scene::Scene;
-use crate::cpu::shadow::{LightView, ShadowMap, Shadows, Window};
-use crate::{DetailLevel, FrameInput, Light, Picture, RenderError, Shadow, cpu};
+use crate::shadow::{LightView, ShadowMap, Shadows, Window};
+use crate::strands::Strands;
+use crate::{DetailLevel, FrameInput, Light, Picture, RenderError, Shadow};
 
 /// Half floats as they are stored.
 pub(super) fn from_half(bits: u32) -> f32 {
@@ -66,8 +67,8 @@ impl GpuRenderer {
     ///
     /// # Panics
     /// Nothing was drawn yet.
-    pub fn strands(&self) -> Result<cpu::Strands, RenderError> {
-        let mut strands = cpu::Strands::default();
+    pub fn strands(&self) -> Result<Strands, RenderError> {
+        let mut strands = Strands::default();
         let drawn = self.drawn;
         strands.resize(self.guides.strand_count(), drawn.strands_per_guide, drawn.curve_points);
         strands.left_out = drawn.left_out;
@@ -131,7 +132,7 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// Whatever the device refuses.
-    pub fn shadows_of(&mut self, strands: &cpu::Strands, input: &FrameInput) -> Result<Shadows, RenderError> {
+    pub fn shadows_of(&mut self, strands: &Strands, input: &FrameInput) -> Result<Shadows, RenderError> {
         let settings = self.settings;
         let scene = Scene {
             level: DetailLevel::full(1, 1),
@@ -148,7 +149,8 @@ impl GpuRenderer {
         self.strands.iter().try_for_each(|room| room.points.write(&points))?;
         self.gpu.ask("opacity maps", || {
             let mut recorder = Recorder::new(&self.gpu, None);
-            record_opacity(&mut recorder, &scene, stages, maps);
+            opacity_depth(&mut recorder, &scene, stages, maps);
+            opacity_layers(&mut recorder, &scene, stages);
             self.gpu.queue().submit([recorder.finish(|_| ())]);
         })?;
         self.drawn = Drawn { shadows: scene.shadow_count(), ..Drawn::default() };

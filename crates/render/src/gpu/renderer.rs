@@ -19,9 +19,9 @@ use super::strands::device_points::DevicePoints;
 use super::strands::points::GuidePoints;
 use super::strands::tessellate;
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw};
-use crate::cpu::scatter::mixture::{OwnColors, Source};
 use crate::frame::{bounds, middle};
 use crate::lights::at_samples;
+use crate::scatter::source::{OwnColors, Source};
 use crate::{FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
 
 /// Draws frames of one groom on one body on a GPU; keeps its buffers from frame to frame.
@@ -296,7 +296,7 @@ impl GpuRenderer {
         settings: &'a PictureSettings,
         share: f32,
     ) -> Scene<'a> {
-        let middle = input.world_from_head.point(middle(self.bounds));
+        let middle = input.body.world_from_head().point(middle(self.bounds));
         Scene {
             input,
             settings,

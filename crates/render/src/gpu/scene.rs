@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{DetailLevel, FrameInput, PictureSettings};
 
-/// What one frame shows, worked out on the host.
+/// A frame as the host works it out.
 pub(super) struct Scene<'a> {
     pub input: &'a FrameInput<'a>,
     pub settings: &'a PictureSettings,
@@ -17,7 +17,7 @@ pub(super) struct Scene<'a> {
     /// 0 none, 1 open, 2 closed.
     pub body_kind: u32,
     pub body_ball: (Vec3, f32),
-    /// What of the groom is drawn: see codes.rs.
+    /// Attributes of the groom that are drawn: see codes.rs.
     pub own: u32,
     /// Middle of the hair \[m\], world space.
     pub middle: Vec3,
@@ -32,6 +32,14 @@ impl Scene<'_> {
 
     pub fn strand_count(&self) -> usize {
         self.guide_count * self.level.strand_count()
+    }
+
+    pub fn point_count(&self) -> usize {
+        self.strand_count() * self.curve_points()
+    }
+
+    pub fn segment_count(&self) -> usize {
+        self.strand_count() * (self.curve_points() - 1)
     }
 
     /// Strands at full detail.

@@ -8,7 +8,7 @@ use super::buffers::{Groom, Maps, Strands};
 use super::draw::{background, body, sort};
 use super::scatter::{light_grid, occlude};
 use super::shadow::{fit, opacity_depth, opacity_layers};
-use super::strands::{bound, interpolate, tessellate};
+use super::strands::{bind, interpolate, tessellate};
 use super::{draw, resolve, shade};
 
 /// Declares what of a frame is bound once for all pictures: each kernel, and each drawing with how it joins what is
@@ -113,7 +113,7 @@ stages! {
 /// bound where a groom, a look or a picture asks for them.
 pub fn declarations() -> Vec<Declaration> {
     let mut all = of_stages();
-    all.extend(bound::declarations());
+    all.extend(bind::declarations());
     all.extend(light_grid::declarations());
     all.extend([
         tessellate::Tessellate::declaration(),

@@ -16,7 +16,7 @@ use strandline_base::math;
 
 pub use panorama::Panorama;
 
-use crate::cpu::scatter::light_field::{self, Field};
+use crate::light_field::{self, Field};
 use crate::{Light, LightKind};
 
 /// Most lights that are taken out of a picture.

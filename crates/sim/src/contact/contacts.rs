@@ -9,7 +9,7 @@
 //! lies in between.
 
 use glam::Vec3;
-use strandline_body::{Carrier, Collider, Pose};
+use strandline_body::{BodyFrame, Carrier, Collider, Pose};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
@@ -57,6 +57,8 @@ pub struct Query {
     pub free: f32x8,
     /// How careful to be.
     pub care: Care,
+    /// Part of the step.
+    pub part: u32,
 }
 
 /// What the points of one index in a block remember, in the space of their carrier.
@@ -94,9 +96,7 @@ impl Plane {
 impl Contacts {
     /// Planes for a number of blocks, nothing known yet; the order of a block is `[carrier][point]`.
     pub fn new(colliders: &[Collider], block_count: usize, points: usize) -> Self {
-        let carriers = [Carrier::Head, Carrier::World];
-        let used = carriers.iter().filter(|carrier| colliders.iter().any(|c| c.carrier == **carrier));
-        Self { blocks: vec![vec![Plane::UNKNOWN; used.count() * points]; block_count] }
+        Self { blocks: vec![vec![Plane::UNKNOWN; carriers(colliders).len() * points]; block_count] }
     }
 
     /// Numbers of a plane for each strand.
@@ -118,11 +118,26 @@ impl Contacts {
     }
 }
 
-/// The solids of a step, by what carries them.
+/// The carriers of colliders, each once: pieces of the body in their order, then the world.
+pub(crate) fn carriers(colliders: &[Collider]) -> Vec<Carrier> {
+    let mut carriers: Vec<Carrier> = colliders.iter().map(|collider| collider.carrier).collect();
+    carriers.sort_unstable();
+    carriers.dedup();
+    carriers
+}
+
+/// Transform of a carrier, `world_from_carrier`.
+fn pose(frame: &BodyFrame, carrier: Carrier) -> Pose {
+    match carrier {
+        Carrier::Piece(piece) => frame.piece(piece.into()),
+        Carrier::World => Pose::IDENTITY,
+    }
+}
+
+/// The solids of a step, grouped by carrier.
 pub struct Solids<'a> {
     groups: Vec<Group<'a>>,
-    obstacles: Obstacles<'a>,
-    head_from_world: Pose,
+    obstacles: &'a Obstacles<'a>,
     points: usize,
 }
 
@@ -132,28 +147,37 @@ struct Group<'a> {
     world_from_carrier: Rigid,
     /// Carries what rests on the solid from the start to the end of the step.
     end_from_start: Rigid,
+    /// Carries it through each part of the step; empty for a step in one.
+    part_moves: Vec<Rigid>,
 }
 
 impl<'a> Solids<'a> {
     /// Places the colliders for a step of strands with a number of points.
-    pub fn new(obstacles: &Obstacles<'a>, points: usize) -> Self {
-        let start_inverse = obstacles.start.inverse();
-        let moved = Pose {
-            rotation: obstacles.end.rotation * start_inverse.rotation,
-            translation: obstacles.end.point(start_inverse.translation),
+    pub fn new(obstacles: &'a Obstacles<'a>, points: usize) -> Self {
+        let group = |carrier| {
+            let [start, end] = [&obstacles.start, &obstacles.end].map(|frame| pose(frame, carrier));
+            let moved = if carrier == Carrier::World { Pose::IDENTITY } else { start.motion_to(&end) };
+            Group {
+                colliders: obstacles.colliders.iter().filter(|c| c.carrier == carrier).collect(),
+                carrier_from_world: Rigid::new(&end.inverse()),
+                world_from_carrier: Rigid::new(&end),
+                end_from_start: Rigid::new(&moved),
+                part_moves: Vec::new(),
+            }
         };
-        let groups =
-            [(Carrier::Head, obstacles.end, moved), (Carrier::World, Pose::IDENTITY, Pose::IDENTITY)]
-                .into_iter()
-                .map(|(carrier, pose, moved)| Group {
-                    colliders: obstacles.colliders.iter().filter(|c| c.carrier == carrier).collect(),
-                    carrier_from_world: Rigid::new(&pose.inverse()),
-                    world_from_carrier: Rigid::new(&pose),
-                    end_from_start: Rigid::new(&moved),
-                })
-                .filter(|group| !group.colliders.is_empty())
-                .collect();
-        Self { groups, obstacles: *obstacles, head_from_world: obstacles.end.inverse(), points }
+        let groups = carriers(obstacles.colliders).into_iter().map(group).collect();
+        Self { groups, obstacles, points }
+    }
+
+    /// Places the colliders for a step in a number of parts.
+    pub fn in_parts(obstacles: &'a Obstacles<'a>, points: usize, parts: u32) -> Self {
+        let mut solids = Self::new(obstacles, points);
+        for (group, carrier) in solids.groups.iter_mut().zip(carriers(obstacles.colliders)) {
+            let [start, end] = [&obstacles.start, &obstacles.end].map(|frame| pose(frame, carrier));
+            let moves = (0..parts).map(|part| Rigid::of_axes(&start.part_of_way(&end, part, parts).1));
+            group.part_moves = moves.collect();
+        }
+        solids
     }
 
     /// Whether there is nothing to hit.
@@ -163,7 +187,7 @@ impl<'a> Solids<'a> {
 
     /// What the points of one index may touch; `None` when no free lane is near a solid.
     pub fn touch(&self, planes: &mut [Plane], point: usize, query: Query) -> Option<Touch> {
-        let Query { position, start, margin, free, care } = query;
+        let Query { position, start, margin, free, care, part } = query;
         let mut touch: Option<Touch> = None;
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
             let plane = &mut planes[point];
@@ -181,7 +205,10 @@ impl<'a> Solids<'a> {
                 normal,
                 offset: near.bitselect(offset, splat(f32::NEG_INFINITY)),
                 friction: load(&plane.friction),
-                stuck: stuck.unwrap_or(position),
+                stuck: match (start, group.part_moves.get(part as usize)) {
+                    (Some(start), Some(moved)) => moved.points(start),
+                    _ => stuck.unwrap_or(position),
+                },
                 place: anchor.or(look.blocked & near, position),
             };
             touch = Some(touch.map_or(found, |other| other.nearer(&found, position)));
@@ -210,7 +237,7 @@ impl<'a> Solids<'a> {
     /// Signed distance \[m\] to the nearest solid and its unit gradient, world space, looked up again.
     pub fn nearest(&self, point: Vec3) -> (f32, Vec3) {
         self.obstacles
-            .nearest(point, &self.head_from_world)
+            .nearest(point)
             .map_or((f32::INFINITY, Vec3::Y), |(distance, gradient, _)| (distance, gradient))
     }
 }

@@ -1,76 +1,105 @@
 //! Colliders placed in the world for the duration of a step.
 
 use glam::Vec3;
-use strandline_body::{Carrier, Collider, Pose};
+use strandline_body::{BodyFrame, Carrier, Collider, Pose};
 
-/// The colliders at the end of a step, and how they got there.
-#[derive(Clone, Copy)]
+/// The colliders at the end of a step, and their motion through it.
+#[derive(Clone)]
 pub struct Obstacles<'a> {
     /// The solids.
     pub colliders: &'a [Collider],
-    /// Pose of the head at the start of the step.
-    pub start: Pose,
-    /// Pose of the head at the end of the step.
-    pub end: Pose,
+    /// Body at the start of the step.
+    pub start: BodyFrame,
+    /// Body at the end of the step.
+    pub end: BodyFrame,
     /// Length of the step \[s\].
     pub time_step: f32,
+    /// The pieces that carry solids, by their number.
+    pieces: Vec<Placed>,
 }
 
-impl Obstacles<'_> {
+/// A piece through a step.
+#[derive(Clone, Copy)]
+struct Placed {
+    start: Pose,
+    end: Pose,
+    piece_from_world: Pose,
+}
+
+impl<'a> Obstacles<'a> {
+    /// Places colliders for a step of `time_step` \[s\] between two frames of the body.
+    pub fn new(colliders: &'a [Collider], start: BodyFrame, end: BodyFrame, time_step: f32) -> Self {
+        let piece = |collider: &Collider| match collider.carrier {
+            Carrier::Piece(piece) => usize::from(piece) + 1,
+            Carrier::World => 0,
+        };
+        let count = colliders.iter().map(piece).max().unwrap_or(0);
+        let place = |piece| {
+            let (start, end) = (start.piece(piece), end.piece(piece));
+            Placed { start, end, piece_from_world: end.inverse() }
+        };
+        let pieces = (0..count).map(place).collect();
+        Self { colliders, start, end, time_step, pieces }
+    }
+
+    /// A point in the space of the thing that carries a collider.
+    #[inline]
+    fn local(&self, collider: &Collider, point: Vec3) -> Vec3 {
+        match collider.carrier {
+            Carrier::World => point,
+            Carrier::Piece(piece) => self.pieces[usize::from(piece)].piece_from_world.point(point),
+        }
+    }
+
     /// Signed distance \[m\] to the nearest solid at the end of the step, its unit gradient, and
-    /// the solid's index; `None` without colliders. World space; who asks often finds `head_from_world` once.
-    pub fn nearest(&self, point: Vec3, head_from_world: &Pose) -> Option<(f32, Vec3, usize)> {
-        self.colliders
-            .iter()
-            .enumerate()
-            .map(|(index, collider)| match collider.carrier {
-                Carrier::World => {
-                    let (distance, gradient) = collider.shape.distance_and_gradient(point);
-                    (distance, gradient, index)
-                }
-                Carrier::Head => {
-                    let (distance, gradient) =
-                        collider.shape.distance_and_gradient(head_from_world.point(point));
-                    (distance, self.end.direction(gradient), index)
-                }
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0))
+    /// the solid's index; `None` without colliders. World space.
+    pub fn nearest(&self, point: Vec3) -> Option<(f32, Vec3, usize)> {
+        let look = |(index, collider): (usize, &Collider)| {
+            let (distance, gradient) = collider.shape.distance_and_gradient(self.local(collider, point));
+            let gradient = match collider.carrier {
+                Carrier::World => gradient,
+                Carrier::Piece(piece) => self.pieces[usize::from(piece)].end.direction(gradient),
+            };
+            (distance, gradient, index)
+        };
+        self.colliders.iter().enumerate().map(look).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Signed distance \[m\] to the nearest solid at the end of the step, infinite without solids: that of
     /// [`Self::nearest`]. World space.
-    pub fn distance(&self, point: Vec3, head_from_world: &Pose) -> f32 {
-        let distances = self.colliders.iter().map(|collider| match collider.carrier {
-            Carrier::World => collider.shape.distance(point),
-            Carrier::Head => collider.shape.distance(head_from_world.point(point)),
-        });
+    pub fn distance(&self, point: Vec3) -> f32 {
+        let distances =
+            self.colliders.iter().map(|collider| collider.shape.distance(self.local(collider, point)));
         distances.fold(f32::INFINITY, f32::min)
     }
 
-    /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, none without
-    /// solids. Where all are carried by one thing it need not be known which is the nearest.
-    pub fn nearest_velocity(&self, point: Vec3, head_from_world: &Pose) -> Option<Vec3> {
+    /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without
+    /// solids. Solids with one carrier need no search for the nearest.
+    pub fn nearest_velocity(&self, point: Vec3) -> Option<Vec3> {
         let first = self.colliders.first()?;
         let together = self.colliders.iter().all(|collider| collider.carrier == first.carrier);
-        let nearest = if together { 0 } else { self.nearest(point, head_from_world)?.2 };
-        Some(self.velocity(nearest, point, head_from_world))
+        let nearest = if together { 0 } else { self.nearest(point)?.2 };
+        Some(self.velocity(nearest, point))
     }
 
-    /// How far \[m\] all solids are from a point at the end of the step at least, 0 where it may be inside one; quicker
-    /// than [`Self::nearest`]. World space.
-    pub fn at_least(&self, point: Vec3, head_from_world: &Pose) -> f32 {
-        let least = self.colliders.iter().map(|collider| match collider.carrier {
-            Carrier::World => collider.shape.distance_at_least(point),
-            Carrier::Head => collider.shape.distance_at_least(head_from_world.point(point)),
-        });
+    /// Lower bound \[m\] of the distance of all solids from a point at the end of the step, 0 where it may be inside
+    /// one; quicker than [`Self::nearest`]. World space.
+    pub fn at_least(&self, point: Vec3) -> f32 {
+        let least = self
+            .colliders
+            .iter()
+            .map(|collider| collider.shape.distance_at_least(self.local(collider, point)));
         least.fold(f32::INFINITY, f32::min)
     }
 
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
-    pub fn velocity(&self, collider: usize, point: Vec3, head_from_world: &Pose) -> Vec3 {
+    pub fn velocity(&self, collider: usize, point: Vec3) -> Vec3 {
         match self.colliders[collider].carrier {
             Carrier::World => Vec3::ZERO,
-            Carrier::Head => (point - self.start.point(head_from_world.point(point))) / self.time_step,
+            Carrier::Piece(piece) => {
+                let Placed { start, piece_from_world, .. } = self.pieces[usize::from(piece)];
+                (point - start.point(piece_from_world.point(point))) / self.time_step
+            }
         }
     }
 }

@@ -1,8 +1,8 @@
-//! x <- x*, and what the step was worth.
+//! Commits the step, x <- x*, and measures it: stretch, penetration, speed, non-finite points.
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
@@ -56,7 +56,7 @@ pub fn advance(model: &Model, state: &mut State, scratch: &mut Scratch, obstacle
     let solids = Solids::new(obstacles, points);
     std::mem::swap(&mut state.positions, &mut state.previous_positions);
     std::mem::swap(&mut state.positions, &mut scratch.predicted);
-    state.world_from_head = obstacles.end;
+    state.body = obstacles.end.clone();
     state.time += f64::from(model.settings.time_step);
     let lengths = &state.lengths.stretch;
     let speeds = state.velocities.par_chunks_mut(points).zip(state.corrections.par_chunks_mut(points));
@@ -183,7 +183,7 @@ pub(crate) struct Block<'a> {
 /// Puts strands that hold a number which is not finite back to rest and finds their bad points,
 /// so that one bad strand never spreads. They have been there one step ago too, so that no picture
 /// between the two steps shows the way back.
-pub(crate) fn recover(model: &Model, world_from_head: &Pose, block: usize, hair: Block) -> NonFinite {
+pub(crate) fn recover(model: &Model, body: &BodyFrame, block: usize, hair: Block) -> NonFinite {
     let Block { positions, previous, velocities, corrections } = hair;
     let mut nothing = splat(0.0);
     for point in 0..positions.len() {
@@ -199,6 +199,7 @@ pub(crate) fn recover(model: &Model, world_from_head: &Pose, block: usize, hair:
     }
     let live = model.live_lanes(block);
     let mut found = NonFinite::default();
+    let roots = model.roots(body, block);
     for lane in (0..LANES).filter(|lane| bad & (1 << lane) != 0) {
         for point in 0..positions.len() {
             let finite = [&positions[point], &velocities[point], &corrections[point]]
@@ -207,7 +208,7 @@ pub(crate) fn recover(model: &Model, world_from_head: &Pose, block: usize, hair:
             if !finite && lane < live {
                 found = found.with(NonFinite { count: 1, first_strand: Some(block * LANES + lane) });
             }
-            let home = world_from_head.point(model.positions[block * positions.len() + point].get(lane));
+            let home = roots[lane].point(model.positions[block * positions.len() + point].get(lane));
             positions[point].set(lane, home);
             previous[point].set(lane, home);
             velocities[point].set(lane, Vec3::ZERO);

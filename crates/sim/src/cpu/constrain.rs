@@ -34,7 +34,7 @@ pub fn constrain(
         &settings.strands.constrain.angles,
         settings.time_step,
         settings.strands.constrain.iterations,
-        obstacles.end.rotation,
+        obstacles.end.world_from_head().rotation,
     );
     let (lengths, masses, grab) = (&state.lengths.stretch, &scratch.masses, &state.grab);
     scratch
@@ -51,7 +51,7 @@ pub fn constrain(
                 let range = block * points..(block + 1) * points;
                 let strands = Strands {
                     model,
-                    bends,
+                    bends: bends.map(|bends| bends.of_roots(model, &obstacles.end, block)),
                     segments: Segments {
                         lengths: &lengths[range.clone()],
                         share_lower: &masses.share_lower[range.clone()],
@@ -206,7 +206,7 @@ impl Strands<'_> {
                 continue;
             }
             let margin = work.margins[point];
-            let query = Query { position, start: Some(start), margin, free: looked, care };
+            let query = Query { position, start: Some(start), margin, free: looked, care, part: 0 };
             let found = self.solids.touch(planes, point, query);
             if let Some(touch) = &found {
                 touch.place.or(looked, position).store(&mut predicted[point]);

@@ -55,7 +55,7 @@ impl Follow<'_> {
         let mut placed = first;
         for placing in 0..PLACINGS {
             let care = if placing == 0 { Care::EXACT } else { Care::ANEW };
-            let query = Query { position: placed, start: None, margin, free, care };
+            let query = Query { position: placed, start: None, margin, free, care, part: 0 };
             let touch = self.solids.touch(planes, point, query);
             let Some(touch) = touch.filter(|touch| touch.height(placed).simd_lt(splat(-1e-6)).any()) else {
                 return placed;

@@ -62,18 +62,17 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
 fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
     /// Cells whose first looks are under way together.
     const TOGETHER: usize = 64;
-    let head_from_world = obstacles.end.inverse();
     let center = |cell: &u32| grid.center(*cell as usize);
     let mut distances = vec![0.0; cells.len()];
     let parts = distances.par_chunks_mut(TOGETHER).zip(cells.par_chunks(TOGETHER));
     parts.with_min_len(4).for_each(|(distances, cells)| {
         for (distance, cell) in distances.iter_mut().zip(cells) {
-            *distance = obstacles.at_least(center(cell), &head_from_world);
+            *distance = obstacles.at_least(center(cell));
         }
         // In a loop of its own: else the processor waits for each first look to know whether to take a second.
         for (distance, cell) in distances.iter_mut().zip(cells).filter(|(least, _)| **least <= grid.spacing())
         {
-            *distance = obstacles.distance(center(cell), &head_from_world);
+            *distance = obstacles.distance(center(cell));
         }
     });
     distances
@@ -81,7 +80,7 @@ fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
 
 /// Sets faces between fluid and solid cells to the velocity of the solid.
 fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
-    let (strides, head_from_world) = (volume.grid.strides(), obstacles.end.inverse());
+    let strides = volume.grid.strides();
     let sides =
         strides.into_iter().enumerate().flat_map(|(axis, stride)| [(axis, stride, 0), (axis, stride, 1)]);
     let sides: Vec<(usize, usize, usize)> = sides.collect();
@@ -90,7 +89,7 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
         let neighbour = if behind == 1 { cell + stride } else { cell - stride };
         (kinds[neighbour] == Kind::Solid).then(|| {
             let center = grid.face_center(axis, cell + behind * stride);
-            obstacles.nearest_velocity(center, &head_from_world).map_or(0.0, |velocity| velocity[axis])
+            obstacles.nearest_velocity(center).map_or(0.0, |velocity| velocity[axis])
         })
     };
     let around = |&cell: &u32| -> Option<(usize, [Option<f32>; 6])> {

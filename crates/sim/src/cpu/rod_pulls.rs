@@ -39,20 +39,14 @@ impl Strands<'_> {
                 // Where it keeps its velocity: where it would fall alone, millimetres deeper, a crease of the skin
                 // has another plane, which would throw hair at rest.
                 let position = space.carried[point] + space.coast[point];
-                let query =
-                    Query { position, start: Some(space.points[point]), margin, free, care: Care::ROUGH };
+                let start = Some(space.points[point]);
+                let query = Query { position, start, margin, free, care: Care::ROUGH, part };
                 if let Some(touch) = self.parts.solids.touch(planes, point, query) {
                     let height = touch.height(space.carried[point]);
                     let near = height.simd_lt(f32x8::splat(1.0));
                     // What touches rests where it is.
                     let touches = height.simd_lt(f32x8::of(TOUCHES));
                     let height = touches.bitselect(height.fast_min(f32x8::ZERO), height);
-                    // What the head carries has gone where it is already.
-                    let stays = touch.stuck.x.simd_eq(space.points[point].x)
-                        & touch.stuck.y.simd_eq(space.points[point].y)
-                        & touch.stuck.z.simd_eq(space.points[point].z);
-                    let stays = stays.bitselect(f32x8::of(1.0), f32x8::ZERO);
-                    let back = space.points[point] - space.carried[point];
                     space.pulls.push(Pull {
                         node: point,
                         normal: touch.normal,
@@ -60,7 +54,8 @@ impl Strands<'_> {
                         stiffness: (node.mass * stiff) & near,
                         one_sided: true,
                         friction: touch.friction,
-                        stuck: Vector::choose(stays, back, Vector::zero()),
+                        // Zero where the root frame carries the point as the solid moves.
+                        stuck: touch.stuck - space.carried[point],
                     });
                 }
             }

@@ -1,5 +1,6 @@
 //! Runs steps on the CPU.
 
+use glam::Vec3;
 use strandline_base::{Stopwatch, par};
 
 use super::Scratch;
@@ -16,7 +17,7 @@ use crate::contact::Obstacles;
 use crate::step::{Stage, stages};
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 
-/// A model with what its steps on the CPU work in.
+/// A model with the scratch memory of its steps on the CPU.
 pub struct CpuRunner {
     model: Model,
     scratch: Option<Scratch>,
@@ -48,15 +49,12 @@ impl CpuRunner {
         let scratch = self.scratch.get_or_insert_with(|| Scratch::new(model, state));
         scratch.refresh(model, state);
         model.give_sections(state);
-        let drive = drive.or_still_at(state.world_from_head);
+        let drive = drive.or_still_at(&state.body, model.strand_count);
         state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
-        let obstacles = Obstacles {
-            colliders: &model.colliders,
-            start: state.world_from_head,
-            end: drive.world_from_head,
-            time_step: model.settings.time_step,
-        };
-        let mut step = Step { model, state, scratch, obstacles, drive, report: StepReport::default() };
+        let (start, end) = (state.body.clone(), drive.body);
+        let obstacles = Obstacles::new(&model.colliders, start, end, model.settings.time_step);
+        let (wind, report) = (drive.wind, StepReport::default());
+        let mut step = Step { model, state, scratch, obstacles, wind, report };
         par::awake(|| {
             for stage in stages(&model.settings) {
                 let watch = Stopwatch::start();
@@ -76,16 +74,17 @@ struct Step<'a> {
     state: &'a mut State,
     scratch: &'a mut Scratch,
     obstacles: Obstacles<'a>,
-    drive: Drive,
+    /// \[m/s\]
+    wind: Vec3,
     report: StepReport,
 }
 
 impl Step<'_> {
     fn run(&mut self, stage: Stage) {
-        let (model, obstacles, wind) = (self.model, &self.obstacles, self.drive.wind);
+        let (model, obstacles, wind) = (self.model, &self.obstacles, self.wind);
         let (state, scratch) = (&mut *self.state, &mut *self.scratch);
         match stage {
-            Stage::PoseRoots => pose_roots(model, state, scratch, &self.drive.world_from_head),
+            Stage::PoseRoots => pose_roots(model, state, scratch, &obstacles.end),
             Stage::Integrate => integrate(model, state, scratch, wind),
             Stage::Constrain => {
                 let non_finite = constrain(model, state, scratch, obstacles);

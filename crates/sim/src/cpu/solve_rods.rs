@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
-use strandline_body::Pose;
+use strandline_body::{BodyFrame, Pose};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
@@ -51,7 +51,7 @@ pub fn solve_rods(
 ) -> (NonFinite, RodReport) {
     let Some(rods) = &model.rods else { return Default::default() };
     let points = model.points_per_strand;
-    let parts = Parts::new(model, &model.settings.strands.rods, obstacles, wind);
+    let parts = Parts::new(model, obstacles, wind);
     let nodes = scratch.nodes.as_ref().unwrap_or(&rods.nodes);
     let (lengths, masses, grab) = (&state.lengths.stretch, &scratch.masses, &state.grab);
     scratch
@@ -80,6 +80,8 @@ pub fn solve_rods(
                     clearance: &model.rest_clearance[range.clone()],
                     rest_sections: &rods.sections[range],
                     viscous: parts.viscous(&rods.traits[block * LANES..]),
+                    driven: parts.driven(model, block),
+                    block,
                     live: model.live_lanes(block),
                 };
                 let pinned: Vec<Pinned> =
@@ -101,36 +103,67 @@ pub(super) struct Parts<'a> {
     pub(super) time_step: f64,
     fall: Fall,
     pub(super) solids: Solids<'a>,
-    /// Pose of the head at the end of each part, and what carries the head there from the part before.
-    poses: Vec<(Pose, Pose)>,
-    moved: bool,
+    /// Body at the start and at the end of the step.
+    body: [&'a BodyFrame; 2],
+    /// Rides of the head, one for each part.
+    head: Vec<Ride>,
+}
+
+/// The motion of a root frame through a part of a step.
+struct Ride {
+    /// At the end of the part.
+    world_from_root: Carry,
+    /// From its start to its end; `None` where nothing moves.
+    moved: Option<Carry>,
 }
 
 impl<'a> Parts<'a> {
-    fn new(model: &'a Model, settings: &'a RodSettings, obstacles: &Obstacles<'a>, wind: Vec3) -> Self {
+    fn new(model: &'a Model, obstacles: &'a Obstacles<'a>, wind: Vec3) -> Self {
+        let settings = &model.settings.strands.rods;
         let count = settings.substeps;
         let time_step = model.settings.time_step / count as f32;
-        let pose = |part: u32| obstacles.start.toward(&obstacles.end, part as f32 / count as f32);
-        let poses = (0..count)
-            .map(|part| {
-                let (before, after) = (pose(part), pose(part + 1));
-                let inverse = before.inverse();
-                let moved = Pose {
-                    rotation: after.rotation * inverse.rotation,
-                    translation: after.point(inverse.translation),
-                };
-                (after, if before == after { Pose::IDENTITY } else { moved })
-            })
-            .collect();
+        let body = [&obstacles.start, &obstacles.end];
+        let head = body.map(BodyFrame::world_from_head);
+        let ride = |part| {
+            let (world_from_root, moved) = head[0].part_of_way(&head[1], part, count);
+            let moved = (moved != Pose::IDENTITY).then(|| Carry::new(&moved));
+            Ride { world_from_root: Carry::new(&world_from_root), moved }
+        };
         Self {
             settings,
             count,
             time_step: f64::from(time_step),
             fall: Fall::for_time(model, time_step, wind),
-            solids: Solids::new(obstacles, model.points_per_strand),
-            poses,
-            moved: obstacles.start != obstacles.end,
+            solids: Solids::in_parts(obstacles, model.points_per_strand, count),
+            body,
+            head: (0..count).map(ride).collect(),
         }
+    }
+
+    /// True where root frames are the strands' own.
+    fn has_roots(&self) -> bool {
+        self.body.iter().any(|body| body.roots().is_some())
+    }
+
+    /// The ride of a block of strands with root frames of their own.
+    fn ride(&self, model: &Model, block: usize, part: u32) -> Ride {
+        let [starts, ends] = self.body.map(|body| model.roots(body, block));
+        let through: [(Pose, Pose); LANES] =
+            std::array::from_fn(|lane| starts[lane].part_of_way(&ends[lane], part, self.count));
+        let moved = through.map(|(_, moved)| moved);
+        let moves = moved.iter().any(|moved| *moved != Pose::IDENTITY);
+        Ride {
+            world_from_root: Carry::of_lanes(&through.map(|(after, _)| after)),
+            moved: moves.then(|| Carry::of_lanes(&moved)),
+        }
+    }
+
+    /// Mask of the strands of a block whose root frames move: they do not rest.
+    fn driven(&self, model: &Model, block: usize) -> f32x8 {
+        let [starts, ends] = self.body.map(|body| model.roots(body, block));
+        let moves: [f32; LANES] =
+            std::array::from_fn(|lane| if starts[lane] == ends[lane] { 0.0 } else { 1.0 });
+        f32x8::from(moves).simd_gt(f32x8::ZERO)
     }
 
     /// Relaxation times of a block's strands over the length of a part.
@@ -152,6 +185,9 @@ pub(super) struct Strands<'a> {
     rest_sections: &'a [Vec3Lanes],
     /// Relaxation time of bends and twists over the length of a part.
     viscous: f32x8,
+    /// Mask of the strands whose root frames move.
+    driven: f32x8,
+    block: usize,
     /// Lanes that hold strands.
     live: usize,
 }
@@ -164,24 +200,23 @@ impl Strands<'_> {
         }
         (space.bad, space.report) = (f32x8::ZERO, RodReport::default());
         for part in 0..self.parts.count {
-            let (pose, moved) = &self.parts.poses[part as usize];
-            self.want(space, &Carry::new(pose), moved);
+            let own = self.parts.has_roots().then(|| self.parts.ride(self.model, self.block, part));
+            self.want(space, own.as_ref().unwrap_or(&self.parts.head[part as usize]));
             self.find_pulls(space, planes, pinned, part);
             self.solve_part(space, planes);
         }
     }
 
-    /// Where forces alone would take the points, and the shape that the head carries along.
-    fn want(&self, space: &mut Workspace, world_from_head: &Carry, moved: &Pose) {
+    /// Places to which forces alone would take the points, and the shape that the root frame carries along.
+    fn want(&self, space: &mut Workspace, Ride { world_from_root, moved }: &Ride) {
         let step = f32x8::of(self.parts.time_step);
         let rubbing = step * step * f32x8::splat(self.parts.settings.rubbing);
-        let carry = Carry::new(moved);
         let last = self.nodes.len() - 1;
         for point in 0..=last {
             let free = self.nodes[point].free;
-            let held = world_from_head.point(Vector::load(&self.rest[point]));
+            let held = world_from_root.point(Vector::load(&self.rest[point]));
             let here = space.points[point];
-            let rides = if *moved == Pose::IDENTITY { here } else { carry.point(here) };
+            let rides = moved.as_ref().map_or(here, |moved| moved.point(here));
             space.carried[point] = Vector::choose(free, rides, held);
             let tangent = space.points[last.min(point + 1)] - space.points[point.saturating_sub(1)];
             let fallen = self.parts.fall.weighted(space.velocities[point], tangent);
@@ -193,11 +228,11 @@ impl Strands<'_> {
             space.wanted[point] = wanted;
             let [x, y, z] = wanted.array();
             space.work.want(point, [x, y, z, space.spins[point] * step]);
-            if *moved != Pose::IDENTITY {
-                space.sections[point] = carry.direction(space.sections[point]);
+            if let Some(moved) = moved {
+                space.sections[point] = moved.direction(space.sections[point]);
             }
             let turns = self.nodes[point].free_angle;
-            let section = world_from_head.direction(Vector::load(&self.rest_sections[point]));
+            let section = world_from_root.direction(Vector::load(&self.rest_sections[point]));
             space.sections[point] =
                 Vector::choose(turns * sound(space.sections[point]), space.sections[point], section);
         }
@@ -298,7 +333,7 @@ impl Strands<'_> {
         let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | turns | bad;
         let moves = moving.bitselect(f32x8::of(1.0), f32x8::ZERO);
         let none = bad.bitselect(f32x8::splat(f32::NAN), f32x8::ZERO);
-        let moves = if self.parts.moved { f32x8::of(1.0) } else { moves };
+        let moves = self.driven.bitselect(f32x8::of(1.0), moves);
         for point in 0..=last {
             let moved = space.carried[point] - space.points[point];
             let velocity = Vector::choose(moves, moved * per_step, Vector::zero());

@@ -1,9 +1,12 @@
 //! What lies on the device.
 
+use strandline_base::par::prelude::*;
+use strandline_body::BodyFrame;
 use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
 use super::inputs::Step;
+use super::motion::{Root, has_roots, part_count};
 use super::records::{Outcome, PointBox, PressureState, Report};
 use super::rod_buffers::{NUMBERS, RodBuffers};
 use super::solids;
@@ -16,6 +19,8 @@ use crate::{Model, SimError, State};
 pub(super) const REPORTS: usize = 64;
 /// Numbers of a point in the buffer of rest shapes.
 const REST: usize = 6;
+/// Numbers of a root frame there.
+const ROOT: usize = size_of::<Root>() / size_of::<f32>();
 
 /// The buffers of a state. Numbers of points lie as on the CPU, `[block][point]` of lanes; where a
 /// point has several they lie `[block][point][number]` of lanes.
@@ -30,7 +35,7 @@ pub(super) struct Buffers {
     pub rest_positions: Buffer<f32>,
     /// Six numbers: rest direction (with rods the first axis of the section), rest length \[m\], inverse mass
     /// \[1/kg\], clearance at rest \[m\]. Behind those of all points, without rods, per strand from the hand to the
-    /// point \[m\] that it holds, and its number; below 0 for none.
+    /// point \[m\] that it holds, and its number; below 0 for none. Behind these the root frames: see roots.wesl.
     pub rest: Buffer<f32>,
     /// Two numbers: rest lengths of the bend and the torsion spring \[m\].
     pub springs: Buffer<f32>,
@@ -69,7 +74,7 @@ impl Buffers {
             points,
             step: solids::behind_step(gpu, &model.colliders)?,
             rest_positions: vectors("rest positions", &model.positions)?,
-            rest: Buffer::new(gpu, "rest shape", REST * count + 4 * lane_count)?,
+            rest: Buffer::new(gpu, "rest shape", (REST * points + 4) * lane_count + ROOT * lane_count)?,
             springs: Buffer::new(gpu, "springs", 2 * count)?,
             mass: Buffer::new(gpu, "masses", count)?,
             places: [
@@ -160,6 +165,19 @@ impl Buffers {
             traits.flat_map(|one| [one.bend_ratio, one.twist_ratio, one.damping, 0.0]).collect();
         // The grips lie before them.
         Ok(buffers.nodes.write_at(numbers.len() + 4 * self.lane_count, &traits)?)
+    }
+
+    /// Writes the root frames of a step between two frames of the body; nothing where they ride the head.
+    pub fn write_roots(&self, model: &Model, [start, end]: [&BodyFrame; 2]) -> Result<(), SimError> {
+        if !has_roots(start, end) {
+            return Ok(());
+        }
+        let (parts, last) = (part_count(model), model.strand_count - 1);
+        let strands = (0..self.lane_count).into_par_iter().map(|lane| lane.min(last));
+        let root = |strand| Root::new(&start.root(strand), &end.root(strand), parts);
+        let roots: Vec<Root> = strands.map(root).collect();
+        let first = REST * self.point_count() + 4 * self.lane_count;
+        Ok(self.rest.write_at(first, bytemuck::cast_slice(&roots))?)
     }
 
     /// Writes what a hand holds; with an empty hand it is not read.

@@ -1,9 +1,10 @@
 //! The settings of a step as the kernels read them.
 
 use strandline_base::math;
-use strandline_body::Pose;
+use strandline_body::{BodyFrame, Pose};
 use strandline_gpu::{Rigid, mirror};
 
+use super::motion::{has_roots, in_parts, part_count, piece_count};
 use crate::constrain::Spring;
 use crate::contact::contacts::Care;
 use crate::grab::Grab;
@@ -77,11 +78,17 @@ mirror! {
         pub slot: u32,
         /// Share of what the pressure changes that a step takes.
         pub pressure_share: f32,
-        pub unused_a: u32,
+        /// Pieces of the body up to the last that carries a collider, the head among them.
+        pub piece_count: u32,
         /// Where the hand is \[m\].
         pub hand: [f32; 3],
         /// Whether a hand holds hair.
         pub holds: u32,
+        /// 1 where strands have root frames of their own: see roots.wesl.
+        pub has_roots: u32,
+        pub unused_a: u32,
+        pub unused_b: u32,
+        pub unused_c: u32,
         pub rods: RodStep,
         then solids: [u32; 4],
     }
@@ -90,12 +97,12 @@ mirror! {
 impl RodStep {
     fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32) -> Self {
         let rods = &model.settings.strands.rods;
-        let part = start.toward(end, 1.0 / rods.substeps as f32);
+        let (turn, from, way) = in_parts(start, end, rods.substeps);
         Self {
-            part_rotation: (part.rotation * start.rotation.inverse()).to_array(),
-            start_translation: start.translation.to_array(),
+            part_rotation: turn.to_array(),
+            start_translation: from.to_array(),
             part_time,
-            part_translation: ((end.translation - start.translation) / rods.substeps as f32).to_array(),
+            part_translation: way.to_array(),
             parts: rods.substeps,
             newton_steps: rods.newton_steps,
             head_moves: u32::from(start != end),
@@ -106,24 +113,20 @@ impl RodStep {
 }
 
 impl Step {
-    /// What a step needs that starts at a pose of the head.
-    pub fn new(model: &Model, start: &Pose, drive: &Drive, grab: &Grab, slot: usize) -> Self {
-        let (settings, end) = (&model.settings, drive.world_from_head);
+    /// The inputs of a step that starts at a frame of the body.
+    pub fn new(model: &Model, before: &BodyFrame, drive: &Drive, grab: &Grab, slot: usize) -> Self {
+        let (start, end) = (&before.world_from_head(), drive.body.world_from_head());
+        let settings = &model.settings;
         // What acts on all points alike acts in each part of a step of rods.
-        let parts = if settings.has_rods() { settings.strands.rods.substeps } else { 1 };
-        let part_time = settings.time_step / parts as f32;
+        let part_time = settings.time_step / part_count(model) as f32;
         let taken = |rate: f32| -math::exp_m1(-rate * part_time);
-        let from_start = |a: &Pose, b: Pose| Pose {
-            rotation: a.rotation * b.rotation,
-            translation: a.point(b.translation),
-        };
         let is_last = !settings.has_rods() && !settings.strands.constrain.length_pass.enabled;
         let care = if is_last { Care::ROUNDS } else { Care::ROUGH };
         Self {
             world_from_head: Rigid::from(&end),
             head_from_world: Rigid::from(&end.inverse()),
-            end_from_start: Rigid::from(&from_start(&end, start.inverse())),
-            start_from_end: Rigid::from(&from_start(start, end.inverse())),
+            end_from_start: Rigid::from(&start.motion_to(&end)),
+            start_from_end: Rigid::from(&end.motion_to(start)),
             head_rotation: end.rotation.to_array(),
             gravity: (settings.gravity * part_time).to_array(),
             time_step: settings.time_step,
@@ -162,6 +165,8 @@ impl Step {
             slot: slot as u32,
             pressure_share: VolumeSettings::pressure_share_in(settings.time_step),
             holds: u32::from(!grab.grips.is_empty()),
+            piece_count: piece_count(&model.colliders) as u32,
+            has_roots: u32::from(has_roots(before, &drive.body)),
             hand: grab.hand.to_array(),
             rods: RodStep::new(model, start, &end, part_time),
             ..Self::default()

@@ -15,6 +15,7 @@ mod kernels;
 mod lengths_alone;
 mod linked;
 mod mark;
+mod motion;
 mod pcg;
 mod pending;
 mod pose_roots;

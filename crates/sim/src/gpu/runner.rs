@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Recorder, Timer};
 use strandline_groom::{LANES, Lanes, RestShape};
 
@@ -11,6 +11,7 @@ use super::inputs::Step;
 use super::kernels::Kernels;
 use super::pending::{Pending, Reported};
 use super::records::{Gradient, Spread};
+use super::solids;
 use super::volume::Volume;
 use crate::grab::Grab;
 use crate::step::{Stage, stages};
@@ -32,7 +33,7 @@ pub struct GpuRunner {
     pub(super) side: usize,
     /// The stages bound to the buffers, in order, for both sides; none after a change.
     bound: Option<[Vec<(Stage, Dispatches)>; 2]>,
-    pub(super) world_from_head: Pose,
+    pub(super) body: BodyFrame,
     pub(super) time: f64,
     pub(super) length_scale: Vec<Lanes>,
     /// The rest shape with these lengths.
@@ -69,7 +70,7 @@ impl GpuRunner {
     pub fn new(gpu: &Gpu, model: Model) -> Result<Self, SimError> {
         model.settings.check_on_gpu()?;
         let kernels = Kernels::new(gpu, model.points_per_strand)?;
-        let state = model.rest_state(Pose::IDENTITY);
+        let state = model.rest_state(BodyFrame::REST);
         Self::with_kernels(gpu, model, Arc::new(kernels), &state)
     }
 
@@ -90,7 +91,7 @@ impl GpuRunner {
             model,
             side: 0,
             bound: None,
-            world_from_head: state.world_from_head,
+            body: state.body.clone(),
             time: state.time,
             length_scale: state.length_scale.clone(),
             lengths: Arc::clone(&state.lengths),
@@ -121,9 +122,9 @@ impl GpuRunner {
         self.time
     }
 
-    /// Pose of the head now.
-    pub fn world_from_head(&self) -> Pose {
-        self.world_from_head
+    /// Body now.
+    pub fn body(&self) -> &BodyFrame {
+        &self.body
     }
 
     /// Positions \[m\] now and one step ago, world space, `[block][point][component][lane]`: for a
@@ -192,7 +193,7 @@ impl GpuRunner {
     pub fn step(&mut self, drive: &Drive) -> Result<(), SimError> {
         self.run(drive, |_| true)?;
         self.side = 1 - self.side;
-        self.world_from_head = drive.or_still_at(self.world_from_head).world_from_head;
+        self.body = drive.or_still_at(&self.body, self.model.strand_count).body;
         self.time += f64::from(self.model.settings.time_step);
         self.pending.count += 1;
         Ok(())
@@ -228,10 +229,13 @@ impl GpuRunner {
     /// Records and submits the stages of a step that are wanted.
     pub(super) fn run(&mut self, drive: &Drive, wanted: impl Fn(Stage) -> bool) -> Result<(), SimError> {
         self.prepare()?;
-        let drive = drive.or_still_at(self.world_from_head);
+        let drive = drive.or_still_at(&self.body, self.model.strand_count);
         self.grab.hand = drive.hand.unwrap_or(self.grab.hand);
-        let uniform = Step::new(&self.model, &self.world_from_head, &drive, &self.grab, self.pending.count);
+        let uniform = Step::new(&self.model, &self.body, &drive, &self.grab, self.pending.count);
         self.buffers.step.write(&[uniform])?;
+        let bodies = [&self.body, &drive.body];
+        solids::write_pieces(&self.buffers.step, &self.model, bodies)?;
+        self.buffers.write_roots(&self.model, bodies)?;
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
         let Pending { timer, marks, count, .. } = &self.pending;
         self.gpu.ask("a step", || {

@@ -1,11 +1,12 @@
 //! The colliders as the kernels read them.
 
 use strandline_base::SettingError;
-use strandline_body::{Carrier, Collider, DistanceGrid, Mannequin, Shape};
-use strandline_gpu::{Buffer, Gpu};
+use strandline_body::{BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Shape};
+use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use super::inputs::Step;
-use crate::SimError;
+use super::motion::{Piece, part_count, piece_count};
+use crate::{Model, SimError};
 
 /// Spacing at which the exact mannequin is sampled \[m\]: kernels know grids only.
 const MANNEQUIN_SPACING: f32 = 0.003;
@@ -30,24 +31,46 @@ struct Header {
     unused_too: u32,
 }
 
-/// Kinds of colliders, and what carries them.
+/// Kinds of colliders, and their carriers: the world, the head, then the other pieces of the body.
 const SPHERE: u32 = 0;
 const CAPSULE: u32 = 1;
 const GRID: u32 = 2;
 const WORLD: u32 = 0;
 const HEAD: u32 = 1;
+/// Vectors of a piece behind the head, which lie before the headers.
+const PIECE: usize = size_of::<Piece>() / size_of::<[f32; 4]>();
 /// Vectors of a header.
 const HEADER: usize = size_of::<Header>() / size_of::<[f32; 4]>();
 
-/// Room for the settings of a step, and behind it the headers of all colliders, then the nodes of the grids among them.
+/// Writes the pieces behind the head for a step between two frames of the body.
+///
+/// # Errors
+/// The device was lost.
+pub(super) fn write_pieces(
+    buffer: &Buffer<Step>,
+    model: &Model,
+    [start, end]: [&BodyFrame; 2],
+) -> Result<(), GpuError> {
+    let count = piece_count(&model.colliders);
+    if count == 1 {
+        return Ok(());
+    }
+    let parts = part_count(model);
+    let piece = |piece| Piece::new(&start.piece(piece), &end.piece(piece), parts);
+    buffer.write_tail(&(1..count).map(piece).collect::<Vec<_>>())
+}
+
+/// Room for the settings of a step, and behind it the pieces behind the head, the headers of all colliders, then the nodes of the grids among them.
 pub(super) fn behind_step(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<Step>, SimError> {
+    let before = PIECE * (piece_count(colliders) - 1);
     let mut headers = Vec::new();
     let mut nodes: Vec<[f32; 4]> = Vec::new();
+    let first_node = before + colliders.len() * HEADER;
     for collider in colliders {
         let mut header = Header {
             carried: match collider.carrier {
                 Carrier::World => WORLD,
-                Carrier::Head => HEAD,
+                Carrier::Piece(piece) => HEAD + u32::from(piece),
             },
             friction: collider.friction,
             ..Header::default()
@@ -64,12 +87,13 @@ pub(super) fn behind_step(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<St
                 header.end = end.to_array();
                 header.size = *radius;
             }
-            Shape::Mannequin(mannequin) => header.add_grid(&sampled(mannequin)?, colliders.len(), &mut nodes),
-            Shape::Grid(grid) => header.add_grid(grid, colliders.len(), &mut nodes),
+            Shape::Mannequin(mannequin) => header.add_grid(&sampled(mannequin)?, first_node, &mut nodes),
+            Shape::Grid(grid) => header.add_grid(grid, first_node, &mut nodes),
         }
         headers.push(header);
     }
-    let mut all: Vec<[u32; 4]> = bytemuck::cast_slice(&headers).to_vec();
+    let mut all = vec![[0; 4]; before];
+    all.extend_from_slice(bytemuck::cast_slice(&headers));
     all.extend(nodes.iter().map(|node| node.map(f32::to_bits)));
     let buffer = Buffer::with_tail::<[u32; 4]>(gpu, "step and solids", 1, all.len())?;
     buffer.write_tail(&all)?;
@@ -82,12 +106,12 @@ fn sampled(mannequin: &Mannequin) -> Result<DistanceGrid, SimError> {
 }
 
 impl Header {
-    fn add_grid(&mut self, grid: &DistanceGrid, collider_count: usize, nodes: &mut Vec<[f32; 4]>) {
+    fn add_grid(&mut self, grid: &DistanceGrid, first_node: usize, nodes: &mut Vec<[f32; 4]>) {
         self.kind = GRID;
         self.start = grid.origin().to_array();
         self.size = grid.spacing();
         self.node_counts = (grid.cells() + 1).to_array();
-        self.first_node = (collider_count * HEADER + nodes.len()) as u32;
+        self.first_node = (first_node + nodes.len()) as u32;
         nodes.extend(grid.nodes().iter().map(|node| node.to_array()));
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_body::Pose;
+use strandline_body::BodyFrame;
 use strandline_gpu::{Copied, Part, Readback, Transfer};
 use strandline_groom::Vec3Lanes;
 
@@ -19,7 +19,7 @@ impl GpuRunner {
     /// # Errors
     /// The device was lost.
     pub fn state(&self) -> Result<State, SimError> {
-        let mut state = self.model.rest_state(self.world_from_head);
+        let mut state = self.model.rest_state(self.body.clone());
         state.length_scale.clone_from(&self.length_scale);
         state.grab.clone_from(&self.grab);
         state.lengths = Arc::clone(&self.lengths);
@@ -28,7 +28,7 @@ impl GpuRunner {
     }
 
     /// Waits for the device and copies what time changes into a state of the host: positions, those of one step ago,
-    /// the head's pose and the time; and the velocities with their corrections, of rods how their sections are
+    /// the body and the time; and the velocities with their corrections, of rods how their sections are
     /// turned.
     ///
     /// # Errors
@@ -52,7 +52,7 @@ impl GpuRunner {
             parts,
             grid,
             has_rods: self.buffers.rods.is_some(),
-            world_from_head: self.world_from_head,
+            body: self.body.clone(),
             time: self.time,
             hand: self.grab.hand,
         };
@@ -74,7 +74,7 @@ impl GpuRunner {
         if let (Some(volume), None) = (&self.buffers.volume, state.volume_box) {
             volume.put_at_start()?;
         }
-        self.world_from_head = state.world_from_head;
+        self.body = state.body.clone();
         self.time = state.time;
         self.write_grab(&state.grab)
     }
@@ -100,7 +100,7 @@ struct Content {
     parts: [Part<f32>; 3],
     grid: Option<Part<GridState>>,
     has_rods: bool,
-    world_from_head: Pose,
+    body: BodyFrame,
     time: f64,
     hand: Vec3,
 }
@@ -141,7 +141,7 @@ impl Content {
         } else {
             floats_mut(&mut state.corrections).copy_from_slice(others);
         }
-        state.world_from_head = self.world_from_head;
+        state.body = self.body.clone();
         state.time = self.time;
         state.grab.hand = self.hand;
     }

@@ -93,9 +93,11 @@ pub(super) fn read_meta<R: Read + Seek>(npz: &mut Npz<R>, frames: u64) -> Result
     check_memory("meta", rows.bytes(), 8)?;
     let bytes = npz.all(&mut rows).map_err(text)?;
     let meta: meta::Meta = serde_json::from_slice(&bytes).map_err(|error| format!("meta: {error}"))?;
-    if meta.layout != meta::LAYOUT {
-        let (found, known) = (meta.layout, meta::LAYOUT);
-        return Err(format!("layout {found}, expected {known}: it is of another version of the program"));
+    if !(meta::FIRST_LAYOUT..=meta::LAYOUT).contains(&meta.layout) {
+        let (found, first, last) = (meta.layout, meta::FIRST_LAYOUT, meta::LAYOUT);
+        return Err(format!(
+            "layout {found}, expected {first} to {last}: it is of another version of the program"
+        ));
     }
     if meta.units != "m" || meta.up_axis != "y" {
         return Err(format!("units `{}` with {} up, expected m with y up", meta.units, meta.up_axis));

@@ -53,7 +53,7 @@ const FAR: f32 = 1e4;
 /// The strands of the first frame, head space, with what the cache has of their look.
 fn rest(cache: &mut Cache) -> Result<Groom, Error> {
     let mut places = Vec::new();
-    let head = cache.read(0, &mut places)?.inverse();
+    let head = cache.read(0, &mut places)?.world_from_head().inverse();
     let mut groom = Groom::empty(0.0);
     for range in cache.starts().windows(2) {
         let strand = &places[range[0] as usize..range[1] as usize];

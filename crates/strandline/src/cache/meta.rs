@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::What;
 use crate::sim::StepReport;
 
-/// The version of the layout.
-pub(super) const LAYOUT: u32 = 1;
+/// The version of the layout, and the first one that is still read. Layout 1 had no lists of bodies.
+pub(super) const LAYOUT: u32 = 2;
+pub(super) const FIRST_LAYOUT: u32 = 1;
 
 /// The object in `meta`.
 #[derive(Clone, Debug, Serialize, Deserialize)]

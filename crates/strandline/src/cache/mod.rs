@@ -5,6 +5,7 @@
 //! alone: strands, and whatever attributes they have; every writer takes them from there.
 
 mod arrays;
+mod bodies;
 pub(crate) mod drawn;
 mod files;
 mod meta;
@@ -26,7 +27,7 @@ pub(crate) use snapshot::Snapshot;
 
 use glam::Vec3;
 
-use crate::body::Pose;
+use crate::body::BodyFrame;
 
 /// Most frames of a file.
 pub(crate) const MAX_FRAMES: u64 = 1_000_000;
@@ -42,5 +43,5 @@ pub(crate) struct Frame<'a> {
     pub time: f64,
     /// Points \[m\], world space, strand after strand.
     pub points: &'a [Vec3],
-    pub world_from_head: Pose,
+    pub body: &'a BodyFrame,
 }

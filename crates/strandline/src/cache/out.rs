@@ -15,7 +15,7 @@ use super::{
     store::Store,
     usd::Usd,
 };
-use crate::{Error, Scene, body::Pose, groom::Vec3Lanes, sim::StepReport};
+use crate::{Error, Scene, body::BodyFrame, groom::Vec3Lanes, sim::StepReport};
 
 /// Frames, strands and file of a writer.
 #[derive(Clone, Debug)]
@@ -121,10 +121,11 @@ impl Out {
     /// A name that no format has; a file or folder that cannot be written.
     pub(crate) fn new(settings: &OutSettings, scene: &Scene, leaving: Leaving) -> Result<Self, Error> {
         let format = settings.format()?;
+        let body = leaving.body;
         let shape = Shape::new(settings.what, scene, leaving)?;
         let (path, first, every) = (settings.path.as_path(), settings.first, settings.every.max(1));
         let writer = match format {
-            Format::Npz => Writer::Store(Store::new(path, scene, &shape, [first, every])?.into()),
+            Format::Npz => Writer::Store(Store::new(path, scene, &shape, body, [first, every])?.into()),
             Format::Usda => Writer::Usd(Usd::new(path, scene, &shape, settings.target)?.into()),
             Format::Sequence => Writer::Files(Files::new(path, &shape)?.into()),
         };
@@ -181,12 +182,12 @@ impl Out {
     }
 
     /// Adds a frame of the film, where it is one of those that are written: guide points \[m\], world space, shape
-    /// `[block][point]` of lanes, and the pose of the head.
+    /// `[block][point]` of lanes, and the body.
     pub(crate) fn add(
         &mut self,
         number: u32,
         time: f64,
-        (positions, world_from_head): (&[Vec3Lanes], &Pose),
+        (positions, body): (&[Vec3Lanes], &BodyFrame),
         steps: &[StepReport],
         state: Option<&Snapshot>,
     ) -> Result<(), Error> {
@@ -198,9 +199,9 @@ impl Out {
             return Ok(());
         }
         let watch = Stopwatch::start();
-        self.shape.place(positions, world_from_head, &mut self.points);
+        self.shape.place(positions, body, &mut self.points);
         let points = std::mem::take(&mut self.points);
-        let frame = Frame { number, time, points: &points, world_from_head: *world_from_head };
+        let frame = Frame { number, time, points: &points, body };
         let added = self.write(&frame, state);
         self.points = points;
         self.time += watch.elapsed();
@@ -244,9 +245,9 @@ impl Out {
         }
         let mut points = Vec::new();
         for index in 0..count {
-            let world_from_head = cache.read(index, &mut points)?;
+            let body = &cache.read(index, &mut points)?;
             let (number, time) = (self.first + index as u32 * self.every, cache.times()[index]);
-            self.write(&Frame { number, time, points: &points, world_from_head }, None)?;
+            self.write(&Frame { number, time, points: &points, body }, None)?;
         }
         (self.offered, self.last_time) = (state.frame + 1, state.time);
         if let Writer::Store(store) = &mut self.writer {

@@ -13,10 +13,11 @@ use strandline_base::{
 };
 
 use super::arrays::{check_memory, expect, missing, numbers, read_meta, starts, text};
+use super::bodies::{self, LISTS, OF_FRAMES, OF_STATE, WIDTHS};
 use super::{Snapshot, What, meta, snapshot};
 use crate::{
     Error, Scene,
-    body::Pose,
+    body::{BodyFrame, Pose},
     groom::{LANES, Vec3Lanes, block_count},
     sim::Part,
 };
@@ -37,6 +38,8 @@ struct Frames<R> {
     starts: Vec<u32>,
     times: Vec<f64>,
     heads: Vec<Pose>,
+    /// Lists of the bodies that the file has, each with the length of a frame's.
+    lists: [Option<(Rows, usize)>; LISTS],
     meta: meta::Meta,
     /// One frame as it is in the file.
     bytes: Vec<u8>,
@@ -112,13 +115,13 @@ impl Cache {
         Ok(scene)
     }
 
-    /// Reads the points \[m\] of a frame, world space, strand after strand; the pose of the head then.
+    /// Reads the points \[m\] of a frame, world space, strand after strand, and its body.
     ///
     /// # Errors
     /// The file cannot be read, or holds points that are not finite.
-    pub fn read(&mut self, frame: usize, points: &mut Vec<Vec3>) -> Result<Pose, Error> {
-        let pose = self.frames.read(frame, points);
-        pose.map_err(|message| Error::Cache { path: self.path.clone(), message })
+    pub fn read(&mut self, frame: usize, points: &mut Vec<Vec3>) -> Result<BodyFrame, Error> {
+        let body = self.frames.read(frame, points);
+        body.map_err(|message| Error::Cache { path: self.path.clone(), message })
     }
 
     /// Reads a frame into blocks of lanes, `points_per_strand` points of each strand: its own, or as many evenly along
@@ -128,9 +131,9 @@ impl Cache {
         frame: usize,
         points_per_strand: usize,
         lanes: &mut [Vec3Lanes],
-    ) -> Result<Pose, Error> {
+    ) -> Result<BodyFrame, Error> {
         let mut points = Vec::new();
-        let pose = self.read(frame, &mut points)?;
+        let body = self.read(frame, &mut points)?;
         let strands = self.starts().len() - 1;
         let own = points.len() / strands;
         let step = (own - 1) as f32 / (points_per_strand - 1).max(1) as f32;
@@ -143,7 +146,7 @@ impl Cache {
                 points[first + low].lerp(points[first + low + 1], step * point as f32 - low as f32)
             }
         });
-        Ok(pose)
+        Ok(body)
     }
 
     /// Number of points of every strand.
@@ -232,14 +235,15 @@ impl<R: Read + Seek> Frames<R> {
         if times.iter().any(|time| !time.is_finite()) {
             return Err("times hold a number that is not finite".to_owned());
         }
-        let heads = head.chunks_exact(7).take(frames).map(snapshot::pose).collect::<Result<_, String>>()?;
+        let heads = head.chunks_exact(7).take(frames).map(bodies::pose).collect::<Result<_, String>>()?;
+        let lists = lists(&mut npz, frames as u64)?;
         let meta = read_meta(&mut npz, frames as u64)?;
         let need = Need::new(format!("a frame of {count} points"), count, 12 + 12);
         memory::check(&[need]).map_err(|error| error.to_string())?;
-        Ok(Self { npz, points, starts, times, heads, meta, bytes: Vec::new() })
+        Ok(Self { npz, points, starts, times, heads, lists, meta, bytes: Vec::new() })
     }
 
-    fn read(&mut self, frame: usize, points: &mut Vec<Vec3>) -> Result<Pose, String> {
+    fn read(&mut self, frame: usize, points: &mut Vec<Vec3>) -> Result<BodyFrame, String> {
         let Some(pose) = self.heads.get(frame).copied() else {
             return Err(format!("it holds {} frames, but frame {frame} is asked for", self.heads.len()));
         };
@@ -258,8 +262,21 @@ impl<R: Read + Seek> Frames<R> {
                 "point {at} of frame {frame} lies at {}, expected no more than {MOST} m",
                 points[at]
             )),
-            None => Ok(pose),
+            None => self.body(frame, pose),
         }
+    }
+
+    /// The body of a frame with a pose of its head.
+    fn body(&mut self, frame: usize, head: Pose) -> Result<BodyFrame, String> {
+        let mut found: [Vec<f32>; LISTS] = Default::default();
+        for (list, found) in self.lists.iter_mut().zip(&mut found) {
+            let Some((rows, numbers)) = list else { continue };
+            let mut bytes = vec![0; 4 * *numbers];
+            self.npz.go_to(rows, frame as u64 * bytes.len() as u64).map_err(text)?;
+            self.npz.read(rows, &mut bytes).map_err(text)?;
+            *found = f32s(&bytes).collect();
+        }
+        bodies::body(head, &found)
     }
 
     fn per_point(&mut self, name: &str, columns: u64) -> Result<Option<Vec<f32>>, String> {
@@ -284,6 +301,13 @@ impl<R: Read + Seek> Frames<R> {
         let poses = numbers(&mut self.npz, "state_poses", Kind::F32, &[Some(4), Some(7)], |bytes| {
             f32s(bytes).collect::<Vec<_>>()
         })?;
+        let mut lists: [Vec<f32>; LISTS] = Default::default();
+        for ((name, width), list) in OF_STATE.into_iter().zip(WIDTHS).zip(&mut lists) {
+            if self.npz.open(name).map_err(text)?.is_some() {
+                let shape = [Some(4), None, Some(width as u64)];
+                *list = numbers(&mut self.npz, name, Kind::F32, &shape, |bytes| f32s(bytes).collect())?;
+            }
+        }
         let mut parts = Vec::new();
         for (name, part) in snapshot::names() {
             let Some(mut rows) = self.npz.open(&name).map_err(text)? else { continue };
@@ -301,9 +325,25 @@ impl<R: Read + Seek> Frames<R> {
             let numbers = f32s(&self.npz.all(&mut rows).map_err(text)?).collect();
             parts.push(Part { name: part, shape, numbers });
         }
-        Snapshot::new(&clock, &poses, parts).map(Some)
+        Snapshot::new(&clock, &poses, &lists, parts).map(Some)
     }
 }
 
-/// Most numbers that a part of a state has for a point: the planes of two carriers.
-const NUMBERS_PER_POINT: u64 = 16;
+/// Most numbers that a part of a state has for a point: the planes of so many carriers as a body may have.
+const NUMBERS_PER_POINT: u64 = 8 * 64;
+
+/// Lists of the bodies of all frames, with the numbers of one frame.
+fn lists<R: Read + Seek>(npz: &mut Npz<R>, frames: u64) -> Result<[Option<(Rows, usize)>; LISTS], String> {
+    let mut lists = [None, None, None];
+    for ((name, width), list) in OF_FRAMES.into_iter().zip(WIDTHS).zip(&mut lists) {
+        let Some(rows) = npz.open(name).map_err(text)? else { continue };
+        let found = expect(&rows, name, Kind::F32, &[None, None, Some(width as u64)])?;
+        let length = rows.shape()[1];
+        if found < frames {
+            return Err(format!("{name} of {found} frames, expected {frames}"));
+        }
+        check_memory(name, length.saturating_mul(4 * width as u64), 2)?;
+        *list = Some((rows, length as usize * width));
+    }
+    Ok(lists)
+}

@@ -6,12 +6,9 @@ use strandline_base::{choices, in_strand_order};
 
 use crate::{
     BoundStrands, Error, Scene,
-    body::Pose,
-    groom::{Frames, Guides, MOST_INFLUENCES, Vec3Lanes},
-    render::{
-        DetailLevel, Look,
-        cpu::{Curves, Strands, interpolate, keep_outside, tessellate},
-    },
+    body::BodyFrame,
+    groom::{Guides, MOST_INFLUENCES, Vec3Lanes},
+    render::{DetailLevel, Growth, Look},
     strands::tags::Tags,
 };
 
@@ -86,17 +83,11 @@ enum Source {
     Strands(Box<Drawn>),
 }
 
-/// Input from which pictures grow strands.
+/// Strands as pictures grow them.
 struct Drawn {
-    /// The strands that are drawn, at rest, and what carries them where guides do.
-    drawn: Guides,
-    bound: Option<BoundStrands>,
-    frames: Frames,
-    places: Vec<Vec3Lanes>,
+    growth: Growth,
     look: Look,
     level: DetailLevel,
-    curves: Curves,
-    strands: Strands,
 }
 
 /// The hair of a scene that may leave.
@@ -107,6 +98,8 @@ pub(crate) struct Leaving<'a> {
     /// All strands, where some are not simulated.
     pub bound: Option<&'a BoundStrands>,
     pub tags: &'a Tags,
+    /// Body at the beginning of the film.
+    pub body: &'a BodyFrame,
 }
 
 impl Shape {
@@ -121,7 +114,7 @@ impl Shape {
         }
     }
 
-    fn of_guides(Leaving { guides, bound, tags }: Leaving) -> Self {
+    fn of_guides(Leaving { guides, bound, tags, .. }: Leaving) -> Self {
         let (strands, points) = (guides.strand_count(), guides.points_per_strand());
         let share = |point: usize| guides.profiles().map_or(1.0, |profiles| profiles[point]);
         let widths = (0..strands * points).map(|point| guides.widths()[point / points] * share(point));
@@ -139,7 +132,7 @@ impl Shape {
         }
     }
 
-    fn of_strands(scene: &Scene, Leaving { guides, bound, tags }: Leaving) -> Result<Self, Error> {
+    fn of_strands(scene: &Scene, Leaving { guides, bound, tags, .. }: Leaving) -> Result<Self, Error> {
         let level =
             DetailLevel::full(scene.level_of_detail.segments_per_span, scene.look.follow_strands.max(1));
         let all = bound.map_or(guides, BoundStrands::strands);
@@ -150,18 +143,12 @@ impl Shape {
             let expected = "268435456 points in all at most: take fewer look.follow_strands";
             return Err(strandline_base::SettingError::new("what = strands", found, expected).into());
         }
-        let mut drawn = Drawn {
-            drawn: all.clone(),
-            bound: bound.cloned(),
-            frames: Frames::default(),
-            places: Vec::new(),
-            look: scene.look.clone(),
-            level,
-            curves: Curves::default(),
-            strands: Strands::default(),
+        let growth = match bound {
+            Some(bound) => Growth::bound(bound.binding(), bound.solids()),
+            None => Growth::new(guides),
         };
-        drawn.grow(guides.positions(), &Pose::IDENTITY);
-        let grown = &drawn.strands;
+        let mut drawn = Drawn { growth, look: scene.look.clone(), level };
+        let grown = drawn.growth.at(guides.positions(), &BodyFrame::REST, &drawn.look, &level);
         // The strands of a clump share their colours.
         let colors = grown.colors.chunks_exact(points).flat_map(|colors| {
             std::iter::repeat_n(colors, level.strand_count()).flatten().map(|color| color.to_array())
@@ -190,7 +177,7 @@ impl Shape {
     }
 
     /// Fills `points` \[m\] with the strands of guides that are somewhere, shape `[block][point]` of lanes.
-    pub fn place(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose, points: &mut Vec<Vec3>) {
+    pub fn place(&mut self, positions: &[Vec3Lanes], body: &BodyFrame, points: &mut Vec<Vec3>) {
         points.clear();
         let strand_count = self.strand_count();
         match &mut self.source {
@@ -198,28 +185,10 @@ impl Shape {
                 points.extend(in_strand_order(positions, strand_count, *each));
             }
             Source::Strands(drawn) => {
-                drawn.grow(positions, world_from_head);
-                points.extend_from_slice(&drawn.strands.positions);
+                let Drawn { growth, look, level } = &mut **drawn;
+                let grown = growth.at(positions, body, look, level);
+                points.extend_from_slice(&grown.positions);
             }
-        }
-    }
-}
-
-impl Drawn {
-    fn grow(&mut self, positions: &[Vec3Lanes], world_from_head: &Pose) {
-        let Self { drawn, bound, frames, places, look, level, curves, strands } = self;
-        let positions = match bound {
-            None => positions,
-            Some(bound) => {
-                bound.place(positions, world_from_head, frames, places);
-                places
-            }
-        };
-        tessellate(positions, drawn, world_from_head, level, curves);
-        interpolate(curves, drawn, world_from_head, look, level, strands);
-        if let Some(bound) = bound {
-            let solids = bound.solids().placed(*world_from_head);
-            keep_outside(strands, curves, drawn.points_per_strand(), &solids);
         }
     }
 }

@@ -1,10 +1,11 @@
-//! Where a run stands: what resuming it needs to make the same bits.
+//! Snapshots of a run: the numbers from which it resumes to the same bits.
 
-use glam::{Quat, Vec3};
 use strandline_base::npz::Array;
 
+use super::bodies::{self, LISTS, Lists, OF_STATE};
+
 use crate::{
-    body::Pose,
+    body::BodyFrame,
     sim::{Checkpoint, Part},
 };
 
@@ -15,10 +16,12 @@ pub(crate) struct Snapshot {
     pub frame: u32,
     pub time: f64,
     pub state: Checkpoint,
-    /// Poses of the head at the last two steps, and where the last run ended.
-    pub poses: [Pose; 3],
+    /// Body at the last two steps, and at the end of the last run.
+    pub bodies: [BodyFrame; 3],
 }
 
+/// Bodies of a snapshot: those of [`Snapshot::bodies`], then the state's.
+const BODIES: usize = 4;
 /// Before the name of every array of a state.
 const PREFIX: &str = "state_";
 
@@ -27,36 +30,20 @@ pub(super) fn names() -> impl Iterator<Item = (String, &'static str)> {
     Checkpoint::NAMES.into_iter().map(|name| (format!("{PREFIX}{name}"), name))
 }
 
-/// A pose as seven numbers: quaternion x, y, z, w and translation \[m\].
-pub(super) fn numbers(pose: &Pose) -> [f32; 7] {
-    let ([x, y, z, w], [a, b, c]) = (pose.rotation.to_array(), pose.translation.to_array());
-    [x, y, z, w, a, b, c]
-}
-
-/// The pose of seven numbers, as they are to the bit.
-///
-/// # Errors
-/// A quaternion that is not of length 1, a translation that is not finite.
-pub(super) fn pose(numbers: &[f32]) -> Result<Pose, String> {
-    let (rotation, translation) = (Quat::from_slice(&numbers[..4]), Vec3::from_slice(&numbers[4..7]));
-    if !rotation.is_normalized() {
-        return Err(format!("a head with the quaternion {rotation}, expected one of length 1"));
-    }
-    if !translation.is_finite() {
-        return Err(format!("a head at {translation}, expected finite numbers"));
-    }
-    Ok(Pose { rotation, translation })
-}
-
 impl Snapshot {
-    /// The arrays of a file: `state_clock` (the frame, the clock's time and the state's \[s\]), `state_poses`
-    /// and one for each part of the state. `names` outlives them.
+    /// The arrays of a file: `state_clock` (the frame, the clock's time and the state's \[s\]), `state_poses` with the
+    /// other lists of bodies, and one for each part of the state. `names` outlives them.
     pub fn arrays<'a>(&'a self, names: &'a [(String, &'static str)]) -> Vec<Array<'a>> {
         let clock = [f64::from(self.frame), self.time, self.state.time];
-        let head = [self.state.world_from_head];
-        let poses = self.poses.iter().chain(&head).flat_map(numbers);
+        let bodies: Vec<&BodyFrame> = self.bodies.iter().chain([&self.state.body]).collect();
+        let poses = bodies.iter().flat_map(|body| bodies::numbers(&body.world_from_head()));
         let mut arrays =
-            vec![Array::f64s("state_clock", &[3], clock), Array::f32s("state_poses", &[4, 7], poses)];
+            vec![Array::f64s("state_clock", &[3], clock), Array::f32s("state_poses", &[BODIES, 7], poses)];
+        let lists = Lists::of(bodies.iter().copied());
+        arrays.extend(lists.present().map(|(list, length, width)| {
+            let numbers = bodies.iter().flat_map(|body| lists.numbers(list, body));
+            Array::f32s(OF_STATE[list], &[BODIES, length, width], numbers)
+        }));
         arrays.extend(self.state.parts.iter().filter_map(|part| {
             let (name, _) = names.iter().find(|(_, own)| *own == part.name)?;
             Some(Array::f32s(name, &part.shape, part.numbers.iter().copied()))
@@ -68,7 +55,12 @@ impl Snapshot {
     ///
     /// # Errors
     /// Numbers that are none of a snapshot.
-    pub fn new(clock: &[f64], poses: &[f32], parts: Vec<Part>) -> Result<Self, String> {
+    pub fn new(
+        clock: &[f64],
+        poses: &[f32],
+        lists: &[Vec<f32>; LISTS],
+        parts: Vec<Part>,
+    ) -> Result<Self, String> {
         let [frame, time, state_time] = clock else {
             return Err("state_clock: expected three numbers".to_owned());
         };
@@ -78,11 +70,18 @@ impl Snapshot {
         if !(time.is_finite() && state_time.is_finite() && *time >= 0.0) {
             return Err(format!("state_clock with {time} s, expected a time"));
         }
-        let each: Vec<Pose> = poses.chunks_exact(7).map(pose).collect::<Result<_, _>>()?;
-        let [first, second, end, head] = each[..] else {
+        if poses.len() != 7 * BODIES {
             return Err("state_poses: expected four poses".to_owned());
+        }
+        let body = |at: usize| {
+            let of_body = |list: &Vec<f32>| {
+                let each = list.len() / BODIES;
+                list[at * each..(at + 1) * each].to_vec()
+            };
+            bodies::body(bodies::pose(&poses[7 * at..])?, &lists.each_ref().map(of_body))
         };
-        let state = Checkpoint { parts, world_from_head: head, time: *state_time };
-        Ok(Self { frame: *frame as u32, time: *time, state, poses: [first, second, end] })
+        let bodies = [body(0)?, body(1)?, body(2)?];
+        let state = Checkpoint { parts, body: body(3)?, time: *state_time };
+        Ok(Self { frame: *frame as u32, time: *time, state, bodies })
     }
 }

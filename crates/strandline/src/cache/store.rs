@@ -7,11 +7,12 @@ use strandline_base::npz::{Array, Growing, GrowingNpz, Kind};
 
 use super::{
     Frame, Snapshot,
+    bodies::{self, Lists, OF_FRAMES},
     meta::{LAYOUT, Meta, Report},
     shape::{Attributes, Shape},
     snapshot,
 };
-use crate::{Error, Scene, sim::StepReport};
+use crate::{Error, Scene, body::BodyFrame, sim::StepReport};
 
 /// A cache under way.
 pub(super) struct Store {
@@ -19,13 +20,20 @@ pub(super) struct Store {
     npz: GrowingNpz,
     meta: Meta,
     names: Vec<(String, &'static str)>,
+    lists: Lists,
     bytes: Vec<u8>,
 }
 
 impl Store {
     /// Begins a cache for at most so many frames of the scene's film, of which `every`-th is written, from the
-    /// `first` on.
-    pub fn new(path: &Path, scene: &Scene, shape: &Shape, [first, every]: [u32; 2]) -> Result<Self, Error> {
+    /// `first` on. `body` is the body at the beginning: all frames get room for what it has.
+    pub fn new(
+        path: &Path,
+        scene: &Scene,
+        shape: &Shape,
+        body: &BodyFrame,
+        [first, every]: [u32; 2],
+    ) -> Result<Self, Error> {
         let folder = std::path::absolute(&scene.folder).unwrap_or_default();
         let meta = Meta {
             layout: LAYOUT,
@@ -42,11 +50,17 @@ impl Store {
             scene_folder: folder.to_string_lossy().into_owned(),
             report: Report::default(),
         };
-        let growing = [
+        let lists = Lists::of([body]);
+        let mut growing = vec![
             Growing { name: "times", kind: Kind::F64, row: vec![] },
             Growing { name: "world_from_head", kind: Kind::F32, row: vec![7] },
             Growing { name: "points", kind: Kind::F32, row: vec![shape.point_count() as u64, 3] },
         ];
+        growing.extend(lists.present().map(|(list, length, width)| Growing {
+            name: OF_FRAMES[list],
+            kind: Kind::F32,
+            row: vec![length as u64, width as u64],
+        }));
         let mut arrays = vec![Array::u32s("starts", &[shape.starts.len()], shape.starts.iter().copied())];
         arrays.extend(attributes(&shape.attributes));
         let capacity = u64::from(scene.film.frames.saturating_sub(first).div_ceil(every));
@@ -56,7 +70,7 @@ impl Store {
             _ => Error::write("the cache", path)(error),
         })?;
         let names = snapshot::names().collect();
-        Ok(Self { path: path.to_owned(), npz, meta, names, bytes: Vec::new() })
+        Ok(Self { path: path.to_owned(), npz, meta, names, lists, bytes: Vec::new() })
     }
 
     /// True where the state has to come with the next frame.
@@ -79,9 +93,13 @@ impl Store {
             bytes[4..8].copy_from_slice(&point.y.to_le_bytes());
             bytes[8..].copy_from_slice(&point.z.to_le_bytes());
         }
-        let head: Vec<u8> =
-            snapshot::numbers(&frame.world_from_head).into_iter().flat_map(f32::to_le_bytes).collect();
-        let row: [&[u8]; 3] = [&frame.time.to_le_bytes(), &head, &self.bytes];
+        let bytes = |numbers: &[f32]| numbers.iter().copied().flat_map(f32::to_le_bytes).collect::<Vec<u8>>();
+        let head = bytes(&bodies::numbers(&frame.body.world_from_head()));
+        let lists = self.lists.present().map(|(list, ..)| bytes(&self.lists.numbers(list, frame.body)));
+        let lists: Vec<Vec<u8>> = lists.collect();
+        let time = frame.time.to_le_bytes();
+        let mut row: Vec<&[u8]> = vec![&time, &head, &self.bytes];
+        row.extend(lists.iter().map(Vec::as_slice));
         self.npz.append(&row).map_err(Error::write("the cache", &self.path))?;
         if self.npz.wants_tail() {
             self.set_state(state)?;

@@ -8,15 +8,18 @@ use super::{
 };
 use crate::{
     Scene,
+    body::BodyFrame,
     groom::{Groom, Guides},
     strands::tags::Tags,
 };
+
+static REST: BodyFrame = BodyFrame::REST;
 
 /// No strand has a name, and all are simulated.
 static UNTAGGED: Tags = Tags { root_uvs: None, groups: None, group_names: Vec::new(), guides: None };
 
 fn leaving(guides: &Guides) -> Leaving<'_> {
-    Leaving { guides, bound: None, tags: &UNTAGGED }
+    Leaving { guides, bound: None, tags: &UNTAGGED, body: &REST }
 }
 
 fn guides(strands: usize, points: usize) -> Guides {
@@ -47,15 +50,15 @@ fn write(settings: &OutSettings, guides: &Guides, frames: u32) -> (u64, f64, f64
     let state = Snapshot {
         frame: 0,
         time: 0.0,
-        state: crate::sim::Checkpoint { parts: Vec::new(), world_from_head: Pose::IDENTITY, time: 0.0 },
-        poses: [Pose::IDENTITY; 3],
+        state: crate::sim::Checkpoint { parts: Vec::new(), body: BodyFrame::REST, time: 0.0 },
+        bodies: [BodyFrame::REST, BodyFrame::REST, BodyFrame::REST],
     };
     let (begin, ran) = (Instant::now(), processor());
     for frame in 0..frames {
         for lanes in &mut positions {
             lanes.x.iter_mut().for_each(|x| *x += 1e-4 * (0.3 * frame as f32).sin());
         }
-        out.add(frame, f64::from(frame) / 30.0, (&positions, &Pose::IDENTITY), &[], Some(&state)).unwrap();
+        out.add(frame, f64::from(frame) / 30.0, (&positions, &REST), &[], Some(&state)).unwrap();
     }
     out.close(true, Some(&state)).unwrap();
     let bytes = u64::from(frames) * 12 * (guides.strand_count() * guides.points_per_strand()) as u64;
@@ -113,10 +116,10 @@ fn attributes_that_there_are_leave_with_the_strands() {
     let mut shape = Shape::new(What::Guides, &scene, leaving(&guides)).unwrap();
     everything(&mut shape);
     let mut points = Vec::new();
-    shape.place(guides.positions(), &Pose::IDENTITY, &mut points);
-    let frame = Frame { number: 0, time: 0.0, points: &points, world_from_head: Pose::IDENTITY };
+    shape.place(guides.positions(), &BodyFrame::REST, &mut points);
+    let frame = Frame { number: 0, time: 0.0, points: &points, body: &REST };
     let path = folder.path().join("a.npz");
-    let mut store = store::Store::new(&path, &scene, &shape, [0, 1]).unwrap();
+    let mut store = store::Store::new(&path, &scene, &shape, &REST, [0, 1]).unwrap();
     store.add(&frame, None).unwrap();
     store.finish(None).unwrap();
     let mut npz = strandline_base::npz::Npz::new(std::fs::File::open(&path).unwrap()).unwrap();

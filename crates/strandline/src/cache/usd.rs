@@ -203,7 +203,7 @@ impl Usd {
         self.texts = texts;
         let half = Vec3::splat(0.5 * space.length(self.widest));
         self.boxes.push((code, [low - half, high + half]));
-        self.heads.push((code, space.pose(&frame.world_from_head)));
+        self.heads.push((code, space.pose(&frame.body.world_from_head())));
         Ok(())
     }
 

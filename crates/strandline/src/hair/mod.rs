@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::{
     Devices, Error, HeadMotion, Prepared, Ray, Scene, Sources,
-    body::{Aabb, Collider, Mesh, Pose},
+    body::{Aabb, BodyFrame, Collider, Mesh},
     gpu::Gpu,
     groom::{Groom, Guides},
     render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
@@ -99,27 +99,31 @@ impl Hair {
         Self { session, wind: Vec3::ZERO, unwritten: None }
     }
 
-    /// Lets `seconds` pass while the head moves evenly to `world_from_head`. Steps have a fixed
-    /// length, so zero or more of them happen; what is left over counts the next time.
+    /// Lets `seconds` pass while the body moves evenly to `body`: a [`BodyFrame`], or the pose of a rigid head. Steps
+    /// have a fixed length, so zero or more of them happen; the rest of the time counts with the next call.
     /// Returns one report a step; those of steps on a GPU when they have arrived, with a later call or from
     /// [`Hair::reports`].
     ///
     /// # Errors
     /// More than a million steps at once; or the GPU failed and [`Hair::set_fall_back`] was not asked for. The
     /// hair keeps its last state.
-    pub fn step(&mut self, seconds: f64, world_from_head: &Pose) -> Result<Vec<StepReport>, Error> {
-        let (start, end) = (self.session.simulation().end(), *world_from_head);
+    pub fn step(&mut self, seconds: f64, body: impl Into<BodyFrame>) -> Result<Vec<StepReport>, Error> {
+        let (start, end) = (self.session.simulation().end().clone(), body.into());
         self.step_along(seconds, |share| start.toward(&end, share))
     }
 
-    /// As [`Hair::step`], with the head's pose for each share (0 to 1) of the time that passes.
+    /// As [`Hair::step`], with the body for each share (0 to 1) of the time that passes.
     ///
     /// # Errors
     /// As [`Hair::step`].
-    pub fn step_along(&mut self, seconds: f64, pose: impl Fn(f32) -> Pose) -> Result<Vec<StepReport>, Error> {
+    pub fn step_along<B: Into<BodyFrame>>(
+        &mut self,
+        seconds: f64,
+        body: impl Fn(f32) -> B,
+    ) -> Result<Vec<StepReport>, Error> {
         let wind = self.wind;
         let simulation = self.session.simulation_mut();
-        let reports = simulation.step_along(seconds, &|share| (pose(share), wind))?;
+        let reports = simulation.step_along(seconds, &|share| (body(share).into(), wind))?;
         self.note_reports(&reports);
         Ok(reports)
     }

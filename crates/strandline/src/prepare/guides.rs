@@ -78,7 +78,7 @@ pub(super) fn move_outside(
     colliders: &[Collider],
     clearance: impl Fn(&Shape) -> f32,
 ) -> Option<String> {
-    let on_head = colliders.iter().filter(|solid| solid.carrier == Carrier::Head);
+    let on_head = colliders.iter().filter(|solid| solid.carrier == Carrier::HEAD);
     let solids = Solids::new(on_head.map(|solid| (solid.clone(), clearance(&solid.shape))));
     let at_rest = solids.placed(Pose::IDENTITY);
     let found = guides.move_outside(|point| at_rest.at(point));

@@ -28,7 +28,7 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     }
     let scene = &loading.scene;
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
-        loading.colliders.push(Collider::new(shape, Carrier::Head, scene.body.friction)?);
+        loading.colliders.push(Collider::new(shape, Carrier::HEAD, scene.body.friction)?);
     }
     for section in &scene.colliders {
         loading.colliders.push(section.collider()?);

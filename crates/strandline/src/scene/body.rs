@@ -82,6 +82,26 @@ settings! {
     }
 }
 
+choices! {
+    /// Space in which a collider is fixed.
+    pub enum CarrierName as "carrier" {
+        /// The head: the shape is given in head space.
+        Head = "head",
+        /// Nothing: the shape is given in world space and stays.
+        World = "world",
+    }
+    default Head
+}
+
+impl From<CarrierName> for Carrier {
+    fn from(name: CarrierName) -> Self {
+        match name {
+            CarrierName::Head => Self::HEAD,
+            CarrierName::World => Self::World,
+        }
+    }
+}
+
 settings! {
     /// A ball.
     pub struct SphereSection: Copy {
@@ -90,7 +110,7 @@ settings! {
         /// Radius.
         radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
         /// Carrier that it moves with.
-        carrier: Carrier = Carrier::default();
+        carrier: CarrierName = CarrierName::default();
         shared BodySection { friction: f32 }
     }
 }
@@ -102,7 +122,7 @@ settings! {
         start: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
         /// The other end of a capsule.
         end: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
-        shared SphereSection { radius: f32, carrier: Carrier, friction: f32 }
+        shared SphereSection { radius: f32, carrier: CarrierName, friction: f32 }
     }
 }
 
@@ -130,7 +150,7 @@ impl ColliderSection {
                 (Shape::Capsule { start, end, radius }, carrier, friction)
             }
         };
-        Ok(Collider::new(shape, carrier, friction)?)
+        Ok(Collider::new(shape, carrier.into(), friction)?)
     }
 }
 

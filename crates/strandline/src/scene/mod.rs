@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
-pub use body::{BodyPart, BodySection, CapsuleSection, ColliderSection, Model, SphereSection};
+pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
 pub use devices::Devices;
 pub use film::{CameraSection, FilmSection, View};
 pub(crate) use given::Given;

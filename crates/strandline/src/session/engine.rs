@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_gpu::{Buffer, Gpu};
 
 use crate::{
-    body::Pose,
+    body::BodyFrame,
     groom::Vec3Lanes,
     sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
     strands::hair_pose::HairPose,
@@ -104,11 +104,11 @@ impl Engine {
         self.guarded(|simulator| simulator.set_settings(settings))
     }
 
-    /// Puts every strand back to rest under a pose of the head; their lengths stay.
-    pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
+    /// Puts every strand back to rest on a body; their lengths stay.
+    pub fn reset(&mut self, body: BodyFrame) -> Result<(), SimError> {
         self.guarded(|simulator| {
             simulator.change(|state, model| {
-                *state = rest(state, model, pose)?;
+                *state = rest(state, model, body.clone())?;
                 Ok(())
             })
         })
@@ -118,7 +118,7 @@ impl Engine {
     pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
         self.guarded(|simulator| {
             simulator.change(|state, model| {
-                *state = rest(state, model, hair.world_from_head())?;
+                *state = rest(state, model, hair.body().clone())?;
                 hair.place(state);
                 Ok(())
             })
@@ -174,10 +174,10 @@ impl Engine {
     }
 }
 
-/// Strands at rest under a pose, of the lengths that those of a state have.
-fn rest(state: &State, model: &Model, pose: Pose) -> Result<State, SimError> {
+/// Strands at rest on a body, of the lengths that those of a state have.
+fn rest(state: &State, model: &Model, body: BodyFrame) -> Result<State, SimError> {
     let scales: Vec<f32> = (0..model.strand_count()).map(|strand| state.length_scale(strand)).collect();
-    let mut state = model.rest_state(pose);
+    let mut state = model.rest_state(body);
     // Points slide along their strands, which is exact but for rounding.
     if scales.iter().any(|scale| *scale != 1.0) {
         state.set_length_scale(model, &scales)?;

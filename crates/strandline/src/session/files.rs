@@ -3,18 +3,19 @@
 use super::{Executor, Session};
 use crate::{
     Cache, Error, OutSettings, What, Written,
+    body::BodyFrame,
     cache::{Leaving, Out, Snapshot},
     sim::StepReport,
 };
 
 impl<E: Executor> Session<E> {
-    /// Begins a file for the frames of the scene's film.
+    /// Begins a file for the frames of the scene's film; `body` is the body at its beginning.
     ///
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
-    pub fn begin_file(&self, settings: &OutSettings) -> Result<Out, Error> {
+    pub fn begin_file(&self, settings: &OutSettings, body: &BodyFrame) -> Result<Out, Error> {
         let (view, tags) = (&self.view, &self.tags);
-        let leaving = Leaving { guides: &view.guides, bound: view.painter.bound(), tags };
+        let leaving = Leaving { guides: &view.guides, bound: view.painter.bound(), tags, body };
         Out::new(settings, &self.scene, leaving)
     }
 
@@ -31,7 +32,7 @@ impl<E: Executor> Session<E> {
         reports: &[StepReport],
         state: Option<&Snapshot>,
     ) -> Result<(), Error> {
-        out.add(frame, time, (self.shown.positions(), &self.shown.world_from_head), reports, state)
+        out.add(frame, time, (self.shown.positions(), &self.shown.body), reports, state)
     }
 
     /// The simulation after a frame.

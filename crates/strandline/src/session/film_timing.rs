@@ -1,4 +1,4 @@
-//! Timing of a film: head and wind at every time, and the steps that lead to each frame.
+//! Timing of a film: body and wind at every time, and the steps that lead to each frame.
 
 use std::sync::Arc;
 
@@ -8,14 +8,14 @@ use super::simulation::Simulation;
 
 use crate::{
     HeadMotion, Scene,
-    body::Pose,
+    body::{BodyFrame, Pose},
     sim::{SimError, StepReport},
 };
 
-/// Head and wind of a film at every time, and the times of its frames.
+/// Body and wind of a film at every time, and the times of its frames.
 #[derive(Clone)]
 pub(crate) struct FilmTiming {
-    pose: Arc<dyn Fn(f64) -> Pose + Send + Sync>,
+    body: Arc<dyn Fn(f64) -> BodyFrame + Send + Sync>,
     wind: Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
     frames_per_second: f64,
     settle_seconds: f64,
@@ -31,17 +31,17 @@ pub(crate) struct FilmTiming {
 const JOINING: f64 = 1.0 / 30.0;
 
 impl FilmTiming {
-    /// The timing of a scene whose head moves so and is `here` at the beginning.
+    /// The timing of a scene with a motion of the head, which is `here` at the beginning.
     pub fn new(scene: &Scene, head: HeadMotion, here: Pose) -> Self {
         let (wind, there) = (scene.wind, head.pose(scene.film.start));
         Self {
-            pose: Arc::new(move |time| head.pose(time)),
+            body: Arc::new(move |time| head.pose(time).into()),
             wind: Arc::new(move |time| wind.at(time)),
             frames_per_second: f64::from(scene.film.frames_per_second),
             settle_seconds: f64::from(scene.film.settle),
             start: scene.film.start,
             posed: scene.groom.pose.is_some(),
-            aside: if here == there { Pose::IDENTITY } else { carrying(&there, &here) },
+            aside: if here == there { Pose::IDENTITY } else { there.motion_to(&here) },
         }
     }
 
@@ -56,7 +56,7 @@ impl FilmTiming {
         if frame == 0 {
             simulation.settle(self.settle_seconds, (self.wind)(self.start))?;
         }
-        simulation.run_to(self.time(frame), &|time| (self.head(time), (self.wind)(self.start + time)))
+        simulation.run_to(self.time(frame), &|time| (self.body(time), (self.wind)(self.start + time)))
     }
 
     /// Time of the film at which a frame is shown \[s\].
@@ -64,19 +64,12 @@ impl FilmTiming {
         f64::from(frame + u32::from(!self.posed)) / self.frames_per_second
     }
 
-    /// Pose of the head at a time of the film \[s\].
-    fn head(&self, time: f64) -> Pose {
-        let pose = (self.pose)(self.start + time);
+    /// Body at a time of the film \[s\].
+    pub fn body(&self, time: f64) -> BodyFrame {
+        let body = (self.body)(self.start + time);
         if self.aside == Pose::IDENTITY || time >= JOINING {
-            return pose;
+            return body;
         }
-        let aside = self.aside.toward(&Pose::IDENTITY, (time / JOINING) as f32);
-        Pose { rotation: aside.rotation * pose.rotation, translation: aside.point(pose.translation) }
+        body.carried_by(&self.aside.toward(&Pose::IDENTITY, (time / JOINING) as f32))
     }
-}
-
-/// Transform that carries a head from one pose to another.
-fn carrying(from: &Pose, to: &Pose) -> Pose {
-    let back = from.inverse();
-    Pose { rotation: to.rotation * back.rotation, translation: to.point(back.translation) }
 }

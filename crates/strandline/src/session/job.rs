@@ -7,7 +7,7 @@ use strandline_gpu::Gpu;
 use super::{film_timing::FilmTiming, moment::Moment, simulation::Simulation};
 use crate::{
     HeadMotion,
-    body::Pose,
+    body::BodyFrame,
     groom::Vec3Lanes,
     scene::WindSection,
     scene::devices::device_name,
@@ -20,15 +20,15 @@ pub(crate) enum Task {
     /// The frame of a film with this number, with settings that change before it.
     Film { timing: FilmTiming, frame: u32, settings: Option<Box<Settings>> },
     /// A frame of a cache: guide points \[m\], world space, shape `[block][point]` of lanes.
-    Cached { world_from_head: Pose, positions: Vec<Vec3Lanes> },
+    Cached { body: BodyFrame, positions: Vec<Vec3Lanes> },
     /// A stretch of time that a person directs.
     Live(Live),
     /// Other settings.
     Settings(Box<Settings>),
     /// Another length of each strand, over that of the groom.
     Lengths(Vec<f32>),
-    /// Back to rest under a pose of the head.
-    Reset(Pose),
+    /// Back to rest on a body.
+    Reset(BodyFrame),
     /// Takes the hair about a point of a guide, wherever that is by then, into a hand of a radius \[m\].
     Grab { index: usize, lane: usize, radius: f32 },
     /// Lets go of it.
@@ -60,12 +60,12 @@ impl Task {
                 return timing.run(simulation, frame);
             }
             Self::Live(live) => return live.run(simulation),
-            Self::Cached { world_from_head, positions } => {
-                simulation.show_cached(world_from_head, |places| places.copy_from_slice(&positions))
+            Self::Cached { body, positions } => {
+                simulation.show_cached(body, |places| places.copy_from_slice(&positions))
             }
             Self::Settings(settings) => simulation.set_settings(&settings),
             Self::Lengths(scales) => simulation.engine.set_length_scale(&scales),
-            Self::Reset(pose) => simulation.reset(pose),
+            Self::Reset(body) => simulation.reset(body),
             Self::Grab { index, lane, radius } => {
                 let now = simulation.engine.state()?.positions[index].get(lane);
                 simulation.grab(now, radius).map(drop)
@@ -78,11 +78,11 @@ impl Task {
 
 impl Live {
     fn run(self, simulation: &mut Simulation) -> Result<Vec<StepReport>, SimError> {
-        let start = simulation.end();
+        let start = simulation.end().clone();
         self.hand.into_iter().for_each(|hand| simulation.move_hand(hand));
         let seconds = self.seconds.min(self.most_steps * simulation.time_step());
         // The head may have been turned since.
-        let end = self.head.pose(self.begin + seconds);
+        let end = BodyFrame::from(self.head.pose(self.begin + seconds));
         simulation.step_along(seconds, &|share| {
             (start.toward(&end, share), self.wind.at(self.begin + seconds * f64::from(share)))
         })

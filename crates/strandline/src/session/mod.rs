@@ -250,7 +250,7 @@ impl<E: Executor> Session<E> {
             Change::Reset => {
                 self.direction.reset();
                 let pose = self.direction.head.pose(0.0);
-                self.start(Task::Reset(pose), false, 0)?;
+                self.start(Task::Reset(pose.into()), false, 0)?;
             }
         }
         Ok(())
@@ -303,7 +303,7 @@ impl<E: Executor> Session<E> {
         let Self { executor, shown, view, .. } = self;
         executor.with(|simulation| simulation.bring_home(shown))?;
         let View { guides, painter, .. } = view;
-        let body = painter.mesh().map(|mesh| (mesh, &shown.world_from_head));
+        let body = painter.mesh().map(|mesh| (mesh, &shown.body));
         let shape = [guides.strand_count(), guides.points_per_strand()];
         Ok(ray.hair(shown.positions(), shape, radius, body))
     }

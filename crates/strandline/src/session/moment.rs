@@ -3,7 +3,7 @@
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use crate::{
-    body::Pose,
+    body::BodyFrame,
     groom::Vec3Lanes,
     render::gpu::DevicePoints,
     sim::{State, gpu::read_between},
@@ -16,7 +16,7 @@ pub(crate) struct Moment {
     positions: Vec<Vec3Lanes>,
     on_host: bool,
     device: Option<OnDevice>,
-    pub world_from_head: Pose,
+    pub body: BodyFrame,
     pub at: When,
 }
 

@@ -93,7 +93,7 @@ impl Session<Inline> {
         let start = head.pose(scene.film.start);
         match &pose {
             Some(pose) => simulation.place(pose)?,
-            None if start != Pose::IDENTITY => simulation.reset(start)?,
+            None if start != Pose::IDENTITY => simulation.reset(start.into())?,
             None => {}
         }
         session.direction = Direction::new(&scene, head);

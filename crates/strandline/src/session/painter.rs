@@ -1,12 +1,11 @@
 //! Pictures on whichever backend draws them.
 
-use strandline_base::Stopwatch;
 use strandline_gpu::Gpu;
 
 use crate::{
     BoundStrands,
     body::Mesh,
-    groom::{Frames, Guides, Vec3Lanes},
+    groom::Guides,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
         gpu::{DevicePoints, GpuRenderer},
@@ -22,10 +21,8 @@ pub(crate) struct Painter {
     stands_in: bool,
     /// The strands that are drawn, at rest.
     strands: Guides,
-    /// Binding that moves them where they are not the simulated ones, and their positions.
+    /// Their guides, where they are not simulated themselves.
     bound: Option<BoundStrands>,
-    frames: Frames,
-    places: Vec<Vec3Lanes>,
     mesh: Option<Mesh>,
     settings: PictureSettings,
     /// The light whose layers colour the hair.
@@ -72,8 +69,6 @@ impl Painter {
             stands_in: false,
             strands,
             bound,
-            frames: Frames::default(),
-            places: Vec::new(),
             mesh: mesh.cloned(),
             settings,
             layers_of: None,
@@ -135,7 +130,6 @@ impl Painter {
         let mut picture = Picture::default();
         let drawn = match &mut self.place {
             Place::Cpu(_) => self.draw_on_cpu(input, &mut picture),
-            // It places bound strands itself.
             Place::Gpu(renderer) => {
                 renderer.show_layers(self.layers_of);
                 renderer.draw_into(input, points, &mut picture)
@@ -153,22 +147,14 @@ impl Painter {
         Ok((picture, report?))
     }
 
-    /// Draws on the CPU, where there is a renderer for it: strands that guides carry are placed first.
+    /// Draws on the CPU, where there is a renderer for it.
     fn draw_on_cpu(&mut self, input: &FrameInput, picture: &mut Picture) -> Result<FrameReport, RenderError> {
-        let watch = Stopwatch::start();
-        let bind = self.bound.as_ref().map(|bound| {
-            bound.place(input.positions, &input.world_from_head, &mut self.frames, &mut self.places);
-            ("bind", watch.seconds())
-        });
-        let positions = if bind.is_some() { &self.places } else { input.positions };
         let renderer = match (&mut self.place, &mut self.stand_in) {
             (Place::Cpu(renderer), _) | (Place::Gpu(_), Some(renderer)) => renderer,
             (Place::Gpu(_), None) => unreachable!("made before"),
         };
         renderer.show_layers(self.layers_of);
-        let mut report = renderer.draw_into(&FrameInput { positions, ..*input }, picture)?;
-        report.seconds.splice(0..0, bind);
-        Ok(report)
+        renderer.draw_into(input, picture)
     }
 
     /// Makes the renderer that draws what is more than the GPU draws.
@@ -212,7 +198,7 @@ impl Painter {
     }
 }
 
-/// A renderer on the CPU that keeps bound strands out of their solids.
+/// A renderer on the CPU, which places bound strands.
 fn on_cpu(
     strands: &Guides,
     bound: Option<&BoundStrands>,
@@ -220,11 +206,13 @@ fn on_cpu(
     settings: &PictureSettings,
 ) -> Result<Renderer, RenderError> {
     let mut renderer = Renderer::new(strands, mesh, settings)?;
-    renderer.keep_outside(bound.map(BoundStrands::solids).cloned().unwrap_or_default());
+    if let Some(bound) = bound {
+        renderer.bind(bound.binding(), bound.solids())?;
+    }
     Ok(renderer)
 }
 
-/// A renderer on a GPU that places bound strands itself.
+/// A renderer on a GPU, which places bound strands.
 fn on_gpu(
     gpu: &Gpu,
     strands: &Guides,

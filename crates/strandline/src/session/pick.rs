@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use crate::{
-    body::{Mesh, Pose},
+    body::{BodyFrame, Mesh},
     groom::{LANES, Vec3Lanes},
     render::Camera,
 };
@@ -46,14 +46,16 @@ impl Ray {
         (inside && along > 0.0 && along.is_finite()).then_some(along)
     }
 
-    /// Distance along it \[m\] to a body that a pose carries; infinity when it passes by.
-    fn to_body(self, mesh: &Mesh, world_from_head: &Pose) -> f32 {
-        let head_from_world = world_from_head.inverse();
+    /// Distance along it \[m\] to a body; infinity when it passes by.
+    fn to_body(self, mesh: &Mesh, body: &BodyFrame) -> f32 {
+        let head_from_world = body.world_from_head().inverse();
+        let skin = body.skin().filter(|skin| skin.len() == mesh.positions.len());
+        let positions = skin.map_or(&mesh.positions[..], |skin| skin);
         let inside = Self {
             origin: head_from_world.point(self.origin),
             direction: head_from_world.rotation * self.direction,
         };
-        let corners = |triangle: &[u32; 3]| triangle.map(|corner| mesh.positions[corner as usize]);
+        let corners = |triangle: &[u32; 3]| triangle.map(|corner| positions[corner as usize]);
         let along = mesh.triangles.iter().filter_map(|triangle| inside.meets(corners(triangle)));
         along.fold(f32::INFINITY, f32::min)
     }
@@ -66,10 +68,10 @@ impl Ray {
         positions: &[Vec3Lanes],
         [strands, points]: [usize; 2],
         radius: f32,
-        body: Option<(&Mesh, &Pose)>,
+        body: Option<(&Mesh, &BodyFrame)>,
     ) -> Option<Picked> {
         let mut nearest: Option<(f32, Picked)> = None;
-        let limit = body.map_or(f32::INFINITY, |(mesh, pose)| self.to_body(mesh, pose)) + radius;
+        let limit = body.map_or(f32::INFINITY, |(mesh, frame)| self.to_body(mesh, frame)) + radius;
         for index in (1..positions.len()).filter(|index| index % points > 0) {
             let live = (strands - (index / points * LANES).min(strands)).min(LANES);
             for lane in 0..live {
@@ -114,6 +116,7 @@ pub(crate) struct Picked {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::Pose;
 
     /// Looks from z = 1 m at the origin.
     fn camera() -> Camera {
@@ -154,11 +157,13 @@ mod tests {
         assert_eq!(point(&aside, None), None, "beside it");
         let corners = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 2.0, 0.0)];
         let wall = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
-        let pose = Pose::IDENTITY;
+        let pose = BodyFrame::REST;
         assert_eq!(point(&back, Some((&wall, &pose))), None, "behind the wall");
         assert!(point(&hair, Some((&wall, &pose))).is_some(), "before it");
-        let away = Pose { translation: Vec3::X * 5.0, ..Pose::IDENTITY };
+        let away = BodyFrame::from(Pose { translation: Vec3::X * 5.0, ..Pose::IDENTITY });
         assert!(point(&back, Some((&wall, &away))).is_some(), "the wall is elsewhere");
+        let fallen = BodyFrame::REST.with_skin(corners.map(|corner| corner + Vec3::X * 5.0));
+        assert!(point(&back, Some((&wall, &fallen))).is_some(), "its skin has moved aside");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use super::{
     moment::{Moment, When},
 };
 use crate::{
-    body::Pose,
+    body::BodyFrame,
     cache::Snapshot,
     groom::Vec3Lanes,
     sim::{Clock, Drift, Drive, Settings, SimError, State, StepReport, Ticks},
@@ -29,9 +29,9 @@ pub(crate) struct Simulation {
     clock: Clock,
     /// Where the moment lies between the last two states.
     share: f32,
-    /// Poses of the head at the last two states, and where the last run ended.
-    poses: [Pose; 2],
-    end: Pose,
+    /// Body at the last two states, and at the end of the last run.
+    bodies: [BodyFrame; 2],
+    end: BodyFrame,
     /// Time \[s\] of all runs that went well.
     pub passed: f64,
     /// Where the hand that holds hair is, and where it goes in the next run \[m\]; none holds nothing.
@@ -46,8 +46,8 @@ impl Simulation {
             engine,
             clock: Clock::new(time_step),
             share: 1.0,
-            poses: [Pose::IDENTITY; 2],
-            end: Pose::IDENTITY,
+            bodies: [BodyFrame::REST, BodyFrame::REST],
+            end: BodyFrame::REST,
             passed: 0.0,
             hand: None,
             threads: None,
@@ -110,33 +110,33 @@ impl Simulation {
         self.engine.set_length_scale(scales)
     }
 
-    /// Goes back to rest under a pose of the head: what follows is what followed the first time.
-    pub fn reset(&mut self, pose: Pose) -> Result<(), SimError> {
-        self.engine.reset(pose)?;
-        self.begin_at(pose);
+    /// Goes back to rest on a body: the same steps follow as the first time.
+    pub fn reset(&mut self, body: BodyFrame) -> Result<(), SimError> {
+        self.engine.reset(body.clone())?;
+        self.begin_at(body);
         Ok(())
     }
 
-    /// Puts hair and head where a pose has them.
+    /// Puts hair and body where a pose has them.
     pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
         self.engine.place(hair)?;
-        self.begin_at(hair.world_from_head());
+        self.begin_at(hair.body().clone());
         Ok(())
     }
 
     /// Where the run stands after a frame.
     pub fn snapshot(&mut self, frame: u32) -> Result<Snapshot, SimError> {
-        let [before, now] = self.poses;
+        let [before, now] = self.bodies.clone();
         let state = self.engine.state()?.checkpoint();
-        Ok(Snapshot { frame, time: self.clock.time(), state, poses: [before, now, self.end] })
+        Ok(Snapshot { frame, time: self.clock.time(), state, bodies: [before, now, self.end.clone()] })
     }
 
     /// Goes back to where a run stood: what follows is what followed there.
     pub fn restore(&mut self, from: &Snapshot) -> Result<(), SimError> {
         self.engine.restore(&from.state)?;
-        let [before, now, end] = from.poses;
+        let [before, now, end] = from.bodies.clone();
         self.begin_at(end);
-        self.poses = [before, now];
+        self.bodies = [before, now];
         // Steps and share follow from the time alone.
         self.share = self.clock.advance_to(from.time).share;
         self.passed = from.time;
@@ -144,19 +144,15 @@ impl Simulation {
     }
 
     /// Shows a frame of a cache: no time passes.
-    pub fn show_cached(
-        &mut self,
-        world_from_head: Pose,
-        place: impl Fn(&mut [Vec3Lanes]),
-    ) -> Result<(), SimError> {
+    pub fn show_cached(&mut self, body: BodyFrame, place: impl Fn(&mut [Vec3Lanes])) -> Result<(), SimError> {
         self.engine.show(place)?;
-        self.begin_at(world_from_head);
+        self.begin_at(body);
         Ok(())
     }
 
-    fn begin_at(&mut self, pose: Pose) {
+    fn begin_at(&mut self, body: BodyFrame) {
         self.clock = Clock::new(self.engine.model().settings().time_step);
-        (self.poses, self.end, self.share) = ([pose; 2], pose, 1.0);
+        (self.bodies, self.end, self.share) = ([body.clone(), body.clone()], body, 1.0);
         self.hand = None;
     }
 
@@ -166,7 +162,7 @@ impl Simulation {
         self.show(None, &mut moment)?;
         let model = self.engine.model();
         let shape = [model.strand_count(), model.points_per_strand()];
-        Ok(HairPose::new(shape, moment.positions(), self.engine.state()?, &moment.world_from_head))
+        Ok(HairPose::new(shape, moment.positions(), self.engine.state()?, &moment.body))
     }
 
     /// Takes the hair within `radius` \[m\] of a place \[m\] into a hand; the number of strands.
@@ -189,9 +185,9 @@ impl Simulation {
         self.engine.release()
     }
 
-    /// Where the last run ended.
-    pub fn end(&self) -> Pose {
-        self.end
+    /// Body at the end of the last run.
+    pub fn end(&self) -> &BodyFrame {
+        &self.end
     }
 
     /// Length of a step \[s\].
@@ -201,16 +197,16 @@ impl Simulation {
 
     /// Makes whole steps under a head that rests where it is; no time of the clock passes.
     pub fn settle(&mut self, seconds: f64, wind: Vec3) -> Result<(), SimError> {
-        let drive = Drive { world_from_head: self.end, wind, hand: None };
+        let drive = Drive { body: self.end.clone(), wind, hand: None };
         let mut left = (seconds / self.time_step() - 1e-6).ceil().max(0.0) as usize;
         while left > 0 {
             let count = left.min(AT_ONCE);
-            self.engine.run(&vec![drive; count])?;
+            self.engine.run(&vec![drive.clone(); count])?;
             left -= count;
         }
         // These steps are not reported, however late their reports come.
         self.engine.reports()?;
-        self.poses = [self.end; 2];
+        self.bodies = [self.end.clone(), self.end.clone()];
         Ok(())
     }
 
@@ -219,7 +215,7 @@ impl Simulation {
     pub fn step_along(
         &mut self,
         seconds: f64,
-        drive: &dyn Fn(f32) -> (Pose, Vec3),
+        drive: &dyn Fn(f32) -> (BodyFrame, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
         let (before, begin) = (self.clock, self.clock.time());
         let ticks = self.clock.advance(seconds);
@@ -235,7 +231,7 @@ impl Simulation {
     pub fn run_to(
         &mut self,
         time: f64,
-        drive: &dyn Fn(f64) -> (Pose, Vec3),
+        drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
         let (before, begin) = (self.clock, self.clock.time());
         let ticks = self.clock.advance_to(time);
@@ -247,15 +243,16 @@ impl Simulation {
         before: Clock,
         ticks: Ticks,
         span: Range<f64>,
-        drive: &dyn Fn(f64) -> (Pose, Vec3),
+        drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
         let outcome = self.drives(ticks, &span, drive).and_then(|drives| {
             let reports = self.engine.run(&drives)?;
             Ok((drives, reports))
         });
         let (drives, reports) = outcome.inspect_err(|_| self.clock = before)?;
-        for drive in &drives {
-            self.poses = [self.poses[1], drive.world_from_head];
+        for Drive { body, .. } in drives {
+            self.bodies.swap(0, 1);
+            self.bodies[1] = body;
         }
         self.hand = self.hand.map(|[_, to]| [to; 2]);
         self.share = ticks.share;
@@ -269,7 +266,7 @@ impl Simulation {
         &self,
         ticks: Ticks,
         span: &Range<f64>,
-        drive: &dyn Fn(f64) -> (Pose, Vec3),
+        drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
     ) -> Result<Vec<Drive>, SimError> {
         if ticks.count > MOST_STEPS {
             let found = format!("{} s, {} steps at once", self.time_step(), ticks.count);
@@ -279,10 +276,10 @@ impl Simulation {
         let seconds = span.end - span.start;
         let drives = (1..=u64::from(ticks.count)).map(|step| {
             let time = self.clock.step_time(ticks.first + step);
-            let (world_from_head, wind) = drive(time);
+            let (body, wind) = drive(time);
             let share = ((time - span.start) / seconds).clamp(0.0, 1.0);
             let hand = self.hand.map(|[from, to]| from.lerp(to, share as f32));
-            Drive { world_from_head, wind, hand }
+            Drive { body, wind, hand }
         });
         Ok(drives.collect())
     }
@@ -291,7 +288,7 @@ impl Simulation {
     /// runs there too, else on the host.
     pub fn show(&mut self, gpu: Option<&Gpu>, moment: &mut Moment) -> Result<(), SimError> {
         let share = self.share;
-        moment.world_from_head = self.poses[0].toward(&self.poses[1], share);
+        moment.body = self.bodies[0].toward(&self.bodies[1], share);
         moment.at = When { step: self.engine.steps(), share };
         if let (Some(points), Some(gpu)) = (self.engine.device_points(), gpu)
             && gpu.is_same(points[0].gpu())

@@ -77,7 +77,7 @@ impl View {
     pub fn draw(&mut self, moment: &Moment, at_home: bool) -> Result<(Picture, FrameReport), RenderError> {
         let input = FrameInput {
             positions: moment.positions(),
-            world_from_head: moment.world_from_head,
+            body: &moment.body,
             camera: &self.camera,
             look: &self.look,
             body_look: &self.body_look,

@@ -2,11 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
-
 use crate::{
-    body::{Collider, Pose, Shape, Solids},
-    groom::{Binding, Frames, Guides, Surface, Vec3Lanes},
+    body::{BodyFrame, Collider, Shape, Solids},
+    groom::{Binding, Frames, Guides, Vec3Lanes},
 };
 
 /// Share of the distance between samples of a solid that strands stay away from it, and how far at most \[m\]: samples
@@ -45,7 +43,7 @@ impl BoundStrands {
     }
 
     /// Which guides each strand follows.
-    pub fn binding(&self) -> &Binding {
+    pub fn binding(&self) -> &Arc<Binding> {
         &self.binding
     }
 
@@ -54,17 +52,11 @@ impl BoundStrands {
     pub fn place(
         &self,
         guides: &[Vec3Lanes],
-        world_from_head: &Pose,
+        body: &BodyFrame,
         frames: &mut Frames,
         out: &mut Vec<Vec3Lanes>,
     ) {
-        let solids = self.solids.placed(*world_from_head);
-        let at = |point: Vec3| solids.at(point);
-        let at_least = |point: Vec3| solids.at_least(point);
-        let surface = Surface { at: &at, at_least: &at_least };
-        let surface = (!self.solids.all().is_empty()).then_some(&surface);
-        self.binding.follow(guides, world_from_head, frames);
-        self.binding.place(frames, world_from_head, surface, out);
+        self.binding.carry(guides, body, &self.solids, frames, out);
     }
 
     /// The solids that strands stay out of.

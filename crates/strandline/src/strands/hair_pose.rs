@@ -13,7 +13,7 @@ use strandline_base::{WholeFile, fill_lanes, in_strand_order, read_plain};
 
 use crate::{
     Error,
-    body::Pose,
+    body::{BodyFrame, Pose},
     groom::Vec3Lanes,
     sim::{MOST_SPIN, State},
 };
@@ -37,7 +37,7 @@ pub(crate) struct HairPose {
     /// How the sections of rods are turned, and how fast \[rad/s\]; empty without rods.
     sections: Vec<Vec3>,
     spins: Vec<f32>,
-    world_from_head: Pose,
+    body: BodyFrame,
 }
 
 /// Room for the names and shapes in a file \[byte\]; ours take some 200.
@@ -48,7 +48,7 @@ const MOST: f32 = 1e4;
 impl HairPose {
     /// Takes positions \[m\] that are shown, world space, shape `[block][point]` of lanes, and how a
     /// state moves.
-    pub fn new(shape: [usize; 2], positions: &[Vec3Lanes], state: &State, world_from_head: &Pose) -> Self {
+    pub fn new(shape: [usize; 2], positions: &[Vec3Lanes], state: &State, body: &BodyFrame) -> Self {
         let [strands, points] = shape;
         let each = |lanes: &[Vec3Lanes]| in_strand_order(lanes, strands, points).collect();
         Self {
@@ -62,13 +62,13 @@ impl HairPose {
             } else {
                 in_strand_order(&state.spins, strands, points).collect()
             },
-            world_from_head: *world_from_head,
+            body: body.clone(),
         }
     }
 
-    /// Where the head is.
-    pub fn world_from_head(&self) -> Pose {
-        self.world_from_head
+    /// The body.
+    pub fn body(&self) -> &BodyFrame {
+        &self.body
     }
 
     /// Puts the hair of a state there, now and one step ago.
@@ -101,7 +101,7 @@ impl HairPose {
 
     fn to_bytes(&self) -> std::io::Result<Vec<u8>> {
         let numbers = |values: &[Vec3]| values.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
-        let Pose { rotation, translation } = self.world_from_head;
+        let Pose { rotation, translation } = self.body.world_from_head();
         if !rotation.is_normalized() {
             return Err(std::io::Error::other(format!(
                 "the head has the quaternion {rotation}, not of length 1"
@@ -158,7 +158,7 @@ impl HairPose {
         if !rotation.is_normalized() {
             return Err(format!("world_from_head with the quaternion {rotation}, expected one of length 1"));
         }
-        let world_from_head = Pose { rotation, translation: Vec3::from_slice(&head[4..]) };
+        let body = Pose { rotation, translation: Vec3::from_slice(&head[4..]) }.into();
         Ok(Self {
             shape,
             positions: vectors("positions")?,
@@ -170,7 +170,7 @@ impl HairPose {
             },
             sections: if rods { vectors("sections")? } else { Vec::new() },
             spins: if rods { numbers(&tensors, "spins", &[strands, points])? } else { Vec::new() },
-            world_from_head,
+            body,
         })
     }
 }
@@ -238,10 +238,7 @@ mod tests {
             corrections: (0..count).map(|index| 0.1 * value(index)).collect(),
             sections: Vec::new(),
             spins: Vec::new(),
-            world_from_head: Pose {
-                rotation: Quat::from_rotation_y(1.2),
-                translation: Vec3::new(0.3, 0.1, 0.0),
-            },
+            body: Pose { rotation: Quat::from_rotation_y(1.2), translation: Vec3::new(0.3, 0.1, 0.0) }.into(),
         }
     }
 
@@ -251,7 +248,7 @@ mod tests {
         let read = HairPose::parse(&pose.to_bytes().unwrap(), SHAPE).unwrap();
         assert_eq!((&read.positions, &read.velocities), (&pose.positions, &pose.velocities));
         assert_eq!(read.corrections, pose.corrections);
-        let (found, wanted) = (read.world_from_head, pose.world_from_head);
+        let (found, wanted) = (read.body.world_from_head(), pose.body.world_from_head());
         assert!(found.rotation.angle_between(wanted.rotation) < 1e-3);
         assert_eq!(found.translation, wanted.translation);
         let mut groom = Groom::empty(8e-5);
@@ -263,7 +260,7 @@ mod tests {
         // The last lanes have no strand of their own.
         assert_eq!(state.positions[SHAPE[1]].get(7), state.positions[SHAPE[1]].get(2));
         assert_eq!(state.previous_positions, state.positions);
-        let again = HairPose::new(SHAPE, &state.positions, &state, &pose.world_from_head);
+        let again = HairPose::new(SHAPE, &state.positions, &state, &pose.body);
         assert_eq!(again, pose);
     }
 
@@ -302,11 +299,12 @@ mod tests {
         let unheard = HairPose { velocities: vec![Vec3::splat(1e9); 55], ..pose() };
         assert!(unheard.to_bytes().unwrap_err().to_string().contains("velocities hold 1000000000"));
         let squeezed = Pose { rotation: Quat::from_xyzw(0.0, 0.0, 0.0, 0.5), ..Pose::IDENTITY };
-        let squeezed = HairPose { world_from_head: squeezed, ..pose() };
+        let squeezed = HairPose { body: squeezed.into(), ..pose() };
         assert!(squeezed.to_bytes().unwrap_err().to_string().contains("not of length 1"));
         let mut squeezed = good.clone();
-        let at =
-            squeezed.windows(4).rposition(|four| four == pose().world_from_head.rotation.w.to_le_bytes());
+        let at = squeezed
+            .windows(4)
+            .rposition(|four| four == pose().body.world_from_head().rotation.w.to_le_bytes());
         squeezed[at.unwrap()..][..4].copy_from_slice(&5.0_f32.to_le_bytes());
         assert!(refused(&squeezed, SHAPE).contains("expected one of length 1"));
         let absent = HairPose::load(&folder.path().join("b"), SHAPE).unwrap_err().to_string();

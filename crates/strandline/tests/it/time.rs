@@ -49,7 +49,7 @@ fn the_frame_rate_does_not_change_a_bit_of_a_film() {
             let apart = apart(&fine.positions, &found.positions);
             assert_eq!(fine.positions, found.positions, "{time_step} s at {rate} frames/s: {apart} m apart");
             assert_eq!(fine.velocities, found.velocities);
-            assert_eq!(fine.world_from_head, found.world_from_head);
+            assert_eq!(fine.body, found.body);
         }
     }
     let mut calm = scene(1.0 / 60.0, 30.0, 1.0);
@@ -112,7 +112,7 @@ fn a_head_with_few_steps_is_where_its_motion_has_it() {
     assert_eq!(steps, 5);
     let pivot = strandline::Prepared::new(&slow).unwrap().head.pivot();
     let expected = strandline::HeadMotion::new(&slow.motion, pivot).unwrap().pose(0.5);
-    assert_eq!(state.world_from_head, expected);
+    assert_eq!(state.body.world_from_head(), expected);
 }
 
 #[test]
@@ -127,7 +127,7 @@ fn a_frame_without_time_moves_nothing_but_the_head() {
     let reports = hair.step(1.0 / 60.0, &turned).unwrap();
     assert_eq!((reports.len(), reports[0].non_finite), (1, 0));
     // On its way the head is interpolated, which rounds.
-    let rotation = hair.state().unwrap().world_from_head.rotation;
+    let rotation = hair.state().unwrap().body.world_from_head().rotation;
     assert!(rotation.abs_diff_eq(turned.rotation, 1e-6), "{rotation}");
     let refused = hair.step(1e9, &turned).unwrap_err().to_string();
     assert!(refused.contains("steps at once, expected no more than 1000000 steps"), "{refused}");
@@ -158,7 +158,7 @@ fn hair_that_begins_in_a_pose_moves_alike_at_every_frame_rate() {
     assert_eq!((fine_steps, steps), (48, 48));
     assert_eq!(fine.positions, found.positions, "{} m", apart(&fine.positions, &found.positions));
     // By then the head is where the motion has it.
-    assert_eq!(found.world_from_head, play(&scene(1.0 / 120.0, 5.0, 0.4), Backend::Cpu).1.world_from_head);
+    assert_eq!(found.body, play(&scene(1.0 / 120.0, 5.0, 0.4), Backend::Cpu).1.body);
 }
 
 #[test]
@@ -187,8 +187,12 @@ fn a_window_with_very_short_steps_slows_time_down_and_the_head_with_it() {
     assert!((saved.film.start - 79e-4).abs() < 1e-8, "{} s", saved.film.start);
     let head = strandline::Prepared::new(&slow).unwrap().head;
     let prepared = strandline::Prepared::new(&saved).unwrap();
-    let found =
-        strandline::Hair::from_prepared(prepared, Backend::Cpu).unwrap().state().unwrap().world_from_head;
+    let found = strandline::Hair::from_prepared(prepared, Backend::Cpu)
+        .unwrap()
+        .state()
+        .unwrap()
+        .body
+        .world_from_head();
     let away = |time: f64| found.rotation.angle_between(head.pose(time).rotation);
     // Between the ends of a frame the head goes straight.
     assert!(away(saved.film.start) < 0.1 * away(80e-3), "{} rad", away(saved.film.start));

@@ -4,9 +4,9 @@ use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 use strandline_body::{Mesh, Pose};
 
-use super::projection::Projection;
-use super::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
 use super::tiles::{TileRect, Tiles};
+use crate::frame::projection::Projection;
+use crate::frame::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
 
 /// Vertices or triangles handled together by one thread.
 const CHUNK: usize = 4096;

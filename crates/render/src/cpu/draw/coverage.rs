@@ -9,7 +9,7 @@
 
 use glam::{Vec2, Vec4};
 
-use super::samples::TILE;
+use crate::frame::samples::TILE;
 
 /// Width \[sample\] from which on ribbons are drawn round, and from which on they are wholly so.
 const ROUND_FROM: f32 = 2.0;

@@ -2,10 +2,7 @@
 
 mod body;
 mod coverage;
-pub(crate) mod known;
-mod projection;
-pub(crate) mod ribbons;
-pub mod samples;
+mod ribbons;
 mod sort;
 mod tiles;
 
@@ -15,14 +12,14 @@ use strandline_body::{Mesh, Pose};
 
 use self::body::{Body, Occluders};
 use self::coverage::{End, Joint, OPAQUE, TileSamples};
-use self::projection::Projection;
 use self::ribbons::{Ribbons, Segment};
-use self::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
 use self::tiles::{TileRect, Tiles};
 use crate::cpu::ShadowBody;
 use crate::cpu::shade::radiances::Radiances;
 use crate::cpu::shade::skin::Skin;
-use crate::cpu::strands::Strands;
+use crate::frame::projection::Projection;
+use crate::frame::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
+use crate::strands::Strands;
 use crate::{Background, Camera};
 
 /// Width and height of a block of samples that is left out once it is opaque.

@@ -4,9 +4,10 @@ use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use strandline_base::par::prelude::*;
 
 use super::body::Occluders;
-use super::projection::Projection;
 use super::sort::{self, MAX_KEY};
-use crate::cpu::strands::Strands;
+use crate::frame::projection::Projection;
+use crate::memory::MOST_POINTS;
+use crate::strands::Strands;
 
 /// Strands handled together by one thread. Fixed, so that nothing depends on the number of threads.
 const CHUNK: usize = 256;
@@ -42,7 +43,7 @@ impl Segment {
     /// Its successor runs along the other axis.
     pub const LAST_TURNS: u32 = 1 << 27;
     /// Most points that all drawn strands may have together.
-    pub const MAX_POINTS: usize = 1 << 26;
+    pub const MAX_POINTS: usize = MOST_POINTS;
 
     /// Index of its first point; the second follows it.
     #[inline]

@@ -2,7 +2,7 @@
 
 use strandline_base::par::prelude::*;
 
-use super::samples::{Samples, TILE};
+use crate::frame::samples::{Samples, TILE};
 
 /// Things handled together by one thread. Fixed, so that nothing depends on the number of threads.
 const CHUNK: usize = 16_384;

@@ -3,11 +3,11 @@
 use glam::{IVec3, Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
-use super::lattice::{DIRECTIONS, Rays, directions};
-use super::light_field::{self, Field};
 use super::light_scene::{Cell, Scene};
 use super::occlusion::GridBox;
-use crate::cpu::fast_math::exp;
+use crate::fast_math::exp;
+use crate::light_field::{self, Field};
+use crate::scatter::lattice::{DIRECTIONS, Rays, directions};
 
 /// Mean cosine between random hairs and the plane across a direction.
 const MEAN_COSINE: f32 = std::f32::consts::FRAC_PI_4;

@@ -10,12 +10,12 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
-use super::lattice::{ALL_DARK, Lattice, Rays};
 use super::light_carry::Carried;
-use super::light_field::{self, Field};
 use super::light_scene::{Cell, Scene};
 use super::light_sums::{HAIR_SUMS, SKIN_SUMS, UNITS, sum};
 use super::occlusion::{GridBox, toward};
+use crate::light_field::{self, Field};
+use crate::scatter::lattice::{ALL_DARK, Lattice, Rays};
 
 /// Cosine of the angle between lights that are taken for one where straight light enters the grid.
 const ONE_BEAM: f32 = 0.985;

@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use glam::{Vec3, Vec4};
 
-use super::lattice::{Lattice, Mix};
-use super::light_field::Field;
 use super::occlusion::Occlusion;
 use crate::Light;
-use crate::cpu::{ShadowBody, Shadows, Strands};
+use crate::cpu::ShadowBody;
 use crate::level_of_detail::EveryFew;
+use crate::light_field::Field;
+use crate::scatter::lattice::{Lattice, Mix};
+use crate::shadow::Shadows;
+use crate::strands::Strands;
 
 /// What light is scattered by.
 #[derive(Clone, Copy)]

@@ -10,7 +10,7 @@ use super::light_scene::Scene;
 use super::occlusion::GridBox;
 use crate::Light;
 use crate::cpu::ShadowBody;
-use crate::cpu::lanes::rounded_up;
+use crate::lanes::rounded_up;
 
 /// Most parts that the strands are shared out to.
 const PARTS: usize = 4;

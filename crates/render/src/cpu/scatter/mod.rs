@@ -1,8 +1,6 @@
 //! Light that hair and skin scatter, and the ambient light that hair hides.
 
-pub mod lattice;
 mod light_carry;
-pub mod light_field;
 pub mod light_grid;
 pub mod light_scene;
 mod light_sums;

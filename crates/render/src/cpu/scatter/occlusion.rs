@@ -7,11 +7,11 @@
 use glam::{UVec3, Vec3};
 use strandline_base::par::prelude::*;
 
-use crate::cpu::Strands;
-use crate::cpu::fast_math::exp;
-use crate::cpu::lanes::{rounded_up, split};
-use crate::cpu::shadow::stepped_down;
+use crate::fast_math::exp;
 use crate::fibre::chiang::MOST_CELLS as LONGEST;
+use crate::lanes::{rounded_up, split};
+use crate::shadow::stepped_down;
+use crate::strands::Strands;
 use crate::{Environment, Shadow};
 
 /// Cells around them on each side: hair is spread over the nearest one, and light enters the other unhindered.

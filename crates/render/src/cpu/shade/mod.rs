@@ -11,11 +11,12 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use self::radiances::{Shading, fill_all};
-use crate::cpu::fast_math::exp_lanes;
 use crate::cpu::scatter::occlusion::{Occlusion, mean_radiance, toward};
-use crate::cpu::{Shadows, Strands};
+use crate::fast_math::exp_lanes;
 use crate::fibre::scheuermann::Lobes;
 use crate::lights::Shining;
+use crate::shadow::Shadows;
+use crate::strands::Strands;
 use crate::{Environment, Light, LightKind, Look};
 
 /// Fills the radiances of all strands \[linear RGB\] as seen from `eye` \[m\], world space.

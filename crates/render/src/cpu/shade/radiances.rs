@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_groom::LANES;
 
-use crate::cpu::strands::Strands;
+use crate::strands::Strands;
 
 /// Points of a strand whose light is found together.
 const RUN: usize = LANES;
@@ -119,7 +119,9 @@ mod tests {
 
     use super::*;
     use crate::cpu::shade::skin::Skin;
-    use crate::cpu::{Draw, DrawInput, Occlusion, Samples, Shadows};
+    use crate::cpu::{Draw, DrawInput, Occlusion};
+    use crate::frame::samples::Samples;
+    use crate::shadow::Shadows;
     use crate::{BodyLook, Camera, Environment};
 
     /// Hair whose light is a number of its point, and how much of it was asked for.

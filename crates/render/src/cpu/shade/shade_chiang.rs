@@ -1,45 +1,28 @@
 //! `shade` with the fibre of \[Chiang2016\]: straight light from every light, and what hair and skin scatter.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 use strandline_base::par::prelude::*;
 
 use super::radiances::{Shading, fill_all};
-use crate::cpu::scatter::lattice::Lattice;
-use crate::cpu::scatter::light_field;
+use crate::cpu::ShadowBody;
 use crate::cpu::scatter::light_grid::LightGrid;
 use crate::cpu::scatter::light_scene::Scene;
-use crate::cpu::scatter::mixture::{Chance, OwnColors, Source, lightness, pigments};
+use crate::cpu::scatter::mixture::{Chance, lightness, pigments};
 use crate::cpu::scatter::occlusion::{Occlusion, toward};
-use crate::cpu::{ShadowBody, ShadowMap, Shadows, Strands};
 use crate::fibre::chiang::{Pigments, Seen, Table};
 use crate::level_of_detail::EveryFew;
+use crate::light_field;
 use crate::lights::Shining;
+use crate::scatter::made::Made;
+use crate::scatter::source::{OwnColors, Source};
+use crate::shadow::{ShadowMap, Shadows};
+use crate::strands::Strands;
 use crate::{Light, Look};
 
 /// Noise nodes along a strand.
 const NODES: usize = 8;
 /// A share of a light of which nothing is seen.
 const LEAST_SHARE: f32 = 1e-5;
-
-/// Tables of a look's fibre.
-#[derive(Clone, Debug)]
-pub(crate) struct Made {
-    pub(crate) from: Source,
-    pub(crate) table: Table,
-    pub(crate) lattice: Arc<Lattice>,
-}
-
-impl Made {
-    pub(crate) fn new(from: Source) -> Self {
-        let (lobes, unit) = (from.fibre.lobes(), from.absorption());
-        let darkest = from.darkest.to_array();
-        let absorption = std::array::from_fn(|channel| unit[channel] * f64::from(darkest[channel]));
-        let lattice = Arc::new(Lattice::new(&lobes, absorption, from.lightest_of_darkest()));
-        Self { from, table: Table::new(&lobes, unit), lattice }
-    }
-}
 
 /// What the stage keeps from frame to frame.
 #[derive(Clone, Debug, Default)]

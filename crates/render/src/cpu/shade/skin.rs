@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::cpu::{LightGrid, Occlusion, Shadows};
+use crate::cpu::{LightGrid, Occlusion};
+use crate::shadow::Shadows;
 use crate::{BodyLook, Environment, Light};
 
 /// What lights the body.

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{LightView, Window};
-use crate::cpu::lanes::rounded_up;
+use crate::lanes::rounded_up;
+use crate::shadow::{LightView, Window};
 
 /// Half a texel and more than rounding adds.
 const HALF: f32 = 0.501;

@@ -3,25 +3,18 @@
 use std::ops::Range;
 
 use glam::{Vec2, Vec3, Vec4};
-use strandline_base::par::{self, prelude::*};
+use strandline_base::par::prelude::*;
 use wide::f32x4;
 
-use super::{LightView, Window};
-use crate::cpu::Strands;
-use crate::cpu::lanes::rounded_up;
+use crate::lanes::rounded_up;
+use crate::shadow::{LightView, Window, part_count};
+use crate::strands::Strands;
 
-/// Most parts that the strands are shared out to; each part fills a map of its own.
-const MOST_PARTS: usize = 8;
 /// Width \[texel\] above which hair is laid out in rows, and the most of them.
 const WIDE: f32 = 2.0;
 const MOST_ROWS: f32 = 256.0;
 /// Strands whose bounds are found together.
 const CHUNK: usize = 4096;
-
-/// Most parts of a map's strands: results do not depend on it.
-pub(crate) fn part_count() -> usize {
-    par::current_num_threads().min(MOST_PARTS)
-}
 
 /// Parts for the next of so many maps that are filled together. As many maps as threads are filled whole, one by
 /// each thread: parts must be cleared and summed.

@@ -3,8 +3,8 @@
 use glam::Vec3;
 use strandline_base::par::prelude::*;
 
-use super::{NOTHING, ShadowMap};
-use crate::cpu::Strands;
+use crate::shadow::{NOTHING, ShadowMap};
+use crate::strands::Strands;
 
 /// Radiance of hair in each layer, and of hair behind the last one or beside the map, linear RGB.
 pub const LAYER_COLORS: [Vec3; 4] = [
@@ -43,7 +43,8 @@ impl ShadowMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::{Shadows, opacity_depth, opacity_layers};
+    use crate::cpu::{opacity_depth, opacity_layers};
+    use crate::shadow::Shadows;
     use crate::{Light, LightKind, Shadow};
 
     /// Radiances in the middle of upright strands at depths \[m\] behind one another in the light of +z.

@@ -7,8 +7,8 @@ use strandline_base::par::prelude::*;
 
 use super::body::{ShadowBody, draw_depth};
 use super::hair::{part_strands, parts_of, plane_bounds, stride, walk};
-use super::{LightView, NOTHING, ShadowMap, Shadows, Window};
-use crate::cpu::Strands;
+use crate::shadow::{LightView, NOTHING, ShadowMap, Shadows, Window};
+use crate::strands::Strands;
 use crate::{Light, Shadow};
 
 /// Fits each shadow light's maps to hair and body, and finds the first depths in them. Point lights look

@@ -5,8 +5,8 @@ use strandline_base::math;
 use strandline_base::par::prelude::*;
 
 use super::hair::{part_strands, stride, walk};
-use super::{ShadowMap, Shadows};
-use crate::cpu::Strands;
+use crate::shadow::{ShadowMap, Shadows};
+use crate::strands::Strands;
 
 /// Whole numbers make sums that do not depend on their order: parts of a crossing.
 const UNITS: f32 = 65536.0;

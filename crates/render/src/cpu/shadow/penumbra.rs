@@ -8,8 +8,8 @@ use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
-use super::{LightView, ShadowMap, Shadows};
-use crate::cpu::fast_math::exp;
+use crate::fast_math::exp;
+use crate::shadow::{LightView, ShadowMap, Shadows};
 
 /// Looks for what hides a light, shared out among its places.
 const LOOKS: usize = 40;

@@ -9,8 +9,9 @@ use strandline_groom::Guides;
 
 use super::noise::sine;
 use super::tessellate::{Curves, skin_frame};
-use crate::cpu::Strands;
 use crate::look::Clump;
+use crate::strands::Strands;
+use crate::strands::clump::{tapers, widening};
 use crate::{DetailLevel, Look};
 
 /// Share of a strand along which its offset turns from the skin's plane into the strand's own.
@@ -74,21 +75,6 @@ struct Shared<'a> {
     tapers: Vec<f32>,
     /// Diameter of a drawn strand over that of a hair, at full detail.
     widening: f32,
-}
-
-/// Clump radius \[m\] at each parameter, 0 to 1.
-pub(crate) fn tapers(parameters: &[f32], clump: &Clump) -> Vec<f32> {
-    let radius = |share: &f32| {
-        clump.root_radius + (clump.tip_radius - clump.root_radius) * math::powf(*share, clump.taper)
-    };
-    parameters.iter().map(radius).collect()
-}
-
-/// Diameter of a drawn strand over that of a hair, at full detail.
-pub(crate) fn widening(look: &Look, guide_count: usize) -> f32 {
-    let drawn = guide_count as f32 * look.follow_strands.max(1) as f32;
-    let stands_for = if look.hair_count == 0 { drawn } else { look.hair_count as f32 };
-    look.width_scale * stands_for / drawn
 }
 
 /// One point of a guide's curve.

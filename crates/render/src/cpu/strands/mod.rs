@@ -1,68 +1,9 @@
-//! What the stages hand on: every drawn strand of a frame, point by point.
+//! Strands as they are drawn: guides as smooth curves, strands grown about them, strands that guides carry.
 
+pub mod bind;
 pub mod interpolate;
 mod noise;
 mod outside;
-pub(crate) mod scalp;
 pub mod tessellate;
 
 pub use outside::keep_outside;
-
-use glam::Vec3;
-
-use crate::level_of_detail::{EveryFew, is_drawn};
-
-/// All drawn strands of a frame. Every strand has the same number of points; shapes are
-/// `[strand][point]`, root first, guide after guide, each guide followed by its follow strands.
-#[derive(Clone, Debug, Default)]
-pub struct Strands {
-    /// Number of drawn strands.
-    pub strand_count: usize,
-    /// Drawn strands of each guide, the guide itself first.
-    pub strands_per_guide: usize,
-    /// Strands that there are at full detail.
-    pub full_count: usize,
-    /// Of each eight guides, those whose strands are not drawn ([`crate::DetailLevel::left_out`]).
-    pub left_out: f32,
-    /// Points on each strand, one more than its segments.
-    pub points_per_strand: usize,
-    /// Positions \[m\], world space.
-    pub positions: Vec<Vec3>,
-    /// Unit tangents, root to tip, world space.
-    pub tangents: Vec<Vec3>,
-    /// Diameters \[m\], after taper and level of detail.
-    pub widths: Vec<f32>,
-    /// Colours of the groom, linear RGB, shape `[guide][point]`; empty where it has none.
-    pub colors: Vec<Vec3>,
-    /// Radiance toward the camera, linear RGB; filled by `shade`. A renderer finds it where it is seen instead.
-    pub radiances: Vec<Vec3>,
-}
-
-impl Strands {
-    /// Whether a strand is drawn: from afar some of those that stand for themselves are left out.
-    pub fn is_drawn(&self, strand: usize) -> bool {
-        is_drawn(strand / self.strands_per_guide, self.left_out)
-    }
-
-    /// Whether a strand is drawn, and one of those that stand for all.
-    pub(crate) fn is_one_of(&self, strand: usize, few: EveryFew) -> bool {
-        self.is_drawn(strand) && few.holds(strand, self.strands_per_guide)
-    }
-
-    /// Number of segments of all strands.
-    pub fn segment_count(&self) -> usize {
-        self.strand_count * (self.points_per_strand - 1)
-    }
-
-    /// Makes room for a frame; memory is kept from frame to frame and contents are left as they are.
-    pub fn resize(&mut self, guide_count: usize, strands_per_guide: usize, points_per_strand: usize) {
-        self.strand_count = guide_count * strands_per_guide;
-        self.strands_per_guide = strands_per_guide;
-        self.points_per_strand = points_per_strand;
-        let size = self.strand_count * points_per_strand;
-        self.positions.resize(size, Vec3::ZERO);
-        self.tangents.resize(size, Vec3::Y);
-        self.widths.resize(size, 0.0);
-        self.radiances.resize(size, Vec3::ZERO);
-    }
-}

@@ -5,8 +5,9 @@ use strandline_base::par::prelude::*;
 use strandline_body::PlacedSolids;
 
 use super::interpolate::differentiate;
-use crate::cpu::{Curves, Strands};
+use crate::cpu::Curves;
 use crate::level_of_detail::is_drawn;
+use crate::strands::Strands;
 
 /// Times that a point is moved at most.
 const MOVES: usize = 8;

@@ -15,6 +15,7 @@ use strandline_groom::{Guides, LANES, Vec3Lanes};
 use wide::f32x8;
 
 use crate::DetailLevel;
+use crate::strands::curve::{Tap, skin_axes, taps};
 
 /// The guides as smooth curves, all of the same number of points, root first.
 ///
@@ -34,26 +35,6 @@ pub struct Curves {
     /// Unit vectors across the curve that turn as little as they can along it, world space.
     pub normals: Vec<Vec3Lanes>,
     taps: Vec<Tap>,
-}
-
-/// Where a curve point lies in its guide: the first of four control points and their weights for
-/// position and tangent. Control point 0 stands before the guide's first.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Tap {
-    pub(crate) first: usize,
-    pub(crate) position: [f32; 4],
-    pub(crate) tangent: [f32; 4],
-}
-
-/// Where each point of a curve lies in its guide, and its parameter, 0 at the root to 1 at the tip.
-pub(crate) fn taps(points_per_strand: usize, level: &DetailLevel) -> impl Iterator<Item = (Tap, f32)> {
-    let span_count = points_per_strand - 1;
-    let segments = level.segment_count(points_per_strand);
-    let per_span = level.segments_per_span;
-    (0..=segments).map(move |point| {
-        let parameter = if point == segments { span_count as f32 } else { point as f32 / per_span };
-        (tap(parameter, span_count), parameter / span_count as f32)
-    })
 }
 
 impl Curves {
@@ -78,22 +59,6 @@ impl Curves {
         self.tangents.resize(size, Vec3Lanes::default());
         self.normals.resize(size, Vec3Lanes::default());
     }
-}
-
-/// Control points and weights at a parameter, 0 to the number of spans.
-fn tap(parameter: f32, span_count: usize) -> Tap {
-    let first = (parameter as usize).min(span_count - 1);
-    let t = parameter - first as f32;
-    let r = 1.0 - t;
-    // [Chen2011 fig. 52]
-    let position = [
-        r * r * r / 6.0,
-        (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-        (3.0 * r * r * r - 6.0 * r * r + 4.0) / 6.0,
-        t * t * t / 6.0,
-    ];
-    let tangent = [-0.5 * r * r, 1.5 * t * t - 2.0 * t, 2.0 * r - 1.5 * r * r, 0.5 * t * t];
-    Tap { first, position, tangent }
 }
 
 /// Draws a smooth curve through every guide.
@@ -173,11 +138,6 @@ fn root_axes(guides: &Guides, world_from_head: &Pose, block: usize, tangents: &V
 pub(crate) fn skin_frame(root_normal: Vec3, world_from_head: &Pose) -> [Vec3; 3] {
     let [first, second] = skin_axes(root_normal);
     [root_normal, first, second].map(|axis| world_from_head.direction(axis))
-}
-
-/// Two axes in the skin at a root, head space.
-pub(crate) fn skin_axes(root_normal: Vec3) -> [Vec3; 2] {
-    root_normal.any_orthonormal_pair().into()
 }
 
 /// Turns `vector` by the least turn that takes the unit vector `from` to the unit vector `to`.

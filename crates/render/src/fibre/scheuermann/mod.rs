@@ -14,7 +14,7 @@ use wide::f32x8;
 
 pub use settings::{Highlight, Scheuermann};
 
-use crate::cpu::fast_math::exp_lanes;
+use crate::fast_math::exp_lanes;
 
 /// How much more a hair sends back toward the light than onward; 1 sends nothing straight on.
 const BACKWARD: f32 = 0.8;

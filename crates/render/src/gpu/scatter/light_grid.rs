@@ -6,15 +6,15 @@ use strandline_gpu::{
 };
 
 use crate::RenderError;
-use crate::cpu::scatter::lattice::{DIRECTIONS, MOST_ENDS, TANGENTS};
-use crate::cpu::scatter::mixture::Source;
-use crate::cpu::shade::shade_chiang::Made;
 use crate::fibre::chiang::Table;
 use crate::gpu::buffers::{CELLS, Groom, Maps, PLANE, Strands};
 use crate::gpu::draw::body::Body;
 use crate::gpu::inputs::Frame;
 use crate::gpu::records::{LightCell, Vertex};
 use crate::gpu::{MAX_SHADOWS, draw};
+use crate::scatter::lattice::{DIRECTIONS, MOST_ENDS, TANGENTS};
+use crate::scatter::made::Made;
+use crate::scatter::source::Source;
 
 /// Sums of a cell: see light_sums.wesl.
 const SUMS: usize = 13 + MAX_SHADOWS;

@@ -52,7 +52,7 @@ pub(crate) fn upload(
         let mut header = Header {
             carried: match collider.carrier {
                 Carrier::World => WORLD,
-                Carrier::Head => HEAD,
+                Carrier::Piece(piece) => HEAD + u32::from(piece),
             },
             clearance: *clearance,
             ..Header::default()

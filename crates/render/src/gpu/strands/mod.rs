@@ -1,6 +1,6 @@
 //! Strands as they are drawn: guides tessellated, strands between them, strands that guides carry.
 
-pub(crate) mod bound;
+pub(crate) mod bind;
 mod bound_solids;
 pub(crate) mod device_points;
 pub(crate) mod interpolate;

@@ -5,10 +5,11 @@ use strandline_body::Solids;
 use strandline_gpu::{Bound, Buffer, Gpu, Kernel, wgpu};
 use strandline_groom::{Binding, Guides};
 
-use super::bound::BoundStrands;
+use super::bind::BoundStrands;
 use super::device_points::DevicePoints;
 use super::tessellate::Tessellate;
 use crate::gpu::buffers::{Groom, Strands, floats};
+use crate::strands::check_strands;
 use crate::{FrameInput, RenderError};
 
 /// What guide points go through before strands are grown about them.
@@ -30,11 +31,7 @@ impl GuidePoints {
         binding: &Binding,
         solids: &Solids,
     ) -> Result<(), RenderError> {
-        let shape = [binding.strands().strand_count(), binding.strands().points_per_strand()];
-        if shape != [guides.strand_count(), guides.points_per_strand()] {
-            let expected = "those of the renderer";
-            return Err(SettingError::new("the bound strands", format!("{shape:?}"), expected).into());
-        }
+        check_strands(guides, binding)?;
         self.bound = Some(BoundStrands::new(gpu, binding, solids, &groom.frame, &groom.places)?);
         Ok(())
     }

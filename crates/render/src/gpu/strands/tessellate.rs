@@ -2,10 +2,10 @@
 
 use strandline_gpu::kernel;
 
-use crate::cpu::strands::interpolate::tapers;
-use crate::cpu::strands::tessellate::taps;
 use crate::gpu::inputs::Frame;
 use crate::gpu::records::{Curve, Root, Tap};
+use crate::strands::clump::tapers;
+use crate::strands::curve::taps;
 use crate::{Clump, DetailLevel};
 
 kernel! {

@@ -1,17 +1,19 @@
 //! Bends: a limit and a pull toward the rest shape.
 //!
-//! A frame travels along the strand from the head's pose. From one segment to the next it turns by
+//! A frame travels along the strand from its root frame. From one segment to the next it turns by
 //! the least rotation that takes the expected direction of the segment to the one it has, so it
 //! does not twist about the strand [Wang2008; Bergou2008 §4.2.2], and the rest direction that it
 //! carries keeps every bend of a curl in its plane.
 
 use glam::Quat;
 use strandline_base::math;
+use strandline_body::BodyFrame;
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
+use crate::Model;
 use crate::constrain::Angles;
-use strandline_base::vec3x8::{Vec3x8, load, splat};
+use strandline_base::vec3x8::{Vec3x8, lanes, load, splat};
 
 /// Rounds of length constraints from one pass over the angles to the next. A pass costs about as
 /// much as two rounds and lengths, not angles, need the many rounds: an angle correction is local
@@ -24,7 +26,7 @@ pub struct Bends {
     cos_limit: f32x8,
     sin_limit: f32x8,
     share: f32x8,
-    head: Quat,
+    root: Turn,
 }
 
 /// Share of the gap to the rest shape that a pass over the bends closes.
@@ -55,8 +57,18 @@ impl Bends {
             cos_limit: splat(math::cos(angles.limit)),
             sin_limit: splat(math::sin(angles.limit)),
             share: splat(bend_share(angles, time_step, iterations)),
-            head,
+            root: Turn::splat(head),
         })
+    }
+
+    /// The bends of a block of strands, which begin at their root frames.
+    pub fn of_roots(self, model: &Model, body: &BodyFrame, block: usize) -> Self {
+        if body.roots().is_none() {
+            return self;
+        }
+        let rotations = model.roots(body, block).map(|root| root.rotation);
+        let scalar = f32x8::from(rotations.map(|rotation| rotation.w));
+        Self { root: Turn { vector: lanes(rotations.map(|rotation| rotation.xyz())), scalar }, ..self }
     }
 
     /// One pass from root to tip.
@@ -64,7 +76,7 @@ impl Bends {
     /// A joint moves three points by (1, -2, 1), so that it changes neither the momentum nor the
     /// angular momentum of the strand.
     pub fn project(&self, joints: Joints, positions: &mut [Vec3Lanes]) {
-        let mut frame = Turn::splat(self.head);
+        let mut frame = self.root;
         let mut before = Vec3x8::load(&positions[0]);
         let mut joint = Vec3x8::load(&positions[1]);
         let mut weight_before = load(&joints.inverse_mass[0]);

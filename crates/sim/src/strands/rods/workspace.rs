@@ -1,8 +1,9 @@
 //! What a block of strands is solved in.
 
 use glam::Vec3;
+use strandline_base::vec3x8::lanes;
 use strandline_body::Pose;
-use strandline_groom::{Lanes, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::avx::Avx;
@@ -11,7 +12,7 @@ use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Solved, StepSettings, Work};
 use crate::RodReport;
 
-/// Rigid motion of all lanes.
+/// A rigid motion in each lane.
 pub(crate) struct Carry {
     pub columns: [Vector<f32x8>; 3],
     pub translation: Vector<f32x8>,
@@ -21,6 +22,12 @@ impl Carry {
     pub fn new(pose: &Pose) -> Self {
         let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| Vector::splat(pose.direction(axis)));
         Self { columns, translation: Vector::splat(pose.translation) }
+    }
+
+    /// A motion for each lane.
+    pub fn of_lanes(poses: &[Pose; LANES]) -> Self {
+        let columns = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| lanes(poses.map(|pose| pose.direction(axis))));
+        Self { columns, translation: lanes(poses.map(|pose| pose.translation)) }
     }
 
     #[inline(always)]

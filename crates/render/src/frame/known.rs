@@ -1,10 +1,11 @@
-//! What is known of each pixel beside its light: which strand is nearest, how far the body is.
+//! Values of each pixel beside its light: the nearest strand, the depth of the body.
 
 use glam::Vec3;
 
 use super::projection::Projection;
+use super::samples::Samples;
 use crate::Camera;
-use crate::cpu::{Samples, Strands};
+use crate::strands::Strands;
 
 /// Depth along the view \[m\] of every strand point, 0 where it is nearer than the near plane.
 pub(crate) fn depths(strands: &Strands, camera: &Camera, samples: &Samples) -> Vec<f32> {

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec4};
 
 use super::{NOTHING, ShadowMap};
 use crate::Picture;
-use crate::cpu::fast_math::exp;
+use crate::fast_math::exp;
 
 /// Grey of the farthest first hair, from 0 (what holds nothing) to 1 (the nearest).
 const FARTHEST: f32 = 0.15;
@@ -52,7 +52,9 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::cpu::{Shadows, Strands, opacity_depth, opacity_layers};
+    use crate::cpu::{opacity_depth, opacity_layers};
+    use crate::shadow::Shadows;
+    use crate::strands::Strands;
     use crate::{Light, LightKind, Shadow};
 
     const SIZE: u32 = 16;

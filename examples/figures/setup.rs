@@ -14,14 +14,14 @@ pub type Figure = Result<Picture, Box<dyn std::error::Error>>;
 pub const FRAME: f64 = 1.0 / 60.0;
 
 /// Settings of all figures.
-pub struct Studio {
+pub struct Setup {
     /// Backend of simulation and pictures.
     pub backend: Backend,
     /// True for small pictures of few strands.
     pub quick: bool,
 }
 
-impl Studio {
+impl Setup {
     /// A style whose head moves as named.
     pub fn scene(&self, style: Style, motion: MotionName) -> Scene {
         let mut scene = Scene::demo();

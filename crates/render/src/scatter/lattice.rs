@@ -10,8 +10,8 @@ use glam::{IVec3, Vec3, Vec4};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
 
-use super::light_field;
 use crate::fibre::chiang::{Lobes, MOMENTS, Met, Pigments, Seen, Table};
+use crate::light_field;
 
 /// Directions along which light is carried.
 pub const DIRECTIONS: usize = 26;

@@ -25,7 +25,7 @@ kernel! {
 
 kernel! {
     /// One thread is one bound strand.
-    pub(crate) struct PlaceBound in "bound" (crate::gpu::linked::BOUND), entry "place_bound" {
+    pub(crate) struct PlaceBound in "bind" (crate::gpu::linked::BIND), entry "place_bound" {
         0 frame: Read Frame,
         2 rest: Read f32,
         3 influences: Read [u32; 4],

@@ -1,0 +1,273 @@
+//! The body at a time.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::{BodyError, Pose};
+
+/// The body at a time: transforms of its rigid pieces and, where they move by themselves, root frames of strands and
+/// positions of skin vertices.
+///
+/// All pieces share the space of the body at rest, head space, so that identities everywhere are the body at rest.
+/// Piece 0 is the head. A frame without further pieces, root frames and skin is a rigid head: [`BodyFrame::from`] a
+/// [`Pose`]. Copies are cheap: long lists are shared.
+#[derive(Clone, Debug, Default)]
+pub struct BodyFrame {
+    world_from_head: Pose,
+    /// The pieces after the head.
+    others: Option<Arc<[Pose]>>,
+    roots: Option<Arc<[Pose]>>,
+    skin: Option<Arc<[Vec3]>>,
+}
+
+impl From<Pose> for BodyFrame {
+    /// A rigid head.
+    fn from(world_from_head: Pose) -> Self {
+        Self { world_from_head, ..Self::default() }
+    }
+}
+
+impl From<&BodyFrame> for BodyFrame {
+    fn from(frame: &BodyFrame) -> Self {
+        frame.clone()
+    }
+}
+
+impl From<&Pose> for BodyFrame {
+    /// A rigid head.
+    fn from(world_from_head: &Pose) -> Self {
+        Self::from(*world_from_head)
+    }
+}
+
+impl PartialEq for BodyFrame {
+    fn eq(&self, other: &Self) -> bool {
+        self.world_from_head == other.world_from_head
+            && same(self.others.as_ref(), other.others.as_ref())
+            && same(self.roots.as_ref(), other.roots.as_ref())
+            && same(self.skin.as_ref(), other.skin.as_ref())
+    }
+}
+
+/// Compares two lists; shared ones are equal without a look.
+fn same<T: PartialEq>(one: Option<&Arc<[T]>>, other: Option<&Arc<[T]>>) -> bool {
+    match (one, other) {
+        (Some(one), Some(other)) => Arc::ptr_eq(one, other) || one == other,
+        (one, other) => one.is_none() && other.is_none(),
+    }
+}
+
+impl BodyFrame {
+    /// A rigid head that rests.
+    pub const REST: Self = Self { world_from_head: Pose::IDENTITY, others: None, roots: None, skin: None };
+
+    /// Adds the transforms of the pieces after the head, `world_from_piece`, piece 1 first.
+    pub fn with_pieces(self, others: impl Into<Arc<[Pose]>>) -> Self {
+        Self { others: Some(others.into()).filter(|others| !others.is_empty()), ..self }
+    }
+
+    /// Adds a root frame for each simulated strand, in the order of strands. A root frame carries the strand at rest,
+    /// head space, into the world.
+    pub fn with_roots(self, roots: impl Into<Arc<[Pose]>>) -> Self {
+        Self { roots: Some(roots.into()), ..self }
+    }
+
+    /// Adds the positions of all skin vertices \[m\], head space, in the order of the mesh. The head carries them.
+    pub fn with_skin(self, skin: impl Into<Arc<[Vec3]>>) -> Self {
+        Self { skin: Some(skin.into()), ..self }
+    }
+
+    /// The frame after a motion of everything in world space.
+    pub fn carried_by(&self, motion: &Pose) -> Self {
+        let carry = |pose: &Pose| Pose {
+            rotation: motion.rotation * pose.rotation,
+            translation: motion.point(pose.translation),
+        };
+        let all = |poses: &Arc<[Pose]>| poses.iter().map(carry).collect();
+        Self {
+            world_from_head: carry(&self.world_from_head),
+            others: self.others.as_ref().map(all),
+            roots: self.roots.as_ref().map(all),
+            skin: self.skin.clone(),
+        }
+    }
+
+    /// Transform of the head.
+    #[inline]
+    pub fn world_from_head(&self) -> Pose {
+        self.world_from_head
+    }
+
+    /// Transform of a piece, `world_from_piece`. Pieces without a transform of their own ride the head.
+    #[inline]
+    pub fn piece(&self, index: usize) -> Pose {
+        let own = |others: &Arc<[Pose]>| others.get(index.wrapping_sub(1)).copied();
+        self.others.as_ref().and_then(own).unwrap_or(self.world_from_head)
+    }
+
+    /// Number of pieces that have a transform of their own, the head among them.
+    pub fn piece_count(&self) -> usize {
+        1 + self.others.as_ref().map_or(0, |others| others.len())
+    }
+
+    /// Root frame of a strand, `world_from_root`: its own, or the head's.
+    #[inline]
+    pub fn root(&self, strand: usize) -> Pose {
+        let own = |roots: &Arc<[Pose]>| roots.get(strand).copied();
+        self.roots.as_ref().and_then(own).unwrap_or(self.world_from_head)
+    }
+
+    /// Root frames of all strands; `None` where all roots ride the head.
+    pub fn roots(&self) -> Option<&[Pose]> {
+        self.roots.as_deref()
+    }
+
+    /// Positions of all skin vertices \[m\], head space; `None` where the skin rides the head.
+    pub fn skin(&self) -> Option<&Arc<[Vec3]>> {
+        self.skin.as_ref()
+    }
+
+    /// True for a head alone: one transform tells all.
+    pub fn is_rigid(&self) -> bool {
+        self.others.is_none() && self.roots.is_none() && self.skin.is_none()
+    }
+
+    /// The frame on the way to `end`: `share` is 0 here and 1 at `end`. Poses as [`Pose::toward`], vertices on straight
+    /// lines in head space. A skin that one of the two frames lacks is taken from the other.
+    pub fn toward(&self, end: &Self, share: f32) -> Self {
+        if self == end {
+            return self.clone();
+        }
+        let count = self.piece_count().max(end.piece_count());
+        let others: Option<Arc<[Pose]>> = (count > 1)
+            .then(|| (1..count).map(|piece| self.piece(piece).toward(&end.piece(piece), share)).collect());
+        let strands = [self, end].map(|frame| frame.roots().map_or(0, <[_]>::len));
+        let roots: Option<Arc<[Pose]>> = (self.roots.is_some() || end.roots.is_some()).then(|| {
+            let between = |strand| self.root(strand).toward(&end.root(strand), share);
+            (0..strands[0].max(strands[1])).map(between).collect()
+        });
+        let skin = match (&self.skin, &end.skin) {
+            (Some(start), Some(end)) if Arc::ptr_eq(start, end) => Some(Arc::clone(end)),
+            (Some(start), Some(end)) if start.len() == end.len() => {
+                Some(start.iter().zip(end.iter()).map(|(start, end)| start.lerp(*end, share)).collect())
+            }
+            (start, end) => end.clone().or_else(|| start.clone()),
+        };
+        Self {
+            world_from_head: self.world_from_head.toward(&end.world_from_head, share),
+            others,
+            roots,
+            skin,
+        }
+    }
+
+    /// Checks the frame: finite transforms and vertices, and as many root frames and vertices as there are strands and
+    /// vertices, where these are known.
+    ///
+    /// # Errors
+    /// The first value that fails, and its place.
+    pub fn check(&self, strands: Option<usize>, vertices: Option<usize>) -> Result<(), BodyError> {
+        let refuse = |what, found, expected| Err(BodyError::Value { what, found, expected });
+        if let (Some(roots), Some(wanted)) = (&self.roots, strands)
+            && roots.len() != wanted
+        {
+            let found = format!("{}, for {wanted} strands", roots.len());
+            return refuse("the number of root frames", found, "one for each simulated strand");
+        }
+        if let (Some(skin), Some(wanted)) = (&self.skin, vertices)
+            && skin.len() != wanted
+        {
+            let found = format!("{}, for a mesh of {wanted}", skin.len());
+            return refuse("the number of skin vertices", found, "one for each vertex of the mesh");
+        }
+        let pieces =
+            std::iter::once(&self.world_from_head).chain(self.others.iter().flat_map(|all| all.iter()));
+        let finite = |pose: &Pose| pose.rotation.is_finite() && pose.translation.is_finite();
+        if let Some((index, pose)) = pieces.enumerate().find(|(_, pose)| !finite(pose)) {
+            return refuse("a transform of the body", format!("{pose:?}, piece {index}"), "finite numbers");
+        }
+        let mut roots = self.roots().unwrap_or_default().iter().enumerate();
+        if let Some((index, pose)) = roots.find(|(_, pose)| !finite(pose)) {
+            return refuse("a root frame", format!("{pose:?}, strand {index}"), "finite numbers");
+        }
+        let mut skin = self.skin.iter().flat_map(|skin| skin.iter()).enumerate();
+        if let Some((index, point)) = skin.find(|(_, point)| !point.is_finite()) {
+            return refuse("the skin", format!("{point}, vertex {index}"), "finite numbers [m]");
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+
+    use super::*;
+
+    fn pose(angle: f32) -> Pose {
+        Pose { rotation: Quat::from_rotation_y(angle), translation: Vec3::new(angle, 0.0, 1.0) }
+    }
+
+    #[test]
+    fn what_has_no_transform_of_its_own_rides_the_head() {
+        let rigid = BodyFrame::from(pose(0.3));
+        assert!(rigid.is_rigid() && rigid.piece_count() == 1);
+        assert_eq!((rigid.piece(0), rigid.piece(4), rigid.root(9)), (pose(0.3), pose(0.3), pose(0.3)));
+        let two = rigid.clone().with_pieces([pose(0.1)]).with_roots([pose(0.2), pose(0.4)]);
+        assert_eq!((two.piece(0), two.piece(1), two.piece(2)), (pose(0.3), pose(0.1), pose(0.3)));
+        assert_eq!((two.root(0), two.root(1), two.root(2)), (pose(0.2), pose(0.4), pose(0.3)));
+        assert!(!two.is_rigid() && two != rigid && two == two.clone());
+        assert!(rigid.clone().with_pieces([]).is_rigid());
+    }
+
+    #[test]
+    fn a_motion_carries_all_that_lies_in_the_world() {
+        let frame = BodyFrame::from(pose(0.3)).with_pieces([pose(0.1)]).with_roots([pose(0.2)]);
+        let frame = frame.with_skin([Vec3::X]);
+        let motion = Pose { translation: Vec3::Y, ..Pose::IDENTITY };
+        let carried = frame.carried_by(&motion);
+        let poses = |frame: &BodyFrame| [frame.world_from_head(), frame.piece(1), frame.root(0)];
+        for (from, to) in poses(&frame).iter().zip(poses(&carried)) {
+            assert_eq!((to.translation, to.rotation), (from.translation + Vec3::Y, from.rotation));
+        }
+        assert_eq!(carried.skin(), frame.skin());
+    }
+
+    #[test]
+    fn a_frame_between_two_lies_between_them_in_all_its_parts() {
+        let start = BodyFrame::from(pose(0.0)).with_skin([Vec3::ZERO, Vec3::X]);
+        let end = BodyFrame::from(pose(0.4)).with_pieces([pose(0.8)]).with_roots([pose(0.2)]);
+        let end = end.with_skin([Vec3::Y, Vec3::X]);
+        let middle = start.toward(&end, 0.5);
+        let near = |one: Pose, other: Pose| {
+            assert!(one.rotation.angle_between(other.rotation) < 1e-3, "{one:?} {other:?}");
+            assert!(one.translation.distance(other.translation) < 1e-6, "{one:?} {other:?}");
+        };
+        near(middle.world_from_head(), pose(0.2));
+        near(middle.piece(1), pose(0.4));
+        near(middle.root(0), pose(0.1));
+        assert_eq!(middle.skin().unwrap()[..], [Vec3::Y * 0.5, Vec3::X]);
+        assert_eq!(start.toward(&start.clone(), 0.3), start);
+        // A rigid head turns as a pose alone does, to the bit.
+        let [start, end] = [pose(0.1), pose(0.7)];
+        let rigid = BodyFrame::from(start).toward(&end.into(), 0.3);
+        assert_eq!(rigid, start.toward(&end, 0.3).into());
+    }
+
+    #[test]
+    fn a_frame_that_does_not_fit_is_refused_by_what_is_wrong() {
+        let refused = |frame: BodyFrame| frame.check(Some(2), Some(3)).unwrap_err().to_string();
+        let rest = BodyFrame::REST;
+        assert!(rest.check(Some(2), Some(3)).is_ok());
+        let whole = rest.clone().with_pieces([pose(0.1)]).with_roots([pose(0.1); 2]).with_skin([Vec3::X; 3]);
+        assert!(whole.check(Some(2), Some(3)).is_ok() && whole.check(None, None).is_ok());
+        assert!(refused(rest.clone().with_roots([pose(0.1)])).contains("root frames is 1, for 2 strands"));
+        assert!(refused(rest.clone().with_skin([Vec3::X])).contains("skin vertices is 1, for a mesh of 3"));
+        let bad = Pose { translation: Vec3::NAN, ..Pose::IDENTITY };
+        assert!(refused(bad.into()).contains("piece 0"));
+        assert!(refused(rest.clone().with_pieces([pose(0.0), bad])).contains("piece 2"));
+        assert!(refused(rest.clone().with_roots([pose(0.0), bad])).contains("strand 1"));
+        assert!(refused(rest.with_skin([Vec3::X, Vec3::X, Vec3::INFINITY])).contains("vertex 2"));
+    }
+}

@@ -1,0 +1,54 @@
+//! Drawn strands by themselves, for files of what pictures show.
+
+use std::sync::Arc;
+
+use strandline_body::{BodyFrame, Solids};
+use strandline_groom::{Binding, Guides, Vec3Lanes};
+
+use crate::cpu::strands::bind::{Carried, bind};
+use crate::cpu::{Curves, interpolate, keep_outside, tessellate};
+use crate::strands::Strands;
+use crate::{DetailLevel, Look};
+
+/// Grows the strands that pictures draw of a groom, in some detail; keeps its memory from call to call.
+#[derive(Clone, Debug)]
+pub struct Growth {
+    guides: Guides,
+    carried: Option<Carried>,
+    curves: Curves,
+    strands: Strands,
+}
+
+impl Growth {
+    /// Growth about strands at rest, head space.
+    pub fn new(guides: &Guides) -> Self {
+        Self { guides: guides.clone(), carried: None, curves: Curves::default(), strands: Strands::default() }
+    }
+
+    /// Growth about the strands of a binding, which guides carry; all that is drawn of them stays out of the solids.
+    pub fn bound(binding: &Arc<Binding>, solids: &Solids) -> Self {
+        let carried = Carried::new(binding.clone(), solids.clone());
+        Self { carried: Some(carried), ..Self::new(binding.strands()) }
+    }
+
+    /// The strands where guide points lie at `positions` \[m\], world space, shape `[block][point]` of lanes.
+    pub fn at(
+        &mut self,
+        positions: &[Vec3Lanes],
+        body: &BodyFrame,
+        look: &Look,
+        level: &DetailLevel,
+    ) -> &Strands {
+        let Self { guides, carried, curves, strands } = self;
+        carried.iter_mut().for_each(|carried| bind(carried, positions, body));
+        let points = carried.as_ref().map_or(positions, Carried::places);
+        let head = body.world_from_head();
+        tessellate(points, guides, &head, level, curves);
+        interpolate(curves, guides, &head, look, level, strands);
+        if let Some(carried) = carried {
+            let solids = carried.solids().placed(body);
+            keep_outside(strands, curves, guides.points_per_strand(), &solids);
+        }
+        strands
+    }
+}

@@ -1,0 +1,83 @@
+//! Colours and pigments that the tables of a look are made from.
+
+use glam::{DVec3, Vec3};
+use strandline_groom::Guides;
+
+use crate::Look;
+use crate::fibre::chiang::{INK, Pigments, WHITE};
+use crate::fibre::{Chiang, Pigment};
+
+/// Colours of a groom, linear RGB.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnColors {
+    /// Mean over all points.
+    pub mean: Vec3,
+    /// Least of each channel.
+    pub darkest: Vec3,
+    /// Greatest of each channel.
+    pub lightest: Vec3,
+}
+
+impl OwnColors {
+    /// Those of guides, where they have some.
+    pub fn of(guides: &Guides) -> Option<Self> {
+        let colors = guides.colors().filter(|colors| !colors.is_empty())?;
+        let all = || colors.iter().map(|&color| Vec3::from(color));
+        let sum: DVec3 = all().map(|color| color.as_dvec3()).sum();
+        Some(Self {
+            mean: (sum / colors.len() as f64).as_vec3(),
+            darkest: all().fold(Vec3::MAX, Vec3::min),
+            lightest: all().fold(Vec3::MIN, Vec3::max),
+        })
+    }
+}
+
+/// What the tables of a look are made from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Source {
+    pub(crate) fibre: Chiang,
+    /// Whether pigment is counted in ink, for hair of given colours, in place of the look's melanin.
+    pub(crate) inked: bool,
+    /// How much of it the darkest hair has, and the lightest, by channel. Spread among strands is not in it: its mean is.
+    pub(crate) darkest: Vec3,
+    pub(crate) lightest: Vec3,
+}
+
+impl Source {
+    /// Of a look, and of the colours of a groom that has some.
+    pub(crate) fn new(look: &Look, own: Option<&OwnColors>) -> Self {
+        let fibre = look.fibre.chiang;
+        let inked = own.is_some() || fibre.pigment == Pigment::Color;
+        let (colors, white) = match own {
+            Some(own) => ([own.darkest, own.lightest], 0.0),
+            None => ([look.root_color, look.tip_color], look.grey),
+        };
+        let ends = if inked {
+            colors.map(|color| fibre.inks(color))
+        } else {
+            [Vec3::ONE, Vec3::splat(fibre.tip_pigment)]
+        };
+        let (most, least) = (ends[0].max(ends[1]), ends[0].min(ends[1]));
+        let darkest = most * if white < 1.0 { 1.0 } else { WHITE };
+        let lightest = least * if white > 0.0 { WHITE } else { 1.0 };
+        Self { fibre, inked, darkest, lightest }
+    }
+
+    /// Absorption per fibre radius of hair with the pigment 1.
+    pub(crate) fn absorption(&self) -> [f64; 3] {
+        if self.inked { [INK; 3] } else { self.fibre.absorption(Vec3::ZERO) }
+    }
+
+    /// A pigment as a share of that of the darkest hair.
+    pub(crate) fn of_darkest(&self, pigment: Vec3) -> Vec3 {
+        // Where the darkest has none all have none.
+        Vec3::select(self.darkest.cmpgt(Vec3::ZERO), pigment / self.darkest, Vec3::ONE)
+    }
+
+    /// That of the lightest hair; none where all is the same.
+    pub(crate) fn lightest_of_darkest(&self) -> Option<Pigments> {
+        let share = self.of_darkest(self.lightest);
+        let even = share == Vec3::splat(share.x);
+        (share != Vec3::ONE).then_some(if even { Pigments::Even(share.x) } else { Pigments::Channels(share) })
+    }
+}
