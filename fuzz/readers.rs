@@ -3,28 +3,31 @@
 
 use strandline::{
     Groom, Mesh, Scene,
-    format::{LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx},
+    format::{LoadOptions, Parsed, bin, data, hair, npy, npz, obj, ply, prepare, project, tfx, usda},
     look::surroundings::{Panorama, Surroundings},
     low_level::groom::{GroomError, Guides},
-    mesh::{DistanceGrid, SignedDistance},
+    mesh::{DistanceGrid, MeshFormat, SignedDistance},
 };
 
 /// A reader's target; whether it read the bytes.
 pub type Target = fn(&[u8]) -> bool;
 
 /// Every target by its name, which is also that of its folder of seeds.
-pub const TARGETS: [(&str, Target); 19] = [
+pub const TARGETS: [(&str, Target); 22] = [
     ("hair", hair_file),
     ("tfx", tfx_file),
     ("project", project_file),
     ("data", data_file),
     ("bin", bin_file),
     ("ply", ply_file),
+    ("usda", usda_file),
     ("npz", npz_file),
     ("npy", npy_file),
     ("lines", lines),
     ("obj", obj),
     ("gltf", gltf),
+    ("scan", scan),
+    ("stl", stl),
     ("beside", beside),
     ("scene", scene),
     ("pose", pose),
@@ -42,7 +45,12 @@ const UNIT: f32 = 1e-3;
 
 /// A .hair file is read or refused; what was read can be written and read again.
 pub fn hair_file(bytes: &[u8]) -> bool {
-    groom(hair::read(bytes), |groom| hair::write(groom).map(|bytes| hair::read(&bytes).is_ok()))
+    groom(hair::read(bytes, None), |groom| hair::write(groom).map(|bytes| hair::read(&bytes, None).is_ok()))
+}
+
+/// A .usda file is read or refused.
+pub fn usda_file(bytes: &[u8]) -> bool {
+    groom(usda::read(bytes), |_| Ok(true))
 }
 
 /// A .tfx file, as a .hair file.
@@ -62,12 +70,12 @@ pub fn project_file(bytes: &[u8]) -> bool {
 
 /// A .data file, as a .hair file.
 pub fn data_file(bytes: &[u8]) -> bool {
-    groom(data::read(bytes), |groom| data::write(groom).map(|bytes| data::read(&bytes).is_ok()))
+    groom(data::read(bytes, None), |groom| data::write(groom).map(|bytes| data::read(&bytes, None).is_ok()))
 }
 
 /// A .bin file, as a .hair file.
 pub fn bin_file(bytes: &[u8]) -> bool {
-    groom(bin::read(bytes), |groom| bin::write(groom).map(|bytes| bin::read(&bytes).is_ok()))
+    groom(bin::read(bytes, None), |groom| bin::write(groom).map(|bytes| bin::read(&bytes, None).is_ok()))
 }
 
 /// A .ply file, as a .hair file; bare points are strands of two.
@@ -101,9 +109,9 @@ fn groom(parsed: Result<Parsed, GroomError>, again: impl Fn(&Groom) -> Result<bo
 }
 
 /// A named part of a mesh is no larger than the mesh.
-fn part(bytes: &[u8], ending: &str, whole: &Mesh) -> bool {
+fn part(bytes: &[u8], format: MeshFormat, whole: &Mesh) -> bool {
     for name in ["a", "scalp", "Mesh"] {
-        if let Ok(Some(part)) = Mesh::part_from(bytes, ending, name) {
+        if let Ok(Some(part)) = Mesh::part_from(bytes, format, name) {
             assert!(part.triangles.len() <= whole.triangles.len());
             assert_eq!(part.positions.len(), part.normals.len());
         }
@@ -111,14 +119,29 @@ fn part(bytes: &[u8], ending: &str, whole: &Mesh) -> bool {
     true
 }
 
-/// An OBJ file is read or refused; what was read is a mesh, and a solid where it is no larger than a body.
+/// A mesh is read or refused; a mesh that was read is a solid where it is no larger than a body.
+fn mesh(bytes: &[u8], format: MeshFormat) -> bool {
+    Mesh::from_bytes(bytes, format).is_ok_and(|mesh| part(bytes, format, &mesh) && solid(&mesh))
+}
+
+/// An OBJ file is read or refused.
 pub fn obj(bytes: &[u8]) -> bool {
-    Mesh::from_obj(bytes).is_ok_and(|mesh| part(bytes, "obj", &mesh) && solid(&mesh))
+    mesh(bytes, MeshFormat::Obj)
 }
 
 /// A glTF file, as an OBJ file.
 pub fn gltf(bytes: &[u8]) -> bool {
-    Mesh::from_gltf(bytes).is_ok_and(|mesh| part(bytes, "glb", &mesh) && solid(&mesh))
+    mesh(bytes, MeshFormat::Gltf)
+}
+
+/// A PLY file with faces, as an OBJ file.
+pub fn scan(bytes: &[u8]) -> bool {
+    mesh(bytes, MeshFormat::Ply)
+}
+
+/// An STL file, as an OBJ file.
+pub fn stl(bytes: &[u8]) -> bool {
+    mesh(bytes, MeshFormat::Stl)
 }
 
 /// A glTF file in a folder, with files beside it, below it and outside: none from outside is read.

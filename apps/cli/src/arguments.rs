@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use strandline::{
     Backend, Style, Target, What,
-    format::{FORMATS, Format, LoadOptions, Scale, Up, endings},
+    format::{Cleaning, FORMATS, Format, LoadOptions, Scale, Up, endings},
     scene::MotionName,
     settings::rods::HairKind,
 };
@@ -91,7 +91,7 @@ pub struct Inputs {
         "Load strands from this {} file; given again: further strands of the same hair", endings(|_| true)
     ))]
     pub groom: Vec<PathBuf>,
-    /// Load the body from this .obj, .gltf or .glb file; given again: further meshes of the same body.
+    /// Load the body from this .obj, .gltf, .glb, .vrm, .ply or .stl file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
     /// Grow the style on the part of this name in the body's files: a group, an object or a material [default: the
@@ -141,7 +141,7 @@ pub struct RenderOptions {
 
 #[derive(Args, Debug)]
 pub struct ViewOptions {
-    /// A .toml scene, a groom, or an .obj, .gltf or .glb body in place of the scene's.
+    /// A .toml scene, a groom, or an .obj, .gltf, .glb, .vrm or .stl body in place of the scene's.
     #[arg(value_name = "FILE")]
     pub file: Option<PathBuf>,
     #[command(flatten)]
@@ -200,6 +200,9 @@ pub struct ConvertOptions {
     pub files: Vec<PathBuf>,
     #[command(flatten)]
     pub reading: Reading,
+    /// Leave out stray, dummy and tiny strands, and mend widths and colours that no hair has.
+    #[arg(long)]
+    pub clean: bool,
     /// Keep this number of strands, spread over the scalp and alike in shape to those left out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8_000_000))]
     pub thin: Option<u32>,
@@ -212,7 +215,7 @@ pub struct ConvertOptions {
     /// Move the strands, in metres, after they are turned.
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     pub translation: Option<Vec3>,
-    /// Push strands out of this .obj, .gltf or .glb mesh, after they are moved; their lengths stay.
+    /// Push strands out of this .obj, .gltf, .glb, .vrm, .ply or .stl mesh, after they are moved; their lengths stay.
     #[arg(long, value_name = "MESH")]
     pub outside: Option<PathBuf>,
     /// Metres per unit of that mesh, or auto: the unit that brings it to the roots.
@@ -237,7 +240,13 @@ pub struct Reading {
 impl Reading {
     /// Bad strands are left out and counted.
     pub fn options(&self) -> LoadOptions {
-        LoadOptions { strict: false, scale: self.scale, up: self.up, per_strand: self.per_strand }
+        LoadOptions {
+            strict: false,
+            scale: self.scale,
+            up: self.up,
+            per_strand: self.per_strand,
+            cleaning: Cleaning::Named,
+        }
     }
 }
 

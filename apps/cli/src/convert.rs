@@ -4,7 +4,7 @@ use anyhow::Context;
 use glam::Vec3;
 use strandline::{
     Groom, Mesh,
-    format::{self, Scale},
+    format::{self, Cleaning, LoadOptions, Scale},
     math,
     mesh::{DistanceGrid, SignedDistance},
 };
@@ -24,7 +24,9 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     let (output, inputs) = options.files.split_last().context("clap asks for two files")?;
     // An output that cannot be written is refused before anything is read.
     format::Format::of(output)?;
-    let loaded = format::load_all(inputs, &options.reading.options())?;
+    let cleaning = if options.clean { Cleaning::All } else { Cleaning::Named };
+    let reading = LoadOptions { cleaning, ..options.reading.options() };
+    let loaded = format::load_all(inputs, &reading)?;
     for problem in &loaded.report.problems {
         output::note(problem);
     }

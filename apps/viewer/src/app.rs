@@ -145,7 +145,7 @@ impl App {
         match ending.as_deref() {
             Some("toml") => return Scene::load(file),
             // Meshes are more common than strands as lines, which `convert` reads.
-            Some("obj" | "gltf" | "glb") => {
+            Some("obj" | "gltf" | "glb" | "vrm" | "stl") => {
                 scene.body.file = Some(absolute);
                 scene.body.parts.clear();
             }
@@ -155,7 +155,8 @@ impl App {
             }
             _ => {
                 let grooms = endings(|format| format.ending != "obj");
-                let expected = format!("a .toml scene, a {grooms} groom, or an .obj, .gltf or .glb body");
+                let expected =
+                    format!("a .toml scene, a {grooms} groom, or an .obj, .gltf, .glb, .vrm or .stl body");
                 return Err(SettingError::new("the file", file.display(), expected).into());
             }
         }

@@ -77,7 +77,10 @@ fn question(wanted: Wanted) -> Question {
         Wanted::Open => Box::pin(
             dialog
                 .set_title("Open a scene, groom or body")
-                .add_filter("scenes, grooms, bodies", &["toml", "hair", "tfx", "obj", "gltf", "glb"])
+                .add_filter(
+                    "scenes, grooms, bodies",
+                    &["toml", "hair", "tfx", "obj", "gltf", "glb", "vrm", "stl"],
+                )
                 .pick_file(),
         ),
         Wanted::Picture => {

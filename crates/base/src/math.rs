@@ -6,7 +6,7 @@
 //! `floor` and the like. clippy refuses the others in every crate under `crates` (`crates/clippy.toml`), and
 //! the rotations of glam that are made of them.
 
-use glam::{DQuat, DVec3, Quat, Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 /// Numbers that have these functions: [`f32`] and [`f64`].
 pub trait Float: sealed::Sealed {}
@@ -115,24 +115,6 @@ pub fn slerp(from: Quat, to: Quat, share: f32) -> Quat {
     (from * sin((1.0 - share) * angle) + to * sin(share * angle)) * (1.0 / sin(angle))
 }
 
-/// The rotation by the length \[rad\] of a vector about its direction.
-pub fn rotation_by(vector: DVec3) -> DQuat {
-    let angle = vector.length();
-    if angle == 0.0 {
-        return DQuat::IDENTITY;
-    }
-    let (sine, cosine) = sin_cos(0.5 * angle);
-    DQuat::from_vec4((vector * (sine / angle)).extend(cosine))
-}
-
-/// The vector of [`rotation_by`]: the axis times the angle \[rad\], 0..2 pi.
-pub fn rotation_vector(rotation: DQuat) -> DVec3 {
-    let axis = rotation.xyz();
-    let sine = axis.length();
-    // The angle of a small rotation is twice its sine.
-    if sine < 1e-8 { axis * 2.0 } else { axis * (2.0 * atan2(sine, rotation.w) / sine) }
-}
-
 #[cfg(test)]
 mod tests {
     use glam::EulerRot;
@@ -220,10 +202,6 @@ mod tests {
             for share in [0.0, 0.3, 1.0] {
                 assert!(near(slerp(from, to, share), from.slerp(to, share)));
             }
-            let vector = axis.as_dvec3() * f64::from(x);
-            assert!(rotation_by(vector).dot(DQuat::from_scaled_axis(vector)).abs() > 1.0 - 1e-12);
-            assert!(rotation_vector(rotation_by(vector)).distance(vector) < 1e-7 || x < 0.0);
         }
-        assert_eq!(rotation_vector(DQuat::IDENTITY), DVec3::ZERO);
     }
 }

@@ -5,30 +5,28 @@ use std::path::Path;
 use glam::Vec3;
 
 use crate::mesh::vertex_normals;
-use crate::parsing::Refusal;
+use crate::mesh_format::MeshFormat;
+use crate::parsing::{Refusal, read_file};
 use crate::part_names::Names;
-use crate::{BodyError, Mesh, gltf, obj};
+use crate::{BodyError, Mesh};
 
-/// Reads a file by its ending, or the part of it that has a name.
+/// Reads a file by its ending, or the part of it that has a name, in the units of the file.
 fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_lowercase();
-    match ending.as_str() {
-        "obj" => obj::read(path, names),
-        "gltf" | "glb" => gltf::read(path, names),
-        _ => Err(BodyError::Mesh {
-            path: path.into(),
-            found: format!("the ending `{ending}`"),
-            expected: "obj, gltf or glb",
-            mend: "export the body as OBJ or glTF 2.0",
-        }),
-    }
+    let format = MeshFormat::of(path)?;
+    format.parse(&read_file(path)?, path.parent(), names).map_err(|(found, expected)| BodyError::Mesh {
+        path: path.into(),
+        found,
+        expected,
+        mend: format.mend(),
+    })
 }
 
 impl Mesh {
-    /// Loads an OBJ or glTF 2.0 file (by its ending: .obj, .gltf, .glb), scaled by `scale` \[m per unit\].
+    /// Loads a file of a [`MeshFormat`], by its ending, scaled by `scale` \[m per unit\].
     ///
-    /// All objects and scenes of the file become one mesh; polygons become triangles; skins, materials and
-    /// animations are ignored. Vertices keep the file's normals; missing normals are computed.
+    /// All objects of the file become one mesh, those of glTF's default scene alone; polygons become triangles;
+    /// materials and clips are ignored. Skinned and morphed glTF meshes stand in their default pose. Vertices keep
+    /// the file's normals; where it gives none they are computed.
     ///
     /// # Errors
     /// See [`BodyError`].
@@ -46,9 +44,10 @@ impl Mesh {
         mesh.complete(path)
     }
 
-    /// Loads the named part of an OBJ or glTF 2.0 file, in the units of the file; `None` if nothing has
-    /// it. Names are those of objects, groups and materials of an OBJ, of nodes, meshes and materials of a glTF; upper
-    /// and lower case are the same.
+    /// Loads the part of a file that has a name, in the units of the file; `None` where nothing has it.
+    ///
+    /// Names are those of objects, groups and materials of an OBJ, of nodes, meshes and materials of a glTF; other
+    /// formats have none. Upper and lower case are the same.
     ///
     /// # Errors
     /// See [`BodyError`].
@@ -58,7 +57,7 @@ impl Mesh {
         if mesh.triangles.is_empty() { Ok(None) } else { mesh.complete(path).map(Some) }
     }
 
-    /// The names that parts of an OBJ or glTF 2.0 file have, as [`Mesh::load_part`] knows them.
+    /// The names that parts of a file have, as [`Mesh::load_part`] knows them.
     ///
     /// # Errors
     /// See [`BodyError`].
@@ -68,34 +67,21 @@ impl Mesh {
         Ok(names.all())
     }
 
-    /// Reads an OBJ file from its bytes, in the units of the file.
+    /// Reads a mesh of any format from its bytes, in the units of the file; a glTF must hold its buffers itself.
     ///
     /// # Errors
     /// See [`BodyError`].
-    pub fn from_obj(bytes: &[u8]) -> Result<Self, BodyError> {
-        Self::from_parsed(obj::parse(bytes))
+    pub fn from_bytes(bytes: &[u8], format: MeshFormat) -> Result<Self, BodyError> {
+        Self::from_parsed(format.parse(bytes, None, None))
     }
 
-    /// Reads a glTF 2.0 file, as text or binary, from its bytes, in the units of the file; it must hold its
-    /// buffers itself.
+    /// As [`Mesh::load_part`], from the bytes of a file; a glTF must hold its buffers itself.
     ///
     /// # Errors
     /// See [`BodyError`].
-    pub fn from_gltf(bytes: &[u8]) -> Result<Self, BodyError> {
-        Self::from_parsed(gltf::parse(bytes, None, None))
-    }
-
-    /// As [`Mesh::load_part`], from the bytes of a file whose ending is "obj" or else of a glTF that holds its buffers.
-    ///
-    /// # Errors
-    /// See [`BodyError`].
-    pub fn part_from(bytes: &[u8], ending: &str, name: &str) -> Result<Option<Self>, BodyError> {
+    pub fn part_from(bytes: &[u8], format: MeshFormat, name: &str) -> Result<Option<Self>, BodyError> {
         let mut names = Names::new(name);
-        let parsed = match ending {
-            "obj" => obj::parse_part(bytes, &mut names),
-            _ => gltf::parse(bytes, None, Some(&mut names)),
-        };
-        match parsed {
+        match format.parse(bytes, None, Some(&mut names)) {
             Ok(mesh) if mesh.triangles.is_empty() => Ok(None),
             parsed => Self::from_parsed(parsed).map(Some),
         }

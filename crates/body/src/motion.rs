@@ -4,7 +4,7 @@ use std::str::FromStr;
 use glam::{DVec3, Vec3};
 use strandline_base::math;
 
-use crate::keyframes::{self, Keyframe};
+use crate::keyframes::{Keyframe, Keyframes};
 use crate::{BodyError, Pose};
 
 /// Largest angle of the shake to either side.
@@ -39,31 +39,37 @@ pub enum Motion {
     /// A slow look to the left and to the right, 60 degrees to either side in 4 s, with a rest of 0.4 s
     /// at either side, again and again.
     Turn,
-    /// Poses from a scene, joined by a curve that is smooth in velocity; at rest before the first
-    /// and after the last. [`Motion::keyframes`] checks them.
-    Keyframes(Vec<Keyframe>),
+    /// Poses from a scene, joined by curves; at rest before the first and after the last.
+    Keyframes(Keyframes),
 }
 
 impl Motion {
-    /// A motion through keyframes.
+    /// A motion through keyframes: each angle and each part of the displacement by itself, never beyond the two
+    /// keyframes beside a time.
     ///
     /// # Errors
-    /// There must be at least one; times must be finite and rise from each to the next; poses must
-    /// be finite, rotations unit quaternions to 0.001 (they are normalized here).
-    pub fn keyframes(keys: Vec<Keyframe>) -> Result<Self, BodyError> {
-        keyframes::checked(keys).map(Self::Keyframes)
+    /// There must be at least one; times must rise from each to the next; all numbers must be finite.
+    pub fn keyframes(keys: &[Keyframe]) -> Result<Self, BodyError> {
+        Keyframes::new(keys).map(Self::Keyframes)
+    }
+
+    /// Tells whether the head jumps (`is_cut` of a keyframe) later than `after` and not later than `until` \[s\].
+    pub fn is_cut_between(&self, after: f64, until: f64) -> bool {
+        match self {
+            Self::Still | Self::Shake | Self::Nod | Self::Turn => false,
+            Self::Keyframes(keys) => keys.is_cut_between(after, until),
+        }
     }
 
     /// The head's pose (`world_from_head`) at a time \[s\].
     ///
     /// `pivot` \[m\], head space, is the point about which the head rotates, near the top of the
-    /// neck. The built-in motions keep it where it is. Keyframes give the whole pose at their times
-    /// for any pivot; between them the rotation is interpolated about it.
+    /// neck. The built-in motions keep it where it is. Keyframes turn the head about it and displace it.
     pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
         // [Chen2011 fig. 34] shows the head shake and gives no angle; these are a quick "no".
         let (axis, degrees) = match self {
             Self::Still => return Pose::IDENTITY,
-            Self::Keyframes(keys) => return keyframes::pose(keys, time, pivot),
+            Self::Keyframes(keys) => return keys.pose(time, pivot),
             Self::Shake => (DVec3::Y, SHAKE_DEGREES * swing(time, SHAKE_FREQUENCY)),
             Self::Nod => (DVec3::X, NOD_DEGREES * swing(time, NOD_FREQUENCY)),
             Self::Turn => (DVec3::Y, TURN_DEGREES * look(time)),

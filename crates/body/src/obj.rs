@@ -4,26 +4,15 @@ use std::io::BufRead;
 use std::path::Path;
 
 use glam::Vec3;
+use strandline_base::whole_lines;
 
-use crate::parsing::{Refusal, read_file, unit_normal};
+use crate::Mesh;
+use crate::parsing::{Refusal, unit_normal};
 use crate::part_names::Names;
-use crate::{BodyError, Mesh};
-
-/// Reads a mesh, or its named part, in the units of the file; vertices without a normal get a zero normal.
-pub(crate) fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
-    let bytes = read_file(path)?;
-    let parsed = names.map_or_else(|| parse(&bytes), |names| parse_part(&bytes, names));
-    parsed.map_err(|(found, expected)| BodyError::Mesh {
-        path: path.into(),
-        found,
-        expected,
-        mend: "export the body again",
-    })
-}
 
 /// The part that has a name, from the bytes of a file.
 pub(crate) fn parse_part(bytes: &[u8], names: &mut Names) -> Result<Mesh, Refusal> {
-    parse(&only(bytes, names))
+    parse(&only(&whole_lines(bytes), names))
 }
 
 /// The file without the faces that have not the name asked for: that of their object, a group or the material.
@@ -55,8 +44,10 @@ fn only(bytes: &[u8], names: &mut Names) -> Vec<u8> {
     kept
 }
 
-/// The same from the bytes of a file.
-pub(crate) fn parse(mut bytes: &[u8]) -> Result<Mesh, Refusal> {
+/// Reads a mesh from the bytes of a file, in its units; vertices without a normal get a zero one.
+pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
+    let text = whole_lines(bytes);
+    let mut bytes = &*text;
     let refused = |found: String| (found, "a Wavefront OBJ file with vertices (v) and faces (f)");
     check_faces(bytes).map_err(refused)?;
     let options = tobj::LoadOptions {

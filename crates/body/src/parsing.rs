@@ -1,4 +1,4 @@
-//! Helpers of all readers of meshes.
+//! Tools that the readers of meshes share.
 
 use std::path::Path;
 

@@ -50,12 +50,14 @@ pub enum GroomError {
         mend: &'static str,
     },
     /// A file ending that names no format.
-    #[error("the ending `{found}` names no groom format, expected {expected}: {}", path.display())]
+    #[error("the ending `{found}` names no groom format, expected {expected}; {mend}: {}", path.display())]
     Ending {
         /// The ending.
         found: String,
         /// The endings of the formats.
         expected: String,
+        /// The way in.
+        mend: &'static str,
         /// The file.
         path: PathBuf,
     },

@@ -37,6 +37,29 @@ impl Groom {
         groom
     }
 
+    /// The same strands without some of their points, with everything that the others have; shape of `is_kept`
+    /// `[point]`.
+    pub(crate) fn with_points(mut self, is_kept: &[bool]) -> Self {
+        fn keep<T>(values: &mut Vec<T>, is_kept: &[bool]) {
+            let mut kept = is_kept.iter();
+            values.retain(|_| kept.next().is_none_or(|kept| *kept));
+        }
+        let ends = (0..self.strand_count()).scan(0, |sum, strand| {
+            *sum += is_kept[self.range(strand)].iter().filter(|kept| **kept).count() as u32;
+            Some(*sum)
+        });
+        self.starts = std::iter::once(0).chain(ends).collect();
+        keep(&mut self.points, is_kept);
+        if let Widths::PerPoint(widths) = &mut self.widths {
+            keep(widths, is_kept);
+        }
+        self.colors.iter_mut().for_each(|all| keep(all, is_kept));
+        self.transparencies.iter_mut().for_each(|all| keep(all, is_kept));
+        self.masses.iter_mut().for_each(|all| keep(all, is_kept));
+        self.velocities.iter_mut().for_each(|all| keep(all, is_kept));
+        self
+    }
+
     /// Adds the strands of another groom behind these. Attributes of only one of the two are lost, but for widths and
     /// names of groups.
     pub fn append(&mut self, other: Self) {

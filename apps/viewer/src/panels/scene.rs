@@ -44,5 +44,5 @@ pub fn show(app: &mut App, ui: &mut Ui) {
             app.open_file(&std::path::PathBuf::from(app.path.trim()));
         }
     });
-    ui.small("Drop a .toml scene, a groom (.hair, .tfx, .ply, .npz ...) or an .obj, .gltf or .glb body on the window.");
+    ui.small("Drop a .toml scene, a groom (.hair, .tfx, .ply, .npz ...) or a body (.obj, .glb, .stl ...) on the window.");
 }

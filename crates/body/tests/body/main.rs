@@ -4,6 +4,8 @@
 mod closing;
 mod distance_grid;
 mod files;
+mod gltf_files;
 mod mesh_files;
+mod scans;
 mod shapes;
 mod thin_triangles;

@@ -1,16 +1,19 @@
 //! `.bin`, strands as CT2Hair writes them: as `.data`, but each point has a normal and a label behind it.
 
 use super::bytes::{Source, put, put_u32};
-use super::{Parsed, data};
+use super::{Parsed, data, headerless};
 use crate::{Groom, GroomError};
 
-/// Reads a `.bin` file. Published files have points that are not finite; such strands are bad ones.
+/// Reads a `.bin` file, or bare points with `per_strand` where the size of the file agrees. Published files have points that are not finite; such strands are bad ones.
 ///
 /// # Errors
 /// [`GroomError::Malformed`] with the byte or the size that is wrong.
-pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
+pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".bin" };
-    let (groom, bare) = data::strands::<7>(&source)?;
+    let (groom, bare) = match data::strands::<7>(&source) {
+        Ok(strands) => strands,
+        Err(error) => return headerless::read(bytes, ".bin", per_strand).ok_or(error),
+    };
     let mut problems = vec!["normals and labels of points are not read".to_owned()];
     if bare > 0 {
         problems.push(format!("{bare} roots have no hair"));

@@ -1,16 +1,19 @@
 //! `.data`, strands as the USC-HairSalon database has them: a count, then for each strand a count and its points.
 
 use super::bytes::{Source, put, put_u32, vec3};
-use super::{MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
+use super::{MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, headerless};
 use crate::{Groom, GroomError};
 
-/// Reads a `.data` file. A strand of a single point stands for a root without hair and is left out.
+/// Reads a `.data` file, or bare points with `per_strand` where the size of the file agrees. A strand of a single point stands for a root without hair and is left out.
 ///
 /// # Errors
 /// [`GroomError::Malformed`] with the byte or the size that is wrong.
-pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
+pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".data" };
-    let (groom, bare) = strands::<3>(&source)?;
+    let (groom, bare) = match strands::<3>(&source) {
+        Ok(strands) => strands,
+        Err(error) => return headerless::read(bytes, ".data", per_strand).ok_or(error),
+    };
     let problems = match bare {
         0 => Vec::new(),
         count => vec![format!("{count} roots have no hair")],
@@ -24,7 +27,7 @@ pub(super) fn strands<const N: usize>(source: &Source) -> Result<(Groom, usize),
     if !(1..=MAX_STRANDS).contains(&count) {
         return Err(source.error(format!("{count} strands at byte 0"), format!("1 to {MAX_STRANDS}")));
     }
-    // Each strand takes its own count at least: no memory is taken that the file cannot fill.
+    // Each strand has its own count at least: no memory is taken that the file cannot fill.
     source.slice("counts of points", 4, count, 4)?;
     let mut groom = Groom::empty(0.0);
     groom.starts.reserve(count as usize);

@@ -1,7 +1,7 @@
 //! `.hair`, Cem Yuksel's HAIR format: a header of 128 bytes, then arrays in the order of their bits.
 
 use super::bytes::{Source, put, put_u32, vec3};
-use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part};
+use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part, headerless};
 use crate::{Groom, GroomError, Widths};
 
 const HEADER: u64 = 128;
@@ -22,15 +22,21 @@ struct Header {
     color: [f32; 3],
 }
 
-/// Colours of the header that mean none: placeholders of writers without colours.
+/// Colours of the header that writers without colours put there.
 const NO_COLORS: [[f32; 3]; 2] = [[0.0; 3], [1.0; 3]];
 
-/// Reads a `.hair` file; thickness is taken as the diameter.
+/// Reads a `.hair` file; thickness is taken as the diameter. Of files without the format's first word, those that
+/// reconstructions write are read where their size agrees: counts and points, or bare points with `per_strand`.
 ///
 /// # Errors
 /// [`GroomError::Malformed`] with the byte or the size that is wrong.
-pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
+pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".hair" };
+    if !bytes.starts_with(b"HAIR")
+        && let Some(parsed) = counted(&source).or_else(|| headerless::read(bytes, ".hair", per_strand))
+    {
+        return Ok(parsed);
+    }
     let header = header(&source)?;
     let mut problems = Vec::new();
     let mut offset = HEADER;
@@ -81,6 +87,28 @@ pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
         ..Groom::empty(0.0)
     };
     Ok(Parsed { format: ".hair", groom, problems })
+}
+
+/// Strands as HairStep, NeuralHDHair and MonoHair write them: the numbers of strands and of points (32 bits), the
+/// points of each strand (16 bits), then coordinates. `None` where the size of the file does not agree.
+fn counted(source: &Source) -> Option<Parsed> {
+    let [strands, points] = [source.u32("strands", 0).ok()?, source.u32("points", 4).ok()?].map(u64::from);
+    let length = strands.checked_mul(2)?.checked_add(points.checked_mul(12)?)?.checked_add(8)?;
+    let is_within = (1..=MAX_STRANDS).contains(&strands) && (1..=MAX_POINTS).contains(&points);
+    if !is_within || length != source.bytes.len() as u64 {
+        return None;
+    }
+    let counts = source.slice("points of strands", 8, strands, 2).ok()?;
+    let mut starts = vec![0_u32];
+    let total = counts.chunks_exact(2).fold(0, |sum, count| {
+        let end = sum + u64::from(u16::from_le_bytes([count[0], count[1]]));
+        starts.push(end as u32);
+        end
+    });
+    let places = source.groups::<3, 3>("points", 8 + 2 * strands, points).ok()?;
+    let points_of_strands = places.into_iter().map(vec3).collect();
+    let groom = Groom { starts, points: points_of_strands, ..Groom::empty(0.0) };
+    (total == points).then_some(Parsed { format: ".hair without a header", groom, problems: Vec::new() })
 }
 
 fn header(source: &Source) -> Result<Header, GroomError> {

@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use strandline_base::{Key, Kind, Row, SettingError, Value, choices, math, memory, read_plain};
 
+use super::cleaning::Cleaning;
 use super::report::Report;
 use super::{
     Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project, sieve::sieve,
@@ -82,6 +83,9 @@ choices! {
     default Auto
 }
 
+/// Advice where strands unlike the others are named and kept.
+const HINT: &str = "`convert --clean` mends it";
+
 /// Options of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadOptions {
@@ -93,11 +97,13 @@ pub struct LoadOptions {
     pub up: Up,
     /// Points of each strand, for files that hold points and do not say which of them make a strand.
     pub per_strand: Option<u32>,
+    /// The treatment of strands unlike the others.
+    pub cleaning: Cleaning,
 }
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { strict: true, scale: Scale::Auto, up: Up::Y, per_strand: None }
+        Self { strict: true, scale: Scale::Auto, up: Up::Y, per_strand: None, cleaning: Cleaning::Named }
     }
 }
 
@@ -240,6 +246,10 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
     if groom.strand_count() == 0 {
         return Err(GroomError::Empty);
     }
+    match options.cleaning {
+        Cleaning::Named => problems.extend(groom.strays(HINT)),
+        Cleaning::Strays | Cleaning::All => problems.extend(groom.leave_out_strays()),
+    }
     let scale = match options.scale {
         Scale::Factor(factor) => factor,
         Scale::Auto => plausible_scale(&groom),
@@ -256,12 +266,17 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
         groom.widths = Widths::Constant(HAIR_WIDTH);
         problems.push(format!("the file has no widths: {} mm is taken", 1e3 * HAIR_WIDTH));
     }
+    match options.cleaning {
+        Cleaning::Named => problems.extend(groom.unlike(HINT)),
+        Cleaning::Strays => {}
+        Cleaning::All => problems.extend(groom.mend()),
+    }
     let report = Report::new(parsed.format, &groom, scale, problems);
     Ok(Loaded { groom, report })
 }
 
 fn plausible_scale(groom: &Groom) -> f32 {
-    let bounds = groom.bounds();
+    let bounds = groom.bounds_without_strays();
     let diagonal = bounds.min.distance(bounds.max);
     let fits = |scale: &f32| (0.05..=2.0).contains(&(scale * diagonal));
     [1.0, 0.01, 0.001, 0.0254].into_iter().find(fits).unwrap_or(1.0)

@@ -5,8 +5,11 @@
 
 pub mod bin;
 mod bytes;
+mod cleaning;
 pub mod data;
 pub mod hair;
+mod headerless;
+mod joining;
 mod load;
 pub mod npy;
 pub mod npz;
@@ -19,7 +22,10 @@ mod report;
 mod save;
 mod sieve;
 pub mod tfx;
+mod tfx_text;
+pub mod usda;
 
+pub use cleaning::Cleaning;
 pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
@@ -39,13 +45,13 @@ pub const MAX_COORDINATE: f32 = 1e7;
 /// Diameter of a human hair \[m\], for files that name none.
 pub const HAIR_WIDTH: f32 = 8e-5;
 
-/// Strands of a reader before bad ones are left out, in units and axes of the file.
+/// The contents of a file before bad strands are sieved out; units and axes of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parsed {
     /// Name and version of the format.
     pub format: &'static str,
     /// The strands, bad ones among them.
     pub groom: crate::Groom,
-    /// Oddities that did not prevent the reading.
+    /// Notes on what was odd but could be read.
     pub problems: Vec<String>,
 }

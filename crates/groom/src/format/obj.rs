@@ -4,15 +4,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use glam::Vec3;
+use strandline_base::whole_lines;
 
 use super::bytes::Source;
+use super::joining::Lines;
 use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError};
 
 /// Longest name of a group \[byte\].
 const MAX_NAME: usize = 4096;
 
-/// Content of the lines read so far.
+/// The statements of a file up to a line.
 #[derive(Default)]
 struct Reading {
     vertices: Vec<Vec3>,
@@ -21,32 +23,44 @@ struct Reading {
     /// Numbers of groups by their names, and that of the strands to come.
     numbers: BTreeMap<String, u32>,
     group: Option<u32>,
-    /// Vertex of each point.
-    points: Vec<u32>,
-    starts: Vec<u32>,
+    /// A number above those of all groups.
+    next_group: u32,
+    lines: Lines,
+    /// Group of each line.
     groups: Vec<u32>,
     skipped: usize,
 }
 
-/// Reads the lines of an `.obj` file as strands, root first. Other elements are counted and skipped.
+/// Reads the lines of an `.obj` file as strands, root first; lines that share their ends are joined. Other elements
+/// are counted and skipped.
 ///
 /// # Errors
 /// [`GroomError::Malformed`] with the line that is wrong.
 pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".obj" };
-    let mut reading = Reading { starts: vec![0], ..Reading::default() };
-    for (number, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
+    let mut reading = Reading::default();
+    reading.lines.starts.push(0);
+    for (number, line) in whole_lines(bytes).split(|byte| *byte == b'\n').enumerate() {
         let line = String::from_utf8_lossy(line);
         let wrong =
             |expected: &str| source.error(format!("`{}` in line {}", cut(&line), number + 1), expected);
         reading.line(&line).map_err(|expected| wrong(&expected))?;
     }
-    if reading.starts.len() == 1 {
+    if reading.lines.starts.len() == 1 {
         return Err(source.error("no line (`l`)", "strands as lines; a mesh is a body (`--body`)"));
     }
     let skipped = reading.skipped;
-    let problems = (skipped > 0).then(|| format!("{skipped} faces or other elements are not read"));
-    Ok(Parsed { format: ".obj", groom: reading.groom(), problems: problems.into_iter().collect() })
+    let (groom, mut problems) = reading.groom();
+    if skipped > 0 {
+        problems.push(format!("{skipped} faces or other elements are not read"));
+    }
+    let longest = groom.starts.windows(2).map(|pair| u64::from(pair[1] - pair[0])).max().unwrap_or(0);
+    if longest > MAX_POINTS_PER_STRAND || groom.strand_count() as u64 > MAX_STRANDS {
+        let found = format!("{} joined strands of up to {longest} points", groom.strand_count());
+        let expected = format!("{MAX_STRANDS} strands of {MAX_POINTS_PER_STRAND} points at most");
+        return Err(source.error(found, expected));
+    }
+    Ok(Parsed { format: ".obj", groom, problems })
 }
 
 fn cut(line: &str) -> String {
@@ -54,7 +68,7 @@ fn cut(line: &str) -> String {
 }
 
 impl Reading {
-    /// Parses a line; an error says what was expected.
+    /// Takes a line; a wrong one gives the text that is expected.
     fn line(&mut self, line: &str) -> Result<(), String> {
         let mut words = line.split_whitespace();
         match words.next() {
@@ -93,24 +107,26 @@ impl Reading {
 
     fn polyline<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<(), String> {
         let count = self.vertices.len() as i64;
-        let first = self.points.len();
+        let points = &mut self.lines.points;
+        let first = points.len();
         for word in words {
             let index: i64 = word.split('/').next().and_then(|word| word.parse().ok()).unwrap_or(0);
             let vertex = if index < 0 { count + index } else { index - 1 };
             if !(0..count).contains(&vertex) {
                 return Err(format!("vertices 1 to {count} behind `l`, or -1 to -{count}"));
             }
-            self.points.push(vertex as u32);
+            points.push(vertex as u32);
         }
-        let points = (self.points.len() - first) as u64;
-        if points > MAX_POINTS_PER_STRAND || self.points.len() as u64 > MAX_POINTS {
+        let (own, all) = ((points.len() - first) as u64, points.len() as u64);
+        if own > MAX_POINTS_PER_STRAND || all > MAX_POINTS {
             return Err(format!("{MAX_POINTS_PER_STRAND} points of a strand at most, {MAX_POINTS} of all"));
         }
-        if self.starts.len() as u64 > MAX_STRANDS {
+        // Segments that are joined are fewer strands.
+        if self.lines.starts.len() as u64 > MAX_STRANDS && own > 2 {
             return Err(format!("{MAX_STRANDS} strands at most"));
         }
-        self.starts.push(self.points.len() as u32);
-        // Lines before any `g` belong to a group of that name by the rule of the format.
+        self.lines.starts.push(all as u32);
+        // Lines before any `g` are in a group of that name by the format's own rule.
         if self.group.is_none() {
             self.name("default")?;
         }
@@ -126,7 +142,8 @@ impl Reading {
             self.group = Some(*number);
             return Ok(());
         }
-        let next = self.numbers.values().max().map_or(0, |last| last.saturating_add(1));
+        let next = self.next_group;
+        self.next_group = next.saturating_add(1);
         self.numbers.insert(name.to_owned(), next);
         self.group = Some(next);
         Ok(())
@@ -142,29 +159,34 @@ impl Reading {
             return Err(format!("a name of {MAX_NAME} bytes at most"));
         }
         self.numbers.insert(name, number);
+        self.next_group = self.next_group.max(number.saturating_add(1));
         Ok(())
     }
 
-    fn groom(self) -> Groom {
+    /// The strands, and notes on how lines became them.
+    fn groom(self) -> (Groom, Vec<String>) {
+        let listed = self.groups.len();
+        let joined = self.lines.joined(self.vertices.len());
+        let problems = joined.problems(listed);
         let colored = self.colors.len() == self.vertices.len();
-        let points = || self.points.iter().map(|vertex| *vertex as usize);
+        let points = || joined.lines.points.iter().map(|vertex| *vertex as usize);
         let mut groom = Groom {
             points: points().map(|vertex| self.vertices[vertex]).collect(),
             colors: colored.then(|| points().map(|vertex| self.colors[vertex]).collect()),
             ..Groom::empty(0.0)
         };
-        groom.starts = self.starts;
         let only_default = self.numbers.len() == 1 && self.numbers.contains_key("default");
         if !only_default {
-            groom.groups = Some(self.groups);
+            groom.groups = Some(joined.firsts.iter().map(|line| self.groups[*line as usize]).collect());
             let named = self.numbers.into_iter().filter(|(name, number)| *name != unnamed(*number));
             groom.group_names = named.map(|(name, number)| (number, name)).collect();
         }
-        groom
+        groom.starts = joined.lines.starts;
+        (groom, problems)
     }
 }
 
-/// Name of a group without a name.
+/// The name of a group that has none.
 fn unnamed(number: u32) -> String {
     format!("group_{number}")
 }

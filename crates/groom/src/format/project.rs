@@ -67,6 +67,6 @@ fn is_strands(file: &str) -> bool {
 }
 
 /// A part of a colour of the screen \[IEC 61966-2-1\] as light.
-fn linear(part: f32) -> f32 {
+pub(super) fn linear(part: f32) -> f32 {
     if part <= 0.040_45 { part / 12.92 } else { math::powf((part + 0.055) / 1.055, 2.4) }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::part::Part::{self, *};
-use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx};
+use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx, usda};
 use crate::{Groom, GroomError};
 
 /// Parser of bytes; it takes the number of points per strand for files that leave it open.
@@ -39,18 +39,18 @@ pub struct Format {
 }
 
 /// All formats.
-pub const FORMATS: [Format; 9] = [
+pub const FORMATS: [Format; 10] = [
     Format {
         ending: "hair",
         about: "HAIR of Cem Yuksel",
-        read: Reader::Bytes(|bytes, _| hair::read(bytes)),
+        read: Reader::Bytes(hair::read),
         write: Some(hair::write),
         holds: &[Widths, WidthsAlong, Colors, Transparencies],
         taken: 2,
     },
     Format {
         ending: "tfx",
-        about: "TressFX 3 and 4, written as 4; strands of one number of points",
+        about: "TressFX 2 (text), 3 and 4, written as 4; strands of one number of points",
         read: Reader::Bytes(|bytes, _| tfx::read(bytes)),
         write: Some(tfx::write),
         holds: &[Widths, Colors, RootUvs],
@@ -67,7 +67,7 @@ pub const FORMATS: [Format; 9] = [
     Format {
         ending: "data",
         about: "USC-HairSalon: points alone",
-        read: Reader::Bytes(|bytes, _| data::read(bytes)),
+        read: Reader::Bytes(data::read),
         write: Some(data::write),
         holds: &[],
         taken: 2,
@@ -76,14 +76,14 @@ pub const FORMATS: [Format; 9] = [
         ending: "bin",
         about: "CT2Hair: points, written in metres (its own files are in millimetres); normals and labels are not read, \
                 and written as 0",
-        read: Reader::Bytes(|bytes, _| bin::read(bytes)),
+        read: Reader::Bytes(bin::read),
         write: Some(bin::write),
         holds: &[],
         taken: 2,
     },
     Format {
         ending: "ply",
-        about: "vertices with `strand` and `edge` elements, or bare ones with `--per-strand N`",
+        about: "vertices with `strand` and `edge` elements, edges alone, or bare vertices with `--per-strand N`",
         read: Reader::Bytes(ply::read),
         write: Some(ply::write),
         holds: &Part::ALL,
@@ -111,9 +111,31 @@ pub const FORMATS: [Format; 9] = [
         read: Reader::Bytes(|bytes, _| obj::read(bytes)),
         write: Some(obj::write),
         holds: &[Colors, Groups, GroupNames],
-        taken: 4,
+        taken: 8,
+    },
+    Format {
+        ending: "usda",
+        about: "text USD: `BasisCurves` of a stage at its first time, in its units and axes",
+        read: Reader::Bytes(|bytes, _| usda::read(bytes)),
+        write: None,
+        holds: &[],
+        taken: 16,
     },
 ];
+
+/// The way in for files of other programs.
+fn way_in(ending: &str) -> &'static str {
+    match ending {
+        "abc" | "usdc" | "usdz" => {
+            "import it in Blender and export the curves as USD with the ending .usda (a binary USD: `usdcat -o hair.usda FILE`)"
+        }
+        "fbx" | "blend" | "ma" | "mb" | "hip" | "max" | "c4d" => {
+            "open it in its program, or in Blender, make the hair curves, and export them as USD with the ending .usda"
+        }
+        "glb" | "gltf" | "vrm" | "stl" => "a mesh is a body (`--body`)",
+        _ => "export the strands in one of these formats",
+    }
+}
 
 impl Format {
     /// The format that the ending of a path names.
@@ -123,8 +145,11 @@ impl Format {
     pub fn of(path: &Path) -> Result<&'static Self, GroomError> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         let found = ending.unwrap_or_default();
-        FORMATS.iter().find(|format| format.ending == found).ok_or_else(|| GroomError::Ending {
-            found,
+        // A `.usd` file is a text or a binary USD: its reader tells them apart.
+        let known = if found == "usd" { "usda" } else { &found };
+        FORMATS.iter().find(|format| format.ending == known).ok_or_else(|| GroomError::Ending {
+            mend: way_in(&found),
+            found: found.clone(),
             expected: endings(|_| true),
             path: path.to_owned(),
         })

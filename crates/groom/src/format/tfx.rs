@@ -1,7 +1,7 @@
-//! `.tfx`, the binary format of TressFX: versions 3 (read) and 4 (read and write).
+//! `.tfx`, the format of TressFX: versions 2 (text) and 3 (read) and 4 (read and write).
 
 use super::bytes::{Source, put, put_u32, vec2, vec3};
-use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, Part};
+use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, Part, tfx_text};
 use crate::{Groom, GroomError, Widths};
 
 const HEADER_3: u64 = 296;
@@ -23,17 +23,24 @@ struct Layout {
     followed: u64,
 }
 
-/// Reads a `.tfx` file of version 3 or 4; thickness is taken as the diameter.
+/// Reads a `.tfx` file of version 2, 3 or 4; thickness is taken as the diameter.
 ///
 /// # Errors
 /// [`GroomError::Malformed`] with the byte or the size that is wrong.
 pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
+    if tfx_text::is_text(bytes) {
+        return tfx_text::read(bytes);
+    }
     let source = Source { bytes, format: ".tfx" };
     let version = source.f32("version", 0)?;
     let (format, layout) = match version {
         3.0..4.0 => (".tfx 3", layout_3(&source)?),
         4.0..5.0 => (".tfx 4", layout_4(&source)?),
-        _ => return Err(source.error(format!("version {version} at byte 0"), "3 or 4 (version 2 is text)")),
+        _ => {
+            return Err(
+                source.error(format!("version {version} at byte 0"), "3 or 4, or the text of version 2")
+            );
+        }
     };
     check(&source, &layout)?;
     let count = layout.strands * layout.each;

@@ -152,12 +152,12 @@ fn words(numbers: &[u32]) -> Vec<u8> {
 
 #[test]
 fn sizes_that_no_file_has_are_refused_before_memory_is_taken() {
-    refused(data::read(&words(&[u32::MAX])), &["4294967295 strands at byte 0"]);
-    refused(data::read(&words(&[8_000_000, 2])), &["8 bytes", "8000000 x 4 bytes of counts"]);
-    refused(data::read(&words(&[1, u32::MAX])), &["4294967295 points of a strand at byte 4"]);
-    refused(data::read(&words(&[1, 4096])), &["4096 x 12 bytes of points"]);
-    refused(data::read(&words(&[1, 1, 0, 0, 0, 9])), &["24 bytes", "20 bytes for 1 strands"]);
-    refused(bin::read(&words(&[1, 2])), &["2 x 28 bytes of points"]);
+    refused(data::read(&words(&[u32::MAX]), None), &["4294967295 strands at byte 0"]);
+    refused(data::read(&words(&[8_000_000, 2]), None), &["8 bytes", "8000000 x 4 bytes of counts"]);
+    refused(data::read(&words(&[1, u32::MAX]), None), &["4294967295 points of a strand at byte 4"]);
+    refused(data::read(&words(&[1, 4096]), None), &["4096 x 12 bytes of points"]);
+    refused(data::read(&words(&[1, 1, 0, 0, 0, 9]), None), &["24 bytes", "20 bytes for 1 strands"]);
+    refused(bin::read(&words(&[1, 2]), None), &["2 x 28 bytes of points"]);
     let header = |text: &str| {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
         bytes.extend((text.len() as u16).to_le_bytes());

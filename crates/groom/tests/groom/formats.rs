@@ -34,7 +34,7 @@ fn two_strands() -> Groom {
 fn hair_without_a_segment_array_takes_the_default() {
     let mut bytes = hair_header(2, 6, 2, 2);
     floats(&mut bytes, &(0..18).map(|n| n as f32).collect::<Vec<_>>());
-    let groom = hair::read(&bytes).unwrap().groom;
+    let groom = hair::read(&bytes, None).unwrap().groom;
     assert_eq!(groom.starts, [0, 3, 6]);
     assert_eq!(groom.points[5], Vec3::new(15.0, 16.0, 17.0));
     assert_eq!(groom.widths, Widths::Constant(0.5));
@@ -48,7 +48,7 @@ fn hair_strands_without_segments_count_one_point_or_none() {
         bytes.extend(2_u16.to_le_bytes());
         bytes.extend(0_u16.to_le_bytes());
         floats(&mut bytes, &(0..3 * points).map(|n| n as f32 / 64.0).collect::<Vec<_>>());
-        let parsed = hair::read(&bytes).unwrap();
+        let parsed = hair::read(&bytes, None).unwrap();
         assert_eq!(parsed.groom.starts, starts);
         let colour = "the header's one colour for all strands, linear (1, 0.5, 0.25), is not taken";
         assert_eq!(parsed.problems, ["1 strands have no segment", colour]);
@@ -81,18 +81,18 @@ fn refused(result: Result<impl std::fmt::Debug, GroomError>, words: &[&str]) {
 
 #[test]
 fn bad_hair_files_are_refused_with_what_was_found_and_expected() {
-    refused(hair::read(b"PK\x03\x04 and more"), &["starts with `PK", "expected `HAIR`"]);
-    refused(hair::read(b""), &["starts with ``", "expected `HAIR`"]);
-    refused(hair::read(b"HAIR"), &["4 bytes", "128 x 1 bytes of header"]);
-    refused(hair::read(&hair_header(2, 6, 2, 2)), &["128 bytes", "200 bytes"]);
-    refused(hair::read(&hair_header(u32::MAX, 6, 2, 2)), &["4294967295 strands at byte 4"]);
-    refused(hair::read(&hair_header(2, u32::MAX, 2, 2)), &["4294967295 points at byte 8"]);
+    refused(hair::read(b"PK\x03\x04 and more", None), &["starts with `PK", "expected `HAIR`"]);
+    refused(hair::read(b"", None), &["starts with ``", "expected `HAIR`"]);
+    refused(hair::read(b"HAIR", None), &["4 bytes", "128 x 1 bytes of header"]);
+    refused(hair::read(&hair_header(2, 6, 2, 2), None), &["128 bytes", "200 bytes"]);
+    refused(hair::read(&hair_header(u32::MAX, 6, 2, 2), None), &["4294967295 strands at byte 4"]);
+    refused(hair::read(&hair_header(2, u32::MAX, 2, 2), None), &["4294967295 points at byte 8"]);
     let mut seven = hair_header(2, 7, 2, 2);
     seven.resize(128 + 7 * 12, 0);
-    refused(hair::read(&seven), &["7 points at byte 8", "2 strands x 3 points"]);
-    refused(hair::read(&hair_header(0, 0, 2, 2)), &["0 strands"]);
-    refused(hair::read(&hair_header(2, 6, 1, 2)), &["no array of points"]);
-    refused(hair::read(&hair_header(2, 6, 34, 2)), &["array bits 0x22"]);
+    refused(hair::read(&seven, None), &["7 points at byte 8", "2 strands x 3 points"]);
+    refused(hair::read(&hair_header(0, 0, 2, 2), None), &["0 strands"]);
+    refused(hair::read(&hair_header(2, 6, 1, 2), None), &["no array of points"]);
+    refused(hair::read(&hair_header(2, 6, 34, 2), None), &["array bits 0x22"]);
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn bad_strands_are_named_strictly_and_left_out_leniently() {
         let mut groom = two_strands();
         groom.push(points.iter().copied());
         let bytes = hair::write(&groom).unwrap();
-        let parsed = hair::read(&bytes).unwrap();
+        let parsed = hair::read(&bytes, None).unwrap();
         let strict = LoadOptions { scale: Scale::Factor(1.0), ..LoadOptions::default() };
         refused(prepare(parsed.clone(), &strict), &["strand 2", word]);
         let loaded = prepare(parsed, &LoadOptions { strict: false, ..strict }).unwrap();
@@ -172,7 +172,7 @@ fn a_groom_that_a_format_cannot_hold_is_refused() {
 fn units_and_axes_become_metres_with_y_up() {
     let mut groom = Groom::empty(0.01);
     groom.push([Vec3::new(0.0, 0.0, 90.0), Vec3::new(0.0, -30.0, 100.0)]);
-    let parsed = hair::read(&hair::write(&groom).unwrap()).unwrap();
+    let parsed = hair::read(&hair::write(&groom).unwrap(), None).unwrap();
     let options = LoadOptions { up: Up::Z, ..LoadOptions::default() };
     let loaded = prepare(parsed, &options).unwrap();
     assert_eq!(loaded.report.scale, 0.01);
@@ -183,7 +183,8 @@ fn units_and_axes_become_metres_with_y_up() {
 
 #[test]
 fn strands_without_a_width_get_that_of_a_hair() {
-    let parsed = hair::read(&hair::write(&Groom { widths: Widths::Constant(0.0), ..two_strands() }).unwrap());
+    let parsed =
+        hair::read(&hair::write(&Groom { widths: Widths::Constant(0.0), ..two_strands() }).unwrap(), None);
     let loaded = prepare(parsed.unwrap(), &LoadOptions::default()).unwrap();
     assert_eq!(loaded.groom.widths, Widths::Constant(8e-5));
     assert_eq!(loaded.report.problems, ["the file has no widths: 0.08 mm is taken"]);
@@ -218,7 +219,7 @@ fn files_are_written_whole_and_errors_end_with_the_path() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     refused(two_strands().save(folder.path().join("no").join("two.hair")), &["cannot write", "two.hair"]);
     refused(Groom::load(folder.path().join("absent.hair")), &["cannot read", "absent.hair"]);
-    refused(Groom::load(folder.path().join("a.fbx")), &["ending `fbx`", ".hair, .tfx,", "or .obj", "a.fbx"]);
+    refused(Groom::load(folder.path().join("a.fbx")), &["ending `fbx`", ".hair, .tfx,", "or .usda", "a.fbx"]);
     std::fs::write(&path, b"PK\x03\x04").unwrap();
     let text = Groom::load(&path).unwrap_err().to_string();
     assert!(text.contains("starts with `PK") && text.ends_with("two.hair"), "{text}");
@@ -343,7 +344,7 @@ fn bounded(read: Result<strandline_groom::format::Parsed, GroomError>, length: u
 proptest! {
     #[test]
     fn hair_round_trips(groom in hair_grooms()) {
-        let read = hair::read(&hair::write(&groom).unwrap()).unwrap().groom;
+        let read = hair::read(&hair::write(&groom).unwrap(), None).unwrap().groom;
         prop_assert_eq!(hair::write(&read).unwrap(), hair::write(&groom).unwrap());
         prop_assert_eq!(read.points, groom.points);
         prop_assert_eq!(read.starts, groom.starts);
@@ -364,7 +365,7 @@ proptest! {
         extra in 0_usize..40,
     ) {
         let bytes = damaged(hair::write(&groom).unwrap(), &flips, cut, extra);
-        bounded(hair::read(&bytes), bytes.len());
+        bounded(hair::read(&bytes, None), bytes.len());
     }
 
     #[test]

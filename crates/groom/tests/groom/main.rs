@@ -3,4 +3,5 @@
 mod attributes;
 mod bound;
 mod formats;
+mod strangers;
 mod styles;

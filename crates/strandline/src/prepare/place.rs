@@ -58,6 +58,7 @@ fn place_hair(loading: &mut Loading) -> Result<(), Error> {
     let further = std::mem::take(&mut loading.further_grooms);
     let place = |groom: &mut Groom, placing, turn, by| place_groom(groom, placing, scene, turn, by);
     notes.extend(join::add_grooms(scene, groom, further, placings.groom, mesh.as_ref(), place)?);
+    notes.extend(groom.mend());
     Ok(())
 }
 

@@ -13,7 +13,7 @@ use crate::{
     body::Mesh,
     groom::{
         Groom,
-        format::{self, LoadOptions, Scale, Up},
+        format::{self, Cleaning, LoadOptions, Scale, Up},
     },
     render::Picture,
 };
@@ -81,7 +81,13 @@ impl Sources {
         name: &Path,
         per_strand: Option<u32>,
     ) -> Result<(Groom, Vec<String>), Error> {
-        let options = LoadOptions { strict: false, scale: Scale::Factor(1.0), up: Up::Y, per_strand };
+        let options = LoadOptions {
+            strict: false,
+            scale: Scale::Factor(1.0),
+            up: Up::Y,
+            per_strand,
+            cleaning: Cleaning::Strays,
+        };
         let loaded = match self.grooms.get(name) {
             Some(groom) => {
                 groom.check_lengths()?;

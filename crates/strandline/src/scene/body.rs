@@ -26,7 +26,7 @@ choices! {
 settings! {
     /// A further mesh of the body: eyes, teeth, a collar.
     pub struct BodyPart {
-        /// An .obj, .gltf or .glb file.
+        /// An .obj, .gltf, .glb, .vrm, .ply or .stl file.
         file: PathBuf = PathBuf::new(), required true;
         /// Metres per unit of the file; "auto" takes that of `body.file`.
         scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
@@ -49,7 +49,7 @@ settings! {
     pub struct BodySection {
         /// The body when no file is named.
         model: Model = Model::default();
-        /// An .obj, .gltf or .glb file.
+        /// An .obj, .gltf, .glb, .vrm, .ply or .stl file.
         file: Option<PathBuf> = None;
         /// Part of the body on which a style grows, by its name in the body's files: an object, a group or a material
         /// of an .obj, a node, a mesh or a material of a glTF. Without it the built-in scalp is brought onto the skull.

@@ -22,7 +22,7 @@ impl HeadMotion {
     /// Keyframes that are missing, not finite or not in the order of their times.
     pub fn new(section: &MotionSection, pivot: Vec3) -> Result<Self, Error> {
         let turn = math::pitch_yaw_roll(section.rotation);
-        Ok(Self { motion: section.motion(pivot)?, pivot, turn })
+        Ok(Self { motion: section.motion()?, pivot, turn })
     }
 
     /// A head that rests.

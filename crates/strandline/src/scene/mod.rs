@@ -13,7 +13,6 @@ mod surroundings;
 
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
 pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
@@ -192,7 +191,7 @@ impl Scene {
             }
         }
         self.picture.validate()?;
-        self.motion.motion(Vec3::ZERO)?;
+        self.motion.motion()?;
         if matches!(self.devices.simulation, Backend::Gpu(_)) {
             self.simulation.check_on_gpu()?;
         }

@@ -4,7 +4,7 @@ use strandline_base::{choices, settings};
 
 use crate::{
     Error,
-    body::{Keyframe, Motion, Pose},
+    body::{Interpolation, Keyframe, Motion},
 };
 
 choices! {
@@ -29,10 +29,15 @@ settings! {
     pub struct KeyframeSection: Copy {
         /// Time; each later than the one before.
         time: f64 = 0.0, in [-1e6, 1e6] "s";
-        /// Rotation about the pivot: pitch (about x), yaw (about y), roll (about z).
+        /// Angles about the pivot: pitch (about x), yaw (about y), roll (about z), applied in the order roll, pitch,
+        /// yaw; each angle is a curve of its own, so 720 degrees are two turns.
         rotation: Vec3 = Vec3::ZERO, in [-36_000.0, 36_000.0] "degrees", slider [-180.0, 180.0];
-        /// Translation.
+        /// Displacement of the pivot.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// The way to the next pose; without it that of `motion.interpolation`.
+        interpolation: Option<Interpolation> = None;
+        /// A jump: the pose before is held until this one.
+        cut: bool = false;
     }
 }
 
@@ -47,34 +52,42 @@ settings! {
         /// Rotation of the head added to its motion, about the pivot: pitch (about x), yaw (about y),
         /// roll (about z).
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-70.0, 70.0];
+        /// The way from pose to pose, where a pose does not name its own.
+        interpolation: Interpolation = Interpolation::default();
         /// Poses, in the order of their times; used by "keyframes".
         keyframes: Vec<KeyframeSection> = Vec::new();
     }
 }
 
 impl MotionSection {
-    /// The motion itself; rotations of keyframes happen about `pivot` \[m\].
+    /// The motion itself.
     ///
     /// # Errors
     /// Keyframes that are missing, not finite or not in the order of their times.
-    pub fn motion(&self, pivot: Vec3) -> Result<Motion, Error> {
+    pub fn motion(&self) -> Result<Motion, Error> {
         Ok(match self.name {
             MotionName::Still => Motion::Still,
             MotionName::Shake => Motion::Shake,
             MotionName::Nod => Motion::Nod,
             MotionName::Turn => Motion::Turn,
             MotionName::Keyframes => {
-                Motion::keyframes(self.keyframes.iter().map(|key| key.keyframe(pivot)).collect())?
+                let keys: Vec<_> =
+                    self.keyframes.iter().map(|key| key.keyframe(self.interpolation)).collect();
+                Motion::keyframes(&keys)?
             }
         })
     }
 }
 
 impl KeyframeSection {
-    fn keyframe(&self, pivot: Vec3) -> Keyframe {
-        let mut world_from_head = Pose::rotation_about(pivot, math::pitch_yaw_roll(self.rotation));
-        world_from_head.translation += self.translation;
-        Keyframe { time: self.time, world_from_head }
+    fn keyframe(&self, interpolation: Interpolation) -> Keyframe {
+        Keyframe {
+            time: self.time,
+            rotation: self.rotation,
+            translation: self.translation,
+            interpolation: self.interpolation.unwrap_or(interpolation),
+            is_cut: self.cut,
+        }
     }
 }
 

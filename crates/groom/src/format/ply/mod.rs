@@ -1,18 +1,16 @@
 //! `.ply`: vertices with `strand` and `edge` elements, as hairutil has them, or bare ones. What a groom has
 //! else stands in further properties, which other readers skip.
 
-mod header;
-mod rows;
 mod writer;
 
 use glam::{Vec2, Vec3};
+use strandline_base::ply::{self, Table};
 
 use super::bytes::Source;
+use super::joining::Lines;
 use super::npy::{even, split};
 use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError, Influences, Widths};
-use header::Header;
-use rows::Table;
 
 pub use writer::write;
 
@@ -23,14 +21,6 @@ const OF_STRANDS: [&str; 11] =
     ["nsegs", "width", "s", "t", "nx", "ny", "nz", "group", "guide", "guides", "weights"];
 const OF_EDGES: [&str; 2] = ["vertex1", "vertex2"];
 
-/// The elements of a file that are of interest.
-#[derive(Default)]
-struct Tables {
-    vertices: Table,
-    strands: Table,
-    edges: Table,
-}
-
 /// Reads a `.ply` file, binary or of text. Vertices without `strand` and `edge` elements need the points of each
 /// strand.
 ///
@@ -38,18 +28,10 @@ struct Tables {
 /// [`GroomError::Malformed`] with the error.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".ply" };
-    let header = Header::new(&source)?;
-    let mut tables = Tables::default();
-    let mut rows = rows::Rows::new(&source, &header);
-    for element in &header.elements {
-        match element.name.as_str() {
-            "vertex" => tables.vertices = rows.read(element, &OF_VERTICES)?,
-            "strand" => tables.strands = rows.read(element, &OF_STRANDS)?,
-            "edge" => tables.edges = rows.read(element, &OF_EDGES)?,
-            _ => drop(rows.read(element, &[])?),
-        }
-    }
-    let Tables { vertices, strands, edges } = &tables;
+    let asked: [(&str, &[&str]); 3] =
+        [("vertex", &OF_VERTICES), ("strand", &OF_STRANDS), ("edge", &OF_EDGES)];
+    let file = ply::read(bytes, asked).map_err(|mismatch| source.error(mismatch.found, mismatch.expected))?;
+    let [vertices, strands, edges] = &file.tables;
     let count = vertices.rows as u64;
     if !(1..=MAX_POINTS).contains(&count) {
         return Err(source.error(format!("{count} vertices"), format!("1 to {MAX_POINTS}")));
@@ -57,13 +39,18 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
     let places = vertices.triples(["x", "y", "z"]);
     let places = places.ok_or_else(|| source.error("vertices without coordinates", "x, y and z"))?;
     let places = places.into_iter().map(Vec3::from_array).collect();
+    let mut problems = Vec::new();
     let (starts, order) = match (strands.numbers("nsegs"), per_strand) {
         (Some(segments), _) => chains(&source, segments, edges, count)?,
         (None, Some(each)) => {
             let (strands, each) = split(&source, count, each)?;
             (even(&source, strands, each, |_| Vec::new())?.starts, None)
         }
-        (None, None) if edges.rows > 0 => joined(&source, edges, count)?,
+        (None, None) if edges.rows > 0 => {
+            let (chains, notes) = joined(&source, edges, count)?;
+            problems = notes;
+            chains
+        }
         (None, None) => {
             let expected = "`strand` and `edge` elements, or the points of a strand (`--per-strand N`)";
             return Err(source.error(format!("{count} vertices and nothing that joins them"), expected));
@@ -74,8 +61,14 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
     if strands.rows == groom.strand_count() {
         of_strands(&mut groom, strands)?;
     }
-    groom.group_names = header.group_names;
-    Ok(Parsed { format: ".ply", groom, problems: Vec::new() })
+    groom.group_names = file.comments.iter().filter_map(|comment| group_name(comment)).collect();
+    Ok(Parsed { format: ".ply", groom, problems })
+}
+
+/// The number and name of a group in a comment `group NUMBER NAME`.
+fn group_name(comment: &str) -> Option<(u32, String)> {
+    let (number, name) = comment.strip_prefix("group ")?.split_once(' ')?;
+    Some((number.parse().ok()?, name.to_owned()))
 }
 
 /// First point of each strand, and the vertex of each point unless they are in order.
@@ -127,25 +120,29 @@ fn chains(source: &Source, segments: &[f64], edges: &Table, vertices: u64) -> Re
     Ok((starts, Some(indices(source, &order, vertices)?)))
 }
 
-/// Strands along edges that follow each other.
-fn joined(source: &Source, edges: &Table, vertices: u64) -> Result<Chains, GroomError> {
+/// Strands along edges that share vertices, and notes on how edges became them.
+fn joined(source: &Source, edges: &Table, vertices: u64) -> Result<(Chains, Vec<String>), GroomError> {
     let both = edges.numbers("vertex1").zip(edges.numbers("vertex2"));
     let (first, second) = both.ok_or_else(|| source.error("edges without ends", "vertex1 and vertex2"))?;
-    let (mut starts, mut order): (Vec<u32>, Vec<f64>) = (Vec::new(), Vec::new());
-    for (one, two) in first.iter().zip(second) {
-        if order.last() != Some(one) {
-            starts.push(order.len() as u32);
-            order.push(*one);
-        }
-        order.push(*two);
+    let ends: Vec<f64> = first.iter().zip(second).flat_map(|(one, two)| [*one, *two]).collect();
+    if ends.len() as u64 > 2 * MAX_POINTS {
+        return Err(source.error(format!("{} edges", ends.len() / 2), format!("{MAX_POINTS} at most")));
     }
-    starts.push(order.len() as u32);
+    let points = indices(source, &ends, vertices)?;
+    let starts = (0..=points.len() as u32).step_by(2).collect();
+    let joined = Lines { starts, points }.joined(vertices as usize);
+    let Lines { starts, points } = &joined.lines;
     let longest = starts.windows(2).map(|pair| u64::from(pair[1] - pair[0])).max().unwrap_or(0);
-    if longest > MAX_POINTS_PER_STRAND || starts.len() as u64 > MAX_STRANDS {
+    if longest > MAX_POINTS_PER_STRAND
+        || starts.len() as u64 > MAX_STRANDS
+        || points.len() as u64 > MAX_POINTS
+    {
         let expected = format!("{MAX_STRANDS} strands of {MAX_POINTS_PER_STRAND} points at most");
         return Err(source.error(format!("{} strands of up to {longest} points", starts.len() - 1), expected));
     }
-    Ok((starts, Some(indices(source, &order, vertices)?)))
+    // Edges are how the format has strands: joining them is no problem to tell.
+    let problems = joined.problems(joined.firsts.len());
+    Ok(((joined.lines.starts, Some(joined.lines.points)), problems))
 }
 
 fn indices(source: &Source, order: &[f64], vertices: u64) -> Result<Vec<u32>, GroomError> {

@@ -1,8 +1,7 @@
 //! The rows of a `.ply` file: numbers, column by column.
 
-use super::super::bytes::Source;
-use super::header::{Element, Encoding, Header, Number};
-use crate::GroomError;
+use super::Mismatch;
+use super::header::{Element, Encoding, Header, Number, Property};
 
 /// Longest list of a row.
 const MAX_LIST: f64 = 4096.0;
@@ -20,6 +19,12 @@ pub struct Column {
 }
 
 impl Column {
+    /// The lists, row by row.
+    pub fn lists(&self) -> impl Iterator<Item = &[f64]> {
+        let starts = std::iter::once(&0).chain(&self.ends);
+        starts.zip(&self.ends).map(|(start, end)| &self.values[*start..*end])
+    }
+
     /// The length of every list, if all are alike.
     pub fn even(&self) -> Option<usize> {
         let first = *self.ends.first()?;
@@ -30,6 +35,7 @@ impl Column {
 /// The properties of an element that were asked for.
 #[derive(Default)]
 pub struct Table {
+    /// Number of rows.
     pub rows: usize,
     columns: Vec<Column>,
 }
@@ -41,10 +47,12 @@ impl Table {
         column.map(|column| &column.values[..])
     }
 
+    /// The numbers of a property in single precision.
     pub fn floats(&self, name: &str) -> Option<Vec<f32>> {
         Some(self.numbers(name)?.iter().map(|number| *number as f32).collect())
     }
 
+    /// Three properties, row by row.
     pub fn triples(&self, names: [&str; 3]) -> Option<Vec<[f32; 3]>> {
         let [one, two, three] = names.map(|name| self.numbers(name));
         let three = one?.iter().zip(two?).zip(three?);
@@ -56,7 +64,7 @@ impl Table {
         self.columns.iter().find(|column| column.name == name && column.is_list)
     }
 
-    /// True if a property is of single bytes.
+    /// Tells a property of single bytes.
     pub fn is_byte(&self, name: &str) -> bool {
         self.columns.iter().any(|column| column.name == name && column.is_byte)
     }
@@ -64,29 +72,29 @@ impl Table {
 
 /// Reads one element after the other.
 pub struct Rows<'a> {
-    source: Source<'a>,
+    length: usize,
     encoding: Encoding,
     rest: &'a [u8],
 }
 
 impl<'a> Rows<'a> {
-    pub fn new(source: &Source<'a>, header: &Header) -> Self {
-        Self { source: *source, encoding: header.encoding, rest: &source.bytes[header.length..] }
+    pub fn new(bytes: &'a [u8], header: &Header) -> Self {
+        Self { length: bytes.len(), encoding: header.encoding, rest: &bytes[header.length..] }
     }
 
     /// The rows of the next element; properties that are not among `names` are skipped.
-    pub fn read(&mut self, element: &Element, names: &[&str]) -> Result<Table, GroomError> {
-        // Least size of a row: no memory is taken that the file cannot fill.
+    pub fn read(&mut self, element: &Element, names: &[&str]) -> Result<Table, Mismatch> {
+        // The least size of a row: no memory is taken that the file cannot fill.
         let least = |number: Number| if self.encoding == Encoding::Text { 1 } else { number.size() as u64 };
         let row: u64 =
             element.properties.iter().map(|property| least(property.length.unwrap_or(property.number))).sum();
         let needed = element.count.checked_mul(row.max(1));
         if needed.is_none_or(|needed| needed > self.rest.len() as u64) {
             let expected = format!("{} rows of {row} bytes of `{}`", element.count, element.name);
-            return Err(self.source.error(format!("{} bytes", self.rest.len()), expected));
+            return Err(Mismatch::new(format!("{} bytes", self.rest.len()), expected));
         }
         let rows = element.count as usize;
-        let column = |property: &super::header::Property| {
+        let column = |property: &Property| {
             let is_kept = names.contains(&property.name.as_str());
             let room = if is_kept { rows } else { 0 };
             let column = Column {
@@ -120,15 +128,15 @@ impl<'a> Rows<'a> {
         Ok(Table { rows, columns: columns.collect() })
     }
 
-    fn length(&mut self, length: Number) -> Result<usize, GroomError> {
+    fn length(&mut self, length: Number) -> Result<usize, Mismatch> {
         let count = self.number(length)?;
         if (0.0..=MAX_LIST).contains(&count) && count.fract() == 0.0 {
             return Ok(count as usize);
         }
-        Err(self.source.error(format!("a list of {count} numbers"), format!("0 to {MAX_LIST}")))
+        Err(Mismatch::new(format!("a list of {count} numbers"), format!("0 to {MAX_LIST}")))
     }
 
-    fn number(&mut self, number: Number) -> Result<f64, GroomError> {
+    fn number(&mut self, number: Number) -> Result<f64, Mismatch> {
         if self.encoding == Encoding::Text {
             return self.word();
         }
@@ -144,7 +152,7 @@ impl<'a> Rows<'a> {
         Ok(number.value(word))
     }
 
-    fn word(&mut self) -> Result<f64, GroomError> {
+    fn word(&mut self) -> Result<f64, Mismatch> {
         let text = self.rest.trim_ascii_start();
         let end = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
         let (word, rest) = text.split_at(end);
@@ -154,10 +162,10 @@ impl<'a> Rows<'a> {
         self.rest = rest;
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
         let found = || format!("`{}`", word[..word.len().min(40)].escape_ascii());
-        number.ok_or_else(|| self.source.error(found(), "a number"))
+        number.ok_or_else(|| Mismatch::new(found(), "a number"))
     }
 
-    fn cut_off(&self) -> GroomError {
-        self.source.error(format!("{} bytes", self.source.bytes.len()), "the rows that its header names")
+    fn cut_off(&self) -> Mismatch {
+        Mismatch::new(format!("{} bytes", self.length), "the rows that its header names")
     }
 }

@@ -1,9 +1,6 @@
 //! The text at the beginning of a `.ply` file.
 
-use std::collections::BTreeMap;
-
-use super::super::bytes::Source;
-use crate::GroomError;
+use super::Mismatch;
 
 /// Longest header \[byte\], and its most elements and properties.
 const MAX_HEADER: usize = 1 << 20;
@@ -87,29 +84,29 @@ pub enum Encoding {
     Big,
 }
 
-/// A parsed header.
+/// The contents of a header.
 pub struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    pub group_names: BTreeMap<u32, String>,
-    /// Offset of the rows \[byte\].
+    pub comments: Vec<String>,
+    /// Where the rows begin \[byte\].
     pub length: usize,
 }
 
 impl Header {
-    pub fn new(source: &Source) -> Result<Self, GroomError> {
-        let bytes = &source.bytes[..source.bytes.len().min(MAX_HEADER)];
+    pub fn new(bytes: &[u8]) -> Result<Self, Mismatch> {
+        let bytes = &bytes[..bytes.len().min(MAX_HEADER)];
         if !bytes.starts_with(b"ply\n") && !bytes.starts_with(b"ply\r\n") {
             let found = format!("starts with `{}`", bytes[..bytes.len().min(4)].escape_ascii());
-            return Err(source.error(found, "`ply`"));
+            return Err(Mismatch::new(found, "`ply`"));
         }
         let mut header =
-            Self { encoding: Encoding::Text, elements: Vec::new(), group_names: BTreeMap::new(), length: 0 };
+            Self { encoding: Encoding::Text, elements: Vec::new(), comments: Vec::new(), length: 0 };
         let mut rest = bytes;
         loop {
             let Some(end) = rest.iter().position(|byte| *byte == b'\n') else {
                 let expected = format!("`end_header` within {MAX_HEADER} bytes");
-                return Err(source.error("a header without an end", expected));
+                return Err(Mismatch::new("a header without an end", expected));
             };
             let line = String::from_utf8_lossy(&rest[..end]);
             header.length += end + 1;
@@ -119,13 +116,13 @@ impl Header {
             }
             let wrong = |expected| {
                 let line: String = line.trim().chars().take(60).collect();
-                source.error(format!("`{line}` in the header"), expected)
+                Mismatch::new(format!("`{line}` in the header"), expected)
             };
             header.line(&line).map_err(wrong)?;
         }
     }
 
-    /// Parses a line; an error says what was expected.
+    /// Takes a line; a wrong one gives the text that is expected.
     fn line(&mut self, line: &str) -> Result<(), &'static str> {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words[..] {
@@ -149,13 +146,11 @@ impl Header {
                 self.property(name, Some(length.ok_or("a type of whole numbers before a list")?), number)?;
             }
             ["property", number, name] => self.property(name, None, number)?,
-            ["comment", "group", number, ..] => {
-                let name = line.trim_end_matches('\r').splitn(4, ' ').nth(3);
-                if let (Ok(number), Some(name)) = (number.parse(), name) {
-                    self.group_names.insert(number, name.to_owned());
-                }
+            ["comment", ..] => {
+                let text = line.trim_start().strip_prefix("comment").unwrap_or(line);
+                self.comments.push(text.strip_prefix(' ').unwrap_or(text).trim_end_matches('\r').to_owned());
             }
-            ["ply"] | ["comment" | "obj_info", ..] | [] => {}
+            ["ply"] | ["obj_info", ..] | [] => {}
             _ => return Err("`format`, `element`, `property`, `comment` or `end_header`"),
         }
         Ok(())

@@ -1,0 +1,126 @@
+//! What of a glTF file concerns its shape: the document without looks and clips, and the bytes behind it.
+
+use ::gltf::Document;
+use ::gltf::json::{Root, Value, deserialize};
+
+use strandline_base::utf8_text;
+
+use crate::parsing::Refusal;
+
+/// The document, validated, and the binary part of the file where it has one.
+///
+/// What concerns looks or clips alone is left out before the file is validated: it may be of any extension.
+pub(super) fn document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Refusal> {
+    check_container(bytes)?;
+    let refused = |error: ::gltf::Error| (format!("bad glTF ({error})"), "valid glTF 2.0");
+    let unread = |error| refused(::gltf::Error::Deserialize(error));
+    let (text, blob) = if bytes.starts_with(b"glTF") {
+        let parts = ::gltf::Glb::from_slice(bytes).map_err(refused)?;
+        (parts.json, parts.bin.map(|bin| bin.into_owned()))
+    } else {
+        (utf8_text(bytes), None)
+    };
+    let mut value: Value = deserialize::from_slice(&text).map_err(unread)?;
+    check_required(&value)?;
+    keep_shape(&mut value);
+    let root: Root = deserialize::from_value(value).map_err(unread)?;
+    check_positions(&root)?;
+    Ok((Document::from_json(root).map_err(refused)?, blob))
+}
+
+/// A binary file says its own length, which the parser subtracts from without a look.
+fn check_container(bytes: &[u8]) -> Result<(), Refusal> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok(());
+    }
+    let stated = bytes.get(8..12).and_then(|field| field.try_into().ok()).map(u32::from_le_bytes);
+    match stated {
+        Some(length) if length >= 12 && length as usize <= bytes.len() => Ok(()),
+        Some(length) => {
+            Err((format!("a file of {} bytes that says it has {length}", bytes.len()), "the whole file"))
+        }
+        None => Err((format!("a file of {} bytes", bytes.len()), "a header of 12 bytes")),
+    }
+}
+
+/// Refuses extensions that the shape depends on, but for quantised vertices.
+fn check_required(root: &Value) -> Result<(), Refusal> {
+    let required = root.get("extensionsRequired").and_then(Value::as_array);
+    let mut names = required.into_iter().flatten().filter_map(Value::as_str);
+    names.find(|name| !is_needless(name)).map_or(Ok(()), |name| {
+        let found = format!("the extension `{name}`, which the file requires,");
+        Err((found, "plain data, KHR_mesh_quantization or extensions of looks, lights and clips"))
+    })
+}
+
+/// Tells extensions that a reader of shapes knows, or that leave the shape at rest alone.
+fn is_needless(name: &str) -> bool {
+    const KNOWN: [&str; 2] = ["KHR_mesh_quantization", "VRM"];
+    const BESIDE: [&str; 7] =
+        ["_materials_", "_texture_", "_lights_", "_animation_", "_audio", "_xmp", "_physics"];
+    KNOWN.contains(&name) || name.starts_with("VRMC_") || BESIDE.iter().any(|part| name.contains(part))
+}
+
+/// Leaves out all that does not change the shape, names of materials apart.
+fn keep_shape(root: &mut Value) {
+    drop_additions(root);
+    let Some(root) = root.as_object_mut() else { return };
+    for beside in ["animations", "textures", "images", "samplers", "cameras", "extensionsRequired"] {
+        root.remove(beside);
+    }
+    for material in list(root.get_mut("materials")) {
+        retain(material, &["name"]);
+    }
+    for node in list(root.get_mut("nodes")) {
+        retain(
+            node,
+            &["name", "children", "mesh", "skin", "matrix", "rotation", "scale", "translation", "weights"],
+        );
+    }
+    for primitive in list(root.get_mut("meshes")).flat_map(|mesh| list(mesh.get_mut("primitives"))) {
+        retain(primitive, &["attributes", "indices", "material", "mode", "targets"]);
+        if let Some(attributes) = primitive.get_mut("attributes").and_then(Value::as_object_mut) {
+            attributes.retain(|name, _| is_shape(name));
+        }
+    }
+}
+
+/// Leaves out extensions and extras everywhere: extras may be any value. The parser limits the depth of values.
+fn drop_additions(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            members.retain(|name, _| name != "extras" && name != "extensions");
+            members.values_mut().for_each(drop_additions);
+        }
+        Value::Array(values) => values.iter_mut().for_each(drop_additions),
+        _ => {}
+    }
+}
+
+/// Tells attributes of vertices that say where they are.
+fn is_shape(attribute: &str) -> bool {
+    let is_set = |kind: &str| attribute.strip_prefix(kind).is_some_and(|set| set.parse::<u32>().is_ok());
+    matches!(attribute, "POSITION" | "NORMAL") || is_set("JOINTS_") || is_set("WEIGHTS_")
+}
+
+fn list(value: Option<&mut Value>) -> impl Iterator<Item = &mut Value> {
+    value.and_then(Value::as_array_mut).into_iter().flatten()
+}
+
+fn retain(value: &mut Value, names: &[&str]) {
+    if let Some(object) = value.as_object_mut() {
+        object.retain(|name, _| names.contains(&name.as_str()));
+    }
+}
+
+/// The parser's own validation looks up the accessor of the positions before it knows that there is one.
+fn check_positions(root: &Root) -> Result<(), Refusal> {
+    let parts = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    for accessor in parts.flat_map(|part| part.attributes.values()) {
+        if accessor.value() >= root.accessors.len() {
+            let found = format!("the accessor {} of {}", accessor.value(), root.accessors.len());
+            return Err((found, "accessors in range"));
+        }
+    }
+    Ok(())
+}

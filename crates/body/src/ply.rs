@@ -1,0 +1,47 @@
+//! Reading meshes of `.ply` files: head scans and reconstructions.
+
+use glam::Vec3;
+use strandline_base::ply::{self, Table};
+
+use crate::Mesh;
+use crate::parsing::{Refusal, unit_normal};
+
+/// Names of the list of a face's corners: both are common.
+const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+/// Reads a mesh from the bytes of a file, in its units; polygons become fans of triangles, vertices without a normal
+/// get a zero one.
+pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
+    const EXPECTED: &str = "a PLY file with vertices (x, y, z) and faces (vertex_indices)";
+    let of_vertices = ["x", "y", "z", "nx", "ny", "nz"];
+    let asked: [(&str, &[&str]); 2] = [("vertex", &of_vertices), ("face", &CORNERS)];
+    let file = ply::read(bytes, asked)
+        .map_err(|mismatch| (format!("{}, expected {},", mismatch.found, mismatch.expected), EXPECTED))?;
+    let [vertices, faces] = &file.tables;
+    let positions = vertices.triples(["x", "y", "z"]);
+    let positions = positions.ok_or_else(|| ("no coordinates of vertices".to_owned(), EXPECTED))?;
+    let positions: Vec<Vec3> = positions.into_iter().map(Vec3::from_array).collect();
+    let normals = vertices.triples(["nx", "ny", "nz"]);
+    let normals = normals.into_iter().flatten().map(|normal| unit_normal(Vec3::from_array(normal)));
+    let mut mesh =
+        Mesh { normals: normals.collect(), triangles: triangles(faces, positions.len())?, positions };
+    if mesh.triangles.is_empty() {
+        return Err((format!("{} points and no faces", mesh.positions.len()), EXPECTED));
+    }
+    mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
+    Ok(mesh)
+}
+
+/// The triangles of all faces.
+fn triangles(faces: &Table, count: usize) -> Result<Vec<[u32; 3]>, Refusal> {
+    let mut triangles = Vec::new();
+    let Some(corners) = CORNERS.iter().find_map(|name| faces.list(name)) else { return Ok(triangles) };
+    for face in corners.lists() {
+        if let Some(corner) = face.iter().find(|corner| !(0.0..count as f64).contains(*corner)) {
+            return Err((format!("a face with the vertex {corner} of {count}"), "indices in range"));
+        }
+        let rim = face.get(1..).unwrap_or_default();
+        triangles.extend(rim.windows(2).map(|pair| [face[0], pair[0], pair[1]].map(|corner| corner as u32)));
+    }
+    Ok(triangles)
+}

@@ -1,0 +1,169 @@
+//! The strands of one prim of curves.
+
+use glam::{Vec2, Vec3};
+
+use super::super::bytes::Source;
+use super::super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS};
+use super::text::{Prim, Value};
+use crate::{Groom, GroomError, Widths};
+
+/// How control points become points of strands.
+#[derive(Clone, Copy, PartialEq)]
+enum Curve {
+    /// Each control point is one: linear, and Catmull-Rom with pinned ends.
+    Points,
+    /// Each but the first and the last: Catmull-Rom.
+    Inner,
+    /// Cubic pieces of four, each next one from the last point of the one before.
+    Bezier,
+    /// Means of three neighbours, with the ends where they are.
+    PinnedSpline,
+    /// Means of three neighbours, without ends.
+    Spline,
+}
+
+impl Curve {
+    fn of(prim: &Prim) -> Self {
+        let says = |name: &str, word: &str| matches!(prim.properties.get(name), Some(Value::Texts(texts)) if texts.first().is_some_and(|text| text == word));
+        let is_pinned = says("wrap", "pinned");
+        if says("type", "linear") {
+            Self::Points
+        } else if says("basis", "catmullRom") {
+            if is_pinned { Self::Points } else { Self::Inner }
+        } else if says("basis", "bspline") {
+            if is_pinned { Self::PinnedSpline } else { Self::Spline }
+        } else {
+            Self::Bezier
+        }
+    }
+
+    /// Control points at the ends that are no points of the strand.
+    fn margin(self) -> usize {
+        usize::from(matches!(self, Self::Inner | Self::Spline))
+    }
+
+    /// The point of a strand at a control point.
+    fn at(self, own: &[Vec3], index: usize) -> Vec3 {
+        let last = own.len() - 1;
+        let mean = |before: Vec3, after: Vec3| (before + 4.0 * own[index] + after) / 6.0;
+        match self {
+            Self::Points | Self::Inner => own[index],
+            Self::PinnedSpline if index == 0 || index == last => own[index],
+            Self::PinnedSpline | Self::Spline => mean(own[index - 1], own[index + 1]),
+            Self::Bezier => {
+                let first = 3 * (index / 3);
+                let Some(&[a, b, c, d]) = own.get(first..first + 4) else { return own[index] };
+                let t = (index % 3) as f32 / 3.0;
+                let ab_bc_cd = [a.lerp(b, t), b.lerp(c, t), c.lerp(d, t)];
+                ab_bc_cd[0].lerp(ab_bc_cd[1], t).lerp(ab_bc_cd[1].lerp(ab_bc_cd[2], t), t)
+            }
+        }
+    }
+}
+
+/// The strands of a prim, in its own space; widths are diameters.
+pub(super) fn groom(source: &Source, prim: &Prim, problems: &mut Vec<String>) -> Result<Groom, GroomError> {
+    let numbers = |name: &str| match prim.properties.get(name) {
+        Some(Value::Numbers(numbers)) => Some(&numbers[..]),
+        _ => None,
+    };
+    let lacks =
+        |name: &str| source.error(format!("curves `{}` without `{name}`", prim.name), "both of each curve");
+    let counts = numbers("curveVertexCounts").ok_or_else(|| lacks("curveVertexCounts"))?;
+    let points = numbers("points").ok_or_else(|| lacks("points"))?;
+    let controls: Vec<Vec3> = points
+        .chunks_exact(3)
+        .map(|point| Vec3::from_array([0, 1, 2].map(|axis| point[axis] as f32)))
+        .collect();
+    let is_count =
+        |count: &&f64| !(count.fract() == 0.0 && (1.0..=MAX_POINTS_PER_STRAND as f64).contains(*count));
+    if let Some(count) = counts.iter().find(is_count) {
+        return Err(
+            source.error(format!("a curve of {count} points"), format!("1 to {MAX_POINTS_PER_STRAND}"))
+        );
+    }
+    let sum: f64 = counts.iter().sum();
+    if counts.len() as u64 > MAX_STRANDS || controls.len() as u64 > MAX_POINTS || sum != controls.len() as f64
+    {
+        let found = format!("{} curves of {sum} points in all, and {} points", counts.len(), controls.len());
+        return Err(source.error(found, "as many points as the curves have"));
+    }
+    let curve = Curve::of(prim);
+    let mut groom = Groom::empty(0.0);
+    // The control point of each point.
+    let mut of_points = Vec::with_capacity(controls.len());
+    let mut start = 0;
+    for count in counts {
+        let own = &controls[start..start + *count as usize];
+        let range = curve.margin()..own.len().saturating_sub(curve.margin()).max(curve.margin());
+        groom.push(range.clone().map(|index| curve.at(own, index)));
+        of_points.extend(range.map(|index| start + index));
+        start += own.len();
+    }
+    if prim.samples > 1 {
+        problems.push(format!("the first of {} times of `{}` is read", prim.samples, prim.name));
+    }
+    attributes(&mut groom, prim, &of_points, controls.len());
+    Ok(groom)
+}
+
+/// A primvar with its indices resolved, `size` numbers each.
+fn primvar(prim: &Prim, names: &[&str], size: usize) -> Option<Vec<f32>> {
+    names.iter().find_map(|name| {
+        let Some(Value::Numbers(numbers)) = prim.properties.get(*name) else { return None };
+        let single = |number: &f64| *number as f32;
+        match prim.properties.get(&format!("{name}:indices")) {
+            Some(Value::Numbers(indices)) => {
+                let element = |index: &f64| {
+                    let first = (*index as usize).min(numbers.len()) * size;
+                    numbers.get(first..first + size)
+                };
+                let found: Option<Vec<&[f64]>> = indices.iter().map(element).collect();
+                Some(found?.into_iter().flatten().map(single).collect())
+            }
+            _ => Some(numbers.iter().map(single).collect()),
+        }
+    })
+}
+
+/// Takes widths, colours, root coordinates and groups, by the number of their values.
+fn attributes(groom: &mut Groom, prim: &Prim, of_points: &[usize], controls: usize) {
+    let strands = groom.strand_count();
+    if let Some(widths) = primvar(prim, &["widths", "primvars:widths", "primvars:groom_width"], 1) {
+        groom.widths = match widths.len() {
+            1 => Widths::Constant(widths[0]),
+            count if count == strands => Widths::PerStrand(widths),
+            count if count == controls => {
+                Widths::PerPoint(of_points.iter().map(|point| widths[*point]).collect())
+            }
+            _ => Widths::Constant(0.0),
+        };
+    }
+    if let Some(colors) = primvar(prim, &["primvars:displayColor", "primvars:groom_color"], 3) {
+        let colors: Vec<[f32; 3]> =
+            colors.chunks_exact(3).map(|color| [color[0], color[1], color[2]]).collect();
+        groom.colors = match colors.len() {
+            1 => Some(vec![colors[0]; groom.points.len()]),
+            count if count == strands => {
+                let of_strand =
+                    |strand: usize| std::iter::repeat_n(colors[strand], groom.range(strand).len());
+                Some((0..strands).flat_map(of_strand).collect())
+            }
+            count if count == controls => Some(of_points.iter().map(|point| colors[*point]).collect()),
+            _ => None,
+        };
+    }
+    const UVS: [&str; 3] = ["primvars:st", "primvars:groom_root_uv", "primvars:surface_uv_coordinate"];
+    let uvs = primvar(prim, &UVS, 2).filter(|uvs| uvs.len() == 2 * strands);
+    groom.root_uvs = uvs.map(|uvs| uvs.chunks_exact(2).map(Vec2::from_slice).collect());
+    let groups = primvar(prim, &["primvars:group_id", "primvars:groom_group_id"], 1);
+    groom.groups = groups
+        .filter(|groups| groups.len() == strands)
+        .map(|groups| groups.into_iter().map(|group| group as u32).collect());
+    let names = ["primvars:group_name", "primvars:groom_group_name"].map(|name| prim.properties.get(name));
+    if let (Some(Value::Texts(names)), Some(groups)) = (names[0].or(names[1]), &groom.groups)
+        && names.len() == strands
+    {
+        groom.group_names = groups.iter().copied().zip(names.iter().cloned()).collect();
+    }
+}
