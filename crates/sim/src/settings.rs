@@ -7,7 +7,7 @@ use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass,
 use crate::strands::rods::settings::{GroupSettings, Rest, RodSettings};
 
 settings! {
-    /// How hair moves.
+    /// Motion of hair.
     pub struct Settings {
         /// Length of a step.
         time_step: f32 = 1.0 / 60.0, in [1e-5, 0.1] "s", slider [0.002, 0.05],
@@ -64,7 +64,7 @@ impl Settings {
         change.and(Invalidates { rest_shape, ..Invalidates::NOTHING })
     }
 
-    /// Whether strands are rods.
+    /// True if strands are rods.
     pub(crate) fn has_rods(&self) -> bool {
         self.strands.method == StrandMethod::Rods
     }
@@ -111,9 +111,9 @@ impl Settings {
 }
 
 settings! {
-    /// What moves a strand within a step.
+    /// Motion of a strand within a step.
     pub struct StrandSettings: Copy {
-        /// How strands are solved.
+        /// Solver of strands.
         method: StrandMethod = StrandMethod::default(), invalidates buffers;
         /// Material and solve of rods.
         rods: RodSettings = RodSettings::default();
@@ -123,7 +123,7 @@ settings! {
 }
 
 choices! {
-    /// How strands are solved.
+    /// Solver of strands.
     pub enum StrandMethod as "simulation.strands.method" {
         /// Springs and rounds of constraints [Chen2011 §4].
         Constrain = "constrain",

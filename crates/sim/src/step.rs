@@ -23,7 +23,7 @@ macro_rules! stages {
                 }
             }
 
-            /// Whether a step with these settings has it.
+            /// True if a step with these settings has the stage.
             fn is_in(self, settings: &Settings) -> bool {
                 match self {
                     $(Self::$stage => $is_in(settings),)*
@@ -44,7 +44,7 @@ stages! {
     SolveRods = "solve_rods", rods;
     /// Points sorted by cell, velocities onto faces.
     Splat = "splat", volume;
-    /// What each cell is.
+    /// Kind of each cell.
     Mark = "mark", volume;
     /// Pressure, and its gradient taken away.
     SolvePressure = "solve_pressure", volume;

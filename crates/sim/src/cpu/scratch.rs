@@ -1,4 +1,4 @@
-//! What the CPU's stages work in.
+//! Scratch of the CPU's stages.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::masses::Masses;
 use crate::strands::rods::rod::Node;
 use crate::{Model, State};
 
-/// What the CPU's stages work in; all of it follows from the model and the state.
+/// Scratch of the CPU's stages; all of it follows from the model and the state.
 #[derive(Clone)]
 pub struct Scratch {
     /// Positions at the end of the step \[m\], world space, shape `[block][point]` of lanes: what the
@@ -23,7 +23,7 @@ pub struct Scratch {
     pub(crate) nodes: Option<Vec<Node<f32x8>>>,
     /// The fluid volume; none while it is off.
     pub(crate) volume: Option<Volume>,
-    /// What masses and nodes were made from.
+    /// Inputs of masses and nodes.
     made_from: Made,
 }
 

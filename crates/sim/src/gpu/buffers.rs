@@ -1,4 +1,4 @@
-//! What lies on the device.
+//! Buffers on the device.
 
 use strandline_base::par::prelude::*;
 use strandline_body::BodyFrame;
@@ -53,7 +53,7 @@ pub(super) struct Buffers {
     /// Per workgroup of strands.
     pub outcomes: Buffer<Outcome>,
     pub reports: Buffer<Report>,
-    /// What a step without a volume reports.
+    /// Report of a step without a volume.
     pub no_pressure: Buffer<PressureState>,
     pub volume: Option<Volume>,
     pub rods: Option<RodBuffers>,

@@ -85,7 +85,8 @@ impl Probe {
         Ok(vectors(&self.velocities_and_corrections()?.0))
     }
 
-    /// What the next prediction adds to the velocities \[m/s\]; with rods the first axes of their sections.
+    /// Additions of the next prediction to the velocities \[m/s\]; with rods the first axes of their
+    /// sections.
     ///
     /// # Errors
     /// The device was lost.
@@ -135,7 +136,7 @@ impl Probe {
         Ok((grid.origin, grid.spacing))
     }
 
-    /// Where the points of each cell begin, and what is behind the last cell: their number.
+    /// Index of the first point of each cell, and the number of points behind the last.
     ///
     /// # Errors
     /// The device was lost.
