@@ -3,6 +3,7 @@
 mod angles;
 mod attributes;
 mod bound;
+mod cells;
 mod contact;
 mod curl;
 mod free_strand;

@@ -1,6 +1,7 @@
 //! Every stage of the GPU backend against its twin in plain Rust.
 
 mod bound;
+mod cells;
 mod channels;
 mod chiang;
 mod draw;

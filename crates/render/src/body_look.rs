@@ -4,17 +4,17 @@ use strandline_base::{Group, settings};
 use crate::RenderError;
 
 settings! {
-    /// How the body looks.
+    /// Look of the body.
     pub struct BodyLook: Copy {
         /// Colour, linear RGB.
         color: Vec3 = Vec3::new(0.30, 0.262, 0.236), in [0.0, 1.0];
-        /// How far light reaches around the edge of shadow; 0 is not at all.
+        /// Reach of light around the edge of shadow; 0 is none.
         wrap: f32 = 0.2, in [0.0, 1.0], more "softer skin";
         /// Reflectance at normal incidence; 0 is no highlight.
         specular: f32 = 0.03, in [0.0, 1.0], more "a brighter highlight";
         /// Width of the highlight, from polished to matt.
         roughness: f32 = 0.5, in [0.05, 1.0], more "a wider, duller highlight";
-        /// How far skin where roots are dense takes the colour of the hair; the look "thesis" has none of it.
+        /// Share of the hair's colour that skin takes among dense roots; 0 in the look "thesis".
         scalp: f32 = 0.6, in [0.0, 1.0], more "a darker scalp";
     }
 }

@@ -10,11 +10,12 @@ use crate::RenderError;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Camera {
-    /// Where it stands \[m\], world space.
+    /// Position \[m\], world space.
     pub position: Vec3,
-    /// What it looks at \[m\], world space.
+    /// Point in the middle of the picture \[m\], world space.
     pub target: Vec3,
-    /// What is up in the picture; need not be perpendicular to the line of sight, nor of unit length.
+    /// Upward direction in the picture; it need not be perpendicular to the line of sight, nor of unit
+    /// length.
     pub up: Vec3,
     /// Vertical field of view \[degrees\], 1 to 170.
     pub field_of_view: f32,

@@ -15,11 +15,11 @@ pub enum RenderError {
          choose a smaller size or supersampling 1"
     )]
     Memory {
-        /// What was asked for.
+        /// Setting of the request.
         what: String,
-        /// What it would take \[MiB\].
+        /// Memory that it needs \[MiB\].
         needed: u64,
-        /// What is allowed \[MiB\].
+        /// Allowed memory \[MiB\].
         allowed: u64,
     },
     /// More memory than a run may take.
@@ -30,9 +30,9 @@ pub enum RenderError {
     TooMany {
         /// Of what.
         what: &'static str,
-        /// How many were given.
+        /// Number given.
         found: usize,
-        /// How many there may be.
+        /// Largest number.
         most: usize,
     },
     /// Whatever the GPU refuses.
@@ -41,7 +41,7 @@ pub enum RenderError {
     /// A picture of the surroundings could not be read.
     #[error("cannot read the surroundings: {reason}: {}", path.display())]
     Surroundings {
-        /// What was found and what was expected.
+        /// Content found and content expected.
         reason: String,
         /// The file.
         path: PathBuf,
@@ -49,15 +49,15 @@ pub enum RenderError {
     /// A picture could not be written.
     #[error("cannot write the picture: {reason}: {}", path.display())]
     Save {
-        /// What went wrong and how to mend it.
+        /// Error and remedy.
         reason: String,
-        /// Where it should have gone.
+        /// Path of the file.
         path: PathBuf,
     },
 }
 
 impl RenderError {
-    /// Whether it is the GPU's, so that the CPU might do it.
+    /// True for errors of the GPU, which the CPU may avoid.
     pub fn is_of_gpu(&self) -> bool {
         matches!(self, Self::Gpu(_) | Self::TooMany { .. })
     }

@@ -33,7 +33,7 @@ impl Layers {
     /// The channels as an OpenEXR file.
     ///
     /// # Errors
-    /// What the encoder says.
+    /// Bytes of the encoder.
     pub fn encode(&self) -> Result<Vec<u8>, String> {
         let channel = |(name, values): &(String, Vec<f32>)| {
             AnyChannel::new(name.as_str(), FlatSamples::F32(values.clone()))

@@ -3,7 +3,7 @@ use strandline_base::{Group, settings};
 use crate::{Camera, RenderError};
 
 settings! {
-    /// How detail follows viewing distance [Chen2011 table 5] and the size of a pixel.
+    /// Detail by viewing distance [Chen2011 table 5] and the size of a pixel.
     ///
     /// Distances are those of a picture of 600 rows and a field of view of 30 degrees: where more rows or a
     /// narrower view make pixels smaller, hair counts as nearer (`by_pixel`). Up to `full_distance` everything is
@@ -27,7 +27,7 @@ settings! {
         /// Most segments close up, as a multiple of `segments_per_span`, while all strands together have no more
         /// than 4,000,000 points.
         most_segments: f32 = 4.0, in [1.0, 16.0], more "rounder strands close up";
-        /// Whether distances are those of a picture of 600 rows and a field of view of 30 degrees, so that more rows or
+        /// Relates distances to a picture of 600 rows and a field of view of 30 degrees, so that more rows or
         /// a narrower view count as nearness; without it distance alone counts.
         by_pixel: bool = true;
     }
@@ -60,7 +60,7 @@ impl LevelOfDetail {
         Ok(self.check_as("level_of_detail")?)
     }
 
-    /// What distances are multiplied by in a picture of so many rows: pixels are as large as from there in a picture
+    /// Factor of distances in a picture of a number of rows: pixels are as large as from there in a picture
     /// of 600 rows and 30 degrees.
     pub fn view_scale(&self, camera: &Camera, rows: u32) -> f32 {
         if !self.by_pixel {
@@ -109,7 +109,7 @@ impl LevelOfDetail {
     }
 }
 
-/// What a picture draws of each guide.
+/// Drawn strands of each guide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DetailLevel {
     /// Segments on each span, at least 1; a fraction ends the strand with a shorter segment.
@@ -133,7 +133,7 @@ const EIGHT: f32 = 8.0;
 /// The order in which strands of eight stay: each half of them is spread over all.
 const RANKS: [f32; 8] = [0.0, 4.0, 2.0, 6.0, 1.0, 5.0, 3.0, 7.0];
 
-/// Whether the strands of a guide are drawn where so many of eight are left out.
+/// True if the strands of a guide are drawn when a number of eight are left out.
 pub(crate) fn is_drawn(guide: usize, left_out: f32) -> bool {
     RANKS[guide % RANKS.len()] < EIGHT - left_out
 }
@@ -161,13 +161,13 @@ impl EveryFew {
         Self(1 << (full_count / ENOUGH).clamp(1, EVERY).ilog2())
     }
 
-    /// How many each of them stands for.
+    /// Number of strands that each of them stands for.
     pub(crate) fn stands_for(self) -> u32 {
         self.0
     }
 
-    /// Whether a strand is one of them, where each guide has so many. Eights of guides take turns, so that detail that
-    /// leaves some of eight out leaves as many of these.
+    /// True if a strand is one of them, with a number of strands per guide. Eights of guides take turns, so
+    /// that detail that leaves some of eight out leaves as many of these.
     #[inline]
     pub(crate) fn holds(self, strand: usize, strands_per_guide: usize) -> bool {
         let (guide, index) = (strand / strands_per_guide, strand % strands_per_guide);

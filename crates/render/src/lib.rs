@@ -1,5 +1,5 @@
-//! How hair looks: every stage from guide points to a picture [Chen2011 §3]. It takes points and
-//! knows nothing of the simulation.
+//! Pictures of hair: every stage from guide points to a picture [Chen2011 §3]. It takes points and knows
+//! nothing of the simulation.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded

@@ -14,7 +14,7 @@ const LEAST_SHOWN: f32 = 0.1;
 /// xy, xz and yz.
 pub type Field = [Vec4; COEFFICIENTS];
 
-/// What a unit direction weighs with radiance from it when the field of many directions is summed.
+/// Weights of a unit direction with its radiance in the sum of the field over many directions.
 #[inline]
 pub fn weights(w: Vec3) -> [f32; COEFFICIENTS] {
     // Means over the sphere: w w = I / 3, and of w.C.w w w = 2 C / 15.
@@ -49,7 +49,7 @@ pub fn radiance(field: &Field, w: Vec3) -> Vec4 {
     (*a + *bx * w.x + *by * w.y + *bz * w.z + second).max(Vec4::ZERO)
 }
 
-/// What a fibre of unit tangent `t` shows toward where `u` points, a unit vector across it; see
+/// Radiance of a fibre of unit tangent `t` toward `u`, a unit vector across it; see
 /// [`moments`](crate::fibre::chiang).
 #[inline]
 pub fn shown(field: &Field, moments: &[Vec4; MOMENTS], t: Vec3, u: Vec3) -> Vec4 {

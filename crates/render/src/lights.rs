@@ -6,7 +6,7 @@ use crate::RenderError;
 use crate::light_field::Field;
 
 choices! {
-    /// How a light's rays spread.
+    /// Spread of a light's rays.
     pub enum LightKind as "light.kind" {
         /// Parallel rays from `position` toward `target`, as from the sun.
         Directional = "directional",
@@ -25,11 +25,11 @@ choices! {
 settings! {
     /// A light. Each may cast shadows of hair and body.
     pub struct Light: Copy {
-        /// How its rays spread.
+        /// Spread of its rays.
         kind: LightKind = LightKind::default();
-        /// Where it stands, world space.
+        /// Position, world space.
         position: Vec3 = Vec3::new(0.9, 0.9, 1.2), in [-1e6, 1e6] "m";
-        /// What it points at, world space.
+        /// Target, world space.
         target: Vec3 = Vec3::ZERO, in [-1e6, 1e6] "m";
         /// Colour, linear RGB.
         color: Vec3 = Vec3::ONE, in [0.0, 1000.0];
@@ -47,13 +47,13 @@ settings! {
         /// Places along each side from which a rectangle or disc is taken to shine, each with shadows of its own; on
         /// a GPU all lights together have at most eight places with shadow.
         samples: u32 = 2, in [1, 4], more "smoother shadows, at a cost that grows with its square";
-        /// Whether hair and body cast shadows in it.
+        /// Makes hair and body cast shadows in it.
         shadow: bool = true;
     }
     also Light::apart;
 }
 
-/// What a light sends to a point.
+/// Light that a light sends to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
     /// Unit direction from the point to the light, world space.
@@ -124,7 +124,7 @@ impl Light {
         Err(SettingError::new(key.of("position"), self.position, "a place apart from the target"))
     }
 
-    /// What the light sends to a point \[m\], world space.
+    /// Light at a point \[m\], world space.
     pub fn at(&self, point: Vec3) -> Illumination {
         self.shining().at(point)
     }
@@ -207,7 +207,7 @@ impl Light {
     }
 }
 
-/// Where the middle of one of so many squares along the sides of a square lies on a disc that the square is drawn onto,
+/// Middle of one of the equal squares along the sides of a square, on a disc that the square is mapped onto,
 /// rings onto rings [Shirley1997]: the centroid of the square's image. Both have the side or diameter 1.
 fn on_disc([x, y]: [f32; 2], count: f32) -> [f32; 2] {
     const QUARTER: f32 = std::f32::consts::FRAC_PI_4;
@@ -243,7 +243,7 @@ pub(crate) struct Shining<'a> {
 }
 
 impl Shining<'_> {
-    /// What the light sends to a point \[m\], world space.
+    /// Light at a point \[m\], world space.
     #[inline]
     pub(crate) fn at(&self, point: Vec3) -> Illumination {
         if self.light.kind == LightKind::Directional {

@@ -34,7 +34,7 @@ settings! {
         root_color: Vec3 = Vec3::new(0.115, 0.056, 0.027), in [0.0, 1.0];
         /// Reflectance at the tip, linear RGB, the same way.
         tip_color: Vec3 = Vec3::new(0.22, 0.115, 0.058), in [0.0, 1.0];
-        /// How one hair scatters light.
+        /// Scattering by one hair.
         fibre: Fibre = Fibre::default();
         /// Spread of brightness among strands as a share of it.
         variation: f32 = 0.35, in [0.0, 1.0], more "strands that differ more";
@@ -42,9 +42,9 @@ settings! {
         grey: f32 = 0.0, in [0.0, 1.0], more "whiter hair";
         /// Noise along and among strands by which highlights are moved.
         highlight_noise: f32 = 1.5, in [0.0, 45.0] "degrees", more "more ragged highlights";
-        /// How the drawn strands lie about their guide.
+        /// Shape of the drawn strands about their guide.
         clump: Clump = Clump::default();
-        /// How hair and body cast shadows.
+        /// Shadows of hair and body.
         shadow: Shadow = Shadow { layers: [0.005, 0.015, 0.05], ..Shadow::default() };
         /// Light from all around.
         environment: Environment = Environment::default();
@@ -117,7 +117,7 @@ impl GroupLook {
 }
 
 settings! {
-    /// How follow strands lie about their guide [Chen2011 §3.2].
+    /// Shape of follow strands about their guide [Chen2011 §3.2].
     pub struct Clump: Copy {
         /// Radius of the clump at the roots.
         root_radius: f32 = 0.005, in [0.0, 1.0] "m", slider [0.0, 0.02], more "hair that is spread more evenly";
@@ -125,8 +125,8 @@ settings! {
         tip_radius: f32 = 0.003, in [0.0, 1.0] "m", slider [0.0, 0.02], more "softer, less pointed locks";
         /// Exponent of the way from root to tip radius; above 1 the clump closes late.
         taper: f32 = 1.5, in [0.1, 10.0], more "clumps that close nearer to the tips";
-        /// How far the strands of hair combed along the skin are lifted off it, from 0 (half of them
-        /// inside) to 1 (the guide is the innermost).
+        /// Lift of hair combed along the skin, from 0 (half of the strands inside) to 1 (the guide is the
+        /// innermost).
         lift: f32 = 0.85, in [0.0, 1.0], more "fuller hair that shows less skin";
         /// Greatest share by which a follow strand is shorter than its guide.
         shorter: f32 = 0.12, in [0.0, 0.9], more "softer, more uneven ends";
@@ -138,7 +138,7 @@ settings! {
 }
 
 settings! {
-    /// How hair and body cast shadows \[Yuksel2008\].
+    /// Shadows of hair and body \[Yuksel2008\].
     pub struct Shadow: Copy {
         /// Texels along each side of a light's maps; on a GPU at most 2,048 with two shadow lights, 1,024
         /// with eight.
@@ -154,7 +154,7 @@ settings! {
         /// Depth over which that shadow grows to its full.
         body_softness: f32 = 0.008, in [1e-6, 1.0] "m", slider [0.001, 0.05], more "softer shadows of the body";
         plain {
-            /// Whether a hair hides all that lies behind it, whatever `opacity` says.
+            /// True if a hair hides everything behind it, for any `opacity`.
             solid: bool,
         }
     }

@@ -90,7 +90,7 @@ impl Look {
         self
     }
 
-    /// What is not given comes from the look that is named; colours that are given are meant.
+    /// Missing keys come from the named look; given colours stay.
     pub(crate) fn prepare(&mut self, given: &<Self as Value>::Given) {
         if let Some(preset) = given.preset {
             self.dress(preset);
@@ -125,7 +125,7 @@ impl Look {
         }
     }
 
-    /// What the colour of skin is multiplied with where roots are dense; hair is of `own` colour where it has one.
+    /// Factor of the colour of skin among dense roots; hair has its `own` colour, if there is one.
     pub(crate) fn scalp(&self, share: f32, own: Option<Vec3>) -> Vec3 {
         if !self.fibre.model.scatters_many_times() {
             return Vec3::ONE;
@@ -148,7 +148,7 @@ impl Look {
         }
     }
 
-    /// How hair and body cast shadows with this fibre.
+    /// Shadows of hair and body with this fibre.
     pub fn hair_shadow(&self) -> Shadow {
         Shadow { solid: self.fibre.model.scatters_many_times() || self.shadow.solid, ..self.shadow }
     }

@@ -27,7 +27,7 @@ const PART_BYTES: u64 = 20;
 const GRID_CELLS: u64 = 43 * 43 * 43;
 const CELL_BYTES: u64 = 26 * 16 * 4 + 600;
 
-/// What is drawn of a groom, as far as memory goes.
+/// Drawn parts of a groom that take memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn<'a> {
     /// Number of guides.
@@ -43,7 +43,7 @@ pub struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    /// What drawing takes close up, an upper estimate.
+    /// Memory of drawing close up, an upper estimate.
     pub fn memory(&self, level_of_detail: &LevelOfDetail) -> Vec<Need> {
         let of = [self.guide_count, self.points_per_strand];
         self.needs(&level_of_detail.level_of([0.0; 2], self.look.follow_strands, of))

@@ -1,4 +1,4 @@
-//! What stands for the renderer on a GPU in a build without GPUs: nothing of it can be made.
+//! Replacement of the GPU renderer in a build without GPUs: it cannot be made.
 
 use strandline_body::{Mesh, Solids};
 use strandline_gpu::{Buffer, Gpu};
@@ -13,7 +13,7 @@ pub struct DevicePoints<'a> {
     pub before: &'a Buffer<f32>,
     /// After it.
     pub after: &'a Buffer<f32>,
-    /// Where the moment lies between them.
+    /// Place of the moment between them.
     pub share: f32,
 }
 

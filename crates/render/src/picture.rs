@@ -22,7 +22,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Whether every row has one colour: a picture of nothing, or of the background, which changes from top to bottom.
+    /// True if every row has one colour: a picture of nothing, or of the background, which changes from top
+    /// to bottom.
     pub fn is_blank(&self) -> bool {
         let mut rows = self.pixels.chunks_exact(3 * self.width.max(1) as usize);
         rows.all(|row| row.chunks_exact(3).all(|pixel| *pixel == row[..3]))
@@ -66,7 +67,7 @@ impl Picture {
     }
 }
 
-/// What went wrong while a file was written, and how to mend it.
+/// Error of writing a file, and its remedy.
 pub(crate) fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "the folder does not exist, create it first".into(),

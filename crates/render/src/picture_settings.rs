@@ -5,7 +5,7 @@ use strandline_gpu::Backend;
 use crate::RenderError;
 
 settings! {
-    /// How large a picture is and how light becomes colour.
+    /// Size of a picture, and conversion of light to colour.
     pub struct PictureSettings: Copy {
         /// Width.
         width: u32 = 800, in [1, PictureSettings::MAX_SIZE] "pixel";
@@ -15,13 +15,13 @@ settings! {
         supersampling: u32 = 2, in [1, 2], more "smoother edges at four times the cost";
         /// Exposure; one more doubles the light.
         exposure: f32 = 0.0, in [-16.0, 16.0] "stops", slider [-4.0, 4.0], more "a brighter picture";
-        /// How light beyond white is shown.
+        /// Mapping of light beyond white.
         tone_map: ToneMap = ToneMap::default();
-        /// What is behind everything.
+        /// The background.
         background: Background = Background::default();
-        /// Whether the background is left out and opacity written instead.
+        /// Leaves the background out and writes opacity instead.
         transparent: bool = false;
-        /// Whether linear light, depth, the hair's coverage, its directions and strands are kept too, as for an .exr
+        /// Keeps linear light, depth, the hair's coverage, its directions and strands too, as for an .exr
         /// file.
         layers: bool = false;
         moved { backend: Backend => "devices.pictures" }
@@ -29,7 +29,7 @@ settings! {
 }
 
 choices! {
-    /// How light beyond white is shown.
+    /// Mapping of light beyond white.
     pub enum ToneMap as "picture.tone_map" {
         /// Cut off at 1.
         Off = "off",
@@ -82,7 +82,7 @@ impl PictureSettings {
         Ok(())
     }
 
-    /// What the samples take \[byte\].
+    /// Memory of the samples \[byte\].
     pub(crate) fn memory(&self) -> u64 {
         let samples = u64::from(self.width) * u64::from(self.height);
         let layers = if self.layers { samples * Self::LAYERS_BYTES } else { 0 };

@@ -28,7 +28,7 @@ pub struct Part {
     pub numbers: Vec<f32>,
 }
 
-/// What each array is.
+/// Names of the arrays.
 const POSITIONS: &str = "positions";
 const PREVIOUS: &str = "previous_positions";
 const VELOCITIES: &str = "velocities";

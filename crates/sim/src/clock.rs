@@ -14,14 +14,14 @@ pub struct Clock {
     steps: u64,
 }
 
-/// What a frame has to do.
+/// Steps of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ticks {
     /// Index of the first step that is due; the step ends at `step_time(first + 1)`.
     pub first: u64,
     /// Steps that are due.
     pub count: u32,
-    /// Where the frame lies between the last two states: 0 one step ago, 1 at the last step.
+    /// Place of the frame between the last two states: 0 one step ago, 1 at the last step.
     pub share: f32,
 }
 
@@ -58,7 +58,7 @@ impl Clock {
     /// Lets the time of a frame \[s\] pass; time that is negative or not finite does not.
     pub fn advance(&mut self, frame_seconds: f64) -> Ticks {
         if frame_seconds.is_finite() && frame_seconds > 0.0 {
-            // What a sum rounds away is added to the next one [Kahan1965].
+            // The rounding error of a sum is added to the next one [Kahan1965].
             let add = frame_seconds + self.lost;
             let sum = self.time + add;
             self.lost = add - (sum - self.time);

@@ -10,17 +10,17 @@ pub enum SimError {
     /// A rest shape that does not fit its guides.
     #[error("the rest shape has {found}, expected {expected}")]
     Rest {
-        /// What was given.
+        /// Value that was given.
         found: String,
-        /// What fits.
+        /// Values that fit.
         expected: &'static str,
     },
     /// A checkpoint of other hair, or one that is damaged.
     #[error("the state that was saved has {found}, expected {expected}: start again")]
     Checkpoint {
-        /// What it has.
+        /// Value that it has.
         found: String,
-        /// What fits.
+        /// Values that fit.
         expected: String,
     },
     /// A fluid volume that does not fit the GPU.
@@ -31,13 +31,13 @@ pub enum SimError {
     Cells {
         /// Cells asked for in x, y, z.
         cells: [u32; 3],
-        /// What was refused.
+        /// The refusal.
         source: strandline_gpu::GpuError,
     },
     /// More memory than may be taken.
     #[error(transparent)]
     Memory(#[from] strandline_base::memory::MemoryError),
-    /// What the GPU could not do.
+    /// An error of the GPU.
     #[error(transparent)]
     Gpu(#[from] strandline_gpu::GpuError),
 }

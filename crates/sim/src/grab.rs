@@ -15,9 +15,9 @@ const CLAMPS: usize = 8;
 /// A hand and the strands in it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grab {
-    /// Where the hand is \[m\], world space.
+    /// Position of the hand \[m\], world space.
     pub hand: Vec3,
-    /// What it holds, shape `[block]`; empty when it holds nothing.
+    /// Grips, shape `[block]`; empty without a held strand.
     pub grips: Vec<Grip>,
 }
 
@@ -95,9 +95,9 @@ impl Grab {
         self.grips.iter().map(Grip::count).sum()
     }
 
-    /// What is held of a block of strands, whose points are `positions` \[m\]: no farther from the rooted
-    /// points on either side than the strand reaches, which a hand cannot stretch. `lengths` are those
-    /// of its segments \[m\].
+    /// Positions of the held points of a block of strands, whose points are `positions` \[m\]: no farther
+    /// from the rooted points on either side than the strand reaches, which a hand cannot stretch. `lengths`
+    /// are those of its segments \[m\].
     pub fn pinned(
         &self,
         block: usize,

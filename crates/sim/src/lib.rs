@@ -1,4 +1,4 @@
-//! How hair moves: position-based strands coupled to a FLIP volume [Chen2011 §4].
+//! Motion of hair: rods or position-based strands, coupled to a FLIP volume [Chen2011 §4].
 //!
 //! [`Settings`] are plain data in SI units, a [`Model`] is compiled once and never changes, a
 //! [`State`] is all that changes with time.

@@ -37,7 +37,7 @@ impl Masses {
         };
         let mass = each(&|index, lane| model.rest.mass[index].0[lane] * factor(index, lane));
         let inverse_mass = each(&|index, lane| model.inverse_mass[index].0[lane] / factor(index, lane));
-        // How the two ends of each segment share its correction, by inverse mass [Mueller2007 eq. 10-11].
+        // Shares of the two ends of each segment in its correction, by inverse mass [Mueller2007 eq. 10-11].
         let share = |index: usize, lane: usize, taker: usize| {
             if (index + 1).is_multiple_of(points) {
                 return 0.0;

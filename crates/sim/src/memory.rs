@@ -1,4 +1,4 @@
-//! What a simulation takes.
+//! Memory of a simulation.
 
 use strandline_base::memory::Need;
 
@@ -14,7 +14,7 @@ const ROD_BYTES: u64 = 192;
 const CELL_BYTES: u64 = 44;
 
 impl Settings {
-    /// What simulating so many points on so many strands takes at most.
+    /// Most memory of simulating a number of points on a number of strands.
     pub fn memory(&self, strand_count: usize, points_per_strand: usize) -> Vec<Need> {
         let points = (strand_count as u64).saturating_mul(points_per_strand as u64);
         let strands = format!("{points_per_strand} points on each of {strand_count} simulated strands");

@@ -33,9 +33,9 @@ pub struct Model {
     /// Masses as they were compiled, from which every change of the mass per length starts, so that one
     /// there and back leaves every bit as it was.
     compiled: Compiled,
-    /// Whether the guides have masses of their own, which no setting changes.
+    /// True if the guides have masses of their own, which no setting changes.
     weighed: bool,
-    /// What each strand is made of.
+    /// Material of each strand.
     hairs: Hairs,
     /// Velocities at the beginning \[m/s\], head space, shape `[block][point]` of lanes; empty at rest.
     pub(crate) velocities: Vec<Vec3Lanes>,

@@ -1,4 +1,4 @@
-//! What stands for the runner on a GPU in a build without GPUs: nothing of it can be made.
+//! Replacement of the GPU runner in a build without GPUs: it cannot be made.
 
 use strandline_body::BodyFrame;
 use strandline_gpu::{Buffer, Gpu, GpuError};

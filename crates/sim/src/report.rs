@@ -1,4 +1,4 @@
-/// What the pressure solve did.
+/// Report of the pressure solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PressureReport {
     /// Conjugate-gradient iterations.
@@ -14,10 +14,10 @@ pub struct PressureReport {
     pub fluid_cells: usize,
 }
 
-/// What the solve of rods did in a step, in the worst of its parts.
+/// Report of the solve of rods in a step, for the worst of its parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RodReport {
-    /// How far the last Newton step of a strand turned one of its segments at most \[rad\].
+    /// Largest turn of a segment in the last Newton step of a strand \[rad\].
     pub residual: f32,
     /// Strands that would have needed more Newton steps than `newton_steps`.
     pub unsolved: usize,
@@ -62,7 +62,7 @@ pub struct StepReport {
     pub non_finite_strand: Option<usize>,
 }
 
-/// How far points lie from where they are at rest on the head, over the lengths of their strands.
+/// Distance of points from their rest positions on the head, over the lengths of their strands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drift {
     /// Mean over all points.

@@ -3,11 +3,12 @@ use strandline_base::{Group, Invalidates, Row, SettingError, Value, choices, set
 use strandline_gpu::Backend;
 
 use crate::SimError;
+use crate::cells::Lattice;
 use crate::strands::constrain::settings::{Angles, ConstrainSettings, LengthPass, Springs};
 use crate::strands::rods::settings::{GroupSettings, Rest, RodSettings};
 
 settings! {
-    /// How hair moves.
+    /// Motion of hair.
     pub struct Settings {
         /// Length of a step.
         time_step: f32 = 1.0 / 60.0, in [1e-5, 0.1] "s", slider [0.002, 0.05],
@@ -34,6 +35,11 @@ settings! {
         groups: Vec<GroupSettings> = Vec::new(), in [0.0, 1024.0], invalidates masses;
         /// The fluid volume.
         volume: VolumeSettings = VolumeSettings::default();
+        plain {
+            /// Edge of the cells \[m\] by which the stage `cells` sorts points, 1e-4 to 100, for stages that look for
+            /// neighbours; `None` leaves the stage out.
+            cells: Option<f32>,
+        }
         moved {
             backend: Backend => "devices.simulation",
             iterations: u32 => "simulation.strands.constrain.iterations",
@@ -64,7 +70,7 @@ impl Settings {
         change.and(Invalidates { rest_shape, ..Invalidates::NOTHING })
     }
 
-    /// Whether strands are rods.
+    /// True if strands are rods.
     pub(crate) fn has_rods(&self) -> bool {
         self.strands.method == StrandMethod::Rods
     }
@@ -106,14 +112,15 @@ impl Settings {
     /// # Errors
     /// The first setting that does not.
     pub fn check(&self) -> Result<(), SimError> {
-        Ok(self.check_as("simulation")?)
+        self.check_as("simulation")?;
+        Ok(self.cells.map_or(Ok(()), Lattice::check)?)
     }
 }
 
 settings! {
-    /// What moves a strand within a step.
+    /// Motion of a strand within a step.
     pub struct StrandSettings: Copy {
-        /// How strands are solved.
+        /// Solver of strands.
         method: StrandMethod = StrandMethod::default(), invalidates buffers;
         /// Material and solve of rods.
         rods: RodSettings = RodSettings::default();
@@ -123,7 +130,7 @@ settings! {
 }
 
 choices! {
-    /// How strands are solved.
+    /// Solver of strands.
     pub enum StrandMethod as "simulation.strands.method" {
         /// Springs and rounds of constraints [Chen2011 §4].
         Constrain = "constrain",

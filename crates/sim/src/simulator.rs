@@ -20,7 +20,7 @@ pub struct Simulator {
     runner: Runner,
     /// The state, of a device as it was last read, and what happened since.
     journal: Journal,
-    /// Whether a run of the device failed, so that nothing is known of its state.
+    /// True if a run of the device failed, so that its state is unknown.
     lost: bool,
     reports: Reports,
 }
@@ -245,7 +245,7 @@ impl Simulator {
     /// Changes the state.
     ///
     /// # Errors
-    /// What `change` returns, and then nothing changes; the device was lost.
+    /// The error of `change`, which then changes nothing; the device was lost.
     pub fn change<T>(
         &mut self,
         change: impl FnOnce(&mut State, &Model) -> Result<T, SimError>,

@@ -53,17 +53,17 @@ pub struct State {
     pub positions: Vec<Vec3Lanes>,
     /// Velocities \[m/s\], world space, shape `[block][point]` of lanes.
     pub velocities: Vec<Vec3Lanes>,
-    /// What the next prediction adds to the velocities \[m/s\], world space, shape `[block][point]` of
-    /// lanes: the length pass gives it back for the corrections that it made \[Mueller2012 eq. 9\]. It is
-    /// no motion of the hair, so that neither volume nor air nor springs see it.
+    /// Additions of the next prediction to the velocities \[m/s\], world space, shape `[block][point]` of
+    /// lanes: the length pass returns them for its corrections \[Mueller2012 eq. 9\]. They are no motion of
+    /// the hair: volume, air and springs ignore them.
     pub corrections: Vec<Vec3Lanes>,
     /// Positions \[m\] one step ago, world space, shape `[block][point]` of lanes.
     pub previous_positions: Vec<Vec3Lanes>,
     /// First axis of the section of each segment of a rod, world space, shape `[block][point]` of
     /// lanes; empty without rods.
     pub sections: Vec<Vec3Lanes>,
-    /// How fast each section turns beside its segment \[rad/s\], shape as above; a step leaves no more than
-    /// [`MOST_SPIN`].
+    /// Angular speed of each section about its segment \[rad/s\], shape as above; at most [`MOST_SPIN`] after
+    /// a step.
     pub spins: Vec<Lanes>,
     /// Body now.
     pub body: BodyFrame,
@@ -76,8 +76,8 @@ pub struct State {
     pub(crate) grab: Grab,
     /// Contact planes remembered from step to step.
     pub(crate) contacts: Contacts,
-    /// Where the box of the volume is: lower corner with the ring \[m\] and spacing \[m\]; none before the first step
-    /// of one, or while it is off.
+    /// Box of the volume: lower corner with the ring \[m\] and spacing \[m\]; `None` before its first step,
+    /// or while it is off.
     pub(crate) volume_box: Option<[f32; 4]>,
 }
 

@@ -23,7 +23,7 @@ macro_rules! stages {
                 }
             }
 
-            /// Whether a step with these settings has it.
+            /// True if a step with these settings has the stage.
             fn is_in(self, settings: &Settings) -> bool {
                 match self {
                     $(Self::$stage => $is_in(settings),)*
@@ -36,6 +36,8 @@ macro_rules! stages {
 stages! {
     /// Roots follow the skin.
     PoseRoots = "pose_roots", always;
+    /// Points sorted by cell, by their positions alone, for stages that look for neighbours.
+    Cells = "cells", neighbours;
     /// Forces, then a prediction.
     Integrate = "integrate", constrained;
     /// Lengths, bends and solids.
@@ -44,7 +46,7 @@ stages! {
     SolveRods = "solve_rods", rods;
     /// Points sorted by cell, velocities onto faces.
     Splat = "splat", volume;
-    /// What each cell is.
+    /// Kind of each cell.
     Mark = "mark", volume;
     /// Pressure, and its gradient taken away.
     SolvePressure = "solve_pressure", volume;
@@ -56,6 +58,10 @@ stages! {
 
 fn always(_: &Settings) -> bool {
     true
+}
+
+fn neighbours(settings: &Settings) -> bool {
+    settings.cells.is_some()
 }
 
 fn constrained(settings: &Settings) -> bool {

@@ -89,7 +89,7 @@ pub struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
     pub comments: Vec<String>,
-    /// Where the rows begin \[byte\].
+    /// Offset of the rows \[byte\].
     pub length: usize,
 }
 

@@ -9,7 +9,7 @@ pub use rows::{Column, Table};
 
 use crate::utf8_text;
 
-/// Where a file differs from what the format says.
+/// Difference between a file and its format.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mismatch {
     /// The text or number of the file.

@@ -1,4 +1,4 @@
-//! Where the bytes of a buffer are: a file beside the glTF, or text within it.
+//! Sources of the bytes of a buffer: a file beside the glTF, or text within it.
 
 use std::path::{Component, Path, PathBuf};
 

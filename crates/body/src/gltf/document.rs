@@ -1,4 +1,4 @@
-//! What of a glTF file concerns its shape: the document without looks and clips, and the bytes behind it.
+//! Shape of a glTF file: the document without looks and clips, and the bytes behind it.
 
 use ::gltf::Document;
 use ::gltf::json::{Root, Value, deserialize};
@@ -9,7 +9,7 @@ use crate::parsing::Refusal;
 
 /// The document, validated, and the binary part of the file where it has one.
 ///
-/// What concerns looks or clips alone is left out before the file is validated: it may be of any extension.
+/// Looks and clips are left out before the file is validated: they may use any extension.
 pub(super) fn document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Refusal> {
     check_container(bytes)?;
     let refused = |error: ::gltf::Error| (format!("bad glTF ({error})"), "valid glTF 2.0");

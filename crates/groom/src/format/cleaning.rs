@@ -264,7 +264,7 @@ fn scaled(widths: &Widths, unit: f32) -> Widths {
     }
 }
 
-/// How parts of colours become light from 0 to 1.
+/// Scale by which parts of colours become light from 0 to 1.
 #[derive(Clone, Copy)]
 enum ColorScale {
     /// Of 0 to 255, as pictures have them (sRGB).
@@ -282,7 +282,7 @@ impl ColorScale {
     }
 }
 
-/// How colours outside 0 to 1 are mended, and a note.
+/// Mend of colours outside 0 to 1, and a note.
 fn colors(groom: &Groom) -> Option<(ColorScale, String)> {
     let parts = groom.colors.as_ref()?.as_flattened();
     let odd = parts.iter().filter(|part| !(0.0..=1.0).contains(*part)).count();

@@ -71,7 +71,7 @@ pub(super) struct Frame<'a> {
     pub level: DetailLevel,
     /// The light whose layers colour the hair.
     pub layers_of: Option<usize>,
-    /// Where `resolve` puts the pixels.
+    /// Target of `resolve`.
     pub picture: Option<&'a mut Picture>,
 }
 

@@ -210,7 +210,7 @@ mod tests {
         let crossed =
             renderer.scratch.shadows.map(0).unwrap().texels().iter().filter(|texel| texel.x > 0.0).count();
         assert!(crossed >= 400, "{crossed}");
-        // What has no depth has no hair.
+        // Texels without depth have no hair.
         assert!(opacity.iter().zip(&depth).all(|(opacity, depth)| (*opacity > 0) == (*depth > 0)));
         // White is its nearest point, 0.15 its farthest.
         assert_eq!(depth.iter().max(), Some(&255));

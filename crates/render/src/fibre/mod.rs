@@ -1,4 +1,4 @@
-//! How one fibre scatters light: the models, each in a folder of its own, and the choice among them.
+//! Scattering by one fibre: the models, each in a folder of its own, and the choice among them.
 
 pub mod chiang;
 pub mod scheuermann;
@@ -10,7 +10,7 @@ pub use chiang::{Chiang, Pigment};
 pub use scheuermann::{Highlight, Scheuermann};
 
 settings! {
-    /// How one hair scatters light.
+    /// Scattering by one hair.
     pub struct Fibre: Copy {
         /// The model.
         model: FibreModel = FibreModel::default();
@@ -34,8 +34,8 @@ choices! {
 }
 
 impl FibreModel {
-    /// Whether light goes from fibre to fibre many times, carried through a grid of cells: then what meets a hair does
-    /// not go straight on.
+    /// True if light goes from fibre to fibre many times, carried through a grid of cells: light that meets a
+    /// hair then does not go straight on.
     pub fn scatters_many_times(self) -> bool {
         match self {
             Self::Scheuermann => false,
@@ -50,7 +50,7 @@ impl Fibre {
         if self.model.scatters_many_times() { self.chiang.cells } else { MOST_CELLS }
     }
 
-    /// Whether the look's colours are those of the hair; else its pigment is.
+    /// True if the look's colours are those of the hair; otherwise its pigment is.
     pub fn shows_colors(&self) -> bool {
         match self.model {
             FibreModel::Scheuermann => true,

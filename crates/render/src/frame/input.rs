@@ -7,7 +7,7 @@ use crate::memory::{Drawn, check_lights};
 
 use crate::{BodyLook, Camera, DetailLevel, LevelOfDetail, Light, Look, PictureSettings, RenderError};
 
-/// What one picture is made from.
+/// Inputs of one picture.
 #[derive(Clone, Copy)]
 pub struct FrameInput<'a> {
     /// Guide points \[m\], world space, shape `[block][point]` of lanes.
@@ -39,7 +39,7 @@ impl FrameInput<'_> {
         check_lights(self.lights)
     }
 
-    /// What is drawn of guides that lie in a box at rest \[m\], head space, in a picture of so many rows.
+    /// Detail of guides that lie in a box at rest \[m\], head space, in a picture of a number of rows.
     pub(crate) fn level(&self, bounds: Aabb, rows: u32, guides: &Guides) -> DetailLevel {
         let (detail, eye) =
             (self.level_of_detail, self.body.world_from_head().inverse().point(self.camera.position));

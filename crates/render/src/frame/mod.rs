@@ -38,7 +38,7 @@ macro_rules! stages {
                 }
             }
 
-            /// Whether a frame of such strands has it.
+            /// True if a frame of such strands has it.
             fn is_in(self, strands: Drawn) -> bool {
                 match self {
                     $(Self::$stage => $is_in(strands),)*

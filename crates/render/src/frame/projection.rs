@@ -61,7 +61,7 @@ impl Projection {
         Vec4::new(x, y, inverse_depth, width)
     }
 
-    /// Where a line between two points \[m\] on either side of the near plane meets it: the share of
+    /// Intersection of the near plane with a line between two points \[m\] on either side of it: the share of
     /// the way from `start`, 0..1, and the point on the screen, with a diameter \[m\].
     pub fn near_crossing(&self, start: Vec3, end: Vec3, widths: [f32; 2]) -> (f32, Vec4) {
         let [first, last] = [start, end].map(|point| self.view_from_world.transform_point3(point));
@@ -79,7 +79,7 @@ impl Projection {
         self.world_from_view.transform_point3(view)
     }
 
-    /// Where the camera stands \[m\], world space.
+    /// Position of the camera \[m\], world space.
     pub fn eye(&self) -> Vec3 {
         self.world_from_view.translation.into()
     }

@@ -6,7 +6,7 @@ use glam::Vec4;
 pub const TILE: usize = 32;
 /// Samples in a tile.
 pub const TILE_SAMPLES: usize = TILE * TILE;
-/// How many times the memory of a picture may be what the picture before it took.
+/// Largest ratio of the memory of a picture to that of the picture before it.
 const SPARE: usize = 2;
 /// The triangle of a sample that shows no body.
 pub const NO_TRIANGLE: u32 = u32::MAX;
@@ -69,7 +69,7 @@ impl Samples {
         self.columns * self.rows
     }
 
-    /// Where a sample is stored.
+    /// Index of a sample.
     pub fn index(&self, column: usize, row: usize) -> usize {
         let tile = row / TILE * self.columns + column / TILE;
         tile * TILE_SAMPLES + row % TILE * TILE + column % TILE

@@ -1,4 +1,4 @@
-//! What lies on the device.
+//! Buffers on the device.
 
 use glam::Vec3;
 use strandline_body::Mesh;
@@ -96,7 +96,7 @@ impl Groom {
         self.frame.write_tail(&LightSource::all(scene))
     }
 
-    /// What the bounds start from: nothing.
+    /// Initial bounds: an empty box.
     pub fn no_bounds() -> Vec<u32> {
         let planes = std::iter::repeat_n([u32::MAX, u32::MAX, 0, 0], 2 * MAX_SHADOWS).flatten();
         [[u32::MAX; 3], [0; 3]].into_iter().flatten().chain(planes).collect()
@@ -187,7 +187,7 @@ impl Maps {
     }
 }
 
-/// What a picture is drawn into.
+/// Targets of a picture.
 pub(super) struct Targets {
     pub samples: Texture,
     pub depth: Texture,

@@ -107,7 +107,7 @@ impl GpuRenderer {
     }
 }
 
-/// What a texture holds, shape `[row][column]`.
+/// Texels of a texture, shape `[row][column]`.
 fn texels<T: bytemuck::Pod>(
     gpu: &Gpu,
     texture: &Texture,

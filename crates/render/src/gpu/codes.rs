@@ -2,7 +2,7 @@
 
 use strandline_groom::Guides;
 
-/// What is drawn, in bits: the groom's colours, and its widths along strands, in the place of the look's.
+/// Drawn attributes, in bits: the groom's colours, and its widths along strands, instead of the look's.
 pub const OWN_COLORS: u32 = 1;
 pub const OWN_WIDTHS: u32 = 2;
 /// Light is scattered many times; with the look's colours.
@@ -27,7 +27,7 @@ pub const TONE_OFF: u32 = 0;
 pub const TONE_FILMIC: u32 = 1;
 pub const TONE_ACES: u32 = 2;
 
-/// What of the groom is drawn in the place of the look's.
+/// Attributes of the groom that are drawn instead of the look's.
 pub fn own_kinds(guides: &Guides) -> u32 {
     let colors = if guides.colors().is_some() { OWN_COLORS } else { 0 };
     let widths = if guides.profiles().is_some() { OWN_WIDTHS } else { 0 };

@@ -74,7 +74,7 @@ mirror! {
         pub body_specular: f32,
         pub background_bottom: [f32; 3],
         pub body_roughness: f32,
-        /// Where the opacity layers end \[m\].
+        /// Ends of the opacity layers \[m\].
         pub layers: [f32; 3],
         /// Logarithm of what one hair lets through.
         pub log_transmission: f32,
@@ -114,11 +114,11 @@ mirror! {
         pub body_kind: u32,
         /// Middle of the hair at rest \[m\]: texels and cells keep their places beside it.
         pub middle: [f32; 3],
-        /// What is drawn, in bits: see codes.rs.
+        /// Drawn attributes, in bits: see codes.rs.
         pub kinds: u32,
         /// Of each eight guides, those whose strands are not drawn.
         pub left_out: f32,
-        /// How many strands each stands for that is summed into the cells of scattered light.
+        /// Number of strands that each summed strand stands for in the cells of scattered light.
         pub summed: u32,
         /// Cells along the longest side of the hair.
         pub cells: u32,
@@ -132,7 +132,7 @@ mirror! {
 const WINDOWS: usize = 2 * MAX_SHADOWS;
 
 mirror! {
-    /// Where things lie in a frame: the device finds it. Mirrors `Fitted` in common.wesl.
+    /// Places in a frame, found by the device. Mirrors `Fitted` in common.wesl.
     pub(super) struct Fitted {
         /// Least corner of the grid of `occlude` \[m\].
         pub low: [f32; 3],
@@ -210,7 +210,7 @@ pub(super) fn body_stride(map_size: u32) -> u32 {
 pub(super) const NO_MAP: u32 = u32::MAX;
 
 impl Frame {
-    /// What a frame needs.
+    /// Inputs of a frame.
     pub fn new(scene: &Scene) -> Self {
         let Scene { input, settings, level, .. } = scene;
         let (width, height) = (settings.width as f32, settings.height as f32);
@@ -248,7 +248,7 @@ impl Frame {
         }
     }
 
-    /// What the looks of hair and body say of it; the rest is 0.
+    /// Inputs that follow from the looks of hair and body; the others are 0.
     fn of_looks(scene: &Scene) -> Self {
         let (look, body, shadow) = (scene.input.look, scene.input.body_look, &scene.input.look.hair_shadow());
         let gradient = look.gradient();

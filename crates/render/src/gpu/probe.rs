@@ -1,4 +1,4 @@
-//! What the stages left on the device, for checks and pictures of it.
+//! Results that the stages left on the device, for checks and pictures of them.
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_gpu::{Buffer, Recorder};
@@ -37,8 +37,8 @@ impl GpuRenderer {
         Ok(buffer.read_first(count)?)
     }
 
-    /// Where the strands of the last frame were \[m\], world space, shape `[block][point]` of lanes: the host's points,
-    /// or what guides carry.
+    /// Strands of the last frame \[m\], world space, shape `[block][point]` of lanes: the host's points, or
+    /// those of bound strands.
     ///
     /// # Errors
     /// The device was lost.

@@ -7,7 +7,7 @@ mirror! {
     pub(super) struct Vertex {
         /// \[m\]
         pub position: [f32; 3],
-        /// How dense roots lie about it, 0 to 1.
+        /// Density of roots about it, 0 to 1.
         pub roots: f32,
         pub normal: [f32; 3],
         pub unused: f32,
@@ -15,7 +15,7 @@ mirror! {
 }
 
 mirror! {
-    /// What all curves have at one of their points.
+    /// Values of all curves at one of their points.
     pub(super) struct Tap {
         /// Weights of four control points.
         pub position: [f32; 4],
@@ -68,7 +68,7 @@ mirror! {
         pub number: f32,
         pub from_skin: [f32; 3],
         pub unused: f32,
-        /// How much of the lightest hair its hair is, by channel.
+        /// Share of the lightest hair in it, by channel.
         pub light: [f32; 3],
         pub unused_too: f32,
     }

@@ -50,7 +50,7 @@ pub struct GpuRenderer {
     points: GuidePoints,
     timer: Option<Timer>,
     layer_coloring: LayerColoring,
-    /// What puts numbers in the place of light, once channels are asked for.
+    /// Kernels that replace light by values, once channels are requested.
     pub(super) numbers: Option<[Kernel<Numbers<'static>>; 2]>,
     pub(super) drawn: Drawn,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
@@ -59,7 +59,7 @@ pub struct GpuRenderer {
     own_colors: Option<OwnColors>,
 }
 
-/// What the last frame drew.
+/// Contents of the last frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Drawn {
     pub strands_per_guide: usize,
@@ -279,7 +279,7 @@ impl GpuRenderer {
         (self.lit.1, self.lit.2) = (scene.input.look.hair_shadow(), scene.middle);
     }
 
-    /// What is kept from frame to frame, with the stages bound.
+    /// State kept from frame to frame, with the stages bound.
     pub(super) fn held<'a>(&'a self, stages: &'a Stages) -> Held<'a> {
         Held {
             groom: &self.groom,
@@ -364,7 +364,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    /// What was drawn is lost with the buffers that held it.
+    /// The last picture is lost with its buffers.
     fn forget(&mut self) {
         self.stages = None;
         self.light_grid.iter_mut().for_each(LightGrid::forget);

@@ -49,9 +49,9 @@ pub struct Lattice {
 /// Scattering of one kind of hair.
 #[derive(Clone, Debug)]
 struct End {
-    /// How it is seen from some inclination.
+    /// Its view at some inclination.
     seen: Seen,
-    /// What it shows toward where light goes, of light that goes some way: shape `[tangent][shown][arriving]`.
+    /// Radiance that it sends along a direction, of light along another: shape `[tangent][shown][arriving]`.
     shown: Vec<[Rays; DIRECTIONS]>,
     /// Share of even light that it gives back, as a mean over its directions.
     albedo: Vec4,
@@ -96,13 +96,13 @@ impl Lattice {
         End { seen, shown: self.tangents.par_iter().map(shown).collect(), albedo }
     }
 
-    /// Whether not all hair is the same.
+    /// True if hair is not all alike.
     pub fn is_mixed(&self) -> bool {
         self.ends.len() > 1
     }
 
-    /// How much of the lightest hair, by channel, mixed with the darkest gives back as much light as hair with shares of
-    /// the darkest's pigment.
+    /// Share of the lightest hair, by channel, that mixed with the darkest returns as much light as hair with
+    /// shares of the darkest's pigment.
     pub fn lightness(&self, pigments: Vec3) -> Vec3 {
         let [End { albedo: dark, .. }, End { albedo: light, .. }] = *self.ends.as_slice() else {
             return Vec3::ZERO;
@@ -135,7 +135,7 @@ impl Lattice {
         dots.enumerate().fold((0, -1.0), |best, next| if next.1 > best.1 { next } else { best }).0
     }
 
-    /// What each kind of hair of unit tangent `t` shows toward where `to_eye` points of light along each direction, and
+    /// Radiance toward `to_eye` of each kind of hair of unit tangent `t` in light along each direction, and
     /// its moments.
     pub fn weights(&self, t: Vec3, to_eye: Vec3) -> impl Iterator<Item = (Rays, [Vec4; MOMENTS])> {
         let of = move |end: &End| {
@@ -167,7 +167,7 @@ impl Lattice {
         self.table.by_path(seen, &light.met, turn, 0.0)
     }
 
-    /// How hair of unit tangent `t` is seen along every direction.
+    /// Views of hair of unit tangent `t` along every direction.
     pub fn shows(&self, t: Vec3) -> [Shows; DIRECTIONS] {
         self.ways.map(|(way, share)| {
             let sine = t.dot(way);
@@ -244,13 +244,13 @@ impl Lattice {
     }
 }
 
-/// How hair is seen along one direction.
+/// View of hair along one direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Shows {
     /// A unit vector across the hair toward the eye.
     u: Vec3,
     seen: Seen,
-    /// What it weighs in the sum of all that is shown.
+    /// Weight in the sum over all directions.
     weight: f32,
 }
 

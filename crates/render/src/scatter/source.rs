@@ -32,13 +32,14 @@ impl OwnColors {
     }
 }
 
-/// What the tables of a look are made from.
+/// Inputs of the tables of a look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Source {
     pub(crate) fibre: Chiang,
-    /// Whether pigment is counted in ink, for hair of given colours, in place of the look's melanin.
+    /// True if pigment is counted in ink, for hair of given colours, instead of the look's melanin.
     pub(crate) inked: bool,
-    /// How much of it the darkest hair has, and the lightest, by channel. Spread among strands is not in it: its mean is.
+    /// Pigment of the darkest hair, and of the lightest, by channel. It leaves out the spread among strands
+    /// but not its mean.
     pub(crate) darkest: Vec3,
     pub(crate) lightest: Vec3,
 }
@@ -70,7 +71,7 @@ impl Source {
 
     /// A pigment as a share of that of the darkest hair.
     pub(crate) fn of_darkest(&self, pigment: Vec3) -> Vec3 {
-        // Where the darkest has none all have none.
+        // Channels without pigment in the darkest hair have none anywhere.
         Vec3::select(self.darkest.cmpgt(Vec3::ZERO), pigment / self.darkest, Vec3::ONE)
     }
 

@@ -8,7 +8,7 @@ use crate::{Light, LightKind};
 /// Nearest depth \[m\] that a spot or point light sees.
 const NEAR_LIGHT: f32 = 1e-2;
 
-/// Where a light looks from, and how it maps points to its plane.
+/// View of a light, and its map from points to its plane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LightView {
     pub(crate) origin: Vec3,

@@ -45,13 +45,13 @@ pub struct ShadowMap {
     starts: Vec4,
     /// One over the thickness of each layer \[1/m\].
     inverse_thicknesses: Vec4,
-    /// Where the layers end.
+    /// Ends of the layers.
     pub(crate) borders: [f32; 3],
     /// Logarithm of what one hair lets through.
     log_transmission: f32,
     pub(crate) body_bias: f32,
     pub(crate) inverse_softness: f32,
-    /// Whether a hair hides all behind it.
+    /// True if a hair hides everything behind it.
     pub(crate) solid: bool,
 }
 

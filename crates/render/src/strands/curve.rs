@@ -4,8 +4,8 @@ use glam::Vec3;
 
 use crate::DetailLevel;
 
-/// Where a curve point lies in its guide: the first of four control points and their weights for
-/// position and tangent. Control point 0 stands before the guide's first.
+/// Place of a curve point in its guide: the first of four control points and their weights for position and
+/// tangent. Control point 0 stands before the guide's first.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tap {
     pub(crate) first: usize,
@@ -13,7 +13,7 @@ pub(crate) struct Tap {
     pub(crate) tangent: [f32; 4],
 }
 
-/// Where each point of a curve lies in its guide, and its parameter, 0 at the root to 1 at the tip.
+/// Place of each point of a curve in its guide, and its parameter, 0 at the root to 1 at the tip.
 pub(crate) fn taps(points_per_strand: usize, level: &DetailLevel) -> impl Iterator<Item = (Tap, f32)> {
     let span_count = points_per_strand - 1;
     let segments = level.segment_count(points_per_strand);

@@ -48,12 +48,12 @@ pub struct Strands {
 }
 
 impl Strands {
-    /// Whether a strand is drawn: from afar some of those that stand for themselves are left out.
+    /// True if a strand is drawn: from afar some strands without follow strands are left out.
     pub fn is_drawn(&self, strand: usize) -> bool {
         is_drawn(strand / self.strands_per_guide, self.left_out)
     }
 
-    /// Whether a strand is drawn, and one of those that stand for all.
+    /// True if a strand is drawn and belongs to those that stand for all.
     pub(crate) fn is_one_of(&self, strand: usize, few: EveryFew) -> bool {
         self.is_drawn(strand) && few.holds(strand, self.strands_per_guide)
     }

@@ -1,4 +1,4 @@
-//! How dense roots lie about places of the body: skin among them is darker, and as the hair.
+//! Density of roots about places of the body: skin among them is darker, and of the hair's colour.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ pub(crate) fn root_densities(vertices: &[Vec3], guides: &Guides) -> Vec<f32> {
     let cell = |point: Vec3| (point / reach).floor().as_ivec3();
     let mut cells: HashMap<IVec3, Vec<Vec3>> = HashMap::new();
     roots.iter().for_each(|&root| cells.entry(cell(root)).or_default().push(root));
-    // What roots of the mean density sum to: the integral of the weights over the disc, for a root on a square of half
+    // Sum of the weights of roots of mean density: the integral over the disc, for a root on a square of half
     // the reach.
     let whole = 4.0 * std::f32::consts::PI / 3.0;
     let density = |vertex: &Vec3| {
@@ -36,7 +36,7 @@ pub(crate) fn root_densities(vertices: &[Vec3], guides: &Guides) -> Vec<f32> {
     vertices.par_iter().map(density).collect()
 }
 
-/// How far numbers reach, were they spread as evenly at both ends as between.
+/// Extent of numbers, if they were spread as evenly at both ends as between.
 fn extent(mut numbers: Vec<f32>) -> f32 {
     numbers.sort_unstable_by(f32::total_cmp);
     let (count, strays) = (numbers.len(), numbers.len() / STRAYS);

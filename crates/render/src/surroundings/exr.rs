@@ -13,7 +13,7 @@ use super::size::{MAX_PIXELS, check_size};
 
 /// Most bytes of a block of rows or of a tile with all its channels: it is unpacked as a whole.
 const MAX_BLOCK: usize = 1 << 27;
-/// What such a file begins with.
+/// First bytes of such a file.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Width, height and pixels of the first layer with channels R, G and B.

@@ -21,7 +21,7 @@ use crate::{Light, LightKind};
 
 /// Most lights that are taken out of a picture.
 const MOST_SUNS: usize = 2;
-/// How much brighter than the mean a pixel of such a light is.
+/// Ratio of a pixel of such a light to the mean.
 const BRIGHT: f32 = 16.0;
 /// Cosine of the angle around the brightest pixel that belongs to its light: 8 degrees.
 const WITHIN: f32 = 0.990_268;
@@ -45,8 +45,8 @@ struct Ray {
 }
 
 impl Surroundings {
-    /// What a picture shines, turned about the height by an angle \[degrees\] (counter-clockwise from above) and
-    /// multiplied. The middle of the picture lies toward +z, its right half toward -x.
+    /// Light of a picture, turned about the vertical by an angle \[degrees\] (counter-clockwise from above)
+    /// and multiplied. The middle of the picture lies toward +z, its right half toward -x.
     pub fn new(panorama: &Panorama, rotation: f32, strength: f32) -> Self {
         let small = panorama.reduced(ROWS);
         let mut rays = rays(&small, rotation.to_radians(), strength);
@@ -109,7 +109,7 @@ fn suns(rays: &mut [Ray]) -> Vec<Light> {
             let part = ray.light * ray.share;
             way += ray.way * part.element_sum();
             light += part;
-            // What lies around it continues below.
+            // The surroundings of the light continue below it.
             taken.push(ray);
         }
         if light.element_sum() < LEAST_SHARE * whole {
@@ -173,7 +173,7 @@ mod tests {
         // Four pixels of (2 pi / 128) by (pi / 64) rad, foreshortened: irradiance over pi.
         let solid = 4.0 * (TAU / 128.0) * (PI / 64.0) * std::f32::consts::FRAC_1_SQRT_2;
         assert!((sun.intensity / (4000.0 * solid / PI) - 1.0).abs() < 0.02, "{} {solid}", sun.intensity);
-        // What is left is even, and nothing is lost but what the sky behind the sun gives anyway.
+        // The rest is even, and only the light of the sky behind the sun is lost.
         assert!((found.mean().x - 1.0).abs() < 0.05, "{}", found.mean());
         // A quarter turn to the left brings it before the face.
         let turned = Surroundings::new(&panorama(shine), 90.0, 1.0);

@@ -50,7 +50,7 @@ impl Panorama {
     /// Reads a .hdr (Radiance) or .exr (OpenEXR) picture.
     ///
     /// # Errors
-    /// What was found and what was expected.
+    /// Content found and content expected.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let (width, height, pixels) = if bytes.starts_with(b"#?") {
             hdr::read(bytes)?

@@ -1,4 +1,4 @@
-//! What sizes surroundings may have.
+//! Allowed sizes of surroundings.
 
 /// Most pixels that are read: 8,192 x 4,096.
 pub(super) const MAX_PIXELS: usize = 1 << 25;

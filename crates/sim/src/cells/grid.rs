@@ -27,10 +27,10 @@ const KEPT_SHARE: f32 = 0.8;
 /// that holds a point carries weight.
 const EDGE: f32 = 1e-6;
 
-/// How far outside the box a point may be by rounding \[cells\].
+/// Distance that a point may lie outside the box by rounding \[cells\].
 const ROUNDING: f32 = 1e-3;
 
-/// Where the points of eight strands lie: their cells and their places in them.
+/// Cells of the points of eight strands, and their places in them.
 #[derive(Clone, Copy, Debug)]
 pub struct Places {
     /// Index of the cell, `i + size.x (j + size.y k)`; [`NO_CELL`] outside the cells that may hold hair.

@@ -17,7 +17,7 @@ use super::obstacles::Obstacles;
 use super::way::{Seen, met};
 use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 
-/// How careful a look at the solids is.
+/// Precision of a look-up of the solids.
 #[derive(Clone, Copy)]
 pub struct Care {
     /// A plane serves until its point has moved so far \[m\]; on a ball of radius r it is then wrong
@@ -44,24 +44,25 @@ pub struct Contacts {
     pub blocks: Vec<Vec<Plane>>,
 }
 
-/// Where the points of one index are, for a look at the solids.
+/// Points of the same index, for a look-up of the solids.
 #[derive(Clone, Copy)]
 pub struct Query {
-    /// Where they are \[m\].
+    /// Positions \[m\].
     pub position: Vec3x8,
-    /// Where they were when the step began \[m\], for a look along the way; none to look at the place alone.
+    /// Positions at the beginning of the step \[m\], for a look along the path; `None` looks up the positions
+    /// alone.
     pub start: Option<Vec3x8>,
     /// Distance \[m\] that they keep.
     pub margin: f32x8,
     /// Mask of the lanes that may move.
     pub free: f32x8,
-    /// How careful to be.
+    /// Precision of the look-up.
     pub care: Care,
     /// Part of the step.
     pub part: u32,
 }
 
-/// What the points of one index in a block remember, in the space of their carrier.
+/// Contact planes kept by the points of one index in a block, in the space of their carrier.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane {
     anchor: Vec3Lanes,
@@ -180,12 +181,12 @@ impl<'a> Solids<'a> {
         solids
     }
 
-    /// Whether there is nothing to hit.
+    /// True without solids.
     pub fn is_empty(&self) -> bool {
         self.groups.is_empty()
     }
 
-    /// What the points of one index may touch; `None` when no free lane is near a solid.
+    /// Solid near the points of one index; `None` if no free lane is near one.
     pub fn touch(&self, planes: &mut [Plane], point: usize, query: Query) -> Option<Touch> {
         let Query { position, start, margin, free, care, part } = query;
         let mut touch: Option<Touch> = None;
@@ -310,9 +311,9 @@ pub struct Touch {
     pub offset: f32x8,
     /// Coulomb friction coefficient.
     pub friction: f32x8,
-    /// Where points would be if they had stuck to the solid \[m\].
+    /// Positions of points that stuck to the solid \[m\].
     pub stuck: Vec3x8,
-    /// Where points come to: where they are, or where a solid stopped them on their way \[m\].
+    /// Positions after the look-up: unchanged, or where a solid stopped the points on their path \[m\].
     pub place: Vec3x8,
 }
 

@@ -1,11 +1,11 @@
-//! What a point meets on its way through a step: continuous collision with signed distances.
+//! Solids on the path of a point through a step: continuous collision with signed distances.
 
 use glam::Vec3;
 
 /// A look at the solids, all in the space of what carries them.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// Where was looked \[m\].
+    /// Position of the look-up \[m\].
     pub place: Vec3,
     /// Signed distance \[m\] there, never more than the true one outside.
     pub distance: f32,
@@ -53,7 +53,7 @@ pub fn met(start: Vec3, end: Vec3, nearest: impl Fn(Vec3) -> Seen) -> Seen {
 }
 
 impl Seen {
-    /// Whether the point is kept from `end` \[m\].
+    /// True if the point must not reach `end` \[m\].
     pub fn is_before(&self, end: Vec3) -> bool {
         self.place.distance(end) > 2.0 * ARRIVED
     }

@@ -12,7 +12,7 @@ use crate::contact::contacts::Solids;
 use crate::{Model, State};
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 
-/// What a step did to the strands.
+/// Measures of a step over the strands.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// Sum of length / rest length - 1 over the segments that can stretch.
@@ -34,7 +34,7 @@ pub struct Outcome {
 /// Points whose position or velocity was not finite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NonFinite {
-    /// How many there were.
+    /// Number of strands.
     pub count: usize,
     /// The first strand that has one.
     pub first_strand: Option<usize>,
@@ -168,7 +168,7 @@ fn deepest(solids: &Solids, positions: &[Vec3Lanes], inverse_mass: &[Lanes], liv
     positions.iter().zip(inverse_mass).map(depth).fold(0.0, f32::max)
 }
 
-/// What changes of a block of strands, shape `[point]` of lanes, world space.
+/// The changing state of a block of strands, shape `[point]` of lanes, world space.
 pub(crate) struct Block<'a> {
     /// Positions at the end of the step \[m\].
     pub positions: &'a mut [Vec3Lanes],
@@ -176,7 +176,7 @@ pub(crate) struct Block<'a> {
     pub previous: &'a mut [Vec3Lanes],
     /// Velocities \[m/s\].
     pub velocities: &'a mut [Vec3Lanes],
-    /// What the next prediction adds to them \[m/s\].
+    /// Additions of the next prediction \[m/s\].
     pub corrections: &'a mut [Vec3Lanes],
 }
 

@@ -77,17 +77,17 @@ pub fn constrain(
 /// Rounds from one look for points that were carried beside their planes to the next.
 const ROUNDS_PER_LOOK: u32 = 5;
 
-/// What a thread works in.
+/// Scratch of a thread.
 struct Workspace {
     pinned: Vec<Pinned>,
-    /// What each point may touch.
+    /// Solid near each point, if there is one.
     touches: Vec<Option<Touch>>,
     /// Way \[m\] that friction may still take each point back in this step.
     friction: Vec<f32x8>,
-    /// Where the prediction was \[m\].
+    /// Predicted positions \[m\].
     predicted: Vec<Vec3x8>,
     margins: Vec<f32x8>,
-    /// How far the length pass moved each point \[m\], and a zero behind the last.
+    /// Motion of each point by the length pass \[m\], and a zero behind the last.
     corrections: Vec<Vec3x8>,
     spans: Spans,
     /// Points of strands that the rounds leave alone.

@@ -46,13 +46,13 @@ pub fn change_by(component: &mut [f32], cell: usize, change: f32) {
     pair[1] += change;
 }
 
-/// What a point brings to the faces.
+/// Quantities that a point transfers to the faces.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct Carried {
     /// Its cell.
     pub cell: u32,
-    /// Where it is in the cell \[cells\].
+    /// Place in the cell \[cells\].
     pub share: [f32; 3],
     /// Mass \[kg\].
     pub mass: f32,

@@ -37,7 +37,7 @@ pub fn integrate(model: &Model, state: &mut State, scratch: &mut Scratch, wind: 
         );
 }
 
-/// What acts on every point alike.
+/// Accelerations common to all points.
 pub(crate) struct Fall {
     time_step: f32x8,
     gravity: Vec3x8,

@@ -10,7 +10,7 @@ use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Times that a point is placed again at most when the solid under it curves: enough for an ear.
 const PLACINGS: usize = 8;
-/// How much nearer \[m\] than its margin a point may be left by that.
+/// Depth \[m\] inside its margin that a point may keep.
 const TOLERATED: f32 = 2e-4;
 
 /// One block of strands as the pass sees it.
@@ -48,7 +48,7 @@ impl Follow<'_> {
 }
 
 impl Follow<'_> {
-    /// Where a point goes that must lie at its length from `before` and outside the solids.
+    /// Position of a point at its length from `before` and outside the solids.
     fn out_of_solids(&self, point: usize, before: Vec3x8, first: Vec3x8, planes: &mut [Plane]) -> Vec3x8 {
         let (margin, length) = (self.margins[point], load(&self.lengths[point - 1]));
         let free = splat(point as f32).simd_gt(self.last_rooted);

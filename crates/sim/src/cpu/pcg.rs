@@ -28,7 +28,7 @@ pub struct PcgSettings {
 pub struct Solution {
     /// Right-hand side, replaced by the residual.
     pub right: Vec<f32>,
-    /// What was found.
+    /// The solution.
     pub values: Vec<f32>,
 }
 

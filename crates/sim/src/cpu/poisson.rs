@@ -57,7 +57,7 @@ impl Poisson {
         self.diagonal.len()
     }
 
-    /// Whether there is nothing to solve.
+    /// True without unknowns.
     pub fn is_empty(&self) -> bool {
         self.diagonal.is_empty()
     }

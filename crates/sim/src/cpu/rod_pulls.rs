@@ -1,4 +1,4 @@
-//! What pulls at rods: solids near them and the hand, as stiff springs of the Newton step.
+//! Forces on rods: solids near them and the hand, as stiff springs of the Newton step.
 
 use glam::Vec3;
 use strandline_groom::{LANES, Vec3Lanes};
@@ -36,15 +36,15 @@ impl Strands<'_> {
             space.margins[point] = margin;
             let free = node.free.simd_gt(f32x8::ZERO);
             if free.any() && !self.parts.solids.is_empty() {
-                // Where it keeps its velocity: where it would fall alone, millimetres deeper, a crease of the skin
-                // has another plane, which would throw hair at rest.
+                // The position at constant velocity: a free fall alone leads millimetres deeper, where a
+                // crease of the skin has another plane, which would throw hair at rest.
                 let position = space.carried[point] + space.coast[point];
                 let start = Some(space.points[point]);
                 let query = Query { position, start, margin, free, care: Care::ROUGH, part };
                 if let Some(touch) = self.parts.solids.touch(planes, point, query) {
                     let height = touch.height(space.carried[point]);
                     let near = height.simd_lt(f32x8::splat(1.0));
-                    // What touches rests where it is.
+                    // A touching point rests in place.
                     let touches = height.simd_lt(f32x8::of(TOUCHES));
                     let height = touches.bitselect(height.fast_min(f32x8::ZERO), height);
                     space.pulls.push(Pull {

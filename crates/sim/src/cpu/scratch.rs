@@ -1,4 +1,4 @@
-//! What the CPU's stages work in.
+//! Scratch of the CPU's stages.
 
 use std::sync::Arc;
 
@@ -6,12 +6,13 @@ use strandline_groom::{RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use super::Volume;
+use super::cells::Cells;
 use crate::cells::Grid;
 use crate::masses::Masses;
 use crate::strands::rods::rod::Node;
 use crate::{Model, State};
 
-/// What the CPU's stages work in; all of it follows from the model and the state.
+/// Scratch of the CPU's stages; all of it follows from the model and the state.
 #[derive(Clone)]
 pub struct Scratch {
     /// Positions at the end of the step \[m\], world space, shape `[block][point]` of lanes: what the
@@ -23,7 +24,9 @@ pub struct Scratch {
     pub(crate) nodes: Option<Vec<Node<f32x8>>>,
     /// The fluid volume; none while it is off.
     pub(crate) volume: Option<Volume>,
-    /// What masses and nodes were made from.
+    /// Points sorted by cell; `None` while nothing reads them.
+    pub(crate) cells: Option<Cells>,
+    /// Inputs of masses and nodes.
     made_from: Made,
 }
 
@@ -62,6 +65,7 @@ impl Scratch {
             nodes: nodes(model, state, &masses),
             masses,
             volume: None,
+            cells: None,
             made_from: Made::new(model, state),
         }
     }
@@ -76,6 +80,11 @@ impl Scratch {
         }
         self.predicted.resize(state.positions.len(), Vec3Lanes::default());
         self.refresh_volume(model, state.volume_box);
+        let old = self.cells.take();
+        self.cells = model
+            .settings
+            .cells
+            .map(|edge| Cells::keep_or_new(old, edge, model.strand_count, model.points_per_strand));
     }
 
     /// Makes the volume fit its settings, and its box that of the state: one of other cells, or of a state that has

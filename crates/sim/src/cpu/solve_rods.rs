@@ -96,7 +96,7 @@ pub fn solve_rods(
         .reduce(Default::default, |one, other| (one.0.with(other.0), one.1.with(other.1)))
 }
 
-/// What all strands share in a step.
+/// Inputs of a step that all strands share.
 pub(super) struct Parts<'a> {
     settings: &'a RodSettings,
     pub(super) count: u32,

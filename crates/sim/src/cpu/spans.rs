@@ -42,15 +42,15 @@ pub struct Spans {
     /// The prediction \[m\], from the first point on.
     goals: Vec<Vec3x8>,
     positions: Vec<Vec3x8>,
-    /// How far the directions are off so far \[m\]: tension over stiffness.
+    /// Errors of the directions \[m\]: tension over stiffness.
     offsets: Vec<Vec3x8>,
-    /// What the elimination leaves: share of the next point.
+    /// Result of the elimination: share of the next point.
     shares: Vec<f32x8>,
     /// Pull along each segment, over the time step squared \[kg m\].
     pulls: Vec<f32x8>,
     /// Length over pull by which a segment gives way \[1/kg\].
     gives_way: f32x8,
-    /// How deep each touch was so far \[m\], 0 or less.
+    /// Depth of each touch \[m\], 0 or less.
     depths: Vec<f32x8>,
 }
 

@@ -1,4 +1,4 @@
-//! What the volume stages share: the moving box, the sorted points, the staggered faces.
+//! State shared by the volume stages: the moving box, the sorted points, the staggered faces.
 
 use strandline_groom::LANES;
 
@@ -23,7 +23,7 @@ pub struct Volume {
     /// Velocities on the faces.
     pub faces: Faces,
     pub(super) cell_of_point: Vec<u32>,
-    /// What each point brings, shape `[block][point]` of lanes.
+    /// Transferred quantities of each point, shape `[block][point]` of lanes.
     pub(super) brought: Vec<Carried>,
     /// The same in the order of their cells.
     pub(super) carried: Vec<Carried>,
@@ -116,7 +116,7 @@ impl Volume {
         &self.solution.values
     }
 
-    /// Whether a lane of a block is a strand and not a repetition of the last one.
+    /// True if a lane of a block is a strand and not a repetition of the last one.
     #[inline]
     pub(super) fn is_live(&self, block: usize, lane: usize) -> bool {
         block * LANES + lane < self.strand_count
@@ -141,7 +141,7 @@ impl Volume {
         self.fluid.iter().map(|&cell| self.divergence(cell as usize).abs()).fold(0.0, f32::max)
     }
 
-    /// What flows out of a cell, over the area of a face \[m/s\] [Chen2011 eq. 19].
+    /// Flow out of a cell, over the area of a face \[m/s\] [Chen2011 eq. 19].
     #[inline]
     pub(super) fn divergence(&self, cell: usize) -> f32 {
         let strides = self.grid.strides();

@@ -1,10 +1,11 @@
-//! What lies on the device.
+//! Buffers on the device.
 
 use strandline_base::par::prelude::*;
 use strandline_body::BodyFrame;
 use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
+use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::motion::{Root, has_roots, part_count};
 use super::records::{Outcome, PointBox, PressureState, Report};
@@ -53,9 +54,10 @@ pub(super) struct Buffers {
     /// Per workgroup of strands.
     pub outcomes: Buffer<Outcome>,
     pub reports: Buffer<Report>,
-    /// What a step without a volume reports.
+    /// Report of a step without a volume.
     pub no_pressure: Buffer<PressureState>,
     pub volume: Option<Volume>,
+    pub cells: Option<Cells>,
     pub rods: Option<RodBuffers>,
 }
 
@@ -88,6 +90,7 @@ impl Buffers {
             reports: Buffer::new(gpu, "reports", REPORTS)?,
             no_pressure: Buffer::new(gpu, "no pressure", 1)?,
             volume: None,
+            cells: None,
             rods: match &model.rods {
                 Some(_) => Some(RodBuffers::new(gpu, lane_count, points)?),
                 None => None,

@@ -17,7 +17,7 @@ const JACOBI: u32 = 1;
 const CHEBYSHEV: u32 = 2;
 
 mirror! {
-    /// What rods take of a step. Mirrors `RodStep` in common.wesl.
+    /// Settings of a step for rods. Mirrors `RodStep` in common.wesl.
     pub(super) struct RodStep {
         /// Turns what rests on the head through a part of the step.
         pub part_rotation: [f32; 4],
@@ -30,7 +30,7 @@ mirror! {
         pub parts: u32,
         pub newton_steps: u32,
         pub head_moves: u32,
-        /// What hairs that rub take off the way of a part \[m\].
+        /// Distance removed by rubbing from the path of a part \[m\].
         pub rubbing: f32,
     }
 }
@@ -44,7 +44,7 @@ mirror! {
         pub end_from_start: Rigid,
         pub start_from_end: Rigid,
         pub head_rotation: [f32; 4],
-        /// What gravity adds in a step, or in a part of one \[m/s\].
+        /// Velocity added by gravity in a step, or in a part of one \[m/s\].
         pub gravity: [f32; 3],
         pub time_step: f32,
         pub wind: [f32; 3],
@@ -74,15 +74,15 @@ mirror! {
         pub tolerance: f32,
         pub max_iterations: u32,
         pub preconditioner: u32,
-        /// Where the report goes.
+        /// Slot of the report.
         pub slot: u32,
         /// Share of what the pressure changes that a step takes.
         pub pressure_share: f32,
         /// Pieces of the body up to the last that carries a collider, the head among them.
         pub piece_count: u32,
-        /// Where the hand is \[m\].
+        /// Position of the hand \[m\].
         pub hand: [f32; 3],
-        /// Whether a hand holds hair.
+        /// 1 if a hand holds hair.
         pub holds: u32,
         /// 1 where strands have root frames of their own: see roots.wesl.
         pub has_roots: u32,
@@ -117,7 +117,7 @@ impl Step {
     pub fn new(model: &Model, before: &BodyFrame, drive: &Drive, grab: &Grab, slot: usize) -> Self {
         let (start, end) = (&before.world_from_head(), drive.body.world_from_head());
         let settings = &model.settings;
-        // What acts on all points alike acts in each part of a step of rods.
+        // Forces common to all points act in each part of a step of rods.
         let part_time = settings.time_step / part_count(model) as f32;
         let taken = |rate: f32| -math::exp_m1(-rate * part_time);
         let is_last = !settings.has_rods() && !settings.strands.constrain.length_pass.enabled;

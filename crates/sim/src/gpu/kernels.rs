@@ -5,7 +5,8 @@ use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 use super::buffers::Buffers;
 use super::stage::{StageKernels, Target};
 use super::{
-    advance, constrain, gather, integrate, lengths_alone, mark, pose_roots, solve_pressure, solve_rods, splat,
+    advance, cells, constrain, gather, integrate, lengths_alone, mark, pose_roots, solve_pressure,
+    solve_rods, splat,
 };
 use crate::Preconditioner;
 use crate::step::Stage;
@@ -44,6 +45,7 @@ macro_rules! kernels {
 
 kernels! {
     PoseRoots => pose_roots,
+    Cells => cells,
     Integrate => integrate,
     Constrain => constrain,
     SolveRods => solve_rods,

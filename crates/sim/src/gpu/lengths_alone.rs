@@ -20,7 +20,7 @@ kernel! {
     }
 }
 
-/// What a thread is when lengths are projected.
+/// Work of a thread when lengths are projected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LengthsForm {
     /// One strand, as in `constrain`.

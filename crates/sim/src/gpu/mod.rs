@@ -7,6 +7,8 @@ mod advance;
 mod alone;
 mod between;
 mod buffers;
+mod cell_buffers;
+mod cells;
 mod constrain;
 mod gather;
 mod inputs;

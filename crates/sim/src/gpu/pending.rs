@@ -31,7 +31,7 @@ struct OnWay {
     watch: Stopwatch,
 }
 
-/// What a step did, and the times of its stages \[s\].
+/// Report of a step, and the times of its stages \[s\].
 pub(super) type Reported = (Report, Vec<(&'static str, f64)>);
 
 impl Pending {

@@ -85,7 +85,8 @@ impl Probe {
         Ok(vectors(&self.velocities_and_corrections()?.0))
     }
 
-    /// What the next prediction adds to the velocities \[m/s\]; with rods the first axes of their sections.
+    /// Additions of the next prediction to the velocities \[m/s\]; with rods the first axes of their
+    /// sections.
     ///
     /// # Errors
     /// The device was lost.
@@ -135,7 +136,7 @@ impl Probe {
         Ok((grid.origin, grid.spacing))
     }
 
-    /// Where the points of each cell begin, and what is behind the last cell: their number.
+    /// Index of the first point of each cell, and the number of points behind the last.
     ///
     /// # Errors
     /// The device was lost.
@@ -152,6 +153,18 @@ impl Probe {
         let count = self.start_index()?.last().copied().unwrap_or(0);
         let sorted = volume.sorted_points.read_first(count as usize)?;
         Ok(sorted.iter().map(|point| point.index).collect())
+    }
+
+    /// Indices of points sorted by cell, bucket after bucket, and the first place of each bucket in them with their
+    /// number behind the last; empty without `Settings::cells`.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn cells(&self) -> Result<(Vec<u32>, Vec<u32>), SimError> {
+        let Some(cells) = &self.runner.buffers.cells else { return Ok(Default::default()) };
+        let starts = cells.start_index.read()?;
+        let count = starts.last().copied().unwrap_or(0);
+        Ok((cells.order.read_first(count as usize)?, starts))
     }
 
     /// Velocity and change \[m/s\] of every face, shape `[component][cell]`.

@@ -1,4 +1,4 @@
-//! What kernels and the host share, and how the work is laid out.
+//! Structs shared by kernels and host, and the layout of the work.
 
 use strandline_gpu::mirror;
 
@@ -8,7 +8,7 @@ use crate::PressureReport;
 pub(super) const MOST_WORKGROUPS: usize = 256;
 
 mirror! {
-    /// What a step did. Mirrors `Report` in report.wesl.
+    /// Report of a step. Mirrors `Report` in report.wesl.
     pub(super) struct Report {
         pub stretch_sum: f32,
         pub stretch_max: f32,
@@ -29,7 +29,7 @@ mirror! {
 }
 
 mirror! {
-    /// What the strands of a workgroup came to. Mirrors `Outcome` in advance.wesl.
+    /// Measures over the strands of a workgroup. Mirrors `Outcome` in advance.wesl.
     pub(super) struct Outcome {
         /// Sum of stretch, largest stretch, deepest point \[m\], points that are not finite.
         pub found: [f32; 4],
@@ -49,7 +49,7 @@ mirror! {
 }
 
 mirror! {
-    /// Where the solve stands. Mirrors `PressureState` in pressure.wesl.
+    /// Progress of the solve. Mirrors `PressureState` in pressure.wesl.
     pub struct PressureState {
         /// Residual in the preconditioner's norm.
         pub rate: f32,
@@ -83,7 +83,7 @@ impl From<PressureState> for PressureReport {
     }
 }
 
-/// How the gradient is subtracted [Chen2011 table 1].
+/// Subtraction of the gradient [Chen2011 table 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Gradient {
     /// One kernel for all components.
@@ -93,7 +93,7 @@ pub enum Gradient {
     Split,
 }
 
-/// Where the solve runs.
+/// Distribution of the solve over workgroups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Spread {
     /// Small grids on one workgroup, others on many.

@@ -1,4 +1,4 @@
-//! What rods have on the device beyond what all strands have.
+//! Buffers of rods beyond those of all strands.
 
 use strandline_gpu::{Buffer, Gpu, GpuError, THREADS};
 

@@ -7,6 +7,7 @@ use strandline_gpu::{Buffer, Dispatches, Gpu, GpuError, Recorder, Timer};
 use strandline_groom::{LANES, Lanes, RestShape};
 
 use super::buffers::{Buffers, REPORTS};
+use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::kernels::Kernels;
 use super::pending::{Pending, Reported};
@@ -38,7 +39,7 @@ pub struct GpuRunner {
     pub(super) length_scale: Vec<Lanes>,
     /// The rest shape with these lengths.
     pub(super) lengths: Arc<RestShape>,
-    /// Where the box of the volume is to be from the next step on \[m\]; none leaves it.
+    /// Box of the volume from the next step on \[m\]; `None` leaves it.
     pub(super) volume_box: Option<[f32; 4]>,
     pub(super) grab: Grab,
     pub(super) pending: Pending,
@@ -49,7 +50,7 @@ pub struct GpuRunner {
     costs: Costs,
 }
 
-/// What a step asked of the device.
+/// Work that a step caused on the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Costs {
     /// Kernels started.
@@ -133,7 +134,7 @@ impl GpuRunner {
         [&self.buffers.places[self.side], &self.buffers.places[1 - self.side]]
     }
 
-    /// What the last step asked of the device.
+    /// Work that the last step caused on the device.
     pub fn costs(&self) -> Costs {
         self.costs
     }
@@ -248,6 +249,9 @@ impl GpuRunner {
                 if let (Stage::Splat, Some(volume)) = (stage, &self.buffers.volume) {
                     recorder.clear(&volume.start_index);
                 }
+                if let (Stage::Cells, Some(cells)) = (stage, &self.buffers.cells) {
+                    recorder.clear(&cells.start_index);
+                }
                 recorder.stage(stage.name(), dispatches);
                 costs.dispatches += dispatches.len();
                 costs.solve_dispatches += if *stage == Stage::SolvePressure { dispatches.len() } else { 0 };
@@ -277,6 +281,17 @@ impl GpuRunner {
             }
             None => None,
         };
+        let edge = self.model.settings.cells;
+        let changed = changed || self.buffers.cells.as_ref().map(|cells| cells.edge) != edge;
+        if changed {
+            self.buffers.cells = match edge {
+                Some(edge) => {
+                    let Buffers { strand_count, lane_count, points, .. } = self.buffers;
+                    Some(Cells::new(&self.gpu, edge, [strand_count, lane_count], points)?)
+                }
+                None => None,
+            };
+        }
         if let (Some(volume), Some(place)) = (&self.buffers.volume, self.volume_box.take()) {
             volume.put(place)?;
         }
@@ -346,9 +361,9 @@ fn step_report((report, seconds): Reported, model: &Model, segment_count: usize)
     }
 }
 
-/// What keeps a lost device's error apart from a setting's.
+/// Keeps errors of a lost device apart from those of settings.
 impl SimError {
-    /// What keeps a volume of so many cells off the device: the setting, where there is too little room.
+    /// Error of a volume with a number of cells: that of the setting, if there is too little room.
     fn of_volume(cells: [u32; 3], source: GpuError) -> Self {
         match source {
             GpuError::Limit { .. } | GpuError::OutOfMemory { .. } => Self::Cells { cells, source },

@@ -1,11 +1,11 @@
-//! What every stage of a step has on a device.
+//! Resources of every stage of a step on a device.
 
 use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 
 use super::buffers::Buffers;
 use crate::Preconditioner;
 
-/// What the kernels of a stage are bound to.
+/// Targets of a stage's kernels.
 #[derive(Clone, Copy)]
 pub(super) struct Target<'a> {
     pub gpu: &'a Gpu,
@@ -18,12 +18,12 @@ pub(super) struct Target<'a> {
 
 /// The kernels of a stage.
 pub(super) trait StageKernels: Sized {
-    /// What they declare, to be held against their shaders.
+    /// Their declarations, to be compared with their shaders.
     fn declarations() -> Vec<Declaration>;
 
     /// Compiles them, for strands of so many points.
     fn new(gpu: &Gpu, points_per_strand: usize) -> Result<Self, GpuError>;
 
-    /// What a step starts, in order; nothing where it has nothing to do.
+    /// Dispatches of a step, in order; empty for a stage without work.
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError>;
 }

@@ -94,7 +94,7 @@ pub struct ComingState {
     content: Content,
 }
 
-/// Where its parts are, and what the host knows of it.
+/// Places of its parts, and their copies on the host.
 #[derive(Debug)]
 struct Content {
     parts: [Part<f32>; 3],
@@ -106,7 +106,7 @@ struct Content {
 }
 
 impl ComingState {
-    /// Whether it has arrived; never waits.
+    /// True if it has arrived; never waits.
     ///
     /// # Errors
     /// The device was lost.

@@ -1,4 +1,4 @@
-//! How a person directs hair that plays: where the head, the wind and the hand are.
+//! Direction of playing hair by the user: head, wind and hand.
 
 use glam::Vec3;
 use strandline_base::Group;
@@ -14,7 +14,7 @@ pub(crate) const FRAME: f64 = 1.0 / 60.0;
 /// Steps of a frame at most, so that a window stays awake: with steps shorter than that time slows down.
 pub(crate) const MOST_STEPS: f64 = 16.0;
 
-/// How a person directs hair that plays.
+/// Direction of playing hair by the user.
 pub(crate) struct Direction {
     pub wind: WindSection,
     motion: MotionSection,
@@ -22,9 +22,9 @@ pub(crate) struct Direction {
     /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was taken.
     begun: f64,
     time: f64,
-    /// Whether the frame on its way moves that time on: not after it went back to its beginning.
+    /// True if the frame on its way advances that time: not after a return to the beginning.
     counts: bool,
-    /// Where the hand is that holds hair \[m\], world space.
+    /// Position of the hand that holds hair \[m\], world space.
     pub hand: Option<Vec3>,
 }
 
@@ -36,7 +36,7 @@ impl Direction {
         Self { wind, motion, head, begun: start, time: start, counts: true, hand: None }
     }
 
-    /// What the next frame does.
+    /// Drive of the next frame.
     pub fn next(&mut self) -> Live {
         self.counts = true;
         let (head, wind) = (self.head.clone(), self.wind);

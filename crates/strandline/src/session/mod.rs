@@ -37,7 +37,7 @@ use strandline_base::Group;
 use crate::{
     Error, HeadMotion, Scene,
     groom::LANES,
-    render::{Camera, FrameReport, Look, Picture, PictureSettings, memory::check_lights},
+    render::{Camera, FrameReport, Look, Picture, PictureSettings, RenderError, memory::check_lights},
     sim::StepReport,
     strands::tags::Tags,
 };
@@ -194,13 +194,27 @@ impl<E: Executor> Session<E> {
             self.view.painter.set_picture(&settings)?;
             self.draft = draft;
         }
-        let Self { executor, view, shown, .. } = self;
-        let mut draw = |view: &mut View| {
-            view.draw(shown, |moment| executor.with(|simulation| simulation.bring_home(moment)))
+        let failure = match self.draw_from(draft, false) {
+            Ok(drawn) => return Ok(drawn),
+            Err(failure) => failure,
         };
+        // The CPU draws the points of the same step, wherever they are found.
+        self.view.painter.recover_from(failure)?;
+        let Self { executor, shown, .. } = self;
+        executor.with(|simulation| simulation.bring_home(shown))?;
+        Ok(self.draw_from(draft, true)?)
+    }
+
+    /// Draws the shown moment from its points on their device, or on the host where `at_home`.
+    fn draw_from(
+        &mut self,
+        draft: Option<Draft>,
+        at_home: bool,
+    ) -> Result<(Picture, FrameReport), RenderError> {
+        let Self { view, shown, .. } = self;
         match draft {
-            Some(draft) => simplified(draft, view, draw),
-            None => draw(view),
+            Some(draft) => simplified(draft, view, |view| view.draw(shown, at_home)),
+            None => view.draw(shown, at_home),
         }
     }
 

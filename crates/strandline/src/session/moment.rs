@@ -1,4 +1,4 @@
-//! What a picture is drawn from.
+//! Source of the points of a picture.
 
 use strandline_gpu::{Buffer, Gpu, GpuError};
 

@@ -27,14 +27,14 @@ const MOST_STEPS: u32 = 1_000_000;
 pub(crate) struct Simulation {
     pub(super) engine: Engine,
     clock: Clock,
-    /// Where the moment lies between the last two states.
+    /// Place of the moment between the last two states.
     share: f32,
     /// Body at the last two states, and at the end of the last run.
     bodies: [BodyFrame; 2],
     end: BodyFrame,
     /// Time \[s\] of all runs that went well.
     pub passed: f64,
-    /// Where the hand that holds hair is, and where it goes in the next run \[m\]; none holds nothing.
+    /// Position of the hand that holds hair, and its target in the next run \[m\]; `None` without one.
     hand: Option<[Vec3; 2]>,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
     pub threads: Option<Pool>,
@@ -124,7 +124,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Where the run stands after a frame.
+    /// State of the run after a frame.
     pub fn snapshot(&mut self, frame: u32) -> Result<Snapshot, SimError> {
         let [before, now] = self.bodies.clone();
         let state = self.engine.state()?.checkpoint();
@@ -156,7 +156,7 @@ impl Simulation {
         self.hand = None;
     }
 
-    /// Where the hair of the moment that is shown is, and how it moves.
+    /// Positions and motion of the hair in the shown moment.
     pub fn hair_pose(&mut self) -> Result<HairPose, SimError> {
         let mut moment = Moment::default();
         self.show(None, &mut moment)?;
@@ -219,7 +219,7 @@ impl Simulation {
     ) -> Result<Vec<StepReport>, SimError> {
         let (before, begin) = (self.clock, self.clock.time());
         let ticks = self.clock.advance(seconds);
-        // Where no time passes the head is at its end.
+        // Without passing time the head is at its end.
         let share = |time: f64| {
             if seconds > 0.0 { ((time - begin) / seconds).clamp(0.0, 1.0) as f32 } else { 1.0 }
         };
@@ -261,7 +261,7 @@ impl Simulation {
         Ok(reports)
     }
 
-    /// What drives the hair in each step that is due, sampled at the end of the step.
+    /// Drives of the hair for each due step, sampled at the end of the step.
     fn drives(
         &self,
         ticks: Ticks,

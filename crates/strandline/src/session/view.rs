@@ -1,13 +1,11 @@
 //! Renderer of a session, with view, look and lights.
 
 use crate::{
-    Error,
     body::Aabb,
     gpu::Gpu,
     groom::Guides,
     render::{BodyLook, Camera, FrameInput, FrameReport, LevelOfDetail, Light, Look, Picture, RenderError},
     session::painter::Painter,
-    sim::SimError,
 };
 
 use super::moment::Moment;
@@ -75,8 +73,8 @@ impl View {
         self.painter.maps(light)
     }
 
-    /// Draws a moment where its points are: on their device, or from the host where `at_home`.
-    fn draw_from(&mut self, moment: &Moment, at_home: bool) -> Result<(Picture, FrameReport), RenderError> {
+    /// Draws a moment from its points on their device, or on the host where `at_home`.
+    pub fn draw(&mut self, moment: &Moment, at_home: bool) -> Result<(Picture, FrameReport), RenderError> {
         let input = FrameInput {
             positions: moment.positions(),
             body: &moment.body,
@@ -87,20 +85,5 @@ impl View {
             level_of_detail: &self.level_of_detail,
         };
         self.painter.draw(&input, moment.device_points().filter(|_| !at_home))
-    }
-
-    /// Draws a moment; where the GPU fails, and that is allowed, on the CPU: `bring_home` then has the points.
-    pub fn draw(
-        &mut self,
-        moment: &mut Moment,
-        bring_home: impl FnOnce(&mut Moment) -> Result<(), SimError>,
-    ) -> Result<(Picture, FrameReport), Error> {
-        let failure = match self.draw_from(moment, false) {
-            Ok(drawn) => return Ok(drawn),
-            Err(failure) => failure,
-        };
-        self.painter.recover_from(failure)?;
-        bring_home(moment)?;
-        Ok(self.draw_from(moment, true)?)
     }
 }

@@ -18,7 +18,7 @@ use crate::{
     sim::{MOST_SPIN, State},
 };
 
-/// Where guides are, how they move, and where the head is.
+/// Positions and motion of guides, and the pose of the head.
 ///
 /// Its file holds four tensors of the safetensors format, 32-bit floats: `positions` \[m\], `velocities`
 /// \[m/s\] and `corrections`, what the next prediction adds to them \[m/s\], world space, shape
@@ -34,7 +34,7 @@ pub(crate) struct HairPose {
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,
     corrections: Vec<Vec3>,
-    /// How the sections of rods are turned, and how fast \[rad/s\]; empty without rods.
+    /// Rotations of the sections of rods, and their angular velocities \[rad/s\]; empty without rods.
     sections: Vec<Vec3>,
     spins: Vec<f32>,
     body: BodyFrame,
@@ -175,10 +175,10 @@ impl HairPose {
     }
 }
 
-/// Whether the bytes of a file hold a pose for hair of so many strands and points of each.
+/// Checks that the bytes of a file hold a pose for hair of a number of strands, and points of each.
 ///
 /// # Errors
-/// What they are instead.
+/// The content found instead.
 pub fn check_pose(bytes: &[u8], shape: [usize; 2]) -> Result<(), String> {
     HairPose::parse(bytes, shape).map(|_| ())
 }
@@ -292,7 +292,7 @@ mod tests {
         assert!(refused(&wild, SHAPE).contains("hold NaN"));
         let count = SHAPE[0] * SHAPE[1];
         let spun = |spin| HairPose { sections: vec![Vec3::X; count], spins: vec![spin; count], ..pose() };
-        // What the simulation can come to can be kept.
+        // Any state that the simulation can reach can be saved.
         let fast = spun(MOST_SPIN);
         assert_eq!(HairPose::parse(&fast.to_bytes().unwrap(), SHAPE).unwrap(), fast);
         assert!(spun(2.0 * MOST_SPIN).to_bytes().unwrap_err().to_string().contains("spins hold 2000000"));

@@ -10,7 +10,7 @@ fn scene() -> Scene {
 }
 
 fn head(frame: u32) -> Pose {
-    Pose { rotation: glam::Quat::from_rotation_y(0.1 * frame as f32), ..Pose::IDENTITY }
+    Pose { rotation: strandline::math::rotation(glam::Vec3::Y, 0.1 * frame as f32), ..Pose::IDENTITY }
 }
 
 fn points(cache: &mut Cache, frame: usize) -> Vec<glam::Vec3> {

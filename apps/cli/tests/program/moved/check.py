@@ -29,7 +29,7 @@ def cache(path):
     assert head.dtype == np.float32 and head.shape == (frames, 7)
     assert np.allclose(np.linalg.norm(head[:, :4], axis=1), 1, atol=1e-5)
     assert np.isfinite(points).all() and arrays["widths"].shape == (starts[-1],)
-    assert (meta["layout"], meta["units"], meta["up_axis"]) == (1, "m", "y"), meta
+    assert (meta["layout"], meta["units"], meta["up_axis"]) == (2, "m", "y"), meta
     assert meta["what"] in ("guides", "strands") and "[film]" in meta["scene"]
     assert all(len(column) == frames for name, column in meta["report"].items() if name != "open")
     print(f"{path}: {frames} frames of {len(starts) - 1} strands")

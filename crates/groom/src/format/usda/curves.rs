@@ -7,7 +7,7 @@ use super::super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS};
 use super::text::{Prim, Value};
 use crate::{Groom, GroomError, Widths};
 
-/// How control points become points of strands.
+/// Kind of the curve by which control points become points of strands.
 #[derive(Clone, Copy, PartialEq)]
 enum Curve {
     /// Each control point is one: linear, and Catmull-Rom with pinned ends.

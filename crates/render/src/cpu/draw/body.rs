@@ -31,7 +31,7 @@ pub struct Body {
     pub positions: Vec<Vec3>,
     /// Vertex normals, world space.
     pub normals: Vec<Vec3>,
-    /// How dense roots lie about every vertex, 0 to 1; empty for nowhere.
+    /// Density of roots about every vertex, 0 to 1; empty without roots.
     pub roots: Vec<f32>,
     screen: Vec<Vec4>,
     runs: Vec<Vec<ScreenTriangle>>,
@@ -263,7 +263,7 @@ impl Occluders {
         self.resize(0, 0);
     }
 
-    /// Whether a ribbon between two screen points is hidden wherever it is drawn.
+    /// True if a ribbon between two screen points is hidden everywhere.
     pub fn hide(&self, start: Vec4, end: Vec4) -> bool {
         if self.blocks.is_empty() {
             return false;

@@ -14,7 +14,7 @@ use crate::frame::samples::TILE;
 /// Width \[sample\] from which on ribbons are drawn round, and from which on they are wholly so.
 const ROUND_FROM: f32 = 2.0;
 const ROUND_FULL: f32 = 6.0;
-/// How much rounder ribbons are than flat: their middle has 1.3 times the light of a flat one, their edges 0.4 of it.
+/// Roundness of wide ribbons: their middle has 1.3 times the light of a flat one, their edges 0.4 of it.
 const ROUNDNESS: f32 = 0.9;
 
 /// Samples with less than this left to show are done.
@@ -28,11 +28,11 @@ pub struct End {
     pub point: Vec4,
     /// Radiance, linear RGB, and 1.
     pub color: Vec4,
-    /// What happens here.
+    /// Shape of this end.
     pub joint: Joint,
 }
 
-/// What happens at an end of a segment.
+/// Shape of an end of a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Joint {
     /// The neighbour runs along the same axis.
@@ -50,7 +50,7 @@ pub struct TileSamples<'a> {
     pub colors: &'a mut [Vec4],
     /// One over the body's view depth \[1/m\]; `None` when the tile shows no body.
     pub depths: Option<&'a [f32]>,
-    /// Whether wide ribbons are brighter in the middle than at their edges, as round fibres are.
+    /// True if wide ribbons are brighter in the middle than at their edges, as round fibres are.
     pub round: bool,
 }
 
@@ -152,7 +152,7 @@ struct Run<'a> {
     high_joint: Joint,
     /// Neither end is a strand's.
     is_bare: bool,
-    /// Where it starts and ends on its axis, and where it starts on the other \[sample\].
+    /// Begin and end on its axis, and begin on the other axis \[sample\].
     start: f32,
     end: f32,
     across: f32,
@@ -254,7 +254,7 @@ struct Stroke {
 }
 
 impl Stroke {
-    /// How round it is: thin ribbons are flat.
+    /// Roundness: thin ribbons are flat.
     #[inline]
     fn roundness(&self) -> f32 {
         ROUNDNESS * ((self.width - ROUND_FROM) / (ROUND_FULL - ROUND_FROM)).clamp(0.0, 1.0)
@@ -290,7 +290,7 @@ impl Turns {
         (first.is_some() || last.is_some()).then_some(Self { first, last })
     }
 
-    /// Whether a sample is this segment's: on the tip's side of the first line, not of the last.
+    /// True if a sample belongs to this segment: on the tip's side of the first line, not of the last.
     fn own(&self, sample: usize) -> bool {
         let middle = Vec2::new((sample % TILE) as f32 + 0.5, (sample / TILE) as f32 + 0.5);
         let is_past = |(point, direction): (Vec2, Vec2)| (middle - point).dot(direction) >= 0.0;

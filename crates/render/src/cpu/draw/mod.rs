@@ -29,7 +29,7 @@ const TILE_BLOCKS: usize = TILE / BLOCK;
 /// Segments drawn into a tile between two looks for opaque blocks.
 const BATCH: usize = 48;
 
-/// What is drawn.
+/// Inputs of `draw`.
 #[derive(Clone, Copy)]
 pub struct DrawInput<'a> {
     /// The hair.
@@ -38,11 +38,11 @@ pub struct DrawInput<'a> {
     pub light: Radiances<'a>,
     /// The camera.
     pub camera: &'a Camera,
-    /// What is behind everything; `None` leaves it transparent.
+    /// The background; `None` leaves it transparent.
     pub background: Option<Background>,
     /// Samples along each axis of a pixel.
     pub supersampling: u32,
-    /// Whether wide strands are drawn round; flat where numbers stand for their light.
+    /// True if wide strands are drawn round; they are flat if values replace their light.
     pub round: bool,
 }
 

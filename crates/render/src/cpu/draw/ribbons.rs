@@ -51,7 +51,7 @@ impl Segment {
         self.0 as usize & (Self::MAX_POINTS - 1)
     }
 
-    /// Whether it is marked with one of the constants.
+    /// True if it is marked with one of the constants.
     #[inline]
     pub fn is(self, mark: u32) -> bool {
         self.0 & mark != 0
@@ -64,7 +64,7 @@ pub struct Ribbons {
     /// Screen points (see [`Projection`]), shape `[strand][point]`, then pairs of points for the
     /// segments cut by the near plane.
     points: Vec<Vec4>,
-    /// What the pairs are parts of.
+    /// Segments that the pairs belong to.
     cuts: Vec<Cut>,
     /// Sorted front to back: key and segment.
     order: Vec<u64>,
@@ -77,12 +77,13 @@ pub struct Ribbons {
 struct Cut {
     /// Its first point.
     point: u32,
-    /// Where it is cut, as a share of the way to its last point, and whether what is seen lies behind that.
+    /// Place of the cut, as a share of the way to its last point, and whether the visible part lies behind
+    /// it.
     share: f32,
     ahead: bool,
 }
 
-/// What one thread finds in a run of strands.
+/// Result of a thread for a run of strands.
 #[derive(Debug, Default)]
 struct Run {
     /// Mean inverse depth \[1/m\] and segment.
@@ -280,7 +281,7 @@ impl Run {
     }
 }
 
-/// Whether a segment is longer in y than `hold` times its length in x.
+/// True if a segment is longer in y than `hold` times its length in x.
 fn is_longer_in_y(start: Vec4, end: Vec4, hold: f32) -> bool {
     (end.y - start.y).abs() > hold * (end.x - start.x).abs()
 }

@@ -12,7 +12,7 @@ pub fn keyed(key: u32, payload: u32) -> u64 {
     u64::from(key) << 32 | u64::from(payload)
 }
 
-/// What a keyed item carries.
+/// Payload of a keyed item.
 pub fn payload(item: u64) -> u32 {
     item as u32
 }

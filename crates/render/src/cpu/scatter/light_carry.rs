@@ -11,7 +11,7 @@ use crate::scatter::lattice::{DIRECTIONS, Rays, directions};
 
 /// Mean cosine between random hairs and the plane across a direction.
 const MEAN_COSINE: f32 = std::f32::consts::FRAC_PI_4;
-/// How much less light skin lets through than cells that are evenly filled with it would.
+/// Attenuation of light by skin, relative to cells that are evenly filled with it.
 const SKIN_EXTINCTION: f32 = 4.0;
 /// Slots that lie together.
 const BLOCK: usize = 64;
@@ -26,11 +26,12 @@ type Block = [[Vec4; BLOCK]; DIRECTIONS];
 pub(crate) struct Carried {
     /// The slot of each cell.
     slots: Vec<u32>,
-    /// Whether each row of cells holds something, shape `[layer][row]`.
+    /// True for each row of cells that is not empty, shape `[layer][row]`.
     holds: Vec<bool>,
-    /// What hair of each slot shows (between `scatter` and `carry`) or mean radiance within it (behind `carry`).
+    /// Radiance of each slot's hair (between `scatter` and `carry`) or mean radiance within it (after
+    /// `carry`).
     rays: Vec<Block>,
-    /// What it shows of straight light.
+    /// Its share of direct light.
     direct: Vec<Block>,
     /// Radiance of the skin of each slot.
     skins: Vec<Vec4>,
@@ -45,13 +46,13 @@ struct Way {
     /// From cell to cell, and its length over that of a cell.
     step: IVec3,
     length: f32,
-    /// What each slot does to light.
+    /// Effect of each slot on light.
     crossings: Vec<Crossing>,
     /// Radiance that leaves each cell: of all of them behind the last `carry`, of two layers else.
     leaving: Vec<Vec4>,
 }
 
-/// What a cell does to light along a direction.
+/// Effect of a cell on light along a direction.
 #[derive(Clone, Copy, Debug, Default)]
 struct Crossing {
     /// Shares that skin before and behind the hair lets through.
@@ -141,7 +142,7 @@ impl Carried {
         });
     }
 
-    /// What hair and skin show of what was carried.
+    /// Scatters the carried light by hair and skin.
     pub(crate) fn scatter(&mut self, cells: &[Cell], scene: &Scene) {
         let color = scene.body.map_or(Vec3::ZERO, |(_, color)| color).extend(0.0);
         let Self { rays, direct, skins, .. } = self;
@@ -191,7 +192,7 @@ fn on_skin(skin: Vec3, rays: &Rays, scene: &Scene) -> Vec4 {
 
 /// A row of cells along x.
 struct Row {
-    /// Where the light that leaves its first cell lies, and how many cells it has.
+    /// Index of the light that leaves its first cell, and the number of its cells.
     first: usize,
     columns: usize,
     /// The same of the row that light comes from, which may be this one; none where that is outside the grid.
@@ -275,8 +276,9 @@ impl Crossing {
         Self { before, behind, passed, mean: (1.0 - passed) / depth }
     }
 
-    /// What leaves the cell of what arrives; puts the mean radiance in its hair in the place of what that shows. The
-    /// inside of the body is as bright as its skin, so that places between cells within and without are not dark.
+    /// Light that leaves the cell, by the light that arrives. Replaces the radiance of its hair by the mean
+    /// radiance in it. The inside of the body is as bright as its skin, so that places between cells inside
+    /// and outside are not dark.
     #[inline]
     fn cross(&self, ray: &mut Vec4, skin: Vec4, arrived: Vec4) -> Vec4 {
         let shown = *ray;

@@ -95,7 +95,7 @@ impl LightGrid {
         light_field::on_surface(&self.field(point + normal * self.grid.cell).0, normal).truncate()
     }
 
-    /// What each cell holds, from the sums; the straight light that its hair meets.
+    /// Content of each cell, from the sums; the direct light on its hair.
     fn prepare(&mut self, scene: &Scene) {
         let (grid, parts) = (self.grid, &self.parts);
         let width = HAIR_SUMS + scene.reached.len() + SKIN_SUMS;
@@ -161,7 +161,8 @@ impl LightGrid {
 }
 
 impl Toward {
-    /// What a cell's hair shows toward the eye of light along every direction, and what the field alone says of that.
+    /// Radiance of a cell's hair toward the eye in the light along every direction, and the part that the
+    /// field alone gives.
     fn shown(&self, cell: &Cell, middle: Vec3, rays: &Rays, field: &Field) -> [Vec4; 2] {
         let to_eye = (self.eye - middle).normalize_or(Vec3::Z);
         let u = light_field::across(cell.tangent, to_eye);
@@ -177,7 +178,8 @@ impl Toward {
     }
 }
 
-/// What a cell's hair shows along every direction of straight light, a share of which reaches it of each light.
+/// Radiance of a cell's hair along every direction in direct light, of which a share of each light reaches
+/// it.
 fn straight_light(cell: &Cell, middle: Vec3, scene: &Scene, reached: &dyn Fn(usize) -> f32) -> Rays {
     let mut shown = Rays::default();
     if cell.hair == 0.0 {

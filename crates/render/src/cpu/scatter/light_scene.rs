@@ -1,4 +1,4 @@
-//! What scattered light is made of: what it comes from, and what lies in a cell of its grid.
+//! Inputs of scattered light: its sources, and the content of a cell of its grid.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::scatter::lattice::{Lattice, Mix};
 use crate::shadow::Shadows;
 use crate::strands::Strands;
 
-/// What light is scattered by.
+/// Scatterers of light.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// All drawn hair.
@@ -27,7 +27,7 @@ pub struct Scene<'a> {
     pub body: Option<(ShadowBody<'a>, Vec3)>,
     /// Shadows of the same lights.
     pub shadows: &'a Shadows,
-    /// How much of the surroundings hair hides; its grid is taken.
+    /// Surroundings hidden by hair; its grid is reused.
     pub occlusion: &'a Occlusion,
     /// The lights.
     pub lights: &'a [Light],
@@ -35,13 +35,13 @@ pub struct Scene<'a> {
     pub around: Field,
     /// The fibre's scattering among directions.
     pub lattice: &'a Arc<Lattice>,
-    /// Where the camera stands \[m\], world space.
+    /// Position of the camera \[m\], world space.
     pub eye: Vec3,
-    /// How many times light is scattered.
+    /// Number of scatterings.
     pub rounds: u32,
 }
 
-/// What lies in a cell.
+/// Content of a cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Cell {
     /// Which cell of the grid it is.

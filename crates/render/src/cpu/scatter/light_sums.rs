@@ -14,7 +14,7 @@ use crate::lanes::rounded_up;
 
 /// Most parts that the strands are shared out to.
 const PARTS: usize = 4;
-/// What is converted as 32 bits.
+/// Largest value converted as 32 bits.
 const MOST_SMALL: f32 = 1_073_741_824.0;
 /// Whole numbers make sums that do not depend on their order: parts of a square metre, 2^40.
 pub(crate) const UNITS: f32 = 1_099_511_627_776.0;

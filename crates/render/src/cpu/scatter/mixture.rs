@@ -17,7 +17,7 @@ use crate::strands::Strands;
 pub(crate) struct Chance {
     /// Pigment as a multiple of the look's.
     pub(crate) darker: f32,
-    /// Whether it has turned white.
+    /// True if it has turned white.
     white: bool,
     /// Further random numbers.
     pub(crate) random: HashStream,
@@ -53,7 +53,7 @@ pub(crate) fn pigments(look: &Look, own: Option<&[Vec3]>, darker: f32, index: us
 /// Nodes of a reflectance's square root, 0 to 1, at which lightness is known.
 const NODES: usize = 257;
 
-/// How much of the lightest hair hair of a colour is, by channel.
+/// Share of the lightest hair in hair of a colour, by channel.
 struct ByColor([Vec3; NODES]);
 
 impl ByColor {

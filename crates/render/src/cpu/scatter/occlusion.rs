@@ -1,4 +1,4 @@
-//! How much of the surroundings hair hides from a place: the ambient part of `shade`.
+//! Surroundings hidden by hair from a place: the ambient part of `shade`.
 //!
 //! Hair is summed into a coarse grid of cells; light is carried through the grid along the six
 //! axes, mixed a little with the neighbours at every cell so that it stands for a cone of
@@ -30,7 +30,7 @@ const MEAN_SINE: f32 = std::f32::consts::FRAC_PI_4;
 /// Share of the light that each of four neighbours gives at every cell: about 25 degrees of spread.
 const SPREAD: f32 = 0.1;
 
-/// What reaches each cell along +x, -x, +y, -y, +z, -z, that is from there; two more are unused.
+/// Light that reaches each cell from +x, -x, +y, -y, +z, -z; two more are unused.
 type Cube = [f32; 8];
 
 /// Visibility of the surroundings around and in the hair.
@@ -199,7 +199,7 @@ impl Occlusion {
     }
 }
 
-/// Where the cells of a grid lie.
+/// Box of the cells of a grid.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct GridBox {
     /// Its least corner \[m\].
@@ -221,7 +221,7 @@ impl GridBox {
         self.min + Vec3::from(at.map(|at| at as f32 + 0.5)) * self.cell
     }
 
-    /// Whether a box \[m\] touches the grid.
+    /// True if a box \[m\] touches the grid.
     pub(crate) fn holds(&self, min: Vec3, max: Vec3) -> bool {
         let end = self.min + Vec3::from(self.counts.map(|count| count as f32)) * self.cell;
         max.cmpge(self.min).all() && min.cmple(end).all()

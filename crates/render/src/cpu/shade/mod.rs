@@ -41,7 +41,7 @@ const NODES: usize = 8;
 /// Greatest reflectance.
 const MOST: f32 = 0.99;
 
-/// What sets one strand apart from the others.
+/// Properties that differ between strands.
 struct StrandColor {
     root: Vec3,
     tip: Vec3,

@@ -11,7 +11,7 @@ use crate::strands::Strands;
 /// Points of a strand whose light is found together.
 const RUN: usize = LANES;
 
-/// How the light of a point is found.
+/// Light of a point.
 pub trait Shading: Sync {
     /// Radiances toward the camera \[linear RGB\] of the points of a strand from `first` on.
     fn fill(&self, strand: usize, first: usize, radiances: &mut [Vec3]);

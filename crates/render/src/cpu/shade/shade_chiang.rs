@@ -24,7 +24,7 @@ const NODES: usize = 8;
 /// A share of a light of which nothing is seen.
 const LEAST_SHARE: f32 = 1e-5;
 
-/// What the stage keeps from frame to frame.
+/// State that the stage keeps from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Scattering {
     made: Option<Made>,
@@ -32,12 +32,12 @@ pub struct Scattering {
     summed: EveryFew,
     /// Share of each shadow light that reaches every point of these, shape `[light][point]`.
     reached: Vec<Vec<f32>>,
-    /// How much of the lightest hair every point is, where hair is mixed, shape `[channel][point]`.
+    /// Share of the lightest hair in every point of mixed hair, shape `[channel][point]`.
     lightness: Vec<Vec<f32>>,
     grid: LightGrid,
 }
 
-/// What hair is lit by.
+/// Lights of the hair.
 #[derive(Clone, Copy)]
 pub struct Lit<'a> {
     /// The lights.
@@ -50,7 +50,7 @@ pub struct Lit<'a> {
     pub look: &'a Look,
     /// The groom's colours, where it has some.
     pub own_colors: Option<&'a OwnColors>,
-    /// Where the camera stands \[m\], world space.
+    /// Position of the camera \[m\], world space.
     pub eye: Vec3,
 }
 
@@ -106,7 +106,7 @@ impl Scattering {
         self.lightness.extend(self.reached.drain(lit.lights.len()..));
     }
 
-    /// How the light of points is found, of what it was prepared for; none before that.
+    /// Shading of the points of the prepared frame; `None` before that.
     pub(crate) fn shading<'a>(
         &'a self,
         strands: &'a Strands,
@@ -142,7 +142,7 @@ fn reach(strands: &Strands, lit: &Lit, summed: EveryFew, reached: &mut Vec<Vec<f
     }
 }
 
-/// What sets one strand apart from the others.
+/// Properties that differ between strands.
 struct Strand<'a> {
     look: &'a Look,
     /// Pigment as a multiple of the look's.

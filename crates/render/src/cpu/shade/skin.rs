@@ -1,4 +1,4 @@
-//! How the body reflects light: soft diffuse and a mild highlight.
+//! Reflection of the body: soft diffuse and a mild highlight.
 
 use std::f32::consts::PI;
 use std::ops::Range;
@@ -9,24 +9,24 @@ use crate::cpu::{LightGrid, Occlusion};
 use crate::shadow::Shadows;
 use crate::{BodyLook, Environment, Light};
 
-/// What lights the body.
+/// Lights of the body.
 #[derive(Clone, Copy)]
 pub struct Skin<'a> {
-    /// How it reflects.
+    /// Its reflection.
     pub look: &'a BodyLook,
     /// The lights.
     pub lights: &'a [Light],
     /// Their shadows of hair and body.
     pub shadows: &'a Shadows,
-    /// How much of the surroundings the hair hides.
+    /// Surroundings hidden by the hair.
     pub occlusion: &'a Occlusion,
     /// Light that hair and skin scatter, where the fibre has it; that from all around is in it.
     pub grid: Option<&'a LightGrid>,
     /// Light from all around.
     pub environment: &'a Environment,
-    /// What its colour is multiplied with where roots are dense.
+    /// Factor of its colour among dense roots.
     pub scalp: Vec3,
-    /// Where the camera stands \[m\], world space.
+    /// Position of the camera \[m\], world space.
     pub eye: Vec3,
 }
 
@@ -51,7 +51,7 @@ impl Skin<'_> {
         sum
     }
 
-    /// What a point reflects of a light with these places.
+    /// Reflected radiance of a point in a light with these places.
     fn reflected(&self, point: Vec3, places: Range<usize>, reflectance: impl Fn(Vec3) -> Vec3) -> Vec3 {
         let mut blockers = None;
         let mut sum = Vec3::ZERO;

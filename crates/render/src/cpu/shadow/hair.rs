@@ -170,7 +170,7 @@ impl Line {
     }
 }
 
-/// Whether texel coordinates lie in the map.
+/// True if texel coordinates lie in the map.
 #[inline]
 fn is_within(place: Vec2, limit: f32) -> bool {
     place.x >= 0.0 && place.y >= 0.0 && place.x < limit && place.y < limit
@@ -180,7 +180,7 @@ fn is_within(place: Vec2, limit: f32) -> bool {
 mod tests {
     use super::*;
 
-    /// What a segment covers of each texel.
+    /// Coverage of each texel by a segment.
     fn covered(width: f32) -> Vec<f32> {
         let mut texels = vec![0.0; 64 * stride(64)];
         let ends = [Vec3::new(20.0, 20.0, 1.0), Vec3::new(44.0, 38.0, 1.0)];

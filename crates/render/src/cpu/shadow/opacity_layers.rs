@@ -13,8 +13,8 @@ const UNITS: f32 = 65536.0;
 
 /// Sums the hair in each layer of each texel.
 ///
-/// What lies behind the last layer is left out: counted to it, the far side of a head would darken
-/// the hair in front of it (bias of the reference groom -0.13 instead of -0.03).
+/// Hair behind the last layer is left out: counted to that layer, the far side of a head would darken the
+/// hair in front of it (bias of the reference groom -0.13 instead of -0.03).
 pub fn opacity_layers(strands: &Strands, out: &mut Shadows) {
     out.active().for_each(|map| {
         sum_parts(map, strands);

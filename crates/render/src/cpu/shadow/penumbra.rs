@@ -22,7 +22,7 @@ const HAIR_STEP: usize = 2;
 /// Distance \[m\] before skin as far as blockers are looked for all about; farther ones are found where their shadow is
 /// deep.
 const MOST_GAP: f32 = 0.4;
-/// What lies nearer than so much of the mean distance of blockers is the skin itself.
+/// Share of the mean distance of blockers below which a blocker is the skin itself.
 const OWN_SKIN: f32 = 0.3;
 /// Distance \[m\] at which hair is taken to be that lies closer before skin than looks find it: its shadow is as wide as
 /// the least side.
@@ -63,7 +63,7 @@ const AROUND: [Vec3; LOOKS] = {
     looks
 };
 
-/// What is behind the point.
+/// Part of the light behind the point.
 const fn part(number: f32) -> f32 {
     number - (number as u32) as f32
 }
@@ -76,7 +76,7 @@ pub(crate) struct Blockers {
 }
 
 impl Shadows {
-    /// What hides a light, whose places are these, from a point \[m\], world space.
+    /// Blockers of a light with these places, seen from a point \[m\], world space.
     pub(crate) fn blockers(&self, places: Range<usize>, point: Vec3) -> Blockers {
         let (mut body, mut hair) = (Gaps::default(), Gaps::default());
         for (place, map) in places.clone().enumerate().filter_map(|(at, index)| Some((at, self.map(index)?)))
@@ -105,7 +105,7 @@ impl Shadows {
 struct Gaps {
     sum: f32,
     count: f32,
-    /// Whether anything was seen before it, though it hides no ray that was looked along.
+    /// True if a blocker was seen before it, though it hides none of the tested rays.
     touched: bool,
 }
 
@@ -126,7 +126,7 @@ impl Gaps {
             let Some(depth) = depth_at(at) else { continue };
             let gap = seen.z - depth;
             self.touched |= gap > 0.0;
-            // What hides none of this part's rays does not count.
+            // A blocker that hides none of this part's rays does not count.
             if gap > 0.0 && LightView::aside(seen.z, gap) >= look.z * most {
                 self.sum += gap;
                 self.count += 1.0;
@@ -144,9 +144,10 @@ impl Gaps {
     }
 }
 
-/// Where a place of a light looks at a point from: its plane coordinates and depth.
+/// View of a point from a place of a light: its plane coordinates and depth.
 impl LightView {
-    /// How far aside \[plane\] a metre on the light moves what hides a point at a depth \[m\], by so much before it \[m\].
+    /// Shadow displacement \[plane\] per metre of light, by the depth \[m\] of the point and the distance
+    /// \[m\] of the blocker before it.
     #[inline]
     fn aside(depth: f32, gap: f32) -> f32 {
         gap / (depth * (depth - gap).max(1e-3))
@@ -169,7 +170,7 @@ impl ShadowMap {
         }
         let Some(seen) = self.view.project(point) else { return 1.0 };
         let rays = |step: usize| PLACES.iter().skip(step * place).step_by((step * count).max(LEAST_STEP));
-        // What touches the skin is too small for the looks: the place's own ray meets it.
+        // A blocker that touches the skin is too small for the looks: the place's own ray meets it.
         let open = match blockers.body {
             0.0 => self.body_open(seen, &[Vec2::ZERO]),
             gap => self.past_body(seen, gap, rays(1)),

@@ -65,7 +65,7 @@ pub fn interpolate(
         });
 }
 
-/// What all guides have in common.
+/// Inputs of all guides.
 struct Shared<'a> {
     curves: &'a Curves,
     guides: &'a Guides,
@@ -221,7 +221,7 @@ impl Strand {
     fn widen(&self, shared: &Shared, guide: &Guide, guide_index: usize, index: usize, widths: &mut [f32]) {
         let root = guide.width * shared.level.width_scale(index);
         let tip = shared.look.tip_width;
-        // What a first segment longer than the taper would take away is spread over it.
+        // A first segment longer than the taper spreads its loss over its length.
         let first = guide.length * shared.curves.parameters[1];
         let bare = 1.0 - (1.0 - shared.look.root_width) * (ROOT_TAPER / first).min(1.0);
         let own = shared.guides.profiles().map(|all| of_guide(shared.guides, all, guide_index));
@@ -239,13 +239,13 @@ impl Strand {
     }
 }
 
-/// What the points of one guide have.
+/// Values of the points of a guide.
 fn of_guide<'a, T>(guides: &Guides, all: &'a [T], guide: usize) -> &'a [T] {
     let count = guides.points_per_strand();
     &all[guide * count..(guide + 1) * count]
 }
 
-/// What lies at a parameter, 0 to 1, of a guide between two of its points.
+/// Value at a parameter, 0 to 1, of a guide between two of its points.
 fn between<T: Copy, M>(values: &[T], parameter: f32, mix: impl Fn(T, T, f32) -> M) -> M {
     let place = parameter * (values.len() - 1) as f32;
     let segment = (place as usize).min(values.len() - 2);

@@ -1,4 +1,4 @@
-//! What is drawn of bound strands between their points, and about them, is kept out of the body.
+//! Moves drawn points between the points of bound strands, and about them, out of the body.
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
@@ -37,7 +37,7 @@ pub fn keep_outside(strands: &mut Strands, curves: &Curves, points_per_strand: u
 
 /// Moves points of a strand out; whether there were such.
 fn keep_strand_outside(points: &mut [Vec3], solids: &PlacedSolids) -> bool {
-    // How far [m] the surface is at least.
+    // Lower bound of the distance [m] to the surface.
     let (mut clear, mut before) = (0.0, points[0]);
     let mut moved = false;
     for point in points {

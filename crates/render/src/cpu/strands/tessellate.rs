@@ -106,7 +106,7 @@ fn spline(points: &[Vec3Lanes], taps: &[Tap], positions: &mut [Vec3Lanes], tange
         _ if index == last + 2 => bent(last) * f32x8::splat(2.0) - bent(last - 1),
         _ => bent(index - 1),
     };
-    // Where points coincide the tangent of the point before is the best there is.
+    // Coincident points take the tangent of the point before.
     let mut fallback = Vec3x8::splat(Vec3::Y);
     for ((tap, position), tangent) in taps.iter().zip(positions).zip(tangents) {
         let mut point = Vec3x8::splat(Vec3::ZERO);

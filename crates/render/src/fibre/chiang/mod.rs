@@ -27,7 +27,7 @@ settings! {
     /// The rough dielectric fibre [Chiang2016]. Its paths: R is reflected, TT goes through, TRT comes back from
     /// inside.
     pub struct Chiang: Copy {
-        /// What gives hair its colour.
+        /// Source of the hair's colour.
         pigment: Pigment = Pigment::default();
         /// Brown to black pigment: 0.3 blonde, 0.6 brown, 8 black.
         eumelanin: f32 = 0.6, in [0.0, 100.0], slider [0.0, 8.0], more "darker hair";
@@ -44,7 +44,7 @@ settings! {
         tilt: f32 = 2.0, in [-10.0, 10.0] "degrees", more "highlights further apart";
         /// Index of refraction.
         index: f32 = 1.55, in [1.05, 3.0], more "a brighter surface";
-        /// How many times light is scattered on from hair to hair before it is left.
+        /// Number of times that light is scattered from hair to hair.
         scatterings: u32 = 8, in [0, 64], slider [0, 16], more "brighter light hair, at a cost";
         /// Cells that scattered light is carried through, along the longest side of the hair.
         cells: u32 = MOST_CELLS, in [8, MOST_CELLS], more "sharper scattered light, at a cost";
@@ -52,7 +52,7 @@ settings! {
 }
 
 choices! {
-    /// What gives hair its colour.
+    /// Source of the hair's colour.
     pub enum Pigment as "look.fibre.chiang.pigment" {
         /// `eumelanin` and `pheomelanin`.
         Melanin = "melanin",
@@ -106,7 +106,7 @@ impl Chiang {
             .map(|c| (math::ln(f64::from(c.clamp(LEAST_COLOR, 1.0))) / self.color_scale()).powi(2))
     }
 
-    /// What the logarithm of such a reflectance is divided by [Chiang2016 §4.2].
+    /// Divisor of the logarithm of such a reflectance [Chiang2016 §4.2].
     pub(crate) fn color_scale(&self) -> f64 {
         let b = f64::from(self.roughness_around);
         5.969 + b * (-0.215 + b * (2.532 + b * (-10.73 + b * (5.574 + b * 0.245))))

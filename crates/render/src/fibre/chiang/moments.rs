@@ -1,4 +1,4 @@
-//! What a fibre shows of light that changes slowly with direction.
+//! Radiance of a fibre in light that changes slowly with direction.
 //!
 //! Radiance from a unit direction w is taken as a + b.w + w.C.w with a C without trace: spherical harmonics up to the
 //! second order. With the fibre's direction t and u, across it toward the eye, what the fibre shows is

@@ -23,7 +23,7 @@ pub const DIFFERENCES: usize = 49;
 pub const EYES: usize = 17;
 /// Nodes of the eye's inclination of the moments, -pi / 2 to pi / 2.
 pub const MOMENT_EYES: usize = 2 * EYES - 1;
-/// How many [`LEVELS`] there are.
+/// Number of [`LEVELS`].
 pub const LEVEL_COUNT: usize = 8;
 /// Multiples of the pigment at the root for which there are entries; the first is white hair.
 pub const LEVELS: [f32; LEVEL_COUNT] = [0.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0];
@@ -57,7 +57,7 @@ pub enum Pigments {
     Channels(Vec3),
 }
 
-/// What all lights share that one point of hair shows: where its tables are looked up.
+/// Table look-ups of one point of hair that all lights share.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     /// Inclination of the eye \[rad\], its sine, and one less the square of that.
@@ -102,7 +102,7 @@ impl Seen {
     }
 }
 
-/// What all eyes share of light from one inclination.
+/// Table look-ups of light from one inclination that all eyes share.
 #[derive(Clone, Copy, Debug)]
 pub struct Met {
     /// The inclination \[rad\], and one less the square of its sine.
@@ -285,8 +285,8 @@ fn channels<const N: usize>(found: [[Vec4; N]; 3], last: [f32; N]) -> [Vec4; N] 
     std::array::from_fn(|at| Vec4::new(found[0][at].x, found[1][at].y, found[2][at].z, last[at]))
 }
 
-/// What the terms along the fibre are multiplied with, so that they depend on the sum of the inclinations almost
-/// alone; from the product of the cosines.
+/// Factor of the terms along the fibre that makes them depend almost on the sum of the inclinations alone;
+/// from the product of the cosines.
 #[inline]
 fn evened(cosines: f32, floor: f32) -> f32 {
     cosines.max(floor).sqrt()

@@ -16,7 +16,7 @@ pub use settings::{Highlight, Scheuermann};
 
 use crate::fast_math::exp_lanes;
 
-/// How much more a hair sends back toward the light than onward; 1 sends nothing straight on.
+/// Ratio of the light sent back to the light sent onward; 1 sends nothing straight on.
 const BACKWARD: f32 = 0.8;
 
 /// The model with its settings worked out, the same for both backends.
@@ -30,7 +30,7 @@ pub(crate) struct Numbers {
 }
 
 impl Scheuermann {
-    /// What shading needs of the settings.
+    /// Settings as the shading needs them.
     pub(crate) fn numbers(&self) -> Numbers {
         let share = 1.0 - self.first_highlight.strength - self.second_highlight.strength;
         Numbers {

@@ -7,9 +7,9 @@ settings! {
         first_highlight: Highlight = Highlight { shift: -5.0, width: 5.0, strength: 0.07 };
         /// The coloured highlight, from light that crossed the hair.
         second_highlight: Highlight = Highlight { shift: 7.0, width: 9.0, strength: 0.2 };
-        /// How far a second noise breaks the second highlight up into sparkles.
+        /// Break-up of the second highlight into sparkles by a second noise.
         sparkle: f32 = 0.7, in [0.0, 1.0], more "fewer, brighter sparkles";
-        /// How much further light goes through bright hair than through black.
+        /// Extra reach of light through bright hair, relative to black hair.
         translucency: f32 = 0.6, in [0.0, 1.0], more "brighter shadows in light hair";
     }
 }

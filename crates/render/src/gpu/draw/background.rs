@@ -1,4 +1,4 @@
-//! What is behind everything, for `draw`.
+//! The background, for `draw`.
 
 use strandline_gpu::drawing;
 

@@ -30,7 +30,7 @@ pub(crate) fn indices(gpu: &Gpu) -> Result<Buffer<u32>, GpuError> {
     Buffer::from_slice(gpu, "indices", &indices)
 }
 
-/// How hair joins what is behind it: depth is one over the distance, so that the nearer is the greater.
+/// Blending of hair: depth is one over the distance, so that nearer is greater.
 pub(crate) fn hair_output() -> Output {
     Output {
         color: Some((SAMPLES, Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING))),
@@ -38,7 +38,7 @@ pub(crate) fn hair_output() -> Output {
     }
 }
 
-/// How the body covers what is behind it.
+/// Blending of the body.
 pub(crate) fn body_output() -> Output {
     Output { color: Some((SAMPLES, None)), depth: Some(depth(wgpu::CompareFunction::Greater, true)) }
 }
@@ -48,7 +48,7 @@ pub(crate) fn background_output() -> Output {
     Output { color: Some((SAMPLES, None)), depth: Some(depth(wgpu::CompareFunction::Always, false)) }
 }
 
-/// How the depths of a body are drawn for a light: the nearer is the smaller.
+/// Depths of a body for a light: nearer is smaller.
 pub(crate) fn body_depth_output() -> Output {
     Output { color: None, depth: Some(depth(wgpu::CompareFunction::Less, true)) }
 }

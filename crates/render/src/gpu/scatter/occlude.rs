@@ -1,4 +1,4 @@
-//! How much of the surroundings hair hides, for `shade` and `draw`.
+//! Surroundings hidden by hair, for `shade` and `draw`.
 
 use strandline_gpu::{MANY, kernel};
 

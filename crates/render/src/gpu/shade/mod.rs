@@ -48,7 +48,7 @@ pub(crate) struct LayerColoring {
 }
 
 impl LayerColoring {
-    /// What colours the hair, if a light with shadow is chosen for it.
+    /// Kernel that colours the hair by layers, if a light with shadow is chosen for it.
     pub fn bind(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! Where hair and body lie, for `opacity_depth`, `shade` and `draw`.
+//! Bounds of hair and body, for `opacity_depth`, `shade` and `draw`.
 
 use strandline_gpu::kernel;
 
@@ -20,7 +20,7 @@ kernel! {
 }
 
 kernel! {
-    /// What each shadow light sees of the body.
+    /// Bounds of the body as seen by each shadow light.
     pub(crate) struct MeasureBody in "measure" (crate::gpu::linked::MEASURE), entry "measure_body" {
         0 frame: Read Frame,
         7 bounds: ReadWrite u32,

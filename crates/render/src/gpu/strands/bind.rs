@@ -119,12 +119,12 @@ impl BoundStrands {
         })
     }
 
-    /// Where the host puts guide points.
+    /// Buffer of the host's guide points.
     pub fn now(&self) -> &Buffer<f32> {
         &self.now
     }
 
-    /// What places the strands, given where the guides are; the host's points without any. The last two pairs of
+    /// Kernels that place the strands from the guides; empty for points of the host. The last two pairs of
     /// buffers stay bound.
     ///
     /// # Errors
@@ -154,7 +154,7 @@ impl BoundStrands {
         Ok([follow.over(self.guide_count), self.place.clone().over(self.strand_count)])
     }
 
-    /// What keeps so many drawn strands out of the solids.
+    /// Kernel that keeps a number of drawn strands out of the solids.
     ///
     /// # Errors
     /// Whatever the device refuses.

@@ -1,4 +1,4 @@
-//! What bound strands stay out of, as the kernels read it.
+//! Solids that bound strands stay out of, as the kernels read them.
 
 use strandline_base::SettingError;
 use strandline_body::{Carrier, Collider, DistanceGrid, Shape};

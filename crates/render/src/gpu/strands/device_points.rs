@@ -10,6 +10,6 @@ pub struct DevicePoints<'a> {
     pub before: &'a Buffer<f32>,
     /// After it.
     pub after: &'a Buffer<f32>,
-    /// Where the moment lies between them, 0 to 1.
+    /// Place of the moment between them, 0 to 1.
     pub share: f32,
 }

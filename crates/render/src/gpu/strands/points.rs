@@ -12,10 +12,10 @@ use crate::gpu::buffers::{Groom, Strands, floats};
 use crate::strands::check_strands;
 use crate::{FrameInput, RenderError};
 
-/// What guide points go through before strands are grown about them.
+/// Stages of guide points before strands are grown about them.
 #[derive(Default)]
 pub(crate) struct GuidePoints {
-    /// What places the strands where guides carry them.
+    /// Kernels that place bound strands.
     bound: Option<BoundStrands>,
     /// `tessellate` bound to pairs of buffers of guide points.
     tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
@@ -36,7 +36,7 @@ impl GuidePoints {
         Ok(())
     }
 
-    /// What places the strands, where guides carry them.
+    /// Kernels that place bound strands.
     pub fn stages(
         &mut self,
         gpu: &Gpu,
@@ -47,7 +47,7 @@ impl GuidePoints {
         Ok(bound.stages(gpu, &groom.frame, points)?.into())
     }
 
-    /// Where guide points of the host lie.
+    /// Buffer of the host's guide points.
     pub fn of_host<'a>(&'a self, groom: &'a Groom) -> &'a Buffer<f32> {
         self.bound.as_ref().map_or(&groom.places, BoundStrands::now)
     }
@@ -77,7 +77,7 @@ impl GuidePoints {
             .into())
     }
 
-    /// What keeps so many drawn strands out of solids, where guides carry them.
+    /// Kernel that keeps a number of bound strands out of solids.
     pub fn keep_outside(
         &mut self,
         gpu: &Gpu,

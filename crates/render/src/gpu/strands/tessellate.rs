@@ -22,7 +22,7 @@ kernel! {
     }
 }
 
-/// What all curves have at each of their points.
+/// Values of all curves at each of their points.
 pub(crate) fn tables(points_per_strand: usize, level: &DetailLevel, clump: &Clump) -> Vec<Tap> {
     let (taps, parameters): (Vec<_>, Vec<_>) = taps(points_per_strand, level).unzip();
     let tapers = tapers(&parameters, clump);

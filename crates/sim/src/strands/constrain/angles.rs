@@ -104,7 +104,7 @@ impl Bends {
         joint.store(&mut positions[last]);
     }
 
-    /// How far a unit direction has to go: into the cone about `expected`, then a share of the way.
+    /// Motion of a unit direction: into the cone about `expected`, then a share of the way.
     #[inline(always)]
     fn gap(&self, expected: Vec3x8, direction: Vec3x8) -> Vec3x8 {
         let cos = expected.dot(direction);

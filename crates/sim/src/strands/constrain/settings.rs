@@ -1,4 +1,4 @@
-//! What a person may set of strands of springs and constraints.
+//! Settings of strands of springs and constraints.
 
 use strandline_base::{gone, settings};
 
@@ -57,7 +57,7 @@ impl Springs {
 settings! {
     /// A damped elastic spring.
     pub struct Spring: Copy {
-        /// Whether the spring pulls; false leaves it out.
+        /// Enables the spring.
         enabled: bool = true;
         /// Force over extension.
         stiffness: f32 = 1e-5, in [0.0, 1e30] "N/m", slider [0.0, 2e-4],
@@ -98,7 +98,7 @@ impl Angles {
     /// Bends are free.
     pub const OFF: Self = Self { limit: std::f32::consts::PI, stiffness: 0.0 };
 
-    /// Whether bends are free.
+    /// True if bends are free.
     pub fn is_off(&self) -> bool {
         self.limit >= std::f32::consts::PI && self.stiffness == 0.0
     }
@@ -107,7 +107,7 @@ impl Angles {
 settings! {
     /// The pass from root to tip that makes lengths exact \[Mueller2012\].
     pub struct LengthPass: Copy {
-        /// Whether lengths are made exact; false lets strands stretch as in the thesis.
+        /// Makes lengths exact; without it strands stretch as in the thesis.
         enabled: bool = true;
         /// Share of the correction of a point that the next prediction of the point before it gives back
         /// [Mueller2012 eq. 9]. It is the same share in a step of any length: what the pass corrects is an

@@ -88,7 +88,7 @@ impl<R: Real> Work<R> {
             holds = (limit - rate * size).choose(pull.stiffness, limit / size);
         }
         let (push, normal, slip) = (acts * missing, normal.array(), slip.array());
-        // What is not pulled keeps its bits: so does what -0 is added to.
+        // Entries without a pull keep their bits, as do sums with -0.
         let nothing = R::of(-0.0);
         for row in 0..3 {
             let force = normal[row] * push - holds * slip[row];

@@ -134,7 +134,7 @@ fn given(vector: Vector<Eight>) -> Vector<f32x8> {
     Vector::new(vector.x.wide(), vector.y.wide(), vector.z.wide())
 }
 
-/// What eight strands are solved in on such a processor.
+/// Scratch of eight strands on such a processor.
 pub(crate) struct Avx {
     work: Work<Eight>,
     rod: Vec<Node<Eight>>,
@@ -190,7 +190,7 @@ impl Avx {
         }
     }
 
-    /// What a step begins with.
+    /// Inputs of a step.
     #[target_feature(enable = "avx")]
     fn take(&mut self, work: &Work<f32x8>, rod: &[Node<f32x8>], pulls: &[Pull<f32x8>]) {
         let own = &mut self.work;
@@ -357,7 +357,7 @@ mod tests {
         assert!(steps.chunks(2).any(|pair| pair[0] > pair[1]));
     }
 
-    /// What is not compiled into the loop is called for every addition, and then all is ten times slower.
+    /// Functions outside the loop are called for every addition, which is ten times slower.
     #[test]
     fn it_is_the_faster_way() {
         let Some(mut avx) = Avx::new(POINTS) else { return };

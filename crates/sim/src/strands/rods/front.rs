@@ -53,15 +53,15 @@ impl<R: Real> Spring<R> {
     }
 }
 
-/// What a joint and the edge above it add to a system.
+/// Contribution of a joint and the edge above it to a system.
 pub struct Bends<R> {
     /// Springs on its two bends and its twist.
     pub springs: [Spring<R>; 3],
-    /// How moments turn with the sections below and above.
+    /// Change of moments with the turns of the sections below and above.
     pub turnings: [Turning<R>; 2],
     /// Second derivative of the energy by the edge above \[N/m\], of what stretches it.
     pub stretch: [[R; 3]; 3],
-    /// What pulls its ends together \[N\].
+    /// Force that pulls its ends together \[N\].
     pub pull: Vector<R>,
 }
 
@@ -70,7 +70,7 @@ fn sum<R: Real>(springs: &[Spring<R>; 3], term: impl Fn(&Spring<R>) -> R) -> R {
     term(&springs[0]) + term(&springs[1]) + term(&springs[2])
 }
 
-/// What elimination leaves of a node, for the way back.
+/// Result of the elimination of a node, for the back substitution.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<R> {
     /// Entries below the diagonal of each column, by row.
@@ -251,7 +251,7 @@ impl<R: Real> Front<R> {
         free.choose(pivot, R::of(1.0))
     }
 
-    /// What is left of the rows that are not eliminated, four rows up.
+    /// The remaining rows, four rows up.
     #[inline(always)]
     fn move_up(&mut self, scaled: &[[R; ROWS]; UNKNOWNS], whole: &[[R; ROWS]; UNKNOWNS]) {
         for_rows!(self.move_row(scaled, whole));

@@ -3,8 +3,8 @@
 use strandline_base::choices;
 
 choices! {
-    /// What hair is made of. Radii, density and moduli in air and in water are rounded from \[Robbins2012 chapters 8
-    /// and 9\]; how much water hair carries and how lacquer joins hairs are judged, not measured.
+    /// Kind of hair. Radii, density and moduli in air and in water are rounded from \[Robbins2012 chapters 8
+    /// and 9\]; the water that hair carries and the cohesion of lacquer are judged, not measured.
     pub enum HairKind as "simulation.strands.rods.hair" {
         /// Fine hair: a radius of 25 um.
         Fine = "fine",

@@ -1,4 +1,4 @@
-//! What the strands of a model are made of: the material of the settings, or that of their group.
+//! Materials of the strands of a model: those of the settings, or of their group.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::material::Section;
 use super::settings::RodSettings;
 use crate::{Settings, SimError};
 
-/// What of a hair is the same all along it.
+/// Properties of a hair that are constant along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Traits {
     /// Second bending stiffness and twisting stiffness over the first bending stiffness.
@@ -19,7 +19,7 @@ pub(crate) struct Traits {
     pub damping: f32,
 }
 
-/// What a strand is made of.
+/// Material of a strand.
 #[derive(Clone, Copy)]
 struct Hair {
     section: Section,
@@ -32,7 +32,7 @@ impl Hair {
     }
 }
 
-/// What each strand is made of.
+/// Material of each strand.
 #[derive(Clone)]
 pub(crate) struct Hairs {
     /// Group of each strand, shape `[strand]`; empty where the groom has none.
@@ -79,7 +79,7 @@ impl Hairs {
         self.hair(strand).section
     }
 
-    /// What of a strand's hair is the same all along it.
+    /// Properties of a strand's hair that are constant along it.
     pub fn traits(&self, strand: usize) -> Traits {
         let Hair { section, damping } = self.hair(strand);
         Traits {

@@ -81,7 +81,7 @@ pub struct Slope<R> {
     pub upper_angle: R,
 }
 
-/// What an angle of a joint has in the second derivative of its energy beside the squares of the slopes: by the two
+/// Second derivative of the energy by an angle of a joint, without the squares of the slopes: by the two
 /// edges \[N\] and by the angle itself \[N m\].
 #[derive(Clone, Copy, Debug)]
 pub struct Turning<R> {
@@ -154,9 +154,9 @@ impl<R: Real> Joint<R> {
         ]
     }
 
-    /// How the bending moments \[N m\] of a joint turn with its two sections: they are carried along, which the
-    /// squares of the slopes leave out. Without it Newton's method gains a digit in three steps where moments are
-    /// as large as those of a style's weight.
+    /// Change of the bending moments \[N m\] of a joint with the turns of its two sections: moments turn with
+    /// them, which the squares of the slopes leave out. Without this term Newton's method gains a digit in
+    /// three steps under moments as large as those of a style's weight.
     #[inline(always)]
     pub fn turnings(&self, lower: &Segment<R>, upper: &Segment<R>, moments: [R; 2]) -> [Turning<R>; 2] {
         [self.turning(lower, lower, upper, moments), self.turning(upper, lower, upper, moments)]

@@ -6,7 +6,7 @@ use super::real::{Real, Vector};
 /// pass outside the solids makes lengths exact.
 const RIGHT: f64 = 3e-5;
 
-/// What the projection works in.
+/// Scratch of the projection.
 pub struct Lengths<R> {
     tangents: Vec<Vector<R>>,
     upper: Vec<R>,

@@ -1,4 +1,4 @@
-//! What hair is made of, and what that makes of the nodes of a strand.
+//! Materials of hair, and the nodes of a strand made of them.
 
 use strandline_base::math;
 
@@ -20,9 +20,9 @@ pub struct Material {
     pub ellipticity: f64,
     /// Hairs that a guide stands for.
     pub hairs: f64,
-    /// How far they share load: 0 lets each bend by itself, 1 glues them to one.
+    /// Sharing of load: 0 lets each bend by itself, 1 glues them to one.
     pub cohesion: f64,
-    /// How hair changes from root to tip.
+    /// Changes of hair from root to tip.
     pub along: Along,
 }
 
@@ -41,7 +41,7 @@ impl Default for Material {
     }
 }
 
-/// How a hair changes from its root, at a share of 0 of its length, to its tip, at 1.
+/// Changes of a hair from its root, at a share of 0 of its length, to its tip, at 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Along {
     /// Radius at the tip over that at the root.
@@ -86,7 +86,7 @@ pub struct Section {
     pub mass: f64,
     /// Moment of inertia per length about the rod \[kg m\].
     pub inertia: f64,
-    /// How these change along it.
+    /// Changes along it.
     pub along: Along,
 }
 

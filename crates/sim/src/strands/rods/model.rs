@@ -39,7 +39,7 @@ pub struct Rods {
     pub(crate) traits: Vec<Traits>,
     /// Strands that had to be stiffer for their shape to be stable.
     pub stiffened: usize,
-    /// How many times stiffer the stiffest of them is; 1 with none.
+    /// Stiffening of the stiffest of them; 1 without any.
     pub stiffest: f32,
     /// Tells these rods from others that were compiled.
     pub(crate) key: Arc<()>,
@@ -79,7 +79,7 @@ impl Rods {
 struct Block {
     nodes: Vec<Node<f32x8>>,
     sections: Vec<Vec3Lanes>,
-    /// How many times stiffer each strand is; 1 in empty lanes.
+    /// Stiffening of each strand; 1 in empty lanes.
     stiffening: [f64; LANES],
 }
 

@@ -20,7 +20,7 @@ pub(crate) struct Lengthened<'a> {
     pub now: &'a [Lanes],
     /// Masses of points now \[kg\].
     pub mass: &'a [Lanes],
-    /// What the rest shape carries \[m/s^2\]; none where it is without moments.
+    /// Load of the rest shape \[m/s^2\]; `None` for a rest shape without moments.
     pub gravity: Option<Vec3>,
 }
 
@@ -60,7 +60,7 @@ fn follow_lengths(
 ) -> Vec<f32x8> {
     let (zero, one) = (f32x8::ZERO, f32x8::of(1.0));
     let last = nodes.len() - 1;
-    // What a segment gives to the cells of the joints beside it; rigid ones give nothing.
+    // Contribution of a segment to the cells of the joints beside it; that of a rigid one is zero.
     let free: Vec<_> = nodes.iter().map(|node| node.free_angle).collect();
     let turning = |lanes: &[Lanes], index: usize| free[index].choose(f32x8::new(lanes[index].0), zero);
     let mut factors = vec![one; nodes.len()];

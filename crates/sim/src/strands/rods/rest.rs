@@ -111,7 +111,7 @@ fn shares(moments: &[f64], even: f64) -> Vec<f64> {
 
 /// Generalised forces of the three strains of a joint \[N m\] that carry a moment \[N m\].
 fn strains_under(lower: &Segment<f64>, upper: &Segment<f64>, moment: Vector<f64>) -> [f64; 3] {
-    // What a rotation of everything beyond the joint changes of each strain.
+    // Change of each strain by a rotation of everything beyond the joint.
     let columns = Joint::new(lower, upper)
         .slopes(lower, upper)
         .map(|slope| (upper.tangent * upper.length).cross(slope.upper) + upper.tangent * slope.upper_angle);

@@ -1,4 +1,4 @@
-//! What a strand is made of, and one implicit step of it.
+//! A strand's nodes and edges, and one implicit step of it.
 
 use super::front::{Factors, UNKNOWNS, substitute};
 use super::joint::{Joint, Segment};
@@ -70,7 +70,7 @@ pub struct Pull<R> {
     pub reach: R,
     /// Force over displacement \[N/m\]; 0 in lanes without.
     pub stiffness: R,
-    /// Whether it only pushes, as a solid does: while the displacement is less than the reach.
+    /// True if it only pushes, as a solid does: while the displacement is less than the reach.
     pub one_sided: bool,
     /// Coulomb friction coefficient of what only pushes.
     pub friction: R,
@@ -79,7 +79,7 @@ pub struct Pull<R> {
 }
 
 impl<R: Real> Pull<R> {
-    /// How far a displacement \[m\] is from where the node sticks, across the direction.
+    /// Distance of a displacement \[m\] from the place where the node sticks, across the direction.
     #[inline(always)]
     pub(super) fn slip(&self, displacement: Vector<R>) -> Vector<R> {
         let slip = displacement - self.stuck;
@@ -87,7 +87,7 @@ impl<R: Real> Pull<R> {
     }
 }
 
-/// How a step is made.
+/// Settings of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct StepSettings<R> {
     /// Length of the step \[s\].
@@ -101,7 +101,7 @@ pub struct StepSettings<R> {
     pub viscous: R,
 }
 
-/// What a step works in.
+/// Scratch of a step.
 #[derive(Clone)]
 pub struct Work<R> {
     /// Displacement of each point \[m\] and angle of each segment \[rad\] since the start.
@@ -189,7 +189,7 @@ impl<R: Real> Work<R> {
             let turn = self.take_step(unsolved, sound);
             residual = unsolved.choose(turn, residual);
             let open = if steps == 0 {
-                // What touches a solid has not yet said whether it sticks.
+                // Friction is not decided yet for a touching point.
                 pressed.choose(R::of(1.0), turn - R::of(settings.tolerance))
             } else {
                 turn - R::of(settings.tolerance)
@@ -225,7 +225,7 @@ impl<R: Real> Work<R> {
         }
     }
 
-    /// How far the step turns a segment at most \[rad\].
+    /// Largest turn of a segment in the step \[rad\].
     #[inline(always)]
     fn turn(&self) -> R {
         let mut largest = R::of(0.0);
@@ -269,14 +269,14 @@ impl<R: Real> Work<R> {
     }
 }
 
-/// How a step was solved.
+/// Quality of the solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Solved<R> {
     /// Newton steps that were made.
     pub steps: u32,
     /// Above 0 for strands that were not solved by them.
     pub unsolved: R,
-    /// How far a segment turned at most in the last Newton step of its strand \[rad\].
+    /// Largest turn of a segment in the last Newton step of its strand \[rad\].
     pub residual: R,
     /// Force \[N\] with which a solid presses a strand at most.
     pub pressed: R,
@@ -286,8 +286,8 @@ pub struct Solved<R> {
 /// that a section turns \[rad\]: beyond, the linearised bends say nothing.
 const LONGEST_TURN: f64 = 1.0;
 
-/// Where the guess turns a segment farther \[rad\], a strand begins at the shape that the head carried: what goes so
-/// fast does not keep its velocity.
+/// Turn of a segment by the guess \[rad\] beyond which a strand begins at the shape carried by the head: such
+/// fast hair does not keep its velocity.
 const FARTHEST_GUESS: f64 = 0.5;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What a person may set of rods.
+//! Settings of rods.
 
 use strandline_base::{Overrides, Value, choices, settings};
 
@@ -11,7 +11,7 @@ settings! {
     /// Stiffness goes with the fourth power of the radius, weight with its square. `hair` sets the defaults of what
     /// hair is made of, `radius` to `damping`.
     pub struct RodSettings: Copy {
-        /// What hair it is.
+        /// Kind of hair.
         hair: HairKind = HairKind::default();
         /// Radius of a hair.
         radius: f32 = 40.0, in [1.0, 1000.0] "um", slider [15.0, 100.0],
@@ -31,8 +31,8 @@ settings! {
         /// Hairs that a guide stands for: they weigh and resist together.
         wisp_hairs: u32 = 1, in [1, 10_000], slider [1, 200],
             more "stiffer hair where `cohesion` is above 0, and no other motion where it is 0", invalidates masses;
-        /// How far the hairs of a guide share load: 0 lets each bend by itself, so that n hairs are n times as stiff as
-        /// one; 1 glues them to one, n^2 times; between, n^(1 + cohesion).
+        /// Sharing of load among the hairs of a guide: 0 lets each bend by itself, so that n hairs are n
+        /// times as stiff as one; 1 glues them to one, n^2 times; between, n^(1 + cohesion).
         cohesion: f32 = 0.0, in [0.0, 1.0], more "locks that bend as one", invalidates rest_shape;
         /// Relaxation time of bends and twists: what they lag behind their rest.
         damping: f32 = 0.002, in [0.0, 10.0] "s", slider [0.0, 0.1],
@@ -51,7 +51,7 @@ settings! {
         /// off by what this much gravity bends it.
         rubbing: f32 = 0.2, in [0.0, 100.0] "m/s^2", slider [0.0, 1.0],
             more "hair that comes to rest sooner after its last small swings";
-        /// What the shape of the groom is.
+        /// Meaning of the groom's shape.
         rest: Rest = Rest::default(), invalidates rest_shape;
         /// Parts of a step that are solved one after the other.
         substeps: u32 = 2, in [1, 64], slider [1, 8], more "hair that swings longer, at a higher cost";
@@ -68,7 +68,7 @@ settings! {
 }
 
 choices! {
-    /// What the shape of a groom is.
+    /// Meaning of a groom's shape.
     pub enum Rest as "simulation.strands.rods.rest" {
         /// The equilibrium under gravity, which hair keeps.
         SagFree = "sag_free",

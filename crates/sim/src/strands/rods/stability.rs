@@ -1,4 +1,4 @@
-//! Whether a loaded rest shape is stable, and how much stiffer a strand has to be for it.
+//! Stability of a loaded rest shape, and the stiffening that a strand needs for it.
 
 use super::assemble::row;
 use super::front::{Factors, Front, ROWS, UNKNOWNS};
@@ -11,10 +11,10 @@ const MARGIN: f64 = 1.1;
 /// Most that a strand is stiffened: beyond, it is a wire whose shape no load can have made.
 const MOST: f64 = 1e4;
 
-/// How many times stiffer a sag-free strand has to bend and twist for its shape to be a stable
-/// equilibrium, with a margin: 1 where it is stable as it is. `loads` are the generalised forces of
-/// each joint's strains under the load, which the stiffness does not change; a joint takes its part of `shares` of
-/// what the strand is stiffened by.
+/// Stiffening of bends and twists that makes the shape of a sag-free strand a stable equilibrium, with a
+/// margin: 1 for a strand that is stable by itself. `loads` are the generalised forces of each joint's
+/// strains under the load, which the stiffness does not change; a joint takes its part of `shares` of the
+/// stiffening.
 ///
 /// The pivots of the second derivative of the energy are positive exactly where it is.
 pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3]], shares: &[f64]) -> f64 {
@@ -48,8 +48,8 @@ pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3
     above
 }
 
-/// Whether the pivots of the second derivative of the energy are positive with the bends and twists of each joint so
-/// many times stiffer under the same load.
+/// True if the pivots of the second derivative of the energy are positive with the bends and twists of each
+/// joint stiffened by these factors under the same load.
 fn is_positive(
     rod: &[Node<f64>],
     segments: &[Segment<f64>],
@@ -135,7 +135,7 @@ fn bent(lower: &Segment<f64>, upper: &Segment<f64>, load: [f64; 3]) -> [[f64; 8]
 
 /// Adds what edges and angles say to the unknowns of the joint: an edge is the difference of two points.
 fn add_bent(front: &mut Front<f64>, second: &[[f64; 8]; 8]) {
-    // Where each of the eleven unknowns enters the eight: (index, sign).
+    // Places of the eleven unknowns in the eight: (index, sign).
     let parts = |unknown: usize| -> [(usize, f64); 2] {
         match unknown {
             0..3 => [(unknown, -1.0), (0, 0.0)],

@@ -354,7 +354,7 @@ fn an_upright_rod_buckles_at_the_known_load() {
     }
 }
 
-/// How far \[m\] a hanging rod of a natural curvature \[1/m\] leaves its plane after a small push.
+/// Distance \[m\] of a hanging rod of a natural curvature \[1/m\] from its plane after a small push.
 fn out_of_plane(curvature: f64, gamma: f64) -> f64 {
     let (length, count) = (0.2, 32);
     let turn = curvature * length / count as f64;

@@ -1,4 +1,4 @@
-//! What a block of strands is solved in.
+//! Scratch of the solve of a block of strands.
 
 use glam::Vec3;
 use strandline_base::vec3x8::lanes;
@@ -41,7 +41,7 @@ impl Carry {
     }
 }
 
-/// What a thread works in.
+/// Scratch of a thread.
 pub(crate) struct Workspace {
     pub points: Vec<Vector<f32x8>>,
     pub velocities: Vec<Vector<f32x8>>,
@@ -49,9 +49,9 @@ pub(crate) struct Workspace {
     pub spins: Vec<f32x8>,
     /// The shape that the head carried along: where a part begins.
     pub carried: Vec<Vector<f32x8>>,
-    /// How far forces alone would take the points from there.
+    /// Motion of the points under forces alone from there.
     pub wanted: Vec<Vector<f32x8>>,
-    /// How far they would go from there at their velocity.
+    /// Motion at their velocity from there.
     pub coast: Vec<Vector<f32x8>>,
     pub pulls: Vec<Pull<f32x8>>,
     pub margins: Vec<f32x8>,

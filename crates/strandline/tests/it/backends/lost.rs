@@ -1,6 +1,8 @@
 //! Loss of a GPU, and a GPU without memory.
 
-use strandline::{Backend, Event, Film, Hair, Player, Settings, device::Gpu, settings::VolumeSettings};
+use strandline::{
+    Backend, ErrorKind, Event, Film, Hair, Player, Settings, device::Gpu, settings::VolumeSettings,
+};
 
 use super::{apart, gpu, hair, scene, turned};
 
@@ -11,12 +13,16 @@ fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
     hair.step(0.1, &turned(0.2)).unwrap();
     let before = hair.state().unwrap().clone();
     gpu.destroy();
-    let error = hair.step(0.1, &turned(0.4)).unwrap_err().to_string();
+    let error = hair.step(0.1, &turned(0.4)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::DeviceLost);
+    let error = error.to_string();
     assert!(error.contains(&gpu.adapter().name) && error.contains("lost"), "{error}");
     assert_eq!(hair.state().unwrap().positions, before.positions);
     let camera = strandline::Camera::framing(hair.bounds(), glam::Vec3::Z, 1.0);
     let look = strandline::Look::thesis();
-    let error = hair.picture(&camera, &look).unwrap_err().to_string();
+    let error = hair.picture(&camera, &look).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::DeviceLost, "a picture's failure is no error of the simulation");
+    let error = error.to_string();
     assert!(error.contains(&gpu.adapter().name) && error.contains("lost"), "{error}");
     assert!(hair.step(0.1, &turned(0.4)).is_err(), "it stays lost");
     hair.set_fall_back(true);
@@ -96,7 +102,9 @@ fn refused_memory_names_the_adapter_and_the_size() {
     let mut settings = hair.settings().clone();
     settings.volume = VolumeSettings { cells: [64; 3], ..settings.volume };
     hair.set_settings(&settings).unwrap();
-    let error = hair.step(0.05, &turned(0.2)).unwrap_err().to_string();
+    let error = hair.step(0.05, &turned(0.2)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::OutOfMemory);
+    let error = error.to_string();
     assert!(error.contains(&gpu.adapter().name) && error.contains("out of memory"), "{error}");
     assert!(error.contains("bytes was refused"), "{error}");
     hair.set_fall_back(true);

@@ -230,6 +230,26 @@ fn maps_of_a_gpu_can_be_looked_at() {
     assert!(hair.opacity_map(0).is_err());
 }
 
+/// Sliders of gravity, drag and stiffness move in every frame: no frame waits for the device.
+#[test]
+fn settings_that_change_in_every_frame_wait_for_nothing() {
+    let Some(gpu) = gpu() else { return };
+    let mut hair = hair(&gpu);
+    hair.step(0.05, &Pose::IDENTITY).unwrap();
+    let before = gpu.waits();
+    for frame in 0..8_u8 {
+        let mut settings = hair.settings().clone();
+        settings.gravity.y = -9.0 + f32::from(frame);
+        settings.drag.across = 1.0 + f32::from(frame);
+        settings.strands.rods.youngs_modulus = 3.0 + f32::from(frame);
+        hair.set_settings(&settings).unwrap();
+        hair.step(1.0 / 60.0, &Pose::IDENTITY).unwrap();
+    }
+    assert_eq!(gpu.waits(), before);
+    gpu.wait().unwrap();
+    assert_eq!(gpu.waits(), before + 1, "waits are counted");
+}
+
 #[test]
 fn lengths_change_on_a_gpu_too() {
     let Some(gpu) = gpu() else { return };

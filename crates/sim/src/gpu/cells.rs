@@ -1,0 +1,73 @@
+//! Points sorted by the cell that holds them at the start of a step.
+
+use std::sync::OnceLock;
+
+use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
+
+use super::cell_buffers::{Cells, LatticeState};
+use super::inputs::Step;
+use super::splat::{ListPoints, RankPoints};
+use super::stage::{StageKernels, Target};
+
+kernel! {
+    /// The histogram; one thread is one point.
+    pub(super) struct FindBuckets in "cells" (super::linked::CELLS), entry "find_buckets" {
+        0 step: Read Step,
+        1 cell_ranks: ReadWrite [u32; 2],
+        4 lattice: Read LatticeState,
+        5 positions: Read f32,
+        6 counts: ReadWrite u32,
+    }
+}
+
+/// The kernels, compiled when a step first has the stage.
+#[derive(Default)]
+pub(super) struct Stage(OnceLock<Kernels>);
+
+struct Kernels {
+    find_buckets: Kernel<FindBuckets<'static>>,
+    list_points: Kernel<ListPoints<'static>>,
+    rank_points: Kernel<RankPoints<'static>>,
+}
+
+impl Stage {
+    fn kernels(&self, gpu: &Gpu) -> Result<&Kernels, GpuError> {
+        if let Some(kernels) = self.0.get() {
+            return Ok(kernels);
+        }
+        let kernels = Kernels {
+            find_buckets: Kernel::new(gpu, &[])?,
+            list_points: Kernel::new(gpu, &[])?,
+            rank_points: Kernel::new(gpu, &[])?,
+        };
+        Ok(self.0.get_or_init(|| kernels))
+    }
+}
+
+impl StageKernels for Stage {
+    fn declarations() -> Vec<Declaration> {
+        vec![FindBuckets::declaration()]
+    }
+
+    fn new(_: &Gpu, _: usize) -> Result<Self, GpuError> {
+        Ok(Self::default())
+    }
+
+    /// `start_index` must be all 0 when the first kernel starts.
+    fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
+        let Target { gpu, buffers, scan, side, .. } = *to;
+        let Some(cells) = &buffers.cells else { return Ok(Vec::new()) };
+        let kernels = self.kernels(gpu)?;
+        let Cells { lattice, start_index, totals, cell_ranks, order, .. } = cells;
+        let (step, positions, points) = (&buffers.step, &buffers.places[side], buffers.point_count());
+        let find = FindBuckets { step, cell_ranks, lattice, positions, counts: start_index };
+        let mut dispatches = vec![kernels.find_buckets.bind(gpu, &find)?.over(points)];
+        dispatches.extend(scan.bind(gpu, start_index, totals)?);
+        let list = ListPoints { step, cell_ranks, start_index, counted: order };
+        let list = kernels.list_points.bind(gpu, &list)?.over(points);
+        let rank = RankPoints { step, cell_ranks, start_index, counted: order };
+        // Listed as they were counted, then by their ranks.
+        dispatches.extend([list.clone(), kernels.rank_points.bind(gpu, &rank)?.over(points), list]);
+        Ok(dispatches)
+    }
+}
