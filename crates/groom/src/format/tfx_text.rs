@@ -94,6 +94,8 @@ impl Header {
                         .push(format!("{count} hairs that TressFX adds to each guide are not added"));
                 }
             }
+            // A point that no strand has.
+            _ if word.parse::<f32>().is_ok() => return None,
             // Others, such as `is sorted 1`, change nothing here.
             _ => {}
         }
