@@ -10,8 +10,8 @@ use crate::SimError;
 /// Rest positions of a block, each lane carried by its pose.
 pub(crate) fn carried(lanes: &Vec3Lanes, world_from_root: &[Pose; LANES]) -> Vec3Lanes {
     let mut carried = Vec3Lanes::default();
-    for lane in 0..LANES {
-        carried.set(lane, world_from_root[lane].point(lanes.get(lane)));
+    for (lane, world_from_root) in world_from_root.iter().enumerate() {
+        carried.set(lane, world_from_root.point(lanes.get(lane)));
     }
     carried
 }

@@ -82,14 +82,12 @@ impl Header {
                     rest.next()?.parse().ok().filter(|scale: &f32| scale.is_finite() && *scale > 0.0)?;
             }
             "translation" => self.translation = vector(rest).filter(|translation| translation.is_finite())?,
-            "rotation" => {
-                if vector(rest)? != Vec3::ZERO {
-                    self.problems.push("the rotation of the header is not applied".to_owned());
-                }
+            "rotation" if vector(rest.clone())? != Vec3::ZERO => {
+                self.problems.push("the rotation of the header is not applied".to_owned());
             }
             "numStrands" => self.strands = Some(rest.next()?.parse().ok()?),
             "numFollowHairsPerGuideHair" => {
-                if let Some(count @ 1..) = rest.next()?.parse::<u32>().ok() {
+                if let Ok(count @ 1..) = rest.next()?.parse::<u32>() {
                     self.problems
                         .push(format!("{count} hairs that TressFX adds to each guide are not added"));
                 }

@@ -5,7 +5,7 @@ mod text;
 mod transform;
 
 use glam::Mat4;
-use strandline_base::utf8_text;
+use strandline_base::{math, utf8_text};
 
 use super::bytes::Source;
 use super::{MAX_POINTS, MAX_STRANDS, Parsed};
@@ -80,7 +80,7 @@ impl Reading<'_> {
             for point in &mut groom.points {
                 *point = world_from_prim.transform_point3(*point);
             }
-            let scale = glam::Mat3::from_mat4(world_from_prim).determinant().abs().cbrt();
+            let scale = math::cbrt(glam::Mat3::from_mat4(world_from_prim).determinant().abs());
             if groom.widths != Widths::Constant(0.0) {
                 groom.widths = Widths::PerPoint(groom.point_widths().map(|width| scale * width).collect());
             }
