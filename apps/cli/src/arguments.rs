@@ -7,10 +7,12 @@ use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use strandline::{
     Backend, Style, Target, What,
-    format::{Cleaning, FORMATS, Format, LoadOptions, Scale, Up, endings},
+    format::{FORMATS, Format, Scale, endings},
     scene::MotionName,
     settings::rods::HairKind,
 };
+
+use crate::reading::{Reading, parse_scale};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
@@ -223,33 +225,6 @@ pub struct ConvertOptions {
     pub mesh_scale: Scale,
 }
 
-/// Reading of a groom file.
-#[derive(Args, Clone, Copy, Debug)]
-pub struct Reading {
-    /// Metres per unit of the file, or auto: the first unit that makes it as large as hair can be.
-    #[arg(long, value_name = "F|auto", default_value = "auto", value_parser = parse_scale)]
-    pub scale: Scale,
-    /// The axis of the file that points up: y or z.
-    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = Up::from_str)]
-    pub up: Up,
-    /// Points of each strand, for files that do not give strands.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
-    pub per_strand: Option<u32>,
-}
-
-impl Reading {
-    /// Bad strands are left out and counted.
-    pub fn options(&self) -> LoadOptions {
-        LoadOptions {
-            strict: false,
-            scale: self.scale,
-            up: self.up,
-            per_strand: self.per_strand,
-            cleaning: Cleaning::Named,
-        }
-    }
-}
-
 #[derive(Args, Debug)]
 #[command(after_help = formats())]
 pub struct InfoOptions {
@@ -347,15 +322,6 @@ fn written() -> String {
 fn formats() -> String {
     let line = |format: &Format| format!("  .{:<9}{}\n", format.ending, format.about);
     format!("Formats:\n{}", FORMATS.iter().map(line).collect::<String>())
-}
-
-fn parse_scale(text: &str) -> Result<Scale, String> {
-    let factor = text.parse().ok().filter(|factor: &f32| (1e-6..=1e6).contains(factor));
-    match (text, factor) {
-        ("auto", _) => Ok(Scale::Auto),
-        (_, Some(factor)) => Ok(Scale::Factor(factor)),
-        _ => Err(format!("`{text}` is not a scale, expected auto or a number from 0.000001 to 1000000")),
-    }
 }
 
 fn parse_vector(text: &str) -> Result<Vec3, String> {

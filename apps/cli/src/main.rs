@@ -17,6 +17,7 @@ mod non_finite;
 mod output;
 mod progress;
 mod quiet;
+mod reading;
 mod render;
 mod sim;
 mod statistics;

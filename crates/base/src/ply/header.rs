@@ -1,6 +1,6 @@
 //! The text at the beginning of a `.ply` file.
 
-use super::Mismatch;
+use super::mismatch::Mismatch;
 
 /// Longest header \[byte\], and its most elements and properties.
 const MAX_HEADER: usize = 1 << 20;

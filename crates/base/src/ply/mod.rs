@@ -1,28 +1,15 @@
 //! `.ply` files as tables of numbers, one for each element that is asked for.
 
 mod header;
+mod mismatch;
 mod rows;
 
 use header::Header;
+pub use mismatch::Mismatch;
 use rows::Rows;
 pub use rows::{Column, Table};
 
 use crate::utf8_text;
-
-/// Difference between a file and its format.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Mismatch {
-    /// The text or number of the file.
-    pub found: String,
-    /// The text or number that the format has there.
-    pub expected: String,
-}
-
-impl Mismatch {
-    fn new(found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self { found: found.into(), expected: expected.into() }
-    }
-}
 
 /// The contents of a file.
 pub struct File<const N: usize> {

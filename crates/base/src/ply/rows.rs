@@ -1,7 +1,7 @@
 //! The rows of a `.ply` file: numbers, column by column.
 
-use super::Mismatch;
 use super::header::{Element, Encoding, Header, Number, Property};
+use super::mismatch::Mismatch;
 
 /// Longest list of a row.
 const MAX_LIST: f64 = 4096.0;
