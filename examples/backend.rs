@@ -9,7 +9,7 @@ fn main() -> Result<(), strandline::Error> {
     scene.style.strand_count = if std::env::var_os("STRANDLINE_QUICK").is_some() { 100 } else { 2000 };
     // `Backend::Gpu(None)` would take a software adapter too, and fail where there is none.
     let mut hair = Hair::from_prepared(Prepared::new(&scene)?, Backend::auto())?;
-    let reports = hair.step(0.2, &Pose::IDENTITY)?;
+    let reports = hair.step(0.2, Pose::IDENTITY)?;
     let is_sound = |report: &StepReport| report.non_finite == 0 && report.stretch_max < 1e-3;
     assert!(!reports.is_empty() && reports.iter().all(is_sound), "a step went wrong: {reports:?}");
     println!("simulated on {}", hair.simulated_on());

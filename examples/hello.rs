@@ -10,7 +10,7 @@ fn hello() -> Result<(), Error> {
     let (head, look) = (hair.head().clone(), hair.look().clone());
     for frame in 1..=60 {
         let seconds = 1.0 / 60.0;
-        hair.step(seconds, &head.pose(seconds * f64::from(frame)))?;
+        hair.step(seconds, head.pose(seconds * f64::from(frame)))?;
     }
     hair.picture(&Camera::three_quarter(), &look)?.save("wavy.png")?;
     Ok(())

@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let roots = groom.starts.iter().take(strand_count).map(|start| groom.points[*start as usize]);
     let scales: Vec<f32> = roots.map(|root| if root.x > 0.0 { 0.6 } else { 1.5 }).collect();
     hair.set_length_scale(&scales)?;
-    let reports = hair.step(0.25, &Pose::IDENTITY)?;
+    let reports = hair.step(0.25, Pose::IDENTITY)?;
     assert!(reports.iter().all(|report| report.stretch_max < 1e-3), "hair has other lengths than those");
     std::fs::create_dir_all("out/examples")?;
     let picture = hair.picture(&Camera::front(), &Look::red())?;

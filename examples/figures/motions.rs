@@ -93,7 +93,7 @@ fn pulled(moving: &mut Moving, time: f64) -> Result<(), strandline::Error> {
                 moving.held = None;
             }
         }
-        moving.hair.step(FRAME, &Pose::IDENTITY)?;
+        moving.hair.step(FRAME, Pose::IDENTITY)?;
         moving.time += FRAME;
     }
     Ok(())

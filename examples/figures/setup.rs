@@ -41,7 +41,7 @@ impl Setup {
         let mut hair = Hair::from_prepared(Prepared::new(&scene)?, self.backend)?;
         let head = hair.head().clone();
         if scene.simulation.strands.method == StrandMethod::Constrain && !self.quick {
-            hair.step(FilmSection::SETTLE.into(), &Pose::IDENTITY)?;
+            hair.step(FilmSection::SETTLE.into(), Pose::IDENTITY)?;
         }
         Ok(Moving { hair, head, picture: scene.picture, time: 0.0, held: None })
     }

@@ -63,7 +63,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     };
     let turned = Pose { rotation: glam::Quat::from_rotation_y(0.4), ..Pose::IDENTITY };
     for _ in 0..12 {
-        left.step(STEP, &turned).unwrap();
+        left.step(STEP, turned).unwrap();
     }
     // Just a step each: what is shown is the state before the last.
     left.save_pose(&file).unwrap();
@@ -96,7 +96,7 @@ fn goes_on(backend: Backend, method: StrandMethod) {
     assert_eq!(begun.length_scale(7), 0.8);
     // It continues without a jerk: gravity and the volume change no velocity by 3 m/s in a step.
     let before = again.state().unwrap().positions.clone();
-    again.step(STEP, &turned).unwrap();
+    again.step(STEP, turned).unwrap();
     let moved = apart(&before, &again.state().unwrap().positions);
     assert!(moved > 0.1 / 60.0 && moved < (fast + 3.0) / 60.0, "{moved} m at {fast} m/s");
     // A film begins with it, whatever time settling may take.

@@ -122,14 +122,14 @@ fn a_frame_without_time_moves_nothing_but_the_head() {
     let mut hair = strandline::Hair::from_prepared(prepared, Backend::Cpu).unwrap();
     let turned = Pose { rotation: glam::Quat::from_rotation_y(0.01), ..Pose::IDENTITY };
     for seconds in [0.0, -1.0, f64::NAN] {
-        assert!(hair.step(seconds, &turned).unwrap().is_empty());
+        assert!(hair.step(seconds, turned).unwrap().is_empty());
     }
-    let reports = hair.step(1.0 / 60.0, &turned).unwrap();
+    let reports = hair.step(1.0 / 60.0, turned).unwrap();
     assert_eq!((reports.len(), reports[0].non_finite), (1, 0));
     // On its way the head is interpolated, which rounds.
     let rotation = hair.state().unwrap().body.world_from_head().rotation;
     assert!(rotation.abs_diff_eq(turned.rotation, 1e-6), "{rotation}");
-    let refused = hair.step(1e9, &turned).unwrap_err().to_string();
+    let refused = hair.step(1e9, turned).unwrap_err().to_string();
     assert!(refused.contains("steps at once, expected no more than 1000000 steps"), "{refused}");
 }
 
@@ -147,7 +147,7 @@ fn hair_that_begins_in_a_pose_moves_alike_at_every_frame_rate() {
     let prepared = strandline::Prepared::new(&start).unwrap();
     let mut hair = strandline::Hair::from_prepared(prepared, Backend::Cpu).unwrap();
     let turned = Pose { rotation: glam::Quat::from_rotation_y(0.2), ..Pose::IDENTITY };
-    (0..20).for_each(|_| drop(hair.step(1.0 / 60.0, &turned).unwrap()));
+    (0..20).for_each(|_| drop(hair.step(1.0 / 60.0, turned).unwrap()));
     hair.save_pose(&file).unwrap();
     let posed = |rate| {
         let mut scene = film(rate);

@@ -27,7 +27,7 @@ fn a_loop_writes_its_own_poses_and_resumes_to_the_bit() {
     let (mut whole, mut half) = (hair.begin_file(&at("whole.npz")).unwrap(), None);
     let mut shown = Vec::new();
     for frame in 0..4 {
-        hair.step(1.0 / 60.0, &head(frame)).unwrap();
+        hair.step(1.0 / 60.0, head(frame)).unwrap();
         shown.push(hair.points().unwrap().to_vec());
         hair.write(&mut whole).unwrap();
         if frame == 0 {
@@ -38,7 +38,7 @@ fn a_loop_writes_its_own_poses_and_resumes_to_the_bit() {
             let mut out = Hair::open(&scene()).unwrap();
             let mut file = out.begin_file(&at("half.npz")).unwrap();
             for frame in 0..2 {
-                out.step(1.0 / 60.0, &head(frame)).unwrap();
+                out.step(1.0 / 60.0, head(frame)).unwrap();
                 out.write(&mut file).unwrap();
             }
             half = Some(out.end_file(file).unwrap());
@@ -57,7 +57,7 @@ fn a_loop_writes_its_own_poses_and_resumes_to_the_bit() {
     let made = resumed.resume(&mut Cache::open(&folder.path().join("half.npz")).unwrap(), None).unwrap();
     assert_eq!(made, 2);
     for frame in made..4 {
-        resumed.step(1.0 / 60.0, &head(frame)).unwrap();
+        resumed.step(1.0 / 60.0, head(frame)).unwrap();
     }
     assert_eq!(resumed.points().unwrap(), &shown[3][..]);
 }

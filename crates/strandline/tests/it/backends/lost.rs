@@ -10,10 +10,10 @@ use super::{apart, gpu, hair, scene, turned};
 fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
-    hair.step(0.1, &turned(0.2)).unwrap();
+    hair.step(0.1, turned(0.2)).unwrap();
     let before = hair.state().unwrap().clone();
     gpu.destroy();
-    let error = hair.step(0.1, &turned(0.4)).unwrap_err();
+    let error = hair.step(0.1, turned(0.4)).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::DeviceLost);
     let error = error.to_string();
     assert!(error.contains(&gpu.adapter().name) && error.contains("lost"), "{error}");
@@ -24,7 +24,7 @@ fn a_lost_gpu_is_an_error_that_names_it_and_the_last_state_stays() {
     assert_eq!(error.kind(), ErrorKind::DeviceLost, "a picture's failure is no error of the simulation");
     let error = error.to_string();
     assert!(error.contains(&gpu.adapter().name) && error.contains("lost"), "{error}");
-    assert!(hair.step(0.1, &turned(0.4)).is_err(), "it stays lost");
+    assert!(hair.step(0.1, turned(0.4)).is_err(), "it stays lost");
     hair.set_fall_back(true);
     assert!(hair.picture(&camera, &look).is_ok(), "the last state can be drawn");
     assert_eq!(hair.drawn_on(), "cpu");
@@ -39,11 +39,11 @@ fn a_run_that_may_fall_back_goes_on_from_the_last_state() {
     let notes = hair.take_notes();
     assert_eq!(notes.len(), usize::from(gpu.adapter().software), "{notes:?}");
     hair.set_fall_back(true);
-    let mut reports = hair.step(0.1, &turned(0.2)).unwrap();
+    let mut reports = hair.step(0.1, turned(0.2)).unwrap();
     let before = hair.state().unwrap().clone();
     assert!(hair.simulated_on().starts_with("gpu:"));
     gpu.destroy();
-    reports.extend(hair.step(1.0 / 60.0, &turned(0.23)).unwrap());
+    reports.extend(hair.step(1.0 / 60.0, turned(0.23)).unwrap());
     assert_eq!(reports.len(), 7, "each step once");
     assert_eq!(hair.simulated_on(), "cpu");
     let notes = hair.take_notes();
@@ -72,12 +72,12 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
         };
         hair.set_fall_back(true);
         hair.set_settings(&Settings { checkpoint_every, ..hair.settings().clone() }).unwrap();
-        hair.step(0.1, &turned(0.2)).unwrap();
+        hair.step(0.1, turned(0.2)).unwrap();
         // A state that was sent on its way has arrived then.
         gpu.inspect(|gpu| gpu.wait().unwrap());
-        hair.step(0.1, &turned(0.3)).unwrap();
+        hair.step(0.1, turned(0.3)).unwrap();
         gpu.inspect(|gpu| gpu.destroy());
-        hair.step(0.1, &turned(0.4)).unwrap();
+        hair.step(0.1, turned(0.4)).unwrap();
         let notes = hair.take_notes().join(" ");
         assert_eq!(notes.contains("resuming from 0.200 s"), gpu.is_some(), "{notes}");
         hair.state().unwrap().clone()
@@ -97,18 +97,18 @@ fn steps_that_a_lost_gpu_had_made_are_made_again() {
 fn refused_memory_names_the_adapter_and_the_size() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
-    hair.step(0.05, &turned(0.1)).unwrap();
+    hair.step(0.05, turned(0.1)).unwrap();
     gpu.set_memory_limit(gpu.memory_used() + 100_000);
     let mut settings = hair.settings().clone();
     settings.volume = VolumeSettings { cells: [64; 3], ..settings.volume };
     hair.set_settings(&settings).unwrap();
-    let error = hair.step(0.05, &turned(0.2)).unwrap_err();
+    let error = hair.step(0.05, turned(0.2)).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::OutOfMemory);
     let error = error.to_string();
     assert!(error.contains(&gpu.adapter().name) && error.contains("out of memory"), "{error}");
     assert!(error.contains("bytes was refused"), "{error}");
     hair.set_fall_back(true);
-    hair.step(0.05, &turned(0.2)).unwrap();
+    hair.step(0.05, turned(0.2)).unwrap();
     assert_eq!(hair.simulated_on(), "cpu");
 }
 

@@ -235,7 +235,7 @@ fn maps_of_a_gpu_can_be_looked_at() {
 fn settings_that_change_in_every_frame_wait_for_nothing() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
-    hair.step(0.05, &Pose::IDENTITY).unwrap();
+    hair.step(0.05, Pose::IDENTITY).unwrap();
     let before = gpu.waits();
     for frame in 0..8_u8 {
         let mut settings = hair.settings().clone();
@@ -243,7 +243,7 @@ fn settings_that_change_in_every_frame_wait_for_nothing() {
         settings.drag.across = 1.0 + f32::from(frame);
         settings.strands.rods.youngs_modulus = 3.0 + f32::from(frame);
         hair.set_settings(&settings).unwrap();
-        hair.step(1.0 / 60.0, &Pose::IDENTITY).unwrap();
+        hair.step(1.0 / 60.0, Pose::IDENTITY).unwrap();
     }
     assert_eq!(gpu.waits(), before);
     gpu.wait().unwrap();
@@ -254,9 +254,9 @@ fn settings_that_change_in_every_frame_wait_for_nothing() {
 fn lengths_change_on_a_gpu_too() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
-    hair.step(0.05, &Pose::IDENTITY).unwrap();
+    hair.step(0.05, Pose::IDENTITY).unwrap();
     hair.set_length_scale(&[0.5; 60]).unwrap();
-    let reports = hair.step(0.2, &Pose::IDENTITY).unwrap();
+    let reports = hair.step(0.2, Pose::IDENTITY).unwrap();
     assert!(reports.iter().all(|report| report.stretch_max < 1e-3), "{:?}", reports.last());
     let state = hair.state().unwrap().clone();
     let points = hair.guides().points_per_strand();
@@ -284,7 +284,7 @@ fn a_hand_holds_on_a_gpu_and_when_it_goes_away() {
     let Some(gpu) = gpu() else { return };
     let mut hair = hair(&gpu);
     hair.set_fall_back(true);
-    hair.step(0.05, &Pose::IDENTITY).unwrap();
+    hair.step(0.05, Pose::IDENTITY).unwrap();
     let points = hair.guides().points_per_strand();
     let tip = |hair: &mut Hair| hair.state().unwrap().positions[points - 1].get(0);
     let (hand, aside) = (tip(&mut hair), glam::Vec3::new(0.02, 0.04, 0.05));
@@ -294,18 +294,18 @@ fn a_hand_holds_on_a_gpu_and_when_it_goes_away() {
         assert!(missed < 0.005, "{} misses the hand by {missed} m", hair.simulated_on());
     };
     hair.move_hand(hand + aside);
-    hair.step(0.2, &Pose::IDENTITY).unwrap();
-    hair.step(0.3, &Pose::IDENTITY).unwrap();
+    hair.step(0.2, Pose::IDENTITY).unwrap();
+    hair.step(0.3, Pose::IDENTITY).unwrap();
     held(&mut hair, hand + aside);
     gpu.destroy();
     hair.move_hand(hand + 1.2 * aside);
-    hair.step(0.1, &Pose::IDENTITY).unwrap();
-    hair.step(0.3, &Pose::IDENTITY).unwrap();
+    hair.step(0.1, Pose::IDENTITY).unwrap();
+    hair.step(0.3, Pose::IDENTITY).unwrap();
     assert_eq!(hair.simulated_on(), "cpu");
     held(&mut hair, hand + 1.2 * aside);
     hair.release().unwrap();
     assert_eq!(hair.state().unwrap().grabbed(), 0);
-    hair.step(0.3, &Pose::IDENTITY).unwrap();
+    hair.step(0.3, Pose::IDENTITY).unwrap();
     assert!(tip(&mut hair).distance(hand + 1.2 * aside) > 0.01, "it falls when it is let go of");
 }
 
