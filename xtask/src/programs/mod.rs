@@ -13,6 +13,10 @@ pub use order::keep;
 pub use tally::Tally;
 pub use turns::{Ran, run};
 
+/// Programs that need the machine for themselves, with the reason. They run last, one after the other.
+const ALONE: [(&str, &str); 1] =
+    [("strandline-cli/window", "a click or a drag that falls into one slow pass of the window is none")];
+
 /// An executable that cargo built.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
@@ -27,6 +31,11 @@ pub struct Program {
 }
 
 impl Program {
+    /// True for a program that needs the machine for itself.
+    fn is_alone(&self) -> bool {
+        ALONE.iter().any(|(name, _)| *name == self.name)
+    }
+
     /// The program with the environment of `cargo test`.
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);

@@ -41,17 +41,23 @@ impl Ran {
     }
 }
 
-/// Runs all programs with an environment, as many side by side as there are cores. None of them needs the machine for
-/// itself: what they measure is their own memory and processor seconds, and what they wait for may take a minute.
+/// Runs all programs with an environment: as many side by side as there are cores, then those that need the machine for
+/// themselves. What the others measure is their own memory and processor seconds, and what they wait for may take a minute.
 pub fn run(mut programs: Vec<Program>, environment: &[(&str, &str)]) -> Vec<Ran> {
     order::sort(&mut programs);
-    let job = |program: Program| {
-        let mut command = program.command();
-        command.envs(environment.iter().copied());
-        Job { name: program.name, tests: program.tests, command }
-    };
+    let (alone, together): (Vec<_>, Vec<_>) = programs.into_iter().partition(Program::is_alone);
+    let jobs =
+        |programs: Vec<Program>| programs.into_iter().map(|program| job(program, environment)).collect();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    side_by_side(programs.into_iter().map(job).collect(), cores.min(MOST))
+    let mut done = side_by_side(jobs(together), cores.min(MOST));
+    done.extend(side_by_side(jobs(alone), 1));
+    done
+}
+
+fn job(program: Program, environment: &[(&str, &str)]) -> Job {
+    let mut command = program.command();
+    command.envs(environment.iter().copied());
+    Job { name: program.name, tests: program.tests, command }
 }
 
 /// A program with all that it is started with.
@@ -201,6 +207,22 @@ mod tests {
         assert_eq!(done.iter().map(|ran| ran.tally.failed).collect::<Vec<_>>(), [1, 1, 1, 0]);
         assert!(done[0].failures().starts_with("\nfailures:\n---- a"), "{}", done[0].failures());
         assert!(done[1].failures().contains("signal: 9"), "{}", done[1].failures());
+    }
+
+    #[test]
+    fn a_program_that_needs_the_machine_alone_runs_last() {
+        let program = |name: &str| Program {
+            name: name.into(),
+            path: "true".into(),
+            folder: root().to_owned(),
+            tests: false,
+        };
+        let done = run(
+            vec![program("strandline-cli/window"), program("turns beside"), program("turns before")],
+            &[],
+        );
+        assert!(done.iter().all(|ran| ran.passed), "{done:?}");
+        assert_eq!(done[2].name, "strandline-cli/window");
     }
 
     #[test]
