@@ -36,7 +36,8 @@ pub(super) struct Buffers {
     pub rest_positions: Buffer<f32>,
     /// Six numbers: rest direction (with rods the first axis of the section), rest length \[m\], inverse mass
     /// \[1/kg\], clearance at rest \[m\]. Behind those of all points, without rods, per strand from the hand to the
-    /// point \[m\] that it holds, and its number; below 0 for none. Behind these the root frames: see roots.wesl.
+    /// point \[m\] that it holds, and its number; below 0 for none. Behind these the root frames, once there are any: see
+    /// roots.wesl.
     pub rest: Buffer<f32>,
     /// Two numbers: rest lengths of the bend and the torsion spring \[m\].
     pub springs: Buffer<f32>,
@@ -76,7 +77,7 @@ impl Buffers {
             points,
             step: solids::behind_step(gpu, &model.colliders)?,
             rest_positions: vectors("rest positions", &model.positions)?,
-            rest: Buffer::new(gpu, "rest shape", (REST * points + 4) * lane_count + ROOT * lane_count)?,
+            rest: Buffer::new(gpu, "rest shape", (REST * points + 4) * lane_count)?,
             springs: Buffer::new(gpu, "springs", 2 * count)?,
             mass: Buffer::new(gpu, "masses", count)?,
             places: [
@@ -170,6 +171,30 @@ impl Buffers {
         Ok(buffers.nodes.write_at(numbers.len() + 4 * self.lane_count, &traits)?)
     }
 
+    /// Makes room for root frames behind the rest shape. Returns true where there was none, and kernels have to be
+    /// bound anew.
+    pub fn make_room_for_roots(
+        &mut self,
+        gpu: &Gpu,
+        model: &Model,
+        lengths: &RestShape,
+        grab: &Grab,
+    ) -> Result<bool, SimError> {
+        let count = self.first_root() + ROOT * self.lane_count;
+        if self.rest.len() == count {
+            return Ok(false);
+        }
+        self.rest = Buffer::new(gpu, "rest shape and root frames", count)?;
+        self.write_rest(model, lengths)?;
+        self.write_grips(grab)?;
+        Ok(true)
+    }
+
+    /// Index of the first number of the root frames in the buffer of rest shapes.
+    fn first_root(&self) -> usize {
+        REST * self.point_count() + 4 * self.lane_count
+    }
+
     /// Writes the root frames of a step between two frames of the body; nothing where they ride the head.
     pub fn write_roots(&self, model: &Model, [start, end]: [&BodyFrame; 2]) -> Result<(), SimError> {
         if !has_roots(start, end) {
@@ -179,8 +204,7 @@ impl Buffers {
         let strands = (0..self.lane_count).into_par_iter().map(|lane| lane.min(last));
         let root = |strand| Root::new(&start.root(strand), &end.root(strand), parts);
         let roots: Vec<Root> = strands.map(root).collect();
-        let first = REST * self.point_count() + 4 * self.lane_count;
-        Ok(self.rest.write_at(first, bytemuck::cast_slice(&roots))?)
+        Ok(self.rest.write_at(self.first_root(), bytemuck::cast_slice(&roots))?)
     }
 
     /// Writes what a hand holds; with an empty hand it is not read.

@@ -10,6 +10,7 @@ use super::buffers::{Buffers, REPORTS};
 use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::kernels::Kernels;
+use super::motion::has_roots;
 use super::pending::{Pending, Reported};
 use super::records::{Gradient, Spread};
 use super::solids;
@@ -229,8 +230,13 @@ impl GpuRunner {
 
     /// Records and submits the stages of a step that are wanted.
     pub(super) fn run(&mut self, drive: &Drive, wanted: impl Fn(Stage) -> bool) -> Result<(), SimError> {
-        self.prepare()?;
         let drive = drive.or_still_at(&self.body, self.model.strand_count);
+        if has_roots(&self.body, &drive.body)
+            && self.buffers.make_room_for_roots(&self.gpu, &self.model, &self.lengths, &self.grab)?
+        {
+            self.bound = None;
+        }
+        self.prepare()?;
         self.grab.hand = drive.hand.unwrap_or(self.grab.hand);
         let uniform = Step::new(&self.model, &self.body, &drive, &self.grab, self.pending.count);
         self.buffers.step.write(&[uniform])?;
