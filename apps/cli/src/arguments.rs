@@ -73,8 +73,8 @@ impl Command {
 /// Settings of a scene by their keys.
 #[derive(Args, Clone, Debug, Default)]
 pub struct Set {
-    /// Set a value of the scene, after all other options: simulation.gravity=[0,-1.6,0], motion.name=nod,
-    /// lights[0].intensity=2; docs/scene.md lists the keys. `strandline scene` takes it too. Given again: further
+    /// Set a value of the scene, after all other options: `simulation.gravity=[0,-1.6,0]`, `motion.name=nod`,
+    /// `lights[0].intensity=2`; docs/scene.md lists the keys. `strandline scene` takes it too. Given again: further
     /// values. A key alone is explained.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub values: Vec<String>,

@@ -124,7 +124,8 @@ fn write(
 
 /// The name of a file a frame, where a path is that of a groom other than a cache.
 pub fn numbered(path: &Path) -> Option<PathBuf> {
-    let ending = &Format::of(path).ok()?.ending;
+    // A .usda holds all frames; as a groom it is read alone.
+    let ending = &Format::of(path).ok().filter(|format| format.write.is_some())?.ending;
     let stem = path.file_stem()?.to_string_lossy();
     let name = if stem.contains('%') { format!("{stem}.{ending}") } else { format!("{stem}.%04d.{ending}") };
     (*ending != "npz").then(|| path.with_file_name(name))

@@ -90,7 +90,10 @@ fn obj_mistakes_are_named() {
     assert!(with("f 5 6 7 8", "f 5/1/1/1 6 7 8").contains("5/1/1/1"));
     assert!(refused("empty.obj", b"").contains("no vertices"));
     assert!(refused("points.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n").contains("no vertices"));
-    assert!(refused("picture.obj", &[0x89, b'P', b'N', b'G', 0xff, 0xfe]).contains("no text in line 1"));
+    assert!(
+        refused("picture.obj", &[0x89, b'P', b'N', b'G', 0xff, 0xfe])
+            .contains("bytes that are not text in line 1")
+    );
 }
 
 #[test]
