@@ -3,6 +3,7 @@
 use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{gpu, own_gpu};
+use strandline_groom::LANES;
 use strandline_sim::rods::Rest;
 use strandline_sim::{
     CpuRunner, Drive, Model, Preconditioner, Settings, Simulator, State, StepReport, StrandMethod,
@@ -283,5 +284,25 @@ fn a_runner_whose_settings_changed_steps_like_one_that_was_made_with_them() {
         let [found, expected] =
             [&mut simulator, &mut expected].map(|one| one.state().unwrap().positions.clone());
         assert!(found == expected);
+    }
+}
+
+/// States of constrained strands have no sections: those of rods after them are read into states of their own.
+#[test]
+fn rods_after_constraints_are_read_like_rods() {
+    let Some(gpu) = own_gpu() else { return };
+    let head = rods().swap_remove(3);
+    let mut simulator = Simulator::new(Some(&gpu), head.model()).unwrap();
+    for method in [StrandMethod::Constrain, StrandMethod::Rods, StrandMethod::Constrain, StrandMethod::Rods] {
+        let mut settings = simulator.model().settings().clone();
+        settings.strands.method = method;
+        simulator.set_settings(&settings).unwrap();
+        for step in 1..=3 {
+            simulator.run(&[drive(step)]).unwrap();
+            let state = simulator.state().unwrap();
+            let count = if method == StrandMethod::Rods { state.positions.len() } else { 0 };
+            assert_eq!((state.sections.len(), state.spins.len()), (count, count), "{method:?}");
+            assert!(state.positions.iter().all(|lanes| (0..LANES).all(|lane| lanes.get(lane).is_finite())));
+        }
     }
 }

@@ -63,7 +63,10 @@ impl Groom {
     /// Adds the strands of another groom behind these. Attributes of only one of the two are lost, but for widths and
     /// names of groups.
     pub fn append(&mut self, other: Self) {
-        self.widths = self.joined_widths(&other);
+        match &mut self.widths {
+            Widths::PerPoint(own) => own.extend(other.point_widths()),
+            _ => self.widths = self.joined_widths(&other),
+        }
         let strands = self.strand_count();
         let first = self.points.len() as u32;
         self.starts.extend(other.starts[1..].iter().map(|start| first + start));
@@ -86,7 +89,7 @@ impl Groom {
     fn joined_widths(&self, other: &Self) -> Widths {
         match (&self.widths, &other.widths) {
             (Widths::Constant(one), Widths::Constant(two)) if one == two => Widths::Constant(*one),
-            (Widths::PerPoint(_), _) | (_, Widths::PerPoint(_)) => {
+            (_, Widths::PerPoint(_)) => {
                 Widths::PerPoint(self.point_widths().chain(other.point_widths()).collect())
             }
             _ => Widths::PerStrand(self.root_widths().chain(other.root_widths()).collect()),

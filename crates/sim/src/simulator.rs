@@ -229,6 +229,8 @@ impl Simulator {
         self.journal.set(settings);
         if other {
             self.runner.model().give_sections(self.journal.state_mut());
+            // States of the other solver have other sections.
+            self.journal.restart();
         }
         Ok(())
     }

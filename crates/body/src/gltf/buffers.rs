@@ -58,11 +58,10 @@ impl Buffers {
         Self { bytes, limit }
     }
 
-    /// An accessor of three numbers each: floats, or whole numbers as KHR_mesh_quantization has them.
-    pub fn vectors(&self, accessor: &Accessor<'_>) -> Result<Vec<Vec3>, Refusal> {
+    /// At most `most` elements of three numbers each: floats, or whole numbers as KHR_mesh_quantization has them.
+    pub fn vectors(&self, accessor: &Accessor<'_>, most: usize) -> Result<Vec<Vec3>, Refusal> {
         let kinds = [DataType::F32, DataType::I8, DataType::U8, DataType::I16, DataType::U16];
-        self.numbers::<3>(accessor, &kinds, usize::MAX)
-            .map(|all| all.into_iter().map(Vec3::from_array).collect())
+        self.numbers::<3>(accessor, &kinds, most).map(|all| all.into_iter().map(Vec3::from_array).collect())
     }
 
     /// At most `most` elements of `N` numbers each, normalised where the accessor says so.
@@ -83,14 +82,14 @@ impl Buffers {
         Ok(elements.chunks_exact(N * kind.size()).map(element).collect())
     }
 
-    /// An accessor of four whole numbers each: the joints of vertices.
-    pub fn joints(&self, accessor: &Accessor<'_>) -> Result<Vec<[u32; 4]>, Refusal> {
+    /// At most `most` elements of four whole numbers each: the joints of vertices.
+    pub fn joints(&self, accessor: &Accessor<'_>, most: usize) -> Result<Vec<[u32; 4]>, Refusal> {
         let size = match (accessor.data_type(), accessor.dimensions()) {
             (DataType::U8, Dimensions::Vec4) => 1,
             (DataType::U16, Dimensions::Vec4) => 2,
             _ => return Err(other_numbers(accessor, "four whole numbers of 8 or 16 bits as joints")),
         };
-        let elements = self.elements(accessor, usize::MAX)?;
+        let elements = self.elements(accessor, most)?;
         let element = |bytes: &[u8]| std::array::from_fn(|at| whole(&bytes[at * size..(at + 1) * size]));
         Ok(elements.chunks_exact(4 * size).map(element).collect())
     }

@@ -55,9 +55,9 @@ pub(crate) fn parse(
             if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
                 continue;
             }
-            let Some(vertices) = Vertices::new(&primitive, default_weights(node), &buffers)? else {
-                continue;
-            };
+            let room = buffers.limit.saturating_sub(mesh.positions.len());
+            let vertices = Vertices::new(&primitive, default_weights(node), &buffers, room)?;
+            let Some(vertices) = vertices else { continue };
             let skinned = match joints {
                 Some(joints) => Placement::skinned(&primitive, vertices.positions.len(), joints, &buffers)?,
                 None => None,

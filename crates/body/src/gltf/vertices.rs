@@ -10,6 +10,8 @@ use crate::parsing::{Refusal, unit_normal};
 
 /// Most vertices that the morph targets of a part may move, all targets together.
 const MORPHED_LIMIT: usize = 16 << 20;
+/// Most sets of four joints of a part; programs write two at most.
+const SETS_LIMIT: u32 = 4;
 
 /// Positions and normals of a part, in the space of its mesh; normals may be fewer, or none.
 pub(super) struct Vertices {
@@ -18,11 +20,22 @@ pub(super) struct Vertices {
 }
 
 impl Vertices {
-    /// Reads a part and moves it by the weights of its morph targets; `None` for a part without positions.
-    pub fn new(part: &Primitive, weights: &[f32], buffers: &Buffers) -> Result<Option<Self>, Refusal> {
+    /// Reads a part of at most `room` vertices and moves it by the weights of its morph targets; `None` for a part
+    /// without positions.
+    pub fn new(
+        part: &Primitive,
+        weights: &[f32],
+        buffers: &Buffers,
+        room: usize,
+    ) -> Result<Option<Self>, Refusal> {
         let Some(accessor) = part.get(&Semantic::Positions) else { return Ok(None) };
-        let positions = buffers.vectors(&accessor)?;
-        let normals = part.get(&Semantic::Normals).map(|normals| buffers.vectors(&normals)).transpose()?;
+        let count = accessor.count();
+        if count > room {
+            return Err((format!("more than {} vertices", buffers.limit), "a mesh for a body"));
+        }
+        let positions = buffers.vectors(&accessor, count)?;
+        let normals = part.get(&Semantic::Normals);
+        let normals = normals.map(|normals| buffers.vectors(&normals, count)).transpose()?;
         let mut vertices = Self { positions, normals: normals.unwrap_or_default() };
         let mut moved = 0;
         for (target, weight) in part.morph_targets().zip(weights).filter(|(_, weight)| **weight != 0.0) {
@@ -34,7 +47,7 @@ impl Vertices {
                 [(target.positions(), &mut vertices.positions), (target.normals(), &mut vertices.normals)]
             {
                 let Some(deltas) = deltas else { continue };
-                let deltas = buffers.vectors(&deltas)?;
+                let deltas = buffers.vectors(&deltas, count)?;
                 own.iter_mut().zip(deltas).for_each(|(own, delta)| *own += *weight * delta);
             }
         }
@@ -90,8 +103,14 @@ impl Placement {
         for set in 0.. {
             let accessors = part.get(&Semantic::Joints(set)).zip(part.get(&Semantic::Weights(set)));
             let Some((joints, weights)) = accessors else { break };
+            if set == SETS_LIMIT {
+                return Err((
+                    format!("more than {SETS_LIMIT} sets of joints"),
+                    "fewer joints for each vertex",
+                ));
+            }
             is_skinned = true;
-            let joints = buffers.joints(&joints)?;
+            let joints = buffers.joints(&joints, count)?;
             let kinds = [DataType::F32, DataType::U8, DataType::U16];
             let weights = buffers.numbers::<4>(&weights, &kinds, count)?;
             if joints.len() < count || weights.len() < count {

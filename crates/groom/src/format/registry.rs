@@ -87,7 +87,7 @@ pub const FORMATS: [Format; 10] = [
         read: Reader::Bytes(ply::read),
         write: Some(ply::write),
         holds: &Part::ALL,
-        taken: 8,
+        taken: 16,
     },
     Format {
         ending: "npz",

@@ -37,7 +37,7 @@ impl Scene {
     /// The value of a setting, as TOML; empty for a setting without a value.
     ///
     /// # Errors
-    /// A key that no setting or no item has, with the nearest one.
+    /// A key that no setting has, with the nearest one. An item that is not there gives an empty text.
     pub fn get(&self, key: &str) -> Result<String, Error> {
         let (steps, _) = resolve(key)?;
         Ok(find(&self.values(), &steps).map(|value| value.to_string().trim().to_owned()).unwrap_or_default())
@@ -55,7 +55,8 @@ impl Scene {
             _ => None,
         };
         if let Some(table) = section {
-            let line = |row: &Row| format!("  {key}.{}: {}", row.name, row.sentence());
+            let item = if matches!(row.kind, Kind::List(_)) && !key.ends_with(']') { "[0]" } else { "" };
+            let line = |row: &Row| format!("  {key}{item}.{}: {}", row.name, row.sentence());
             let lines = table.rows.iter().map(line).collect::<Vec<_>>();
             return Ok(format!("{key}: {}\n{}", row.sentence(), lines.join("\n")));
         }

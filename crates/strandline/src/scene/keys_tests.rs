@@ -153,4 +153,8 @@ fn settings_explain_themselves() {
     );
     let text = Scene::default().explain("wind").unwrap();
     assert!(text.lines().count() > 2 && text.contains("  wind."), "{text}");
+    for key in ["lights", "lights[0]"] {
+        let text = Scene::default().explain(key).unwrap();
+        assert!(text.contains("  lights[0].color: "), "{text}");
+    }
 }

@@ -34,8 +34,14 @@ pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
     }
     let stage = text::read(&text, is_asked)
         .map_err(|wrong| source.error(format!("something else at byte {}", wrong.at), wrong.expected))?;
-    let mut reading =
-        Reading { source, strands: None, first_name: String::new(), prims: 0, problems: Vec::new() };
+    let mut reading = Reading {
+        source,
+        strands: None,
+        first_name: String::new(),
+        next_group: 0,
+        prims: 0,
+        problems: Vec::new(),
+    };
     reading.prim(&stage, transform::stage(&stage))?;
     let Reading { strands, mut problems, prims, .. } = reading;
     let groom =
@@ -58,6 +64,8 @@ struct Reading<'a> {
     strands: Option<Groom>,
     /// The name of the first prim: of one alone it is no group's.
     first_name: String,
+    /// Number of the next prim's group, once there is a second prim.
+    next_group: u32,
     prims: u32,
     problems: Vec<String>,
 }
@@ -101,7 +109,11 @@ impl Reading<'_> {
             strands.groups = Some(vec![0; strands.strand_count()]);
             strands.group_names = [(0, self.first_name.clone())].into();
         }
-        let next = strands.groups.iter().flatten().max().map_or(0, |last| last.saturating_add(1));
+        if self.next_group == 0 {
+            self.next_group = strands.groups.iter().flatten().max().map_or(0, |last| last.saturating_add(1));
+        }
+        let next = self.next_group;
+        self.next_group = next.saturating_add(1);
         groom.groups = Some(vec![next; groom.strand_count()]);
         groom.group_names = [(next, name.to_owned())].into();
         let count = (strands.strand_count() + groom.strand_count()) as u64;

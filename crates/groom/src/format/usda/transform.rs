@@ -24,7 +24,7 @@ pub(super) fn stage(stage: &Prim) -> Mat4 {
 /// The transform of a prim below its parent.
 pub(super) fn local(prim: &Prim, problems: &mut Vec<String>) -> Mat4 {
     let Some(Value::Texts(order)) = prim.properties.get("xformOpOrder") else { return Mat4::IDENTITY };
-    let mut whole = Mat4::IDENTITY;
+    let (mut whole, known) = (Mat4::IDENTITY, problems.len());
     for name in order {
         let (name, is_inverse) = match name.strip_prefix("!invert!") {
             Some(name) => (name, true),
@@ -33,6 +33,8 @@ pub(super) fn local(prim: &Prim, problems: &mut Vec<String>) -> Mat4 {
         let own = prim.properties.get(name).and_then(|value| operation(name, value));
         match own {
             Some(own) if own.is_finite() => whole *= if is_inverse { own.inverse() } else { own },
+            // The first of a prim stands for all.
+            _ if problems.len() > known => {}
             _ => problems.push(format!("the transform `{name}` of `{}` is not applied", prim.name)),
         }
     }
@@ -42,6 +44,9 @@ pub(super) fn local(prim: &Prim, problems: &mut Vec<String>) -> Mat4 {
 /// A step of a transform by its name `xformOp:KIND` or `xformOp:KIND:SUFFIX`.
 fn operation(name: &str, value: &Value) -> Option<Mat4> {
     let Value::Numbers(numbers) = value else { return None };
+    if numbers.len() > 16 {
+        return None;
+    }
     let numbers: Vec<f32> = numbers.iter().map(|number| *number as f32).collect();
     let three = || <[f32; 3]>::try_from(&numbers[..]).ok().map(Vec3::from_array);
     let about = |axis: Vec3, degrees: f32| math::rotation(axis, degrees.to_radians());
@@ -93,5 +98,6 @@ mod tests {
         let found = operation("xformOp:rotateY", &Value::Numbers(vec![90.0])).unwrap();
         assert!(found.transform_point3(Vec3::Z).distance(Vec3::X) < 1e-6);
         assert_eq!(operation("xformOp:rotateXQZ", &value), None);
+        assert_eq!(operation("xformOp:rotateY", &Value::Numbers(vec![90.0; 17])), None);
     }
 }
