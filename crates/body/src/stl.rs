@@ -62,7 +62,7 @@ fn text(bytes: &[u8]) -> Result<Vec<[Vec3; 3]>, Refusal> {
         let mut words = line.split_whitespace();
         match words.next() {
             Some("vertex") => {
-                let numbers: Vec<f32> = words.filter_map(|word| word.parse().ok()).collect();
+                let numbers: Vec<f32> = words.map(str::parse).collect::<Result<_, _>>().unwrap_or_default();
                 let [x, y, z] = numbers[..] else {
                     return Err(refused(format!("`{}` in line {}", start(line.as_bytes()), number + 1)));
                 };

@@ -130,6 +130,7 @@ fn stl_mistakes_are_named() {
     assert!(refused("cube.stl", &binary_stl(b"")[..84]).contains("an STL file"));
     let with = |from: &str, to: &str| refused("cube.stl", text_stl().replacen(from, to, 1).as_bytes());
     assert!(with("vertex 0e0 0e0 0e0", "vertex 0e0 0e0").contains("line 4"));
+    assert!(with("vertex 0e0 0e0 0e0", "vertex 0e0 and 0e0 0e0").contains("line 4"));
     assert!(with("vertex 0e0 0e0 0e0\n", "\n").contains("other than three vertices"));
     assert!(with("vertex 0e0 0e0 0e0", "vertex nan 0 0").contains("vertex 0"));
     assert!(refused("empty.stl", b"solid\nendsolid\n").contains("no vertices"));

@@ -75,9 +75,9 @@ pub(super) fn groom(source: &Source, prim: &Prim, problems: &mut Vec<String>) ->
         .chunks_exact(3)
         .map(|point| Vec3::from_array([0, 1, 2].map(|axis| point[axis] as f32)))
         .collect();
-    let is_count =
+    let is_no_count =
         |count: &&f64| !(count.fract() == 0.0 && (1.0..=MAX_POINTS_PER_STRAND as f64).contains(*count));
-    if let Some(count) = counts.iter().find(is_count) {
+    if let Some(count) = counts.iter().find(is_no_count) {
         return Err(
             source.error(format!("a curve of {count} points"), format!("1 to {MAX_POINTS_PER_STRAND}"))
         );
@@ -115,7 +115,8 @@ fn primvar(prim: &Prim, names: &[&str], size: usize) -> Option<Vec<f32>> {
         match prim.properties.get(&format!("{name}:indices")) {
             Some(Value::Numbers(indices)) => {
                 let element = |index: &f64| {
-                    let first = (*index as usize).min(numbers.len()) * size;
+                    // -1 stands for no value.
+                    let first = (*index >= 0.0).then(|| (*index as usize).min(numbers.len()) * size)?;
                     numbers.get(first..first + size)
                 };
                 let found: Option<Vec<&[f64]>> = indices.iter().map(element).collect();
