@@ -23,7 +23,7 @@
 ///   part of `springs.stretch` leaves the rest of the stretch spring as it is.
 /// * `shared Other { name: Type }` are settings that another section states: default, range, unit and sentence are
 ///   those of `Other`.
-/// * `overrides Other { name: Type }` are settings of `Other` that this section may replace: [`Overrides::over`]
+/// * `overrides Other { name: Type }` are settings of `Other` that this section may replace: `Overrides::over`
 ///   merges those that are given into an `Other`. Each is an `Option`, absent by default.
 /// * `plain { name: Type }` are fields that no file has; `moved { name: Type => "new.key" }` are keys of
 ///   old files: read by a section around this one in its `prepare`, refused elsewhere with the new key.

@@ -23,7 +23,7 @@ pub struct Samples {
     pub colors: Vec<Vec4>,
     /// One over the view depth \[1/m\] of the body, 0 where there is none.
     pub inverse_depths: Vec<f32>,
-    /// The body's triangle, [`NO_TRIANGLE`] where there is none.
+    /// The body's triangle, `NO_TRIANGLE` where there is none.
     pub triangles: Vec<u32>,
 }
 
