@@ -97,10 +97,11 @@ fn a_groom_takes_no_more_than_is_asked_for() {
     let folder = tempfile::tempdir().unwrap();
     let count = 4_000_000;
     let head = format!(
-        "ply\nformat ascii 1.0\nelement vertex {count}\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+         element edge {count}\nproperty int vertex1\nproperty int vertex2\nend_header\n0 0 0\n0 9 0\n"
     );
     let files = [
-        ("points.ply", head + &"0 0 0\n".repeat(count)),
+        ("edges.ply", head + &"0 1\n".repeat(count)),
         ("lines.obj", "v 0 0 0\nv 1 0 0\nl -1 -2\n".repeat(count / 4)),
     ];
     // The program itself takes some 20 MiB.
@@ -108,7 +109,7 @@ fn a_groom_takes_no_more_than_is_asked_for() {
     for (name, text) in files {
         std::fs::write(folder.path().join(name), &text).unwrap();
         let format = strandline::format::Format::of(Path::new(name)).unwrap();
-        let (code, peak, error) = run(folder.path(), &["convert", name, "out.hair", "--per-strand", "2"]);
+        let (code, peak, error) = run(folder.path(), &["convert", name, "out.hair"]);
         assert!(matches!(code, Some(0 | 1)), "{name}: {error}");
         let length = (text.len() >> 20) as u64;
         assert!(peak < itself + format.taken * length, "{name}: {peak} MiB for {length}: {error}");
