@@ -80,7 +80,7 @@ fn drawn(
         lights: &[Light::default()],
         level_of_detail: &LevelOfDetail::full(),
     };
-    // What one frame leaves behind is of no use to the next.
+    // Rows and roots of an earlier frame must not stay.
     let rest = guides.positions();
     renderer.draw(&FrameInput { positions: rest, body: &BodyFrame::REST, ..input }).unwrap();
     renderer.draw(&input).unwrap();

@@ -4,11 +4,11 @@ use glam::Quat;
 use strandline_gpu::{Buffer, Gpu, GpuError, Scan, Texture, wgpu};
 use strandline_groom::Guides;
 
-use super::draw::skin::Skin;
 use super::inputs::{Frame, LightSource, body_stride};
 use super::records::{Curve, Root, Tap, Vertex};
 use super::scene::Scene;
 use super::shadow::fit::BOX;
+use super::skin::Skin;
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
 use crate::strands::curve::skin_axes;
 use crate::{PictureSettings, RenderError};

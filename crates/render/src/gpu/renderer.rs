@@ -8,12 +8,12 @@ use strandline_groom::{Binding, Guides};
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::codes;
-use super::draw::skin::Skin;
 use super::frame::{Bounds, Held, record};
 use super::resolve::{Own, PICTURE, ToFormat};
 use super::scatter::light_grid::LightGrid;
 use super::scene::Scene;
 use super::shade::{LayerColoring, Numbers};
+use super::skin::Skin;
 use super::stages::{Kernels, Stages};
 use super::strands::device_points::DevicePoints;
 use super::strands::points::GuidePoints;

@@ -2,7 +2,6 @@
 
 pub(crate) mod background;
 pub(crate) mod body;
-pub(crate) mod skin;
 pub(crate) mod sort;
 
 use strandline_gpu::{Buffer, Gpu, GpuError, Output, drawing, wgpu};

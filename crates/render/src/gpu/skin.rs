@@ -5,12 +5,12 @@ use strandline_body::{BodyFrame, Mesh, MovedSkin};
 use strandline_gpu::{Buffer, GpuError};
 use strandline_groom::Guides;
 
-use crate::gpu::codes;
-use crate::gpu::records::Vertex;
+use super::codes;
+use super::records::Vertex;
 use crate::strands::scalp::root_densities;
 
 /// A mesh whose vertices are written anew where they moved.
-pub(crate) struct Skin {
+pub(super) struct Skin {
     mesh: Option<Mesh>,
     moved: MovedSkin,
     /// Density of roots about each vertex, 0 to 1.
@@ -78,7 +78,7 @@ impl Skin {
         self.ball
     }
 
-    /// Whether there is a body, and whether it is closed: see codes.rs.
+    /// Code of the body, none, open or closed: see codes.rs.
     pub fn kind(&self) -> u32 {
         self.kind
     }
