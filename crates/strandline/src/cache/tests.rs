@@ -181,10 +181,11 @@ fn usd_has_a_transform_for_each_piece_of_the_body() {
     let path = folder.path().join("pieces.usda");
     let mut usd = usd::Usd::new(&path, &scene, &shape, Target::Unreal).unwrap();
     usd.add(&Frame { number: 0, time: 0.0, points: &points, body: &REST }).unwrap();
-    usd.add(&Frame { number: 1, time: 0.1, points: &points, body: &two }).unwrap();
+    // Three time codes of a thirtieth of a second.
+    usd.add(&Frame { number: 3, time: 0.1, points: &points, body: &two }).unwrap();
     usd.finish(true).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let (_, piece) = text.split_once("def Xform \"piece_1\"").unwrap();
     assert!(text.contains("def Xform \"head\"") && text.matches("def Xform").count() == 3, "{text}");
-    assert!(piece.contains("0: (0.0, -0.0, 0.0),\n            1: (50.0, 200.0, 100.0),"), "{piece}");
+    assert!(piece.contains("0: (0.0, -0.0, 0.0),\n            3: (50.0, 200.0, 100.0),"), "{piece}");
 }

@@ -62,7 +62,7 @@ fn a_run_on_several_pieces_resumes_from_its_cache_to_the_same_bits() {
         let path = folder.path().join(format!("{}.npz", method.name()));
         let mut whole = simulation(&guides, method);
         run(&mut whole, 0..9);
-        let (snapshot, shown) = (whole.snapshot(0).unwrap(), body(9.0 * FRAME));
+        let (snapshot, shown, steps) = (whole.snapshot(0).unwrap(), body(9.0 * FRAME), whole.engine.steps());
         let leaving = Leaving { guides: &guides, bound: None, tags: &Tags::default(), body: &shown };
         let mut out = Out::new(&OutSettings::new(&path), &scene, leaving).unwrap();
         let positions = state(&mut whole).positions;
@@ -73,7 +73,7 @@ fn a_run_on_several_pieces_resumes_from_its_cache_to_the_same_bits() {
         let found = cache.snapshot(STRANDS, 8).unwrap().unwrap();
         assert_eq!(found, snapshot);
         let mut resumed = simulation(&guides, method);
-        resumed.restore(&found).unwrap();
+        resumed.restore(&found, steps).unwrap();
         [&mut whole, &mut resumed].into_iter().for_each(|simulation| run(simulation, 9..20));
         let [one, other] = [&mut whole, &mut resumed].map(state);
         assert_eq!((one.positions, one.velocities), (other.positions, other.velocities), "{method:?}");
@@ -83,7 +83,7 @@ fn a_run_on_several_pieces_resumes_from_its_cache_to_the_same_bits() {
         rigid.bodies.iter_mut().for_each(head_alone);
         head_alone(&mut rigid.state.body);
         let mut other = simulation(&guides, method);
-        other.restore(&rigid).unwrap();
+        other.restore(&rigid, steps).unwrap();
         run(&mut other, 9..20);
         assert_ne!(state(&mut whole).positions, state(&mut other).positions, "{method:?}");
     }
