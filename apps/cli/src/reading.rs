@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use clap::Args;
-use strandline::format::{Cleaning, LoadOptions, Scale, Up};
+use strandline::format::{Cleaning, LoadOptions, RootEnd, Scale, Up};
 
 /// Reading of a groom file.
 #[derive(Args, Clone, Copy, Debug)]
@@ -17,6 +17,9 @@ pub struct Reading {
     /// Points of each strand, for files that do not give strands.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub per_strand: Option<u32>,
+    /// The end of each strand at which its root is: first, last, or auto, which widths and the other strands show.
+    #[arg(long, value_name = "END", default_value = "auto", value_parser = RootEnd::from_str)]
+    pub root_end: RootEnd,
 }
 
 impl Reading {
@@ -27,6 +30,7 @@ impl Reading {
             scale: self.scale,
             up: self.up,
             per_strand: self.per_strand,
+            root_end: self.root_end,
             cleaning: Cleaning::Named,
         }
     }

@@ -296,6 +296,7 @@ fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Opti
         for part in written.iter().flat_map(|written| &written.left_out) {
             output::note(&format!("the format cannot hold {part}: left out"));
         }
+        written.iter().flat_map(|written| &written.notes).for_each(|note| output::note(note));
         return Ok(written);
     };
     match written {

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use strandline_base::{Key, Kind, Row, SettingError, Value, choices, math, memory, read_plain};
 
 use super::cleaning::Cleaning;
+use super::ends::RootEnd;
 use super::report::Report;
 use super::{
     Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project, sieve::sieve,
@@ -97,13 +98,22 @@ pub struct LoadOptions {
     pub up: Up,
     /// Points of each strand, for files that hold points and do not say which of them make a strand.
     pub per_strand: Option<u32>,
+    /// The end of each strand at which its root is; [`RootEnd::Auto`] turns strands where `cleaning` mends all.
+    pub root_end: RootEnd,
     /// The treatment of strands unlike the others.
     pub cleaning: Cleaning,
 }
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { strict: true, scale: Scale::Auto, up: Up::Y, per_strand: None, cleaning: Cleaning::Named }
+        Self {
+            strict: true,
+            scale: Scale::Auto,
+            up: Up::Y,
+            per_strand: None,
+            root_end: RootEnd::Auto,
+            cleaning: Cleaning::Named,
+        }
     }
 }
 
@@ -250,6 +260,7 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
         Cleaning::Named => problems.extend(groom.strays(HINT)),
         Cleaning::Strays | Cleaning::All => problems.extend(groom.leave_out_strays()),
     }
+    problems.extend(groom.rooted(options.root_end, options.cleaning, HINT));
     let scale = match options.scale {
         Scale::Factor(factor) => factor,
         Scale::Auto => plausible_scale(&groom),

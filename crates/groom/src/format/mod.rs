@@ -7,6 +7,8 @@ pub mod bin;
 mod bytes;
 mod cleaning;
 pub mod data;
+mod ends;
+mod fitted;
 pub mod hair;
 mod headerless;
 mod joining;
@@ -26,6 +28,8 @@ mod tfx_text;
 pub mod usda;
 
 pub use cleaning::Cleaning;
+pub use ends::{RootEnd, from_tip_note};
+pub use fitted::Fitted;
 pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
 pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::fitted::Fitted;
 use super::part::Part::{self, *};
 use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx, usda};
 use crate::{Groom, GroomError};
@@ -31,6 +32,8 @@ pub struct Format {
     pub read: Reader,
     /// Its writer, if there is one.
     pub write: Option<Write>,
+    /// Changes that make a groom fit its limits, where it has some.
+    pub fit: Option<fn(&Groom) -> Result<Fitted, GroomError>>,
     /// Attributes that it holds beside points.
     pub holds: &'static [Part],
     /// Most memory of reading for each byte of a file \[byte\]: the file and its content. Text is shorter
@@ -45,14 +48,16 @@ pub const FORMATS: [Format; 10] = [
         about: "HAIR of Cem Yuksel",
         read: Reader::Bytes(hair::read),
         write: Some(hair::write),
+        fit: None,
         holds: &[Widths, WidthsAlong, Colors, Transparencies],
         taken: 2,
     },
     Format {
         ending: "tfx",
-        about: "TressFX 2 (text), 3 and 4, written as 4; strands of one number of points",
+        about: "TressFX 2 (text), 3 and 4, written as 4 with 4, 8, 16, 32 or 64 points a strand",
         read: Reader::Bytes(|bytes, _| tfx::read(bytes)),
         write: Some(tfx::write),
+        fit: Some(tfx::fitted),
         holds: &[Widths, Colors, RootUvs],
         taken: 2,
     },
@@ -61,6 +66,7 @@ pub const FORMATS: [Format; 10] = [
         about: "a project of TressFX 3: each of its .tfx files becomes a group",
         read: Reader::Project,
         write: None,
+        fit: None,
         holds: &[],
         taken: 2,
     },
@@ -69,6 +75,7 @@ pub const FORMATS: [Format; 10] = [
         about: "USC-HairSalon: points alone",
         read: Reader::Bytes(data::read),
         write: Some(data::write),
+        fit: None,
         holds: &[],
         taken: 2,
     },
@@ -78,6 +85,7 @@ pub const FORMATS: [Format; 10] = [
                 and written as 0",
         read: Reader::Bytes(bin::read),
         write: Some(bin::write),
+        fit: None,
         holds: &[],
         taken: 2,
     },
@@ -86,6 +94,7 @@ pub const FORMATS: [Format; 10] = [
         about: "vertices with `strand` and `edge` elements, edges alone, or bare vertices with `--per-strand N`",
         read: Reader::Bytes(ply::read),
         write: Some(ply::write),
+        fit: None,
         holds: &Part::ALL,
         taken: 16,
     },
@@ -94,6 +103,7 @@ pub const FORMATS: [Format; 10] = [
         about: "NumPy arrays by name: `points` and `starts`, or `positions` [strand, point, 3]",
         read: Reader::Bytes(npz::read),
         write: Some(npz::write),
+        fit: None,
         holds: &Part::ALL,
         taken: 2,
     },
@@ -102,6 +112,7 @@ pub const FORMATS: [Format; 10] = [
         about: "one NumPy array [strand, point, 3]; points alone",
         read: Reader::Bytes(npy::read),
         write: Some(npy::write),
+        fit: None,
         holds: &[],
         taken: 2,
     },
@@ -110,6 +121,7 @@ pub const FORMATS: [Format; 10] = [
         about: "lines (`l`), with groups by `g` and colours behind vertices",
         read: Reader::Bytes(|bytes, _| obj::read(bytes)),
         write: Some(obj::write),
+        fit: None,
         holds: &[Colors, Groups, GroupNames],
         taken: 8,
     },
@@ -118,6 +130,7 @@ pub const FORMATS: [Format; 10] = [
         about: "text USD: `BasisCurves` of a stage at its first time, in its units and axes",
         read: Reader::Bytes(|bytes, _| usda::read(bytes)),
         write: None,
+        fit: None,
         holds: &[],
         taken: 16,
     },

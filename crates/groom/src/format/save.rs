@@ -4,18 +4,21 @@ use std::path::Path;
 
 use strandline_base::WholeFile;
 
-use super::{Format, Part, endings};
+use super::{Fitted, Format, Part, endings};
 use crate::{Groom, GroomError};
 
-/// Attributes that the writer left out.
+/// Attributes that the writer left out, and changes that it made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Saved {
     /// Parts of the groom that the format cannot hold.
     pub left_out: Vec<&'static str>,
+    /// Changes that made the groom fit the format, human-readable.
+    pub notes: Vec<String>,
 }
 
 impl Groom {
-    /// Writes a file of the format that its ending names; returns the attributes that the format could not hold.
+    /// Writes a file of the format that its ending names; returns the attributes that the format could not hold and the
+    /// changes that made the groom fit.
     ///
     /// # Errors
     /// See [`GroomError`].
@@ -43,11 +46,13 @@ pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
     if lost.contains(&Part::Widths) {
         lost.retain(|part| *part != Part::WidthsAlong);
     }
-    let bytes = write(groom).map_err(|error| error.of(path))?;
+    let fitted = format.fit.map(|fit| fit(groom)).transpose().map_err(|error| error.of(path))?;
+    let Fitted { groom: changed, notes } = fitted.unwrap_or_default();
+    let bytes = write(changed.as_ref().unwrap_or(groom)).map_err(|error| error.of(path))?;
     WholeFile::save(path, &bytes).map_err(|source| GroomError::File {
         action: "write",
         path: path.to_owned(),
         source,
     })?;
-    Ok(Saved { left_out: lost.into_iter().map(Part::name).collect() })
+    Ok(Saved { left_out: lost.into_iter().map(Part::name).collect(), notes })
 }

@@ -2,6 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use strandline_groom::Groom;
+use strandline_groom::Widths;
 use strandline_groom::format::{bin, data, hair, obj, ply, tfx, usda};
 
 /// Three strands of four points.
@@ -255,4 +256,61 @@ fn files_of_other_programs_are_told_the_way_in() {
     }
     std::fs::write(folder.path().join("a.usd"), seed("own")).unwrap();
     assert_eq!(Groom::load(folder.path().join("a.usd")).unwrap().strand_count(), 2);
+}
+
+#[test]
+fn values_of_curves_are_read_by_their_number_and_others_are_named() {
+    let curves = |more: &str| {
+        let text = format!(
+            "#usda 1.0\n(\nmetersPerUnit = 1\n)\ndef BasisCurves \"fur\" {{\nuniform token type = \"linear\"\n\
+             int[] curveVertexCounts = [2, 3]\npoint3f[] points = [(0,0,0), (0,1,0), (1,0,0), (1,1,0), (1,2,0)]\n{more}\n}}\n"
+        );
+        usda::read(text.as_bytes()).unwrap()
+    };
+    for (name, more) in [
+        ("widths", "float[] widths = [1, 2, 3]"),
+        ("colours", "color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)]"),
+        ("root coordinates", "texCoord2f[] primvars:st = [(0, 0), (0, 1), (1, 1)]"),
+        ("groups", "int[] primvars:group_id = [1, 2, 3]"),
+    ] {
+        let parsed = curves(more);
+        let values = if name == "colours" { 4 } else { 3 };
+        let expected = format!("{name} of `fur` are not read: {values} values for 2 curves of 5 points");
+        assert_eq!(parsed.problems, [expected]);
+        let groom = parsed.groom;
+        let has = (groom.widths.clone(), groom.colors.is_some(), groom.root_uvs, groom.groups);
+        assert_eq!(has, (Widths::Constant(0.0), false, None, None), "{name}");
+    }
+    let of_points = curves("texCoord2f[] primvars:st = [(0.1, 0), (0, 0), (0.2, 1), (0, 0), (0, 0)]");
+    let uvs = of_points.groom.root_uvs.unwrap();
+    assert_eq!((uvs[0].x, uvs[1].x, of_points.problems), (0.1, 0.2, Vec::new()), "those of the roots");
+    let one = curves("int[] primvars:group_id = [7]\nfloat[] widths = [0.5]").groom;
+    assert_eq!((one.groups, one.widths), (Some(vec![7; 2]), Widths::PerPoint(vec![0.5; 5])));
+}
+
+#[test]
+fn tfx_files_have_numbers_of_points_that_tressfx_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.tfx");
+    let of = |strands: usize, points: &[usize]| {
+        let mut groom = Groom::empty(9e-5);
+        for strand in 0..strands {
+            let count = points[strand % points.len()];
+            groom.push((0..count).map(|point| Vec3::new(strand as f32, point as f32, 0.0) * 0.01));
+        }
+        groom
+    };
+    for (counts, written) in [(&[24][..], 32), (&[2], 4), (&[5, 9], 16), (&[100], 64), (&[3, 16], 16)] {
+        let notes = of(64, counts).save(&path).unwrap().notes;
+        assert!(notes.len() == 1 && notes[0].ends_with(&format!("resampled to {written}")), "{notes:?}");
+        let read = Groom::load(&path).unwrap();
+        assert!(read.starts.windows(2).all(|pair| pair[1] - pair[0] == written), "{counts:?}");
+        let (length, own) = (read.lengths()[1], of(64, counts).lengths()[1]);
+        assert!((length - own).abs() < 1e-5, "{counts:?}: {length} {own}");
+    }
+    let kept = of(64, &[16]);
+    assert!(kept.save(&path).unwrap().notes.is_empty());
+    assert_eq!(Groom::load(&path).unwrap().points, kept.points);
+    let notes = of(20, &[16]).save(&path).unwrap().notes;
+    assert_eq!(notes, ["TressFX takes 64 strands or more: the file has 20"]);
 }

@@ -17,6 +17,7 @@ pub(super) struct Files {
     pattern: (String, usize, String),
     groom: Groom,
     left_out: Vec<String>,
+    notes: Vec<String>,
     bytes: u64,
     _lock: FolderLock,
 }
@@ -66,7 +67,8 @@ impl Files {
         }
         let names = (0..).zip(&attributes.group_names).filter(|(_, name)| !name.is_empty());
         groom.group_names = names.map(|(group, name)| (group, name.clone())).collect();
-        Ok(Self { folder: folder.to_owned(), pattern, groom, left_out: Vec::new(), bytes: 0, _lock: lock })
+        let (left_out, notes) = (Vec::new(), Vec::new());
+        Ok(Self { folder: folder.to_owned(), pattern, groom, left_out, notes, bytes: 0, _lock: lock })
     }
 
     /// Writes the file of a frame.
@@ -75,19 +77,24 @@ impl Files {
         self.groom.points.extend_from_slice(frame.points);
         let (before, digits, after) = &self.pattern;
         let path = self.folder.join(format!("{before}{:0digits$}{after}", frame.number));
-        for part in self.groom.save(&path)?.left_out {
-            let part = part.to_string();
-            if !self.left_out.contains(&part) {
-                self.left_out.push(part);
-            }
+        let saved = self.groom.save(&path)?;
+        let own = |part: &'static str| part.to_owned();
+        let both = [
+            (&mut self.left_out, saved.left_out.into_iter().map(own).collect()),
+            (&mut self.notes, saved.notes),
+        ];
+        // Frames are alike: what is said of one is said of all.
+        for (known, found) in both {
+            let new: Vec<String> = found.into_iter().filter(|text| !known.contains(text)).collect();
+            known.extend(new);
         }
         self.bytes += size(&path);
         Ok(())
     }
 
-    /// Bytes of all files, the folder, and what the format could not hold.
-    pub fn finish(self) -> (u64, PathBuf, Vec<String>) {
-        (self.bytes, self.folder, self.left_out)
+    /// Bytes of all files, the folder, attributes that the format could not hold, and notes on changes.
+    pub fn finish(self) -> (u64, PathBuf, Vec<String>, Vec<String>) {
+        (self.bytes, self.folder, self.left_out, self.notes)
     }
 }
 

@@ -49,6 +49,8 @@ pub struct Written {
     pub time: Duration,
     /// Parts of the hair that the format cannot hold.
     pub left_out: Vec<String>,
+    /// Changes that made the hair fit the format, human-readable.
+    pub notes: Vec<String>,
 }
 
 /// A file of moving hair that is being written.
@@ -261,14 +263,14 @@ impl Out {
     pub(crate) fn close(self, whole: bool, state: Option<&Snapshot>) -> Result<Written, Error> {
         let (strands, points) = (self.shape.strand_count(), self.shape.point_count());
         let watch = Stopwatch::start();
-        let one = |path: PathBuf| (size(&path), path, Vec::new());
-        let (bytes, place, left_out) = match self.writer {
+        let one = |path: PathBuf| (size(&path), path, Vec::new(), Vec::new());
+        let (bytes, place, left_out, notes) = match self.writer {
             Writer::Store(store) if whole => one(store.finish(state)?),
             Writer::Store(store) => one(store.leave(state)?),
             Writer::Usd(usd) => one(usd.finish(whole)?),
             Writer::Files(files) => files.finish(),
         };
         let time = self.time + watch.elapsed();
-        Ok(Written { place, frames: self.frames, strands, points, bytes, time, left_out })
+        Ok(Written { place, frames: self.frames, strands, points, bytes, time, left_out, notes })
     }
 }

@@ -3,6 +3,7 @@
 //! Attributes and conventions: UsdGeomBasisCurves and primvars as OpenUSD's schema has them; for Unreal the
 //! groom_* primvars of its groom schema 1.5.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -14,10 +15,37 @@ use super::{
     shape::{Attributes, Shape},
     usd_text::{list, put, put_points, put_tuple, quoted},
 };
-use crate::{Error, Scene, body::Pose};
+use crate::{Error, Scene, body::Pose, prepare::looks};
 
 /// Digits that the last time code may have.
 const DIGITS: usize = 10;
+
+/// A preview of the look: the colours of the strands under a smooth surface [UsdPreviewSurface]. Renderers for hair
+/// take the colours alone.
+const MATERIAL: &str = r#"    def Scope "looks"
+    {
+        def Material "fibre"
+        {
+            token outputs:surface.connect = </hair/looks/fibre/surface.outputs:surface>
+
+            def Shader "surface"
+            {
+                uniform token info:id = "UsdPreviewSurface"
+                color3f inputs:diffuseColor.connect = </hair/looks/fibre/color.outputs:result>
+                float inputs:roughness = 0.4
+                token outputs:surface
+            }
+
+            def Shader "color"
+            {
+                uniform token info:id = "UsdPrimvarReader_float3"
+                string inputs:varname = "displayColor"
+                float3 outputs:result
+            }
+        }
+    }
+
+"#;
 
 /// A file under way.
 pub(super) struct Usd {
@@ -98,7 +126,7 @@ impl Usd {
         let (head, end_at) = usd.head(scene, target);
         usd.end_at = end_at as u64;
         usd.put(&head)?;
-        usd.put(&usd.curves(shape, target))?;
+        usd.put(&usd.curves(scene, shape, target))?;
         Ok(usd)
     }
 
@@ -127,19 +155,21 @@ impl Usd {
             text.push_str("    prepend apiSchemas = [\"GroomAPI\"]\n");
         }
         text.push_str("    kind = \"component\"\n)\n{\n");
+        text.push_str(MATERIAL);
         (text, end_at)
     }
 
     /// The prim of the curves up to its points.
-    fn curves(&self, shape: &Shape, target: Target) -> String {
+    fn curves(&self, scene: &Scene, shape: &Shape, target: Target) -> String {
         let counts = shape.starts.windows(2).map(|pair| pair[1] - pair[0]);
         let counts = list(counts, |text, count| text.push_str(&count.to_string()));
         let mut text = format!(
-            "    def BasisCurves \"{}\"\n    {{\n        uniform token type = \"linear\"\n        uniform token wrap = \
+            "    def BasisCurves \"{}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {{\n        \
+             rel material:binding = </hair/looks/fibre>\n        uniform token type = \"linear\"\n        uniform token wrap = \
              \"nonperiodic\"\n        int[] curveVertexCounts = {counts}\n",
             shape.what.name()
         );
-        for Primvar { of, name, values, interpolation } in self.primvars(shape, target) {
+        for Primvar { of, name, values, interpolation } in self.primvars(scene, shape, target) {
             let name = if name == "widths" { name.to_owned() } else { format!("primvars:{name}") };
             let _ = write!(
                 text,
@@ -151,7 +181,7 @@ impl Usd {
     }
 
     /// The attributes that there are.
-    fn primvars(&self, shape: &Shape, target: Target) -> Vec<Primvar> {
+    fn primvars(&self, scene: &Scene, shape: &Shape, target: Target) -> Vec<Primvar> {
         let Attributes { widths, colors, root_uvs, groups, group_names, .. } = &shape.attributes;
         let unreal = target == Target::Unreal;
         let mut all = Vec::new();
@@ -164,8 +194,12 @@ impl Usd {
                 "vertex",
             );
         }
-        if let Some(colors) = colors {
-            let values = || list(colors, |text, color| put_tuple(text, color));
+        {
+            // Strands without colours of their own have those of the look.
+            let of_look = || looks::colors_along(&scene.look, &shape.starts);
+            let colors =
+                &colors.as_ref().map_or_else(|| Cow::Owned(of_look()), |colors| Cow::Borrowed(&colors[..]));
+            let values = || list(&**colors, |text, color| put_tuple(text, color));
             add("color3f", "displayColor", values(), "vertex");
             if unreal {
                 add("float3", "groom_color", values(), "vertex");

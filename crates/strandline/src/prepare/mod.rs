@@ -1,5 +1,6 @@
 //! Loading of a scene: strands, body, solids and motion, a stage after the other.
 
+mod ends;
 mod fit;
 mod foreign;
 mod guess;
@@ -7,7 +8,7 @@ mod guides;
 mod head;
 mod join;
 mod loading;
-mod looks;
+pub(crate) mod looks;
 mod map;
 mod marked;
 pub(crate) mod memory;
@@ -78,6 +79,7 @@ impl Prepared {
     pub fn from_sources(scene: &Scene, sources: &Sources) -> Result<Self, Error> {
         let mut loading = Loading::new(scene, sources)?;
         read::read(&mut loading)?;
+        ends::turn(&mut loading);
         place::place(&mut loading)?;
         fit::fit(&mut loading);
         solids::solids(&mut loading)?;

@@ -86,6 +86,7 @@ impl Sources {
             scale: Scale::Factor(1.0),
             up: Up::Y,
             per_strand,
+            root_end: scene.groom.root_end,
             cleaning: Cleaning::Strays,
         };
         let loaded = match self.grooms.get(name) {
@@ -101,10 +102,17 @@ impl Sources {
 
     /// A mesh, in its own units and axes.
     pub(super) fn mesh(&self, scene: &Scene, name: &Path) -> Result<Mesh, Error> {
-        Ok(match self.meshes.get(name) {
-            Some(mesh) => Mesh::clone(mesh).checked()?,
-            None => Mesh::load(&scene.path(name), 1.0)?,
-        })
+        Ok(self.mesh_noted(scene, name)?.0)
+    }
+
+    /// A mesh, in its own units and axes, with a note on all that is odd.
+    pub(super) fn mesh_noted(&self, scene: &Scene, name: &Path) -> Result<(Mesh, Vec<String>), Error> {
+        let (mesh, notes) = match self.meshes.get(name) {
+            Some(mesh) => (Mesh::clone(mesh).checked()?, Vec::new()),
+            None => Mesh::load_noted(&scene.path(name), 1.0)?,
+        };
+        let noted = |note: String| format!("{}: {note}", name.display());
+        Ok((mesh, notes.into_iter().map(noted).collect()))
     }
 
     /// The part of a mesh that has a name: of a mesh in memory the entry of that name.

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 use strandline_base::settings;
 
-use crate::groom::format::{Scale, Up};
+use crate::groom::format::{RootEnd, Scale, Up};
 
 settings! {
     /// Strands of a further file: brows, a beard.
@@ -41,6 +41,9 @@ settings! {
         up: Up = Up::default();
         /// Points of each strand, for files that hold points and do not say which of them make a strand.
         per_strand: Option<u32> = None, in [1, 4096];
+        /// The end of each strand at which its root is; "auto" turns strands whose last point lies on the body and
+        /// whose first does not, and without a body those that taper the other way or end among the roots of all others.
+        root_end: RootEnd = RootEnd::default();
         /// Draws colours and widths of the file in place of the look's.
         own_look: bool = true;
         /// Turns the strands of a file: pitch (about x), yaw (about y), roll (about z). Where neither groom nor

@@ -1,0 +1,175 @@
+//! Strands that are stored from tip to root: found by the end that lies on the skin, and turned.
+
+use glam::Vec3;
+use strandline_base::math;
+
+use super::{
+    guess,
+    loading::Loading,
+    placing::{Placing, Placings, diagonal},
+    sample::NEAR,
+};
+use crate::{
+    Scene,
+    body::Mesh,
+    groom::{
+        Groom,
+        format::{RootEnd, from_tip_note},
+    },
+};
+
+/// Strands that tell whether some are turned.
+const LOOKED_AT: usize = 2000;
+/// Distance from the skin, over the size of the body, of an end that lies on it; over the median of all nearer ends.
+const ON_SKIN: f32 = 0.004;
+const OF_MEDIAN: f32 = 2.0;
+/// Distance of the other end over that of an end on the skin.
+const OFF_SKIN: f32 = 3.0;
+/// Distance of first points from the skin, over the size of the body, that needs no other look.
+const SURELY: f32 = 0.01;
+/// Share of strands with an end on the skin in a groom that belongs to a body.
+const ROOTED: f32 = 0.8;
+/// Distance of a new root from the other roots over that of the old one.
+const GATHERED: f32 = 0.8;
+
+/// Turns strands of the scene's grooms that are stored from tip to root, where the scene leaves their ends open.
+pub(super) fn turn(loading: &mut Loading) {
+    let Loading { scene, groom, further_grooms, mesh, notes, .. } = loading;
+    if scene.groom.root_end != RootEnd::Auto {
+        return;
+    }
+    let mut scene = scene.clone();
+    let parts = scene.groom.parts.clone();
+    let further = further_grooms.iter_mut().zip(parts.iter().map(Some));
+    for (groom, part) in groom.iter_mut().map(|groom| (groom, None)).chain(further) {
+        if let Some(part) = part {
+            (scene.groom.scale, scene.groom.up) = (part.scale, part.up);
+            (scene.groom.rotation, scene.groom.translation) = (part.rotation, part.translation);
+        }
+        let turned = match mesh {
+            Some(mesh) => on_skin(&scene, groom, mesh),
+            None => groom.from_tip(),
+        };
+        let Some(turned) = turned else { continue };
+        groom.turn_strands(&turned);
+        let note = from_tip_note(&turned);
+        notes.push(format!("{note}: turned; `groom.root_end = \"first\"` leaves them as they are"));
+    }
+}
+
+/// Strands whose last point lies on the skin and whose first does not; shape `[strand]`. `None` where there are none, or
+/// the groom does not belong to the body.
+fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh) -> Option<Vec<bool>> {
+    let every = groom.strand_count().div_ceil(LOOKED_AT).max(1);
+    let few: Vec<usize> = (0..groom.strand_count()).step_by(every).collect();
+    let few = groom.select(&few);
+    let stored = guess::placings(scene, &[&few], Some(mesh));
+    let mut skin = Skin { scene, mesh, placings: stored };
+    let mut apart = skin.apart(&few);
+    let first = median(apart.iter().map(|apart| apart[0]));
+    if first > SURELY {
+        // Tips that were taken for roots may have misled the placement.
+        let mut turned = few.clone();
+        turned.turn_strands(&vec![true; few.strand_count()]);
+        let of_turned = guess::placings(scene, &[&turned], Some(mesh));
+        let body = skin.placings.body;
+        for placings in [of_turned, Placings { groom: body, body, note: None }] {
+            let other = Skin { scene, mesh, placings };
+            let found = other.apart(&few);
+            if nearer(&found) < nearer(&apart) {
+                (skin, apart) = (other, found);
+            }
+        }
+    }
+    let roots = Roots::new(&few, &apart)?;
+    let is_turned = |apart: &[[f32; 2]], groom: &Groom| -> Vec<bool> {
+        (0..groom.strand_count()).map(|strand| roots.is_turned(groom.strand(strand), apart[strand])).collect()
+    };
+    let of_few = is_turned(&apart, &few);
+    if !of_few.contains(&true) {
+        return None;
+    }
+    Some(if every == 1 { of_few } else { is_turned(&skin.apart(groom), groom) })
+}
+
+fn median(values: impl Iterator<Item = f32>) -> f32 {
+    let mut values: Vec<f32> = values.collect();
+    values.sort_by(f32::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f32::INFINITY)
+}
+
+/// Median distance of the nearer end of all strands.
+fn nearer(apart: &[[f32; 2]]) -> f32 {
+    median(apart.iter().map(|[first, last]| first.min(*last)))
+}
+
+/// A body and the placement of a groom by it.
+struct Skin<'a> {
+    scene: &'a Scene,
+    mesh: &'a Mesh,
+    placings: Placings,
+}
+
+impl Skin<'_> {
+    /// Distances of both ends of all strands from the skin, over the size of the body.
+    fn apart(&self, groom: &Groom) -> Vec<[f32; 2]> {
+        let (of_groom, of_body) = (&self.scene.groom, &self.scene.body);
+        let Placings { groom: own, body, .. } = self.placings;
+        let [turn, body_turn] = [of_groom.rotation, of_body.rotation].map(math::pitch_yaw_roll);
+        let body_turn = body_turn * body.turn;
+        let to_body = |place: &Vec3| {
+            let Placing { scale, turn: own } = own;
+            let head = turn * (own * (scale * *place)) + of_groom.translation;
+            (body_turn.inverse() * (head - of_body.translation)) / body.scale
+        };
+        let strands = (0..groom.strand_count()).map(|strand| groom.strand(strand));
+        let ends: Vec<Vec3> =
+            strands.flat_map(|strand| [&strand[0], &strand[strand.len() - 1]]).map(to_body).collect();
+        let size = self.mesh.bounds().map_or(1.0, diagonal).max(f32::MIN_POSITIVE);
+        let places = self.mesh.nearest_places(&ends);
+        let apart: Vec<f32> =
+            ends.iter().zip(places).map(|(end, place)| end.distance(place) / size).collect();
+        apart.as_chunks().0.to_vec()
+    }
+}
+
+/// The roots of strands that have an end on the skin.
+struct Roots {
+    places: Vec<Vec3>,
+    /// Distance of an end on the skin over the size of the body.
+    on_skin: f32,
+}
+
+impl Roots {
+    /// `None` where the ends of strands do not lie on the body.
+    fn new(groom: &Groom, apart: &[[f32; 2]]) -> Option<Self> {
+        let median = nearer(apart);
+        let on_skin = (OF_MEDIAN * median).clamp(ON_SKIN, NEAR);
+        let places: Vec<Vec3> = (0..groom.strand_count())
+            .filter(|strand| apart[*strand][0].min(apart[*strand][1]) <= on_skin)
+            .map(|strand| {
+                let (points, [first, last]) = (groom.strand(strand), apart[strand]);
+                points[if first <= last { 0 } else { points.len() - 1 }]
+            })
+            .collect();
+        let is_own = median <= NEAR && places.len() as f32 >= ROOTED * groom.strand_count() as f32;
+        is_own.then_some(Self { places, on_skin })
+    }
+
+    /// True for a strand with its last point alone on the skin, and nearer to the other roots than the first.
+    fn is_turned(&self, strand: &[Vec3], [first, last]: [f32; 2]) -> bool {
+        let ends = [strand[0], strand[strand.len() - 1]];
+        last <= self.on_skin && first > OFF_SKIN * self.on_skin && {
+            let nearest = |end: Vec3| {
+                let others = self.places.iter().filter(|root| !ends.contains(root));
+                others.map(|root| root.distance(end)).fold(f32::INFINITY, f32::min)
+            };
+            let [old, new] = ends.map(nearest);
+            new.is_infinite() || new < GATHERED * old
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "ends_tests.rs"]
+mod tests;
