@@ -17,6 +17,9 @@ pub struct Reading {
     /// Points of each strand, for files that do not give strands.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub per_strand: Option<u32>,
+    /// Frame of moving hair, from 0, in USD a time code; without it the first.
+    #[arg(long, value_name = "N")]
+    pub frame: Option<u32>,
     /// The end of each strand at which its root is: first, last, or auto, which widths and the other strands show.
     #[arg(long, value_name = "END", default_value = "auto", value_parser = RootEnd::from_str)]
     pub root_end: RootEnd,
@@ -30,6 +33,7 @@ impl Reading {
             scale: self.scale,
             up: self.up,
             per_strand: self.per_strand,
+            frame: self.frame,
             root_end: self.root_end,
             cleaning: Cleaning::Named,
         }

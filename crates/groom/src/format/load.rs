@@ -8,7 +8,8 @@ use super::cleaning::Cleaning;
 use super::ends::RootEnd;
 use super::report::Report;
 use super::{
-    Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project, sieve::sieve,
+    Chosen, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project,
+    sieve::sieve,
 };
 use crate::{Groom, GroomError, Widths};
 
@@ -98,6 +99,8 @@ pub struct LoadOptions {
     pub up: Up,
     /// Points of each strand, for files that hold points and do not say which of them make a strand.
     pub per_strand: Option<u32>,
+    /// Frame of moving hair, from 0, in USD a time code; the first without one.
+    pub frame: Option<u32>,
     /// The end of each strand at which its root is; [`RootEnd::Auto`] turns strands where `cleaning` mends all.
     pub root_end: RootEnd,
     /// The treatment of strands unlike the others.
@@ -111,6 +114,7 @@ impl Default for LoadOptions {
             scale: Scale::Auto,
             up: Up::Y,
             per_strand: None,
+            frame: None,
             root_end: RootEnd::Auto,
             cleaning: Cleaning::Named,
         }
@@ -169,7 +173,10 @@ fn parse(path: &Path, options: &LoadOptions) -> Result<Parsed, GroomError> {
     memory::check_file("the groom", path, MAX_FILE_BYTES, format.taken)?;
     let bytes = read_plain(path, MAX_FILE_BYTES).map_err(file)?;
     match format.read {
-        Reader::Bytes(read) => read(&bytes, options.per_strand).map_err(|error| error.of(path)),
+        Reader::Bytes(read) => {
+            let chosen = Chosen { per_strand: options.per_strand, frame: options.frame };
+            read(&bytes, chosen).map_err(|error| error.of(path))
+        }
         Reader::Project => {
             let project = project::read(&bytes).map_err(|error| error.of(path))?;
             let folder = path.parent().unwrap_or(Path::new(""));

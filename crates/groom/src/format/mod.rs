@@ -5,6 +5,7 @@
 
 pub mod bin;
 mod bytes;
+mod chosen;
 mod cleaning;
 pub mod data;
 mod ends;
@@ -27,6 +28,7 @@ pub mod tfx;
 mod tfx_text;
 pub mod usda;
 
+pub use chosen::Chosen;
 pub use cleaning::Cleaning;
 pub use ends::{RootEnd, from_tip_note};
 pub use fitted::Fitted;

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use super::chosen::Chosen;
 use super::fitted::Fitted;
 use super::part::Part::{self, *};
 use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx, usda};
 use crate::{Groom, GroomError};
 
-/// Parser of bytes; it takes the number of points per strand for files that leave it open.
-pub type Read = fn(&[u8], Option<u32>) -> Result<Parsed, GroomError>;
+/// Parser of bytes.
+pub type Read = fn(&[u8], Chosen) -> Result<Parsed, GroomError>;
 /// Writer of bytes.
 pub type Write = fn(&Groom) -> Result<Vec<u8>, GroomError>;
 
@@ -46,7 +47,7 @@ pub const FORMATS: [Format; 10] = [
     Format {
         ending: "hair",
         about: "HAIR of Cem Yuksel",
-        read: Reader::Bytes(hair::read),
+        read: Reader::Bytes(|bytes, chosen| hair::read(bytes, chosen.per_strand)),
         write: Some(hair::write),
         fit: None,
         holds: &[Widths, WidthsAlong, Colors, Transparencies],
@@ -73,7 +74,7 @@ pub const FORMATS: [Format; 10] = [
     Format {
         ending: "data",
         about: "USC-HairSalon: points alone",
-        read: Reader::Bytes(data::read),
+        read: Reader::Bytes(|bytes, chosen| data::read(bytes, chosen.per_strand)),
         write: Some(data::write),
         fit: None,
         holds: &[],
@@ -83,7 +84,7 @@ pub const FORMATS: [Format; 10] = [
         ending: "bin",
         about: "CT2Hair: points, written in metres (its own files are in millimetres); normals and labels are not read, \
                 and written as 0",
-        read: Reader::Bytes(bin::read),
+        read: Reader::Bytes(|bytes, chosen| bin::read(bytes, chosen.per_strand)),
         write: Some(bin::write),
         fit: None,
         holds: &[],
@@ -92,7 +93,7 @@ pub const FORMATS: [Format; 10] = [
     Format {
         ending: "ply",
         about: "vertices with `strand` and `edge` elements, edges alone, or bare vertices with `--per-strand N`",
-        read: Reader::Bytes(ply::read),
+        read: Reader::Bytes(|bytes, chosen| ply::read(bytes, chosen.per_strand)),
         write: Some(ply::write),
         fit: None,
         holds: &Part::ALL,
@@ -101,7 +102,7 @@ pub const FORMATS: [Format; 10] = [
     Format {
         ending: "npz",
         about: "NumPy arrays by name: `points` and `starts`, or `positions` [strand, point, 3]",
-        read: Reader::Bytes(npz::read),
+        read: Reader::Bytes(npz::read_frame),
         write: Some(npz::write),
         fit: None,
         holds: &Part::ALL,
@@ -110,7 +111,7 @@ pub const FORMATS: [Format; 10] = [
     Format {
         ending: "npy",
         about: "one NumPy array [strand, point, 3]; points alone",
-        read: Reader::Bytes(npy::read),
+        read: Reader::Bytes(|bytes, chosen| npy::read(bytes, chosen.per_strand)),
         write: Some(npy::write),
         fit: None,
         holds: &[],
@@ -127,8 +128,8 @@ pub const FORMATS: [Format; 10] = [
     },
     Format {
         ending: "usda",
-        about: "text USD: `BasisCurves` of a stage at its first time, in its units and axes",
-        read: Reader::Bytes(|bytes, _| usda::read(bytes)),
+        about: "text USD: `BasisCurves` of a stage at one of its times, in its units and axes",
+        read: Reader::Bytes(|bytes, chosen| usda::read_at(bytes, chosen.frame)),
         write: None,
         fit: None,
         holds: &[],

@@ -1,9 +1,9 @@
 //! Files of other programs: segments, marks, old versions, no headers.
 
 use glam::{Vec2, Vec3};
-use strandline_groom::Groom;
-use strandline_groom::Widths;
-use strandline_groom::format::{bin, data, hair, obj, ply, tfx, usda};
+use strandline_base::npz;
+use strandline_groom::format::{LoadOptions, Scale, bin, data, hair, load, obj, ply, tfx, usda};
+use strandline_groom::{Groom, Widths};
 
 /// Three strands of four points.
 fn strands() -> Vec<Vec<Vec3>> {
@@ -313,4 +313,37 @@ fn tfx_files_have_numbers_of_points_that_tressfx_takes() {
     assert_eq!(Groom::load(&path).unwrap().points, kept.points);
     let notes = of(20, &[16]).save(&path).unwrap().notes;
     assert_eq!(notes, ["TressFX takes 64 strands or more: the file has 20"]);
+}
+
+#[test]
+fn a_frame_of_moving_hair_is_chosen() {
+    let text = "#usda 1.0\n(\nmetersPerUnit = 1\n)\ndef BasisCurves \"fur\" {\nuniform token type = \"linear\"\n\
+                int[] curveVertexCounts = [2]\npoint3f[] points.timeSamples = {\n\
+                1: [(0,0,0), (0,1,0)],\n2.5: [(0,0,0), (0,2,0)],\n7: [(0,0,0), (0,3,0)],\n}\n}\n";
+    let length = |frame: Option<u32>| {
+        let parsed = usda::read_at(text.as_bytes(), frame).unwrap();
+        assert_eq!(parsed.problems.len(), 1, "{:?}", parsed.problems);
+        parsed.groom.points[1].y
+    };
+    let found = [None, Some(0), Some(1), Some(2), Some(3), Some(6), Some(7), Some(90)].map(length);
+    assert_eq!(found, [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("moving.npz");
+    let places = (0..3).flat_map(|frame| [[0.0_f32; 3], [0.0, 1.0 + frame as f32, 0.0]]).flatten();
+    let arrays = [
+        npz::Array::f32s("points", &[3, 2, 3], places),
+        npz::Array::u32s("starts", &[2], [0, 2]),
+        npz::Array::f32s("velocities", &[3, 2, 3], (0..18).map(|number| number as f32)),
+    ];
+    std::fs::write(&path, npz::pack(&arrays)).unwrap();
+    let read = |frame: Option<u32>| {
+        let options = LoadOptions { scale: Scale::Factor(1.0), frame, ..LoadOptions::default() };
+        load(&path, &options).map(|loaded| (loaded.groom.points[1].y, loaded.groom.velocities.unwrap()[0].x))
+    };
+    assert_eq!(
+        [None, Some(1), Some(2)].map(|frame| read(frame).unwrap()),
+        [(1.0, 0.0), (2.0, 6.0), (3.0, 12.0)]
+    );
+    let refused = read(Some(3)).unwrap_err().to_string();
+    assert!(refused.contains("3 frames, expected a frame 3"), "{refused}");
 }

@@ -145,14 +145,20 @@ impl Roots {
     fn new(groom: &Groom, apart: &[[f32; 2]]) -> Option<Self> {
         let median = nearer(apart);
         let on_skin = (OF_MEDIAN * median).clamp(ON_SKIN, NEAR);
-        let places: Vec<Vec3> = (0..groom.strand_count())
-            .filter(|strand| apart[*strand][0].min(apart[*strand][1]) <= on_skin)
-            .map(|strand| {
+        let strands = 0..groom.strand_count();
+        let rooted = strands.clone().filter(|strand| apart[*strand][0].min(apart[*strand][1]) <= on_skin);
+        let first: Vec<usize> = strands.filter(|strand| apart[*strand][0] <= on_skin).collect();
+        let is_own = median <= NEAR && rooted.clone().count() as f32 >= ROOTED * groom.strand_count() as f32;
+        // First points are roots where most lie on the skin; else the nearer ends are.
+        let places = if 2 * first.len() >= groom.strand_count() {
+            first.into_iter().map(|strand| groom.strand(strand)[0]).collect()
+        } else {
+            let nearer = |strand: usize| {
                 let (points, [first, last]) = (groom.strand(strand), apart[strand]);
                 points[if first <= last { 0 } else { points.len() - 1 }]
-            })
-            .collect();
-        let is_own = median <= NEAR && places.len() as f32 >= ROOTED * groom.strand_count() as f32;
+            };
+            rooted.map(nearer).collect()
+        };
         is_own.then_some(Self { places, on_skin })
     }
 

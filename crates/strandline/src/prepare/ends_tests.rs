@@ -85,3 +85,20 @@ fn a_scene_says_what_is_turned_and_how_to_leave_it() {
     let first = load(&scene, &turned);
     assert!(first.guides.positions() != one.guides.positions() && !is_told(&first));
 }
+
+#[test]
+fn tips_that_lie_on_a_shoulder_are_no_roots() {
+    // Roots of reconstructed hair may float a little; some tips of it lie on the body far from them.
+    let (mut groom, mesh) = (hair(Style::Bob), Mannequin::new().mesh());
+    let mut lowest = mesh.positions.clone();
+    lowest.sort_by(|one, two| one.y.total_cmp(&two.y));
+    for (strand, tip) in lowest[..40].iter().enumerate() {
+        let range = groom.range(10 * strand);
+        let points = &mut groom.points[range];
+        let (root, count) = (points[0] * 1.2, points.len() as f32 - 1.0);
+        for (at, point) in points.iter_mut().enumerate() {
+            *point = root.lerp(*tip, at as f32 / count);
+        }
+    }
+    assert_eq!(found(&groom, |_| ()), None);
+}

@@ -86,6 +86,7 @@ impl Sources {
             scale: Scale::Factor(1.0),
             up: Up::Y,
             per_strand,
+            frame: scene.groom.frame,
             root_end: scene.groom.root_end,
             cleaning: Cleaning::Strays,
         };

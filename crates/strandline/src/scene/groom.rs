@@ -41,6 +41,9 @@ settings! {
         up: Up = Up::default();
         /// Points of each strand, for files that hold points and do not say which of them make a strand.
         per_strand: Option<u32> = None, in [1, 4096];
+        /// The frame of moving hair that is read of a file, from 0, in USD a time code; without it the first. Strands are
+        /// taken where they lie in the world.
+        frame: Option<u32> = None, in [0, 10_000_000];
         /// The end of each strand at which its root is; "auto" turns strands whose last point lies on the body and
         /// whose first does not, and without a body those that taper the other way or end among the roots of all others.
         root_end: RootEnd = RootEnd::default();

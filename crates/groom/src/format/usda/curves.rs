@@ -62,7 +62,12 @@ impl Curve {
 }
 
 /// The strands of a prim, in its own space; widths are diameters.
-pub(super) fn groom(source: &Source, prim: &Prim, problems: &mut Vec<String>) -> Result<Groom, GroomError> {
+pub(super) fn groom(
+    source: &Source,
+    prim: &Prim,
+    frame: Option<u32>,
+    problems: &mut Vec<String>,
+) -> Result<Groom, GroomError> {
     let numbers = |name: &str| match prim.properties.get(name) {
         Some(Value::Numbers(numbers)) => Some(&numbers[..]),
         _ => None,
@@ -101,7 +106,11 @@ pub(super) fn groom(source: &Source, prim: &Prim, problems: &mut Vec<String>) ->
         start += own.len();
     }
     if prim.samples > 1 {
-        problems.push(format!("the first of {} times of `{}` is read", prim.samples, prim.name));
+        let (count, name) = (prim.samples, &prim.name);
+        problems.push(match frame {
+            None => format!("the first of {count} times of `{name}` is read"),
+            Some(frame) => format!("of {count} times of `{name}` the last up to time code {frame} is read"),
+        });
     }
     let (strands, controls) = (groom.strand_count(), controls.len());
     Attributes { prim, strands, of_points: &of_points, controls, problems }.take(&mut groom);
