@@ -1,11 +1,10 @@
 //! `strandline convert`: a groom in another format, and with other strands.
 
 use anyhow::Context;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use strandline::{
     Groom, Mesh,
     format::{self, Cleaning, LoadOptions, Scale},
-    math,
     mesh::{DistanceGrid, SignedDistance},
 };
 
@@ -44,8 +43,7 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
     if let Some(points) = options.points {
         groom = groom.resampled(points as usize)?;
     }
-    let rotation = math::pitch_yaw_roll(options.turn.unwrap_or_default());
-    groom.transform(1.0, rotation, options.translation.unwrap_or_default());
+    groom.transform(1.0, Quat::IDENTITY, options.translation.unwrap_or_default());
     if let Some(file) = &options.outside {
         let mut mesh = Mesh::load(file, 1.0)?;
         place(&mut mesh, &groom, options.mesh_scale);
