@@ -29,8 +29,10 @@ const OFF_SKIN: f32 = 3.0;
 const SURELY: f32 = 0.01;
 /// Share of strands with an end on the skin in a groom that belongs to a body.
 const ROOTED: f32 = 0.8;
-/// Distance of a new root from the other roots over that of the old one.
+/// Distance of a new root from the other roots over that of the old one, where the new one alone lies on the skin, and
+/// where both do.
 const GATHERED: f32 = 0.8;
+const AMONG: f32 = 0.25;
 
 /// Turns strands of the scene's grooms that are stored from tip to root, where the scene leaves their ends open.
 pub(super) fn turn(loading: &mut Loading) {
@@ -82,14 +84,13 @@ fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh) -> Option<Vec<bool>> {
         }
     }
     let roots = Roots::new(&few, &apart)?;
-    let is_turned = |apart: &[[f32; 2]], groom: &Groom| -> Vec<bool> {
-        (0..groom.strand_count()).map(|strand| roots.is_turned(groom.strand(strand), apart[strand])).collect()
-    };
-    let of_few = is_turned(&apart, &few);
-    if !of_few.contains(&true) {
+    let surely = |strand: usize| roots.shows(few.strand(strand), apart[strand]) == Some(Evidence::Sure);
+    if !(0..few.strand_count()).any(surely) {
         return None;
     }
-    Some(if every == 1 { of_few } else { is_turned(&skin.apart(groom), groom) })
+    let apart = if every == 1 { apart } else { skin.apart(groom) };
+    let is_turned = |strand: usize| roots.shows(groom.strand(strand), apart[strand]).is_some();
+    Some((0..groom.strand_count()).map(is_turned).collect())
 }
 
 fn median(values: impl Iterator<Item = f32>) -> f32 {
@@ -162,18 +163,33 @@ impl Roots {
         is_own.then_some(Self { places, on_skin })
     }
 
-    /// True for a strand with its last point alone on the skin, and nearer to the other roots than the first.
-    fn is_turned(&self, strand: &[Vec3], [first, last]: [f32; 2]) -> bool {
+    /// Evidence for a strand to be stored from tip to root: its last point is nearer to the other roots than its first,
+    /// and lies on the skin.
+    fn shows(&self, strand: &[Vec3], [first, last]: [f32; 2]) -> Option<Evidence> {
+        if last > self.on_skin {
+            return None;
+        }
+        let is_alone = first > OFF_SKIN * self.on_skin;
         let ends = [strand[0], strand[strand.len() - 1]];
-        last <= self.on_skin && first > OFF_SKIN * self.on_skin && {
-            let nearest = |end: Vec3| {
-                let others = self.places.iter().filter(|root| !ends.contains(root));
-                others.map(|root| root.distance(end)).fold(f32::INFINITY, f32::min)
-            };
-            let [old, new] = ends.map(nearest);
-            new.is_infinite() || new < GATHERED * old
+        let nearest = |end: Vec3| {
+            let others = self.places.iter().filter(|root| !ends.contains(root));
+            others.map(|root| root.distance(end)).fold(f32::INFINITY, f32::min)
+        };
+        let [old, new] = ends.map(nearest);
+        match is_alone {
+            true => (new.is_infinite() || new < GATHERED * old).then_some(Evidence::Sure),
+            false => (new < AMONG * old).then_some(Evidence::Likely),
         }
     }
+}
+
+/// Evidence for a strand to be stored from tip to root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Evidence {
+    /// The last point alone lies on the skin.
+    Sure,
+    /// Both lie there: it counts in a groom where others are sure.
+    Likely,
 }
 
 #[cfg(test)]

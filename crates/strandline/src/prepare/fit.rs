@@ -67,10 +67,9 @@ fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<Strin
     let look = &mut scene.look;
     if !given.follow_strands && look.follow_strands == default.look.follow_strands {
         look.follow_strands = DRAWN.div_ceil(strands).clamp(1, MOST_FOLLOW) as u32;
-        if look.hair_count > 0 {
+        if look.hair_count > 0 && (strands as u64).pow(2) < u64::from(default.look.hair_count) {
             // Few strands stand for few hairs, each drawn once.
-            let hairs = look.hair_count.div_ceil(strands as u32).max(1);
-            look.follow_strands = look.follow_strands.min(hairs);
+            look.follow_strands = look.follow_strands.min(look.hair_count.div_ceil(strands as u32));
         }
         chosen.push(format!("look.follow_strands = {}", look.follow_strands));
     }
