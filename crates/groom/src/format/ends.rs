@@ -31,6 +31,12 @@ const LOOKED_AT: usize = 2000;
 /// it lies among them.
 const APART: f32 = 6.0;
 const AMONG: f32 = 2.0;
+/// Fewest strands so, and share of all, with which less is asked of the others: the distance of the first point, and over
+/// that of the last.
+const LEAST_SURE: usize = 3;
+const SURE: f32 = 0.005;
+const LIKELY_APART: f32 = 3.0;
+const LIKELY_RATIO: f32 = 2.0;
 /// Largest share of strands that the others can outvote.
 const FEW: f32 = 0.35;
 
@@ -112,13 +118,18 @@ impl Groom {
             least[1].sqrt()
         };
         let median = quantile(known.iter().map(|(strand, root)| nearest(*strand, *root)), 0.5);
-        let is_turned = |strand: usize| {
-            let [first, last] = self.ends(strand);
-            nearest(strand, first) > APART * median && nearest(strand, last) < AMONG * median
-        };
+        let ends = |strand: usize| self.ends(strand).map(|end| nearest(strand, end) / median);
+        let is_sure = |[first, last]: [f32; 2]| first > APART && last < AMONG;
         // A sample tells whether there are some.
-        known.iter().any(|(strand, _)| is_turned(*strand)).then_some(())?;
-        let turned: Vec<bool> = (0..count).map(is_turned).collect();
+        known.iter().any(|(strand, _)| is_sure(ends(*strand))).then_some(())?;
+        let ends: Vec<[f32; 2]> = (0..count).map(ends).collect();
+        let sure = ends.iter().filter(|ends| is_sure(**ends)).count();
+        if sure < LEAST_SURE || (sure as f32) < SURE * count as f32 {
+            return None;
+        }
+        let is_turned =
+            |[first, last]: &[f32; 2]| *last < AMONG && *first > LIKELY_APART && *first > LIKELY_RATIO * last;
+        let turned: Vec<bool> = ends.iter().map(is_turned).collect();
         let found = turned.iter().filter(|turned| **turned).count();
         (found as f32 <= FEW * count as f32).then_some(turned)
     }

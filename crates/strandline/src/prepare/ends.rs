@@ -33,6 +33,8 @@ const ROOTED: f32 = 0.8;
 /// where both do.
 const GATHERED: f32 = 0.8;
 const AMONG: f32 = 0.25;
+/// Share of strands that show their ends with which the others are like them.
+const NEARLY_ALL: f32 = 0.9;
 
 /// Turns strands of the scene's grooms that are stored from tip to root, where the scene leaves their ends open.
 pub(super) fn turn(loading: &mut Loading) {
@@ -90,7 +92,14 @@ fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh) -> Option<Vec<bool>> {
     }
     let apart = if every == 1 { apart } else { skin.apart(groom) };
     let is_turned = |strand: usize| roots.shows(groom.strand(strand), apart[strand]).is_some();
-    Some((0..groom.strand_count()).map(is_turned).collect())
+    let mut turned: Vec<bool> = (0..groom.strand_count()).map(is_turned).collect();
+    // Strands that show no end are as nearly all others are.
+    let kept = apart.iter().filter(|apart| roots.is_kept(**apart)).count();
+    let found = turned.iter().filter(|turned| **turned).count();
+    if found as f32 >= NEARLY_ALL * (found + kept) as f32 {
+        turned.iter_mut().zip(&apart).for_each(|(turned, apart)| *turned |= !roots.is_kept(*apart));
+    }
+    Some(turned)
 }
 
 fn median(values: impl Iterator<Item = f32>) -> f32 {
@@ -161,6 +170,11 @@ impl Roots {
             rooted.map(nearer).collect()
         };
         is_own.then_some(Self { places, on_skin })
+    }
+
+    /// True for a strand with its first point alone on the skin.
+    fn is_kept(&self, [first, last]: [f32; 2]) -> bool {
+        first <= self.on_skin && last > OFF_SKIN * self.on_skin
     }
 
     /// Evidence for a strand to be stored from tip to root: its last point is nearer to the other roots than its first,
