@@ -29,7 +29,7 @@ const FEWEST: usize = 20;
 const LOOKED_AT: usize = 2000;
 /// Distance to the nearest root, over the median of all, beyond which an end lies apart from the roots, and within which
 /// it lies among them.
-const APART: f32 = 6.0;
+const APART: f32 = 4.0;
 const AMONG: f32 = 2.0;
 /// Fewest strands so, and share of all, with which less is asked of the others: the distance of the first point, and over
 /// that of the last.

@@ -110,7 +110,7 @@ fn files_of_parts_become_groups_of_one_groom() {
         "version 3.0\nback.tfx 4 0.4 5.0 back.tfxsim the-back # a part\nfringe.tfx\nhairColor 1 0.5 0\n";
     std::fs::write(&project, text).unwrap();
     let whole = load(&project, &as_it_is()).unwrap().groom;
-    assert_eq!(whole.starts, [0, 2, 4]);
+    assert_eq!(whole.starts, [0, 4, 8], "strands of two points are written with four");
     assert_eq!(whole.groups, Some(vec![0, 1]));
     assert_eq!(whole.group_names[&0], "the-back");
     assert_eq!(whole.group_names[&1], "fringe");

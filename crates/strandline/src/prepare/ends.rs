@@ -33,6 +33,8 @@ const ROOTED: f32 = 0.8;
 /// where both do.
 const GATHERED: f32 = 0.8;
 const AMONG: f32 = 0.25;
+/// Least share of strands that surely are turned where some are: roots of a few may float.
+const SURE: f32 = 0.003;
 /// Share of strands that show their ends with which the others are like them.
 const NEARLY_ALL: f32 = 0.9;
 
@@ -87,7 +89,8 @@ fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh) -> Option<Vec<bool>> {
     }
     let roots = Roots::new(&few, &apart)?;
     let surely = |strand: usize| roots.shows(few.strand(strand), apart[strand]) == Some(Evidence::Sure);
-    if !(0..few.strand_count()).any(surely) {
+    let sure = (0..few.strand_count()).filter(|strand| surely(*strand)).count();
+    if sure == 0 || (sure as f32) < SURE * few.strand_count() as f32 {
         return None;
     }
     let apart = if every == 1 { apart } else { skin.apart(groom) };
