@@ -79,15 +79,15 @@ law! {
 }
 
 /// Long hair of the default material that hangs from a head at rest, without a volume.
-fn hanging(time_step: f32) -> Model {
+pub fn hanging(time_step: f32) -> Model {
     let mut settings = Settings { time_step, ..Settings::default() };
     settings.volume = VolumeSettings { enabled: false, ..settings.volume };
     Model::new(&one_strand(&line(Vec3::ZERO, Vec3::NEG_Y * LENGTH, TIP)), &settings, Vec::new()).unwrap()
 }
 
 /// Length \[m\] of long hair, and its last point.
-const LENGTH: f32 = 0.35;
-const TIP: usize = 27;
+pub const LENGTH: f32 = 0.35;
+pub const TIP: usize = 27;
 
 law! {
     fn long_hair_that_is_let_go_swings_two_or_three_times_and_stops(on) {
