@@ -27,9 +27,8 @@ law! {
         assert!(expected > 0.3 * 9.81 * time * time, "{expected} m in {time} s");
         for time_step in [1.0 / 60.0, 1.0 / 240.0, 1.0 / 960.0, 5e-5, 1e-5] {
             let found = fallen(on, time_step, time);
-            println!("{time_step}: {found} {}", found / expected - 1.0);
-            // Implicit Euler falls by one part of a step too long: n (n + 1) / 2 parts squared. Its damping of bends is as
-            // much again.
+            // Implicit Euler falls by n (n + 1) / 2 parts of a step squared, half a step too long in all. Found on the CPU
+            // 0.8 % at 1/60 s, 2e-6 at 1e-5 s.
             let bound = 0.01 + time_step / time;
             assert!((found / expected - 1.0).abs() < bound, "{time_step} s: {found} m, expected {expected} m");
         }
@@ -46,13 +45,8 @@ law! {
                 let mut rig = Rig::new(on, style(name, &settings, 3 * LANES));
                 let rest = rig.state().positions.clone();
                 let report = rig.steps(&vec![Drive::default(); on.either(60, 6)]).pop().unwrap();
-                let resting = report.rods.unwrap().resting;
-                println!("{name:?} {time_step}: {resting}");
-                let moved = rig.state().positions.iter().zip(&rest).flat_map(|(now, rest)| {
-                    (0..LANES).map(move |lane| now.get(lane).distance(rest.get(lane)))
-                });
-                let moved = moved.fold(0.0, f32::max);
-                println!("   {moved}");
+                assert_eq!(report.rods.unwrap().resting, 3 * LANES, "{name:?}, {time_step} s");
+                assert_eq!(rig.state().positions, rest, "{name:?}, {time_step} s");
             }
         }
     }
@@ -73,17 +67,15 @@ law! {
             rig.change(State::release);
             let start = first(rig.state())[TIP].x;
             let (mut rests, mut passages, mut before) = (false, 0, start);
-            let mut stopped = 0;
-            for step in 0..(5.0 * rate) as usize {
+            for _ in 0..(5.0 * rate) as usize {
                 rests = rig.step(&Drive::default()).rods.unwrap().resting == 1;
                 let now = first(rig.state())[TIP].x;
                 passages += usize::from(now * before < 0.0);
-                if !rests { stopped = step; }
                 before = now;
             }
-            println!("{rate} {start} {passages} {before} rests {rests} stopped {}", stopped as f32 / rate);
             assert!(start > 0.019 * LENGTH, "1/{rate} s: let go {start} m aside");
             assert!(passages > 0, "1/{rate} s: it creeps back");
+            // The bound of the law. Found: 2e-4 of its length, still after 1.5 s; 3e-6 and 3 s at 1/960 s.
             assert!(before.abs() < 2e-3 * LENGTH, "1/{rate} s: {before} m beside its rest");
             assert!(rests, "1/{rate} s: not still after 5 s");
         }

@@ -22,31 +22,9 @@ use crate::{MOST_SPIN, Model, RodReport, State};
 
 /// Rounds of the projection onto lengths.
 const LENGTH_ROUNDS: u32 = 2;
-/// Most that a point of a strand at rest moves in a part of a step, over its square \[m/s^2\]: two thousandths of
-/// gravity. What friction holds creeps by half as much.
-const STILL: f64 = 0.02;
-/// Most of it \[m\] for what neither a solid nor other hair holds, over the square of the part \[m/s^2\], and over the
-/// part \[m/s\]: air that slows a soft thread holds it up by as little.
-const STILL_LOOSE: f64 = 1e-7;
-const STILL_FREE: f64 = 2e-3;
-const STILL_SPEED: f64 = 6e-6;
-/// Most that its way differs from the one before, over the square of the part \[m/s^2\]: a strand at rest is not
-/// one that turns back.
-const STEADY: f64 = 2e-4;
-/// Share of the deceleration by hairs that rub which holds a strand at rest: it hangs a thousandth of its length aside
-/// at most.
-const HELD: f64 = 0.05;
 /// Most of its speed that slow hair loses to hairs that rub \[1/s\]: contacts of hairs give way before they slip, so
 /// that a small swing is damped and not held.
 const RUBBING_RATE: f64 = 4.0;
-/// Arm \[m\] at which the turn of a section counts as way, the radius of a hair: what only twists moves too.
-const ARM: f64 = 4e-5;
-/// Turn \[rad\] that is rounding.
-const TURN_ROUNDING: f64 = 1e-6;
-/// Rounding of an edge in single precision, over its length.
-const ROUNDING: f64 = 1.2e-7;
-/// Most that rounding of stretch accelerates a point at rest \[m/s^2\]: in short steps all that it moves.
-const NOISE: f64 = 0.5;
 
 /// Forces, elasticity, lengths and solids: writes the predicted positions, the sections and the
 /// velocities. Returns the points that were not finite, whose strands are back at rest, and how the
@@ -108,7 +86,7 @@ pub fn solve_rods(
 
 /// Inputs of a step that all strands share.
 pub(super) struct Parts<'a> {
-    settings: &'a RodSettings,
+    pub(super) settings: &'a RodSettings,
     pub(super) count: u32,
     pub(super) time_step: f64,
     fall: Fall,
@@ -256,11 +234,18 @@ impl Strands<'_> {
         self.guess(space, step);
     }
 
-    /// Newton's method begins with hair that keeps its velocity beside its root.
+    /// Newton's method begins with hair that keeps its velocity beside its root; with one that is free, with what the
+    /// forces add on the whole, which it would find to a hundredth.
     fn guess(&self, space: &mut Workspace, step: f32x8) {
         let (first, second) = (self.nodes[0].free, self.nodes[1].free);
         let held = Vector::choose(second, space.coast[0], space.coast[1]);
-        let root = Vector::choose(first, Vector::zero(), held);
+        let (mut pushed, mut mass) = (Vector::zero(), f32x8::ZERO);
+        for (point, node) in self.nodes.iter().enumerate() {
+            let free = node.mass * node.free;
+            pushed += (space.coast[point] - space.wanted[point]) * free;
+            mass += free;
+        }
+        let root = Vector::choose(first, pushed * (f32x8::of(1.0) / mass), held);
         for (point, node) in self.nodes.iter().enumerate() {
             let [x, y, z] = ((space.coast[point] - root) * node.free).array();
             space.work.guess(point, [x, y, z, space.spins[point] * step * node.free_angle]);
@@ -269,9 +254,8 @@ impl Strands<'_> {
 
     fn solve_part(&self, space: &mut Workspace, planes: &mut [Plane]) {
         let Workspace { carried, remainders, sections, work, .. } = space;
-        let edge = |index: usize| {
-            carried[index + 1] - carried[index] + (remainders[index + 1] - remainders[index])
-        };
+        let edge =
+            |index: usize| carried[index + 1] - carried[index] + (remainders[index + 1] - remainders[index]);
         work.begin(edge, |index| sections[index]);
         let settings = StepSettings {
             time_step: self.parts.time_step,
@@ -313,47 +297,16 @@ impl Strands<'_> {
     fn take(&self, space: &mut Workspace, solved: &Solved<f32x8>) {
         let last = self.nodes.len() - 1;
         let per_step = f32x8::of(1.0 / self.parts.time_step);
-        let step = f32x8::of(self.parts.time_step);
         let most_spin = f32x8::splat(MOST_SPIN);
-        let (mut largest, mut change, mut nothing) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
-        let (mut longest, mut whole, mut speed) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
-        let (mut turn, mut turn_change) = (f32x8::ZERO, f32x8::ZERO);
-        for point in 0..=last {
-            let [.., angle] = space.work.moved[point];
-            let other = angle - space.spins[point] * step;
-            turn = turn.fast_max(angle * angle);
-            turn_change = turn_change.fast_max(other * other);
-            let moved = space.way(point);
-            let square = moved.dot(moved);
-            let other = moved - space.velocities[point] * step;
-            largest = largest.fast_max(square);
-            change = change.fast_max(other.dot(other));
-            longest = longest.fast_max(space.length[point]);
-            whole += space.length[point];
-            let before = space.velocities[point].dot(space.velocities[point]);
-            speed = speed.fast_max(before);
-            // 0 for finite numbers, else not a number.
-            nothing += (square + before + angle) * f32x8::ZERO;
-        }
-        let bad = nothing.is_nan();
+        let (moving, bad) = self.moving(space, solved.pressed);
         space.bad |= bad;
         // 1 where the strand moves.
-        let Thresholds { pressed, loose, steady, rounding } = Thresholds::new(self.parts);
-        // What rested rests on as long as its motion may be the rounding of all of its edges.
-        let rounded = speed.simd_eq(f32x8::ZERO).bitselect(whole, longest);
-        let rounding = (rounded * f32x8::of(ROUNDING)).fast_min(f32x8::of(rounding));
-        let still = solved.pressed.choose(f32x8::of(pressed), f32x8::of(loose));
-        let steady = f32x8::of(steady);
-        let turned = |way: f32x8| (way * f32x8::of(1.0 / ARM)).fast_max(f32x8::of(TURN_ROUNDING));
-        let (most, most_change) = (turned(still), turned(steady));
-        let turns = turn.simd_gt(most * most) | turn_change.simd_gt(most_change * most_change);
-        let (still, steady) = (still.fast_max(rounding), steady.fast_max(rounding));
-        let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | turns | bad;
         let moves = moving.bitselect(f32x8::of(1.0), f32x8::ZERO);
         let none = bad.bitselect(f32x8::splat(f32::NAN), f32x8::ZERO);
         let moves = self.driven.bitselect(f32x8::of(1.0), moves);
         for point in 0..=last {
-            let velocity = Vector::choose(moves, space.way(point) * per_step, Vector::zero());
+            let moved = space.way(point);
+            let velocity = Vector::choose(moves, moved * per_step, Vector::zero());
             // Of a strand that began with what is no number nothing is kept: it goes back to rest, and is counted.
             space.velocities[point] = velocity + Vector::new(none, none, none);
             let (place, remainder) = sum_and_remainder(space.carried[point], space.moved[point]);
@@ -384,39 +337,9 @@ impl Strands<'_> {
     }
 }
 
-/// Motion in a part of a step below which a strand rests.
-struct Thresholds {
-    /// Way \[m\] of a strand that a solid presses, and of one that nothing presses.
-    pressed: f64,
-    loose: f64,
-    /// Difference \[m\] of the way from that at the velocity of before.
-    steady: f64,
-    /// Most of these \[m\] that is rounding.
-    rounding: f64,
-}
-
-impl Thresholds {
-    fn new(parts: &Parts) -> Self {
-        let step = parts.time_step;
-        let square = step * step;
-        // What rubs holds a strand that hardly falls.
-        let held = HELD * f64::from(parts.settings.rubbing);
-        let slow = (STILL_FREE * step).max(STILL_SPEED) * step;
-        Self {
-            pressed: STILL * square,
-            loose: slow.min(STILL_LOOSE).max(held * square),
-            steady: STEADY.max(held) * square,
-            rounding: NOISE * square,
-        }
-    }
-}
-
 /// The sum of a vector and a smaller one in single precision, and what rounding leaves out of it.
 #[inline(always)]
-fn sum_and_remainder(
-    large: Vector<f32x8>,
-    small: Vector<f32x8>,
-) -> (Vector<f32x8>, Vector<f32x8>) {
+fn sum_and_remainder(large: Vector<f32x8>, small: Vector<f32x8>) -> (Vector<f32x8>, Vector<f32x8>) {
     let sum = large + small;
     let taken = sum - large;
     (sum, (large - (sum - taken)) + (small - taken))

@@ -156,7 +156,8 @@ impl<E: Executor> Session<E> {
     /// The error of the task; the simulation's thread has ended.
     pub fn take(&mut self) -> Result<bool, Error> {
         let done = self.executor.finish().map_err(|_| Error::WorkerGone)?;
-        let Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on, stiffening } = done;
+        let Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on, stiffening } =
+            done;
         if is_frame {
             self.direction.pass(seconds);
         }
