@@ -85,7 +85,7 @@ impl Model {
         settings.check()?;
         memory::check(&settings.memory(guides.strand_count(), guides.points_per_strand()))?;
         check_rest(guides, &rest)?;
-        let hairs = Hairs::new(guides, settings)?;
+        let hairs = Hairs::new(guides, &settings.strands.rods, &settings.groups)?;
         let points = guides.points_per_strand();
         let last = guides.strand_count() - 1;
         let inverse_mass = by_lane(rest.mass.len(), points, |index, block, point, lane| {
@@ -151,7 +151,7 @@ impl Model {
 
     /// Tells masses apart: two models of the same key have the same.
     pub(crate) fn mass_key(&self) -> u64 {
-        self.hairs.key(&self.settings)
+        self.hairs.key(self.settings.line_density(), self.settings.has_rods())
     }
 
     /// Compiles the rods, where the settings ask for them.
@@ -215,7 +215,7 @@ impl Model {
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         settings.check()?;
         memory::check(&settings.memory(self.strand_count, self.points_per_strand))?;
-        let hairs = self.hairs.changed(settings)?;
+        let hairs = self.hairs.changed(&settings.strands.rods, &settings.groups)?;
         let change = self.settings.change_to(settings);
         self.settings = settings.clone();
         self.hairs = hairs;

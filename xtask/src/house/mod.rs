@@ -44,7 +44,8 @@ const ARROWS: [(&str, &[&str]); 9] = [
 ];
 
 /// Folders of which the first imports nothing from the second.
-const APART: [(&str, &str, &str); 1] = [("crates/render/src", "gpu", "cpu")];
+const APART: [(&str, &str, &str); 2] =
+    [("crates/render/src", "gpu", "cpu"), ("crates/sim/src", "gpu", "cpu")];
 
 /// Exceptions of the list: lines by file, lines by function, circles of files and circles of folders.
 #[derive(Debug, Default, Deserialize)]

@@ -1,6 +1,7 @@
 //! Lengths, bends and solids, then v* = (x* - x) / dt [Mueller2007; Chen2011 §4.1].
 
 use strandline_base::par::prelude::*;
+use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
@@ -51,7 +52,7 @@ pub fn constrain(
                 let range = block * points..(block + 1) * points;
                 let strands = Strands {
                     model,
-                    bends: bends.map(|bends| bends.of_roots(model, &obstacles.end, block)),
+                    bends: bends.map(|bends| from_roots(bends, model, &obstacles.end, block)),
                     segments: Segments {
                         lengths: &lengths[range.clone()],
                         share_lower: &masses.share_lower[range.clone()],
@@ -72,6 +73,14 @@ pub fn constrain(
             },
         )
         .reduce(NonFinite::default, NonFinite::with)
+}
+
+/// The bends of a block of strands, from its root frames where the body has them.
+fn from_roots(bends: Bends, model: &Model, body: &BodyFrame, block: usize) -> Bends {
+    match body.roots() {
+        Some(_) => bends.with_roots(model.roots(body, block).map(|root| root.rotation)),
+        None => bends,
+    }
 }
 
 /// Rounds from one look for points that were carried beside their planes to the next.

@@ -7,12 +7,10 @@
 
 use glam::Quat;
 use strandline_base::math;
-use strandline_body::BodyFrame;
-use strandline_groom::{Lanes, Vec3Lanes};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use crate::Model;
-use crate::constrain::Angles;
+use super::settings::Angles;
 use strandline_base::vec3x8::{Vec3x8, lanes, load, splat};
 
 /// Rounds of length constraints from one pass over the angles to the next. A pass costs about as
@@ -61,12 +59,8 @@ impl Bends {
         })
     }
 
-    /// The bends of a block of strands, which begin at their root frames.
-    pub fn of_roots(self, model: &Model, body: &BodyFrame, block: usize) -> Self {
-        if body.roots().is_none() {
-            return self;
-        }
-        let rotations = model.roots(body, block).map(|root| root.rotation);
+    /// The bends of a block of strands with these rotations of their root frames.
+    pub fn with_roots(self, rotations: [Quat; LANES]) -> Self {
         let scalar = f32x8::from(rotations.map(|rotation| rotation.w));
         Self { root: Turn { vector: lanes(rotations.map(|rotation| rotation.xyz())), scalar }, ..self }
     }

@@ -6,8 +6,8 @@ use strandline_base::SettingError;
 use strandline_groom::Guides;
 
 use super::material::Section;
-use super::settings::RodSettings;
-use crate::{Settings, SimError};
+use super::settings::{GroupSettings, RodSettings};
+use crate::SimError;
 
 /// Properties of a hair that are constant along it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,43 +32,46 @@ impl Hair {
     }
 }
 
-/// Material of each strand.
+/// Materials of all strands.
 #[derive(Clone)]
 pub(crate) struct Hairs {
     /// Group of each strand, shape `[strand]`; empty where the groom has none.
     groups: Vec<u32>,
     names: BTreeMap<u32, String>,
     hair: Hair,
-    /// Of groups that have one of their own.
+    /// Materials of groups that have their own.
     own: BTreeMap<u32, Hair>,
 }
 
 impl Hairs {
-    /// The strands of guides.
+    /// Materials of the strands of guides, by the settings of all and those of single groups.
     ///
     /// # Errors
     /// Settings of a group that the guides do not have.
-    pub fn new(guides: &Guides, settings: &Settings) -> Result<Self, SimError> {
-        let hair = Hair::new(&settings.strands.rods);
-        let groups = guides.groups().map_or_else(Vec::new, <[u32]>::to_vec);
-        Self { groups, names: guides.group_names().clone(), hair, own: BTreeMap::new() }.changed(settings)
+    pub fn new(guides: &Guides, rods: &RodSettings, groups: &[GroupSettings]) -> Result<Self, SimError> {
+        let strands = Self {
+            groups: guides.groups().map_or_else(Vec::new, <[u32]>::to_vec),
+            names: guides.group_names().clone(),
+            hair: Hair::new(rods),
+            own: BTreeMap::new(),
+        };
+        strands.changed(rods, groups)
     }
 
     /// The same strands under other settings.
     ///
     /// # Errors
     /// As [`Hairs::new`].
-    pub fn changed(&self, settings: &Settings) -> Result<Self, SimError> {
-        let rods = &settings.strands.rods;
+    pub fn changed(&self, rods: &RodSettings, groups: &[GroupSettings]) -> Result<Self, SimError> {
         let mut own = BTreeMap::new();
-        for (index, group) in settings.groups.iter().enumerate() {
+        for (index, group) in groups.iter().enumerate() {
             let numbers = self.numbers(&group.group);
             if numbers.is_empty() {
                 let key = format!("simulation.groups[{index}].group");
                 return Err(SettingError::new(key, format!("`{}`", group.group), self.expected()).into());
             }
             let hair = Hair::new(&rods.of_group(group));
-            // Of two that name one group the first holds, as of looks.
+            // The first of two settings of one group counts, as with looks.
             numbers.into_iter().for_each(|number| _ = own.entry(number).or_insert(hair));
         }
         Ok(Self { hair: Hair::new(rods), own, ..self.clone() })
@@ -112,21 +115,21 @@ impl Hairs {
         (of_group * (weight(passed - before, before) + weight(passed, after)) / (before + after)) as f32
     }
 
-    /// A number that differs where the masses of the strands do.
-    pub fn key(&self, settings: &Settings) -> u64 {
+    /// A number that differs where the masses of the strands do, as rods or at a constant mass per length \[kg/m\].
+    pub fn key(&self, line_density: f32, has_rods: bool) -> u64 {
         let numbers =
             |section: &Section| [section.mass, section.along.tip, section.along.start].map(f64::to_bits);
         let own = self
             .own
             .iter()
             .flat_map(|(group, hair)| std::iter::once(u64::from(*group)).chain(numbers(&hair.section)));
-        let first = [u64::from(settings.line_density().to_bits()), u64::from(settings.has_rods())];
-        // Of Fowler, Noll and Vo, over whole numbers.
+        let first = [u64::from(line_density.to_bits()), u64::from(has_rods)];
+        // The hash of Fowler, Noll and Vo, over 64-bit numbers.
         let mix = |key: u64, number: u64| (key ^ number).wrapping_mul(0x0100_0000_01b3);
         first.into_iter().chain(numbers(&self.hair.section)).chain(own).fold(0xcbf2_9ce4_8422_2325, mix)
     }
 
-    /// The numbers of the groups of a name, or the one that it is as it is written.
+    /// Group numbers for a name; a numeric string is a group number itself.
     fn numbers(&self, group: &str) -> Vec<u32> {
         let named = self.names.iter().filter(|(_, name)| *name == group).map(|(number, _)| *number);
         let mut numbers: Vec<u32> = named.collect();
@@ -137,7 +140,7 @@ impl Hairs {
         numbers
     }
 
-    /// The groups that there are, for an error.
+    /// Groups of the groom, for an error message.
     fn expected(&self) -> String {
         let mut numbers = self.groups.clone();
         numbers.sort_unstable();
