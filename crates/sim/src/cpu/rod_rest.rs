@@ -17,8 +17,8 @@ const STILL_SPEED: f64 = 6e-6;
 /// Most that its way differs from the one before, over the square of the part \[m/s^2\]: a strand at rest is not
 /// one that turns back.
 const STEADY: f64 = 2e-4;
-/// Share of the deceleration by hairs that rub which holds a strand at rest: it hangs a thousandth of its length aside
-/// at most.
+/// Share of the deceleration by hairs that rub which holds a strand at rest that no solid presses: it hangs a thousandth
+/// of its length aside at most.
 const HELD: f64 = 0.05;
 /// Arm \[m\] at which the turn of a section counts as way, the radius of a hair: what only twists moves too.
 const ARM: f64 = 4e-5;
@@ -40,7 +40,7 @@ impl Strands<'_> {
         let rounded = motion.speed.simd_eq(f32x8::ZERO).bitselect(motion.whole, motion.longest);
         let rounding = rounded.fast_min(motion.pull * f32x8::of(4.0 * square)) * f32x8::of(ROUNDING);
         let still = pressed.choose(f32x8::of(thresholds.pressed), f32x8::of(thresholds.loose));
-        let steady = f32x8::of(thresholds.steady);
+        let steady = pressed.choose(f32x8::of(thresholds.pressed_steady), f32x8::of(thresholds.steady));
         let turned = |way: f32x8| (way * f32x8::of(1.0 / ARM)).fast_max(f32x8::of(TURN_ROUNDING));
         let (most, most_change) = (turned(still), turned(steady));
         let turns = motion.turn.simd_gt(most * most) | motion.turn_change.simd_gt(most_change * most_change);
@@ -101,8 +101,9 @@ struct Thresholds {
     /// Way \[m\] of a strand that a solid presses, and of one that nothing presses.
     pressed: f64,
     loose: f64,
-    /// Difference \[m\] of the way from that at the velocity of before.
+    /// Difference \[m\] of the way from that at the velocity of before, of the latter and of the former.
     steady: f64,
+    pressed_steady: f64,
 }
 
 impl Thresholds {
@@ -110,12 +111,14 @@ impl Thresholds {
         let step = parts.time_step;
         let square = step * step;
         // What rubs holds a strand that hardly falls.
-        let held = HELD * f64::from(parts.settings.rubbing);
+        let rubbing = f64::from(parts.settings.rubbing);
+        let held = HELD * rubbing;
         let slow = (STILL_FREE * step).max(STILL_SPEED) * step;
         Self {
             pressed: STILL * square,
             loose: slow.min(STILL_LOOSE).max(held * square),
             steady: STEADY.max(held) * square,
+            pressed_steady: STEADY.max(rubbing) * square,
         }
     }
 }
