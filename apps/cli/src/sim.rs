@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Written};
+use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Stiffening, Written};
 
 use crate::arguments::SimOptions;
 use crate::interrupt::Stoppable;
@@ -114,8 +114,7 @@ pub struct Ended {
     pub strands: usize,
     pub points_per_strand: usize,
     pub drift: Drift,
-    /// Strands of rods that had to be stiffer, and how many times stiffer the stiffest of them is.
-    pub stiffened: (usize, f32),
+    pub stiffening: Stiffening,
     /// \[s\].
     pub time_step: f32,
     /// Of the pressure solve.
@@ -134,7 +133,7 @@ impl Ended {
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
             drift: player.drift()?,
-            stiffened: player.stiffened(),
+            stiffening: player.stiffening(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         })
@@ -183,8 +182,8 @@ impl Steps {
             penetration_max_m: self.penetration_max,
             drift: Spread { mean: drift.mean, max: drift.max },
             speed: self.speed((1.0 / end.time_step).round() as usize),
-            stiffened: end.stiffened.0,
-            stiffest: end.stiffened.1,
+            stiffened: end.stiffening.strands,
+            stiffest: end.stiffening.most,
             rods: self.rods,
             non_finite: self.non_finite.clone(),
             pcg: Pcg {
@@ -256,6 +255,10 @@ fn begin(
     drop(waiting);
     for note in player.notes() {
         output::note(note);
+    }
+    let stiffening = player.stiffening();
+    if stiffening.strands > 0 {
+        output::note(&format!("{stiffening}: their shape would not be stable"));
     }
     let stoppable = Stoppable::begin();
     if let Some(settings) = out {

@@ -43,7 +43,7 @@ pub use clock::{Clock, Ticks};
 pub use cpu::CpuRunner;
 pub use error::SimError;
 pub use model::Model;
-pub use report::{Drift, PressureReport, RodReport, StepReport};
+pub use report::{Drift, PressureReport, RodReport, StepReport, Stiffening};
 pub use settings::{Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeSettings};
 pub use simulator::Simulator;
 pub use state::{Drive, MOST_SPIN, State};

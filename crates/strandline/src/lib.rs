@@ -100,7 +100,7 @@ pub use prepare::{Prepared, Sources};
 pub use render::{Camera, Light, Look, Picture, PictureSettings};
 pub use scene::{Devices, HeadMotion, Scene};
 pub use session::{Change, Event, Ray};
-pub use sim::{Backend, Drift, Settings, SimError, StepReport};
+pub use sim::{Backend, Drift, Settings, SimError, StepReport, Stiffening};
 
 // Names of this crate's own modules.
 pub(crate) use strands::bound::BoundStrands;

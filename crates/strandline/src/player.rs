@@ -7,7 +7,7 @@ use crate::{
     scene::devices::device_name,
     session::worker::Worker,
     session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
-    sim::{Drift, Settings, State},
+    sim::{Drift, Settings, State, Stiffening},
 };
 
 /// Plays a scene: an iterator of events, frame after frame, until the film is over.
@@ -197,10 +197,9 @@ impl Player {
         Ok(self.session.peek(Simulation::drift)?)
     }
 
-    /// Strands of rods that had to be stiffer for their shape to be stable, and how many times stiffer the stiffest
-    /// of them is; 0 without rods.
-    pub fn stiffened(&self) -> (usize, f32) {
-        self.session.peek(|simulation| simulation.stiffened())
+    /// Strands of rods that had to be stiffer for their shape to be stable.
+    pub fn stiffening(&self) -> Stiffening {
+        self.session.peek(|simulation| simulation.stiffening())
     }
 
     /// The device that the hair is simulated on; none on the CPU.

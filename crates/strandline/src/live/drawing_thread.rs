@@ -336,6 +336,7 @@ impl DrawingThread {
             drawing,
             step: playing.step.take(),
             grabbed: session.grabbed(),
+            stiffening: session.stiffening(),
             places: [session.simulated_on().to_owned(), session.view().drawn_on()],
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);

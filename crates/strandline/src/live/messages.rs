@@ -8,7 +8,7 @@ use crate::{
     body::Aabb,
     render::{Camera, FrameReport, Picture},
     session::Change,
-    sim::StepReport,
+    sim::{StepReport, Stiffening},
 };
 
 /// A command to a [`Live`](crate::Live).
@@ -65,6 +65,8 @@ pub struct Shown {
     pub step: Option<StepReport>,
     /// Strands in the hand.
     pub grabbed: usize,
+    /// Strands that are stiffer than their material.
+    pub stiffening: Stiffening,
     /// Devices of simulation and pictures.
     pub places: [String; 2],
 }
