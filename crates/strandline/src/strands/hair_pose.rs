@@ -14,6 +14,7 @@ use strandline_base::{WholeFile, fill_lanes, in_strand_order, read_plain};
 use crate::{
     Error,
     body::{BodyFrame, Pose},
+    error::FileProblem,
     groom::Vec3Lanes,
     sim::{MOST_SPIN, State},
 };
@@ -139,9 +140,9 @@ impl HairPose {
     /// # Errors
     /// It cannot be read, is of another kind, or is for other hair.
     pub fn load(path: &Path, shape: [usize; 2]) -> Result<Self, Error> {
-        let refuse = |message: String| Error::HairPose { path: path.to_owned(), message };
+        let refuse = |problem| Error::HairPose { path: path.to_owned(), problem };
         let bytes = read(path, shape).map_err(refuse)?;
-        Self::parse(&bytes, shape).map_err(refuse)
+        Self::parse(&bytes, shape).map_err(|found| refuse(found.into()))
     }
 
     fn parse(bytes: &[u8], shape: [usize; 2]) -> Result<Self, String> {
@@ -153,7 +154,7 @@ impl HairPose {
         };
         let rods = tensors.names().contains(&"sections");
         let head = numbers(&tensors, "world_from_head", &[7])?;
-        // As it is, to the bit: what is drawn is then what was.
+        // Not normalised again: the picture is then the same to the bit.
         let rotation = Quat::from_slice(&head[..4]);
         if !rotation.is_normalized() {
             return Err(format!("world_from_head with the quaternion {rotation}, expected one of length 1"));
@@ -208,13 +209,13 @@ fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
 }
 
 /// Reads no more than a pose of this shape needs.
-fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, String> {
+fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, FileProblem> {
     let most = HEADER + (strands * points * 52) as u64;
     read_plain(path, most).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
-            format!("larger than {strands} strands of {points} points can be ({most} bytes)")
+            format!("larger than {strands} strands of {points} points can be ({most} bytes)").into()
         }
-        _ => error.to_string(),
+        _ => error.into(),
     })
 }
 
