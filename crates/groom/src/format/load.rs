@@ -7,7 +7,8 @@ use strandline_base::{Key, Kind, Row, SettingError, Value, choices, math, memory
 use super::cleaning::Cleaning;
 use super::report::Report;
 use super::{
-    Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project, sieve::sieve,
+    Attribute, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Reader, project,
+    sieve::sieve,
 };
 use crate::{Groom, GroomError, Widths};
 
@@ -196,11 +197,11 @@ fn joined(
             let expected = format!("{MAX_STRANDS} strands of {MAX_POINTS} points at most");
             return Err(GroomError::from(SettingError::new("the groom", found, expected)).of(&path));
         }
-        for lost in Part::ALL
+        for lost in Attribute::ALL
             .into_iter()
-            .filter(|lost| *lost != Part::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
+            .filter(|lost| *lost != Attribute::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
         {
-            if !matches!(lost, Part::WidthsAlong | Part::GroupNames) {
+            if !matches!(lost, Attribute::WidthsAlong | Attribute::GroupNames) {
                 whole.problems.push(format!("only some of the files have {}: left out", lost.name()));
             }
         }

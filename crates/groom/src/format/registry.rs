@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::part::Part::{self, *};
+use super::attribute::Attribute::{self, *};
 use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx, usda};
 use crate::{Groom, GroomError};
 
@@ -32,7 +32,7 @@ pub struct Format {
     /// Its writer, if there is one.
     pub write: Option<Write>,
     /// Attributes that it holds beside points.
-    pub holds: &'static [Part],
+    pub holds: &'static [Attribute],
     /// Most memory of reading for each byte of a file \[byte\]: the file and its content. Text is shorter
     /// than its numbers.
     pub taken: u64,
@@ -86,7 +86,7 @@ pub const FORMATS: [Format; 10] = [
         about: "vertices with `strand` and `edge` elements, edges alone, or bare vertices with `--per-strand N`",
         read: Reader::Bytes(ply::read),
         write: Some(ply::write),
-        holds: &Part::ALL,
+        holds: &Attribute::ALL,
         taken: 16,
     },
     Format {
@@ -94,7 +94,7 @@ pub const FORMATS: [Format; 10] = [
         about: "NumPy arrays by name: `points` and `starts`, or `positions` [strand, point, 3]",
         read: Reader::Bytes(npz::read),
         write: Some(npz::write),
-        holds: &Part::ALL,
+        holds: &Attribute::ALL,
         taken: 2,
     },
     Format {

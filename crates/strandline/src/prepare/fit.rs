@@ -11,7 +11,7 @@ use crate::{
     body::Mesh,
     groom::{
         Groom,
-        format::{HAIR_WIDTH, Part},
+        format::{Attribute, HAIR_WIDTH},
     },
     render::{GroupLook, LevelOfDetail},
 };
@@ -20,14 +20,15 @@ use crate::{
 const DRAWN: usize = 40_000;
 /// Most strands that are drawn about each.
 const MOST_FOLLOW: usize = 32;
-/// Segments of a picture \[segment\]: what can be drawn in a second or two on a processor.
+/// Number of segments that a CPU draws in a second or two.
 const SEGMENTS: usize = 2_200_000;
 /// Radius of a clump as a share of the distance between strands, at the roots and the tips; and the amplitude of
 /// waves of its own that a drawn strand has.
 const ROOT_SHARE: f32 = 0.35;
 const TIP_SHARE: f32 = 0.22;
 const WAVE_SHARE: f32 = 0.13;
-/// Points that a strand may have, and how far from it \[m\], and as a share of its length, a polyline of fewer may be.
+/// Numbers of points of a strand to choose from, and the allowed distance of such a polyline from it, \[m\] and as a share
+/// of its length.
 const POINTS: [u32; 7] = [8, 12, 16, 24, 32, 48, 64];
 const ASTRAY: f32 = 3e-4;
 const ASTRAY_SHARE: f32 = 0.002;
@@ -38,7 +39,7 @@ const COARSEST: f32 = 0.1;
 const NEAR: f32 = 2.5;
 /// Strands that are looked at.
 const LOOKED_AT: usize = 400;
-/// Groups that are looked at: of so many strands, and so many of them; whose roots are so much closer than those of all.
+/// Groups that are examined: least number of strands, number of groups, and distance of their roots over that of all.
 const FEWEST: usize = 20;
 const MOST_GROUPS: usize = 64;
 const CLOSER: f32 = 0.7;
@@ -137,18 +138,19 @@ fn fit_clumps(scene: &mut Scene, groom: &Groom, of_all: f32, chosen: &mut Vec<St
     }
 }
 
-/// Widths: with those of the file drawn strands cover together what its strands cover, without them as much of
-/// the skin as hairs do.
+/// Fits widths: with widths in the file the drawn strands cover as much as its strands, without them as much of the skin
+/// as hairs do.
 fn fit_widths(scene: &mut Scene, groom: &Groom, spacing: f32, default: &Scene, chosen: &mut Vec<String>) {
     let look = &mut scene.look;
     let is_open = !scene.given.width_scale && look.width_scale == default.look.width_scale;
-    if !Part::Widths.is_in(groom) && is_open && look.hair_count > 0 {
+    if !Attribute::Widths.is_in(groom) && is_open && look.hair_count > 0 {
         // Hairs are as much denser than strands as they are more.
         let of_hairs = spacing * (groom.strand_count() as f32 / look.hair_count as f32).sqrt();
         look.width_scale = (DENSITY * of_hairs / HAIR_WIDTH).clamp(0.5, 50.0);
         chosen.push(format!("look.width_scale = {:.2}", look.width_scale));
     }
-    if Part::Widths.is_in(groom) && !scene.given.hair_count && look.hair_count == default.look.hair_count {
+    if Attribute::Widths.is_in(groom) && !scene.given.hair_count && look.hair_count == default.look.hair_count
+    {
         look.hair_count = groom.strand_count() as u32;
         chosen.push(format!("look.hair_count = {}", look.hair_count));
     }
@@ -168,7 +170,7 @@ fn points(groom: &Groom) -> u32 {
     POINTS.into_iter().find(|count| keeps(*count)).unwrap_or(most)
 }
 
-/// Deviation of strands of so many points from themselves over the tolerance, for 95 in 100.
+/// Deviation of strands resampled to `count` points from themselves, over the tolerance, for 95 in 100.
 fn astray(groom: &Groom, count: usize) -> f32 {
     let mut found: Vec<f32> = some(groom)
         .map(|strand| {
