@@ -67,7 +67,7 @@ impl Clock {
         self.ticks()
     }
 
-    /// Lets time pass until `time` \[s\]; to one that is past or not finite none does.
+    /// Lets time pass until `time` \[s\]; a time that is past or not finite changes nothing.
     pub fn advance_to(&mut self, time: f64) -> Ticks {
         if time.is_finite() && time > self.time {
             (self.time, self.lost) = (time, 0.0);

@@ -85,7 +85,7 @@ impl Files {
         Ok(())
     }
 
-    /// Bytes of all files, the folder, and what the format could not hold.
+    /// Bytes of all files, the folder, and the attributes that the format does not hold.
     pub fn finish(self) -> (u64, PathBuf, Vec<String>) {
         (self.bytes, self.folder, self.left_out)
     }
