@@ -7,12 +7,12 @@ use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use strandline::{
     Backend, Style, Target, What,
-    format::{FORMATS, Format, Scale, endings},
+    format::{FORMATS, Format, Scale, Up, endings},
     scene::MotionName,
     settings::rods::HairKind,
 };
 
-use crate::reading::{Reading, parse_scale};
+use crate::reading::{Reading, parse_scale, parse_up, parse_vector};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
@@ -93,6 +93,9 @@ pub struct Inputs {
         "Load strands from this {} file; given again: further strands of the same hair", endings(|_| true)
     ))]
     pub groom: Vec<PathBuf>,
+    /// Points of each strand, for groom files that do not give strands.
+    #[arg(long, value_name = "N", requires = "groom", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub per_strand: Option<u32>,
     /// Load the body from this .obj, .gltf, .glb, .vrm, .ply or .stl file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
@@ -100,6 +103,15 @@ pub struct Inputs {
     /// built-in scalp, brought onto the skull].
     #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "groom")]
     pub scalp: Option<String>,
+    /// The axis of the groom's files that points up: auto, x, y, z, -x, -y or -z [default: the scene's, auto].
+    #[arg(long, value_name = "AXIS", value_parser = parse_up, allow_hyphen_values = true)]
+    pub up: Option<Up>,
+    /// Metres per unit of the groom's files, or auto [default: the scene's, auto].
+    #[arg(long, value_name = "F|auto", value_parser = parse_scale)]
+    pub scale: Option<Scale>,
+    /// Turn the groom: degrees about x, y and z, y first, then x, then z; the body stays.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    pub turn: Option<Vec3>,
     /// Material of the hair: fine, medium, coarse, wet or sprayed.
     #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
     pub hair: Option<HairKind>,
@@ -170,7 +182,7 @@ pub struct SimOptions {
     #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub from: Option<u32>,
     /// Units and axes of a .usda: any (metres, y up), unreal (centimetres, z up, groom_* attributes) or blender
-    /// (metres, z up, frames from 1); all else stays in metres with y up [default: any].
+    /// (metres, z up); all else stays in metres with y up [default: any].
     #[arg(long = "for", value_name = "NAME", requires = "out", value_parser = Target::from_str)]
     pub target: Option<Target>,
     /// Resume the run of this moving cache, with its own scene unless --scene names one; --frames is the
@@ -198,7 +210,7 @@ pub struct GroomOptions {
 #[command(after_help = formats(), override_usage = "strandline convert [OPTIONS] IN... OUT")]
 pub struct ConvertOptions {
     /// The files to read, each a group of one groom, and the file to write.
-    #[arg(value_name = "IN... OUT", num_args = 2.., required = true)]
+    #[arg(value_name = "IN... OUT", num_args = 1.., required = true)]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
     pub reading: Reading,
@@ -211,9 +223,6 @@ pub struct ConvertOptions {
     /// Resample every strand to this number of points.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=4096))]
     pub points: Option<u32>,
-    /// Turn the strands: degrees about x, y and z, y first, then x, then z.
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
-    pub turn: Option<Vec3>,
     /// Move the strands, in metres, after they are turned.
     #[arg(long = "move", value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     pub translation: Option<Vec3>,
@@ -324,16 +333,6 @@ fn formats() -> String {
     format!("Formats:\n{}", FORMATS.iter().map(line).collect::<String>())
 }
 
-fn parse_vector(text: &str) -> Result<Vec3, String> {
-    let expected = || format!("`{text}` is not three numbers, expected X,Y,Z such as 0,90,0");
-    let numbers: Vec<f32> =
-        text.split(',').map(str::parse).collect::<Result<_, _>>().map_err(|_| expected())?;
-    match numbers[..] {
-        [x, y, z] if numbers.iter().all(|number| number.abs() <= 1e6) => Ok(Vec3::new(x, y, z)),
-        _ => Err(expected()),
-    }
-}
-
 fn parse_level(text: &str) -> Result<log::LevelFilter, String> {
     text.parse()
         .map_err(|_| format!("`{text}` is not a level, expected off, error, warn, info, debug or trace"))
@@ -356,14 +355,6 @@ mod tests {
         assert_eq!(parse_size("800x600"), Ok((800, 600)));
         for wrong in ["800", "800x", "x600", "0x600", "800x-1", "800x99999", "axb"] {
             assert!(parse_size(wrong).unwrap_err().contains("expected WIDTHxHEIGHT"), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn vectors_are_three_numbers() {
-        assert_eq!(parse_vector("0,-90,1.5"), Ok(Vec3::new(0.0, -90.0, 1.5)));
-        for wrong in ["1,2", "1,2,3,4", "a,b,c", "nan,0,0", "1e9,0,0"] {
-            assert!(parse_vector(wrong).unwrap_err().contains("expected X,Y,Z"), "{wrong}");
         }
     }
 

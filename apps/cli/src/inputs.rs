@@ -40,7 +40,10 @@ impl Inputs {
         // Paths given here are relative to the current folder, not to the scene's.
         if let [first, further @ ..] = &self.groom[..] {
             scene.groom.file = Some(std::path::absolute(first)?);
-            scene.groom.parts = parts(further, |file| GroomPart { file, ..GroomPart::default() })?;
+            let per_strand = self.per_strand;
+            scene.groom.per_strand = per_strand;
+            scene.groom.parts =
+                parts(further, |file| GroomPart { file, per_strand, ..GroomPart::default() })?;
             scene.begin_at_rest();
         }
         if let [first, further @ ..] = &self.body[..] {
@@ -48,6 +51,11 @@ impl Inputs {
             scene.body.parts = parts(further, |file| BodyPart { file, ..BodyPart::default() })?;
             scene.begin_at_rest();
         }
+        if let Some(turn) = self.turn {
+            scene.groom.rotation = turn;
+        }
+        scene.groom.up = self.up.unwrap_or(scene.groom.up);
+        scene.groom.scale = self.scale.unwrap_or(scene.groom.scale);
         if let Some(name) = &self.scalp {
             scene.body.scalp = Some(name.clone());
         }
@@ -121,12 +129,34 @@ fn parts<T>(files: &[PathBuf], part: impl Fn(PathBuf) -> T) -> anyhow::Result<Ve
 
 #[cfg(test)]
 mod tests {
+    use clap::Parser;
+    use glam::Vec3;
+    use strandline::format::{Scale, Up};
+
     use super::*;
+    use crate::arguments::{Arguments, Command};
 
     fn applied(values: &[&str]) -> Result<Scene, String> {
         let mut scene = Scene::demo();
         let set = Set { values: values.iter().map(|text| (*text).to_owned()).collect() };
         set.apply(&mut scene).map(|()| scene).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn every_command_of_a_scene_places_the_groom() {
+        for command in ["render", "sim", "view"] {
+            let words = ["strandline", command, "--turn", "0,-90,0", "--up", "-y", "--scale", "0.01"];
+            let arguments = Arguments::try_parse_from(words).unwrap();
+            let inputs = match arguments.command {
+                Some(Command::Render(options)) => options.inputs,
+                Some(Command::Sim(options)) => options.inputs,
+                Some(Command::View(options)) => options.inputs,
+                other => panic!("{other:?}"),
+            };
+            let groom = inputs.scene().unwrap().groom;
+            assert_eq!((groom.rotation, groom.up), (Vec3::Y * -90.0, Up::MinusY), "{command}");
+            assert_eq!(groom.scale, Scale::Factor(0.01), "{command}");
+        }
     }
 
     #[test]

@@ -1,3 +1,4 @@
+use std::f32::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
@@ -80,8 +81,30 @@ choices! {
         Y = "y",
         /// z; the face looks along -y.
         Z = "z",
+        /// x; the face looks along +z.
+        X = "x",
+        /// -y, as cameras have it; the face looks along -z.
+        MinusY = "-y",
+        /// -z; the face looks along +y.
+        MinusZ = "-z",
+        /// -x; the face looks along +z.
+        MinusX = "-x",
     }
     default Auto
+}
+
+impl Up {
+    /// Rotation that brings the axis to y and the face to +z.
+    pub fn rotation(self) -> Quat {
+        match self {
+            Self::Auto | Self::Y => Quat::IDENTITY,
+            Self::Z => math::rotation(Vec3::X, -FRAC_PI_2),
+            Self::MinusZ => math::rotation(Vec3::X, FRAC_PI_2),
+            Self::MinusY => math::rotation(Vec3::X, PI),
+            Self::X => math::rotation(Vec3::Z, FRAC_PI_2),
+            Self::MinusX => math::rotation(Vec3::Z, -FRAC_PI_2),
+        }
+    }
 }
 
 /// Advice where strands unlike the others are named and kept.
@@ -96,6 +119,8 @@ pub struct LoadOptions {
     pub scale: Scale,
     /// The axis that points up.
     pub up: Up,
+    /// A turn after that \[degrees\]: pitch (about x), yaw (about y), roll (about z).
+    pub turn: Vec3,
     /// Points of each strand, for files that hold points and do not say which of them make a strand.
     pub per_strand: Option<u32>,
     /// The treatment of strands unlike the others.
@@ -104,7 +129,14 @@ pub struct LoadOptions {
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { strict: true, scale: Scale::Auto, up: Up::Y, per_strand: None, cleaning: Cleaning::Named }
+        Self {
+            strict: true,
+            scale: Scale::Auto,
+            up: Up::Y,
+            turn: Vec3::ZERO,
+            per_strand: None,
+            cleaning: Cleaning::Named,
+        }
     }
 }
 
@@ -258,11 +290,7 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
     if scale != 1.0 && options.scale == Scale::Auto {
         problems.push(format!("one unit of the file is taken as {scale} m"));
     }
-    let rotation = match options.up {
-        Up::Auto | Up::Y => Quat::IDENTITY,
-        Up::Z => math::rotation(Vec3::X, -std::f32::consts::FRAC_PI_2),
-    };
-    groom.transform(scale, rotation, Vec3::ZERO);
+    groom.transform(scale, math::pitch_yaw_roll(options.turn) * options.up.rotation(), Vec3::ZERO);
     if groom.widths == Widths::Constant(0.0) {
         groom.widths = Widths::Constant(HAIR_WIDTH);
         problems.push(format!("the file has no widths: {} mm is taken", 1e3 * HAIR_WIDTH));

@@ -182,6 +182,22 @@ fn units_and_axes_become_metres_with_y_up() {
 }
 
 #[test]
+fn any_axis_may_point_up_and_strands_may_be_turned_after_that() {
+    let axes = [(Up::X, Vec3::X), (Up::MinusX, Vec3::NEG_X), (Up::Y, Vec3::Y), (Up::MinusY, Vec3::NEG_Y)];
+    for (up, axis) in axes.into_iter().chain([(Up::Z, Vec3::Z), (Up::MinusZ, Vec3::NEG_Z)]) {
+        assert!((up.rotation() * axis).distance(Vec3::Y) < 1e-6, "{up:?}");
+    }
+    // Cameras have y down and look along z, at a face that looks along -z.
+    assert!((Up::MinusY.rotation() * Vec3::NEG_Z).distance(Vec3::Z) < 1e-6);
+    let mut groom = Groom::empty(0.01);
+    groom.push([Vec3::ZERO, Vec3::new(0.1, 0.2, -0.3)]);
+    let parsed = hair::read(&hair::write(&groom).unwrap(), None).unwrap();
+    let options = LoadOptions { up: Up::MinusY, turn: Vec3::Y * 90.0, ..LoadOptions::default() };
+    let turned = prepare(parsed, &options).unwrap().groom.points[1];
+    assert!(turned.distance(Vec3::new(0.3, -0.2, -0.1)) < 1e-6, "{turned}");
+}
+
+#[test]
 fn strands_without_a_width_get_that_of_a_hair() {
     let parsed =
         hair::read(&hair::write(&Groom { widths: Widths::Constant(0.0), ..two_strands() }).unwrap(), None);

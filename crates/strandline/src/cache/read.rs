@@ -13,7 +13,6 @@ use strandline_base::{
 };
 
 use super::arrays::{check_memory, expect, missing, numbers, read_meta, starts, text};
-use super::bodies::{self, LISTS, OF_FRAMES, OF_STATE, WIDTHS};
 use super::{Snapshot, What, meta, snapshot};
 use crate::{
     Error, Scene,
@@ -21,6 +20,7 @@ use crate::{
     error::FileProblem,
     groom::{LANES, Vec3Lanes, block_count},
     sim::Part,
+    strands::bodies::{self, LISTS, OF_FRAMES, OF_STATE, WIDTHS},
 };
 
 /// Farther than this \[m\] is no hair.
@@ -193,6 +193,11 @@ impl Cache {
     pub(crate) fn snapshot(&mut self, strands: usize, points: usize) -> Result<Option<Snapshot>, Error> {
         let snapshot = self.frames.snapshot((block_count(strands) * LANES * points) as u64);
         snapshot.map_err(|found| Error::cache(&self.path, found))
+    }
+
+    /// Steps of the run so far, without settling.
+    pub(crate) fn steps(&self) -> u64 {
+        self.frames.meta.steps
     }
 
     /// Steps so far, and the quality of those that led to each frame.

@@ -1,7 +1,5 @@
 //! Placement of a file's points in head space.
 
-use std::f32::consts::FRAC_PI_2;
-
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
@@ -24,10 +22,7 @@ impl Placing {
 
 /// Rotation from a file whose given axis points up to y up.
 pub(super) fn upright(up: Up) -> Quat {
-    match up {
-        Up::Auto | Up::Y => Quat::IDENTITY,
-        Up::Z => math::rotation(Vec3::X, -FRAC_PI_2),
-    }
+    up.rotation()
 }
 
 /// Places a mesh: scaled and turned as guessed, then turned and moved as a scene says.

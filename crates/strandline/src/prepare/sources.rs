@@ -5,6 +5,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::Vec3;
 use strandline_base::SettingError;
 
 use super::map::Map;
@@ -85,6 +86,7 @@ impl Sources {
             strict: false,
             scale: Scale::Factor(1.0),
             up: Up::Y,
+            turn: Vec3::ZERO,
             per_strand,
             cleaning: Cleaning::Strays,
         };
@@ -149,8 +151,6 @@ impl Sources {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::{Prepared, body::Mannequin};
 
