@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Backend, Cache, Error, Event, Film, PictureFiles, Player, Scene};
+use strandline::{
+    Backend, Cache, Error, Event, Player, Scene,
+    file::{Film, PictureFiles},
+};
 
 use crate::arguments::RenderOptions;
 use crate::interrupt::{Stoppable, Stopped};

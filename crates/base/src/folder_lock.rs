@@ -3,7 +3,7 @@ use std::io::{Error, ErrorKind, Read, Result, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use crate::parts::{self, Writer};
+use crate::temporary::{self, Writer};
 
 /// The file that is locked.
 const NAME: &str = ".strandline-lock";
@@ -41,10 +41,10 @@ impl FolderLock {
             // The holder before may have removed it after it was opened here, and a third may have made
             // another: then this lock excludes no other run.
             if is_there(&mut file, &path) {
-                parts::hold().add(&path);
+                temporary::hold().add(&path);
                 mark(&mut file)?;
-                parts::clear(folder, Writer::Here);
-                parts::clear(folder, Writer::Foreign);
+                temporary::clear(folder, Writer::Here);
+                temporary::clear(folder, Writer::Foreign);
                 return Ok(Self { path, file: Some(file) });
             }
         }
@@ -61,7 +61,7 @@ impl Drop for FolderLock {
         if self.file.is_some() {
             // Removed before it is given back.
             let _ = fs::remove_file(&self.path);
-            parts::hold().forget(&self.path);
+            temporary::hold().forget(&self.path);
         }
     }
 }

@@ -3,7 +3,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Result, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::parts::{self, Writer};
+use crate::temporary::{self, Writer};
 use crate::whole_file::permissions;
 
 /// A file that a long run writes and that is sound all the while, so that it has a name before it is finished.
@@ -45,10 +45,10 @@ impl GrowingFile {
         for path in [path, &unfinished(path)] {
             refuse_busy(path)?;
         }
-        let (part, file) = parts::create(path, Writer::Here)?;
+        let (temporary, file) = temporary::create(path, Writer::Here)?;
         let growing = Self {
             path: path.to_owned(),
-            place: part,
+            place: temporary,
             published: false,
             file,
             #[cfg(test)]
@@ -98,10 +98,10 @@ impl GrowingFile {
         self.changes.push(Change::Publish);
         let place = if self.path.exists() { unfinished(&self.path) } else { self.path.clone() };
         permissions(&place)?;
-        // With the list of parts in hand: a process that ends at once removes it before or not at all.
-        let mut parts = parts::hold();
+        // With the list of temporary files in hand: a process that ends at once removes it before or not at all.
+        let mut list = temporary::hold();
         fs::rename(&self.place, &place)?;
-        parts.forget(&self.place);
+        list.forget(&self.place);
         (self.place, self.published) = (place, true);
         Ok(())
     }
@@ -134,10 +134,10 @@ impl GrowingFile {
 impl Drop for GrowingFile {
     fn drop(&mut self) {
         if !self.published {
-            let mut parts = parts::hold();
+            let mut list = temporary::hold();
             // The first error is the one to report.
             let _ = fs::remove_file(&self.place);
-            parts.forget(&self.place);
+            list.forget(&self.place);
         }
     }
 }
@@ -168,7 +168,7 @@ fn refuse_busy(path: &Path) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parts::names;
+    use crate::temporary::names;
 
     #[test]
     fn it_has_its_name_before_it_is_finished_and_keeps_it_when_the_run_ends() {

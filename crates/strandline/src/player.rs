@@ -116,8 +116,8 @@ impl Player {
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
     pub fn set_out(&mut self, settings: &OutSettings) -> Result<(), Error> {
         if settings.first >= self.frames {
-            let message = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
-            return Err(Error::Cache { path: settings.path.clone(), message });
+            let found = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
+            return Err(Error::cache(&settings.path, found));
         }
         self.out = Some(self.session.begin_file(settings, &self.timing.body(0.0))?);
         Ok(())

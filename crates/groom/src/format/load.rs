@@ -9,7 +9,7 @@ use super::cleaning::Cleaning;
 use super::ends::RootEnd;
 use super::report::Report;
 use super::{
-    Chosen, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project,
+    Attribute, Chosen, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Reader, project,
     sieve::sieve,
 };
 use crate::{Groom, GroomError, Widths};
@@ -239,11 +239,11 @@ fn joined(
             let expected = format!("{MAX_STRANDS} strands of {MAX_POINTS} points at most");
             return Err(GroomError::from(SettingError::new("the groom", found, expected)).of(&path));
         }
-        for lost in Part::ALL
+        for lost in Attribute::ALL
             .into_iter()
-            .filter(|lost| *lost != Part::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
+            .filter(|lost| *lost != Attribute::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
         {
-            if !matches!(lost, Part::WidthsAlong | Part::GroupNames) {
+            if !matches!(lost, Attribute::WidthsAlong | Attribute::GroupNames) {
                 whole.problems.push(format!("only some of the files have {}: left out", lost.name()));
             }
         }

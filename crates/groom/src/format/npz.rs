@@ -10,7 +10,7 @@ use strandline_base::npz::{self, Kind, Npz};
 use super::bytes::Source;
 use super::chosen::Chosen;
 use super::npy::{self as array, Array, refused};
-use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part};
+use super::{Attribute, MAX_POINTS, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError, Influences, Widths};
 
 /// Names of arrays of points; the first that is present counts.
@@ -248,7 +248,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         vec![vectors("points", points, &groom.points), whole("starts", &[strands + 1], &groom.starts)];
     match &groom.widths {
         Widths::PerPoint(widths) => arrays.push(floats("widths", &[points], widths)),
-        _ if Part::Widths.is_in(groom) => {
+        _ if Attribute::Widths.is_in(groom) => {
             arrays.push(npz::Array::f32s("strand_widths", &[strands], groom.root_widths()));
         }
         // The width that a reader gives where a file has none is left out.

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use super::attribute::Attribute::{self, *};
 use super::chosen::Chosen;
 use super::fitted::Fitted;
-use super::part::Part::{self, *};
 use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx, usda};
 use crate::{Groom, GroomError};
 
@@ -36,7 +36,7 @@ pub struct Format {
     /// Changes that make a groom fit its limits, where it has some.
     pub fit: Option<fn(&Groom) -> Result<Fitted, GroomError>>,
     /// Attributes that it holds beside points.
-    pub holds: &'static [Part],
+    pub holds: &'static [Attribute],
     /// Most memory of reading for each byte of a file \[byte\]: the file and its content. Text is shorter
     /// than its numbers.
     pub taken: u64,
@@ -96,7 +96,7 @@ pub const FORMATS: [Format; 10] = [
         read: Reader::Bytes(|bytes, chosen| ply::read(bytes, chosen.per_strand)),
         write: Some(ply::write),
         fit: None,
-        holds: &Part::ALL,
+        holds: &Attribute::ALL,
         taken: 16,
     },
     Format {
@@ -105,7 +105,7 @@ pub const FORMATS: [Format; 10] = [
         read: Reader::Bytes(npz::read_frame),
         write: Some(npz::write),
         fit: None,
-        holds: &Part::ALL,
+        holds: &Attribute::ALL,
         taken: 2,
     },
     Format {

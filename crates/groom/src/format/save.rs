@@ -4,7 +4,7 @@ use std::path::Path;
 
 use strandline_base::WholeFile;
 
-use super::{Fitted, Format, Part, endings};
+use super::{Attribute, Fitted, Format, endings};
 use crate::{Groom, GroomError};
 
 /// Attributes that the writer left out, and changes that it made.
@@ -40,11 +40,11 @@ pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
             path: path.to_owned(),
         });
     };
-    let is_lost = |part: &Part| part.is_in(groom) && !format.holds.contains(part);
-    let mut lost: Vec<Part> = Part::ALL.into_iter().filter(is_lost).collect();
+    let is_lost = |attribute: &Attribute| attribute.is_in(groom) && !format.holds.contains(attribute);
+    let mut lost: Vec<Attribute> = Attribute::ALL.into_iter().filter(is_lost).collect();
     // One of the two says it all.
-    if lost.contains(&Part::Widths) {
-        lost.retain(|part| *part != Part::WidthsAlong);
+    if lost.contains(&Attribute::Widths) {
+        lost.retain(|attribute| *attribute != Attribute::WidthsAlong);
     }
     let fitted = format.fit.map(|fit| fit(groom)).transpose().map_err(|error| error.of(path))?;
     let Fitted { groom: changed, notes } = fitted.unwrap_or_default();
@@ -54,5 +54,5 @@ pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
         path: path.to_owned(),
         source,
     })?;
-    Ok(Saved { left_out: lost.into_iter().map(Part::name).collect(), notes })
+    Ok(Saved { left_out: lost.into_iter().map(Attribute::name).collect(), notes })
 }

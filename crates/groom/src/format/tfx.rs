@@ -2,7 +2,7 @@
 
 use super::bytes::{Source, put, put_u32, vec2, vec3};
 use super::fitted::Fitted;
-use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, Part, tfx_text};
+use super::{Attribute, MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, tfx_text};
 use crate::{Groom, GroomError, Widths};
 
 const HEADER_3: u64 = 296;
@@ -191,7 +191,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         None => put(&mut body, std::iter::repeat_n(0.0, 2 * strands)),
     }
     // A default width, taken because a file had none, is no attribute.
-    if Part::Widths.is_in(groom) {
+    if Attribute::Widths.is_in(groom) {
         offsets[3] = here(&body);
         let starts = groom.starts.iter().take(strands);
         put(&mut body, starts.enumerate().map(|(strand, first)| groom.widths.at(strand, *first as usize)));

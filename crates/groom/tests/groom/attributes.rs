@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::{Vec2, Vec3};
 use strandline_groom::format::{
-    FORMATS, LoadOptions, Part, Scale, bin, data, load, load_all, npy, npz, obj, ply,
+    Attribute, FORMATS, LoadOptions, Scale, bin, data, load, load_all, npy, npz, obj, ply,
 };
 use strandline_groom::{Groom, GroomError, Influences, Widths};
 
@@ -34,21 +34,21 @@ fn everything() -> Groom {
 }
 
 /// True if two grooms are the same in one attribute.
-fn agree(part: Part, one: &Groom, two: &Groom) -> bool {
+fn agree(part: Attribute, one: &Groom, two: &Groom) -> bool {
     let along = |groom: &Groom| groom.point_widths().collect::<Vec<_>>();
     match part {
-        Part::Widths => one.root_widths().eq(two.root_widths()),
-        Part::WidthsAlong => along(one) == along(two),
-        Part::Colors => one.colors == two.colors,
-        Part::Transparencies => one.transparencies == two.transparencies,
-        Part::RootUvs => one.root_uvs == two.root_uvs,
-        Part::RootNormals => one.root_normals == two.root_normals,
-        Part::Groups => one.groups == two.groups,
-        Part::GroupNames => one.group_names == two.group_names,
-        Part::GuideFlags => one.guide_flags == two.guide_flags,
-        Part::Influences => one.influences == two.influences,
-        Part::Masses => one.masses == two.masses,
-        Part::Velocities => one.velocities == two.velocities,
+        Attribute::Widths => one.root_widths().eq(two.root_widths()),
+        Attribute::WidthsAlong => along(one) == along(two),
+        Attribute::Colors => one.colors == two.colors,
+        Attribute::Transparencies => one.transparencies == two.transparencies,
+        Attribute::RootUvs => one.root_uvs == two.root_uvs,
+        Attribute::RootNormals => one.root_normals == two.root_normals,
+        Attribute::Groups => one.groups == two.groups,
+        Attribute::GroupNames => one.group_names == two.group_names,
+        Attribute::GuideFlags => one.guide_flags == two.guide_flags,
+        Attribute::Influences => one.influences == two.influences,
+        Attribute::Masses => one.masses == two.masses,
+        Attribute::Velocities => one.velocities == two.velocities,
     }
 }
 
@@ -65,10 +65,11 @@ fn every_format_keeps_a_part_to_the_bit_or_names_it_as_lost() {
         let left_out = whole.save(&path).unwrap().left_out;
         let read = load(&path, &as_it_is()).unwrap().groom;
         assert_eq!((&read.points, &read.starts), (&whole.points, &whole.starts), ".{}", format.ending);
-        for part in Part::ALL {
+        for part in Attribute::ALL {
             let is_named = left_out.contains(&part.name());
             // Widths that are lost are not named twice.
-            let is_named = is_named || part == Part::WidthsAlong && left_out.contains(&Part::Widths.name());
+            let is_named =
+                is_named || part == Attribute::WidthsAlong && left_out.contains(&Attribute::Widths.name());
             assert_eq!(agree(part, &whole, &read), !is_named, ".{}: {}", format.ending, part.name());
         }
     }

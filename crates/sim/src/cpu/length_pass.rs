@@ -20,13 +20,13 @@ pub struct Follow<'a> {
     pub lengths: &'a [Lanes],
     /// Distance \[m\] that points keep from solids.
     pub margins: &'a [f32x8],
-    /// The last rooted point of each strand, -1 where none is: points before it stay.
+    /// Last rooted point of each strand, -1 without one; points before it stay.
     pub last_rooted: f32x8,
     pub solids: &'a Solids<'a>,
 }
 
 impl Follow<'_> {
-    /// Moves each point to its length from the one before and returns how far \[m\] that moved it.
+    /// Moves each point to its length from the point before, and returns the distance moved \[m\].
     ///
     /// Solids push points out last, which is no correction of a length that gives velocity back.
     pub fn place(&self, positions: &mut [Vec3Lanes], planes: &mut [Plane], corrections: &mut [Vec3x8]) {

@@ -28,7 +28,7 @@ pub struct OutSettings {
     pub every: u32,
     /// The first frame that is written.
     pub first: u32,
-    /// For whom units and axes are.
+    /// Program whose units and axes the file has.
     pub target: Target,
 }
 
@@ -93,7 +93,7 @@ fn format(path: &Path) -> Result<Format, Error> {
 }
 
 impl OutSettings {
-    /// Everything as it is when nothing else is said.
+    /// Default settings for a file.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self { path: path.into(), what: What::default(), first: 0, every: 1, target: Target::default() }
     }
@@ -101,7 +101,7 @@ impl OutSettings {
     /// Refuses a name that no format has, and units that its format does not, before anything is loaded.
     ///
     /// # Errors
-    /// See [`Error::OutName`]; [`OutSettings::target`] of what is no `.usda`.
+    /// See [`Error::OutName`]; an [`OutSettings::target`] for a file other than `.usda`.
     pub fn check(&self) -> Result<(), Error> {
         self.format().map(|_| ())
     }
@@ -229,21 +229,17 @@ impl Out {
                 1 => format!("every frame from {first} on"),
                 _ => format!("frames {first}, {} and so on", first.saturating_add(every)),
             };
-            return Err(Error::Cache {
-                path: cache.path().to_owned(),
-                message: format!(
-                    "it holds {what}, {frames}, and the run would write something else: resume it with --what {what} \
-                     --every {every} --from {first}"
-                ),
-            });
+            let found = format!(
+                "it holds {what}, {frames}, and the run would write something else: resume it with --what {what} \
+                 --every {every} --from {first}"
+            );
+            return Err(Error::cache(cache.path(), found));
         }
         let after = state.frame.checked_sub(self.first);
         let count = after.map_or(0, |frames| (frames / self.every + 1) as usize);
         if cache.starts() != self.shape.starts || cache.len() < count {
-            return Err(Error::Cache {
-                path: cache.path().to_owned(),
-                message: format!("it holds {} frames of other hair or too few", cache.len()),
-            });
+            let found = format!("it holds {} frames of other hair or too few", cache.len());
+            return Err(Error::cache(cache.path(), found));
         }
         let mut points = Vec::new();
         for index in 0..count {

@@ -29,8 +29,8 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// Begins a cache for at most so many frames of the scene's film, of which `every`-th is written, from the
-    /// `first` on. `body` is the body at the beginning: all frames get room for what it has.
+    /// Begins a cache for at most a number of frames of the scene's film, from the `first` on, every `every`-th. All frames
+    /// get room for the arrays of `body`, the body at the beginning.
     pub fn new(
         path: &Path,
         scene: &Scene,
@@ -117,7 +117,7 @@ impl Store {
         npz.set_tail(&tail(meta, names, state)).map_err(Error::write("the cache", path))
     }
 
-    /// Takes over what a cache said of the frames that were copied from it.
+    /// Takes over the report of a cache on the frames that were copied from it.
     pub fn inherit(&mut self, steps: u64, report: Report) {
         (self.meta.steps, self.meta.report) = (steps, report);
     }

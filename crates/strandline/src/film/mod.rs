@@ -1,4 +1,4 @@
-//! Writes a film as it is drawn: frames, a contact sheet, and a video or an animated image.
+//! A film that is written while it is drawn: frames, a contact sheet, and a video or an animated image.
 
 mod animation;
 mod picture_files;
@@ -26,10 +26,10 @@ const ANIMATION: &str = "animation.gif";
 ///
 /// Every file is whole once it has its name, and replaces one of an earlier film only then; one that could not
 /// be finished is removed. One film at a time is written into a folder. Frames of an earlier, longer film stay
-/// there, and a note says so: what this run did not write is not its to remove.
+/// there, and a note says so: a run removes only its own files.
 pub struct Film {
     folder: PathBuf,
-    /// Number of frames; none while it is not known.
+    /// Number of frames; `None` while it is not known.
     frames: Option<u32>,
     frames_per_second: f32,
     files: Vec<PathBuf>,
@@ -141,8 +141,8 @@ impl Film {
         Ok(self.into_files(frames, video_failed))
     }
 
-    /// Closes a film that was stopped early: no contact sheet, and a moving picture of the frames so far where none
-    /// of an earlier film would be replaced by it.
+    /// Closes a film that was stopped early: no contact sheet, and a moving picture of the frames so far unless it would
+    /// replace one of an earlier film.
     ///
     /// # Errors
     /// As [`Film::finish`].
@@ -214,7 +214,7 @@ impl Film {
     }
 }
 
-/// Makes a folder where it is not there, and keeps other runs out of it.
+/// Creates a folder unless it exists, and keeps other runs out of it.
 pub(crate) fn claim(folder: &Path) -> Result<FolderLock, Error> {
     fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
     FolderLock::take(folder).map_err(|error| match error.kind() {

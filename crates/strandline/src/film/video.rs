@@ -17,7 +17,7 @@ use crate::render::Picture;
 pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 /// Between two looks at whether it ended.
 const LOOK: Duration = Duration::from_millis(10);
-/// Bytes of what ffmpeg says that are kept.
+/// Bytes of ffmpeg's messages that are kept.
 const SAID: usize = 4096;
 
 /// A video under way: ffmpeg writes it under a temporary name, and it gets its own when it is whole.
@@ -26,7 +26,7 @@ const SAID: usize = 4096;
 /// Programs that it may have started are left alone, so the threads that talk to it are never waited for.
 pub(super) struct Video {
     child: Child,
-    /// Pictures on their way; none when it ended or is to end.
+    /// Pictures on their way; `None` once it ended or has to end.
     pictures: Option<Sender<Vec<u8>>>,
     /// One for each picture that ffmpeg took.
     taken: Receiver<()>,
@@ -49,7 +49,7 @@ impl Video {
         patience: Duration,
     ) -> Result<Result<Self>> {
         let file = WholeFile::for_program(path)?;
-        let mut child = match start(program, picture, frames_per_second, file.part()) {
+        let mut child = match start(program, picture, frames_per_second, file.temporary()) {
             Ok(child) => child,
             Err(error) => return Ok(Err(error)),
         };
@@ -96,7 +96,7 @@ impl Video {
                 return Err(failed);
             }
             let ended = self.child.try_wait();
-            let part = self.file.as_ref().and_then(|file| file.part().metadata().ok());
+            let part = self.file.as_ref().and_then(|file| file.temporary().metadata().ok());
             let written = part.map_or(0, |part| part.len());
             idle = if written == length { idle + LOOK } else { Duration::ZERO };
             length = written;
@@ -269,7 +269,7 @@ mod tests {
         assert_eq!(finished, Err("ffmpeg wrote nothing".to_owned()), "though it says that it went well");
     }
 
-    /// Also when what is stuck is a program that it started, which holds the pipes open.
+    /// A program that ffmpeg started may be stuck too and hold the pipes open.
     #[test]
     fn a_program_that_is_stuck_is_ended() {
         let stuck = "sleep 4\n";

@@ -77,11 +77,11 @@ pub enum LiveEvent {
     /// The scene of the command with this number is there: with what it left open chosen to fit its groom, its
     /// camera, the box around hair and body \[m\], and what a person should read.
     Loaded(u64, Box<Scene>, Camera, Aabb, Vec<String>),
-    /// Something that a person should read.
+    /// A note, human-readable.
     Note(String),
-    /// The scene of the command with this number could not be loaded; what was there stays.
-    NotLoaded(u64, String),
-    /// Something could not be done, what may be done about it and why; what was there stays.
+    /// The scene of the command with this number could not be loaded: kind and text of the error. The old scene stays.
+    NotLoaded(u64, ErrorKind, String),
+    /// Kind and text of an error; nothing else changes.
     Error(ErrorKind, String),
     /// It stands still, since a frame failed: its error came before.
     Paused,

@@ -9,7 +9,7 @@ use super::loading::Loading;
 use crate::{
     Scene,
     body::Mesh,
-    groom::{Groom, format::Part},
+    groom::{Groom, format::Attribute},
     render::{GroupLook, LevelOfDetail},
 };
 
@@ -17,14 +17,15 @@ use crate::{
 const DRAWN: usize = 40_000;
 /// Most strands that are drawn about each.
 const MOST_FOLLOW: usize = 32;
-/// Segments of a picture \[segment\]: what can be drawn in a second or two on a processor.
+/// Number of segments that a CPU draws in a second or two.
 const SEGMENTS: usize = 2_200_000;
 /// Radius of a clump as a share of the distance between strands, at the roots and the tips; and the amplitude of
 /// waves of its own that a drawn strand has.
 const ROOT_SHARE: f32 = 0.35;
 const TIP_SHARE: f32 = 0.22;
 const WAVE_SHARE: f32 = 0.13;
-/// Points that a strand may have, and how far from it \[m\], and as a share of its length, a polyline of fewer may be.
+/// Numbers of points of a strand to choose from, and the allowed distance of such a polyline from it, \[m\] and as a share
+/// of its length.
 const POINTS: [u32; 7] = [8, 12, 16, 24, 32, 48, 64];
 const ASTRAY: f32 = 3e-4;
 const ASTRAY_SHARE: f32 = 0.002;
@@ -35,7 +36,7 @@ const COARSEST: f32 = 0.1;
 const NEAR: f32 = 2.5;
 /// Strands that are looked at.
 const LOOKED_AT: usize = 400;
-/// Groups that are looked at: of so many strands, and so many of them; whose roots are so much closer than those of all.
+/// Groups that are examined: least number of strands, number of groups, and distance of their roots over that of all.
 const FEWEST: usize = 20;
 const MOST_GROUPS: usize = 64;
 const CLOSER: f32 = 0.7;
@@ -146,7 +147,7 @@ fn fit_widths(scene: &mut Scene, groom: &Groom, spacing: f32, default: &Scene, c
     let (look, strands) = (&mut scene.look, groom.strand_count());
     let is_count_open = !scene.given.hair_count && look.hair_count == default.look.hair_count;
     let is_scale_open = !scene.given.width_scale && look.width_scale == default.look.width_scale;
-    let (has_widths, width) = (Part::Widths.is_in(groom), mean_width(groom));
+    let (has_widths, width) = (Attribute::Widths.is_in(groom), mean_width(groom));
     if has_widths && width >= ALL_HAIR * DENSITY * spacing {
         if is_count_open {
             look.hair_count = strands as u32;
@@ -197,7 +198,7 @@ fn points(groom: &Groom) -> u32 {
     POINTS.into_iter().find(|count| keeps(*count)).unwrap_or(most)
 }
 
-/// Deviation of strands of so many points from themselves over the tolerance, for 95 in 100.
+/// Deviation of strands resampled to `count` points from themselves, over the tolerance, for 95 in 100.
 fn astray(groom: &Groom, count: usize) -> f32 {
     let mut found: Vec<f32> = some(groom)
         .map(|strand| {

@@ -72,7 +72,7 @@ fn dress(scene: &Scene, sources: &Sources, groom: &mut Groom) -> Result<(), Erro
     Ok(())
 }
 
-/// Multiples of how far drawn strands lie about those of a groom; none where no group has its own.
+/// Factors of the spread of drawn strands about those of a groom, shape `[strand]`; `None` where no group has its own.
 pub(super) fn spreads(look: &Look, groom: &Groom) -> Result<Option<Vec<f32>>, Error> {
     if look.group.iter().all(|group| group.clump.is_none()) {
         return Ok(None);

@@ -12,7 +12,7 @@ use crate::{
     Error, Scene,
     groom::{
         Groom, Widths,
-        format::{HAIR_WIDTH, Part},
+        format::{Attribute, HAIR_WIDTH},
     },
 };
 
@@ -67,7 +67,7 @@ fn place_groom(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Vec3, t
     if !scene.groom.own_look {
         groom.colors = None;
     }
-    let has_widths = scene.groom.own_look && Part::Widths.is_in(groom);
+    let has_widths = scene.groom.own_look && Attribute::Widths.is_in(groom);
     groom.transform(placing.scale, placing.turn, Vec3::ZERO);
     groom.transform(1.0, math::pitch_yaw_roll(turn), translation);
     // The width of a hair is in metres already.

@@ -9,7 +9,7 @@ use crate::{
     groom::Groom,
 };
 
-/// Times that a root is led to the surface, and how far \[m\] a strand is led with it at most.
+/// Rounds that move a root to the surface, and the largest distance \[m\] that its strand moves along.
 const STEPS: usize = 4;
 const REACH: f32 = 0.1;
 

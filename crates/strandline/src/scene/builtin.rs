@@ -12,7 +12,7 @@ use crate::{
 };
 
 impl Scene {
-    /// The demo: the default style shakes its head for 4 s; what an empty file says.
+    /// The demo: the default style shakes its head for 4 s. An empty scene file is the same scene.
     pub fn demo() -> Self {
         Self::default()
     }

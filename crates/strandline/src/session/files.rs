@@ -53,18 +53,15 @@ impl<E: Executor> Session<E> {
         if cache.what() == What::Guides {
             cache.check_guides(strands, points)?;
         }
-        let path = cache.path().to_owned();
-        let refuse = |message: String| Error::Cache { path, message };
         let Some(state) = cache.snapshot(strands, points)? else {
-            return Err(refuse(
-                "it holds no state, expected the state_* arrays that `sim --out` writes".to_owned(),
-            ));
+            let found = "it holds no state, expected the state_* arrays that `sim --out` writes";
+            return Err(Error::cache(cache.path(), found));
         };
         let made = state.frame + 1;
         if made >= frames {
-            return Err(refuse(format!(
-                "its run made {made} frames, and the film has {frames}: ask for more with --frames"
-            )));
+            let found =
+                format!("its run made {made} frames, and the film has {frames}: ask for more with --frames");
+            return Err(Error::cache(cache.path(), found));
         }
         let steps = cache.steps();
         self.with(|simulation| simulation.restore(&state, steps))?;

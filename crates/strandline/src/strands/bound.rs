@@ -7,8 +7,8 @@ use crate::{
     groom::{Binding, Frames, Guides, Vec3Lanes},
 };
 
-/// Share of the distance between samples of a solid that strands stay away from it, and how far at most \[m\]: samples
-/// err by about so much where the surface curves.
+/// Clearance of strands from a solid, as a share of the distance between its samples, and its upper limit \[m\]: samples
+/// err by about as much where the surface curves.
 const CLEARANCE: f32 = 0.25;
 const MOST_CLEARANCE: f32 = 0.002;
 
@@ -28,7 +28,7 @@ pub struct BoundStrands {
 }
 
 impl BoundStrands {
-    /// Strands and solids; what the head carries is in head space.
+    /// Strands and solids; solids that the head carries are in head space.
     pub fn new(binding: Binding, solids: Vec<Collider>) -> Self {
         let away = |solid: Collider| {
             let clearance = clearance(&solid.shape);

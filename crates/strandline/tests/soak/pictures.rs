@@ -96,7 +96,7 @@ impl Person {
                 LiveEvent::Loaded(number, ..) => {
                     (self.loaded, self.loads) = (number, self.loads + 1);
                 }
-                LiveEvent::NotLoaded(_, error) => assert!(error.contains("bad.hair"), "{error}"),
+                LiveEvent::NotLoaded(_, _, error) => assert!(error.contains("bad.hair"), "{error}"),
                 LiveEvent::Error(_, error) if error.contains("save again") => self.saved += 1,
                 LiveEvent::Error(_, error) => {
                     // Of all that it does only settings outside their ranges may be refused.
