@@ -1,5 +1,6 @@
 //! Loading of a scene: strands, body, solids and motion, a stage after the other.
 
+mod evidence;
 mod fit;
 mod foreign;
 mod guess;
@@ -11,9 +12,12 @@ mod looks;
 mod map;
 mod marked;
 pub(crate) mod memory;
+mod noted;
 mod place;
 mod placing;
+mod profile;
 mod read;
+mod relation;
 mod roots;
 mod sample;
 mod skull;
@@ -21,7 +25,11 @@ mod solids;
 mod sources;
 mod wrap;
 
+#[cfg(test)]
+mod axes_tests;
+
 pub use map::read_map;
+pub use placing::Placement;
 pub use sample::mesh_unit;
 pub use sources::Sources;
 
@@ -58,6 +66,8 @@ pub struct Prepared {
     pub bounds: Aabb,
     /// The scene, with the settings that it leaves open chosen to fit its groom.
     pub scene: Scene,
+    /// Placement of groom and body, and the confidence in it.
+    pub placement: Placement,
     /// Mends, guesses and omissions, human-readable.
     pub notes: Vec<String>,
 }
@@ -90,6 +100,7 @@ impl Prepared {
 
 /// Last stage of loading: all strands bound to their guides, and the motion of the head.
 fn bind(loading: Loading) -> Result<Prepared, Error> {
+    let placement = loading.placings.placement();
     let Loading { scene, notes, groom, mesh, colliders, pivot, strands, chosen, guides, .. } = loading;
     let (Some(groom), Some(mut all), Some(guides)) = (groom, strands, guides) else {
         unreachable!("the stages before end with strands or an error")
@@ -110,7 +121,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
     let pivot = scene.motion.pivot.or(pivot).unwrap_or_else(|| low_center(bounds));
     let head = HeadMotion::new(&scene.motion, pivot)?;
-    Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, notes })
+    Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, placement, notes })
 }
 
 impl Prepared {
