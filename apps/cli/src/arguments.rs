@@ -93,6 +93,9 @@ pub struct Inputs {
         "Load strands from this {} file; given again: further strands of the same hair", endings(|_| true)
     ))]
     pub groom: Vec<PathBuf>,
+    /// Points of each strand, for groom files that do not give strands.
+    #[arg(long, value_name = "N", requires = "groom", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub per_strand: Option<u32>,
     /// Load the body from this .obj, .gltf, .glb, .vrm, .ply or .stl file; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
@@ -179,7 +182,7 @@ pub struct SimOptions {
     #[arg(long, value_name = "N", requires = "written", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     pub from: Option<u32>,
     /// Units and axes of a .usda: any (metres, y up), unreal (centimetres, z up, groom_* attributes) or blender
-    /// (metres, z up, frames from 1); all else stays in metres with y up [default: any].
+    /// (metres, z up); all else stays in metres with y up [default: any].
     #[arg(long = "for", value_name = "NAME", requires = "out", value_parser = Target::from_str)]
     pub target: Option<Target>,
     /// Resume the run of this moving cache, with its own scene unless --scene names one; --frames is the
@@ -207,7 +210,7 @@ pub struct GroomOptions {
 #[command(after_help = formats(), override_usage = "strandline convert [OPTIONS] IN... OUT")]
 pub struct ConvertOptions {
     /// The files to read, each a group of one groom, and the file to write.
-    #[arg(value_name = "IN... OUT", num_args = 2.., required = true)]
+    #[arg(value_name = "IN... OUT", num_args = 1.., required = true)]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
     pub reading: Reading,

@@ -1,6 +1,5 @@
 //! `strandline convert`: a groom in another format, and with other strands.
 
-use anyhow::Context;
 use glam::{Quat, Vec3};
 use strandline::{
     Groom, Mesh,
@@ -8,7 +7,7 @@ use strandline::{
     mesh::{DistanceGrid, SignedDistance},
 };
 
-use crate::arguments::ConvertOptions;
+use crate::arguments::{ConvertOptions, Usage};
 use crate::progress::Waiting;
 use crate::{files, output};
 
@@ -20,7 +19,11 @@ const APART: f32 = 0.1;
 
 /// Reads files as one groom, changes it as requested, and writes it.
 pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
-    let (output, inputs) = options.files.split_last().context("clap asks for two files")?;
+    // Options may stand between files, so that clap counts them one by one.
+    let [inputs @ .., output] = &options.files[..] else { return Err(too_few().into()) };
+    if inputs.is_empty() {
+        return Err(too_few().into());
+    }
     // An output that cannot be written is refused before anything is read.
     format::Format::of(output)?;
     let cleaning = if options.clean { Cleaning::All } else { Cleaning::Named };
@@ -50,6 +53,10 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
         push_out(&mut groom, &mesh)?;
     }
     files::write(&groom, output)
+}
+
+fn too_few() -> Usage {
+    Usage("convert has one file, expected IN... OUT: the files to read and the file to write".to_owned())
 }
 
 /// Scales a mesh to metres, and says so where that was not given; says where it does not meet the strands.

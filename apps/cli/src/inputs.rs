@@ -40,7 +40,10 @@ impl Inputs {
         // Paths given here are relative to the current folder, not to the scene's.
         if let [first, further @ ..] = &self.groom[..] {
             scene.groom.file = Some(std::path::absolute(first)?);
-            scene.groom.parts = parts(further, |file| GroomPart { file, ..GroomPart::default() })?;
+            let per_strand = self.per_strand;
+            scene.groom.per_strand = per_strand;
+            scene.groom.parts =
+                parts(further, |file| GroomPart { file, per_strand, ..GroomPart::default() })?;
             scene.begin_at_rest();
         }
         if let [first, further @ ..] = &self.body[..] {

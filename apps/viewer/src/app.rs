@@ -3,6 +3,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use eframe::egui;
+use glam::Vec3;
 use strandline::{
     Backend, Camera, Change, Error, Live, PictureSettings, Scene,
     format::{Format, endings},
@@ -24,6 +25,8 @@ pub struct App {
     pub(crate) camera: Camera,
     /// The view of the scene.
     pub(crate) home: Camera,
+    /// Middle of hair and body at rest \[m\].
+    pub(crate) center: Vec3,
     pub(crate) playing: bool,
     /// Action of the mouse without a key.
     pub(crate) tool: Tool,
@@ -105,6 +108,7 @@ impl App {
             scene: scene.clone(),
             camera: Camera::front(),
             home: Camera::front(),
+            center: Vec3::ZERO,
             playing: true,
             tool: Tool::default(),
             dragged_to: None,
@@ -240,16 +244,29 @@ impl App {
     /// Loads a scene, or another groom or body into the current one.
     pub(crate) fn open_file(&mut self, file: &Path) {
         // A body dropped right after a groom goes with it.
-        let onto = self.pending.as_ref().map_or(&self.scene, |(_, scene)| scene);
-        match Self::scene_of(onto, file) {
+        let onto = match &self.pending {
+            Some((_, scene)) => Scene::clone(scene),
+            None => self.own_scene(),
+        };
+        match Self::scene_of(&onto, file) {
             Ok(scene) => self.load(scene),
             Err(error) => self.error = Some(error.to_string()),
         }
     }
 
+    /// The scene, without lights where they are those that the look has about this hair and body: about others they
+    /// stand elsewhere.
+    pub(crate) fn own_scene(&self) -> Scene {
+        let mut scene = self.scene.clone();
+        if scene.lights == scene.look.lights(self.center) {
+            scene.lights.clear();
+        }
+        scene
+    }
+
     /// The scene with the current view.
     pub fn seen(&self) -> Scene {
-        let mut scene = self.scene.clone();
+        let mut scene = self.own_scene();
         scene.camera.position = Some(self.camera.position);
         scene.camera.target = Some(self.camera.target);
         scene.camera.field_of_view = Some(self.camera.field_of_view);

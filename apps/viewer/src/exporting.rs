@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use strandline::Written;
+use strandline::{Target, Written};
 
 use crate::App;
 use crate::export::{Export, numbered};
 
 impl App {
     /// Writes moving hair of the current scene, or ends a running export. The ending of the path chooses
-    /// the format: .npz, .usda, or a groom format for a file per frame; without a path, a free cache in the folder.
+    /// the format: .npz, .usda, or a groom format for a file per frame; without a path, a free name in the folder of
+    /// the format that the chosen target takes.
     pub fn export(&mut self, path: Option<&Path>) {
         if self.exporting.take().is_some() {
             self.note("the export was stopped: written frames stay".to_owned());
@@ -17,8 +18,10 @@ impl App {
         }
         let numbered = path.and_then(numbered);
         let path = numbered.as_deref().or(path);
-        let ending = path.and_then(Path::extension).filter(|ending| ending.eq_ignore_ascii_case("usda"));
-        let ending = if ending.is_some() { "usda" } else { "npz" };
+        let named = path.and_then(Path::extension).map(|ending| ending.eq_ignore_ascii_case("usda"));
+        // A cache is in metres with y up, for any.
+        let is_usda = named.unwrap_or(self.export_wanted.target != Target::Any);
+        let ending = if is_usda { "usda" } else { "npz" };
         let free = || self.path_or_free(path, "hair", ending);
         let Some(path) = numbered.clone().or_else(free) else { return };
         let mut scene = self.seen();

@@ -55,9 +55,10 @@ impl App {
             return;
         }
         (self.scene, self.loaded) = (scene, number);
-        if self.scene.lights.is_empty() {
+        self.center = 0.5 * (bounds.min + bounds.max);
+        if self.scene.lights.is_empty() && self.scene.look.surroundings.is_none() {
             // Those that it is lit with, for the panel to change.
-            self.scene.lights = self.scene.look.lights(0.5 * (bounds.min + bounds.max));
+            self.scene.lights = self.scene.look.lights(self.center);
         }
         self.base = self.scene.clone();
         (self.camera, self.home, self.grabs) = (camera, camera, false);

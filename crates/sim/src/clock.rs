@@ -67,22 +67,53 @@ impl Clock {
         self.ticks()
     }
 
-    /// Lets time pass until `time` \[s\]; to one that is past or not finite none does.
-    pub fn advance_to(&mut self, time: f64) -> Ticks {
+    /// Lets time pass until `time` \[s\]; to one that is past or not finite none does. The last step that is due
+    /// ends at that time or reaches beyond it.
+    pub fn reach(&mut self, time: f64) -> Ticks {
         if time.is_finite() && time > self.time {
             (self.time, self.lost) = (time, 0.0);
         }
-        self.ticks()
+        let (first, count) = self.make((self.passed() - SLACK).ceil());
+        let share = 1.0 - (self.step_time(self.steps) - self.time) / self.time_step;
+        Ticks { first, count, share: if self.is_at_step() { 1.0 } else { share.clamp(0.0, 1.0) as f32 } }
     }
 
-    /// The steps that are due now.
+    /// A clock at a time \[s\] of a run that made so many steps: with [`Clock::reach`] where the last of them reaches
+    /// beyond that time, else with [`Clock::advance`]. Returns the place of the moment between the last two states.
+    pub fn resumed(time_step: f32, time: f64, steps: u64) -> (Self, f32) {
+        let mut clock = Self::new(time_step);
+        let reached = clock.reach(time);
+        if u64::from(reached.count) == steps || clock.is_at_step() {
+            return (clock, reached.share);
+        }
+        clock = Self::new(time_step);
+        let share = clock.advance(time).share;
+        (clock, share)
+    }
+
+    /// True where the time is the end of a step, but for rounding.
+    pub fn is_at_step(&self) -> bool {
+        (self.time - self.step_time(self.steps)).abs() <= SLACK * self.time_step
+    }
+
+    /// Steps that fit into the time that has passed.
+    fn passed(&self) -> f64 {
+        (self.time - self.start) / self.time_step
+    }
+
+    /// The steps that end in the time that has passed.
     fn ticks(&mut self) -> Ticks {
-        let due = ((self.time - self.start) / self.time_step + SLACK).floor() as u64;
-        let first = self.steps;
-        let count = u32::try_from(due.saturating_sub(first)).unwrap_or(u32::MAX);
-        self.steps += u64::from(count);
+        let (first, count) = self.make((self.passed() + SLACK).floor());
         let over = self.time - self.step_time(self.steps);
         Ticks { first, count, share: (over / self.time_step).clamp(0.0, 1.0) as f32 }
+    }
+
+    /// Counts steps up to `due`: the first of them, and their number.
+    fn make(&mut self, due: f64) -> (u64, u32) {
+        let first = self.steps;
+        let count = u32::try_from((due as u64).saturating_sub(first)).unwrap_or(u32::MAX);
+        self.steps += u64::from(count);
+        (first, count)
     }
 }
 
@@ -137,7 +168,7 @@ mod tests {
                 let mut counts = [0; 2];
                 for frame in 1..=3600 * rate as u32 {
                     counts[0] += added.advance(1.0 / rate).count;
-                    counts[1] += reached.advance_to(f64::from(frame) / rate).count;
+                    counts[1] += reached.reach(f64::from(frame) / rate).count;
                     if f64::from(frame) == 3.0 * rate {
                         assert_eq!(counts, [3 * each_second; 2], "{time_step} s at {rate} frames/s");
                     }
@@ -165,8 +196,33 @@ mod tests {
         assert_eq!(clock.advance(0.0).count, 0);
         assert_eq!(clock.advance(f64::NAN).count, 0);
         assert_eq!(clock.advance(-1.0).count, 0);
-        assert_eq!(clock.advance_to(99.0).count, 0);
-        assert_eq!(clock.advance_to(101.0).count, 60);
+        assert_eq!(clock.reach(99.0).count, 0);
+        assert_eq!(clock.reach(101.0).count, 60);
+    }
+
+    #[test]
+    fn a_time_that_is_reached_lies_between_its_two_last_states() {
+        let mut clock = Clock::new(0.1);
+        for (time, count, share) in
+            [(0.2, 2, 1.0), (0.25, 1, 0.5), (0.29, 0, 0.9), (0.3, 0, 1.0), (0.51, 3, 0.1)]
+        {
+            let ticks = clock.reach(time);
+            assert_eq!(ticks.count, count, "{time} s");
+            assert!((ticks.share - share).abs() < 1e-5, "{ticks:?} at {time} s");
+            assert_eq!(clock.is_at_step(), share == 1.0);
+        }
+        assert_eq!(clock.reach(0.51), Ticks { first: 6, ..clock.reach(0.51) });
+    }
+
+    #[test]
+    fn a_resumed_clock_has_the_steps_that_were_made() {
+        // Between two steps a film has made the next one, a loop of one's own has not.
+        for (steps, share) in [(3, 0.5), (2, 0.5), (7, 0.5)] {
+            let (mut clock, found) = Clock::resumed(0.1, 0.25, steps);
+            assert!((found - share).abs() < 1e-5, "{found}");
+            assert_eq!(clock.reach(0.3).first, if steps == 3 { 3 } else { 2 });
+        }
+        assert_eq!(Clock::resumed(0.1, 0.3, 3).1, 1.0);
     }
 
     #[test]

@@ -83,6 +83,11 @@ pub struct State {
 
 /// Positions at a share of the way from one state to the next.
 pub(crate) fn between([before, after]: [&[Vec3Lanes]; 2], share: f32, positions: &mut Vec<Vec3Lanes>) {
+    if share == 1.0 {
+        positions.clear();
+        positions.extend_from_slice(after);
+        return;
+    }
     positions.resize(after.len(), Vec3Lanes::default());
     let pairs = before.par_iter().zip(after);
     positions.par_iter_mut().zip(pairs).for_each(|(between, (before, after))| {
@@ -96,6 +101,11 @@ impl State {
     /// `share` is 0 one step ago and 1 now. `positions` is made as long as needed.
     pub fn interpolated(&self, share: f32, positions: &mut Vec<Vec3Lanes>) {
         between([&self.previous_positions, &self.positions], share, positions);
+    }
+
+    /// Number of points of a strand.
+    pub fn points_per_strand(&self) -> usize {
+        self.positions.len() / self.length_scale.len().max(1)
     }
 
     /// Takes hair into a hand, and lets go of what it held: of every strand that comes within `radius`

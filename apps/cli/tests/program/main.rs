@@ -1,6 +1,7 @@
 //! The program as a person or a script calls it: commands, limits, hostile files, files for others.
 
 mod command_line;
+mod flags;
 #[cfg(target_os = "linux")]
 mod hostile_files;
 #[cfg(target_os = "linux")]

@@ -56,7 +56,8 @@ fn moving(app: &mut App, ui: &mut Ui) {
         }
     });
     ui.horizontal(|ui| {
-        if button(ui, "Moving hair", "as a moving cache (.npz) into out/") {
+        let tip = "into out/: as a moving cache (.npz) for any, as text USD (.usda) for a program";
+        if button(ui, "Moving hair", tip) {
             app.export(None);
         }
         if button(ui, "as...", "as .npz or .usda, or a groom file a frame, to a place of your choice") {

@@ -18,7 +18,7 @@ pub fn show(app: &mut App, ui: &mut Ui) {
     });
     menu.response.on_hover_text(format!("grown on the head\ndefault {}", app.base.style.style.name()));
     if picked && (!grown || chosen != app.scene.style.style) {
-        let mut scene = app.scene.clone();
+        let mut scene = app.own_scene();
         scene.groom.file = None;
         scene.groom.parts.clear();
         scene.set_style(chosen);

@@ -195,6 +195,11 @@ impl Cache {
         snapshot.map_err(|message| Error::Cache { path: self.path.clone(), message })
     }
 
+    /// Steps of the run so far, without settling.
+    pub(crate) fn steps(&self) -> u64 {
+        self.frames.meta.steps
+    }
+
     /// Steps so far, and the quality of those that led to each frame.
     pub(super) fn report(&self) -> (u64, meta::Report) {
         (self.frames.meta.steps, self.frames.meta.report.clone())

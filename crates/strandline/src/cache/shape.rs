@@ -30,7 +30,7 @@ choices! {
         Any = "any",
         /// Centimetres, z up, groom_* attributes.
         Unreal = "unreal",
-        /// Metres, z up, frames from 1.
+        /// Metres, z up.
         Blender = "blender",
     }
     default Any

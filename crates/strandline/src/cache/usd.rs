@@ -16,24 +16,27 @@ use super::{
 };
 use crate::{Error, Scene, body::Pose};
 
-/// Digits that the last time code may have.
-const DIGITS: usize = 10;
+/// Characters that the first and the last time code may have.
+const DIGITS: usize = 24;
+/// A time code is a whole number where it is this near to one: times of frames are rounded.
+const WHOLE: f64 = 1e-6;
 
 /// A file under way.
 pub(super) struct Usd {
     path: PathBuf,
     file: GrowingFile,
-    /// Bytes so far, and where the last time code stands.
+    /// Bytes so far, and where the first and the last time code stand.
     length: u64,
-    end_at: u64,
+    ends_at: [u64; 2],
     space: Space,
-    first: u32,
+    /// Time codes a second.
+    rate: f64,
     widest: f32,
     /// One frame, in pieces.
     texts: Vec<String>,
     /// Text behind the points: the box around them and the head, for each frame.
-    boxes: Vec<(u32, [Vec3; 2])>,
-    heads: Vec<(u32, Pose)>,
+    boxes: Vec<(f64, [Vec3; 2])>,
+    heads: Vec<(f64, Pose)>,
 }
 
 /// Units and axes of a file.
@@ -81,22 +84,21 @@ impl Usd {
             std::io::ErrorKind::ResourceBusy => Error::BusyFile { path: path.to_owned() },
             _ => Error::write("the USD file", path)(error),
         })?;
-        let first = u32::from(target == Target::Blender);
         let widths = shape.attributes.widths.iter().flatten();
         let mut usd = Self {
             path: path.to_owned(),
             file,
             length: 0,
-            end_at: 0,
+            ends_at: [0; 2],
             space: Space::of(target),
-            first,
+            rate: f64::from(scene.film.frames_per_second),
             widest: widths.fold(0.0, |widest, width| width.max(widest)),
             texts: Vec::new(),
             boxes: Vec::new(),
             heads: Vec::new(),
         };
-        let (head, end_at) = usd.head(scene, target);
-        usd.end_at = end_at as u64;
+        let (head, ends_at) = usd.head(target);
+        usd.ends_at = ends_at.map(|at| at as u64);
         usd.put(&head)?;
         usd.put(&usd.curves(shape, target))?;
         Ok(usd)
@@ -109,25 +111,30 @@ impl Usd {
         Ok(())
     }
 
-    /// Text before the curves, and the place in it of the last time code.
-    fn head(&self, scene: &Scene, target: Target) -> (String, usize) {
+    /// Text before the curves, and the places in it of the first and the last time code.
+    fn head(&self, target: Target) -> (String, [usize; 2]) {
         let mut text = "#usda 1.0\n(\n    defaultPrim = \"hair\"\n".to_owned();
         let about = format!("hair as it moved, written by strandline {}", env!("CARGO_PKG_VERSION"));
         let _ = write!(text, "    doc = {}\n    endTimeCode = ", quoted(&about));
         let end_at = text.len();
-        let rate = f64::from(scene.film.frames_per_second);
-        let up = if self.space.z_up { "Z" } else { "Y" };
+        let Self { rate, space, .. } = self;
+        let up = if space.z_up { "Z" } else { "Y" };
         let _ = write!(
             text,
-            "{:<DIGITS$}\n    framesPerSecond = {rate}\n    metersPerUnit = {}\n    startTimeCode = {}\n    \
-             timeCodesPerSecond = {rate}\n    upAxis = \"{up}\"\n)\n\ndef Xform \"hair\" (\n",
-            self.first, self.space.metres_per_unit, self.first
+            "{:<DIGITS$}\n    framesPerSecond = {rate}\n    metersPerUnit = {}\n    startTimeCode = ",
+            0, space.metres_per_unit
+        );
+        let start_at = text.len();
+        let _ = write!(
+            text,
+            "{:<DIGITS$}\n    timeCodesPerSecond = {rate}\n    upAxis = \"{up}\"\n)\n\ndef Xform \"hair\" (\n",
+            0
         );
         if target == Target::Unreal {
             text.push_str("    prepend apiSchemas = [\"GroomAPI\"]\n");
         }
         text.push_str("    kind = \"component\"\n)\n{\n");
-        (text, end_at)
+        (text, [start_at, end_at])
     }
 
     /// The prim of the curves up to its points.
@@ -192,9 +199,15 @@ impl Usd {
         all
     }
 
+    /// Time code of a time \[s\]: over time codes a second it is that time.
+    fn code(&self, time: f64) -> f64 {
+        let code = time * self.rate;
+        if (code - code.round()).abs() < WHOLE { code.round() } else { code }
+    }
+
     /// Adds a frame.
     pub fn add(&mut self, frame: &Frame) -> Result<(), Error> {
-        let (code, space) = (frame.number + self.first, self.space);
+        let (code, space) = (self.code(frame.time), self.space);
         let mut texts = std::mem::take(&mut self.texts);
         let [low, high] = put_points(&mut texts, frame.points, |point| space.point(point));
         self.put(&format!("            {code}: ["))?;
@@ -231,9 +244,10 @@ impl Usd {
         let order = "[\"xformOp:translate\", \"xformOp:orient\"]";
         let _ = write!(text, "        }}\n        uniform token[] xformOpOrder = {order}\n    }}\n}}\n");
         self.put(&text)?;
-        let last = self.boxes.last().map_or(self.first, |(code, _)| *code);
-        let Self { path, mut file, end_at, .. } = self;
-        let ended = file.write_at(end_at, format!("{last:<DIGITS$}").as_bytes());
+        let ends = [self.boxes.first(), self.boxes.last()].map(|frame| frame.map_or(0.0, |(code, _)| *code));
+        let Self { path, mut file, ends_at, .. } = self;
+        let mut codes = ends_at.into_iter().zip(ends);
+        let ended = codes.try_for_each(|(at, code)| file.write_at(at, format!("{code:<DIGITS$}").as_bytes()));
         let place =
             ended.and_then(|()| if whole { file.finish().map(|()| path.clone()) } else { file.leave() });
         place.map_err(Error::write("the USD file", &path))

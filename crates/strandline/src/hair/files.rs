@@ -14,8 +14,9 @@ impl Hair {
         Ok(out)
     }
 
-    /// Adds the hair as it is now as the next frame, at the time that has passed. The file gets the reports of the steps
-    /// since the last frame of any file.
+    /// Adds the hair as it is now as the next frame, at the time that has passed. Where the runs of [`Hair::step`] are not
+    /// whole steps, hair and body are those of one step earlier, as pictures show them. The file gets the reports of the
+    /// steps since the last frame of any file.
     ///
     /// # Errors
     /// The file has all frames of the film, no time has passed since the last one, or the file cannot be written; the GPU

@@ -100,7 +100,8 @@ impl Hair {
     }
 
     /// Lets `seconds` pass while the body moves evenly to `body`: a [`BodyFrame`], or the pose of a rigid head. Steps
-    /// have a fixed length, so zero or more of them happen; the rest of the time counts with the next call.
+    /// have a fixed length, so zero or more of them happen; the rest of the time counts with the next call. Where calls are
+    /// whole steps pictures show the last state, else the moment one step earlier, so that they are smooth.
     /// Returns one report a step; those of steps on a GPU when they have arrived, with a later call or from
     /// [`Hair::reports`].
     ///

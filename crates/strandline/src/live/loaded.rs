@@ -23,6 +23,7 @@ impl Loaded {
         let mut prepared = Prepared::from_sources(scene, sources)?;
         let mut notes = std::mem::take(&mut prepared.notes);
         let mut session = Session::open(prepared, scene.devices)?;
+        session.settle()?;
         notes.extend(session.take_notes());
         Ok(Self { session: session.beside()?, notes })
     }

@@ -1,13 +1,19 @@
 //! Seventh stage of loading: the simulated strands, resampled, at rest outside of all solids.
 
+use glam::Vec3;
+
 use crate::{
     Error, Scene,
-    body::{Carrier, Collider, Pose, Shape, Solids},
+    body::{Carrier, Collider, Mesh, Pose, Shape, Solids},
     groom::{Groom, Guides, Outside},
     strands::attributes,
 };
 
-use super::{loading::Loading, looks, memory};
+use super::{
+    framing::{bounds, head_motion},
+    loading::Loading,
+    looks, memory,
+};
 
 /// Depth \[m\] up to which no note is made: less than the error of a sampled body.
 const WORTH_A_NOTE: f32 = 1e-4;
@@ -34,7 +40,9 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     if let Some(file) = &scene.groom.attributes {
         attributes::load(&scene.path(file), &mut guides)?;
     }
-    notes.extend(move_outside(&mut guides, &loading.colliders, |_| 0.0));
+    let start = start(scene, loading.pivot, &all, loading.mesh.as_ref())?;
+    notes.extend(move_outside(&mut guides, start, &loading.colliders, |_| 0.0));
+    loading.start = start;
     (loading.strands, loading.chosen, loading.guides) = (Some(all), chosen, Some(guides));
     Ok(())
 }
@@ -72,16 +80,35 @@ fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<u
     Some(guides)
 }
 
-/// Moves points that rest inside the solids that the head carries to their surface. Returns a note where there were some.
+/// Pose of the head when the hair begins to move. Hair with a pose of its own rests as it did where its run began.
+fn start(scene: &Scene, pivot: Option<Vec3>, strands: &Guides, mesh: Option<&Mesh>) -> Result<Pose, Error> {
+    let head = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
+    Ok(head.pose(if scene.groom.pose.is_some() { 0.0 } else { scene.film.start }))
+}
+
+/// Moves points that rest inside solids to their surface: inside those of the body, and inside those of the world with
+/// the head at its pose `start`. Returns a note where there were some.
 pub(super) fn move_outside(
     guides: &mut Guides,
+    start: Pose,
     colliders: &[Collider],
     clearance: impl Fn(&Shape) -> f32,
 ) -> Option<String> {
-    let on_head = colliders.iter().filter(|solid| solid.carrier == Carrier::HEAD);
-    let solids = Solids::new(on_head.map(|solid| (solid.clone(), clearance(&solid.shape))));
-    let at_rest = solids.placed(Pose::IDENTITY);
-    let found = guides.move_outside(|point| at_rest.at(point));
+    let solids = |is_wanted: fn(&Carrier) -> bool| {
+        let wanted = colliders.iter().filter(|solid| is_wanted(&solid.carrier));
+        Solids::new(wanted.map(|solid| (solid.clone(), clearance(&solid.shape))))
+    };
+    let of_body = solids(|carrier| matches!(carrier, Carrier::Piece(_)));
+    let of_world = solids(|carrier| *carrier == Carrier::World);
+    let (at_rest, in_world, back) = (of_body.placed(Pose::IDENTITY), of_world.placed(start), start.inverse());
+    let found = guides.move_outside(|point| {
+        let nearest = at_rest.at(point);
+        if in_world.is_empty() {
+            return nearest;
+        }
+        let (distance, gradient) = in_world.at(start.point(point));
+        if distance < nearest.0 { (distance, back.direction(gradient)) } else { nearest }
+    });
     let Outside { point_count, strand_count, depth, depth_left } = found;
     let mut note = format!(
         "{point_count} points of {strand_count} strands rested inside solids, by up to {:.2} mm: moved to the \

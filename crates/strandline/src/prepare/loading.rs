@@ -7,7 +7,7 @@ use super::memory;
 use super::placing::Placings;
 use crate::{
     Error, Scene,
-    body::{Collider, Mesh, Shape},
+    body::{Collider, Mesh, Pose, Shape},
     groom::{Groom, Guides},
 };
 
@@ -46,6 +46,8 @@ pub(super) struct Loading<'a> {
     pub chosen: Option<Vec<usize>>,
     /// The simulated strands at rest, from `guides`.
     pub guides: Option<Guides>,
+    /// Pose of the head when the hair begins to move, from `guides`.
+    pub start: Pose,
 }
 
 impl<'a> Loading<'a> {
@@ -77,6 +79,7 @@ impl<'a> Loading<'a> {
             strands: None,
             chosen: None,
             guides: None,
+            start: Pose::IDENTITY,
         })
     }
 

@@ -3,6 +3,7 @@
 mod evidence;
 mod fit;
 mod foreign;
+mod framing;
 mod guess;
 mod guides;
 mod head;
@@ -28,6 +29,7 @@ mod wrap;
 #[cfg(test)]
 mod axes_tests;
 
+pub(crate) use framing::{bounds, center};
 pub use map::read_map;
 pub use placing::Placement;
 pub use sample::mesh_unit;
@@ -35,6 +37,7 @@ pub use sources::Sources;
 
 use glam::Vec3;
 
+use framing::head_motion;
 use loading::Loading;
 
 use crate::{
@@ -101,7 +104,7 @@ impl Prepared {
 /// Last stage of loading: all strands bound to their guides, and the motion of the head.
 fn bind(loading: Loading) -> Result<Prepared, Error> {
     let placement = loading.placings.placement();
-    let Loading { scene, notes, groom, mesh, colliders, pivot, strands, chosen, guides, .. } = loading;
+    let Loading { scene, notes, groom, mesh, colliders, pivot, strands, chosen, guides, start, .. } = loading;
     let (Some(groom), Some(mut all), Some(guides)) = (groom, strands, guides) else {
         unreachable!("the stages before end with strands or an error")
     };
@@ -110,7 +113,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         None => None,
         Some(chosen) => {
             // The note about the guides stands for these too, which are near them.
-            guides::move_outside(&mut all, &colliders, clearance);
+            guides::move_outside(&mut all, start, &colliders, clearance);
             let binding = Binding::new(&groom, &chosen, all, guides.clone())?;
             Some(BoundStrands::new(binding, colliders.clone()))
         }
@@ -119,8 +122,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let pose = scene.groom.pose.as_ref().map(|file| HairPose::load(&scene.path(file), shape)).transpose()?;
     let mesh = mesh.filter(|_| scene.body.visible);
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
-    let pivot = scene.motion.pivot.or(pivot).unwrap_or_else(|| low_center(bounds));
-    let head = HeadMotion::new(&scene.motion, pivot)?;
+    let head = head_motion(&scene, pivot, bounds)?;
     Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, placement, notes })
 }
 
@@ -152,29 +154,4 @@ fn outermost(places: impl Iterator<Item = Vec3>) -> Vec<Vec3> {
         }
     }
     found.into_iter().filter(|(far, _)| far.is_finite()).map(|(_, place)| place).collect()
-}
-
-/// The box around strands and body \[m\].
-pub(crate) fn bounds(guides: &Guides, mesh: Option<&Mesh>) -> Aabb {
-    let (min, max) = (Vec3::splat(f32::INFINITY), Vec3::splat(f32::NEG_INFINITY));
-    let mut bounds = mesh.and_then(Mesh::bounds).unwrap_or(Aabb { min, max });
-    for strand in 0..guides.strand_count() {
-        for point in 0..guides.points_per_strand() {
-            let point = guides.position(strand, point);
-            bounds = Aabb { min: bounds.min.min(point), max: bounds.max.max(point) };
-        }
-    }
-    bounds
-}
-
-/// The middle of a box \[m\].
-pub(crate) fn center(bounds: Aabb) -> Vec3 {
-    0.5 * (bounds.min + bounds.max)
-}
-
-/// Assumed neck of an unknown head: in the middle, a third of the way up.
-fn low_center(bounds: Aabb) -> Vec3 {
-    let mut center = center(bounds);
-    center.y = bounds.min.y + (bounds.max.y - bounds.min.y) / 3.0;
-    center
 }

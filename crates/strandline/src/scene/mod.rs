@@ -24,6 +24,7 @@ pub use head::HeadMotion;
 pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
 pub use surroundings::SurroundingsSection;
 
+pub use crate::body::Interpolation;
 use crate::{
     Backend, Error,
     groom::StyleSettings,

@@ -55,9 +55,9 @@ impl Direction {
         (self.hand, self.begun, self.time, self.counts) = (None, 0.0, 0.0, false);
     }
 
-    /// Time at which a film begins with what is shown \[s\]: that lies a step \[s\] behind the end of a frame.
-    pub fn time_shown(&self, step: f64) -> f64 {
-        (self.time - step).max(self.begun)
+    /// Time at which a film begins with what is shown \[s\], which lies `delay` \[s\] behind the end of a frame.
+    pub fn time_shown(&self, delay: f64) -> f64 {
+        (self.time - delay).max(self.begun)
     }
 
     /// Another motion of the head begins at its beginning; another turn does not disturb it.

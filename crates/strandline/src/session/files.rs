@@ -66,7 +66,8 @@ impl<E: Executor> Session<E> {
                 "its run made {made} frames, and the film has {frames}: ask for more with --frames"
             )));
         }
-        self.with(|simulation| simulation.restore(&state))?;
+        let steps = cache.steps();
+        self.with(|simulation| simulation.restore(&state, steps))?;
         self.drawn = made;
         if let Some(out) = out {
             out.copy(cache, &state)?;

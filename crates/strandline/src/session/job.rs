@@ -7,7 +7,7 @@ use strandline_gpu::Gpu;
 use super::{film_timing::FilmTiming, moment::Moment, simulation::Simulation};
 use crate::{
     HeadMotion,
-    body::BodyFrame,
+    body::{BodyFrame, Pose},
     groom::Vec3Lanes,
     scene::WindSection,
     scene::devices::device_name,
@@ -27,8 +27,8 @@ pub(crate) enum Task {
     Settings(Box<Settings>),
     /// Another length of each strand, over that of the groom.
     Lengths(Vec<f32>),
-    /// Back to rest on a body.
-    Reset(BodyFrame),
+    /// Back to rest on a body, on which the hair then hangs for a time \[s\] in wind \[m/s\].
+    Reset { body: BodyFrame, settle: f64, wind: Vec3 },
     /// Takes the hair about a point of a guide, wherever that is by then, into a hand of a radius \[m\].
     Grab { index: usize, lane: usize, radius: f32 },
     /// Lets go of it.
@@ -65,7 +65,9 @@ impl Task {
             }
             Self::Settings(settings) => simulation.set_settings(&settings),
             Self::Lengths(scales) => simulation.engine.set_length_scale(&scales),
-            Self::Reset(body) => simulation.reset(body),
+            Self::Reset { body, settle, wind } => {
+                simulation.reset(body).and_then(|()| simulation.settle(settle, wind))
+            }
             Self::Grab { index, lane, radius } => {
                 let now = simulation.engine.state()?.positions[index].get(lane);
                 simulation.grab(now, radius).map(drop)
@@ -81,12 +83,20 @@ impl Live {
         let start = simulation.end().clone();
         self.hand.into_iter().for_each(|hand| simulation.move_hand(hand));
         let seconds = self.seconds.min(self.most_steps * simulation.time_step());
-        // The head may have been turned since.
+        // A head that was turned by hand meanwhile goes straight to where its motion has it.
+        let follows = is_near(&start.world_from_head(), &self.head.pose(self.begin));
         let end = BodyFrame::from(self.head.pose(self.begin + seconds));
         simulation.step_along(seconds, &|share| {
-            (start.toward(&end, share), self.wind.at(self.begin + seconds * f64::from(share)))
+            let time = self.begin + seconds * f64::from(share);
+            let body = if follows { self.head.pose(time).into() } else { start.toward(&end, share) };
+            (body, self.wind.at(time))
         })
     }
+}
+
+/// True where two poses of a head are alike but for the rounding of the times at which they were asked for.
+fn is_near(one: &Pose, other: &Pose) -> bool {
+    one.translation.distance(other.translation) < 1e-4 && one.rotation.dot(other.rotation).abs() > 1.0 - 1e-6
 }
 
 /// A task, and room for the moment that it leads to.

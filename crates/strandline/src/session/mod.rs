@@ -107,8 +107,8 @@ impl<E: Executor> Session<E> {
 
     /// Time of motion and wind at which a film begins with the shown moment \[s\].
     pub fn time_shown(&mut self) -> f64 {
-        let step = self.with(|simulation| f64::from(simulation.settings().time_step));
-        self.direction.time_shown(step)
+        let delay = self.with(|simulation| simulation.delay());
+        self.direction.time_shown(delay)
     }
 
     /// Acts on the simulation between two jobs; waits for the one that runs.
@@ -249,8 +249,10 @@ impl<E: Executor> Session<E> {
             }
             Change::Reset => {
                 self.direction.reset();
-                let pose = self.direction.head.pose(0.0);
-                self.start(Task::Reset(pose.into()), false, 0)?;
+                let (body, settle) =
+                    (self.direction.head.pose(0.0).into(), f64::from(self.scene.film.settle));
+                let wind = self.direction.wind.at(0.0);
+                self.start(Task::Reset { body, settle, wind }, false, 0)?;
             }
         }
         Ok(())

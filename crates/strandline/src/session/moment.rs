@@ -1,10 +1,11 @@
 //! Source of the points of a picture.
 
+use strandline_base::par::prelude::*;
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use crate::{
     body::BodyFrame,
-    groom::Vec3Lanes,
+    groom::{LANES, Vec3Lanes},
     render::gpu::DevicePoints,
     sim::{State, gpu::read_between},
 };
@@ -18,6 +19,9 @@ pub(crate) struct Moment {
     device: Option<OnDevice>,
     pub body: BodyFrame,
     pub at: When,
+    /// Bodies of the two states around it, where the points follow the way of the body between them, and not straight
+    /// lines; such a moment is on the host.
+    pub between: Option<[BodyFrame; 2]>,
 }
 
 /// When a moment is: steps that the simulation had made, and where between the last two states it lies.
@@ -59,7 +63,10 @@ impl Moment {
 
     /// Takes the points of a state; none lie on a device then.
     pub fn fill(&mut self, state: &State) {
-        state.interpolated(self.at.share, &mut self.positions);
+        match &self.between {
+            Some(bodies) => carried(state, bodies, &self.body, self.at.share, &mut self.positions),
+            None => state.interpolated(self.at.share, &mut self.positions),
+        }
         (self.on_host, self.device) = (true, None);
     }
 
@@ -76,4 +83,30 @@ impl Moment {
         (self.device, self.on_host) = (Some(copy), false);
         Ok(())
     }
+}
+
+/// Points between two states in the root frames of their strands, carried to a body.
+fn carried(
+    state: &State,
+    [before, after]: &[BodyFrame; 2],
+    body: &BodyFrame,
+    share: f32,
+    positions: &mut Vec<Vec3Lanes>,
+) {
+    let points_per_strand = state.points_per_strand().max(1);
+    positions.resize(state.positions.len(), Vec3Lanes::default());
+    let old = state.previous_positions.par_chunks(points_per_strand);
+    let pairs = old.zip(state.positions.par_chunks(points_per_strand));
+    let blocks = positions.par_chunks_mut(points_per_strand).zip(pairs).enumerate();
+    blocks.for_each(|(block, (positions, (old, new)))| {
+        for lane in 0..LANES {
+            let root = |body: &BodyFrame| body.root(block * LANES + lane);
+            let [from_before, from_after] = [before, after].map(|body| root(body).inverse());
+            let to = root(body);
+            for ((position, old), new) in positions.iter_mut().zip(old).zip(new) {
+                let [old, new] = [from_before.point(old.get(lane)), from_after.point(new.get(lane))];
+                position.set(lane, to.point(old.lerp(new, share)));
+            }
+        }
+    });
 }

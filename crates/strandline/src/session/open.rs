@@ -138,6 +138,21 @@ impl Session<Inline> {
         self.executor.simulation_mut()
     }
 
+    /// Lets the hair hang on the resting head before its film begins, as long as the scene has it. Hair that begins in a
+    /// pose does not.
+    ///
+    /// # Errors
+    /// As [`Session::show`].
+    pub fn settle(&mut self) -> Result<(), Error> {
+        let film = self.scene.film;
+        if self.scene.groom.pose.is_none() && film.settle > 0.0 {
+            let wind = self.scene.wind.at(film.start);
+            self.executor.simulation_mut().settle(f64::from(film.settle), wind)?;
+            self.show()?;
+        }
+        Ok(())
+    }
+
     /// Takes the hair as it is now for the next picture.
     ///
     /// # Errors

@@ -29,6 +29,8 @@ pub(crate) struct Simulation {
     clock: Clock,
     /// Place of the moment between the last two states.
     share: f32,
+    /// Body of the moment, where it is known better than from the last two steps.
+    exact: Option<BodyFrame>,
     /// Body at the last two states, and at the end of the last run.
     bodies: [BodyFrame; 2],
     end: BodyFrame,
@@ -46,6 +48,7 @@ impl Simulation {
             engine,
             clock: Clock::new(time_step),
             share: 1.0,
+            exact: None,
             bodies: [BodyFrame::REST, BodyFrame::REST],
             end: BodyFrame::REST,
             passed: 0.0,
@@ -131,14 +134,13 @@ impl Simulation {
         Ok(Snapshot { frame, time: self.clock.time(), state, bodies: [before, now, self.end.clone()] })
     }
 
-    /// Goes back to where a run stood: what follows is what followed there.
-    pub fn restore(&mut self, from: &Snapshot) -> Result<(), SimError> {
+    /// Goes back to where a run stood after so many steps: what follows is what followed there.
+    pub fn restore(&mut self, from: &Snapshot, steps: u64) -> Result<(), SimError> {
         self.engine.restore(&from.state)?;
         let [before, now, end] = from.bodies.clone();
         self.begin_at(end);
         self.bodies = [before, now];
-        // Steps and share follow from the time alone.
-        self.share = self.clock.advance_to(from.time).share;
+        (self.clock, self.share) = Clock::resumed(self.settings().time_step, from.time, steps);
         self.passed = from.time;
         Ok(())
     }
@@ -153,6 +155,7 @@ impl Simulation {
     fn begin_at(&mut self, body: BodyFrame) {
         self.clock = Clock::new(self.engine.model().settings().time_step);
         (self.bodies, self.end, self.share) = ([body.clone(), body.clone()], body, 1.0);
+        self.exact = None;
         self.hand = None;
     }
 
@@ -217,25 +220,42 @@ impl Simulation {
         seconds: f64,
         drive: &dyn Fn(f32) -> (BodyFrame, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
-        let (before, begin) = (self.clock, self.clock.time());
-        let ticks = self.clock.advance(seconds);
+        let (before, begin, shown) = (self.clock, self.clock.time(), self.share);
+        let mut ticks = self.clock.advance(seconds);
+        if self.clock.time() == begin {
+            ticks.share = shown;
+        } else if before.is_at_step() && self.clock.is_at_step() {
+            // A run of whole steps shows the state at its end.
+            ticks.share = 1.0;
+        }
         // Without passing time the head is at its end.
         let share = |time: f64| {
             if seconds > 0.0 { ((time - begin) / seconds).clamp(0.0, 1.0) as f32 } else { 1.0 }
         };
-        self.run(before, ticks, begin..self.clock.time(), &|time| drive(share(time)))
+        let reports = self.run(before, ticks, begin..self.clock.time(), &|time| drive(share(time)))?;
+        self.exact = None;
+        Ok(reports)
     }
 
     /// Lets time pass until the clock's `time` \[s\] with what drives the hair at each time of the clock,
-    /// asked for at the end of every step: however it is cut into runs, it is the same motion to the bit.
+    /// asked for at the end of every step: however it is cut into runs, it is the same motion to the bit. The last step
+    /// reaches that time or beyond it, and the moment that is shown is that time: the body is where `drive` has it,
+    /// the hair, as the body carries it, between the states before and after.
     pub fn run_to(
         &mut self,
         time: f64,
         drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
         let (before, begin) = (self.clock, self.clock.time());
-        let ticks = self.clock.advance_to(time);
-        self.run(before, ticks, begin..time, drive)
+        let ticks = self.clock.reach(time);
+        let reports = self.run(before, ticks, begin..time, drive)?;
+        self.exact = Some(self.end.clone());
+        Ok(reports)
+    }
+
+    /// Time \[s\] by which the shown moment lies behind the end of the last run.
+    pub fn delay(&self) -> f64 {
+        if self.exact.is_some() || self.share == 1.0 { 0.0 } else { self.time_step() }
     }
 
     fn run(
@@ -288,9 +308,12 @@ impl Simulation {
     /// runs there too, else on the host.
     pub fn show(&mut self, gpu: Option<&Gpu>, moment: &mut Moment) -> Result<(), SimError> {
         let share = self.share;
-        moment.body = self.bodies[0].toward(&self.bodies[1], share);
+        let [before, after] = &self.bodies;
+        moment.body = self.exact.clone().unwrap_or_else(|| before.toward(after, share));
         moment.at = When { step: self.engine.steps(), share };
-        if let (Some(points), Some(gpu)) = (self.engine.device_points(), gpu)
+        let rests = *before == moment.body && *after == moment.body;
+        moment.between = (self.exact.is_some() && share < 1.0 && !rests).then(|| self.bodies.clone());
+        if let (Some(points), Some(gpu), None) = (self.engine.device_points(), gpu, &moment.between)
             && gpu.is_same(points[0].gpu())
             && moment.fill_on(gpu, points).is_ok()
         {

@@ -227,28 +227,25 @@ fn usd_has_every_frame_in_the_units_of_its_reader() {
     whole(&scene, &OutSettings::new(folder.path().join("a.npz")));
     let mut cache = Cache::open(&folder.path().join("a.npz")).unwrap();
     let mut points = Vec::new();
-    for (target, head, first) in [
+    for (target, head) in [
         (
             Target::Any,
-            "metersPerUnit = 1\n    startTimeCode = 0\n    timeCodesPerSecond = 100\n    upAxis = \"Y\"",
-            0,
+            "metersPerUnit = 1\n    startTimeCode = 1                       \n    timeCodesPerSecond = 100\n    upAxis = \"Y\"",
         ),
         (
             Target::Blender,
-            "metersPerUnit = 1\n    startTimeCode = 1\n    timeCodesPerSecond = 100\n    upAxis = \"Z\"",
-            1,
+            "metersPerUnit = 1\n    startTimeCode = 1                       \n    timeCodesPerSecond = 100\n    upAxis = \"Z\"",
         ),
         (
             Target::Unreal,
-            "metersPerUnit = 0.01\n    startTimeCode = 0\n    timeCodesPerSecond = 100\n    upAxis = \"Z\"",
-            0,
+            "metersPerUnit = 0.01\n    startTimeCode = 1                       \n    timeCodesPerSecond = 100\n    upAxis = \"Z\"",
         ),
     ] {
         let path = folder.path().join(format!("{}.usda", target.name()));
         whole(&scene, &OutSettings { every: 4, target, ..OutSettings::new(&path) });
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.starts_with("#usda 1.0\n") && text.contains(head), "{}", &text[..700]);
-        assert!(text.contains(&format!("endTimeCode = {}", 12 + first)), "{}", &text[..700]);
+        assert!(text.contains("endTimeCode = 13 "), "{}", &text[..700]);
         assert_eq!(numbers(&text, "curveVertexCounts = "), [16.0; 60]);
         // Diameters, in the units of points.
         let units = if target == Target::Unreal { 100.0 } else { 1.0 };
@@ -270,7 +267,8 @@ fn usd_has_every_frame_in_the_units_of_its_reader() {
                 })
                 .collect();
             assert!(
-                numbers(samples, &format!("\n            {}: ", frame + first)) == wanted,
+                // A time code over codes a second is the time of the frame.
+                numbers(samples, &format!("\n            {}: ", frame + 1)) == wanted,
                 "frame {frame}"
             );
         }

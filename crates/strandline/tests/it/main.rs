@@ -4,6 +4,7 @@ mod backends;
 mod bound;
 mod cache;
 mod corpora;
+mod export_time;
 mod live;
 mod outside;
 mod pose;

@@ -10,7 +10,7 @@ use strandline::{
         groom::Guides,
         sim::{self, CpuRunner, Drive},
     },
-    scene::Model,
+    scene::{CapsuleSection, CarrierName, ColliderSection, Model, MotionName},
 };
 
 /// Strands with roots on the mannequin's skin: one leads away from it, one straight down through an ear, the neck and
@@ -90,5 +90,55 @@ fn strands_inside_the_body_are_put_outside_at_load_with_a_note() {
         let found = simulated(&prepared, &settings);
         // Error of planes on the ears, which curve within 5 mm.
         assert!(found < 5e-4, "{:?}: {found} m deep", settings.strands.method);
+    }
+}
+
+#[test]
+fn solids_of_the_world_and_of_the_head_treat_hair_at_load_alike() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("long.hair");
+    let mut groom = Groom::empty(8e-5);
+    for strand in 0..40 {
+        let root = vec3(-0.1 + 0.005 * strand as f32, 0.0, 0.05);
+        groom.push((0..=16).map(|step| root + Vec3::NEG_Y * (0.025 * step as f32)));
+    }
+    groom.save(&file).unwrap();
+    for (carrier, turn) in [
+        (CarrierName::Head, Vec3::ZERO),
+        (CarrierName::World, Vec3::ZERO),
+        // Solids of the world stay where the head turns away from them.
+        (CarrierName::World, vec3(0.0, 0.0, 30.0)),
+    ] {
+        let mut scene = Scene::default();
+        scene.groom.file = Some(file.clone());
+        (scene.groom.scale, scene.groom.up) = (Scale::Factor(1.0), Up::Y);
+        (scene.body.model, scene.motion.name, scene.motion.rotation) = (Model::None, MotionName::Still, turn);
+        scene.motion.pivot = Some(Vec3::ZERO);
+        let shoulders = CapsuleSection {
+            start: vec3(-0.25, -0.2, 0.0),
+            end: vec3(0.25, -0.2, 0.0),
+            radius: 0.06,
+            carrier,
+            ..CapsuleSection::default()
+        };
+        scene.colliders.push(ColliderSection::Capsule(shoulders));
+        let prepared = Prepared::new(&scene).unwrap();
+        assert!(
+            prepared.notes.iter().any(|note| note.contains("rested inside solids")),
+            "{:?}",
+            prepared.notes
+        );
+        let start = prepared.head.pose(0.0);
+        let depth = |place: Vec3| {
+            let place = if carrier == CarrierName::World { start.point(place) } else { place };
+            prepared.colliders[0].shape.distance(place)
+        };
+        let (_, _, left) = inside(&prepared.guides, depth);
+        assert!(left < 1e-4, "{left} m deep in a solid of {carrier:?}");
+        let model = sim::Model::new(&prepared.guides, &scene.simulation, prepared.colliders.clone()).unwrap();
+        let mut state = model.rest_state(start);
+        let report = CpuRunner::from(model).step(&mut state, &Drive::of(start));
+        // Hair that starts inside shoots out at some 8 m/s.
+        assert!(report.speed_max < 0.5, "{} m/s beside a solid of {carrier:?}", report.speed_max);
     }
 }

@@ -105,13 +105,13 @@ fn a_film_has_exactly_the_steps_of_its_time() {
 
 #[test]
 fn a_head_with_few_steps_is_where_its_motion_has_it() {
-    // Six pictures a step: the head is at the time of the last step, neither before nor behind.
+    // Six pictures a step: the head is at the time of the last step, which reaches beyond the last picture.
     let mut slow = scene(0.1, 60.0, 0.55);
     slow.simulation.volume.enabled = false;
     let (steps, state) = play(&slow, Backend::Cpu);
-    assert_eq!(steps, 5);
+    assert_eq!(steps, 6);
     let pivot = strandline::Prepared::new(&slow).unwrap().head.pivot();
-    let expected = strandline::HeadMotion::new(&slow.motion, pivot).unwrap().pose(0.5);
+    let expected = strandline::HeadMotion::new(&slow.motion, pivot).unwrap().pose(0.6);
     assert_eq!(state.body.world_from_head(), expected);
 }
 
@@ -182,9 +182,9 @@ fn a_window_with_very_short_steps_slows_time_down_and_the_head_with_it() {
     assert!(events.iter().any(|event| matches!(event, LiveEvent::Saved(_))), "{events:?}");
     assert!(!events.iter().any(|event| matches!(event, LiveEvent::Error(..))), "{events:?}");
     drop(live);
-    // Five frames of 16 steps, seen a step later; at the full rate the motion would be at 83 ms.
+    // Five frames of 16 steps; at the full rate the motion would be at 83 ms.
     let saved = Scene::load(&path).unwrap();
-    assert!((saved.film.start - 79e-4).abs() < 1e-8, "{} s", saved.film.start);
+    assert!((saved.film.start - 80e-4).abs() < 1e-8, "{} s", saved.film.start);
     let head = strandline::Prepared::new(&slow).unwrap().head;
     let prepared = strandline::Prepared::new(&saved).unwrap();
     let found = strandline::Hair::from_prepared(prepared, Backend::Cpu)

@@ -13,8 +13,8 @@ except ImportError as error:
     print(f"not checked: {error}")
     sys.exit(77)
 
-# Metres to units, axes, first time code.
-TARGETS = {"any": (1.0, "Y", 0), "unreal": (100.0, "Z", 0), "blender": (1.0, "Z", 1)}
+# Metres to units, and axes.
+TARGETS = {"any": (1.0, "Y"), "unreal": (100.0, "Z"), "blender": (1.0, "Z")}
 
 
 def cache(path):
@@ -37,7 +37,7 @@ def cache(path):
 
 
 def usd(path, target, arrays, meta):
-    scale, up, first = TARGETS[target]
+    scale, up = TARGETS[target]
     stage = Usd.Stage.Open(path)
     assert UsdGeom.GetStageUpAxis(stage) == up
     assert np.isclose(UsdGeom.GetStageMetersPerUnit(stage), 1 / scale)
@@ -54,9 +54,8 @@ def usd(path, target, arrays, meta):
     widths = np.array(curves.GetWidthsAttr().Get())
     assert (widths == arrays["widths"] * np.float32(scale)).all()
     codes = curves.GetPointsAttr().GetTimeSamples()
-    every = meta["every"]
-    assert codes == [first + every * frame for frame in range(len(arrays["times"]))], codes
-    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (first, codes[-1])
+    assert np.allclose(np.array(codes) / stage.GetTimeCodesPerSecond(), arrays["times"], rtol=0, atol=1e-9), codes
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (codes[0], codes[-1])
     head = UsdGeom.Xformable(prim.GetChild("head"))
     turn = (lambda p: np.stack([p[..., 0], -p[..., 2], p[..., 1]], -1)) if up == "Z" else (lambda p: p)
     for frame, code in enumerate(codes):

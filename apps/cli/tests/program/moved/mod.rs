@@ -93,7 +93,7 @@ fn a_cache_is_drawn_and_gone_on_from_by_its_name_alone() {
     works(at, &["sim", "--scene", "small.toml", "--out", "b.npz"]);
     assert!(std::fs::read(at.join("a.npz")).unwrap() == std::fs::read(at.join("b.npz")).unwrap());
     works(at, &["sim", "--resume", "a.npz", "--frames", "9", "--out", "c.usda"]);
-    assert!(std::fs::read_to_string(at.join("c.usda")).unwrap().contains("endTimeCode = 8"));
+    assert!(std::fs::read_to_string(at.join("c.usda")).unwrap().contains("endTimeCode = 9 "));
 }
 
 #[test]
