@@ -63,6 +63,11 @@ impl Hair {
         Self { strands: strands.collect(), roots: self.roots.iter().map(|root| place(*root)).collect() }
     }
 
+    /// Every n-th of the strands whose points are looked at.
+    pub fn fewer(&self, every: usize) -> Self {
+        Self { strands: self.strands.iter().step_by(every).cloned().collect(), roots: self.roots.clone() }
+    }
+
     /// Roots of the strands whose points are looked at.
     pub fn roots(&self) -> impl Iterator<Item = Vec3> {
         self.strands.iter().map(|strand| strand[0])

@@ -175,9 +175,14 @@ fn together(scene: &Scene, grooms: &[&Groom], mesh: &Mesh, defined: Defined) -> 
         }
         None => (placings.groom, placings.confidence) = (away(&search, grooms), AWAY),
     }
-    if placings.groom.turn == body.turn && !pose.shows_front && search.may_turn_both() {
+    let is_faceless = pose.is_person == pose.is_sure && !pose.shows_front;
+    if placings.groom.turn == body.turn && is_faceless && search.may_turn_both() {
         let turn = sample.to_front(&placings.groom, &body);
-        (placings.groom.turn, placings.body.turn) = (turn * placings.groom.turn, turn * body.turn);
+        let turned = |placing: Placing| Placing { turn: turn * placing.turn, ..placing };
+        let (groom, body) = (turned(placings.groom), turned(body));
+        if sample.scalp(&groom, &body).is_some() {
+            (placings.groom, placings.body) = (groom, body);
+        }
     }
     let is_open = scene.groom.scale == Scale::Auto && scene.body.scale == Scale::Auto;
     let is_guessed = is_open && defined == Defined::Nothing && !pose.is_person && !placings.is_foreign;

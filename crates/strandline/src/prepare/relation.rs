@@ -37,11 +37,15 @@ const CLEAR: f32 = 1.5;
 const STANDS: f32 = -0.3;
 const LOW: f32 = 0.1;
 const ON_FACE: f32 = 0.25;
-/// Step between units that are tried, the smallest size of roots over that of the skull, and how far they may reach out
+/// Step between units that are tried, their number, the smallest size of roots over that of the skull, and how far they may reach out
 /// of the body's box over its size.
-const STEP: f32 = 1.06;
+const STEP: f32 = 1.1;
+const STEPS: usize = 50;
 const SMALLEST: f32 = 0.15;
 const OUT: f32 = 0.1;
+/// Every n-th strand that is tried with all units, and axes that are then tried with finer ones.
+const FEWER: usize = 4;
+const AXES: usize = 6;
 /// Units beside [`UNITS`] that a scale found by fitting is taken for, and how near they must be.
 const FURTHER: [f32; 3] = [0.1, 0.3048, 1e-4];
 const ALIKE: f32 = 0.015;
@@ -77,6 +81,7 @@ pub(super) struct Found {
 }
 
 /// A search for the place of a groom.
+#[derive(Clone, Copy)]
 pub(super) struct Search<'a> {
     pub scene: &'a Scene,
     /// Strands in units and axes of their file.
@@ -248,30 +253,28 @@ impl Search<'_> {
             .collect()
     }
 
-    /// The unit with which roots lie nearest to the skin, for each of the axes.
+    /// The unit with which roots lie nearest to the skin, for the axes with which they lie near it.
     fn any_unit(&self) -> Vec<Placing> {
         let Some(bounds) = self.head.mesh.bounds() else { return Vec::new() };
         let width = self.head.skull.map_or(bounds.max.distance(bounds.min), |skull| skull.size.x);
-        let size = self.hair.size();
-        let smallest = SMALLEST * width / size.max(f32::MIN_POSITIVE);
-        let scales: Vec<f32> = (0..80).map(|step| smallest * math::powf(STEP, step as f32)).collect();
-        let mut found = Vec::new();
-        for turn in self.axes(true) {
-            let tried = scales.iter().map(|scale| Placing { scale: *scale, turn });
-            let tried: Vec<Placing> = tried.filter(|placing| self.is_within(placing, bounds)).collect();
-            let Some(best) = self.nearest(&tried) else { continue };
-            let finer = (-10..=10)
-                .map(|step| Placing { scale: best.scale * math::powf(STEP, 0.1 * step as f32), turn });
-            let Some(best) = self.nearest(&finer.collect::<Vec<_>>()) else { continue };
-            found.push(Placing { scale: as_unit(best.scale, self.head.placing.scale), turn });
-        }
-        found
-    }
-
-    fn nearest(&self, tried: &[Placing]) -> Option<Placing> {
-        let fits = self.fits(tried);
-        let best = (0..tried.len()).min_by(|one, two| fits[*one].total_cmp(&fits[*two]))?;
-        Some(tried[best])
+        let smallest = SMALLEST * width / self.hair.size().max(f32::MIN_POSITIVE);
+        let scales = (0..STEPS).map(|step| smallest * math::powf(STEP, step as f32));
+        let scales: Vec<f32> = scales.collect();
+        let tried = self
+            .axes(true)
+            .into_iter()
+            .flat_map(|turn| scales.iter().map(move |scale| Placing { scale: *scale, turn }));
+        let tried: Vec<Placing> = tried.filter(|placing| self.is_within(placing, bounds)).collect();
+        let fewer = self.hair.fewer(FEWER);
+        let mut near = nearest(&tried, &Search { hair: &fewer, ..*self }.fits(&tried));
+        near.truncate(AXES);
+        let around = |best: &Placing| {
+            let Placing { scale, turn } = *best;
+            (-10..=10).map(move |step| Placing { scale: scale * math::powf(STEP, 0.1 * step as f32), turn })
+        };
+        let finer: Vec<Placing> = near.iter().flat_map(around).collect();
+        let found = nearest(&finer, &self.fits(&finer)).into_iter();
+        found.map(|best| Placing { scale: as_unit(best.scale, self.head.placing.scale), ..best }).collect()
     }
 
     /// True where roots reach out of a box by little.
@@ -298,6 +301,19 @@ pub(super) fn fits(mesh: &Mesh, hair: &[Hair]) -> Vec<f32> {
         (at(50) + FARTHER * at(80)) / hair.size().max(f32::MIN_POSITIVE)
     };
     hair.iter().map(fit).collect()
+}
+
+/// The nearest place of each of some axes, the nearest first.
+fn nearest(tried: &[Placing], fits: &[f32]) -> Vec<Placing> {
+    let mut order: Vec<usize> = (0..tried.len()).collect();
+    order.sort_by(|one, two| fits[*one].total_cmp(&fits[*two]));
+    let mut found: Vec<Placing> = Vec::new();
+    for index in order {
+        if found.iter().all(|other| other.turn != tried[index].turn) {
+            found.push(tried[index]);
+        }
+    }
+    found
 }
 
 /// A usual unit near a scale found by fitting, or that in three digits.
