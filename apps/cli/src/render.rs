@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use strandline::mesh::Placement;
 use strandline::{
     Backend, Cache, Error, Event, Player, Scene,
     file::{Film, PictureFiles},
@@ -21,6 +22,8 @@ struct RenderReport {
     backend: String,
     render_backend: String,
     frames: usize,
+    /// Placement of groom and body, and the confidence in it.
+    placement: Placement,
     follow_strands: usize,
     segments: usize,
     /// Pictures that were drawn while the next frame was simulated, all but the last; `None` for a film of one.
@@ -102,7 +105,10 @@ fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow
     stoppable.finish();
     notes.iter().for_each(|note| output::note(note));
     if json {
-        output::program(&format!("{}\n", serde_json::json!({ "frames": files.len(), "files": files })));
+        output::program(&format!(
+            "{}\n",
+            serde_json::json!({ "frames": files.len(), "placement": player.placement(), "files": files })
+        ));
     } else {
         let last = files.last().map_or(path, PathBuf::as_path);
         let count = if files.len() == 1 { "a file".to_owned() } else { format!("{} files", files.len()) };
@@ -168,6 +174,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
         backend: source.unwrap_or_else(|| player.simulated_on()),
         render_backend: player.drawn_on(),
         frames: beside.len() + alone.len(),
+        placement: player.placement(),
         follow_strands: strands,
         segments,
         ms_per_frame_beside_simulation: (beside.len() > 0).then(|| beside.times()),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use strandline::mesh::Placement;
 use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Stiffening, Written};
 
 use crate::arguments::SimOptions;
@@ -19,6 +20,8 @@ pub struct SimReport {
     pub strands: usize,
     pub points_per_strand: usize,
     pub steps: usize,
+    /// Placement of groom and body, and the confidence in it.
+    pub placement: Placement,
     pub ms_per_step: Times,
     pub stretch: Stretch,
     pub penetration_max_m: f32,
@@ -115,6 +118,7 @@ pub struct Ended {
     pub points_per_strand: usize,
     pub drift: Drift,
     pub stiffening: Stiffening,
+    pub placement: Placement,
     /// \[s\].
     pub time_step: f32,
     /// Of the pressure solve.
@@ -134,6 +138,7 @@ impl Ended {
             points_per_strand: guides.points_per_strand(),
             drift: player.drift()?,
             stiffening: player.stiffening(),
+            placement: player.placement(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         })
@@ -177,6 +182,7 @@ impl Steps {
             strands,
             points_per_strand,
             steps: self.times.len(),
+            placement: end.placement,
             ms_per_step: self.times.times(),
             stretch: Stretch { mean: mean(self.stretch), max: self.stretch_max },
             penetration_max_m: self.penetration_max,

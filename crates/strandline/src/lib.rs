@@ -57,7 +57,7 @@ pub mod look {
 /// Meshes and the distance to them.
 pub mod mesh {
     pub use crate::body::{Aabb, DistanceGrid, MeshFormat, SignedDistance};
-    pub use crate::prepare::mesh_unit;
+    pub use crate::prepare::{Placement, mesh_unit};
 }
 
 /// GPUs.

@@ -1,3 +1,4 @@
+use crate::mesh::Placement;
 use crate::{
     Cache, Devices, Error, Out, OutSettings, Prepared, Scene, Sources, What, Written,
     cache::drawn,
@@ -29,6 +30,7 @@ pub struct Player {
     undrawn: bool,
     /// True after the simulation failed.
     failed: bool,
+    placement: Placement,
     notes: Vec<String>,
     /// File that frames are written to as they are made.
     out: Option<Out>,
@@ -85,7 +87,7 @@ impl Player {
         devices: impl Into<Devices>,
         draw: bool,
     ) -> Result<Self, Error> {
-        let mut notes = std::mem::take(&mut prepared.notes);
+        let (mut notes, placement) = (std::mem::take(&mut prepared.notes), prepared.placement);
         let mut session = Session::open(prepared, devices.into())?;
         notes.extend(session.take_notes());
         let here = session.simulation().end().world_from_head();
@@ -102,6 +104,7 @@ impl Player {
             taken: 0,
             undrawn: false,
             failed: false,
+            placement,
             notes,
             out: None,
             cache: None,
@@ -230,6 +233,11 @@ impl Player {
     /// Frames whose events were all emitted.
     pub fn frames_done(&self) -> u32 {
         self.taken - u32::from(self.undrawn)
+    }
+
+    /// Placement of groom and body in head space, and the confidence in it.
+    pub fn placement(&self) -> Placement {
+        self.placement
     }
 
     /// Mends, guesses and omissions of the loading.

@@ -9,9 +9,10 @@ use glam::Vec3;
 use strandline_base::SettingError;
 
 use super::map::Map;
+use super::placing::Defined;
 use crate::{
     Error, Scene,
-    body::Mesh,
+    body::{Mesh, MeshFormat},
     groom::{
         Groom,
         format::{self, Cleaning, LoadOptions, Scale, Up},
@@ -116,6 +117,20 @@ impl Sources {
         };
         let noted = |note: String| format!("{}: {note}", name.display());
         Ok((mesh, notes.into_iter().map(noted).collect()))
+    }
+
+    /// Definitions that the format of a mesh makes; none for a mesh in memory. Earlier avatars look along -z, later ones
+    /// along +z.
+    pub(super) fn defined(&self, name: &Path) -> Defined {
+        let format = MeshFormat::of(name).ok().filter(|_| !self.meshes.contains_key(name));
+        match format {
+            Some(format) if !format.defines_space() => Defined::Nothing,
+            Some(_) if name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrm")) => {
+                Defined::Up
+            }
+            Some(_) => Defined::All,
+            None => Defined::Nothing,
+        }
     }
 
     /// The part of a mesh that has a name: of a mesh in memory the entry of that name.

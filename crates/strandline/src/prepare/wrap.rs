@@ -25,7 +25,7 @@ pub(super) fn onto(
     shape: Option<&Shape>,
 ) -> Result<Option<String>, Error> {
     let built_in = Skull::of(&Mannequin::new().mesh().positions);
-    let Some((from, to)) = built_in.zip(Skull::of(&mesh.positions)) else { return Ok(None) };
+    let Some((from, to)) = built_in.zip(Skull::of_body(mesh)) else { return Ok(None) };
     let ratio = to.size / from.size;
     let scale = Vec3::new(ratio.x, ratio.x, ratio.y);
     let place = |point: Vec3| {

@@ -323,7 +323,7 @@ fn files_of_one_groom_are_placed_together() {
     scene.body.file = Some("head.obj".into());
     let notes = Prepared::new(&scene).unwrap().notes;
     let said = |words: &str| notes.iter().any(|note| note.contains(words));
-    assert!(said("turned by 180 degrees") && said("the head of a person"), "{notes:?}");
+    assert!(said("turned by 180 degrees") && said("a unit of the groom is 0.00254 m"), "{notes:?}");
 }
 
 #[test]
