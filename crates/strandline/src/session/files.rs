@@ -1,6 +1,6 @@
 //! Files of moving hair that a session writes and resumes from.
 
-use super::{Executor, Session};
+use super::{Executor, Session, resuming};
 use crate::{
     Cache, Error, OutSettings, What, Written,
     body::BodyFrame,
@@ -54,12 +54,15 @@ impl<E: Executor> Session<E> {
             cache.check_guides(strands, points)?;
         }
         let path = cache.path().to_owned();
-        let refuse = |message: String| Error::Cache { path, message };
+        let refuse = |message: String| Error::Cache { path: path.clone(), message };
         let Some(state) = cache.snapshot(strands, points)? else {
             return Err(refuse(
                 "it holds no state, expected the state_* arrays that `sim --out` writes".to_owned(),
             ));
         };
+        let differences =
+            cache.scene().map_or_else(|_| Ok(None), |former| resuming::check(&former, &self.scene));
+        let differences = differences.map_err(&refuse)?;
         let made = state.frame + 1;
         if made >= frames {
             return Err(refuse(format!(
@@ -69,6 +72,7 @@ impl<E: Executor> Session<E> {
         let steps = cache.steps();
         self.with(|simulation| simulation.restore(&state, steps))?;
         self.drawn = made;
+        self.view.painter.notes.extend(differences);
         if let Some(out) = out {
             out.copy(cache, &state)?;
         }

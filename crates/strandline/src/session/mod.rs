@@ -13,6 +13,7 @@ pub(crate) mod moment;
 mod open;
 mod painter;
 mod pick;
+mod resuming;
 mod simulation;
 mod sync;
 mod view;
