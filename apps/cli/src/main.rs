@@ -21,6 +21,7 @@ mod reading;
 mod render;
 mod sim;
 mod statistics;
+mod values;
 #[cfg(feature = "window")]
 mod view;
 #[cfg(not(feature = "window"))]
