@@ -1,5 +1,7 @@
 //! Bound strands placed on a GPU against the same on the CPU.
 
+use std::sync::Arc;
+
 use glam::{Quat, Vec3};
 use strandline_body::{BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Pose, Shape, Solids};
 use strandline_checks::gpu;
@@ -9,18 +11,18 @@ use strandline_render::cpu::{Curves, interpolate, keep_outside, tessellate};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{BodyLook, Camera, FrameInput, LevelOfDetail, Light, Look, PictureSettings};
 
-const POINTS: usize = 12;
+pub(crate) const POINTS: usize = 12;
 const STRANDS: usize = 1200;
 
 /// Strands of a style, of which every thirtieth is a guide.
-fn binding() -> Binding {
+pub(crate) fn binding() -> Arc<Binding> {
     let groom = StyleSettings { strand_count: STRANDS, ..StyleSettings::new(Style::Long) }.grow().unwrap();
     let chosen: Vec<usize> = (0..groom.strand_count()).step_by(30).collect();
     let resample = |groom| Guides::resample(groom, POINTS).unwrap();
-    Binding::new(&groom, &chosen, resample(&groom), resample(&groom.select(&chosen))).unwrap()
+    Binding::new(&groom, &chosen, resample(&groom), resample(&groom.select(&chosen))).unwrap().into()
 }
 
-fn pose() -> Pose {
+pub(crate) fn pose() -> Pose {
     Pose { rotation: Quat::from_rotation_y(0.5), translation: Vec3::new(0.3, -0.1, 0.2) }
 }
 
@@ -62,12 +64,12 @@ fn on_cpu(binding: &Binding, solids: &Solids) -> Vec<Vec3Lanes> {
     places
 }
 
-fn look() -> Look {
+pub(crate) fn look() -> Look {
     Look { follow_strands: 3, ..Look::brown() }
 }
 
 /// Strands and the points drawn of them; `None` without a GPU.
-fn on_gpu(binding: &Binding, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec3>)> {
+fn on_gpu(binding: &Arc<Binding>, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec3>)> {
     let settings = PictureSettings::sized(32, 32);
     let mut renderer = GpuRenderer::new(&gpu()?, binding.strands(), None, &settings).unwrap();
     renderer.bind(binding, solids).unwrap();

@@ -1,7 +1,7 @@
 //! Strands drawn where a check wants them on the screen, without any look.
 
 use glam::Vec3;
-use strandline_body::{Mesh, Pose};
+use strandline_body::{BodyFrame, Mesh};
 use strandline_render::cpu::shade::skin::Skin;
 use strandline_render::cpu::{Draw, DrawInput, Occlusion, Radiances};
 use strandline_render::{BodyLook, Camera, Environment};
@@ -59,7 +59,7 @@ impl Screen {
             eye: Vec3::Z * DISTANCE,
         };
         let mut draw = Draw::new(body);
-        draw.place_body(Pose::IDENTITY);
+        draw.place_body(&BodyFrame::REST);
         draw.draw(&input, &skin, &mut samples);
         samples
     }

@@ -10,6 +10,10 @@ mod threads;
 /// The module that the shaders of every crate import as `package::kit`.
 const KIT: &str = include_str!("kit/kit.wesl");
 
+/// The module of signed distances that simulation and pictures import as `package::solid_table`, with a module
+/// `solid_rows` of their own.
+const SOLID_TABLE: &str = include_str!("../body/src/solid_table.wesl");
+
 /// Marks of an entry point.
 const ENTRIES: [&str; 3] = ["@compute", "@vertex", "@fragment"];
 
@@ -50,7 +54,7 @@ fn shaders(folder: &Path) -> BTreeMap<String, String> {
                 let text = std::fs::read_to_string(&path).expect("a shader is text");
                 let other = found.insert(name.to_owned(), text);
                 assert!(
-                    other.is_none() && name != "kit",
+                    other.is_none() && !["kit", "solid_table"].contains(&name),
                     "two modules are called {name}: {}",
                     path.display()
                 );
@@ -75,6 +79,8 @@ fn beside_kit(shaders: &BTreeMap<String, String>) -> PathBuf {
     let sizes = format!("const THREADS = {threads}u;\nconst MANY = {many}u;\n");
     let kit = format!("{KIT}\n// Threads of a workgroup: threads.rs.\n{sizes}");
     std::fs::write(package.join("kit.wesl"), kit).expect("cargo made the folder");
+    let table = with_constants(SOLID_TABLE);
+    std::fs::write(package.join("solid_table.wesl"), table).expect("cargo made the folder");
     package
 }
 

@@ -99,7 +99,11 @@ impl Mesh {
 /// Vertices at one position get one normal, so that seams do not show. Vertices of no face, or of
 /// faces without area, get the y axis.
 pub(crate) fn vertex_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let welded = welded_vertices(positions);
+    normals_about(&welded_vertices(positions), positions, triangles)
+}
+
+/// The same for vertices that were welded before: see [`welded_vertices`].
+pub(crate) fn normals_about(welded: &[u32], positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![Vec3::ZERO; positions.len()];
     for triangle in triangles {
         let [a, b, c] = triangle.map(|corner| positions[corner as usize]);

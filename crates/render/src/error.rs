@@ -9,6 +9,9 @@ pub enum RenderError {
     /// A setting outside its range.
     #[error(transparent)]
     Setting(#[from] SettingError),
+    /// A body that cannot be drawn.
+    #[error(transparent)]
+    Body(#[from] strandline_body::BodyError),
     /// More memory than a picture may take.
     #[error(
         "{what} would take {needed} MiB, more than the {allowed} MiB that a picture may take: \

@@ -8,6 +8,7 @@ use strandline_groom::{Binding, Guides, Vec3Lanes};
 use crate::cpu::strands::bind::{Carried, bind};
 use crate::cpu::{Curves, interpolate, keep_outside, tessellate};
 use crate::strands::Strands;
+use crate::strands::roots::RootTurns;
 use crate::{DetailLevel, Look};
 
 /// Grows the strands that pictures draw of a groom, in some detail; keeps its memory from call to call.
@@ -15,6 +16,7 @@ use crate::{DetailLevel, Look};
 pub struct Growth {
     guides: Guides,
     carried: Option<Carried>,
+    turns: RootTurns,
     curves: Curves,
     strands: Strands,
 }
@@ -22,7 +24,13 @@ pub struct Growth {
 impl Growth {
     /// Growth about strands at rest, head space.
     pub fn new(guides: &Guides) -> Self {
-        Self { guides: guides.clone(), carried: None, curves: Curves::default(), strands: Strands::default() }
+        Self {
+            guides: guides.clone(),
+            carried: None,
+            turns: RootTurns::default(),
+            curves: Curves::default(),
+            strands: Strands::default(),
+        }
     }
 
     /// Growth about the strands of a binding, which guides carry; all that is drawn of them stays out of the solids.
@@ -39,12 +47,12 @@ impl Growth {
         look: &Look,
         level: &DetailLevel,
     ) -> &Strands {
-        let Self { guides, carried, curves, strands } = self;
+        let Self { guides, carried, turns, curves, strands } = self;
         carried.iter_mut().for_each(|carried| bind(carried, positions, body));
         let points = carried.as_ref().map_or(positions, Carried::places);
-        let head = body.world_from_head();
-        tessellate(points, guides, &head, level, curves);
-        interpolate(curves, guides, &head, look, level, strands);
+        turns.place(body, carried.as_ref().map(Carried::binding), guides.strand_count());
+        tessellate(points, guides, turns, level, curves);
+        interpolate(curves, guides, turns, look, level, strands);
         if let Some(carried) = carried {
             let solids = carried.solids().placed(body);
             keep_outside(strands, curves, guides.points_per_strand(), &solids);

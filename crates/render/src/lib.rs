@@ -52,3 +52,4 @@ pub use preset::Preset;
 pub use scatter::source::OwnColors;
 pub use shadow::{ShadowMap, Shadows};
 pub use strands::Strands;
+pub use strands::roots::{RootTurn, RootTurns};

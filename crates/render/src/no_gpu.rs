@@ -1,5 +1,7 @@
 //! Replacement of the GPU renderer in a build without GPUs: it cannot be made.
 
+use std::sync::Arc;
+
 use strandline_body::{Mesh, Solids};
 use strandline_gpu::{Buffer, Gpu};
 use strandline_groom::{Binding, Guides};
@@ -36,7 +38,7 @@ impl GpuRenderer {
         match *self {}
     }
 
-    pub fn bind(&mut self, _: &Binding, _: &Solids) -> Result<(), RenderError> {
+    pub fn bind(&mut self, _: &Arc<Binding>, _: &Solids) -> Result<(), RenderError> {
         match *self {}
     }
 

@@ -15,7 +15,7 @@ use crate::frame::samples::Samples;
 use crate::frame::{Stage, bounds, middle};
 use crate::scatter::source::OwnColors;
 use crate::shadow::Shadows;
-use crate::strands::{Strands, scalp::root_densities};
+use crate::strands::{Strands, roots::RootTurns, scalp::root_densities};
 use crate::{DetailLevel, FrameInput, Picture, PictureSettings};
 
 /// Input of the stages that stays, and memory that they use again from frame to frame.
@@ -26,6 +26,7 @@ pub(super) struct Scratch {
     pub carried: Option<Carried>,
     /// Box around the strands at rest \[m\], head space.
     pub bounds: Aabb,
+    pub turns: RootTurns,
     pub curves: Curves,
     pub strands: Strands,
     pub shadows: Shadows,
@@ -48,6 +49,7 @@ impl Scratch {
             guides: guides.clone(),
             carried: None,
             bounds: bounds(guides),
+            turns: RootTurns::default(),
             curves: Curves::default(),
             strands: Strands::default(),
             shadows: Shadows::default(),
@@ -79,16 +81,16 @@ impl Frame<'_> {
     /// Runs a stage.
     pub fn run(&mut self, stage: Stage) {
         let Self { settings, input, level, picture, .. } = self;
-        let Scratch { guides, carried, curves, strands, shadows, resolve, samples, .. } = &mut *self.scratch;
-        let pose = &input.body.world_from_head();
+        let Scratch { guides, carried, turns, curves, strands, shadows, .. } = &mut *self.scratch;
         match stage {
             Stage::Bind => carried.iter_mut().for_each(|carried| bind(carried, input.positions, input.body)),
             Stage::Tessellate => {
                 let points = carried.as_ref().map_or(input.positions, |carried| carried.places());
-                tessellate(points, guides, pose, level, curves);
+                turns.place(input.body, carried.as_ref().map(Carried::binding), guides.strand_count());
+                tessellate(points, guides, turns, level, curves);
             }
             Stage::Interpolate => {
-                interpolate(curves, guides, pose, input.look, level, strands);
+                interpolate(curves, guides, turns, input.look, level, strands);
                 if let Some(carried) = carried {
                     let solids = carried.solids().placed(input.body);
                     keep_outside(strands, curves, guides.points_per_strand(), &solids);
@@ -99,6 +101,7 @@ impl Frame<'_> {
             Stage::Shade => self.shade(),
             Stage::Draw => self.draw(),
             Stage::Resolve => {
+                let Scratch { resolve, samples, .. } = &mut *self.scratch;
                 picture.iter_mut().for_each(|picture| resolve.resolve(samples, settings, picture));
             }
         }
@@ -113,7 +116,7 @@ impl Frame<'_> {
         let middle = self.middle();
         let FrameInput { body, lights, look, .. } = *self.input;
         let Scratch { strands, shadows, draw, .. } = &mut *self.scratch;
-        draw.place_body(body.world_from_head());
+        draw.place_body(body);
         opacity_depth(strands, draw.shadow_body(), lights, middle, &look.hair_shadow(), shadows);
     }
 

@@ -104,6 +104,7 @@ impl Renderer {
     /// Runs the stages of a frame, the last where there is a picture for it.
     fn run(&mut self, input: &FrameInput, picture: Option<&mut Picture>) -> Result<FrameReport, RenderError> {
         input.validate()?;
+        input.check_body(self.scratch.draw.vertex_count())?;
         let level = input.level(self.scratch.bounds, self.settings.height, &self.scratch.guides);
         let (strand_count, points) =
             (self.scratch.guides.strand_count(), self.scratch.guides.points_per_strand());

@@ -39,6 +39,14 @@ impl FrameInput<'_> {
         check_lights(self.lights)
     }
 
+    /// Checks the body of pictures with a mesh of a number of vertices, where there is a mesh.
+    ///
+    /// # Errors
+    /// Numbers that are not finite; skin vertices of another mesh.
+    pub(crate) fn check_body(&self, vertices: Option<usize>) -> Result<(), RenderError> {
+        Ok(self.body.check(None, vertices)?)
+    }
+
     /// Detail of guides that lie in a box at rest \[m\], head space, in a picture of a number of rows.
     pub(crate) fn level(&self, bounds: Aabb, rows: u32, guides: &Guides) -> DetailLevel {
         let (detail, eye) =

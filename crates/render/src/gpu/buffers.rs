@@ -1,7 +1,6 @@
 //! Buffers on the device.
 
-use glam::Vec3;
-use strandline_body::Mesh;
+use glam::Quat;
 use strandline_gpu::{Buffer, Gpu, GpuError, Scan, Texture, wgpu};
 use strandline_groom::Guides;
 
@@ -9,9 +8,9 @@ use super::inputs::{Frame, LightSource, body_stride};
 use super::records::{Curve, Root, Tap, Vertex};
 use super::scene::Scene;
 use super::shadow::fit::BOX;
+use super::skin::Skin;
 use super::{MAX_LIGHTS, MAX_SHADOWS, ORDER_STEPS};
 use crate::strands::curve::skin_axes;
-use crate::strands::scalp::root_densities;
 use crate::{PictureSettings, RenderError};
 
 /// Format of the samples: the widest that blends on every device.
@@ -46,43 +45,20 @@ pub(super) struct Groom {
 }
 
 impl Groom {
-    pub fn new(gpu: &Gpu, guides: &Guides, body: Option<&Mesh>) -> Result<Self, GpuError> {
-        let spread = |guide: usize| guides.spreads().map_or(1.0, |spreads| spreads[guide]);
-        let roots: Vec<Root> = guides
-            .root_normals()
-            .iter()
-            .zip(guides.widths())
-            .enumerate()
-            .map(|(guide, (&normal, &width))| {
-                let [first, second] = skin_axes(normal).map(|axis| axis.to_array());
-                Root { normal: normal.to_array(), width, first, spread: spread(guide), second, unused: 0.0 }
-            })
-            .collect();
+    pub fn new(gpu: &Gpu, guides: &Guides, skin: &Skin) -> Result<Self, GpuError> {
         let own: Vec<[f32; 4]> = own(guides).collect();
         let clumps = Buffer::new(gpu, "clumps", guides.strand_count() + own.len())?;
         clumps.write_at(guides.strand_count(), &own)?;
-        let empty = Mesh::default();
-        let mesh = body.unwrap_or(&empty);
-        let vertices: Vec<Vertex> = mesh
-            .positions
-            .iter()
-            .zip(&mesh.normals)
-            .zip(root_densities(&mesh.positions, guides))
-            .map(|((position, normal), roots): ((&Vec3, &Vec3), f32)| {
-                let (position, normal) = (position.to_array(), normal.to_array());
-                Vertex { position, roots, normal, unused: 0.0 }
-            })
-            .collect();
         Ok(Self {
             frame: Buffer::with_tail::<LightSource>(gpu, "frame and lights", 1, MAX_LIGHTS)?,
             bounds: Buffer::new(gpu, "bounds", BOUNDS)?,
             cubes: Buffer::new(gpu, "surroundings", 2 * CELLS)?,
             areas: Buffer::new(gpu, "areas", CELLS)?,
             places: Buffer::from_slice(gpu, "guide points", floats(guides.positions()))?,
-            roots: Buffer::from_slice(gpu, "roots", &roots)?,
+            roots: Buffer::from_slice(gpu, "roots", &roots(guides, |_| Quat::IDENTITY))?,
             clumps,
-            triangles: Buffer::from_slice(gpu, "triangles", mesh.triangles.as_flattened())?,
-            vertices: Buffer::from_slice(gpu, "vertices", &vertices)?,
+            triangles: Buffer::from_slice(gpu, "triangles", skin.corners())?,
+            vertices: Buffer::from_slice(gpu, "vertices", &skin.vertices())?,
             starts: Buffer::new(gpu, "starts", ORDER_STEPS)?,
             start_totals: Scan::totals(gpu, ORDER_STEPS)?,
         })
@@ -101,6 +77,18 @@ impl Groom {
         let planes = std::iter::repeat_n([u32::MAX, u32::MAX, 0, 0], 2 * MAX_SHADOWS).flatten();
         [[u32::MAX; 3], [0; 3]].into_iter().flatten().chain(planes).collect()
     }
+}
+
+/// The roots of all strands, their axes turned in head space.
+pub(super) fn roots(guides: &Guides, turn: impl Fn(usize) -> Quat) -> Vec<Root> {
+    let spread = |guide: usize| guides.spreads().map_or(1.0, |spreads| spreads[guide]);
+    let each = guides.root_normals().iter().zip(guides.widths()).enumerate();
+    each.map(|(guide, (&normal, &width))| {
+        let [first, second] = skin_axes(normal).map(|axis| (turn(guide) * axis).to_array());
+        let normal = (turn(guide) * normal).to_array();
+        Root { normal, width, first, spread: spread(guide), second, unused: 0.0 }
+    })
+    .collect()
 }
 
 /// Colour and share of the largest width at every guide point, where the groom has either.

@@ -19,6 +19,7 @@ mod scatter;
 mod scene;
 mod shade;
 mod shadow;
+mod skin;
 mod stages;
 mod strands;
 

@@ -37,6 +37,11 @@ impl GpuRenderer {
         Ok(buffer.read_first(count)?)
     }
 
+    /// Times that moved vertices of the body were written to the device.
+    pub fn skin_writes(&self) -> u64 {
+        self.skin.writes()
+    }
+
     /// Strands of the last frame \[m\], world space, shape `[block][point]` of lanes: the host's points, or
     /// those of bound strands.
     ///

@@ -8,12 +8,12 @@ use strandline_groom::{Binding, Guides};
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::codes;
-use super::draw::body::ball;
 use super::frame::{Bounds, Held, record};
 use super::resolve::{Own, PICTURE, ToFormat};
 use super::scatter::light_grid::LightGrid;
 use super::scene::Scene;
 use super::shade::{LayerColoring, Numbers};
+use super::skin::Skin;
 use super::stages::{Kernels, Stages};
 use super::strands::device_points::DevicePoints;
 use super::strands::points::GuidePoints;
@@ -30,11 +30,8 @@ pub struct GpuRenderer {
     pub(super) guides: Guides,
     /// Box around the guides at rest \[m\], head space.
     pub(super) bounds: Aabb,
-    /// A ball around the body: middle \[m\], head space, and radius \[m\].
-    body_ball: (Vec3, f32),
-    vertex_count: usize,
-    triangle_count: usize,
-    body_kind: u32,
+    /// The body.
+    pub(super) skin: Skin,
     pub(super) settings: PictureSettings,
     pub(super) kernels: Kernels,
     pub(super) groom: Groom,
@@ -81,16 +78,13 @@ impl GpuRenderer {
         settings: &PictureSettings,
     ) -> Result<Self, RenderError> {
         settings.validate()?;
+        let skin = Skin::new(body, guides);
         let made = Self {
             bounds: bounds(guides),
-            body_ball: ball(body),
-            vertex_count: body.map_or(0, |mesh| mesh.positions.len()),
-            triangle_count: body.map_or(0, |mesh| mesh.triangles.len()),
-            body_kind: body
-                .map_or(codes::NO_BODY, |mesh| if mesh.is_closed() { codes::CLOSED } else { codes::OPEN }),
             settings: *settings,
             kernels: Kernels::new(gpu)?,
-            groom: Groom::new(gpu, guides, body)?,
+            groom: Groom::new(gpu, guides, &skin)?,
+            skin,
             strands: None,
             maps: None,
             targets: Targets::new(gpu, settings)?,
@@ -149,7 +143,7 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// Strands that are not the renderer's; whatever the device refuses.
-    pub fn bind(&mut self, binding: &Binding, solids: &Solids) -> Result<(), RenderError> {
+    pub fn bind(&mut self, binding: &Arc<Binding>, solids: &Solids) -> Result<(), RenderError> {
         self.points.bind(&self.gpu, &self.groom, &self.guides, binding, solids)
     }
 
@@ -224,6 +218,9 @@ impl GpuRenderer {
         let (given, lights) = (input.lights, at_samples(input.lights, input.look.suns()));
         let input = &FrameInput { lights: &lights, ..*input };
         self.points.check(&self.gpu, &self.groom, input, points)?;
+        input.check_body(self.skin.vertex_count())?;
+        self.skin.take(input.body, &self.groom.vertices)?;
+        self.points.take(&self.groom, &self.guides, input.body)?;
         let settings = self.settings;
         let scene = self.scene(input, &settings, points.map_or(1.0, |points| points.share));
         self.prepare(&scene)?;
@@ -304,10 +301,10 @@ impl GpuRenderer {
             share,
             guide_count: self.guides.strand_count(),
             guide_points: self.guides.points_per_strand(),
-            vertex_count: self.vertex_count,
-            triangle_count: self.triangle_count,
-            body_kind: self.body_kind,
-            body_ball: self.body_ball,
+            vertex_count: self.skin.vertex_count().unwrap_or(0),
+            triangle_count: self.skin.corners().len() / 3,
+            body_kind: self.skin.kind(),
+            body_ball: self.skin.ball(),
             own: codes::own_kinds(&self.guides),
             middle,
             own_color: self.own_colors.map(|own| own.mean),

@@ -2,6 +2,7 @@
 
 pub(crate) mod clump;
 pub(crate) mod curve;
+pub(crate) mod roots;
 pub(crate) mod scalp;
 
 use glam::Vec3;

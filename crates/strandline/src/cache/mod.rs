@@ -5,7 +5,6 @@
 //! alone: strands, and whatever attributes they have; every writer takes them from there.
 
 mod arrays;
-mod bodies;
 pub(crate) mod drawn;
 mod files;
 mod meta;

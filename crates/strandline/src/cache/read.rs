@@ -13,13 +13,13 @@ use strandline_base::{
 };
 
 use super::arrays::{check_memory, expect, missing, numbers, read_meta, starts, text};
-use super::bodies::{self, LISTS, OF_FRAMES, OF_STATE, WIDTHS};
 use super::{Snapshot, What, meta, relative, snapshot};
 use crate::{
     Error, Scene,
     body::{BodyFrame, Pose},
     groom::{LANES, Vec3Lanes, block_count},
     sim::Part,
+    strands::bodies::{self, LISTS, OF_FRAMES, OF_STATE, WIDTHS},
 };
 
 /// Farther than this \[m\] is no hair.

@@ -2,11 +2,10 @@
 
 use strandline_base::npz::Array;
 
-use super::bodies::{self, LISTS, Lists, OF_STATE};
-
 use crate::{
     body::BodyFrame,
     sim::{Checkpoint, Part},
+    strands::bodies::{self, LISTS, Lists, OF_STATE},
 };
 
 /// The simulation after a frame.

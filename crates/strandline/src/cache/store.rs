@@ -7,13 +7,17 @@ use strandline_base::npz::{Array, Growing, GrowingNpz, Kind};
 
 use super::{
     Frame, Snapshot,
-    bodies::{self, Lists, OF_FRAMES},
     meta::{LAYOUT, Meta, Report},
     relative,
     shape::{Attributes, Shape},
     snapshot,
 };
-use crate::{Error, Scene, body::BodyFrame, sim::StepReport};
+use crate::{
+    Error, Scene,
+    body::BodyFrame,
+    sim::StepReport,
+    strands::bodies::{self, Lists, OF_FRAMES},
+};
 
 /// A cache under way.
 pub(super) struct Store {

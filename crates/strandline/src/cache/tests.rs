@@ -169,3 +169,23 @@ fn attributes_that_there_are_leave_with_the_strands() {
     assert_eq!(groom.colors.unwrap()[14], [0.25, 0.5, 1.0]);
     assert_eq!(groom.widths.at(2, 14), 1e-5 * 14.0);
 }
+
+/// Each further piece of the body is a transform of its own; it rides the head in frames that lack it.
+#[test]
+fn usd_has_a_transform_for_each_piece_of_the_body() {
+    let (folder, guides, scene) = (tempfile::tempdir().unwrap(), guides(3, 5), Scene::demo());
+    let shape = Shape::new(What::Guides, &scene, leaving(&guides)).unwrap();
+    let points = vec![Vec3::Y; shape.point_count()];
+    let moved = crate::body::Pose { translation: Vec3::new(0.5, 1.0, -2.0), ..crate::body::Pose::IDENTITY };
+    let two = BodyFrame::REST.with_pieces([moved]);
+    let path = folder.path().join("pieces.usda");
+    let mut usd = usd::Usd::new(&path, &scene, &shape, Target::Unreal).unwrap();
+    usd.add(&Frame { number: 0, time: 0.0, points: &points, body: &REST }).unwrap();
+    // Three time codes of a thirtieth of a second.
+    usd.add(&Frame { number: 3, time: 0.1, points: &points, body: &two }).unwrap();
+    usd.finish(true).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (_, piece) = text.split_once("def Xform \"piece_1\"").unwrap();
+    assert!(text.contains("def Xform \"head\"") && text.matches("def Xform").count() == 3, "{text}");
+    assert!(piece.contains("0: (0.0, -0.0, 0.0),\n            3: (50.0, 200.0, 100.0),"), "{piece}");
+}

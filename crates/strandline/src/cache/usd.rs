@@ -1,4 +1,5 @@
-//! Text USD: one prim of linear curves with a sample of points for every frame, and the head's motion beside it.
+//! Text USD: one prim of linear curves with a sample of points for every frame, and a transform for the head and each
+//! further piece of the body beside it.
 //!
 //! Attributes and conventions: UsdGeomBasisCurves and primvars as OpenUSD's schema has them; for Unreal the
 //! groom_* primvars of its groom schema 1.5.
@@ -36,9 +37,9 @@ pub(super) struct Usd {
     widest: f32,
     /// One frame, in pieces.
     texts: Vec<String>,
-    /// Text behind the points: the box around them and the head, for each frame.
+    /// Text behind the points: the box around them and the pieces of the body, for each frame.
     boxes: Vec<(f64, [Vec3; 2])>,
-    heads: Vec<(f64, Pose)>,
+    pieces: Vec<(f64, Vec<Pose>)>,
 }
 
 /// Units and axes of a file.
@@ -99,7 +100,7 @@ impl Usd {
             widest: widths.fold(0.0, |widest, width| width.max(widest)),
             texts: Vec::new(),
             boxes: Vec::new(),
-            heads: Vec::new(),
+            pieces: Vec::new(),
         };
         let (head, ends_at) = usd.head(target);
         usd.ends_at = ends_at.map(|at| at as u64);
@@ -220,33 +221,49 @@ impl Usd {
         self.texts = texts;
         let half = Vec3::splat(0.5 * space.length(self.widest));
         self.boxes.push((code, [low - half, high + half]));
-        self.heads.push((code, space.pose(&frame.body.world_from_head())));
+        let piece = |piece| space.pose(&frame.body.piece(piece));
+        self.pieces.push((code, (0..frame.body.piece_count()).map(piece).collect()));
         Ok(())
     }
 
-    /// Ends the file of a whole film, or of one that was stopped early; where it lies.
+    /// Appends the prim of a piece; in frames without it the piece rides the head.
+    fn put_piece(&self, text: &mut String, piece: usize) {
+        let poses = || {
+            let of_frame =
+                |(code, pieces): &(f64, Vec<Pose>)| (*code, *pieces.get(piece).unwrap_or(&pieces[0]));
+            self.pieces.iter().map(of_frame)
+        };
+        let _ = write!(text, "\n    def Xform \"{}\"\n    {{\n", piece_name(piece));
+        text.push_str("        double3 xformOp:translate.timeSamples = {\n");
+        for (code, pose) in poses() {
+            let _ = write!(text, "            {code}: ");
+            put_tuple(text, &pose.translation.to_array());
+            text.push_str(",\n");
+        }
+        text.push_str("        }\n        quatf xformOp:orient.timeSamples = {\n");
+        for (code, pose) in poses() {
+            let [x, y, z, w] = pose.rotation.to_array();
+            let _ = write!(text, "            {code}: ");
+            put_tuple(text, &[w, x, y, z]);
+            text.push_str(",\n");
+        }
+        let order = "[\"xformOp:translate\", \"xformOp:orient\"]";
+        let _ = write!(text, "        }}\n        uniform token[] xformOpOrder = {order}\n    }}\n");
+    }
+
+    /// Ends the file of a whole film, or of one that was stopped early. Returns its path.
     pub fn finish(mut self, whole: bool) -> Result<PathBuf, Error> {
         let mut text = "        }\n        float3[] extent.timeSamples = {\n".to_owned();
         for (code, corners) in &self.boxes {
             let corners = list(corners, |text, corner| put_tuple(text, &corner.to_array()));
             let _ = writeln!(text, "            {code}: {corners},");
         }
-        text.push_str("        }\n    }\n\n    def Xform \"head\"\n    {\n");
-        text.push_str("        double3 xformOp:translate.timeSamples = {\n");
-        for (code, pose) in &self.heads {
-            let _ = write!(text, "            {code}: ");
-            put_tuple(&mut text, &pose.translation.to_array());
-            text.push_str(",\n");
+        text.push_str("        }\n    }\n");
+        let count = self.pieces.iter().map(|(_, pieces)| pieces.len()).max().unwrap_or(1);
+        for piece in 0..count {
+            self.put_piece(&mut text, piece);
         }
-        text.push_str("        }\n        quatf xformOp:orient.timeSamples = {\n");
-        for (code, pose) in &self.heads {
-            let [x, y, z, w] = pose.rotation.to_array();
-            let _ = write!(text, "            {code}: ");
-            put_tuple(&mut text, &[w, x, y, z]);
-            text.push_str(",\n");
-        }
-        let order = "[\"xformOp:translate\", \"xformOp:orient\"]";
-        let _ = write!(text, "        }}\n        uniform token[] xformOpOrder = {order}\n    }}\n}}\n");
+        text.push_str("}\n");
         self.put(&text)?;
         let ends = [self.boxes.first(), self.boxes.last()].map(|frame| frame.map_or(0.0, |(code, _)| *code));
         let Self { path, mut file, ends_at, .. } = self;
@@ -256,6 +273,11 @@ impl Usd {
             ended.and_then(|()| if whole { file.finish().map(|()| path.clone()) } else { file.leave() });
         place.map_err(Error::write("the USD file", &path))
     }
+}
+
+/// Name of the prim of a piece.
+fn piece_name(piece: usize) -> String {
+    if piece == 0 { "head".to_owned() } else { format!("piece_{piece}") }
 }
 
 /// Attributes for Unreal: guides, numbers, and three guides and weights of each strand.

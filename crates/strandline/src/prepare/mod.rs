@@ -108,7 +108,9 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         }
     };
     let shape = [guides.strand_count(), guides.points_per_strand()];
-    let pose = scene.groom.pose.as_ref().map(|file| HairPose::load(&scene.path(file), shape)).transpose()?;
+    let vertices = mesh.as_ref().map_or(0, |mesh| mesh.positions.len());
+    let load = |file: &std::path::PathBuf| HairPose::load(&scene.path(file), shape, vertices);
+    let pose = scene.groom.pose.as_ref().map(load).transpose()?;
     let mesh = mesh.filter(|_| scene.body.visible);
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
     let head = head_motion(&scene, pivot, bounds)?;

@@ -13,6 +13,8 @@ pub(crate) mod moment;
 mod open;
 mod painter;
 mod pick;
+#[cfg(test)]
+mod pieces_tests;
 mod resuming;
 mod simulation;
 mod sync;

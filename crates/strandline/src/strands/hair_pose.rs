@@ -11,6 +11,7 @@ use safetensors::{
 };
 use strandline_base::{WholeFile, fill_lanes, in_strand_order, read_plain};
 
+use super::bodies::{self, LISTS, Lists, OF_FRAMES, ROOTS, WIDTHS};
 use crate::{
     Error,
     body::{BodyFrame, Pose},
@@ -18,14 +19,16 @@ use crate::{
     sim::{MOST_SPIN, State},
 };
 
-/// Positions and motion of guides, and the pose of the head.
+/// A snapshot of one moment: positions and motion of guides, and the body.
 ///
 /// Its file holds four tensors of the safetensors format, 32-bit floats: `positions` \[m\], `velocities`
-/// \[m/s\] and `corrections`, what the next prediction adds to them \[m/s\], world space, shape
+/// \[m/s\] and `corrections`, the part of the next prediction that is added to them \[m/s\], world space, shape
 /// `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and a translation
-/// \[m\]. A file without `corrections` has none. With rods it holds `sections`,
-/// the first axis of the section of each segment, world space, shape `[strand][point][3]`, and `spins`, how
-/// fast it turns \[rad/s\], shape `[strand][point]`. `safetensors.numpy.load_file` reads it.
+/// \[m\]. A file without `corrections` has none. A body that is more than a rigid head adds `world_from_piece`, shape
+/// `[piece][7]`, the transforms of the pieces after the head; `root_frames`, shape `[strand][7]`; `skin`, shape
+/// `[vertex][3]`, head space \[m\]; older files have none of these. With rods it holds `sections`,
+/// the first axis of the section of each segment, world space, shape `[strand][point][3]`, and `spins`, the
+/// angular velocities about the segments \[rad/s\], shape `[strand][point]`. `safetensors.numpy.load_file` reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HairPose {
     /// Strands, and points of each.
@@ -42,6 +45,8 @@ pub(crate) struct HairPose {
 
 /// Room for the names and shapes in a file \[byte\]; ours take some 200.
 const HEADER: u64 = 65_536;
+/// Most pieces of a body after the head.
+const MOST_PIECES: usize = 1024;
 /// Farther than this \[m\], or faster \[m/s\], is no hair. Its sections spin faster: no more than [`MOST_SPIN`].
 const MOST: f32 = 1e4;
 
@@ -108,6 +113,7 @@ impl HairPose {
             )));
         }
         let head = [&rotation.to_array()[..], &translation.to_array()[..]].concat();
+        let lists = self.lists().map_err(std::io::Error::other)?;
         let [strands, points] = self.shape;
         let mut tensors = Vec::new();
         let mut parts = vec![
@@ -120,6 +126,7 @@ impl HairPose {
             parts.push(("sections", vec![strands, points, 3], numbers(&self.sections)));
             parts.push(("spins", vec![strands, points], self.spins.clone()));
         }
+        parts.extend(lists);
         for (name, shape, numbers) in parts {
             check(name, &numbers).map_err(std::io::Error::other)?;
             tensors.push((name, shape, numbers.into_iter().flat_map(f32::to_le_bytes).collect::<Vec<u8>>()));
@@ -134,17 +141,31 @@ impl HairPose {
             .map_err(std::io::Error::other)
     }
 
-    /// Reads a file that has a pose for guides of this shape.
-    ///
-    /// # Errors
-    /// It cannot be read, is of another kind, or is for other hair.
-    pub fn load(path: &Path, shape: [usize; 2]) -> Result<Self, Error> {
-        let refuse = |message: String| Error::HairPose { path: path.to_owned(), message };
-        let bytes = read(path, shape).map_err(refuse)?;
-        Self::parse(&bytes, shape).map_err(refuse)
+    /// Tensors of the body beside the head: name, shape, numbers.
+    fn lists(&self) -> Result<Vec<(&'static str, Vec<usize>, Vec<f32>)>, String> {
+        let lists = Lists::of([&self.body]);
+        if lists.0[0] > MOST_PIECES {
+            return Err(format!("{} pieces of the body, expected {MOST_PIECES} at most", lists.0[0]));
+        }
+        let numbers: [Vec<f32>; LISTS] = std::array::from_fn(|list| lists.numbers(list, &self.body));
+        bodies::body(self.body.world_from_head(), &numbers)?;
+        let tensor = |(list, length, width): (usize, usize, usize)| {
+            (OF_FRAMES[list], vec![length, width], numbers[list].clone())
+        };
+        Ok(lists.present().map(tensor).collect())
     }
 
-    fn parse(bytes: &[u8], shape: [usize; 2]) -> Result<Self, String> {
+    /// Reads a file that has a pose for guides of this shape, on a mesh of `vertices`.
+    ///
+    /// # Errors
+    /// It cannot be read, is of another kind, or is for other hair or another mesh.
+    pub fn load(path: &Path, shape: [usize; 2], vertices: usize) -> Result<Self, Error> {
+        let refuse = |message: String| Error::HairPose { path: path.to_owned(), message };
+        let bytes = read(path, shape, vertices).map_err(refuse)?;
+        Self::parse(&bytes, shape, Some(vertices)).map_err(refuse)
+    }
+
+    fn parse(bytes: &[u8], shape: [usize; 2], vertices: Option<usize>) -> Result<Self, String> {
         let tensors = SafeTensors::deserialize(bytes).map_err(|error| error.to_string())?;
         let [strands, points] = shape;
         let vectors = |name| {
@@ -158,7 +179,9 @@ impl HairPose {
         if !rotation.is_normalized() {
             return Err(format!("world_from_head with the quaternion {rotation}, expected one of length 1"));
         }
-        let body = Pose { rotation, translation: Vec3::from_slice(&head[4..]) }.into();
+        let head = Pose { rotation, translation: Vec3::from_slice(&head[4..]) };
+        let body = bodies::body(head, &lists(&tensors, strands)?)?;
+        body.check(Some(strands), vertices).map_err(|error| error.to_string())?;
         Ok(Self {
             shape,
             positions: vectors("positions")?,
@@ -180,10 +203,22 @@ impl HairPose {
 /// # Errors
 /// The content found instead.
 pub fn check_pose(bytes: &[u8], shape: [usize; 2]) -> Result<(), String> {
-    HairPose::parse(bytes, shape).map(|_| ())
+    HairPose::parse(bytes, shape, None).map(|_| ())
 }
 
-/// The numbers of a tensor that has to have a shape.
+/// Numbers of the body's lists, each empty where the file has no such tensor.
+fn lists(tensors: &SafeTensors, strands: usize) -> Result<[Vec<f32>; LISTS], String> {
+    let mut lists: [Vec<f32>; LISTS] = Default::default();
+    for ((name, width), list) in OF_FRAMES.into_iter().zip(WIDTHS).zip(&mut lists) {
+        let Ok(tensor) = tensors.tensor(name) else { continue };
+        let found = tensor.shape().first().copied().unwrap_or(0);
+        let length = if name == ROOTS { strands } else { found };
+        *list = numbers(tensors, name, &[length, width])?;
+    }
+    Ok(lists)
+}
+
+/// Numbers of a tensor that has to have a shape.
 fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Vec<f32>, String> {
     const REMEDY: &str = "take `pose` out of [groom] to begin at rest";
     let tensor = tensors.tensor(name).map_err(|error| format!("{error}: {REMEDY}"))?;
@@ -208,8 +243,9 @@ fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
 }
 
 /// Reads no more than a pose of this shape needs.
-fn read(path: &Path, [strands, points]: [usize; 2]) -> Result<Vec<u8>, String> {
-    let most = HEADER + (strands * points * 52) as u64;
+fn read(path: &Path, [strands, points]: [usize; 2], vertices: usize) -> Result<Vec<u8>, String> {
+    let body = 28 * (strands + MOST_PIECES) + 12 * vertices;
+    let most = HEADER + (strands * points * 52 + body) as u64;
     read_plain(path, most).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
             format!("larger than {strands} strands of {points} points can be ({most} bytes)")
@@ -245,7 +281,7 @@ mod tests {
     #[test]
     fn it_survives_its_file_and_its_lanes() {
         let pose = pose();
-        let read = HairPose::parse(&pose.to_bytes().unwrap(), SHAPE).unwrap();
+        let read = HairPose::parse(&pose.to_bytes().unwrap(), SHAPE, None).unwrap();
         assert_eq!((&read.positions, &read.velocities), (&pose.positions, &pose.velocities));
         assert_eq!(read.corrections, pose.corrections);
         let (found, wanted) = (read.body.world_from_head(), pose.body.world_from_head());
@@ -265,11 +301,33 @@ mod tests {
     }
 
     #[test]
+    fn a_body_of_several_pieces_survives_the_file() {
+        let at = |x: f32| Pose { rotation: Quat::from_rotation_x(x), translation: Vec3::X * x };
+        let body = pose().body.with_pieces([at(0.2), at(-0.4)]).with_roots([at(0.1); SHAPE[0]]);
+        let body = body.with_skin([Vec3::Y, Vec3::Z, Vec3::X, Vec3::ONE]);
+        let moved = HairPose { body, ..pose() };
+        let bytes = moved.to_bytes().unwrap();
+        assert_eq!(HairPose::parse(&bytes, SHAPE, Some(4)).unwrap(), moved);
+        // A rigid head adds no tensors: its file is that of older versions.
+        let rigid = HairPose { body: moved.body.world_from_head().into(), ..moved.clone() };
+        let old = rigid.to_bytes().unwrap();
+        let names = SafeTensors::deserialize(&old).unwrap().names().len();
+        assert_eq!((names, HairPose::parse(&old, SHAPE, Some(4)).unwrap()), (4, rigid));
+        let refused = HairPose::parse(&bytes, SHAPE, Some(5)).unwrap_err();
+        assert!(refused.contains("skin vertices is 4, for a mesh of 5"), "{refused}");
+        let few = HairPose { body: BodyFrame::REST.with_roots([at(0.1)]), ..pose() };
+        let refused = HairPose::parse(&few.to_bytes().unwrap(), SHAPE, None).unwrap_err();
+        assert!(refused.contains("root_frames of shape [1, 7]"), "{refused}");
+        let many = HairPose { body: BodyFrame::REST.with_pieces(vec![at(0.0); MOST_PIECES + 1]), ..pose() };
+        assert!(many.to_bytes().unwrap_err().to_string().contains("1025 pieces of the body"));
+    }
+
+    #[test]
     fn a_file_without_corrections_has_none() {
         let (pose, mut bytes) = (pose(), pose().to_bytes().unwrap());
         let at = bytes.windows(11).position(|name| name == b"corrections").unwrap();
         bytes[at] = b'x';
-        let read = HairPose::parse(&bytes, SHAPE).unwrap();
+        let read = HairPose::parse(&bytes, SHAPE, None).unwrap();
         assert_eq!((&read.velocities, read.corrections), (&pose.velocities, vec![Vec3::ZERO; 55]));
     }
 
@@ -279,12 +337,12 @@ mod tests {
         let path = folder.path().join("a.safetensors");
         let refused = |bytes: &[u8], shape| {
             std::fs::write(&path, bytes).unwrap();
-            HairPose::load(&path, shape).unwrap_err().to_string()
+            HairPose::load(&path, shape, 0).unwrap_err().to_string()
         };
         let good = pose().to_bytes().unwrap();
         assert!(refused(&good, [11, 6]).contains("[11, 5, 3], but the scene's hair has [11, 6, 3]"));
         assert!(refused(&good, [1, 4]).contains("but the scene's hair"));
-        assert!(refused(&vec![0; 70_000], SHAPE).contains("larger than 11 strands"));
+        assert!(refused(&vec![0; 100_000], SHAPE).contains("larger than 11 strands"));
         let mut wild = good.clone();
         let end = wild.len();
         // The last number is one of the last tensor in the file.
@@ -294,7 +352,7 @@ mod tests {
         let spun = |spin| HairPose { sections: vec![Vec3::X; count], spins: vec![spin; count], ..pose() };
         // Any state that the simulation can reach can be saved.
         let fast = spun(MOST_SPIN);
-        assert_eq!(HairPose::parse(&fast.to_bytes().unwrap(), SHAPE).unwrap(), fast);
+        assert_eq!(HairPose::parse(&fast.to_bytes().unwrap(), SHAPE, None).unwrap(), fast);
         assert!(spun(2.0 * MOST_SPIN).to_bytes().unwrap_err().to_string().contains("spins hold 2000000"));
         let unheard = HairPose { velocities: vec![Vec3::splat(1e9); 55], ..pose() };
         assert!(unheard.to_bytes().unwrap_err().to_string().contains("velocities hold 1000000000"));
@@ -307,7 +365,7 @@ mod tests {
             .rposition(|four| four == pose().body.world_from_head().rotation.w.to_le_bytes());
         squeezed[at.unwrap()..][..4].copy_from_slice(&5.0_f32.to_le_bytes());
         assert!(refused(&squeezed, SHAPE).contains("expected one of length 1"));
-        let absent = HairPose::load(&folder.path().join("b"), SHAPE).unwrap_err().to_string();
+        let absent = HairPose::load(&folder.path().join("b"), SHAPE, 0).unwrap_err().to_string();
         assert!(absent.contains("cannot read the pose of the hair"), "{absent}");
         // Cut anywhere, or with any byte of the header changed, it is refused or read: nothing panics.
         for cut in 0..good.len() {
@@ -317,7 +375,7 @@ mod tests {
             for flip in [1, 0x80, 0xff] {
                 let mut bad = good.clone();
                 bad[at] ^= flip;
-                let _ = HairPose::parse(&bad, SHAPE);
+                let _ = HairPose::parse(&bad, SHAPE, None);
             }
         }
     }

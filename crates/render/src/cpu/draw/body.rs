@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
-use strandline_body::{Mesh, Pose};
+use strandline_body::{BodyFrame, Mesh, MovedSkin};
 
 use super::tiles::{TileRect, Tiles};
 use crate::frame::projection::Projection;
@@ -24,9 +24,10 @@ const MIN_COSINE: f32 = 0.2;
 /// A body and where it is in this frame.
 #[derive(Debug, Default)]
 pub struct Body {
-    mesh: Mesh,
+    pub mesh: Mesh,
     /// Every edge joins two triangles, so that back faces are never seen.
     closed: bool,
+    skin: MovedSkin,
     /// Vertex positions \[m\], world space.
     pub positions: Vec<Vec3>,
     /// Vertex normals, world space.
@@ -90,15 +91,15 @@ impl Body {
     }
 
     /// Carries the body to its place.
-    pub fn place(&mut self, world_from_head: Pose) {
+    pub fn place(&mut self, body: &BodyFrame) {
+        self.skin.take(&self.mesh, body.skin());
+        let ([positions, normals], head) = (self.skin.shape(&self.mesh), body.world_from_head());
         let carry = |from: &[Vec3], to: &mut Vec<Vec3>, carry: &(dyn Fn(Vec3) -> Vec3 + Sync)| {
             to.resize(from.len(), Vec3::ZERO);
-            to.par_chunks_mut(CHUNK)
-                .zip(from.par_chunks(CHUNK))
-                .for_each(|(to, from)| to.iter_mut().zip(from).for_each(|(to, &from)| *to = carry(from)));
+            to.par_iter_mut().zip(from).with_min_len(CHUNK).for_each(|(to, &from)| *to = carry(from));
         };
-        carry(&self.mesh.positions, &mut self.positions, &|point| world_from_head.point(point));
-        carry(&self.mesh.normals, &mut self.normals, &|normal| world_from_head.direction(normal));
+        carry(positions, &mut self.positions, &|point| head.point(point));
+        carry(normals, &mut self.normals, &|normal| head.direction(normal));
     }
 
     /// Collects the triangles that face the camera; of open meshes all of them.
@@ -325,7 +326,7 @@ mod tests {
         samples.resize(300, 260);
         let projection = Projection::new(camera, &samples);
         let (mut body, mut occluders) = (Body::new(mesh), Occluders::default());
-        body.place(Pose::IDENTITY);
+        body.place(&BodyFrame::REST);
         body.draw(&projection, &mut samples, &mut occluders);
         (body, samples, occluders, projection)
     }

@@ -8,7 +8,7 @@ mod tiles;
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_base::par::prelude::*;
-use strandline_body::{Mesh, Pose};
+use strandline_body::{BodyFrame, Mesh};
 
 use self::body::{Body, Occluders};
 use self::coverage::{End, Joint, OPAQUE, TileSamples};
@@ -69,10 +69,15 @@ impl Draw {
     }
 
     /// Carries the body to its place; to be done before the shadows and the picture of a frame.
-    pub fn place_body(&mut self, world_from_head: Pose) {
+    pub fn place_body(&mut self, frame: &BodyFrame) {
         if let Some(body) = &mut self.body {
-            body.place(world_from_head);
+            body.place(frame);
         }
+    }
+
+    /// Number of vertices of the body; `None` without a body.
+    pub fn vertex_count(&self) -> Option<usize> {
+        self.body.as_ref().map(|body| body.mesh.positions.len())
     }
 
     /// The body in its place, to cast shadows.

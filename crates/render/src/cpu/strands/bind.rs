@@ -20,6 +20,11 @@ impl Carried {
         Self { binding, solids, frames: Frames::default(), places: Vec::new() }
     }
 
+    /// Which guides each strand follows.
+    pub fn binding(&self) -> &Binding {
+        &self.binding
+    }
+
     /// The solids that drawn strands stay out of.
     pub fn solids(&self) -> &Solids {
         &self.solids

@@ -4,7 +4,6 @@ use glam::{Vec2, Vec3};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
 use strandline_base::random::{HashStream, hash_pair, unit};
-use strandline_body::Pose;
 use strandline_groom::Guides;
 
 use super::noise::sine;
@@ -12,6 +11,7 @@ use super::tessellate::{Curves, skin_frame};
 use crate::look::Clump;
 use crate::strands::Strands;
 use crate::strands::clump::{tapers, widening};
+use crate::strands::roots::RootTurn;
 use crate::{DetailLevel, Look};
 
 /// Share of a strand along which its offset turns from the skin's plane into the strand's own.
@@ -21,12 +21,12 @@ const ROOT_TAPER: f32 = 0.004;
 
 /// Grows the follow strands of every guide about its curve; follow strand 0 is the guide itself.
 ///
-/// `guides` gives the skin normals and the root diameters, `world_from_head` carries the skin.
+/// `guides` gives the skin normals and the root diameters, `turns` takes the skin into the world.
 /// Radiances are left for `shade`.
 pub fn interpolate(
     curves: &Curves,
     guides: &Guides,
-    world_from_head: &Pose,
+    turns: &impl RootTurn,
     look: &Look,
     level: &DetailLevel,
     out: &mut Strands,
@@ -52,7 +52,7 @@ pub fn interpolate(
         .zip_eq(out.widths.par_chunks_mut(size))
         .enumerate()
         .for_each_init(Vec::new, |curve, (guide_index, ((positions, tangents), widths))| {
-            let skin = skin_frame(guides.root_normals()[guide_index], world_from_head);
+            let skin = skin_frame(guides.root_normals()[guide_index], turns.turn(guide_index));
             let width = guides.widths()[guide_index];
             let guide = Guide::new(&shared, guide_index, skin, width, curve);
             for index in 0..strands_per_guide {

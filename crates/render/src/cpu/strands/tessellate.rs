@@ -7,15 +7,15 @@
 //! run inside the head. At each end one more point continues the polygon (2 P0 - P1), so that
 //! the curve starts and ends at the guide's ends.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use strandline_base::par::prelude::*;
 use strandline_base::vec3x8::Vec3x8;
-use strandline_body::Pose;
 use strandline_groom::{Guides, LANES, Vec3Lanes};
 use wide::f32x8;
 
 use crate::DetailLevel;
 use crate::strands::curve::{Tap, skin_axes, taps};
+use crate::strands::roots::RootTurn;
 
 /// The guides as smooth curves, all of the same number of points, root first.
 ///
@@ -64,11 +64,11 @@ impl Curves {
 /// Draws a smooth curve through every guide.
 ///
 /// `positions` are the guides' points \[m\] in world space, shape `[block][point]` of lanes;
-/// `guides` gives their number and the skin normals at the roots, which `world_from_head` carries.
+/// `guides` gives their number and the skin normals at the roots, which `turns` takes into the world.
 pub fn tessellate(
     positions: &[Vec3Lanes],
     guides: &Guides,
-    world_from_head: &Pose,
+    turns: &impl RootTurn,
     level: &DetailLevel,
     out: &mut Curves,
 ) {
@@ -85,7 +85,7 @@ pub fn tessellate(
         .enumerate()
         .for_each(|(block, (((positions, tangents), normals), points))| {
             spline(points, taps, positions, tangents);
-            normals[0] = root_axes(guides, world_from_head, block, &tangents[0]);
+            normals[0] = root_axes(guides, turns, block, &tangents[0]);
             carry_frame(positions, tangents, normals);
         });
 }
@@ -124,20 +124,20 @@ fn spline(points: &[Vec3Lanes], taps: &[Tap], positions: &mut [Vec3Lanes], tange
 
 /// An axis of each root's frame, across its tangent: an axis in the skin, turned the way that takes
 /// the skin normal to the tangent. It is fixed to the skin and never spins about a moving strand.
-fn root_axes(guides: &Guides, world_from_head: &Pose, block: usize, tangents: &Vec3Lanes) -> Vec3Lanes {
+fn root_axes(guides: &Guides, turns: &impl RootTurn, block: usize, tangents: &Vec3Lanes) -> Vec3Lanes {
     let mut axes = Vec3Lanes::default();
     for lane in 0..LANES {
         let guide = (block * LANES + lane).min(guides.strand_count() - 1);
-        let [normal, axis, _] = skin_frame(guides.root_normals()[guide], world_from_head);
+        let [normal, axis, _] = skin_frame(guides.root_normals()[guide], turns.turn(guide));
         axes.set(lane, turn_along(normal, tangents.get(lane), axis));
     }
     axes
 }
 
 /// The skin's frame at a root in world space: its normal and two axes in the skin, right-handed.
-pub(crate) fn skin_frame(root_normal: Vec3, world_from_head: &Pose) -> [Vec3; 3] {
+pub(crate) fn skin_frame(root_normal: Vec3, turn: Quat) -> [Vec3; 3] {
     let [first, second] = skin_axes(root_normal);
-    [root_normal, first, second].map(|axis| world_from_head.direction(axis))
+    [root_normal, first, second].map(|axis| turn * axis)
 }
 
 /// Turns `vector` by the least turn that takes the unit vector `from` to the unit vector `to`.

@@ -1,10 +1,12 @@
-//! Bound strands: where the guides have them that they are bound to, as `Binding::follow` and `Binding::place` say.
+//! Bound strands, placed about the guides that they follow as `Binding::follow` and `Binding::place` do.
 
-use strandline_body::Solids;
+use std::sync::Arc;
+
+use strandline_body::{BodyFrame, Solids};
 use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, kernel, wgpu};
 use strandline_groom::Binding;
 
-use super::bound_solids;
+use super::bound_solids::BoundSolids;
 use super::device_points::DevicePoints;
 use crate::RenderError;
 use crate::gpu::buffers::{Strands, floats};
@@ -16,7 +18,7 @@ kernel! {
     pub(crate) struct FollowGuides in "bound_frames" (crate::gpu::linked::BOUND_FRAMES), entry "follow_guides" {
         0 frame: Read Frame,
         2 rest: Read f32,
-        4 solids: Read u32,
+        4 solids: Read [u32; 4],
         5 frames: ReadWrite [f32; 4],
         7 before: Read f32,
         8 after: Read f32,
@@ -29,7 +31,7 @@ kernel! {
         0 frame: Read Frame,
         2 rest: Read f32,
         3 influences: Read [u32; 4],
-        4 solids: Read u32,
+        4 solids: Read [u32; 4],
         5 frames: Read [f32; 4],
         6 places: ReadWrite f32,
     }
@@ -40,7 +42,7 @@ kernel! {
     pub(crate) struct KeepOutside in "bound_outside" (crate::gpu::linked::BOUND_OUTSIDE), entry "keep_outside" {
         0 frame: Read Frame,
         1 points: ReadWrite [f32; 4],
-        4 solids: Read u32,
+        4 solids: Read [u32; 4],
         10 tables: Read Tap,
     }
 }
@@ -52,13 +54,14 @@ pub(crate) fn declarations() -> [Declaration; 3] {
 
 /// The strands of a renderer, bound to guides.
 pub(crate) struct BoundStrands {
+    binding: Arc<Binding>,
     follow: Kernel<FollowGuides<'static>>,
     /// The guides at rest \[m\], head space, and as the host has them \[m\], world space.
     rest: Buffer<f32>,
     now: Buffer<f32>,
     guide_count: usize,
     strand_count: usize,
-    solids: Buffer<u32>,
+    solids: BoundSolids,
     frames: Buffer<[f32; 4]>,
     place: Bound,
     keep_outside: Kernel<KeepOutside<'static>>,
@@ -75,7 +78,7 @@ impl BoundStrands {
     /// Whatever the device refuses.
     pub fn new(
         gpu: &Gpu,
-        binding: &Binding,
+        binding: &Arc<Binding>,
         solids: &Solids,
         frame: &Buffer<Frame>,
         places: &Buffer<f32>,
@@ -90,7 +93,7 @@ impl BoundStrands {
             .map(|one| [one.guide, one.weight.to_bits(), one.pace.to_bits(), 0])
             .collect();
         let influences = Buffer::from_slice(gpu, "influences of guides", &influences)?;
-        let solids = bound_solids::upload(gpu, guides.strand_count(), solids.all())?;
+        let solids = BoundSolids::new(gpu, guides.strand_count(), solids)?;
         let frames = Buffer::new(gpu, "frames of guides", 3 * points + guides.strand_count())?;
         let place = Kernel::<PlaceBound<'static>>::new(gpu, &[])?;
         let place = place.bind(
@@ -99,12 +102,13 @@ impl BoundStrands {
                 frame,
                 rest: &of_strands,
                 influences: &influences,
-                solids: &solids,
+                solids: solids.rows(),
                 frames: &frames,
                 places,
             },
         )?;
         Ok(Self {
+            binding: binding.clone(),
             follow: Kernel::new(gpu, &[])?,
             rest: Buffer::from_slice(gpu, "guides at rest", floats(guides.positions()))?,
             now: Buffer::from_slice(gpu, "guide points", floats(guides.positions()))?,
@@ -117,6 +121,19 @@ impl BoundStrands {
             kept: None,
             follows: Vec::new(),
         })
+    }
+
+    /// Takes the pieces and root frames of a moment.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn take(&mut self, body: &BodyFrame) -> Result<(), GpuError> {
+        self.solids.take(body)
+    }
+
+    /// Which guides each strand follows.
+    pub fn binding(&self) -> &Binding {
+        &self.binding
     }
 
     /// Buffer of the host's guide points.
@@ -141,7 +158,8 @@ impl BoundStrands {
         let follow = match known {
             Some(bound) => bound,
             None => {
-                let Self { rest, solids, frames, .. } = &*self;
+                let Self { rest, frames, .. } = &*self;
+                let solids = self.solids.rows();
                 let bound =
                     self.follow.bind(gpu, &FollowGuides { frame, rest, solids, frames, before, after })?;
                 if self.follows.len() > 1 {
@@ -165,7 +183,7 @@ impl BoundStrands {
         strands: &Strands,
         count: usize,
     ) -> Result<(Bound, [u32; 3]), GpuError> {
-        let (raw, solids) = (strands.points.raw().clone(), &self.solids);
+        let (raw, solids) = (strands.points.raw().clone(), self.solids.rows());
         let bound = match self.kept.take_if(|(known, _)| *known == raw) {
             Some((_, bound)) => bound,
             None => {

@@ -1,90 +1,71 @@
-//! Solids that bound strands stay out of, as the kernels read them.
+//! Solids that bound strands stay out of and the body that carries them, as the kernels read them.
 
-use strandline_base::SettingError;
-use strandline_body::{Carrier, Collider, DistanceGrid, Shape};
-use strandline_gpu::{Buffer, Gpu};
+use strandline_body::{BodyFrame, Carrier, Solids, solid_rows};
+use strandline_gpu::{Buffer, Gpu, GpuError, Rigid};
 
 use crate::RenderError;
 
-/// Spacing at which the exact mannequin is sampled \[m\], and the air around it that samples cover \[m\].
-const MANNEQUIN_SPACING: f32 = 0.003;
-const MANNEQUIN_PADDING: f32 = 0.02;
+/// Rows of a piece behind the head: `world_from_piece`, `piece_from_world`.
+const PIECE: usize = 6;
 
-/// One solid, mirrored by the comment in bound_solids.wesl.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
-struct Header {
-    kind: u32,
-    carried: u32,
-    first_distance: u32,
-    /// \[m\]
-    clearance: f32,
-    /// Centre, start or origin \[m\].
-    start: [f32; 3],
-    /// Radius or spacing \[m\].
-    size: f32,
-    end: [f32; 3],
-    unused: u32,
-    node_counts: [u32; 3],
-    unused_too: u32,
+/// The rows on the device; solid_rows.wesl names them.
+pub(crate) struct BoundSolids {
+    rows: Buffer<[u32; 4]>,
+    guide_count: usize,
+    solid_count: usize,
+    /// Pieces up to the last that carries a solid; the head always counts.
+    piece_count: usize,
+    /// True where the device has root frames of a moment.
+    rooted: bool,
 }
 
-/// Kinds of solids, and what carries them.
-const SPHERE: u32 = 0;
-const CAPSULE: u32 = 1;
-const GRID: u32 = 2;
-const WORLD: u32 = 0;
-const HEAD: u32 = 1;
-/// Numbers before the headers, and of one.
-const COUNTS: usize = 2;
-const HEADER: usize = size_of::<Header>() / size_of::<u32>();
+impl BoundSolids {
+    /// Rows for guides and solids.
+    ///
+    /// # Errors
+    /// Whatever the device refuses.
+    pub fn new(gpu: &Gpu, guide_count: usize, solids: &Solids) -> Result<Self, RenderError> {
+        let solids = solids.all();
+        let last = solids.iter().map(|(solid, _)| match solid.carrier {
+            Carrier::Piece(piece) => usize::from(piece),
+            Carrier::World => 0,
+        });
+        let piece_count = 1 + last.max().unwrap_or(0);
+        let before = 1 + PIECE * (piece_count - 1) + guide_count;
+        let mut all = vec![[0; 4]; before];
+        all[0] = [guide_count, solids.len(), piece_count, 0].map(|count| count as u32);
+        all.append(&mut solid_rows(solids.iter().map(|(solid, kept)| (solid, *kept)), before)?);
+        let rows = Buffer::from_slice(gpu, "solids of bound strands", &all)?;
+        Ok(Self { rows, guide_count, solid_count: solids.len(), piece_count, rooted: false })
+    }
 
-/// The number of guides and of solids, the solids with how far \[m\] strands stay away from each, and the distances
-/// at the nodes of the grids among them.
-pub(crate) fn upload(
-    gpu: &Gpu,
-    guide_count: usize,
-    solids: &[(Collider, f32)],
-) -> Result<Buffer<u32>, RenderError> {
-    let mut headers = Vec::new();
-    let mut distances: Vec<u32> = Vec::new();
-    for (collider, clearance) in solids {
-        let mut header = Header {
-            carried: match collider.carrier {
-                Carrier::World => WORLD,
-                Carrier::Piece(piece) => HEAD + u32::from(piece),
-            },
-            clearance: *clearance,
-            ..Header::default()
-        };
-        let mut grid = |grid: &DistanceGrid| {
-            header.kind = GRID;
-            header.start = grid.origin().to_array();
-            header.size = grid.spacing();
-            header.node_counts = (grid.cells() + 1).to_array();
-            header.first_distance = (COUNTS + HEADER * solids.len() + distances.len()) as u32;
-            distances.extend(grid.nodes().iter().map(|node| node.w.to_bits()));
-        };
-        match &collider.shape {
-            Shape::Mannequin(mannequin) => {
-                let sampled = DistanceGrid::from_field(&**mannequin, MANNEQUIN_SPACING, MANNEQUIN_PADDING);
-                grid(&sampled.map_err(|error| {
-                    SettingError::new("the mannequin as a grid", error, "one that fits a GPU")
-                })?);
-            }
-            Shape::Grid(shape) => grid(shape),
-            Shape::Sphere { center, radius } => {
-                (header.kind, header.start, header.size) = (SPHERE, center.to_array(), *radius);
-            }
-            Shape::Capsule { start, end, radius } => {
-                (header.kind, header.start, header.size) = (CAPSULE, start.to_array(), *radius);
-                header.end = end.to_array();
+    /// The buffer.
+    pub fn rows(&self) -> &Buffer<[u32; 4]> {
+        &self.rows
+    }
+
+    /// Takes the pieces and root frames of a moment. A rigid head is in the settings of the frame.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn take(&mut self, body: &BodyFrame) -> Result<(), GpuError> {
+        let roots = body.roots().is_some();
+        if self.piece_count == 1 && !roots && !self.rooted {
+            return Ok(());
+        }
+        self.rooted = roots;
+        let counts = [self.guide_count, self.solid_count, self.piece_count, usize::from(roots)];
+        let mut rows = vec![counts.map(|count| count as u32)];
+        for piece in 1..self.piece_count {
+            let pose = body.piece(piece);
+            for rigid in [Rigid::from(&pose), Rigid::from(&pose.inverse())] {
+                rows.extend([rigid.x, rigid.y, rigid.z].map(|row| row.map(f32::to_bits)));
             }
         }
-        headers.push(header);
+        if roots {
+            let rotation = |guide| body.root(guide).rotation.to_array().map(f32::to_bits);
+            rows.extend((0..self.guide_count).map(rotation));
+        }
+        self.rows.write(&rows)
     }
-    let mut all = vec![guide_count as u32, solids.len() as u32];
-    all.extend_from_slice(bytemuck::cast_slice(&headers));
-    all.append(&mut distances);
-    Ok(Buffer::from_slice(gpu, "solids of bound strands", &all)?)
 }

@@ -1,15 +1,19 @@
-//! Guide points: where they come from, and what reads them.
+//! Guide points and roots: their sources and the kernels that read them.
 
+use std::sync::Arc;
+
+use glam::Quat;
 use strandline_base::SettingError;
-use strandline_body::Solids;
-use strandline_gpu::{Bound, Buffer, Gpu, Kernel, wgpu};
+use strandline_body::{BodyFrame, Solids};
+use strandline_gpu::{Bound, Buffer, Gpu, GpuError, Kernel, wgpu};
 use strandline_groom::{Binding, Guides};
 
 use super::bind::BoundStrands;
 use super::device_points::DevicePoints;
 use super::tessellate::Tessellate;
-use crate::gpu::buffers::{Groom, Strands, floats};
+use crate::gpu::buffers::{Groom, Strands, floats, roots};
 use crate::strands::check_strands;
+use crate::strands::roots::{RootTurn, RootTurns};
 use crate::{FrameInput, RenderError};
 
 /// Stages of guide points before strands are grown about them.
@@ -19,6 +23,9 @@ pub(crate) struct GuidePoints {
     bound: Option<BoundStrands>,
     /// `tessellate` bound to pairs of buffers of guide points.
     tessellates: Vec<([wgpu::Buffer; 2], Bound)>,
+    /// Turns of the skin about roots, and whether the device has others than the head's.
+    turns: RootTurns,
+    turned: bool,
 }
 
 impl GuidePoints {
@@ -28,11 +35,31 @@ impl GuidePoints {
         gpu: &Gpu,
         groom: &Groom,
         guides: &Guides,
-        binding: &Binding,
+        binding: &Arc<Binding>,
         solids: &Solids,
     ) -> Result<(), RenderError> {
         check_strands(guides, binding)?;
         self.bound = Some(BoundStrands::new(gpu, binding, solids, &groom.frame, &groom.places)?);
+        Ok(())
+    }
+
+    /// Takes pieces and root frames of the body at a moment. The device has roots with axes in head space: those of
+    /// strands with root frames of their own are turned there, so that the head takes them into the world.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn take(&mut self, groom: &Groom, guides: &Guides, body: &BodyFrame) -> Result<(), GpuError> {
+        self.bound.iter_mut().try_for_each(|bound| bound.take(body))?;
+        let binding = self.bound.as_ref().map(BoundStrands::binding);
+        self.turns.place(body, binding, guides.strand_count());
+        let turns = &self.turns;
+        if !turns.is_rigid() {
+            let head_from_world = body.world_from_head().rotation.conjugate();
+            groom.roots.write(&roots(guides, |strand| head_from_world * turns.turn(strand)))?;
+        } else if self.turned {
+            groom.roots.write(&roots(guides, |_| Quat::IDENTITY))?;
+        }
+        self.turned = !turns.is_rigid();
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! Bodies in a cache: the head as seven numbers, and the pieces, root frames and skin that move by themselves.
+//! Bodies as numbers of a file: the head as seven, and the pieces, root frames and skin that move by themselves.
 
 use std::sync::Arc;
 
@@ -7,22 +7,24 @@ use glam::{Quat, Vec3};
 use crate::body::{BodyFrame, Pose};
 
 /// Lists that a body may have beside its head.
-pub(super) const LISTS: usize = 3;
-/// Arrays of a film, one row a frame.
-pub(super) const OF_FRAMES: [&str; LISTS] = ["world_from_piece", "root_frames", "skin"];
+pub(crate) const LISTS: usize = 3;
+/// Names of the lists in a moving cache, one row a frame, and in a file with a pose of hair.
+pub(crate) const OF_FRAMES: [&str; LISTS] = ["world_from_piece", ROOTS, "skin"];
+/// Name of the list of root frames.
+pub(crate) const ROOTS: &str = "root_frames";
 /// Arrays of a snapshot, one row for each of its bodies.
-pub(super) const OF_STATE: [&str; LISTS] = ["state_pieces", "state_roots", "state_skin"];
+pub(crate) const OF_STATE: [&str; LISTS] = ["state_pieces", "state_roots", "state_skin"];
 /// Numbers of an entry.
-pub(super) const WIDTHS: [usize; LISTS] = [7, 7, 3];
+pub(crate) const WIDTHS: [usize; LISTS] = [7, 7, 3];
 /// The list of skin vertices.
 const SKIN: usize = 2;
 
 /// Lengths of the lists: pieces after the head, root frames, skin vertices; 0 where the body has no such list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Lists(pub [usize; LISTS]);
+pub(crate) struct Lists(pub [usize; LISTS]);
 
 impl Lists {
-    /// Room for the lists of some bodies.
+    /// Lengths that hold the lists of all the bodies.
     pub fn of<'a>(bodies: impl IntoIterator<Item = &'a BodyFrame>) -> Self {
         let lengths = |body: &BodyFrame| {
             let roots = body.roots().map_or(0, <[_]>::len);
@@ -55,11 +57,11 @@ impl Lists {
     }
 }
 
-/// The body of a head and the numbers of its lists, each empty where the file has no such array.
+/// Reads a body from the pose of its head and the numbers of its lists, each empty where the file has no such array.
 ///
 /// # Errors
-/// A transform or a vertex that is none.
-pub(super) fn body(head: Pose, lists: &[Vec<f32>; LISTS]) -> Result<BodyFrame, String> {
+/// A quaternion that is not of length 1; a number that is not finite.
+pub(crate) fn body(head: Pose, lists: &[Vec<f32>; LISTS]) -> Result<BodyFrame, String> {
     let poses = |numbers: &[f32]| numbers.chunks_exact(7).map(pose).collect::<Result<Arc<[Pose]>, _>>();
     let mut body = BodyFrame::from(head);
     if !lists[0].is_empty() {
@@ -77,7 +79,7 @@ pub(super) fn body(head: Pose, lists: &[Vec<f32>; LISTS]) -> Result<BodyFrame, S
 }
 
 /// A pose as seven numbers: quaternion x, y, z, w and translation \[m\].
-pub(super) fn numbers(pose: &Pose) -> [f32; 7] {
+pub(crate) fn numbers(pose: &Pose) -> [f32; 7] {
     let ([x, y, z, w], [a, b, c]) = (pose.rotation.to_array(), pose.translation.to_array());
     [x, y, z, w, a, b, c]
 }
@@ -86,13 +88,13 @@ pub(super) fn numbers(pose: &Pose) -> [f32; 7] {
 ///
 /// # Errors
 /// A quaternion that is not of length 1, a translation that is not finite.
-pub(super) fn pose(numbers: &[f32]) -> Result<Pose, String> {
+pub(crate) fn pose(numbers: &[f32]) -> Result<Pose, String> {
     let (rotation, translation) = (Quat::from_slice(&numbers[..4]), Vec3::from_slice(&numbers[4..7]));
     if !rotation.is_normalized() {
-        return Err(format!("a head with the quaternion {rotation}, expected one of length 1"));
+        return Err(format!("a transform with the quaternion {rotation}, expected one of length 1"));
     }
     if !translation.is_finite() {
-        return Err(format!("a head at {translation}, expected finite numbers"));
+        return Err(format!("a transform with the translation {translation}, expected finite numbers"));
     }
     Ok(Pose { rotation, translation })
 }
