@@ -52,6 +52,10 @@ pub enum Command {
     Bench(BenchOptions),
     /// Draw the measurements of `bench thesis` or `bench view` as the thesis draws its own.
     Plot(PlotOptions),
+    /// Print completions of commands and options for a shell.
+    Completions(CompletionOptions),
+    /// Write a manual page for each command to a folder.
+    Man(ManOptions),
     /// List the GPUs of this machine.
     Gpus,
     /// Write the linked shader modules to a folder, to read.
@@ -68,6 +72,8 @@ impl Command {
             | Self::Info(_)
             | Self::Scene(_)
             | Self::Shaders(_)
+            | Self::Completions(_)
+            | Self::Man(_)
             | Self::Plot(_) => false,
         }
     }
@@ -275,6 +281,20 @@ pub struct SceneOptions {
     pub scene: String,
     #[command(flatten)]
     pub set: Set,
+}
+
+#[derive(Args, Debug)]
+pub struct CompletionOptions {
+    /// The shell.
+    #[arg(value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Args, Debug)]
+pub struct ManOptions {
+    /// The folder to write to.
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
 }
 
 #[derive(Args, Debug)]

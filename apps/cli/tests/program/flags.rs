@@ -187,3 +187,18 @@ fn a_turntable_shows_the_hair_from_all_around() {
         assert!(apart(one, other) > 3.0, "a view is as the one before");
     }
 }
+
+#[test]
+fn shells_and_man_know_every_command_and_option() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let text = works(at, &["completions", shell]);
+        assert!(text.contains("turntable") && text.contains("convert"), "{shell}");
+    }
+    fails(at, &["completions", "csh"], 2, &["csh"]);
+    works(at, &["man", "pages"]);
+    let read = |name: &str| std::fs::read_to_string(at.join("pages").join(name)).unwrap();
+    assert!(read("strandline.1").contains("convert"));
+    assert!(read("strandline-render.1").contains("turntable"));
+}
