@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use strandline::{
     Cache, Scene,
-    scene::{BodyPart, GroomPart},
+    scene::{BodyPart, CameraSection, GroomPart},
     settings::{StrandMethod, Value},
 };
 
@@ -66,6 +66,21 @@ impl Inputs {
                 return Err(Usage(mend.to_owned()).into());
             }
             scene.simulation.strands.rods.set_hair(hair);
+        }
+        if let Some(look) = self.look {
+            look.dress(&mut scene.look);
+        }
+        if let Some(width) = self.width {
+            scene.look.width_scale = width;
+        }
+        if let Some(velocity) = self.wind {
+            scene.wind.velocity = velocity;
+        }
+        if let Some(view) = self.view {
+            scene.camera = CameraSection { view, ..CameraSection::default() };
+        }
+        if let Some(rate) = self.fps {
+            scene.film.frames_per_second = rate;
         }
         if let Some(name) = self.motion {
             scene.motion.name = name;

@@ -170,7 +170,8 @@ impl Steps {
     /// Mean and largest speed \[m/s\] of the last steps.
     fn speed(&self, count: usize) -> Spread {
         let last = &self.speeds[self.speeds.len().saturating_sub(count)..];
-        let mean = last.iter().map(|(mean, _)| mean).sum::<f32>() / last.len().max(1) as f32;
+        // The sum of nothing is -0.
+        let mean = last.iter().map(|(mean, _)| mean).sum::<f32>() / last.len().max(1) as f32 + 0.0;
         Spread { mean, max: last.iter().fold(0.0, |most: f32, (_, max)| most.max(*max)) }
     }
 
@@ -210,7 +211,7 @@ impl Steps {
 
 pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let inputs = &options.inputs;
-    let mut former = options.resume.as_deref().map(Cache::open).transpose()?;
+    let mut former = options.resume.as_deref().map(Cache::open_to_resume).transpose()?;
     let scene = match &former {
         Some(cache) => inputs.scene_of(cache)?,
         None => inputs.scene()?,
@@ -259,20 +260,17 @@ fn begin(
     let waiting = Waiting::begin(LOADING);
     let mut player = Player::new(scene, scene.devices, false)?;
     drop(waiting);
-    for note in player.notes() {
-        output::note(note);
-    }
+    let stoppable = Stoppable::begin();
+    let resumed = out.map_or(Ok(()), |settings| player.set_out(&settings)).and_then(|()| match former {
+        Some(former) => player.resume(former),
+        None => Ok(()),
+    });
+    player.notes().iter().for_each(|note| output::note(note));
     let stiffening = player.stiffening();
     if stiffening.strands > 0 {
         output::note(&format!("{stiffening}: their shape would not be stable"));
     }
-    let stoppable = Stoppable::begin();
-    if let Some(settings) = out {
-        player.set_out(&settings)?;
-    }
-    if let Some(former) = former {
-        player.resume(former)?;
-    }
+    resumed?;
     Ok((player, stoppable))
 }
 

@@ -37,7 +37,7 @@ pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     if response.dragged() || response.double_clicked() || scroll != 0.0 {
         let wind = view.inverse().transform_vector3(seen);
         app.scene.wind.velocity = wind.clamp_length_max(STRONGEST);
-        app.live.send(Change::Wind(app.scene.wind));
+        app.live.send(Change::Wind(app.scene.wind.clone()));
     }
     response.on_hover_text(
         "the wind [m/s], seen from the camera\ndrag its tip; the wheel blows into the picture; a double click stops it\ndefault 0",

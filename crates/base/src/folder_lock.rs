@@ -7,10 +7,12 @@ use crate::temporary::{self, Writer};
 
 /// The file that is locked.
 const NAME: &str = ".strandline-lock";
+/// Bytes of a file's name in that of its lock: most systems allow 255 in all.
+const NAME_BYTES: usize = 160;
 /// Bytes of a lock's mark that are read.
 const MARK: u64 = 256;
 
-/// A folder that one run writes at a time.
+/// A folder, or a name in it, that one run writes at a time.
 ///
 /// The lock is the system's, on a file in the folder: it ends with the process. The file is
 /// removed with the lock; a file left by an ended run is taken over.
@@ -27,7 +29,27 @@ impl FolderLock {
     /// # Errors
     /// `ResourceBusy`: another run holds it. Otherwise an error of the system: the folder cannot be written.
     pub fn take(folder: &Path) -> Result<Self> {
-        let path = folder.join(NAME);
+        let lock = Self::at(folder.join(NAME))?;
+        if lock.is_held() {
+            temporary::clear(folder, Writer::Here);
+            temporary::clear(folder, Writer::Foreign);
+        }
+        Ok(lock)
+    }
+
+    /// Locks the name of a file, or of numbered files, in an existing folder: other names stay free.
+    ///
+    /// # Errors
+    /// As [`FolderLock::take`].
+    pub fn take_name(file: &Path) -> Result<Self> {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let short = &name[..name.floor_char_boundary(NAME_BYTES)];
+        let lock = Self::at(file.with_file_name(format!("{NAME}-{short}")))?;
+        temporary::clear(file.parent().unwrap_or(Path::new("")), Writer::Here);
+        Ok(lock)
+    }
+
+    fn at(path: PathBuf) -> Result<Self> {
         loop {
             let Some(mut file) = open(&path)? else { continue };
             match file.try_lock() {
@@ -43,8 +65,6 @@ impl FolderLock {
             if is_there(&mut file, &path) {
                 temporary::hold().add(&path);
                 mark(&mut file)?;
-                temporary::clear(folder, Writer::Here);
-                temporary::clear(folder, Writer::Foreign);
                 return Ok(Self { path, file: Some(file) });
             }
         }
@@ -121,6 +141,13 @@ mod tests {
         assert_eq!(FolderLock::take(folder.path()).unwrap_err().kind(), ErrorKind::ResourceBusy);
         assert!(FolderLock::take(&folder.path().join("absent")).is_err());
         drop(first);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        let names = ["a.png", "b.png"].map(|name| FolderLock::take_name(&folder.path().join(name)).unwrap());
+        assert_eq!(
+            FolderLock::take_name(&folder.path().join("a.png")).unwrap_err().kind(),
+            ErrorKind::ResourceBusy
+        );
+        drop(names);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         // A lock left by an ended run is taken over, with its unfinished files.
         fs::write(folder.path().join(NAME), b"of another").unwrap();

@@ -5,7 +5,7 @@ use crate::{
     gpu::Gpu,
     groom::Guides,
     render::{Camera, Look, PictureSettings},
-    scene::devices::device_name,
+    scene::{camera_motion::CameraMotion, devices::device_name},
     session::worker::Worker,
     session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
     sim::{Drift, Settings, State, Stiffening},
@@ -20,6 +20,8 @@ pub struct Player {
     /// Changed by [`Player::set_settings`] before the next frame is simulated.
     change: Option<Settings>,
     timing: FilmTiming,
+    /// Motion of the camera, where the scene has one and nobody has set another view.
+    camera: Option<CameraMotion>,
     draw: bool,
     overlap: bool,
     frames: u32,
@@ -93,7 +95,9 @@ impl Player {
         let here = session.simulation().end().world_from_head();
         let timing = FilmTiming::new(session.scene(), session.head().clone(), here);
         let frames = session.scene().film.frames;
+        let camera = CameraMotion::new(session.scene(), *session.view().camera())?;
         Ok(Self {
+            camera,
             session: session.beside()?,
             change: None,
             timing,
@@ -129,9 +133,11 @@ impl Player {
     /// Resumes the run of a cache. Earlier frames emit no events; files that are written get them too.
     ///
     /// # Errors
-    /// A cache of other hair, without a state, or of a film that was over; a file that cannot be written.
+    /// A cache of other hair or of another film, without a state, or of a film that was over; a file that cannot be
+    /// written.
     pub fn resume(&mut self, cache: &mut Cache) -> Result<(), Error> {
         let made = self.session.resume(cache, self.frames, self.out.as_mut())?;
+        self.notes.extend(self.session.take_notes());
         (self.started, self.taken) = (made, made);
         Ok(())
     }
@@ -174,8 +180,9 @@ impl Player {
         self.session.set_look(look);
     }
 
-    /// Changes the view, from the next picture on.
+    /// Changes the view, from the next picture on; keyframes of the camera no longer count.
     pub fn set_camera(&mut self, camera: Camera) {
+        self.camera = None;
         self.session.set_camera(camera);
     }
 
@@ -295,6 +302,17 @@ impl Player {
         Ok(())
     }
 
+    /// Draws the frame that was taken.
+    fn draw_taken(&mut self) -> Result<(), Error> {
+        if let Some(motion) = &self.camera {
+            let frame = self.taken.saturating_sub(1);
+            let of_cache = self.cache.as_ref().and_then(|cache| cache.times().get(frame as usize).copied());
+            let time = of_cache.unwrap_or_else(|| self.timing.time(frame));
+            self.session.set_camera(motion.at(self.timing.motion_time(time)));
+        }
+        self.session.draw(None)
+    }
+
     /// Takes the next frame and starts the one after it.
     fn advance(&mut self) -> Result<(), Error> {
         if self.session.started() == 0 {
@@ -315,7 +333,7 @@ impl Iterator for Player {
                 return Some(Ok(event));
             }
             let done = if std::mem::take(&mut self.undrawn) {
-                self.session.draw(None)
+                self.draw_taken()
             } else if self.taken == self.frames || self.failed || self.closing {
                 return None;
             } else {

@@ -27,7 +27,8 @@ fn pattern(name: &str) -> Option<(String, usize, String)> {
     let (before, rest) = name.split_once('%')?;
     let (digits, after) = rest.split_once('d')?;
     let count = if digits.is_empty() { 1 } else { digits.strip_prefix('0')?.parse().ok()? };
-    (1..=9).contains(&count).then(|| (before.to_owned(), count, after.to_owned()))
+    let is_one = !after.contains('%');
+    (is_one && (1..=9).contains(&count)).then(|| (before.to_owned(), count, after.to_owned()))
 }
 
 /// The size of a file \[byte\].
@@ -47,7 +48,7 @@ impl Files {
         let pattern = pattern(&name)
             .ok_or_else(|| Error::OutName { found: name.into_owned(), path: path.to_owned() })?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let lock = crate::film::claim(folder)?;
+        let lock = crate::film::claim_name(path)?;
         let mut groom = Groom::empty(0.0);
         groom.starts.clone_from(&shape.starts);
         let attributes = &shape.attributes;
@@ -106,7 +107,7 @@ mod tests {
     fn a_name_with_a_number_in_it_is_a_sequence() {
         assert_eq!(pattern("a.%04d.hair"), Some(("a.".to_owned(), 4, ".hair".to_owned())));
         assert_eq!(pattern("%d.tfx"), Some((String::new(), 1, ".tfx".to_owned())));
-        for name in ["a.hair", "a%.hair", "%4d.hair", "%00d.hair", "%099d.hair", "%sd"] {
+        for name in ["a.hair", "a%.hair", "%4d.hair", "%00d.hair", "%099d.hair", "%sd", "s.%04d%04d.hair"] {
             assert_eq!(pattern(name), None, "{name}");
         }
         assert!(is_sequence(Path::new("x/%03d.hair")) && !is_sequence(Path::new("%03d/a.hair")));

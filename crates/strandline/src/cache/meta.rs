@@ -32,7 +32,7 @@ pub(super) struct Meta {
     pub steps: u64,
     #[serde(default)]
     pub group_names: Vec<String>,
-    /// The scene as TOML, and the folder that its paths start from.
+    /// The scene as TOML, and the folder that its paths start from, seen from that of the cache.
     #[serde(default)]
     pub scene: String,
     #[serde(default)]

@@ -9,11 +9,11 @@ use strandline_base::{
     fill_lanes,
     memory::{self, Need},
     npz::{Kind, Npz, Rows, f32s, f64s},
-    open_plain,
+    open_plain, refuse_busy,
 };
 
 use super::arrays::{check_memory, expect, missing, numbers, read_meta, starts, text};
-use super::{Snapshot, What, meta, snapshot};
+use super::{Snapshot, What, meta, relative, snapshot};
 use crate::{
     Error, Scene,
     body::{BodyFrame, Pose},
@@ -55,6 +55,17 @@ impl Cache {
         let file = open_plain(path, u64::MAX - 1).map_err(|error| Error::cache(path, error))?.into_inner();
         let frames = Frames::new(file).map_err(|found| Error::cache(path, found))?;
         Ok(Self { path: path.to_owned(), frames })
+    }
+
+    /// Opens a cache whose run is to be resumed.
+    ///
+    /// # Errors
+    /// As [`Cache::open`]; another run is writing it.
+    pub fn open_to_resume(path: &Path) -> Result<Self, Error> {
+        if refuse_busy(path).is_err() {
+            return Err(Error::BusyFile { path: path.to_owned() });
+        }
+        Self::open(path)
     }
 
     fn refuse(&self, found: impl Into<FileProblem>) -> Error {
@@ -111,7 +122,8 @@ impl Cache {
             return Err(self.refuse("it names no scene, expected one in `meta`: name it with --scene"));
         }
         let mut scene = Scene::parse(&meta.scene, &format!("{} (in the cache)", self.path.display()))?;
-        scene.folder = PathBuf::from(&meta.scene_folder);
+        // Older caches have an absolute folder.
+        scene.folder = relative::folder_of(&self.path).join(&meta.scene_folder);
         Ok(scene)
     }
 

@@ -8,6 +8,7 @@ use strandline_base::npz::{Array, Growing, GrowingNpz, Kind};
 use super::{
     Frame, Snapshot,
     meta::{LAYOUT, Meta, Report},
+    relative,
     shape::{Attributes, Shape},
     snapshot,
 };
@@ -38,7 +39,7 @@ impl Store {
         body: &BodyFrame,
         [first, every]: [u32; 2],
     ) -> Result<Self, Error> {
-        let folder = std::path::absolute(&scene.folder).unwrap_or_default();
+        let moved = relative::from(path, scene);
         let meta = Meta {
             layout: LAYOUT,
             written_by: format!("strandline {}", env!("CARGO_PKG_VERSION")),
@@ -50,8 +51,8 @@ impl Store {
             every,
             steps: 0,
             group_names: shape.attributes.group_names.clone(),
-            scene: scene.to_toml(),
-            scene_folder: folder.to_string_lossy().into_owned(),
+            scene: moved.to_toml(),
+            scene_folder: String::new(),
             report: Report::default(),
         };
         let lists = Lists::of([body]);

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
-use strandline_base::GrowingFile;
+use strandline_base::{FolderLock, GrowingFile};
 
 use super::{
     Frame, Target, What,
@@ -54,6 +54,8 @@ const MATERIAL: &str = r#"    def Scope "looks"
 pub(super) struct Usd {
     path: PathBuf,
     file: GrowingFile,
+    /// Keeps other runs off the name, which the file gets at its end.
+    _lock: FolderLock,
     /// Bytes so far, and where the first and the last time code stand.
     length: u64,
     ends_at: [u64; 2],
@@ -109,6 +111,7 @@ impl Space {
 impl Usd {
     /// Begins a file.
     pub fn new(path: &Path, scene: &Scene, shape: &Shape, target: Target) -> Result<Self, Error> {
+        let lock = crate::film::claim_name(path)?;
         let file = GrowingFile::create(path).map_err(|error| match error.kind() {
             std::io::ErrorKind::ResourceBusy => Error::BusyFile { path: path.to_owned() },
             _ => Error::write("the USD file", path)(error),
@@ -117,6 +120,7 @@ impl Usd {
         let mut usd = Self {
             path: path.to_owned(),
             file,
+            _lock: lock,
             length: 0,
             ends_at: [0; 2],
             space: Space::of(target),

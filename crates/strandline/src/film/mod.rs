@@ -156,6 +156,11 @@ impl Film {
         Ok(self.into_files(frames, false))
     }
 
+    /// Gives up a film that failed. Returns a note on files of an earlier film beside its frames.
+    pub fn give_up(self) -> Vec<String> {
+        leftovers(&self.folder, self.files.len(), &self.files).into_iter().collect()
+    }
+
     fn keep(&mut self, file: WholeFile) -> Result<(), Error> {
         let path = file.path().to_owned();
         file.keep().map_err(Error::write("the moving picture", &path))?;
@@ -219,6 +224,16 @@ pub(crate) fn claim(folder: &Path) -> Result<FolderLock, Error> {
     fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
     FolderLock::take(folder).map_err(|error| match error.kind() {
         ErrorKind::ResourceBusy => Error::Busy { path: folder.to_owned() },
+        _ => Error::write("into the output folder", folder)(error),
+    })
+}
+
+/// Makes the folder of a file where it is not there, and keeps other runs off its name.
+pub(crate) fn claim_name(path: &Path) -> Result<FolderLock, Error> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
+    FolderLock::take_name(path).map_err(|error| match error.kind() {
+        ErrorKind::ResourceBusy => Error::BusyFile { path: path.to_owned() },
         _ => Error::write("into the output folder", folder)(error),
     })
 }
@@ -314,6 +329,17 @@ mod tests {
         (0..2).for_each(|_| broken.add(&filled(32, 8)).unwrap());
         assert_eq!(broken.stop_early().unwrap().files.last(), Some(&moving));
         assert!(moving.is_file());
+    }
+
+    #[test]
+    fn a_film_that_failed_tells_what_lies_beside_its_frames() {
+        let folder = tempfile::tempdir().unwrap();
+        film(folder.path(), 5);
+        let mut failed = Film::new(folder.path(), 5, 30.0).unwrap();
+        (0..3).for_each(|_| failed.add(&filled(16, 8)).unwrap());
+        let notes = failed.give_up();
+        assert!(notes.len() == 1 && notes[0].contains("earlier film there are still 4 files"), "{notes:?}");
+        assert!(notes[0].contains("frame_0004.png"), "{notes:?}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Files of moving hair that a session writes and resumes from.
 
-use super::{Executor, Session};
+use super::{Executor, Session, resuming};
 use crate::{
     Cache, Error, OutSettings, What, Written,
     body::BodyFrame,
@@ -57,6 +57,9 @@ impl<E: Executor> Session<E> {
             let found = "it holds no state, expected the state_* arrays that `sim --out` writes";
             return Err(Error::cache(cache.path(), found));
         };
+        let differences =
+            cache.scene().map_or_else(|_| Ok(None), |former| resuming::check(&former, &self.scene));
+        let differences = differences.map_err(|found| Error::cache(cache.path(), found))?;
         let made = state.frame + 1;
         if made >= frames {
             let found =
@@ -66,6 +69,7 @@ impl<E: Executor> Session<E> {
         let steps = cache.steps();
         self.with(|simulation| simulation.restore(&state, steps))?;
         self.drawn = made;
+        self.view.painter.notes.extend(differences);
         if let Some(out) = out {
             out.copy(cache, &state)?;
         }

@@ -15,6 +15,7 @@ mod painter;
 mod pick;
 #[cfg(test)]
 mod pieces_tests;
+mod resuming;
 mod simulation;
 mod sync;
 mod view;

@@ -272,7 +272,7 @@ impl Person {
             Change::Release,
             Change::Settings(Box::new(base.simulation.clone())),
             Change::Length(1.0),
-            Change::Wind(base.wind),
+            Change::Wind(base.wind.clone()),
             Change::Look(Box::new(base.look.clone())),
             Change::BodyLook(base.body_look),
             Change::Lights(base.lights.clone()),
