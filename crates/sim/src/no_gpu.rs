@@ -62,6 +62,10 @@ impl GpuRunner {
         match *self {}
     }
 
+    pub fn solids(&self) -> (Buffer<[u32; 4]>, [usize; 2]) {
+        match *self {}
+    }
+
     pub fn positions(&self) -> [&Buffer<f32>; 2] {
         match *self {}
     }

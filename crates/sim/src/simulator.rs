@@ -100,6 +100,15 @@ impl Simulator {
         }
     }
 
+    /// Solids on the device, in rows that `solid_rows` of crates/body describes: their buffer, the row of it from which
+    /// others are counted, and the row of the first solid counted from there.
+    pub fn device_solids(&self) -> Option<(Buffer<[u32; 4]>, [usize; 2])> {
+        match &self.runner {
+            Runner::Gpu(runner) => Some(runner.solids()),
+            Runner::Cpu(_) => None,
+        }
+    }
+
     /// Time of the state \[s\].
     pub fn time(&self) -> f64 {
         match &self.runner {

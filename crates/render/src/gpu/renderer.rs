@@ -15,6 +15,7 @@ use super::scene::Scene;
 use super::shade::{LayerColoring, Numbers};
 use super::skin::Skin;
 use super::stages::{Kernels, Stages};
+use super::strands::bound_solids::DeviceSolids;
 use super::strands::device_points::DevicePoints;
 use super::strands::points::GuidePoints;
 use super::strands::tessellate;
@@ -139,12 +140,18 @@ impl GpuRenderer {
     }
 
     /// Lets guides carry the renderer's strands, which are those of `binding`: the points of its pictures are from
-    /// now on those of the guides, and the device places the strands, out of the solids.
+    /// now on those of the guides, and the device places the strands, out of the solids. A simulation may have these on
+    /// the device already.
     ///
     /// # Errors
     /// Strands that are not the renderer's; whatever the device refuses.
-    pub fn bind(&mut self, binding: &Arc<Binding>, solids: &Solids) -> Result<(), RenderError> {
-        self.points.bind(&self.gpu, &self.groom, &self.guides, binding, solids)
+    pub fn bind(
+        &mut self,
+        binding: &Arc<Binding>,
+        solids: &Solids,
+        on_device: Option<DeviceSolids>,
+    ) -> Result<(), RenderError> {
+        self.points.bind(&self.gpu, &self.groom, &self.guides, binding, (solids, on_device))
     }
 
     /// As [`Renderer::show_layers`](crate::Renderer::show_layers).

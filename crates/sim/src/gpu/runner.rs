@@ -228,6 +228,11 @@ impl GpuRunner {
         self.reports.clear();
     }
 
+    /// See [`Simulator::device_solids`](crate::Simulator::device_solids).
+    pub fn solids(&self) -> (Buffer<[u32; 4]>, [usize; 2]) {
+        solids::rows(&self.buffers.step, &self.model.colliders)
+    }
+
     /// Records and submits the stages of a step that are wanted.
     pub(super) fn run(&mut self, drive: &Drive, wanted: impl Fn(Stage) -> bool) -> Result<(), SimError> {
         let drive = drive.or_still_at(&self.body, self.model.strand_count);

@@ -43,9 +43,8 @@ use loading::Loading;
 
 use crate::{
     BoundStrands, Camera, Error, HeadMotion, Scene,
-    body::{Aabb, Collider, Mesh},
+    body::{Aabb, Collider, Mesh, Shape},
     groom::{Binding, Guides},
-    strands::bound::clearance,
     strands::hair_pose::HairPose,
     strands::tags::Tags,
 };
@@ -115,7 +114,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         None => None,
         Some(chosen) => {
             // The note about the guides stands for these too, which are near them.
-            guides::move_outside(&mut all, start, &colliders, clearance);
+            guides::move_outside(&mut all, start, &colliders, Shape::clearance);
             let binding = Binding::new(&groom, &chosen, all, guides.clone())?;
             Some(BoundStrands::new(binding, colliders.clone()))
         }

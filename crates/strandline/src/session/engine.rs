@@ -8,6 +8,7 @@ use strandline_gpu::{Buffer, Gpu};
 use crate::{
     body::BodyFrame,
     groom::Vec3Lanes,
+    render::gpu::DeviceSolids,
     sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
     strands::hair_pose::HairPose,
 };
@@ -51,6 +52,12 @@ impl Engine {
     /// Positions on the device \[m\] at the last state and at the one before it.
     pub fn device_points(&self) -> Option<[&Buffer<f32>; 2]> {
         self.simulator.device_points()
+    }
+
+    /// Solids on a device, if the simulation runs there.
+    pub fn device_solids(&self, gpu: &Gpu) -> Option<DeviceSolids> {
+        let (rows, [base, first]) = self.simulator.device_solids()?;
+        gpu.is_same(rows.gpu()).then_some(DeviceSolids { rows, base, first })
     }
 
     /// Strands in the hand.

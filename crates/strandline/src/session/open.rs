@@ -34,9 +34,11 @@ impl Session<Inline> {
         let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
         let mut engine = Engine::new(gpu.as_ref(), Model::new(&guides, settings, colliders)?, fall_back)?;
         engine.notes.extend(notes);
+        let are_same = bound.as_ref().is_some_and(|bound| bound.solids().are(engine.model().colliders()));
+        let solids = pictures.gpu.as_ref().filter(|_| are_same).and_then(|gpu| engine.device_solids(gpu));
         let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
         let view = View {
-            painter: Painter::new(pictures, &guides, bound, mesh)?,
+            painter: Painter::new(pictures, &guides, bound, mesh, solids)?,
             guides,
             bounds,
             camera: Camera::front(),

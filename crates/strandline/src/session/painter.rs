@@ -8,7 +8,7 @@ use crate::{
     groom::Guides,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
-        gpu::{DevicePoints, GpuRenderer},
+        gpu::{DevicePoints, DeviceSolids, GpuRenderer},
     },
     scene::devices::{Opened, device_name},
 };
@@ -39,18 +39,19 @@ enum Place {
 }
 
 impl Painter {
-    /// A painter on a device, or on the CPU without one.
+    /// A painter on a device, or on the CPU without one. The solids of a simulation may lie on that device.
     pub fn new(
         device: Opened,
         guides: &Guides,
         bound: Option<BoundStrands>,
         mesh: Option<&Mesh>,
+        solids: Option<DeviceSolids>,
     ) -> Result<Self, RenderError> {
         let strands = bound.as_ref().map_or(guides, BoundStrands::strands).clone();
         let settings = PictureSettings::default();
         let mut notes = Vec::new();
         let placed = match &device.gpu {
-            Some(gpu) => match on_gpu(gpu, &strands, bound.as_ref(), mesh, &settings) {
+            Some(gpu) => match on_gpu(gpu, &strands, bound.as_ref(), mesh, &settings, solids) {
                 Err(error) if device.fall_back => {
                     notes.push(format!("drawing on the CPU: {error}"));
                     None
@@ -219,10 +220,11 @@ fn on_gpu(
     bound: Option<&BoundStrands>,
     mesh: Option<&Mesh>,
     settings: &PictureSettings,
+    solids: Option<DeviceSolids>,
 ) -> Result<GpuRenderer, RenderError> {
     let mut renderer = GpuRenderer::new(gpu, strands, mesh, settings)?;
     if let Some(bound) = bound {
-        renderer.bind(bound.binding(), bound.solids())?;
+        renderer.bind(bound.binding(), bound.solids(), solids)?;
     }
     Ok(renderer)
 }

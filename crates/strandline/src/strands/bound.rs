@@ -3,22 +3,9 @@
 use std::sync::Arc;
 
 use crate::{
-    body::{BodyFrame, Collider, Shape, Solids},
+    body::{BodyFrame, Collider, Solids},
     groom::{Binding, Frames, Guides, Vec3Lanes},
 };
-
-/// Clearance of strands from a solid, as a share of the distance between its samples, and its upper limit \[m\]: samples
-/// err by about as much where the surface curves.
-const CLEARANCE: f32 = 0.25;
-const MOST_CLEARANCE: f32 = 0.002;
-
-/// Distance \[m\] that bound strands keep from a solid.
-pub(crate) fn clearance(shape: &Shape) -> f32 {
-    match shape {
-        Shape::Grid(grid) => (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE),
-        Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Mannequin(_) => 0.0,
-    }
-}
 
 /// All strands of a groom, bound to the simulated ones among them, and the solids that they stay out of.
 #[derive(Clone, Debug)]
@@ -31,7 +18,7 @@ impl BoundStrands {
     /// Strands and solids; solids that the head carries are in head space.
     pub fn new(binding: Binding, solids: Vec<Collider>) -> Self {
         let away = |solid: Collider| {
-            let clearance = clearance(&solid.shape);
+            let clearance = solid.shape.clearance();
             (solid, clearance)
         };
         Self { binding: Arc::new(binding), solids: Solids::new(solids.into_iter().map(away)) }
