@@ -24,11 +24,12 @@ pub fn pages(options: &ManOptions) -> anyhow::Result<()> {
     made.map_err(|error| anyhow::anyhow!("cannot make the folder: {error}: {}", folder.display()))?;
     let mut program = Arguments::command();
     program.build();
-    let named = |command: &clap::Command| command.clone().name(format!("{PROGRAM}-{}", command.get_name()));
-    let commands: Vec<clap::Command> = program.get_subcommands().map(named).collect();
+    // Commands are named as pages are: `strandline-render`.
+    let commands: Vec<clap::Command> = program.get_subcommands().cloned().collect();
     let count = commands.len() + 1;
     for command in std::iter::once(program).chain(commands) {
-        let path = folder.join(format!("{}.1", command.get_name()));
+        let name = command.get_display_name().unwrap_or(command.get_name());
+        let path = folder.join(format!("{name}.1"));
         let mut page = Vec::new();
         clap_mangen::Man::new(command).render(&mut page)?;
         let saved = WholeFile::save(&path, &page);

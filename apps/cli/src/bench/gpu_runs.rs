@@ -73,7 +73,7 @@ impl Device {
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
             drift: plain.drift(&runner.state()?),
-            stiffened: plain.rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest)),
+            stiffening: plain.stiffening(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         });

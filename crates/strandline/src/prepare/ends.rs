@@ -6,7 +6,7 @@ use strandline_base::math;
 use super::{
     guess,
     loading::Loading,
-    placing::{Placing, Placings, diagonal},
+    placing::{Defined, Placing, Placings, diagonal},
     sample::NEAR,
 };
 use crate::{
@@ -46,6 +46,7 @@ pub(super) fn turn(loading: &mut Loading) {
     }
     let mut scene = scene.clone();
     let parts = scene.groom.parts.clone();
+    let defined = scene.body.file.as_ref().map_or(Defined::Nothing, |file| loading.sources.defined(file));
     let further = further_grooms.iter_mut().zip(parts.iter().map(Some));
     for (groom, part) in groom.iter_mut().map(|groom| (groom, None)).chain(further) {
         if let Some(part) = part {
@@ -53,7 +54,7 @@ pub(super) fn turn(loading: &mut Loading) {
             (scene.groom.rotation, scene.groom.translation) = (part.rotation, part.translation);
         }
         let turned = match mesh {
-            Some(mesh) => on_skin(&scene, groom, mesh),
+            Some(mesh) => on_skin(&scene, groom, mesh, defined),
             None => groom.from_tip(),
         };
         let Some(turned) = turned else { continue };
@@ -65,11 +66,11 @@ pub(super) fn turn(loading: &mut Loading) {
 
 /// Strands whose last point lies on the skin and whose first does not; shape `[strand]`. `None` where there are none, or
 /// the groom does not belong to the body.
-fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh) -> Option<Vec<bool>> {
+fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh, defined: Defined) -> Option<Vec<bool>> {
     let every = groom.strand_count().div_ceil(LOOKED_AT).max(1);
     let few: Vec<usize> = (0..groom.strand_count()).step_by(every).collect();
     let few = groom.select(&few);
-    let stored = guess::placings(scene, &[&few], Some(mesh));
+    let stored = guess::placings(scene, &[&few], Some(mesh), defined);
     let mut skin = Skin { scene, mesh, placings: stored };
     let mut apart = skin.apart(&few);
     let first = median(apart.iter().map(|apart| apart[0]));
@@ -77,9 +78,9 @@ fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh) -> Option<Vec<bool>> {
         // Tips that were taken for roots may have misled the placement.
         let mut turned = few.clone();
         turned.turn_strands(&vec![true; few.strand_count()]);
-        let of_turned = guess::placings(scene, &[&turned], Some(mesh));
+        let of_turned = guess::placings(scene, &[&turned], Some(mesh), defined);
         let body = skin.placings.body;
-        for placings in [of_turned, Placings { groom: body, body, note: None }] {
+        for placings in [of_turned, Placings { groom: body, body, ..Placings::new(1.0) }] {
             let other = Skin { scene, mesh, placings };
             let found = other.apart(&few);
             if nearer(&found) < nearer(&apart) {

@@ -20,7 +20,7 @@ fn found(groom: &Groom, scene: impl Fn(&mut Scene)) -> Option<Vec<bool>> {
     own.groom.file = Some("hair".into());
     own.body.file = Some("head".into());
     scene(&mut own);
-    on_skin(&own, groom, &Mannequin::new().mesh())
+    on_skin(&own, groom, &Mannequin::new().mesh(), Defined::Nothing)
 }
 
 #[test]
