@@ -154,11 +154,12 @@ impl Scene {
     /// # Errors
     /// As [`Scene::load`].
     pub fn parse(text: &str, origin: &str) -> Result<Self, Error> {
-        let scene: Self = toml::from_str(&colors::spelled_out(text)).map_err(|error| Error::ParseScene {
-            origin: origin.to_owned(),
-            // It quotes the file.
-            message: printable(error.to_string().trim_end()).into_owned(),
-        })?;
+        let scene: Self =
+            toml::from_str(&colors::spelled_out(text, &Self::TABLE)).map_err(|error| Error::ParseScene {
+                origin: origin.to_owned(),
+                // It quotes the file.
+                message: printable(error.to_string().trim_end()).into_owned(),
+            })?;
         scene.check()?;
         Ok(scene)
     }
