@@ -71,8 +71,8 @@ settings! {
         level_of_detail: LevelOfDetail = LevelOfDetail::default();
         /// View of the pictures.
         camera: CameraSection = CameraSection::default();
-        /// The lights, at most 64; none named means a soft box before and a strip behind the head, or three lights of the
-        /// look "thesis".
+        /// The lights, at most 64; none named means a soft box before the head, a strip behind it and a weak fill
+        /// beside it, or three lights of the look "thesis".
         lights: Vec<Light> = Vec::new();
         /// Surroundings as a picture.
         surroundings: SurroundingsSection = SurroundingsSection::default();
