@@ -63,7 +63,7 @@ fn patch(mesh: &Mesh, length: f32, way: Vec3, holds: impl Fn(Vec3) -> bool) -> G
 fn a_groom_of_any_axes_and_units_comes_to_a_head_at_the_origin() {
     let mesh = Mannequin::new().mesh();
     let groom = hair(Style::Long);
-    for (index, turn) in turns().enumerate() {
+    for (index, turn) in turns().enumerate().step_by(5) {
         let placing = Placing { scale: [1.0, 0.01][index % 2], turn };
         let (groom, mesh) = filed(&groom, &mesh, placing, HERE);
         let found = found(&groom, &mesh, [Defined::Nothing, Defined::All][index / 2 % 2]);
@@ -77,7 +77,7 @@ fn a_groom_of_any_axes_and_units_comes_to_a_head_at_the_origin() {
 fn a_body_of_any_axes_and_units_shows_them_whatever_the_groom_is() {
     let mesh = Mannequin::new().mesh();
     let grooms = [hair(Style::Bob), hair(Style::Ponytail)];
-    for (index, turn) in turns().enumerate() {
+    for (index, turn) in turns().enumerate().step_by(7) {
         let placing = Placing { scale: [1.0, 0.00254, 0.001][index % 3], turn };
         let of_groom = if index % 2 == 0 { placing } else { HERE };
         let (groom, mesh) = filed(&grooms[index / 2 % 2], &mesh, of_groom, placing);

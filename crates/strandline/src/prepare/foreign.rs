@@ -4,12 +4,12 @@ use glam::{Quat, Vec3};
 use strandline_base::math;
 
 use super::evidence::Hair;
-use super::guess;
 use super::head::{UPS, turns, turns_of};
 use super::placing::{Placing, upright};
 use super::relation::{Found, MOST, PIECE, Search, fits};
 use super::sample::HEIGHTS;
 use super::skull::Skull;
+use super::units::unit_of_width;
 use crate::{
     body::Mesh,
     groom::{
@@ -46,7 +46,7 @@ pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
         let hair = search.hair.placed(|point| own * *turn * (unit * point));
         let fitting = Fitting::new(hair.many_roots(), skull)?;
         let scalp = skull.size.x / (fitting.scale.x / OF_SKULL.x);
-        let usual = guess::unit_of_width(scalp / unit, unit);
+        let usual = unit_of_width(scalp / unit, unit);
         let placing = Placing { scale: if usual.1.is_none() { usual.0 } else { unit }, turn: *turn };
         Some((placing, hair.placed(|point| fitting.place(point))))
     };

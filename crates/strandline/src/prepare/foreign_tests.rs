@@ -5,6 +5,7 @@ use strandline_base::math;
 use super::*;
 use crate::Scene;
 use crate::groom::{Style, StyleSettings};
+use crate::prepare::guess;
 use crate::prepare::placing::{Defined, Placings, place_mesh};
 
 /// The built-in bust and a bob that grew on it, both elsewhere, in other units, turned by some angles.

@@ -11,6 +11,7 @@ use super::{
     relation::{Found, Head, Search},
     sample::{NEAR, NEARER, Sample, UNITS},
     skull::Skull,
+    units::{SCALPS, unit_of_width},
 };
 use crate::{
     Scene,
@@ -31,10 +32,6 @@ const HIGHER: f32 = 0.15;
 const SURER: f32 = 0.3;
 /// Evidence beyond that for the axes of a file with which others are taken for a groom without a body.
 const SURE_ALONE: f32 = 2.5;
-/// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
-/// head that no unit brings there is given.
-const SCALPS: std::ops::RangeInclusive<f32> = 0.09..=0.3;
-const SCALP: f32 = 0.15;
 /// Distance of roots over their size at which nothing is left of the confidence in their place.
 const ASTRAY: f32 = 0.2;
 /// Confidence in a body that shows neither face nor feet, in a person whose face does not show, in hair that is fitted to
@@ -134,17 +131,6 @@ fn of_body(scene: &Scene, mesh: &Mesh, defined: Defined) -> (Placing, head::Pose
     }
 }
 
-/// The unit with which a head of a width \[units\] is most like that of a person; with it, where no usual one does, the
-/// width \[m\] that another unit would make it.
-pub(super) fn unit_of_width(width: f32, unit: f32) -> (f32, Option<f32>) {
-    let odd = |unit: &f32| math::ln(unit * width / SCALP).abs();
-    let usual = UNITS.into_iter().filter(|unit| SCALPS.contains(&(unit * width)));
-    match usual.min_by(|one, two| odd(one).total_cmp(&odd(two))) {
-        Some(unit) => (unit, None),
-        None => (as_written(SCALP / width), Some(unit * width)),
-    }
-}
-
 /// Confidence in the place of a body.
 fn confidence_of(scene: &Scene, defined: Defined, pose: &head::Pose) -> f32 {
     match (scene.body.up, defined) {
@@ -214,12 +200,6 @@ fn shows_z(sample: &Sample) -> bool {
     let ([high_y, hangs_y], [high_z, hangs_z]) = (sample.upness(Vec3::Y), sample.upness(Vec3::Z));
     // Fur that is combed along z hangs down z, but grows no higher there.
     high_z > high_y + HIGHER && high_z + hangs_z > high_y + hangs_y + SURER
-}
-
-/// A scale of two digits, as a person would write it.
-fn as_written(scale: f32) -> f32 {
-    let digit = math::powf(10.0, math::log10(scale).floor() - 1.0);
-    (scale / digit).round() * digit
 }
 
 /// The place of a further groom: given, or that of the first unless another unit or axis brings its roots to the

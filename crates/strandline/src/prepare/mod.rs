@@ -25,6 +25,7 @@ mod sample;
 mod skull;
 mod solids;
 mod sources;
+mod units;
 mod wrap;
 
 #[cfg(test)]

@@ -83,8 +83,7 @@ impl Scattering {
         if self.made.as_ref().is_none_or(|made| made.from != source) {
             self.made = Some(Made::new(source));
         }
-        let Some(made) = &self.made else { return };
-        let lattice = &made.lattice;
+        let Some(Made { lattice, .. }) = &self.made else { return };
         self.summed = EveryFew::of(strands.full_count);
         reach(strands, lit, self.summed, &mut self.reached);
         if lattice.is_mixed() {
@@ -102,7 +101,7 @@ impl Scattering {
             around: look.around(),
             lattice,
             eye: lit.eye,
-            rounds: made.rounds(),
+            rounds: look.fibre.chiang.scatterings,
         });
         self.lightness.extend(self.reached.drain(lit.lights.len()..));
     }

@@ -39,9 +39,7 @@ fn a_window_plays_what_a_film_shows() {
         live.send(Command::Play(false));
         live.wait_idle();
         live.send(Change::Reset);
-        for _ in 0..scene.film.frames {
-            live.send(Command::Step);
-        }
+        (0..scene.film.frames).for_each(|_| drop(live.send(Command::Step)));
         let shown = settled(&live).picture;
         let drawn = drawn.unwrap();
         let each = shown.pixels.iter().zip(&drawn.pixels).map(|(one, other)| f64::from(one.abs_diff(*other)));
