@@ -136,7 +136,7 @@ pub struct Inputs {
     /// Velocity of the wind [m/s], world space: x to the left of the face, y up, z to the front.
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
     pub wind: Option<Vec3>,
-    /// Where the camera looks from: front, three_quarter, side or back; hair and body fill the picture.
+    /// Side that the camera looks from: front, three_quarter, side or back; hair and body fill the picture.
     #[arg(long, value_name = "NAME", value_parser = View::from_str)]
     pub view: Option<View>,
     /// Number of frames.

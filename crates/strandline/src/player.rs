@@ -95,7 +95,7 @@ impl Player {
         let here = session.simulation().end().world_from_head();
         let timing = FilmTiming::new(session.scene(), session.head().clone(), here);
         let frames = session.scene().film.frames;
-        let camera = CameraMotion::new(session.scene(), *session.view().camera())?;
+        let camera = CameraMotion::new(&session.scene().camera.keyframes, *session.view().camera())?;
         Ok(Self {
             camera,
             session: session.beside()?,

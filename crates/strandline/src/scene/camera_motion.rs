@@ -5,7 +5,7 @@ use strandline_base::math;
 
 use super::CameraKeyframe;
 use crate::{
-    Error, Scene,
+    Error,
     body::{Curve, Key},
     render::Camera,
 };
@@ -38,12 +38,12 @@ pub(super) fn curve(keys: &[CameraKeyframe]) -> Result<Option<Curve<6>>, Error> 
 }
 
 impl CameraMotion {
-    /// The motion of a scene's camera from where it is without keyframes; none without keyframes.
+    /// The motion of a camera through keyframes, about its place without them; none without keyframes.
     ///
     /// # Errors
     /// Times that do not rise.
-    pub fn new(scene: &Scene, base: Camera) -> Result<Option<Self>, Error> {
-        Ok(curve(&scene.camera.keyframes)?.map(|curve| Self { base, curve }))
+    pub fn new(keyframes: &[CameraKeyframe], base: Camera) -> Result<Option<Self>, Error> {
+        Ok(curve(keyframes)?.map(|curve| Self { base, curve }))
     }
 
     /// The camera at a time \[s\].
@@ -81,9 +81,7 @@ mod tests {
             target: Vec3::new(0.0, 1.5, 0.0),
             ..Camera::default()
         };
-        let mut scene = Scene::default();
-        scene.camera.keyframes = keys.to_vec();
-        CameraMotion::new(&scene, base).unwrap().unwrap()
+        CameraMotion::new(keys, base).unwrap().unwrap()
     }
 
     #[test]
@@ -119,7 +117,7 @@ mod tests {
 
     #[test]
     fn times_that_do_not_rise_are_refused() {
-        let mut scene = Scene::default();
+        let mut scene = crate::Scene::default();
         scene.camera.keyframes = vec![CameraKeyframe::default(); 2];
         assert!(scene.check().unwrap_err().to_string().contains("keyframe 1 has the time 0 s"));
     }

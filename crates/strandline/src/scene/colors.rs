@@ -4,9 +4,6 @@ use std::borrow::Cow;
 
 use strandline_base::{Kind, Row, Table, math};
 
-use super::Scene;
-use strandline_base::Group;
-
 /// Length of a colour with its mark.
 const LENGTH: usize = 7;
 
@@ -31,13 +28,13 @@ pub(super) fn is_color(row: &Row) -> bool {
     row.kind == Kind::Number(3) && row.unit.is_empty()
 }
 
-/// The text of a scene file with three numbers in the place of each `#rrggbb` that a colour is set to.
-pub(super) fn spelled_out(text: &str) -> Cow<'_, str> {
+/// The text of a file with three numbers in the place of each `#rrggbb` that a colour of the table is set to.
+pub(super) fn spelled_out<'a>(text: &'a str, table: &'static Table) -> Cow<'a, str> {
     if !text.contains('#') {
         return Cow::Borrowed(text);
     }
     let mut names = Vec::new();
-    collect(&Scene::TABLE, &mut names);
+    collect(table, &mut names);
     let mut written = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find("\"#").into_iter().chain(rest.find("'#")).min() {
@@ -84,6 +81,7 @@ fn is_set(before: &str, names: &[&str]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Scene;
 
     #[test]
     fn a_hex_colour_is_srgb() {

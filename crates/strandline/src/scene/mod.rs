@@ -71,8 +71,8 @@ settings! {
         level_of_detail: LevelOfDetail = LevelOfDetail::default();
         /// View of the pictures.
         camera: CameraSection = CameraSection::default();
-        /// The lights, at most 64; none named means a soft box before and a strip behind the head, or three lights of the
-        /// look "thesis".
+        /// The lights, at most 64; none named means a soft box before the head, a strip behind it and a weak fill
+        /// beside it, or three lights of the look "thesis".
         lights: Vec<Light> = Vec::new();
         /// Surroundings as a picture.
         surroundings: SurroundingsSection = SurroundingsSection::default();
@@ -154,11 +154,12 @@ impl Scene {
     /// # Errors
     /// As [`Scene::load`].
     pub fn parse(text: &str, origin: &str) -> Result<Self, Error> {
-        let scene: Self = toml::from_str(&colors::spelled_out(text)).map_err(|error| Error::ParseScene {
-            origin: origin.to_owned(),
-            // It quotes the file.
-            message: printable(error.to_string().trim_end()).into_owned(),
-        })?;
+        let scene: Self =
+            toml::from_str(&colors::spelled_out(text, &Self::TABLE)).map_err(|error| Error::ParseScene {
+                origin: origin.to_owned(),
+                // It quotes the file.
+                message: printable(error.to_string().trim_end()).into_owned(),
+            })?;
         scene.check()?;
         Ok(scene)
     }

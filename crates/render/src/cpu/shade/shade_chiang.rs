@@ -83,7 +83,8 @@ impl Scattering {
         if self.made.as_ref().is_none_or(|made| made.from != source) {
             self.made = Some(Made::new(source));
         }
-        let Some(Made { lattice, .. }) = &self.made else { return };
+        let Some(made) = &self.made else { return };
+        let lattice = &made.lattice;
         self.summed = EveryFew::of(strands.full_count);
         reach(strands, lit, self.summed, &mut self.reached);
         if lattice.is_mixed() {
@@ -101,7 +102,7 @@ impl Scattering {
             around: look.around(),
             lattice,
             eye: lit.eye,
-            rounds: look.fibre.chiang.scatterings,
+            rounds: made.rounds(),
         });
         self.lightness.extend(self.reached.drain(lit.lights.len()..));
     }

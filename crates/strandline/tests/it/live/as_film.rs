@@ -39,7 +39,9 @@ fn a_window_plays_what_a_film_shows() {
         live.send(Command::Play(false));
         live.wait_idle();
         live.send(Change::Reset);
-        (0..scene.film.frames).for_each(|_| drop(live.send(Command::Step)));
+        for _ in 0..scene.film.frames {
+            live.send(Command::Step);
+        }
         let shown = settled(&live).picture;
         let drawn = drawn.unwrap();
         let each = shown.pixels.iter().zip(&drawn.pixels).map(|(one, other)| f64::from(one.abs_diff(*other)));
