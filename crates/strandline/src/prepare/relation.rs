@@ -37,12 +37,13 @@ const CLEAR: f32 = 1.5;
 const STANDS: f32 = -0.3;
 const LOW: f32 = 0.1;
 const ON_FACE: f32 = 0.25;
-/// Step between units that are tried, their number, the smallest size of roots over that of the skull, and how far they may reach out
-/// of the body's box over its size.
+/// Step between units that are tried, their number, the smallest size of roots over that of the skull, and how far how
+/// many of them may reach out of the body's box over its size.
 const STEP: f32 = 1.1;
 const STEPS: usize = 50;
 const SMALLEST: f32 = 0.15;
 const OUT: f32 = 0.1;
+const MOST_ROOTS: f32 = 0.8;
 /// Every n-th strand that is tried with all units, and axes that are then tried with finer ones.
 const FEWER: usize = 4;
 const AXES: usize = 6;
@@ -186,10 +187,17 @@ impl Search<'_> {
         self.hair.placed(|point| turn * (placing.scale * point) + groom.translation)
     }
 
-    /// Distances of roots from the skin over their size, for each of some places.
+    /// Distances of roots from the skin over their size, for each of some places; infinite for those away from the body.
     fn fits(&self, tried: &[Placing]) -> Vec<f32> {
-        let hair: Vec<Hair> = tried.iter().map(|placing| self.placed(placing)).collect();
-        fits(&self.head.mesh, &hair)
+        let Some(bounds) = self.head.mesh.bounds() else { return vec![f32::INFINITY; tried.len()] };
+        let is_within: Vec<bool> = tried.iter().map(|placing| self.is_within(placing, bounds)).collect();
+        let near = tried.iter().zip(&is_within).filter(|(_, is_within)| **is_within);
+        let hair: Vec<Hair> = near.map(|(placing, _)| self.placed(placing)).collect();
+        let mut found = fits(&self.head.mesh, &hair).into_iter();
+        is_within
+            .into_iter()
+            .map(|is_within| if is_within { found.next() } else { None }.unwrap_or(f32::INFINITY))
+            .collect()
     }
 
     /// Evidence for a place.
@@ -264,7 +272,7 @@ impl Search<'_> {
             .axes(true)
             .into_iter()
             .flat_map(|turn| scales.iter().map(move |scale| Placing { scale: *scale, turn }));
-        let tried: Vec<Placing> = tried.filter(|placing| self.is_within(placing, bounds)).collect();
+        let tried: Vec<Placing> = tried.collect();
         let fewer = self.hair.fewer(FEWER);
         let mut near = nearest(&tried, &Search { hair: &fewer, ..*self }.fits(&tried));
         near.truncate(AXES);
@@ -277,15 +285,16 @@ impl Search<'_> {
         found.map(|best| Placing { scale: as_unit(best.scale, self.head.placing.scale), ..best }).collect()
     }
 
-    /// True where roots reach out of a box by little.
+    /// True where most roots reach out of a box by little.
     fn is_within(&self, placing: &Placing, bounds: Aabb) -> bool {
         let out = OUT * bounds.max.distance(bounds.min);
         let groom = &self.scene.groom;
         let turn = math::pitch_yaw_roll(groom.rotation) * placing.turn;
-        self.hair.roots().all(|root| {
-            let place = turn * (placing.scale * root) + groom.translation;
+        let is_near = |root: &Vec3| {
+            let place = turn * (placing.scale * *root) + groom.translation;
             (bounds.min - place).max(place - bounds.max).max_element() < out
-        })
+        };
+        self.hair.roots().filter(is_near).count() as f32 >= MOST_ROOTS * self.hair.strands.len() as f32
     }
 }
 
