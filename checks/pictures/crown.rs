@@ -133,7 +133,7 @@ fn quantile(sorted: &[f32], share: f32) -> f32 {
 
 /// A soft box of the studio's size and power before the head, and the same one behind it.
 fn boxes() -> [Light; 2] {
-    let [front, _] = Light::studio(Camera::front().target);
+    let [front, ..] = Light::studio(Camera::front().target);
     let away = front.position - front.target;
     [front, Light { position: front.target + away * Vec3::new(1.0, 1.0, -1.0), ..front }]
 }

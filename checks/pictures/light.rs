@@ -213,6 +213,25 @@ law! {
 }
 
 law! {
+    fn white_hair_in_the_sun_is_as_bright_as_path_tracing_lights_it(on) {
+        let expected = reference("white_directional", 64);
+        let mask: Vec<bool> = expected.pixels.iter().map(|pixel| pixel.max_element() > 0.003).collect();
+        let mut scene = sphere(Some(sun()), 0.0);
+        let white = Chiang { eumelanin: 0.0, pheomelanin: 0.0, ..Chiang::default() };
+        scene.look.fibre.chiang = white;
+        let drawn = scene.drawn_by(on);
+        let found = measures(&drawn.boxed(), &expected, &mask, 1.0);
+        drawn.save("white_directional", 1.0);
+        expected.save("white_directional_expected", 1.0);
+        assert!(found.sound(1.0, 0.1), "{found:?}");
+        // Few scatterings leave it grey.
+        scene.look.fibre.chiang.scatterings = 4;
+        let wrong = measures(&scene.drawn_by(on).boxed(), &expected, &mask, 1.0);
+        assert!(!wrong.sound(1.0, 0.1), "{wrong:?}");
+    }
+}
+
+law! {
     fn brown_hair_in_even_light_is_lit_as_path_tracing_lights_it(on) {
         let sunlit = reference("brown_directional", 64);
         let mask: Vec<bool> = sunlit.pixels.iter().map(|pixel| pixel.max_element() > 0.003).collect();

@@ -1,7 +1,7 @@
 //! Shadows of lights with an area on skin: past the edge of a body and of hair a floor gets the share of a light that
 //! is seen from there, without steps, on both backends.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use strandline_body::{BodyFrame, Mesh};
 use strandline_checks::{On, law};
 use strandline_groom::{Groom, Guides};
@@ -90,27 +90,27 @@ fn look() -> Look {
     }
 }
 
-/// Light of the floor at places along x.
-fn floor(on: &On, caster: Caster, light: Light) -> Vec<f32> {
-    let camera = Camera {
-        position: Vec3::new(0.0, 0.25, 0.7),
-        target: Vec3::ZERO,
-        field_of_view: 35.0,
-        ..Camera::default()
-    };
+/// A picture of skin in one light, with hair as it lies.
+fn picture(
+    on: &On,
+    (guides, mesh): (&Guides, &Mesh),
+    camera: &Camera,
+    light: Light,
+    size: [u32; 2],
+) -> Linear {
     let dark = Vec3::ZERO;
     let settings = PictureSettings {
         layers: true,
         supersampling: 1,
         tone_map: ToneMap::Off,
         background: Background { top: dark, bottom: dark },
-        ..PictureSettings::sized(640, 240)
+        ..PictureSettings::sized(size[0], size[1])
     };
-    let (guides, mesh, look) = (hair(caster), body(caster), look());
+    let look = look();
     let input = FrameInput {
         positions: guides.positions(),
         body: &BodyFrame::REST,
-        camera: &camera,
+        camera,
         look: &look,
         body_look: &BodyLook {
             color: Vec3::splat(0.5),
@@ -123,10 +123,21 @@ fn floor(on: &On, caster: Caster, light: Light) -> Vec<f32> {
         level_of_detail: &LevelOfDetail::full(),
     };
     let (_, report) = match on {
-        On::Cpu => Renderer::new(&guides, Some(&mesh), &settings).unwrap().draw(&input).unwrap(),
-        On::Gpu(gpu) => GpuRenderer::new(gpu, &guides, Some(&mesh), &settings).unwrap().draw(&input).unwrap(),
+        On::Cpu => Renderer::new(guides, Some(mesh), &settings).unwrap().draw(&input).unwrap(),
+        On::Gpu(gpu) => GpuRenderer::new(gpu, guides, Some(mesh), &settings).unwrap().draw(&input).unwrap(),
     };
-    let picture = Linear::of(&report.layers.unwrap());
+    Linear::of(&report.layers.unwrap())
+}
+
+/// Light of the floor at places along x.
+fn floor(on: &On, caster: Caster, light: Light) -> Vec<f32> {
+    let camera = Camera {
+        position: Vec3::new(0.0, 0.25, 0.7),
+        target: Vec3::ZERO,
+        field_of_view: 35.0,
+        ..Camera::default()
+    };
+    let picture = picture(on, (&hair(caster), &body(caster)), &camera, light, [640, 240]);
     let view_from_world = camera.view_from_world();
     let shown = |x: f32| {
         let seen = view_from_world.transform_point3(Vec3::X * x);
@@ -185,7 +196,7 @@ fn hold(on: &On, caster: Caster) {
         let off = shares.iter().zip(&exact).map(|(found, exact)| (found - exact).abs()).fold(0.0, f32::max);
         let step = |all: &[f32]| all.windows(2).map(|pair| pair[1] - pair[0]).fold(f32::MIN, f32::max);
         let least = shares.windows(2).map(|pair| pair[1] - pair[0]).fold(f32::MAX, f32::min);
-        // A light is tried by 34 rays, one of one place and hair by 17; a disc counts as squares of the same area.
+        // A step of a ray lies twice as far as the one before it; a disc counts as squares of the same area.
         let most = if caster == Caster::Hair { 0.08 } else { 0.065 };
         assert!(off < most, "{:?} of {} places: {off}", light.kind, light.samples);
         assert!(step(&shares) < 3.0 * step(&exact) && least > -2e-3, "{} and {least}", step(&shares));
@@ -216,4 +227,67 @@ law! {
             assert!(off < 0.036, "{off} beside {mean}");
         }
     }
+}
+
+/// Bars and a slanting curtain above a floor: blockers at many distances before one point.
+fn bars(curtain: bool) -> (Guides, Mesh) {
+    let mut corners = square(Vec3::ZERO, Vec3::splat(2.0)).to_vec();
+    for (height, middle) in [(0.1, -0.05), (0.15, 0.03), (0.25, -0.12)] {
+        // Turned against each other.
+        let turn = Quat::from_rotation_y(4.0 * height);
+        let bar = square(Vec3::ZERO, Vec3::new(0.03, 0.0, 0.5));
+        corners.extend(bar.map(|corner| turn * corner + Vec3::new(middle, height, 0.0)));
+    }
+    let triangles =
+        (0..corners.len() as u32).step_by(4).flat_map(|at| [[at, at + 1, at + 2], [at, at + 2, at + 3]]);
+    let mesh = Mesh::new(corners.clone(), triangles.collect()).unwrap();
+    let mut groom = Groom::empty(if curtain { 1e-3 } else { 1e-7 });
+    for strand in 0..400 {
+        let top = Vec3::new(0.05 + 2.5e-4 * strand as f32, 0.3, -0.15);
+        groom.push([top, top + Vec3::new(0.02, -0.2, 0.25)]);
+    }
+    (Guides::resample(&groom, 8).unwrap(), mesh)
+}
+
+law! {
+    fn shadows_on_smooth_skin_have_no_tears(on) {
+        // Bars and hair lie before the near plane: the floor alone is seen.
+        let camera = Camera {
+            position: Vec3::new(0.0, 2.0, 0.2),
+            target: Vec3::ZERO,
+            field_of_view: 14.0,
+            near: 1.94,
+            ..Camera::default()
+        };
+        let size = [320, 240];
+        let open = body(Caster::Nothing);
+        for samples in [1, 2] {
+            // The size, distance and height of the studio's soft box.
+            let light = Light {
+                kind: LightKind::Rectangle,
+                position: Vec3::new(-0.9, 1.4, 0.8),
+                width: 0.8,
+                height: 0.8,
+                samples,
+                ..Light::default()
+            };
+            let (hair, mesh) = bars(true);
+            let whole = picture(on, (&bars(false).0, &open), &camera, light, size);
+            let found = picture(on, (&hair, &mesh), &camera, light, size);
+            found.save(&format!("bars_{samples}"), 1.0);
+            let off = tears(&found, &whole);
+            assert!(off < 0.02, "{off} with {samples} places a side");
+        }
+    }
+}
+
+/// The 99.5th percentile of how far the share of a light at a pixel of the floor lies from the mean of the two beside
+/// it.
+fn tears(found: &Linear, whole: &Linear) -> f32 {
+    let shares: Vec<f32> =
+        found.pixels.iter().zip(&whole.pixels).map(|(found, whole)| found.x / whole.x).collect();
+    let rows = shares.chunks_exact(found.width).flat_map(|row| row.windows(3));
+    let mut off: Vec<f32> = rows.map(|three| (three[1] - 0.5 * (three[0] + three[2])).abs()).collect();
+    off.sort_by(f32::total_cmp);
+    off[off.len() * 995 / 1000]
 }

@@ -64,9 +64,9 @@ pub struct Illumination {
 }
 
 impl Light {
-    /// A soft box before and above a head at `target` \[m\] that faces +z, and a cool strip behind it: what most hair is
-    /// photographed with.
-    pub fn studio(target: Vec3) -> [Self; 2] {
+    /// A soft box before and above a head at `target` \[m\] that faces +z, a cool strip behind it and a large, weak fill
+    /// on the far side of the soft box: the lights of a photographer's studio.
+    pub fn studio(target: Vec3) -> [Self; 3] {
         let light = |x, y, z| Self {
             kind: LightKind::Rectangle,
             position: target + Vec3::new(x, y, z),
@@ -88,6 +88,14 @@ impl Light {
                 height: 0.9,
                 samples: 1,
                 ..light(1.1, 1.2, -1.2)
+            },
+            Self {
+                color: Vec3::new(0.95, 0.97, 1.0),
+                intensity: 0.4,
+                width: 1.2,
+                height: 1.2,
+                samples: 1,
+                ..light(1.7, 0.25, 0.35)
             },
         ]
     }

@@ -61,7 +61,7 @@ impl Look {
         self.environment = base.environment;
         self.root_width = base.root_width;
         let (root, tip, melanin, grey) = match preset {
-            Preset::Brown | Preset::Thesis => (base.root_color, base.tip_color, [0.6, 0.2, 1.0], 0.0),
+            Preset::Brown | Preset::Thesis => (base.root_color, base.tip_color, [1.3, 0.1, 1.0], 0.0),
             Preset::Black => {
                 (Vec3::new(0.016, 0.013, 0.012), Vec3::new(0.026, 0.021, 0.019), [8.0, 0.0, 1.0], 0.0)
             }

@@ -33,13 +33,13 @@ choices! {
     pub enum ToneMap as "picture.tone_map" {
         /// Cut off at 1.
         Off = "off",
-        /// Unchanged up to a knee, then rolled off smoothly toward white.
+        /// Unchanged up to a knee, then rolled off smoothly toward white; the hue stays.
         Filmic = "filmic",
-        /// With a toe, a long shoulder and more contrast between, each channel by itself, as film scanned with
-        /// ACES [Narkowicz2015].
+        /// With a toe, a long shoulder and more contrast between, as film scanned with ACES [Narkowicz2015]. Each channel
+        /// is mapped by itself, which makes colours more vivid and shifts bright brown toward orange.
         Aces = "aces",
     }
-    default Aces
+    default Filmic
 }
 
 settings! {

@@ -5,6 +5,7 @@ use strandline_gpu::{Buffer, Gpu, GpuError};
 use strandline_groom::Vec3Lanes;
 
 use crate::grab::Grab;
+use crate::length_scale::Lengths;
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 
 /// A runner on a GPU.
@@ -102,6 +103,10 @@ impl GpuRunner {
     }
 
     pub fn write(&mut self, _: &State) -> Result<(), SimError> {
+        match *self {}
+    }
+
+    pub(crate) fn set_lengths(&mut self, _: &Lengths) -> Result<(), SimError> {
         match *self {}
     }
 

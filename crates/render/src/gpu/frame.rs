@@ -85,7 +85,7 @@ impl Frame<'_> {
         match &scattering(scene, &bounds.held) {
             Some((grid, light)) => {
                 recorder.clear(grid.sums());
-                recorder.stage(name, &light_stages(scene, light));
+                recorder.stage(name, &light_stages(scene, grid.rounds(), light));
                 recorder.stage(name, &one(&light.shade, points));
             }
             None => recorder.stage(name, &one(&stages.shade, points)),
@@ -119,7 +119,7 @@ fn scattering<'a>(scene: &Scene, held: &Held<'a>) -> Option<(&'a LightGrid, &'a 
 }
 
 /// Hair and skin summed into cells, and light carried through them.
-fn light_stages(scene: &Scene, light: &light_grid::Bounds) -> Vec<(Bound, [u32; 3])> {
+fn light_stages(scene: &Scene, rounds: u32, light: &light_grid::Bounds) -> Vec<(Bound, [u32; 3])> {
     let mut list = vec![light.sum_hair.clone().over(scene.segment_count())];
     if scene.triangle_count > 0 {
         list.push(light.sum_skin.clone().over(scene.triangle_count));
@@ -127,7 +127,7 @@ fn light_stages(scene: &Scene, light: &light_grid::Bounds) -> Vec<(Bound, [u32; 
     list.push(light.prepare.clone().over(CELLS));
     let [x, y, _] = light.carry.groups(light_grid::LINES);
     let carry = (light.carry.clone(), [x, y, DIRECTIONS as u32]);
-    for _ in 0..scene.input.look.fibre.chiang.scatterings {
+    for _ in 0..rounds {
         list.push(carry.clone());
         list.push((light.scatter.clone(), groups(CELLS, 1)));
     }

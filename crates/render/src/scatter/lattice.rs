@@ -238,6 +238,11 @@ impl Lattice {
         self.albedos().zip(mix).map(|(albedo, share)| albedo * *share).sum()
     }
 
+    /// Greatest albedo of any hair.
+    pub(crate) fn most_albedo(&self) -> Vec4 {
+        self.albedos().fold(Vec4::ZERO, Vec4::max)
+    }
+
     /// That of each kind of hair.
     pub fn albedos(&self) -> impl Iterator<Item = Vec4> {
         self.ends.iter().map(|end| end.albedo)

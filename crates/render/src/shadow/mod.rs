@@ -97,12 +97,25 @@ impl ShadowMap {
         };
         let mut sum = Vec4::ZERO;
         for (corner, weight) in self.quad(index).into_iter().zip(weights) {
-            let texel = self.texels[corner];
-            let behind = Vec4::splat(projected.z - texel.w) - self.starts;
-            let share = (behind * self.inverse_thicknesses).clamp(Vec4::ZERO, Vec4::ONE);
-            sum += share * texel * weight;
+            sum += self.layers_before(corner, projected.z) * weight;
         }
         sum.x + sum.y + sum.z
+    }
+
+    /// Hairs that the light crosses in a texel before a depth \[m\].
+    #[inline]
+    pub(crate) fn crossed_in(&self, texel: usize, depth: f32) -> f32 {
+        let sum = self.layers_before(texel, depth);
+        sum.x + sum.y + sum.z
+    }
+
+    /// Hairs of a texel in each layer before a depth \[m\].
+    #[inline]
+    fn layers_before(&self, texel: usize, depth: f32) -> Vec4 {
+        let texel = self.texels[texel];
+        let behind = Vec4::splat(depth - texel.w) - self.starts;
+        let share = (behind * self.inverse_thicknesses).clamp(Vec4::ZERO, Vec4::ONE);
+        share * texel
     }
 
     /// Share of the light that the body lets through to a point \[m\], world space: 0 in its shadow.

@@ -160,7 +160,7 @@ impl Engine {
 
     /// Scales the length of every strand.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), SimError> {
-        self.guarded(|simulator| simulator.change(|state, model| state.set_length_scale(model, scales)))
+        self.guarded(|simulator| simulator.set_length_scale(scales))
     }
 
     /// Does something; where the device fails, and it is allowed, again on the CPU.

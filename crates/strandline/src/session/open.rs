@@ -50,6 +50,7 @@ impl Session<Inline> {
         let mut scene = Scene { simulation: settings.clone(), ..Scene::default() };
         scene.groom.points_per_strand = view.guides.points_per_strand() as u32;
         let simulated_on = device_name(engine.gpu());
+        let stiffening = engine.model().stiffening();
         Ok(Self {
             scene,
             tags: Tags::default(),
@@ -59,6 +60,7 @@ impl Session<Inline> {
             settings: PictureSettings::default(),
             draft: None,
             simulated_on,
+            stiffening,
             grabbed: 0,
             simulated_after: 0,
             spare: Vec::new(),
@@ -120,6 +122,7 @@ impl Session<Inline> {
             settings: self.settings,
             draft: self.draft,
             simulated_on: self.simulated_on,
+            stiffening: self.stiffening,
             grabbed: self.grabbed,
             simulated_after: self.simulated_after,
             spare: self.spare,

@@ -13,10 +13,10 @@ use crate::{
     scene::devices::{Opened, device_name},
 };
 
-/// A renderer and what it takes to start another one on the CPU.
+/// A renderer, and the data to start another one on the CPU.
 pub(crate) struct Painter {
     place: Place,
-    /// Draws what is more than the GPU draws, and whether it drew the last picture.
+    /// Renderer on the CPU for pictures beyond the limits of the GPU; `stands_in` while it draws.
     stand_in: Option<Box<Renderer>>,
     stands_in: bool,
     /// The strands that are drawn, at rest.
@@ -158,10 +158,10 @@ impl Painter {
         renderer.draw_into(input, picture)
     }
 
-    /// Makes the renderer that draws what is more than the GPU draws.
+    /// Creates the renderer for pictures beyond the limits of the GPU.
     fn stand_in(&mut self, failure: RenderError) -> Result<(), RenderError> {
         if self.stand_in.is_none() {
-            self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
+            self.notes.push(format!("drawing on the CPU until the scene fits the GPU: {failure}"));
             let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_ref(), &self.settings)?;
             self.stand_in = Some(renderer.into());
         }
@@ -178,8 +178,8 @@ impl Painter {
         Ok(pair.0.zip(pair.1).map(|(opacity, depth)| [opacity, depth]))
     }
 
-    /// Falls back to the CPU, if that is allowed and the failure is the GPU's; for as long as a picture is more than
-    /// the GPU draws.
+    /// Falls back to the CPU, if that is allowed and the failure is the GPU's; where a picture is beyond the limits of the
+    /// GPU, only until it fits.
     pub fn recover_from(&mut self, failure: RenderError) -> Result<(), RenderError> {
         if self.fall_back && self.gpu().is_some() && matches!(failure, RenderError::TooMany { .. }) {
             return Ok(());

@@ -15,7 +15,7 @@ pub struct BoundStrands {
 }
 
 impl BoundStrands {
-    /// Strands and solids; what the head carries is in head space.
+    /// Strands and solids; solids that the head carries are in head space.
     pub fn new(binding: Binding, solids: Vec<Collider>) -> Self {
         let away = |solid: Collider| {
             let clearance = solid.shape.clearance();

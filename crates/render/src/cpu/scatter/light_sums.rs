@@ -20,6 +20,9 @@ const MOST_SMALL: f32 = 1_073_741_824.0;
 pub(crate) const UNITS: f32 = 1_099_511_627_776.0;
 /// Sums of a cell's hair: its area, that times its direction, and behind these that times what reaches it of each light.
 pub(crate) const HAIR_SUMS: usize = 4;
+/// Depth \[cell\] below its surface at which skin is summed: spread over the cells around, it would hide the hair that
+/// lies on it.
+const SKIN_INSIDE: f32 = 0.5;
 /// Sums of a cell's skin, behind those of its hair: area times normal, light on it.
 pub(crate) const SKIN_SUMS: usize = 6;
 
@@ -148,7 +151,7 @@ fn sum_skin(
             let values = [area.x, area.y, area.z, light.x, light.y, light.z];
             let quads = [0, 4].map(|first| quad(&values[first..]));
             let small = values.iter().all(|value| value.abs() * UNITS < MOST_SMALL);
-            grid.spread(place, |index, share| {
+            grid.spread(place - normal * (SKIN_INSIDE * grid.cell), |index, share| {
                 let sums = &mut sums[(index + 1) * width - SKIN_SUMS..][..SKIN_SUMS];
                 if small { add_small(sums, &quads, share) } else { add(sums, &values, share) }
             });

@@ -1,7 +1,6 @@
 //! Reflection of the body: soft diffuse and a mild highlight.
 
 use std::f32::consts::PI;
-use std::ops::Range;
 
 use glam::Vec3;
 
@@ -44,29 +43,17 @@ impl Skin<'_> {
         let mut sum = look.color * around;
         let mut first = 0;
         while let Some(light) = self.lights.get(first) {
-            let places = first..(first + light.sample_count()).min(self.lights.len());
-            first = places.end;
-            sum += self.reflected(point, places, |to_light| reflectance(look, normal, to_eye, to_light));
-        }
-        sum
-    }
-
-    /// Reflected radiance of a point in a light with these places.
-    fn reflected(&self, point: Vec3, places: Range<usize>, reflectance: impl Fn(Vec3) -> Vec3) -> Vec3 {
-        let mut blockers = None;
-        let mut sum = Vec3::ZERO;
-        for index in places.clone() {
-            let lit = self.lights[index].at(point);
-            let reflected = reflectance(lit.to_light) * lit.radiance;
-            if reflected == Vec3::ZERO {
-                continue;
+            let count = light.sample_count().min(self.lights.len() - first);
+            for place in 0..count {
+                let lit = self.lights[first + place].at(point);
+                let reflected = reflectance(look, normal, to_eye, lit.to_light) * lit.radiance;
+                if reflected != Vec3::ZERO {
+                    let map = self.shadows.map(first + place);
+                    let passed = map.map_or(1.0, |map| map.on_skin(point, normal, [place, count]));
+                    sum += reflected * (PI * passed);
+                }
             }
-            let mut passed = 1.0;
-            if let Some(map) = self.shadows.map(index) {
-                let blockers = blockers.get_or_insert_with(|| self.shadows.blockers(places.clone(), point));
-                passed = map.on_skin(point, blockers, [index - places.start, places.len()]);
-            }
-            sum += reflected * (PI * passed);
+            first += count;
         }
         sum
     }

@@ -1,222 +1,182 @@
-//! Soft edges of shadows on skin: what hides a part of a light with an area from a point.
+//! Soft edges of shadows on skin: the share of a light with an area that reaches a point.
 //!
-//! A map is what one place of a light sees; that place stands for a part of the light. Where the map is looked at aside
-//! tells which of the part's rays hair or body hides [Fernando2005]: a blocker at depth d hides from a point at depth z
-//! what it hides beside the place by (z - d) / (z d) of the distance on the light.
-
-use std::ops::Range;
+//! A map is the view of one place of a light, which stands for a part of it. Rays from the point to that part are
+//! followed through the map: a ray lies beside the place's own one by a distance that grows with the distance before
+//! the point. A texel of the body hides a ray where both lie equally far before the point; hair is crossed layer by
+//! layer. The share changes as smoothly as the maps do, since no blocker is searched for.
 
 use glam::{Vec2, Vec3};
 
 use crate::fast_math::exp;
-use crate::shadow::{LightView, ShadowMap, Shadows};
+use crate::shadow::{LightView, ShadowMap, Window};
 
-/// Looks for what hides a light, shared out among its places.
-const LOOKS: usize = 40;
-/// Rays of the light that are tried past what hides it, shared out in the same way.
-const RAYS: usize = 34;
-/// A place has every so many-th look and ray at least: one alone has no more than each of two.
-const LEAST_STEP: usize = 2;
-/// Every so many of them are tried past hair, whose edges are ragged.
-const HAIR_STEP: usize = 2;
-/// Distance \[m\] before skin as far as blockers are looked for all about; farther ones are found where their shadow is
-/// deep.
-const MOST_GAP: f32 = 0.4;
-/// Share of the mean distance of blockers below which a blocker is the skin itself.
-const OWN_SKIN: f32 = 0.3;
-/// Distance \[m\] at which hair is taken to be that lies closer before skin than looks find it: its shadow is as wide as
-/// the least side.
-const TOUCH: f32 = 1e-6;
-/// Least side \[texel\] of what is looked at.
+/// Rays to a light, shared out among its places.
+const RAYS: usize = 64;
+/// Steps of a ray.
+const STEPS: usize = 7;
+/// Distance \[m\] of the first step before the point; each further one lies twice as far.
+const FIRST_GAP: f32 = 0.015;
+/// Greatest share of the distance to the light at which a step lies.
+const FARTHEST: f32 = 0.8;
+/// Share of the distance to the next step up to which hair belongs to a step: one over the square root of 2.
+const BETWEEN: f32 = 0.707_106_77;
+/// Least side \[texel\] of the square that the rays of a place cross a map in.
 const LEAST_SIDE: f32 = 2.0;
-/// A share of a whole that many steps of are spread evenly over it.
+/// Distance \[texel\] by which a point is lifted off the skin: beside it the skin of a slope is nearer to the light.
+const LIFT: f32 = 1.5;
+/// Shares of a whole, many steps of which are spread evenly over it and over each other.
 const GOLDEN: f32 = 0.618_034;
+const PLASTIC: f32 = 0.754_877_7;
+const OTHER: f32 = 0.569_840_3;
 
-/// Places in a square of side 1 about 0: seen from every side their shadows lie evenly.
-const PLACES: [Vec2; RAYS] = {
-    let mut places = [Vec2::ZERO; RAYS];
-    let mut index = 0;
-    while index < RAYS {
-        places[index] =
-            Vec2::new((index as f32 + 0.5) / RAYS as f32 - 0.5, part(index as f32 * GOLDEN) - 0.5);
-        index += 1;
-    }
-    places
-};
+/// Middle and corners of a part of a light: rays to them tell whether more are needed.
+const CORNERS: [Vec2; 5] =
+    [Vec2::ZERO, Vec2::new(-0.5, -0.5), Vec2::new(0.5, -0.5), Vec2::new(-0.5, 0.5), Vec2::new(0.5, 0.5)];
 
-/// Places that lie denser toward the middle of the square, where near blockers are: on the outlines of smaller squares,
-/// whose sides come third.
-const AROUND: [Vec3; LOOKS] = {
-    let mut looks = [Vec3::ZERO; LOOKS];
-    let mut index = 0;
-    while index < LOOKS {
-        let around = 4.0 * part(index as f32 * GOLDEN);
-        let (along, reach) = (part(around) - 0.5, (index as f32 + 0.5) / LOOKS as f32);
-        let side = if around < 2.0 { reach } else { -reach };
-        looks[index] = if (around as u32).is_multiple_of(2) {
-            Vec3::new(along * side, 0.5 * side, reach)
-        } else {
-            Vec3::new(0.5 * side, along * side, reach)
-        };
-        index += 1;
-    }
-    looks
-};
-
-/// Part of the light behind the point.
-const fn part(number: f32) -> f32 {
-    number - (number as u32) as f32
+/// A ray to a part of a light.
+#[derive(Clone, Copy)]
+struct Ray {
+    /// Its end in a square of side 1 about 0.
+    end: Vec2,
+    /// Its steps' distances as a multiple of those of other rays: those of all rays together lie evenly.
+    stretch: f32,
 }
 
-/// Mean distances \[m\] before a point of the body and of the hair that hide a light from it; 0 where none does.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Blockers {
-    body: f32,
-    hair: f32,
-}
-
-impl Shadows {
-    /// Blockers of a light with these places, seen from a point \[m\], world space.
-    pub(crate) fn blockers(&self, places: Range<usize>, point: Vec3) -> Blockers {
-        let (mut body, mut hair) = (Gaps::default(), Gaps::default());
-        for (place, map) in places.clone().enumerate().filter_map(|(at, index)| Some((at, self.map(index)?)))
-        {
-            if map.view.part == [Vec2::ZERO; 2] {
-                continue;
-            }
-            let Some(seen) = map.view.project(point) else { continue };
-            let looks = || AROUND.iter().skip(place).step_by(places.len().max(LEAST_STEP));
-            if !map.body_depths.is_empty() {
-                let near = Vec3 { z: seen.z - map.body_bias, ..seen };
-                body.add(&map.view, near, looks(), |at| {
-                    Some(map.body_depths[map.nearest(map.body_window.texel(at))?])
-                });
-            }
-            hair.add(&map.view, seen, looks(), |at| {
-                Some(map.texels[map.nearest(map.hair_window.texel(at))?].w)
-            });
-        }
-        Blockers { body: body.mean(), hair: hair.mean_or_touch() }
-    }
-}
-
-/// Distances before a point.
-#[derive(Default)]
-struct Gaps {
-    sum: f32,
-    count: f32,
-    /// True if a blocker was seen before it, though it hides none of the tested rays.
-    touched: bool,
-}
-
-impl Gaps {
-    /// Adds those of what hides rays, of depths that are looked up.
+impl Ray {
+    /// One of the rays of a place, which is one of so many.
     #[inline]
-    fn add<'a>(
-        &mut self,
-        view: &LightView,
-        seen: Vec3,
-        looks: impl Iterator<Item = &'a Vec3>,
-        depth_at: impl Fn(Vec2) -> Option<f32>,
-    ) {
-        let most = LightView::aside(seen.z, MOST_GAP.min(0.5 * seen.z));
-        let sides = view.part.map(|side| side * most);
-        for look in looks {
-            let at = seen.truncate() + sides[0] * look.x + sides[1] * look.y;
-            let Some(depth) = depth_at(at) else { continue };
-            let gap = seen.z - depth;
-            self.touched |= gap > 0.0;
-            // A blocker that hides none of this part's rays does not count.
-            if gap > 0.0 && LightView::aside(seen.z, gap) >= look.z * most {
-                self.sum += gap;
-                self.count += 1.0;
-            }
-        }
+    fn new(ray: usize, [place, count]: [usize; 2]) -> Self {
+        let part = |number: f32| number - number.floor();
+        let across = ((ray * count + place) as f32 + 0.5) / (RAYS / count * count) as f32;
+        let along = part(ray as f32 * GOLDEN + place as f32 * PLASTIC);
+        let stretch = 0.75 + 0.75 * part(ray as f32 * OTHER + place as f32 * GOLDEN);
+        Self { end: Vec2::new(across, along) - 0.5, stretch }
     }
 
-    fn mean(&self) -> f32 {
-        self.sum / self.count.max(1.0)
+    /// Distance \[m\] of a step before the point.
+    #[inline]
+    fn gap(&self, step: usize) -> f32 {
+        FIRST_GAP * (1_u32 << step) as f32 * self.stretch
     }
 
-    /// [`Gaps::mean`], or next to nothing of what only touches.
-    fn mean_or_touch(&self) -> f32 {
-        if self.count == 0.0 && self.touched { TOUCH } else { self.mean() }
+    /// Distances \[m\] before the point between which hair is crossed at a step.
+    #[inline]
+    fn slice(&self, step: usize) -> [f32; 2] {
+        [if step == 0 { 0.0 } else { BETWEEN * self.gap(step) }, BETWEEN * self.gap(step + 1)]
     }
 }
 
-/// View of a point from a place of a light: its plane coordinates and depth.
+/// The rays of a place where they cross a map.
+struct Way {
+    /// Texel coordinates of the point.
+    middle: Vec2,
+    /// Depth \[m\] of the point.
+    depth: f32,
+    /// Sides \[texel\] of the part of the light, seen at a metre per metre on it.
+    sides: [Vec2; 2],
+    /// Least displacement of a ray per metre on the light.
+    least: f32,
+}
+
+impl Way {
+    /// Way through a window of a map from a point on the light's plane with its depth \[m\].
+    fn new(view: &LightView, window: &Window, seen: Vec3) -> Self {
+        let side = view.part[0].length().min(view.part[1].length());
+        Self {
+            middle: window.texel(seen.truncate()),
+            depth: seen.z,
+            sides: view.part.map(|side| side * window.density),
+            least: LEAST_SIDE / (side * window.density).max(1e-12),
+        }
+    }
+
+    /// Texel coordinates of a ray at a step.
+    #[inline]
+    fn at(&self, ray: &Ray, step: usize) -> Vec2 {
+        let gap = ray.gap(step).min(FARTHEST * self.depth);
+        let aside = LightView::aside(self.depth, gap).max(self.least);
+        self.middle + (self.sides[0] * ray.end.x + self.sides[1] * ray.end.y) * aside
+    }
+}
+
 impl LightView {
-    /// Shadow displacement \[plane\] per metre of light, by the depth \[m\] of the point and the distance
-    /// \[m\] of the blocker before it.
+    /// Displacement \[plane\] of a ray per metre on the light, by the depth \[m\] of the point and the distance \[m\]
+    /// before it.
     #[inline]
     fn aside(depth: f32, gap: f32) -> f32 {
         gap / (depth * (depth - gap).max(1e-3))
     }
-
-    /// As `aside`, but no less than some texels of a map of so many in a plane unit.
-    #[inline]
-    fn aside_at_least(&self, depth: f32, gap: f32, density: f32) -> f32 {
-        let least = self.part[0].length().min(self.part[1].length());
-        Self::aside(depth, gap).max(LEAST_SIDE / (least * density).max(1e-12))
-    }
 }
 
 impl ShadowMap {
-    /// Share of a place of a light that hair and body let through to skin at a point \[m\], world space: it is the place
-    /// of this number among so many, of a light that is hidden by what `blockers` says.
-    pub(crate) fn on_skin(&self, point: Vec3, blockers: &Blockers, [place, count]: [usize; 2]) -> f32 {
+    /// Share of a place of a light that hair and body let through to a point \[m\] of skin with a unit normal, world
+    /// space: it is the place of this number among so many.
+    pub(crate) fn on_skin(&self, point: Vec3, normal: Vec3, places: [usize; 2]) -> f32 {
         if self.view.part == [Vec2::ZERO; 2] {
             return self.transmittance(point);
         }
         let Some(seen) = self.view.project(point) else { return 1.0 };
-        let rays = |step: usize| PLACES.iter().skip(step * place).step_by((step * count).max(LEAST_STEP));
-        // A blocker that touches the skin is too small for the looks: the place's own ray meets it.
-        let open = match blockers.body {
-            0.0 => self.body_open(seen, &[Vec2::ZERO]),
-            gap => self.past_body(seen, gap, rays(1)),
+        let texel = 1.0 / (self.view.scale(seen.z) * self.body_window.density).max(1e-12);
+        let lifted = self.view.project(point + normal * (LIFT * texel).min(self.body_bias));
+        let body = Way::new(&self.view, &self.body_window, lifted.unwrap_or(seen));
+        let hair = Way::new(&self.view, &self.hair_window, seen);
+        let share = |ray: Ray| {
+            let open = if self.body_depths.is_empty() { 1.0 } else { self.past_body(&body, ray) };
+            if open > 0.0 { open * self.past_hair(&hair, ray) } else { 0.0 }
         };
-        if open <= 0.0 {
-            return 0.0;
+        let corner = |end: Vec2| share(Ray { end, stretch: 1.0 });
+        let first = corner(CORNERS[0]);
+        let plain = first == 0.0 || first == 1.0;
+        if plain && CORNERS[1..].iter().all(|&end| corner(end) == first) {
+            return first;
         }
-        open * match blockers.hair {
-            0.0 => exp(self.crossed(seen) * self.log_transmission()),
-            gap => self.past_hair(seen, gap, rays(HAIR_STEP)),
-        }
+        let count = RAYS / places[1];
+        (0..count).map(|ray| share(Ray::new(ray, places))).sum::<f32>() / count as f32
     }
 
-    fn past_body<'a>(&self, seen: Vec3, gap: f32, rays: impl ExactSizeIterator<Item = &'a Vec2>) -> f32 {
-        let near = seen.z - self.body_bias;
-        let aside = self.view.aside_at_least(near, gap, self.body_window.density);
-        let sides = self.view.part.map(|side| side * aside);
-        let (before, count) = (near - OWN_SKIN * gap, rays.len());
+    /// Share of a ray that the body lets through.
+    #[inline]
+    fn past_body(&self, way: &Way, ray: Ray) -> f32 {
         let mut hidden = 0.0;
-        for ray in rays {
-            let at = seen.truncate() + sides[0] * ray.x + sides[1] * ray.y;
-            let Some((first, weights)) = self.corners(self.body_window.texel(at)) else { continue };
-            for (corner, weight) in self.quad(first).into_iter().zip(weights) {
-                let behind = before - self.body_depths[corner];
-                hidden += weight * (behind * self.inverse_softness).clamp(0.0, 1.0);
+        for step in 0..STEPS {
+            let Some((first, weights)) = self.corners(way.at(&ray, step)) else { continue };
+            for (texel, weight) in self.quad(first).into_iter().zip(weights) {
+                let gap = way.depth - self.body_depths[texel];
+                if gap > self.body_bias {
+                    hidden += weight * self.hides(&ray, step, gap);
+                }
             }
         }
-        1.0 - hidden / count as f32
+        1.0 - hidden.min(1.0)
     }
 
-    fn past_hair<'a>(&self, seen: Vec3, gap: f32, rays: impl ExactSizeIterator<Item = &'a Vec2>) -> f32 {
-        let aside = self.view.aside_at_least(seen.z, gap, self.hair_window.density);
-        let sides = self.view.part.map(|side| side * aside);
-        let count = rays.len();
-        let passed = |ray: &Vec2| {
-            let at = seen.truncate() + sides[0] * ray.x + sides[1] * ray.y;
-            exp(self.crossed(at.extend(seen.z)) * self.log_transmission())
-        };
-        rays.map(passed).sum::<f32>() / count as f32
-    }
-
-    /// The texel in which texel coordinates lie.
+    /// Share of a ray that the body hides at a step, where it lies so far \[m\] before the point: it counts for the two
+    /// steps that it lies between.
     #[inline]
-    fn nearest(&self, texel: Vec2) -> Option<usize> {
-        let limit = self.size as f32;
-        let inside = texel.cmpge(Vec2::ZERO).all() && texel.cmplt(Vec2::splat(limit)).all();
-        inside.then(|| texel.y as usize * self.size + texel.x as usize)
+    fn hides(&self, ray: &Ray, step: usize, gap: f32) -> f32 {
+        let reached = match step {
+            0 => (gap - self.body_bias) * self.inverse_softness,
+            _ => gap / ray.gap(step - 1) - 1.0,
+        };
+        let passed = if step + 1 < STEPS { gap / ray.gap(step) - 1.0 } else { 0.0 };
+        (reached.clamp(0.0, 1.0) - passed.clamp(0.0, 1.0)).max(0.0)
+    }
+
+    /// Share of a ray that the hair lets through.
+    #[inline]
+    fn past_hair(&self, way: &Way, ray: Ray) -> f32 {
+        let mut crossed = 0.0;
+        for step in 0..STEPS {
+            let Some((first, weights)) = self.corners(way.at(&ray, step)) else { continue };
+            let [near, far] = ray.slice(step);
+            for (texel, weight) in self.quad(first).into_iter().zip(weights) {
+                if self.texels[texel].w < way.depth - near {
+                    let behind = step + 1 < STEPS;
+                    let before = if behind { self.crossed_in(texel, way.depth - far) } else { 0.0 };
+                    crossed += weight * (self.crossed_in(texel, way.depth - near) - before);
+                }
+            }
+        }
+        if crossed > 0.0 { exp(crossed * self.log_transmission()) } else { 1.0 }
     }
 }

@@ -29,10 +29,10 @@ settings! {
     pub struct Chiang: Copy {
         /// Source of the hair's colour.
         pigment: Pigment = Pigment::default();
-        /// Brown to black pigment: 0.3 blonde, 0.6 brown, 8 black.
-        eumelanin: f32 = 0.6, in [0.0, 100.0], slider [0.0, 8.0], more "darker hair";
+        /// Brown to black pigment: 0.3 blonde, 1.3 brown, 8 black.
+        eumelanin: f32 = 1.3, in [0.0, 100.0], slider [0.0, 8.0], more "darker hair";
         /// Red to yellow pigment.
-        pheomelanin: f32 = 0.2, in [0.0, 100.0], slider [0.0, 4.0], more "redder hair";
+        pheomelanin: f32 = 0.1, in [0.0, 100.0], slider [0.0, 4.0], more "redder hair";
         /// Pigment at the tip as a share of that at the root, for `pigment = "melanin"`.
         tip_pigment: f32 = 1.0, in [0.0, 2.0], more "darker tips";
         /// Roughness along the fibre.
@@ -44,8 +44,8 @@ settings! {
         tilt: f32 = 2.0, in [-10.0, 10.0] "degrees", more "highlights further apart";
         /// Index of refraction.
         index: f32 = 1.55, in [1.05, 3.0], more "a brighter surface";
-        /// Number of times that light is scattered from hair to hair.
-        scatterings: u32 = 8, in [0, 64], slider [0, 16], more "brighter light hair, at a cost";
+        /// Number of times that light is scattered from hair to hair, at most: dark hair needs few.
+        scatterings: u32 = 32, in [0, 64], slider [0, 64], more "brighter light hair, at a cost";
         /// Cells that scattered light is carried through, along the longest side of the hair.
         cells: u32 = MOST_CELLS, in [8, MOST_CELLS], more "sharper scattered light, at a cost";
     }

@@ -194,6 +194,11 @@ impl LightGrid {
         self.bounds = None;
     }
 
+    /// Number of scatterings.
+    pub fn rounds(&self) -> u32 {
+        self.made.as_ref().map_or(0, Made::rounds)
+    }
+
     /// The kernels, where they are bound.
     pub fn bounds(&self) -> Option<&Bounds> {
         self.bounds.as_ref()

@@ -157,7 +157,9 @@ fn colours_and_looks_that_a_file_gives_are_meant() {
     assert_eq!(read(both).look.fibre.chiang.pigment, Pigment::Melanin);
     let thesis = read("[look]\npreset = 'thesis'\nhighlight_noise = 2.0");
     assert_eq!((thesis.look.fibre.model, thesis.look.highlight_noise), (FibreModel::Scheuermann, 2.0));
-    assert_eq!((thesis.picture.tone_map, read("").picture.tone_map), (ToneMap::Filmic, ToneMap::Aces));
+    assert_eq!((thesis.picture.tone_map, read("").picture.tone_map), (ToneMap::Filmic, ToneMap::Filmic));
+    let vivid = read("[look]\npreset = 'thesis'\n[picture]\ntone_map = 'aces'");
+    assert_eq!(vivid.picture.tone_map, ToneMap::Aces);
     let own = read("[look]\npreset = 'thesis'\n[picture]\ntone_map = 'off'");
     assert_eq!(own.picture.tone_map, ToneMap::Off);
 }
