@@ -76,10 +76,8 @@ impl<R: Real> Lengths<R> {
                 self.tension[index] = tension;
             }
             for index in 0..=last {
-                let mut pull = Vector::zero();
-                if index < last {
-                    pull = self.tangents[index] * self.tension[index];
-                }
+                let mut pull =
+                    if index < last { self.tangents[index] * self.tension[index] } else { Vector::zero() };
                 if index > 0 {
                     pull -= self.tangents[index - 1] * self.tension[index - 1];
                 }
