@@ -34,6 +34,8 @@ const CELLS: f32 = 250.0;
 const COARSEST: f32 = 0.1;
 /// Distance up to which all is drawn, over the diagonal of the body: a picture that it fills.
 const NEAR: f32 = 2.5;
+/// Hairs for which a strand stands at least: one hair alone is thinner than can be seen.
+const SHOWN: u64 = 6;
 /// Strands that are looked at.
 const LOOKED_AT: usize = 400;
 /// Groups that are examined: least number of strands, number of groups, and distance of their roots over that of all.
@@ -161,8 +163,9 @@ fn fit_widths(scene: &mut Scene, groom: &Groom, spacing: f32, default: &Scene, c
         look.width_scale = (DENSITY * of_hairs / width).clamp(0.5, 50.0);
         chosen.push(format!("look.width_scale = {:.2}", look.width_scale));
     }
-    // A strand stands for no more hairs than there are strands.
-    let most = (strands as u64).pow(2).min(u64::from(look.hair_count)) as u32;
+    // A strand stands for no more hairs than there are strands, or than show one alone.
+    let each = (strands as u64).max(SHOWN);
+    let most = (strands as u64 * each).min(u64::from(look.hair_count)) as u32;
     if is_count_open && most < look.hair_count {
         look.hair_count = most;
         chosen.push(format!("look.hair_count = {most}"));
@@ -317,7 +320,7 @@ mod tests {
     #[test]
     fn few_strands_stand_for_few_hairs() {
         for (side, hairs, follow) in
-            [(1, 1, 1), (2, 16, 4), (4, 256, 16), (10, 10_000, 32), (20, 100_000, 32)]
+            [(1, 6, 6), (2, 24, 6), (4, 256, 16), (10, 10_000, 32), (20, 100_000, 32)]
         {
             let look = chosen(&square(side, Widths::Constant(HAIR_WIDTH))).look;
             assert_eq!((look.hair_count, look.follow_strands), (hairs, follow), "{side}");
@@ -327,7 +330,7 @@ mod tests {
             assert!(drawn < 20.0 && (side > 1 || drawn == 1.0), "{side}: {drawn}");
         }
         let one = chosen(&square(1, Widths::PerStrand(vec![HAIR_WIDTH]))).look;
-        assert_eq!((one.hair_count, one.width_scale), (1, 1.0));
+        assert_eq!((one.hair_count, one.width_scale), (6, 1.0));
     }
 
     #[test]

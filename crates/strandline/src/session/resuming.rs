@@ -43,7 +43,9 @@ pub(super) fn check(former: &Scene, now: &Scene) -> Result<Option<String>, Strin
     });
     differences("", Some(&former), Some(&now), &mut differ);
     differ.retain(|(key, ..)| !is_in(key, &FREE));
-    if let Some((key, former, now)) = differ.iter().find(|(key, ..)| is_in(key, &FIXED)) {
+    // In the order of the list: a method brings other settings along.
+    let fixed = FIXED.iter().find_map(|fixed| differ.iter().find(|(key, ..)| is_in(key, &[fixed])));
+    if let Some((key, former, now)) = fixed {
         return Err(format!(
             "its run has {key} = {former}, and the scene has {now}: leave out --scene and options that change it, or \
              begin another run"
