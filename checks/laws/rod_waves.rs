@@ -112,7 +112,6 @@ law! {
                 before = now;
             }
             // A swing passes its rest twice.
-            println!("1/{rate} {passages} {rests} {before}");
             assert!((4..=8).contains(&passages), "1/{rate} s: {passages} passages");
             assert!(rests, "1/{rate} s: not still after 4 s");
             assert!(before.abs() < 2e-3 * LENGTH, "1/{rate} s: {before} m beside its rest");

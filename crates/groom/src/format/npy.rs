@@ -53,7 +53,7 @@ pub(super) fn refused(source: &Source, error: NpzError) -> GroomError {
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".npy" };
     let Bare { kind, shape, bytes } = Bare::new(bytes).map_err(|error| refused(&source, error))?;
-    let array = Array { shape, kind, bytes: bytes.into() };
+    let array = Array { shape, kind, bytes };
     let groom = strands(&source, &array, per_strand)?;
     Ok(Parsed { format: ".npy", groom, problems: Vec::new() })
 }

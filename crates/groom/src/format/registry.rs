@@ -10,6 +10,9 @@ use crate::{Groom, GroomError};
 
 /// Parser of bytes.
 pub type Read = fn(&[u8], Chosen) -> Result<Parsed, GroomError>;
+/// Changes a groom so that it fits the limits of a format.
+pub type Fit = fn(&Groom) -> Result<Fitted, GroomError>;
+
 /// Writer of bytes.
 pub type Write = fn(&Groom) -> Result<Vec<u8>, GroomError>;
 
@@ -34,7 +37,7 @@ pub struct Format {
     /// Its writer, if there is one.
     pub write: Option<Write>,
     /// Changes that make a groom fit its limits, where it has some.
-    pub fit: Option<fn(&Groom) -> Result<Fitted, GroomError>>,
+    pub fit: Option<Fit>,
     /// Attributes that it holds beside points.
     pub holds: &'static [Attribute],
     /// Most memory of reading for each byte of a file \[byte\]: the file and its content. Text is shorter

@@ -35,8 +35,8 @@ impl Strands<'_> {
         let bad = motion.nothing.is_nan();
         let square = self.parts.time_step * self.parts.time_step;
         let thresholds = Thresholds::new(self.parts);
-        // What rested rests on as long as its motion may be the rounding of all of its edges; in a short part it is that
-        // of the tensions of two, in both parts of a Newton step.
+        // A strand that rested rests on as long as its motion may be the rounding of all of its edges; in a short part
+        // that is the rounding of the tensions of two edges, in both parts of a Newton step.
         let rounded = motion.speed.simd_eq(f32x8::ZERO).bitselect(motion.whole, motion.longest);
         let rounding = rounded.fast_min(motion.pull * f32x8::of(4.0 * square)) * f32x8::of(ROUNDING);
         let still = pressed.choose(f32x8::of(thresholds.pressed), f32x8::of(thresholds.loose));
@@ -110,7 +110,7 @@ impl Thresholds {
     fn new(parts: &Parts) -> Self {
         let step = parts.time_step;
         let square = step * step;
-        // What rubs holds a strand that hardly falls.
+        // Rubbing holds a strand that hardly falls.
         let rubbing = f64::from(parts.settings.rubbing);
         let held = HELD * rubbing;
         let slow = (STILL_FREE * step).max(STILL_SPEED) * step;

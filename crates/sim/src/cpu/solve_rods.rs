@@ -234,22 +234,30 @@ impl Strands<'_> {
         self.guess(space, step);
     }
 
-    /// Newton's method begins with hair that keeps its velocity beside its root; with one that is free, with what the
-    /// forces add on the whole, which it would find to a hundredth.
+    /// Newton's method begins with hair that keeps its velocity beside its root.
     fn guess(&self, space: &mut Workspace, step: f32x8) {
         let (first, second) = (self.nodes[0].free, self.nodes[1].free);
         let held = Vector::choose(second, space.coast[0], space.coast[1]);
+        let root = Vector::choose(first, self.pushed_back(space), held);
+        for (point, node) in self.nodes.iter().enumerate() {
+            let [x, y, z] = ((space.coast[point] - root) * node.free).array();
+            space.work.guess(point, [x, y, z, space.spins[point] * step * node.free_angle]);
+        }
+    }
+
+    /// Way of a free strand that forces take from it on the whole \[m\], which Newton's method would find to a hundredth;
+    /// none where a solid may hold it.
+    fn pushed_back(&self, space: &Workspace) -> Vector<f32x8> {
+        if !self.parts.solids.is_empty() {
+            return Vector::zero();
+        }
         let (mut pushed, mut mass) = (Vector::zero(), f32x8::ZERO);
         for (point, node) in self.nodes.iter().enumerate() {
             let free = node.mass * node.free;
             pushed += (space.coast[point] - space.wanted[point]) * free;
             mass += free;
         }
-        let root = Vector::choose(first, pushed * (f32x8::of(1.0) / mass), held);
-        for (point, node) in self.nodes.iter().enumerate() {
-            let [x, y, z] = ((space.coast[point] - root) * node.free).array();
-            space.work.guess(point, [x, y, z, space.spins[point] * step * node.free_angle]);
-        }
+        pushed * (f32x8::of(1.0) / mass)
     }
 
     fn solve_part(&self, space: &mut Workspace, planes: &mut [Plane]) {

@@ -51,6 +51,9 @@ const MOST_PIECES: usize = 1024;
 /// Farther than this \[m\], or faster \[m/s\], is no hair. Its sections spin faster: no more than [`MOST_SPIN`].
 const MOST: f32 = 1e4;
 
+/// A tensor of a file: name, shape and numbers.
+type Tensor = (&'static str, Vec<usize>, Vec<f32>);
+
 impl HairPose {
     /// Takes positions \[m\] that are shown, world space, shape `[block][point]` of lanes, and how a
     /// state moves.
@@ -143,7 +146,7 @@ impl HairPose {
     }
 
     /// Tensors of the body beside the head: name, shape, numbers.
-    fn lists(&self) -> Result<Vec<(&'static str, Vec<usize>, Vec<f32>)>, String> {
+    fn lists(&self) -> Result<Vec<Tensor>, String> {
         let lists = Lists::of([&self.body]);
         if lists.0[0] > MOST_PIECES {
             return Err(format!("{} pieces of the body, expected {MOST_PIECES} at most", lists.0[0]));

@@ -51,7 +51,7 @@ impl<R: Real> Lengths<R> {
             // A strand whose lengths are right stays, whatever those beside it need.
             let moves = wrong.choose(R::of(1.0), R::of(0.0));
             // Thomas's elimination; a segment between two held points keeps its length.
-            let mut before = R::of(0.0);
+            let (mut before, mut tension) = (R::of(0.0), R::of(0.0));
             for index in 0..last {
                 let sum = inverse_mass[index] + inverse_mass[index + 1];
                 let coupled = if index > 0 {
@@ -70,16 +70,13 @@ impl<R: Real> Lengths<R> {
                 }
             }
             self.upper[last - 1] = R::of(0.0);
-            let mut tension = R::of(0.0);
             for index in (0..last).rev() {
                 tension = self.tension[index] - self.upper[index] * tension;
                 self.tension[index] = tension;
             }
             for index in 0..=last {
-                let mut pull = Vector::zero();
-                if index < last {
-                    pull = self.tangents[index] * self.tension[index];
-                }
+                let mut pull =
+                    if index < last { self.tangents[index] * self.tension[index] } else { Vector::zero() };
                 if index > 0 {
                     pull -= self.tangents[index - 1] * self.tension[index - 1];
                 }
