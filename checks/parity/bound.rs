@@ -72,7 +72,7 @@ pub(crate) fn look() -> Look {
 fn on_gpu(binding: &Arc<Binding>, solids: &Solids) -> Option<(Vec<Vec3Lanes>, Vec<Vec3>)> {
     let settings = PictureSettings::sized(32, 32);
     let mut renderer = GpuRenderer::new(&gpu()?, binding.strands(), None, &settings).unwrap();
-    renderer.bind(binding, solids).unwrap();
+    renderer.bind(binding, solids, None).unwrap();
     let look = look();
     let input = FrameInput {
         positions: &blown(binding.guides()),

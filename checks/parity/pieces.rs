@@ -7,8 +7,9 @@ use strandline_body::{BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Pos
 use strandline_checks::gpu;
 use strandline_gpu::Gpu;
 use strandline_groom::{Binding, Guides, LANES, Vec3Lanes};
-use strandline_render::gpu::GpuRenderer;
+use strandline_render::gpu::{DeviceSolids, GpuRenderer};
 use strandline_render::{BodyLook, Camera, FrameInput, Growth, LevelOfDetail, Light, PictureSettings};
+use strandline_sim::{Model, Settings, Simulator, VolumeSettings};
 
 use crate::bound::{POINTS, binding, look, pose};
 
@@ -46,7 +47,7 @@ fn solids(head: Carrier, ball: Carrier) -> Solids {
     Solids::new([
         (solid(Shape::Grid(grid.into()), head), 0.0015),
         (solid(side, ball), 0.0),
-        (solid(bar, ball), 0.002),
+        (solid(bar, ball), 0.0),
     ])
 }
 
@@ -69,8 +70,16 @@ fn drawn(
     };
     let mut renderer = GpuRenderer::new(gpu, strands, None, &PictureSettings::sized(32, 32)).unwrap();
     if let Some((binding, solids)) = bound {
-        renderer.bind(binding, solids).unwrap();
+        renderer.bind(binding, solids, None).unwrap();
     }
+    // Rows and roots of an earlier frame must not stay.
+    on_gpu(&mut renderer, guides.positions(), &BodyFrame::REST);
+    on_gpu(&mut renderer, positions, body)
+}
+
+/// Points that a device draws.
+fn on_gpu(renderer: &mut GpuRenderer, positions: &[Vec3Lanes], body: &BodyFrame) -> Vec<Vec3> {
+    let look = look();
     let input = FrameInput {
         positions,
         body,
@@ -80,9 +89,6 @@ fn drawn(
         lights: &[Light::default()],
         level_of_detail: &LevelOfDetail::full(),
     };
-    // Rows and roots of an earlier frame must not stay.
-    let rest = guides.positions();
-    renderer.draw(&FrameInput { positions: rest, body: &BodyFrame::REST, ..input }).unwrap();
     renderer.draw(&input).unwrap();
     renderer.strands().unwrap().positions
 }
@@ -140,4 +146,31 @@ fn strands_on_a_piece_are_drawn_as_on_a_head_that_moves_like_it() {
         let found = apart(&wanted, &drawn(on, guides, Some((&binding, &on_head)), &positions, &own));
         assert!(found[found.len() * 97 / 100] > 1e-3, "{} m", found[found.len() * 97 / 100]);
     }
+}
+
+#[test]
+fn solids_of_a_simulation_are_read_where_they_lie() {
+    let Some(gpu) = gpu() else { return };
+    let binding = binding();
+    let guides = binding.guides();
+    let (body, solids) = (two_pieces(guides), solids(Carrier::HEAD, Carrier::Piece(1)));
+    let positions = at_rest_on(guides, &body);
+    let colliders: Vec<Collider> = solids.all().iter().map(|(solid, _)| solid.clone()).collect();
+    let settings =
+        Settings { volume: VolumeSettings { enabled: false, ..Default::default() }, ..Settings::default() };
+    let simulator = Simulator::new(Some(&gpu), Model::new(guides, &settings, colliders).unwrap()).unwrap();
+    let with = |on_device: Option<DeviceSolids>| {
+        let settings = PictureSettings::sized(32, 32);
+        let mut renderer = GpuRenderer::new(&gpu, binding.strands(), None, &settings).unwrap();
+        renderer.bind(&binding, &solids, on_device).unwrap();
+        on_gpu(&mut renderer, &positions, &body)
+    };
+    let shared = || {
+        let (rows, [base, first]) = simulator.device_solids().unwrap();
+        DeviceSolids { rows, base, first }
+    };
+    let own = with(None);
+    assert_eq!(with(Some(shared())), own);
+    // Another row is the middle of a solid.
+    assert_ne!(with(Some(DeviceSolids { first: shared().first + 1, ..shared() })), own);
 }

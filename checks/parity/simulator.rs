@@ -1,5 +1,7 @@
 //! A simulator on a device: reports and checkpoints come by themselves, and a device may fail at any time.
 
+use std::time::{Duration, Instant};
+
 use glam::Vec3;
 use strandline_body::Pose;
 use strandline_checks::{gpu, own_gpu};
@@ -9,7 +11,7 @@ use strandline_sim::{
     CpuRunner, Drive, Model, Preconditioner, Settings, Simulator, State, StepReport, StrandMethod,
 };
 
-use crate::heads::{Head, drive, heads, rods};
+use crate::heads::{Head, apart, drive, heads, rods};
 
 /// Steps of each run.
 const RUNS: [usize; 6] = [2, 1, 3, 0, 4, 2];
@@ -174,7 +176,13 @@ fn a_state_of_the_last_runs_is_computed_again_when_the_device_fails() {
     assert_ne!(simulator.state().unwrap().positions, left);
 }
 
-/// Settings and hands that change between the steps of a device change in the same place when these are computed again.
+/// A length of each strand over its rest length, another in each run.
+fn scales(head: &Head, run: usize) -> Vec<f32> {
+    (0..head.guides.strand_count()).map(|strand| 1.0 - 0.1 * ((strand + run) % 4) as f32).collect()
+}
+
+/// Settings, lengths and hands that change between the steps of a device change in the same place when these are computed
+/// again.
 #[test]
 fn a_loss_after_changes_gives_what_comes_without_one() {
     for head in [heads().swap_remove(1), rods().swap_remove(3)] {
@@ -188,6 +196,7 @@ fn a_loss_after_changes_gives_what_comes_without_one() {
                 settings.gravity.x = run as f32;
                 settings.drag.across = 1.0 + run as f32;
                 simulator.set_settings(&settings).unwrap();
+                simulator.set_length_scale(&scales(head, run)).unwrap();
                 if run == failing {
                     gpu.inspect(|gpu| gpu.destroy());
                     simulator.fall_back();
@@ -207,6 +216,67 @@ fn a_loss_after_changes_gives_what_comes_without_one() {
             assert!(play(Some(&gpu), failing) == expected, "a loss in run {failing}");
         }
     }
+}
+
+/// Points slide along their strands on a device as on the host, to rounding, and the state that is read has the lengths.
+#[test]
+fn strands_take_other_lengths_on_a_device_as_on_the_host() {
+    let Some(gpu) = own_gpu() else { return };
+    for head in [heads().swap_remove(1), rods().swap_remove(3)] {
+        let head = &head;
+        let mut both = [None, Some(&gpu)].map(|gpu| Simulator::new(gpu, head.model()).unwrap());
+        both[0].run(&[drive(1), drive(2)]).unwrap();
+        let moved = both[0].state().unwrap().clone();
+        both[1].set_state(moved.clone()).unwrap();
+        for run in 1..=2 {
+            let scales = scales(head, run);
+            let waits = gpu.waits();
+            both.iter_mut().for_each(|simulator| simulator.set_length_scale(&scales).unwrap());
+            assert_eq!(gpu.waits(), waits, "{}", head.name);
+            let [host, device] = both.each_mut().map(|simulator| simulator.state().unwrap());
+            assert!(host.positions != moved.positions, "{}", head.name);
+            for (host, device) in
+                [(&host.positions, &device.positions), (&host.previous_positions, &device.previous_positions)]
+            {
+                // A few roundings of every segment, of coordinates below a metre.
+                let distance = apart(host, device, &head.guides);
+                assert!(distance < 2e-6, "{}: {distance}", head.name);
+            }
+            for (strand, scale) in scales.into_iter().enumerate() {
+                assert_eq!([host, device].map(|state| state.length_scale(strand)), [scale; 2]);
+            }
+        }
+        assert!(both[1].set_length_scale(&[3.0]).is_err());
+    }
+}
+
+/// Sliders that are dragged while a film plays: no tick waits for the device, however many steps are on their way.
+#[test]
+fn no_tick_of_a_slider_waits_for_a_device_that_plays() {
+    let Some(gpu) = own_gpu() else { return };
+    let head = rods().swap_remove(0);
+    let mut simulator = Simulator::new(Some(&gpu), head.model()).unwrap();
+    simulator.run(&[drive(1)]).unwrap();
+    simulator.state().unwrap();
+    let (begin, frames, mut longest) = (Instant::now(), 24, Duration::ZERO);
+    for frame in 0..frames {
+        simulator.run(&[drive(2 + frame)]).unwrap();
+        let mut settings = simulator.model().settings().clone();
+        let share = frame as f32 / frames as f32;
+        settings.gravity.y = -9.81 + share;
+        settings.damping = share;
+        settings.strands.rods.radius *= 1.001;
+        settings.strands.rods.load = 0.5 * share;
+        let (tick, waits) = (Instant::now(), gpu.waits());
+        simulator.set_settings(&settings).unwrap();
+        simulator.set_length_scale(&scales(&head, frame)).unwrap();
+        longest = longest.max(tick.elapsed());
+        assert_eq!(gpu.waits(), waits, "frame {frame}");
+    }
+    simulator.state().unwrap();
+    let step = 1e3 * begin.elapsed().as_secs_f64() / frames as f64;
+    let longest = 1e3 * longest.as_secs_f64();
+    println!("{}: the longest tick took {longest:.1} ms, a step {step:.1} ms", gpu.adapter());
 }
 
 /// A setting that is a number of a step costs that number: no wait, no upload of a rest shape that stays.

@@ -7,12 +7,15 @@ use clap::{Args, Parser, Subcommand};
 use glam::Vec3;
 use strandline::{
     Backend, Style, Target, What,
-    format::{FORMATS, Format, Scale, Up, endings},
-    scene::MotionName,
+    format::{Scale, Up, endings},
+    scene::{MotionName, View},
     settings::rods::HairKind,
 };
 
 use crate::reading::{Reading, parse_scale, parse_up, parse_vector};
+use crate::values::{
+    LookChoice, formats, parse_level, parse_look, parse_rate, parse_size, parse_width, written,
+};
 
 /// Real-time hair: load or grow a groom, simulate it, draw it.
 ///
@@ -49,6 +52,10 @@ pub enum Command {
     Bench(BenchOptions),
     /// Draw the measurements of `bench thesis` or `bench view` as the thesis draws its own.
     Plot(PlotOptions),
+    /// Print completions of commands and options for a shell.
+    Completions(CompletionOptions),
+    /// Write a manual page for each command to a folder.
+    Man(ManOptions),
     /// List the GPUs of this machine.
     Gpus,
     /// Write the linked shader modules to a folder, to read.
@@ -65,6 +72,8 @@ impl Command {
             | Self::Info(_)
             | Self::Scene(_)
             | Self::Shaders(_)
+            | Self::Completions(_)
+            | Self::Man(_)
             | Self::Plot(_) => false,
         }
     }
@@ -115,12 +124,27 @@ pub struct Inputs {
     /// Material of the hair: fine, medium, coarse, wet or sprayed.
     #[arg(long, value_name = "NAME", value_parser = HairKind::from_str)]
     pub hair: Option<HairKind>,
+    /// Colour of the hair: brown, black, blonde, red (or copper), grey, thesis, or a colour #rrggbb.
+    #[arg(long, value_name = "NAME|#RRGGBB", value_parser = parse_look)]
+    pub look: Option<LookChoice>,
+    /// Width of drawn strands over that of the file or the style: `look.width_scale`.
+    #[arg(long, value_name = "F", value_parser = parse_width)]
+    pub width: Option<f32>,
     /// still, shake, nod, turn or keyframes.
     #[arg(long, value_name = "NAME", value_parser = MotionName::from_str)]
     pub motion: Option<MotionName>,
+    /// Velocity of the wind [m/s], world space: x to the left of the face, y up, z to the front.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true)]
+    pub wind: Option<Vec3>,
+    /// Side that the camera looks from: front, three_quarter, side or back; hair and body fill the picture.
+    #[arg(long, value_name = "NAME", value_parser = View::from_str)]
+    pub view: Option<View>,
     /// Number of frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub frames: Option<u32>,
+    /// Frames per second of the scene's time.
+    #[arg(long, value_name = "N", value_parser = parse_rate)]
+    pub fps: Option<f32>,
     /// Device of simulation and pictures: auto, cpu, gpu, or gpu:0 and so on [default: the scene's, auto].
     #[arg(long, value_name = "NAME", value_parser = Backend::from_str)]
     pub backend: Option<Backend>,
@@ -148,6 +172,9 @@ pub struct RenderOptions {
     /// depth, coverage, directions and strands. Several frames become numbered files.
     #[arg(long, value_name = "DIR|FILE")]
     pub out: Option<PathBuf>,
+    /// Turn the camera once around the hair in this number of frames, evenly; the head rests, unless --motion moves it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub turntable: Option<u32>,
     /// Draw the hair of this moving cache in place of a simulation, with its own scene unless --scene names one.
     #[arg(long, value_name = "FILE.npz")]
     pub cache: Option<PathBuf>,
@@ -257,6 +284,20 @@ pub struct SceneOptions {
 }
 
 #[derive(Args, Debug)]
+pub struct CompletionOptions {
+    /// The shell.
+    #[arg(value_name = "SHELL")]
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Args, Debug)]
+pub struct ManOptions {
+    /// The folder to write to.
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
+
+#[derive(Args, Debug)]
 pub struct ShaderOptions {
     /// The folder to write to.
     #[arg(value_name = "DIR")]
@@ -322,41 +363,9 @@ pub enum Bench {
 #[error("{0}")]
 pub struct Usage(pub String);
 
-/// The endings of formats that are written.
-fn written() -> String {
-    endings(|format| format.write.is_some())
-}
-
-/// Every format of grooms, a line each.
-fn formats() -> String {
-    let line = |format: &Format| format!("  .{:<9}{}\n", format.ending, format.about);
-    format!("Formats:\n{}", FORMATS.iter().map(line).collect::<String>())
-}
-
-fn parse_level(text: &str) -> Result<log::LevelFilter, String> {
-    text.parse()
-        .map_err(|_| format!("`{text}` is not a level, expected off, error, warn, info, debug or trace"))
-}
-
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let expected = || format!("`{text}` is not a size, expected WIDTHxHEIGHT such as 800x600");
-    let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
-    let side =
-        |text: &str| text.parse::<u32>().ok().filter(|side| (1..=16_384).contains(side)).ok_or_else(expected);
-    Ok((side(width)?, side(height)?))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sizes_are_two_numbers_with_an_x() {
-        assert_eq!(parse_size("800x600"), Ok((800, 600)));
-        for wrong in ["800", "800x", "x600", "0x600", "800x-1", "800x99999", "axb"] {
-            assert!(parse_size(wrong).unwrap_err().contains("expected WIDTHxHEIGHT"), "{wrong}");
-        }
-    }
 
     #[test]
     fn the_arguments_are_sound() {

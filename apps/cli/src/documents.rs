@@ -85,7 +85,10 @@ fn row(argument: &Arg) -> String {
         .get_possible_values()
         .iter()
         .filter(|_| argument.get_action().takes_values())
-        .map(|choice| format!("`{}`: {}", choice.get_name(), choice.get_help().unwrap()))
+        .map(|choice| match choice.get_help() {
+            Some(help) => format!("`{}`: {help}", choice.get_name()),
+            None => format!("`{}`", choice.get_name()),
+        })
         .collect();
     let default: Vec<_> = argument.get_default_values().iter().map(|value| value.to_string_lossy()).collect();
     let mut cell = help.trim_end_matches('.').to_owned() + ".";

@@ -1,7 +1,7 @@
 //! The end of the program, and the codes that it ends with; docs/limits.md lists them.
 
 use signal_hook::low_level;
-use strandline::file::abandon_parts;
+use strandline::file::abandon_unfinished;
 
 /// Everything was done.
 pub const SUCCESS: i32 = 0;
@@ -18,7 +18,7 @@ pub const SIGNAL: i32 = 128;
 
 /// Ends the program at once: files that are not finished are removed.
 pub fn end_now(code: i32) -> ! {
-    let _abandoned = abandon_parts();
+    let _abandoned = abandon_unfinished();
     // No other code runs any more, such as destructors of a driver beside its threads.
     low_level::exit(code)
 }

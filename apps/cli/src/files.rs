@@ -21,9 +21,11 @@ pub fn groom(options: &GroomOptions) -> anyhow::Result<()> {
 }
 
 pub(crate) fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()> {
-    for part in groom.save(path)?.left_out {
+    let saved = groom.save(path)?;
+    for part in saved.left_out {
         output::note(&format!("the format cannot hold {part}: left out"));
     }
+    saved.notes.iter().for_each(|note| output::note(note));
     print_line!(
         "wrote {} strands, {} points to {}",
         groom.strand_count(),

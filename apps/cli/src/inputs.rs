@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use strandline::{
     Cache, Scene,
-    scene::{BodyPart, GroomPart},
+    scene::{BodyPart, CameraSection, GroomPart},
     settings::{StrandMethod, Value},
 };
 
@@ -37,20 +37,7 @@ impl Inputs {
         if let Some(style) = self.style {
             scene.set_style(style);
         }
-        // Paths given here are relative to the current folder, not to the scene's.
-        if let [first, further @ ..] = &self.groom[..] {
-            scene.groom.file = Some(std::path::absolute(first)?);
-            let per_strand = self.per_strand;
-            scene.groom.per_strand = per_strand;
-            scene.groom.parts =
-                parts(further, |file| GroomPart { file, per_strand, ..GroomPart::default() })?;
-            scene.begin_at_rest();
-        }
-        if let [first, further @ ..] = &self.body[..] {
-            scene.body.file = Some(std::path::absolute(first)?);
-            scene.body.parts = parts(further, |file| BodyPart { file, ..BodyPart::default() })?;
-            scene.begin_at_rest();
-        }
+        self.set_files(&mut scene)?;
         if let Some(turn) = self.turn {
             scene.groom.rotation = turn;
         }
@@ -67,6 +54,47 @@ impl Inputs {
             }
             scene.simulation.strands.rods.set_hair(hair);
         }
+        if let Some(look) = self.look {
+            look.dress(&mut scene.look);
+        }
+        if let Some(width) = self.width {
+            scene.look.width_scale = width;
+        }
+        self.set_film(&mut scene);
+        self.set.apply(&mut scene)?;
+        Ok(scene)
+    }
+
+    /// Sets the files of strands and body.
+    fn set_files(&self, scene: &mut Scene) -> anyhow::Result<()> {
+        // Paths given here are relative to the current folder, not to the scene's.
+        if let [first, further @ ..] = &self.groom[..] {
+            scene.groom.file = Some(std::path::absolute(first)?);
+            let per_strand = self.per_strand;
+            scene.groom.per_strand = per_strand;
+            scene.groom.parts =
+                parts(further, |file| GroomPart { file, per_strand, ..GroomPart::default() })?;
+            scene.begin_at_rest();
+        }
+        if let [first, further @ ..] = &self.body[..] {
+            scene.body.file = Some(std::path::absolute(first)?);
+            scene.body.parts = parts(further, |file| BodyPart { file, ..BodyPart::default() })?;
+            scene.begin_at_rest();
+        }
+        Ok(())
+    }
+
+    /// Sets the motion, the view and what computes the film.
+    fn set_film(&self, scene: &mut Scene) {
+        if let Some(velocity) = self.wind {
+            scene.wind.velocity = velocity;
+        }
+        if let Some(view) = self.view {
+            scene.camera = CameraSection { view, ..CameraSection::default() };
+        }
+        if let Some(rate) = self.fps {
+            scene.film.frames_per_second = rate;
+        }
         if let Some(name) = self.motion {
             scene.motion.name = name;
             // It begins at its beginning.
@@ -81,8 +109,6 @@ impl Inputs {
         if let Some(frames) = self.frames {
             scene.film.frames = frames;
         }
-        self.set.apply(&mut scene)?;
-        Ok(scene)
     }
 
     /// Name of the output: the style, the groom's or the scene's name.

@@ -13,6 +13,7 @@ mod gpus;
 mod inputs;
 mod interrupt;
 mod logging;
+mod manual;
 mod non_finite;
 mod output;
 mod progress;
@@ -21,6 +22,7 @@ mod reading;
 mod render;
 mod sim;
 mod statistics;
+mod values;
 #[cfg(feature = "window")]
 mod view;
 #[cfg(not(feature = "window"))]
@@ -96,6 +98,8 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         Some(Command::Bench(options)) => bench::bench(options),
         Some(Command::Plot(options)) => bench::plot(options),
         Some(Command::Gpus) => gpus::list(),
+        Some(Command::Completions(options)) => manual::completions(options),
+        Some(Command::Man(options)) => manual::pages(options),
         Some(Command::Shaders(options)) => gpus::shaders(options),
     }
 }

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use glam::Vec3;
-use strandline::format::{Cleaning, LoadOptions, Scale, Up};
+use strandline::format::{Cleaning, LoadOptions, RootEnd, Scale, Up};
 
 /// Reading of a groom file.
 #[derive(Args, Clone, Copy, Debug)]
@@ -21,6 +21,12 @@ pub struct Reading {
     /// Points of each strand, for files that do not give strands.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub per_strand: Option<u32>,
+    /// Frame of moving hair, from 0, in USD a time code; without it the first.
+    #[arg(long, value_name = "N")]
+    pub frame: Option<u32>,
+    /// The end of each strand at which its root is: first, last, or auto, which widths and the other strands show.
+    #[arg(long, value_name = "END", default_value = "auto", value_parser = RootEnd::from_str)]
+    pub root_end: RootEnd,
 }
 
 impl Reading {
@@ -32,6 +38,8 @@ impl Reading {
             up: self.up,
             turn: self.turn.unwrap_or_default(),
             per_strand: self.per_strand,
+            frame: self.frame,
+            root_end: self.root_end,
             cleaning: Cleaning::Named,
         }
     }

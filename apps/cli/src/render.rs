@@ -3,9 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
-use strandline::{Backend, Cache, Error, Event, Film, PictureFiles, Player, Scene};
+use strandline::mesh::Placement;
+use strandline::{
+    Backend, Cache, Error, Event, Player, Scene,
+    file::{Film, PictureFiles},
+    scene::{CameraKeyframe, Interpolation, MotionName},
+};
 
-use crate::arguments::RenderOptions;
+use crate::arguments::{Inputs, RenderOptions, Usage};
 use crate::interrupt::{Stoppable, Stopped};
 use crate::non_finite::NonFinite;
 use crate::output::{self, print_line};
@@ -18,6 +23,8 @@ struct RenderReport {
     backend: String,
     render_backend: String,
     frames: usize,
+    /// Placement of groom and body, and the confidence in it.
+    placement: Placement,
     follow_strands: usize,
     segments: usize,
     /// Pictures that were drawn while the next frame was simulated, all but the last; `None` for a film of one.
@@ -29,15 +36,28 @@ struct RenderReport {
     files: Vec<PathBuf>,
 }
 
+/// Pictures of the demo without a window, and how many a second.
+const DEMO_PICTURES: u32 = 12;
+const DEMO_RATE: f32 = 3.0;
+
 /// The demo, into out/demo.
 pub fn demo() -> anyhow::Result<()> {
-    let scene = Scene::demo();
+    let mut scene = Scene::demo();
+    (scene.film.frames, scene.film.frames_per_second) = (DEMO_PICTURES, DEMO_RATE);
+    let folder = Path::new("out/demo");
     print_line!(
         "strandline demo: a head of {} hair shakes for {:.0} s; `strandline --help` shows what else there is",
         scene.style.style.name(),
-        f64::from(scene.film.frames) / f64::from(scene.film.frames_per_second)
+        scene.film.frames as f32 / scene.film.frames_per_second
     );
-    film(&scene, None, Path::new("out/demo"), false)
+    print_line!(
+        "draws {} pictures of {} x {} into {}, in about a minute on two cores; ctrl C ends it",
+        scene.film.frames,
+        scene.picture.width,
+        scene.picture.height,
+        folder.display()
+    );
+    film(&scene, None, folder, false)
 }
 
 /// A scene as the command line names it.
@@ -49,6 +69,9 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
     };
     if let Some((width, height)) = options.size {
         (scene.picture.width, scene.picture.height) = (width, height);
+    }
+    if let Some(frames) = options.turntable {
+        turn(&mut scene, frames, &options.inputs);
     }
     if let Some(path) = options.out.as_deref().filter(|path| has_ending(path, "png")) {
         return files(&scene, cache, path, options.inputs.json);
@@ -64,10 +87,45 @@ pub fn render(options: &RenderOptions) -> anyhow::Result<()> {
         }
         return files(&scene, cache, path, options.inputs.json);
     }
+    if let Some(path) = options.out.as_deref().filter(|path| !path.is_dir() && is_of_file(path)) {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        let expected = "a .png or .exr file, or a folder for numbered pictures and a video";
+        return Err(
+            Usage(format!("--out is a .{ending} file, expected {expected}: {}", path.display())).into()
+        );
+    }
     let name = options.cache.as_deref().and_then(Path::file_stem).map(Path::new);
     let name = name.map_or_else(|| options.inputs.name().into(), Path::to_owned);
     let folder = options.out.clone().unwrap_or_else(|| Path::new("out").join(name));
     film(&scene, cache, &folder, options.inputs.json)
+}
+
+/// Lets the camera go around once in a number of frames, so that the film begins again where it ends.
+fn turn(scene: &mut Scene, frames: u32, inputs: &Inputs) {
+    let seconds = |frames: f64| frames / f64::from(scene.film.frames_per_second);
+    // The first frame is a frame after the beginning, or at it where hair begins in a pose.
+    let begin = scene.film.start + seconds(f64::from(u8::from(scene.groom.pose.is_none())));
+    let interpolation = Some(Interpolation::Linear);
+    let first = CameraKeyframe { time: begin, interpolation, ..CameraKeyframe::default() };
+    let last = CameraKeyframe { time: begin + seconds(f64::from(frames)), turn: 360.0, ..first };
+    scene.camera.keyframes = vec![first, last];
+    if inputs.frames.is_none() {
+        scene.film.frames = frames;
+    }
+    if inputs.motion.is_none() {
+        scene.motion.name = MotionName::Still;
+    }
+}
+
+/// Endings of pictures, videos and scenes that nobody gives a folder.
+const OF_FILES: [&str; 22] = [
+    "jpg", "jpeg", "gif", "webp", "tif", "tiff", "bmp", "tga", "hdr", "avif", "jxl", "svg", "pdf", "mp4",
+    "mov", "avi", "mkv", "webm", "npz", "usda", "hair", "toml",
+];
+
+/// True for a name that can only be that of a file.
+fn is_of_file(path: &Path) -> bool {
+    OF_FILES.iter().any(|ending| has_ending(path, ending))
 }
 
 fn has_ending(path: &Path, wanted: &str) -> bool {
@@ -99,7 +157,10 @@ fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow
     stoppable.finish();
     notes.iter().for_each(|note| output::note(note));
     if json {
-        output::program(&format!("{}\n", serde_json::json!({ "frames": files.len(), "files": files })));
+        output::program(&format!(
+            "{}\n",
+            serde_json::json!({ "frames": files.len(), "placement": player.placement(), "files": files })
+        ));
     } else {
         let last = files.last().map_or(path, PathBuf::as_path);
         let count = if files.len() == 1 { "a file".to_owned() } else { format!("{} files", files.len()) };
@@ -165,6 +226,7 @@ fn film(scene: &Scene, cache: Option<Cache>, folder: &Path, json: bool) -> anyho
         backend: source.unwrap_or_else(|| player.simulated_on()),
         render_backend: player.drawn_on(),
         frames: beside.len() + alone.len(),
+        placement: player.placement(),
         follow_strands: strands,
         segments,
         ms_per_frame_beside_simulation: (beside.len() > 0).then(|| beside.times()),
@@ -229,7 +291,7 @@ fn stopped_early(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Err
     let notes = if error.is::<Stopped>() {
         film.stop_early().map_or_else(|error| vec![error.to_string()], |left| left.notes)
     } else {
-        Vec::new()
+        film.give_up()
     };
     notes.iter().for_each(|note| output::note(note));
     if frames > 0 {

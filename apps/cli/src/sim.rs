@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
-use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Written};
+use strandline::mesh::Placement;
+use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Stiffening, Written};
 
 use crate::arguments::SimOptions;
 use crate::interrupt::Stoppable;
@@ -19,6 +20,8 @@ pub struct SimReport {
     pub strands: usize,
     pub points_per_strand: usize,
     pub steps: usize,
+    /// Placement of groom and body, and the confidence in it.
+    pub placement: Placement,
     pub ms_per_step: Times,
     pub stretch: Stretch,
     pub penetration_max_m: f32,
@@ -114,8 +117,8 @@ pub struct Ended {
     pub strands: usize,
     pub points_per_strand: usize,
     pub drift: Drift,
-    /// Strands of rods that had to be stiffer, and how many times stiffer the stiffest of them is.
-    pub stiffened: (usize, f32),
+    pub stiffening: Stiffening,
+    pub placement: Placement,
     /// \[s\].
     pub time_step: f32,
     /// Of the pressure solve.
@@ -134,7 +137,8 @@ impl Ended {
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
             drift: player.drift()?,
-            stiffened: player.stiffened(),
+            stiffening: player.stiffening(),
+            placement: player.placement(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         })
@@ -166,7 +170,8 @@ impl Steps {
     /// Mean and largest speed \[m/s\] of the last steps.
     fn speed(&self, count: usize) -> Spread {
         let last = &self.speeds[self.speeds.len().saturating_sub(count)..];
-        let mean = last.iter().map(|(mean, _)| mean).sum::<f32>() / last.len().max(1) as f32;
+        // The sum of nothing is -0.
+        let mean = last.iter().map(|(mean, _)| mean).sum::<f32>() / last.len().max(1) as f32 + 0.0;
         Spread { mean, max: last.iter().fold(0.0, |most: f32, (_, max)| most.max(*max)) }
     }
 
@@ -178,13 +183,14 @@ impl Steps {
             strands,
             points_per_strand,
             steps: self.times.len(),
+            placement: end.placement,
             ms_per_step: self.times.times(),
             stretch: Stretch { mean: mean(self.stretch), max: self.stretch_max },
             penetration_max_m: self.penetration_max,
             drift: Spread { mean: drift.mean, max: drift.max },
             speed: self.speed((1.0 / end.time_step).round() as usize),
-            stiffened: end.stiffened.0,
-            stiffest: end.stiffened.1,
+            stiffened: end.stiffening.strands,
+            stiffest: end.stiffening.most,
             rods: self.rods,
             non_finite: self.non_finite.clone(),
             pcg: Pcg {
@@ -205,7 +211,7 @@ impl Steps {
 
 pub fn sim(options: &SimOptions) -> anyhow::Result<()> {
     let inputs = &options.inputs;
-    let mut former = options.resume.as_deref().map(Cache::open).transpose()?;
+    let mut former = options.resume.as_deref().map(Cache::open_to_resume).transpose()?;
     let scene = match &former {
         Some(cache) => inputs.scene_of(cache)?,
         None => inputs.scene()?,
@@ -254,16 +260,17 @@ fn begin(
     let waiting = Waiting::begin(LOADING);
     let mut player = Player::new(scene, scene.devices, false)?;
     drop(waiting);
-    for note in player.notes() {
-        output::note(note);
-    }
     let stoppable = Stoppable::begin();
-    if let Some(settings) = out {
-        player.set_out(&settings)?;
+    let resumed = out.map_or(Ok(()), |settings| player.set_out(&settings)).and_then(|()| match former {
+        Some(former) => player.resume(former),
+        None => Ok(()),
+    });
+    player.notes().iter().for_each(|note| output::note(note));
+    let stiffening = player.stiffening();
+    if stiffening.strands > 0 {
+        output::note(&format!("{stiffening}: their shape would not be stable"));
     }
-    if let Some(former) = former {
-        player.resume(former)?;
-    }
+    resumed?;
     Ok((player, stoppable))
 }
 
@@ -296,6 +303,7 @@ fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Opti
         for part in written.iter().flat_map(|written| &written.left_out) {
             output::note(&format!("the format cannot hold {part}: left out"));
         }
+        written.iter().flat_map(|written| &written.notes).for_each(|note| output::note(note));
         return Ok(written);
     };
     match written {

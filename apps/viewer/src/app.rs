@@ -8,6 +8,7 @@ use strandline::{
     Backend, Camera, Change, Error, Live, PictureSettings, Scene,
     format::{Format, endings},
     live::{Command, Shown},
+    mesh::MeshFormat,
     settings::SettingError,
 };
 
@@ -148,8 +149,7 @@ impl App {
         let absolute = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
         match ending.as_deref() {
             Some("toml") => return Scene::load(file),
-            // Meshes are more common than strands as lines, which `convert` reads.
-            Some("obj" | "gltf" | "glb" | "vrm" | "stl") => {
+            _ if MeshFormat::is_of(file) => {
                 scene.body.file = Some(absolute);
                 scene.body.parts.clear();
             }
@@ -158,9 +158,10 @@ impl App {
                 scene.groom.parts.clear();
             }
             _ => {
-                let grooms = endings(|format| format.ending != "obj");
-                let expected =
-                    format!("a .toml scene, a {grooms} groom, or an .obj, .gltf, .glb, .vrm or .stl body");
+                let grooms = endings(|_| true);
+                let expected = format!(
+                    "a .toml scene, a {grooms} groom, or an .obj, .gltf, .glb, .vrm, .ply or .stl body"
+                );
                 return Err(SettingError::new("the file", file.display(), expected).into());
             }
         }

@@ -79,7 +79,7 @@ fn question(wanted: Wanted) -> Question {
                 .set_title("Open a scene, groom or body")
                 .add_filter(
                     "scenes, grooms, bodies",
-                    &["toml", "hair", "tfx", "obj", "gltf", "glb", "vrm", "stl"],
+                    &["toml", "hair", "tfx", "obj", "gltf", "glb", "vrm", "ply", "stl"],
                 )
                 .pick_file(),
         ),

@@ -24,6 +24,10 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
         if shown.grabbed > 0 {
             ui.label(format!("{} strands in hand", shown.grabbed));
         }
+        if shown.stiffening.strands > 0 {
+            ui.label(shown.stiffening.to_string())
+                .on_hover_text("their shape would not be stable; `rest = \"unstressed\"` lets them sag");
+        }
         if let Some(frames) = shown.recorded {
             ui.colored_label(
                 egui::Color32::LIGHT_RED,

@@ -20,6 +20,7 @@ pub fn dial(room: Rect) -> Rect {
 pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     let rect = dial(room);
     let response = ui.interact(rect, ui.scope_id().with("wind"), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Canvas, true, "wind"));
     let view = app.camera.view_from_world();
     let mut seen = view.transform_vector3(app.scene.wind.velocity);
     let scroll = if response.hovered() { ui.input(|input| input.smooth_scroll_delta().y) } else { 0.0 };
@@ -36,7 +37,7 @@ pub fn show(app: &mut App, ui: &egui::Ui, room: Rect) {
     if response.dragged() || response.double_clicked() || scroll != 0.0 {
         let wind = view.inverse().transform_vector3(seen);
         app.scene.wind.velocity = wind.clamp_length_max(STRONGEST);
-        app.live.send(Change::Wind(app.scene.wind));
+        app.live.send(Change::Wind(app.scene.wind.clone()));
     }
     response.on_hover_text(
         "the wind [m/s], seen from the camera\ndrag its tip; the wheel blows into the picture; a double click stops it\ndefault 0",

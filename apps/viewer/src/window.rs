@@ -29,10 +29,10 @@ impl App {
                     notes.into_iter().for_each(|note| self.note(note));
                 }
                 LiveEvent::Note(note) => self.note(note),
-                LiveEvent::NotLoaded(number, error) => {
+                LiveEvent::NotLoaded(number, kind, error) => {
                     // The previous scene still plays.
                     self.pending.take_if(|(pending, _)| *pending == number);
-                    self.error = Some(error);
+                    self.error = Some(with_remedy(kind, error));
                     if self.shown.is_none() {
                         self.give_up_pictures();
                     }

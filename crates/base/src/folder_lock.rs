@@ -3,14 +3,16 @@ use std::io::{Error, ErrorKind, Read, Result, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use crate::parts::{self, Writer};
+use crate::temporary::{self, Writer};
 
 /// The file that is locked.
 const NAME: &str = ".strandline-lock";
+/// Bytes of a file's name in that of its lock: most systems allow 255 in all.
+const NAME_BYTES: usize = 160;
 /// Bytes of a lock's mark that are read.
 const MARK: u64 = 256;
 
-/// A folder that one run writes at a time.
+/// A folder, or a name in it, that one run writes at a time.
 ///
 /// The lock is the system's, on a file in the folder: it ends with the process. The file is
 /// removed with the lock; a file left by an ended run is taken over.
@@ -27,7 +29,27 @@ impl FolderLock {
     /// # Errors
     /// `ResourceBusy`: another run holds it. Otherwise an error of the system: the folder cannot be written.
     pub fn take(folder: &Path) -> Result<Self> {
-        let path = folder.join(NAME);
+        let lock = Self::at(folder.join(NAME))?;
+        if lock.is_held() {
+            temporary::clear(folder, Writer::Here);
+            temporary::clear(folder, Writer::Foreign);
+        }
+        Ok(lock)
+    }
+
+    /// Locks the name of a file, or of numbered files, in an existing folder: other names stay free.
+    ///
+    /// # Errors
+    /// As [`FolderLock::take`].
+    pub fn take_name(file: &Path) -> Result<Self> {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let short = &name[..name.floor_char_boundary(NAME_BYTES)];
+        let lock = Self::at(file.with_file_name(format!("{NAME}-{short}")))?;
+        temporary::clear(file.parent().unwrap_or(Path::new("")), Writer::Here);
+        Ok(lock)
+    }
+
+    fn at(path: PathBuf) -> Result<Self> {
         loop {
             let Some(mut file) = open(&path)? else { continue };
             match file.try_lock() {
@@ -41,10 +63,8 @@ impl FolderLock {
             // The holder before may have removed it after it was opened here, and a third may have made
             // another: then this lock excludes no other run.
             if is_there(&mut file, &path) {
-                parts::hold().add(&path);
+                temporary::hold().add(&path);
                 mark(&mut file)?;
-                parts::clear(folder, Writer::Here);
-                parts::clear(folder, Writer::Foreign);
                 return Ok(Self { path, file: Some(file) });
             }
         }
@@ -61,7 +81,7 @@ impl Drop for FolderLock {
         if self.file.is_some() {
             // Removed before it is given back.
             let _ = fs::remove_file(&self.path);
-            parts::hold().forget(&self.path);
+            temporary::hold().forget(&self.path);
         }
     }
 }
@@ -121,6 +141,13 @@ mod tests {
         assert_eq!(FolderLock::take(folder.path()).unwrap_err().kind(), ErrorKind::ResourceBusy);
         assert!(FolderLock::take(&folder.path().join("absent")).is_err());
         drop(first);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        let names = ["a.png", "b.png"].map(|name| FolderLock::take_name(&folder.path().join(name)).unwrap());
+        assert_eq!(
+            FolderLock::take_name(&folder.path().join("a.png")).unwrap_err().kind(),
+            ErrorKind::ResourceBusy
+        );
+        drop(names);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         // A lock left by an ended run is taken over, with its unfinished files.
         fs::write(folder.path().join(NAME), b"of another").unwrap();

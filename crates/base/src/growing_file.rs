@@ -1,9 +1,9 @@
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{ErrorKind, Result, Seek, SeekFrom, Write};
+use std::io::{Error, ErrorKind, Result, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::parts::{self, Writer};
+use crate::temporary::{self, Writer};
 use crate::whole_file::permissions;
 
 /// A file that a long run writes and that is sound all the while, so that it has a name before it is finished.
@@ -45,10 +45,10 @@ impl GrowingFile {
         for path in [path, &unfinished(path)] {
             refuse_busy(path)?;
         }
-        let (part, file) = parts::create(path, Writer::Here)?;
+        let (temporary, file) = temporary::create(path, Writer::Here)?;
         let growing = Self {
             path: path.to_owned(),
-            place: part,
+            place: temporary,
             published: false,
             file,
             #[cfg(test)]
@@ -98,10 +98,10 @@ impl GrowingFile {
         self.changes.push(Change::Publish);
         let place = if self.path.exists() { unfinished(&self.path) } else { self.path.clone() };
         permissions(&place)?;
-        // With the list of parts in hand: a process that ends at once removes it before or not at all.
-        let mut parts = parts::hold();
+        // With the list of temporary files in hand: a process that ends at once removes it before or not at all.
+        let mut list = temporary::hold();
         fs::rename(&self.place, &place)?;
-        parts.forget(&self.place);
+        list.forget(&self.place);
         (self.place, self.published) = (place, true);
         Ok(())
     }
@@ -113,6 +113,7 @@ impl GrowingFile {
     pub fn finish(mut self) -> Result<()> {
         self.publish()?;
         self.file.sync_all()?;
+        self.check_place()?;
         if self.place != self.path {
             permissions(&self.path)?;
             fs::rename(&self.place, &self.path)?;
@@ -127,17 +128,34 @@ impl GrowingFile {
     pub fn leave(mut self) -> Result<PathBuf> {
         self.publish()?;
         self.file.sync_all()?;
+        self.check_place()?;
         Ok(self.place.clone())
+    }
+
+    /// Refuses to go on where somebody has removed or replaced the file meanwhile.
+    fn check_place(&self) -> Result<()> {
+        let there = fs::symlink_metadata(&self.place);
+        #[cfg(unix)]
+        let is_own = {
+            use std::os::unix::fs::MetadataExt;
+            let own = self.file.metadata()?;
+            there.is_ok_and(|there| (there.dev(), there.ino()) == (own.dev(), own.ino()))
+        };
+        #[cfg(not(unix))]
+        let is_own = there.is_ok();
+        let lost =
+            || Error::other("it was removed or replaced while it was written, and its frames are lost");
+        if is_own { Ok(()) } else { Err(lost()) }
     }
 }
 
 impl Drop for GrowingFile {
     fn drop(&mut self) {
         if !self.published {
-            let mut parts = parts::hold();
+            let mut list = temporary::hold();
             // The first error is the one to report.
             let _ = fs::remove_file(&self.place);
-            parts.forget(&self.place);
+            list.forget(&self.place);
         }
     }
 }
@@ -154,7 +172,10 @@ fn unfinished(path: &Path) -> PathBuf {
 }
 
 /// Refuses a file that another run has locked; without locks of the file system it refuses none.
-fn refuse_busy(path: &Path) -> Result<()> {
+///
+/// # Errors
+/// `ResourceBusy`: another run writes it.
+pub fn refuse_busy(path: &Path) -> Result<()> {
     let Ok(found) = fs::symlink_metadata(path) else { return Ok(()) };
     if !found.is_file() {
         return Ok(());
@@ -168,7 +189,7 @@ fn refuse_busy(path: &Path) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parts::names;
+    use crate::temporary::names;
 
     #[test]
     fn it_has_its_name_before_it_is_finished_and_keeps_it_when_the_run_ends() {
@@ -207,6 +228,24 @@ mod tests {
         file.finish().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"newe");
         assert_eq!(names(folder.path()), ["a.npz"]);
+    }
+
+    #[test]
+    fn a_file_that_somebody_removed_or_replaced_is_not_called_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.npz");
+        for replaced in [false, true] {
+            let mut file = GrowingFile::create(&path).unwrap();
+            file.publish().unwrap();
+            fs::remove_file(&path).unwrap();
+            if replaced {
+                fs::write(&path, b"of another").unwrap();
+            }
+            if cfg!(unix) || !replaced {
+                let error = file.finish().unwrap_err().to_string();
+                assert!(error.contains("removed or replaced"), "{error}");
+            }
+        }
     }
 
     #[test]

@@ -257,7 +257,8 @@ macro_rules! gone {
     };
 }
 
-/// An enum that a file names by a word: its words stand once.
+/// An enum that a file names by a word: its words stand once. Words are read in capitals too, and a choice may have
+/// further words that are read, behind `or`.
 ///
 /// ```
 /// strandline_base::choices! {
@@ -266,11 +267,12 @@ macro_rules! gone {
 ///         /// Cut off at 1.
 ///         Off = "off",
 ///         /// Rolled off smoothly toward white.
-///         Filmic = "filmic",
+///         Filmic = "filmic" or "soft",
 ///     }
 ///     default Filmic
 /// }
 /// assert_eq!("off".parse(), Ok(ToneMap::Off));
+/// assert_eq!("Soft".parse(), Ok(ToneMap::Filmic));
 /// assert_eq!(ToneMap::default().name(), "filmic");
 /// ```
 #[macro_export]
@@ -278,12 +280,12 @@ macro_rules! choices {
     (
         $(#[doc = $about:literal])*
         pub enum $Name:ident as $key:literal {
-            $($(#[doc = $doc:literal])+ $Choice:ident = $word:literal),+ $(,)?
+            $($(#[doc = $doc:literal])+ $Choice:ident = $word:literal $(or $other:literal)*),+ $(,)?
         }
         default $Default:ident
     ) => {
         $(#[doc = $about])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, ::serde::Serialize, ::serde::Deserialize)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, ::serde::Serialize)]
         pub enum $Name {
             $(
                 $(#[doc = $doc])+
@@ -295,6 +297,15 @@ macro_rules! choices {
         impl $Name {
             /// Every one.
             pub const ALL: [Self; [$($word),+].len()] = [$(Self::$Choice),+];
+
+            /// The choice of a word, in letters of either case.
+            fn read(name: &str) -> Option<Self> {
+                let is_named = |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
+                $(if is_named(&[$word $(, $other)*]) {
+                    return Some(Self::$Choice);
+                })+
+                None
+            }
 
             /// Its name, as in scenes.
             pub const fn name(self) -> &'static str {
@@ -314,9 +325,18 @@ macro_rules! choices {
             type Err = $crate::SettingError;
 
             fn from_str(name: &str) -> Result<Self, $crate::SettingError> {
-                Self::ALL.into_iter().find(|choice| choice.name() == name).ok_or_else(|| {
+                Self::read(name).ok_or_else(|| {
                     let expected = format!("one of {}", [$($word),+].join(", "));
                     $crate::SettingError::new($key, format!("`{name}`"), expected)
+                })
+            }
+        }
+
+        impl<'de> ::serde::Deserialize<'de> for $Name {
+            fn deserialize<D: ::serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let name = <::std::borrow::Cow<'de, str> as ::serde::Deserialize>::deserialize(deserializer)?;
+                Self::read(&name).ok_or_else(|| {
+                    <D::Error as ::serde::de::Error>::unknown_variant(&name, &[$($word),+])
                 })
             }
         }

@@ -2,7 +2,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Error, ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
 
-use crate::parts::{self, Writer};
+use crate::temporary::{self, Writer};
 
 /// A file that is whole or not there: it is written under a temporary name in the same folder and gets its own
 /// when it is kept. Otherwise it is removed.
@@ -12,12 +12,12 @@ use crate::parts::{self, Writer};
 /// * A folder, a device, a pipe, or a link to one, is refused.
 /// * The content is on the disk before the file gets its name. The name itself may be lost with the power;
 ///   then the former file is there, whole.
-/// * The temporary name, `NAME.PROCESS-NUMBER.strandline-part`, is new and locked. Parts of runs that were ended
-///   have no lock any more; the next run that writes into the folder removes them.
+/// * The temporary name, `NAME.PROCESS-NUMBER.strandline-part`, is new and locked. Temporary files of killed runs have
+///   no lock any more; the next run that writes into the folder removes them.
 #[derive(Debug)]
 pub struct WholeFile {
     path: PathBuf,
-    part: PathBuf,
+    temporary: PathBuf,
     /// `None` while another program writes it.
     file: Option<BufWriter<File>>,
 }
@@ -30,20 +30,20 @@ impl WholeFile {
     pub fn create(path: &Path) -> Result<Self> {
         let mut file = Self::begin(path, Writer::Here)?;
         // Before it has content: a private file is never readable by others.
-        if let (Some(permissions), Some(part)) = (permissions(path)?, &mut file.file) {
-            part.get_ref().set_permissions(permissions)?;
+        if let (Some(permissions), Some(temporary)) = (permissions(path)?, &mut file.file) {
+            temporary.get_ref().set_permissions(permissions)?;
         }
         Ok(file)
     }
 
-    /// Begins a file that another program writes under [`WholeFile::part`].
+    /// Begins a file that another program writes under [`WholeFile::temporary`].
     ///
     /// # Errors
     /// As [`WholeFile::create`].
     pub fn for_program(path: &Path) -> Result<Self> {
         let mut file = Self::begin(path, Writer::Foreign)?;
         if let Some(permissions) = permissions(path)? {
-            fs::set_permissions(&file.part, permissions)?;
+            fs::set_permissions(&file.temporary, permissions)?;
         }
         file.file = None;
         Ok(file)
@@ -51,8 +51,8 @@ impl WholeFile {
 
     fn begin(path: &Path, writer: Writer) -> Result<Self> {
         permissions(path)?;
-        let (part, file) = parts::create(path, writer)?;
-        Ok(Self { path: path.to_owned(), part, file: Some(BufWriter::new(file)) })
+        let (temporary, file) = temporary::create(path, writer)?;
+        Ok(Self { path: path.to_owned(), temporary, file: Some(BufWriter::new(file)) })
     }
 
     /// Writes all of it, to be kept.
@@ -61,8 +61,8 @@ impl WholeFile {
     /// Errors of the system or of `write`.
     pub fn write(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> Result<()>) -> Result<Self> {
         let mut file = Self::create(path)?;
-        if let Some(part) = &mut file.file {
-            write(part)?;
+        if let Some(temporary) = &mut file.file {
+            write(temporary)?;
         }
         file.store()?;
         Ok(file)
@@ -77,8 +77,8 @@ impl WholeFile {
     }
 
     /// The temporary name.
-    pub fn part(&self) -> &Path {
-        &self.part
+    pub fn temporary(&self) -> &Path {
+        &self.temporary
     }
 
     /// The name that it will have.
@@ -93,10 +93,10 @@ impl WholeFile {
     pub fn keep(mut self) -> Result<()> {
         self.store()?;
         permissions(&self.path)?;
-        // With the list of parts in hand: a process that ends at once removes it before or not at all.
-        let mut parts = parts::hold();
-        fs::rename(&self.part, &self.path)?;
-        parts.forget(&self.part);
+        // With the list of temporary files in hand: a process that ends at once removes it before or not at all.
+        let mut list = temporary::hold();
+        fs::rename(&self.temporary, &self.path)?;
+        list.forget(&self.temporary);
         Ok(())
     }
 
@@ -107,7 +107,7 @@ impl WholeFile {
                 file.flush()?;
                 file.get_ref().sync_all()
             }
-            None => OpenOptions::new().write(true).open(&self.part)?.sync_all(),
+            None => OpenOptions::new().write(true).open(&self.temporary)?.sync_all(),
         }
     }
 }
@@ -124,10 +124,10 @@ impl Write for WholeFile {
 
 impl Drop for WholeFile {
     fn drop(&mut self) {
-        let mut parts = parts::hold();
+        let mut list = temporary::hold();
         // A kept file is gone from its temporary name, and the first error is reported.
-        let _ = fs::remove_file(&self.part);
-        parts.forget(&self.part);
+        let _ = fs::remove_file(&self.temporary);
+        list.forget(&self.temporary);
     }
 }
 
@@ -160,7 +160,7 @@ fn no_file(found: &str) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parts::names;
+    use crate::temporary::names;
 
     #[test]
     fn a_file_that_is_not_kept_leaves_what_was_there() {
@@ -200,8 +200,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("video");
         let file = WholeFile::for_program(&path).unwrap();
-        fs::write(file.part(), b"whole").unwrap();
-        assert!(!path.exists() && file.part().exists());
+        fs::write(file.temporary(), b"whole").unwrap();
+        assert!(!path.exists() && file.temporary().exists());
         file.keep().unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"whole");
         drop(WholeFile::for_program(&path).unwrap());
@@ -254,8 +254,8 @@ mod tests {
         for mode in [0o600, 0o640, 0o755] {
             fs::set_permissions(at("target"), fs::Permissions::from_mode(mode)).unwrap();
             let file = WholeFile::create(&at("target")).unwrap();
-            let part = fs::metadata(file.part()).unwrap().permissions().mode();
-            assert_eq!(part & 0o777, mode, "before anything is written");
+            let temporary = fs::metadata(file.temporary()).unwrap().permissions().mode();
+            assert_eq!(temporary & 0o777, mode, "before anything is written");
             file.keep().unwrap();
             assert_eq!(fs::metadata(at("target")).unwrap().permissions().mode() & 0o777, mode);
         }
@@ -267,7 +267,7 @@ mod tests {
         let file = OpenOptions::new().write(true).open("/dev/full").unwrap();
         let mut full = WholeFile {
             path: "/nowhere/a".into(),
-            part: "/nowhere/a.part".into(),
+            temporary: "/nowhere/a.part".into(),
             file: Some(BufWriter::new(file)),
         };
         full.write_all(b"x").unwrap();

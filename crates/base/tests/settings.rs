@@ -9,7 +9,7 @@ choices! {
         /// This way.
         This = "this",
         /// That way.
-        That = "that",
+        That = "that" or "other",
     }
     default That
 }
@@ -202,4 +202,18 @@ fn settings_that_override_others_have_their_rows_and_merge() {
     assert_eq!(refused.to_string(), "patch.count is 41, expected 1 to 40");
     assert!(toml::from_str::<Patch>("name = 'a'").unwrap_err().to_string().contains("missing field `count`"));
     assert_eq!(Patch::default().count, 12);
+}
+
+#[test]
+fn words_are_read_in_either_case_and_by_their_other_names() {
+    for (word, way) in [("this", Way::This), ("THIS", Way::This), ("That", Way::That), ("Other", Way::That)] {
+        assert_eq!(word.parse(), Ok(way));
+        let springs: Springs = toml::from_str(&format!("place = [0, 0, 0]\nway = \"{word}\"")).unwrap();
+        assert_eq!(springs.way, way, "{word}");
+    }
+    assert_eq!(Way::That.name(), "that");
+    let error = "those".parse::<Way>().unwrap_err().to_string();
+    assert_eq!(error, "way is `those`, expected one of this, that");
+    let error = toml::from_str::<Springs>("place = [0, 0, 0]\nway = \"those\"").unwrap_err().to_string();
+    assert!(error.contains("unknown variant `those`, expected `this` or `that`"), "{error}");
 }

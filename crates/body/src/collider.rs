@@ -43,6 +43,11 @@ pub enum Shape {
     Grid(Arc<DistanceGrid>),
 }
 
+/// Share of the distance between samples of a grid that drawn strands stay away from it, and the most \[m\]: samples err
+/// by about so much where the surface curves.
+const CLEARANCE: f32 = 0.25;
+const MOST_CLEARANCE: f32 = 0.002;
+
 impl Shape {
     /// A ball of `radius` \[m\] about `center` \[m\].
     ///
@@ -100,6 +105,29 @@ impl Shape {
         match self {
             Self::Grid(grid) => grid.distance_at_least(point),
             Self::Mannequin(_) | Self::Sphere { .. } | Self::Capsule { .. } => self.distance(point).max(0.0),
+        }
+    }
+
+    /// Distance \[m\] that drawn strands keep from the shape.
+    pub fn clearance(&self) -> f32 {
+        match self {
+            Self::Grid(grid) => (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE),
+            Self::Sphere { .. } | Self::Capsule { .. } | Self::Mannequin(_) => 0.0,
+        }
+    }
+
+    /// True for a shape of the same numbers, or the same grid in memory.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Sphere { center, radius }, Self::Sphere { center: other, radius: to }) => {
+                (center, radius) == (other, to)
+            }
+            (Self::Capsule { start, end, radius }, Self::Capsule { start: from, end: to, radius: other }) => {
+                (start, end, radius) == (from, to, other)
+            }
+            (Self::Mannequin(one), Self::Mannequin(other)) => Arc::ptr_eq(one, other),
+            (Self::Grid(one), Self::Grid(other)) => Arc::ptr_eq(one, other),
+            _ => false,
         }
     }
 

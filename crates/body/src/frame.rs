@@ -6,6 +6,9 @@ use glam::Vec3;
 
 use crate::{BodyError, Pose};
 
+/// Deviation of a rotation's squared length from 1 that many single-precision products leave.
+const TURN_TOLERANCE: f32 = 1e-3;
+
 /// The body at a time: transforms of its rigid pieces and, where they move by themselves, root frames of strands and
 /// positions of skin vertices.
 ///
@@ -162,7 +165,7 @@ impl BodyFrame {
         }
     }
 
-    /// Checks the frame: finite transforms and vertices, and as many root frames and vertices as there are strands and
+    /// Checks the frame: finite transforms and vertices, rotations of unit length, and as many root frames and vertices as there are strands and
     /// vertices, where these are known.
     ///
     /// # Errors
@@ -183,13 +186,17 @@ impl BodyFrame {
         }
         let pieces =
             std::iter::once(&self.world_from_head).chain(self.others.iter().flat_map(|all| all.iter()));
-        let finite = |pose: &Pose| pose.rotation.is_finite() && pose.translation.is_finite();
-        if let Some((index, pose)) = pieces.enumerate().find(|(_, pose)| !finite(pose)) {
-            return refuse("a transform of the body", format!("{pose:?}, piece {index}"), "finite numbers");
+        let rigid = |pose: &Pose| {
+            let is_turn = (pose.rotation.length_squared() - 1.0).abs() < TURN_TOLERANCE;
+            is_turn && pose.rotation.is_finite() && pose.translation.is_finite()
+        };
+        const EXPECTED: &str = "finite numbers, and a rotation of unit length";
+        if let Some((index, pose)) = pieces.enumerate().find(|(_, pose)| !rigid(pose)) {
+            return refuse("a transform of the body", format!("{pose:?}, piece {index}"), EXPECTED);
         }
         let mut roots = self.roots().unwrap_or_default().iter().enumerate();
-        if let Some((index, pose)) = roots.find(|(_, pose)| !finite(pose)) {
-            return refuse("a root frame", format!("{pose:?}, strand {index}"), "finite numbers");
+        if let Some((index, pose)) = roots.find(|(_, pose)| !rigid(pose)) {
+            return refuse("a root frame", format!("{pose:?}, strand {index}"), EXPECTED);
         }
         let mut skin = self.skin.iter().flat_map(|skin| skin.iter()).enumerate();
         if let Some((index, point)) = skin.find(|(_, point)| !point.is_finite()) {
@@ -268,6 +275,13 @@ mod tests {
         assert!(refused(bad.into()).contains("piece 0"));
         assert!(refused(rest.clone().with_pieces([pose(0.0), bad])).contains("piece 2"));
         assert!(refused(rest.clone().with_roots([pose(0.0), bad])).contains("strand 1"));
+        // A matrix with a scale, or a quaternion that was interpolated without being made of unit length.
+        let long = Pose { rotation: Quat::from_xyzw(0.0, 1.0, 0.0, 1.0), translation: Vec3::ZERO };
+        assert!(refused(long.into()).contains("unit length"));
+        assert!(refused(rest.clone().with_pieces([long])).contains("piece 1"));
+        assert!(refused(rest.clone().with_roots([pose(0.0), long])).contains("strand 1"));
+        let near = Pose { rotation: pose(0.3).rotation * 1.0001, ..pose(0.3) };
+        assert!(BodyFrame::from(near).check(None, None).is_ok());
         assert!(refused(rest.with_skin([Vec3::X, Vec3::X, Vec3::INFINITY])).contains("vertex 2"));
     }
 }

@@ -24,6 +24,7 @@ mod lattice;
 mod layers;
 mod mannequin;
 mod mesh;
+mod mesh_content;
 mod mesh_distance;
 mod mesh_file;
 mod mesh_format;

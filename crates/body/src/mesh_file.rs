@@ -10,14 +10,11 @@ use crate::parsing::{Refusal, read_file};
 use crate::part_names::Names;
 use crate::{BodyError, Mesh};
 
-/// Reads a file by its ending, or the part of it that has a name, in the units of the file.
-fn read(path: &Path, names: Option<&mut Names>) -> Result<Mesh, BodyError> {
+/// Reads a file by its ending, or the part of it that has a name, in the units of the file; adds notes.
+fn read(path: &Path, names: Option<&mut Names>, notes: &mut Vec<String>) -> Result<Mesh, BodyError> {
     let format = MeshFormat::of(path)?;
-    format.parse(&read_file(path)?, path.parent(), names).map_err(|(found, expected)| BodyError::Mesh {
-        path: path.into(),
-        found,
-        expected,
-        mend: format.mend(),
+    format.parse(&read_file(path)?, path.parent(), names, notes).map_err(|(found, expected)| {
+        BodyError::Mesh { path: path.into(), found, expected, mend: format.mend() }
     })
 }
 
@@ -31,6 +28,14 @@ impl Mesh {
     /// # Errors
     /// See [`BodyError`].
     pub fn load(path: &Path, scale: f32) -> Result<Self, BodyError> {
+        Ok(Self::load_noted(path, scale)?.0)
+    }
+
+    /// As [`Mesh::load`], with notes on what is odd but could be read, human-readable.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn load_noted(path: &Path, scale: f32) -> Result<(Self, Vec<String>), BodyError> {
         if !scale.is_finite() || scale <= 0.0 {
             let expected = "a finite number above zero [m per unit]";
             return Err(BodyError::Value {
@@ -39,9 +44,10 @@ impl Mesh {
                 expected,
             });
         }
-        let mut mesh = read(path, None)?;
+        let mut notes = Vec::new();
+        let mut mesh = read(path, None, &mut notes)?;
         mesh.positions.iter_mut().for_each(|position| *position *= scale);
-        mesh.complete(path)
+        Ok((mesh.complete(path)?, notes))
     }
 
     /// Loads the part of a file that has a name, in the units of the file; `None` where nothing has it.
@@ -53,7 +59,7 @@ impl Mesh {
     /// See [`BodyError`].
     pub fn load_part(path: &Path, name: &str) -> Result<Option<Self>, BodyError> {
         let mut names = Names::new(name);
-        let mesh = read(path, Some(&mut names))?;
+        let mesh = read(path, Some(&mut names), &mut Vec::new())?;
         if mesh.triangles.is_empty() { Ok(None) } else { mesh.complete(path).map(Some) }
     }
 
@@ -63,7 +69,7 @@ impl Mesh {
     /// See [`BodyError`].
     pub fn part_names(path: &Path) -> Result<Vec<String>, BodyError> {
         let mut names = Names::new("");
-        read(path, Some(&mut names))?;
+        read(path, Some(&mut names), &mut Vec::new())?;
         Ok(names.all())
     }
 
@@ -72,7 +78,7 @@ impl Mesh {
     /// # Errors
     /// See [`BodyError`].
     pub fn from_bytes(bytes: &[u8], format: MeshFormat) -> Result<Self, BodyError> {
-        Self::from_parsed(format.parse(bytes, None, None))
+        Self::from_parsed(format.parse(bytes, None, None, &mut Vec::new()))
     }
 
     /// As [`Mesh::load_part`], from the bytes of a file; a glTF must hold its buffers itself.
@@ -81,7 +87,7 @@ impl Mesh {
     /// See [`BodyError`].
     pub fn part_from(bytes: &[u8], format: MeshFormat, name: &str) -> Result<Option<Self>, BodyError> {
         let mut names = Names::new(name);
-        match format.parse(bytes, None, Some(&mut names)) {
+        match format.parse(bytes, None, Some(&mut names), &mut Vec::new()) {
             Ok(mesh) if mesh.triangles.is_empty() => Ok(None),
             parsed => Self::from_parsed(parsed).map(Some),
         }

@@ -58,18 +58,20 @@ impl MeshFormat {
     }
 
     /// Reads a mesh, or the part of it that has a name, from the bytes of a file; buffers beside it from its folder.
+    /// Adds notes on what is odd but can be read.
     pub(crate) fn parse(
         self,
         bytes: &[u8],
         folder: Option<&Path>,
         names: Option<&mut Names>,
+        notes: &mut Vec<String>,
     ) -> Result<Mesh, Refusal> {
         match self {
             Self::Obj => match names {
                 Some(names) => obj::parse_part(bytes, names),
                 None => obj::parse(bytes),
             },
-            Self::Gltf => gltf::parse(bytes, folder, names),
+            Self::Gltf => gltf::parse(bytes, folder, names, notes),
             // These formats name no parts: no name is any of theirs.
             Self::Ply | Self::Stl if names.is_some() => Ok(Mesh::default()),
             Self::Ply => ply::parse(bytes),

@@ -21,6 +21,16 @@ impl Solids {
         &self.0
     }
 
+    /// True for these colliders in this order, each with the distance that drawn strands keep from its shape.
+    pub fn are(&self, colliders: &[Collider]) -> bool {
+        let is_same = |((solid, kept), collider): (&(Collider, f32), &Collider)| {
+            solid.carrier == collider.carrier
+                && solid.shape.is_same(&collider.shape)
+                && *kept == collider.shape.clearance()
+        };
+        self.0.len() == colliders.len() && self.0.iter().zip(colliders).all(is_same)
+    }
+
     /// The solids at a time: a frame of the body, or the pose of a rigid head.
     pub fn placed(&self, body: impl Into<BodyFrame>) -> PlacedSolids<'_> {
         let body = body.into();
@@ -81,5 +91,24 @@ impl PlacedSolids<'_> {
             .iter()
             .map(|(solid, away)| solid.shape.distance_at_least(self.local(solid.carrier, point)) - away);
         least.fold(f32::INFINITY, f32::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Shape;
+
+    #[test]
+    fn other_solids_and_other_clearances_are_not_the_same() {
+        let solid =
+            |x: f32, carrier| Collider::new(Shape::sphere(Vec3::X * x, 0.1).unwrap(), carrier, 0.3).unwrap();
+        let (head, world) = (solid(0.0, Carrier::HEAD), solid(0.5, Carrier::World));
+        let solids = Solids::new([(head.clone(), 0.0), (world.clone(), 0.0)]);
+        assert!(solids.are(&[head.clone(), world.clone()]));
+        assert!(!solids.are(&[world.clone(), head.clone()]) && !solids.are(std::slice::from_ref(&head)));
+        assert!(!solids.are(&[solid(0.0, Carrier::Piece(1)), world.clone()]));
+        assert!(!solids.are(&[solid(0.1, Carrier::HEAD), world.clone()]));
+        assert!(!Solids::new([(head.clone(), 0.001), (world.clone(), 0.0)]).are(&[head, world]));
     }
 }

@@ -66,8 +66,9 @@ impl FromStr for Backend {
     type Err = UnknownBackend;
 
     fn from_str(name: &str) -> Result<Self, UnknownBackend> {
-        let numbered = || name.strip_prefix("gpu:")?.parse().ok();
-        match name {
+        let lower = name.to_ascii_lowercase();
+        let numbered = || lower.strip_prefix("gpu:")?.parse().ok();
+        match lower.as_str() {
             "auto" => Ok(Self::Auto),
             "cpu" => Ok(Self::Cpu),
             "gpu" => Ok(Self::Gpu(None)),

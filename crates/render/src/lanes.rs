@@ -3,8 +3,8 @@
 use glam::{Vec2, Vec3};
 use wide::f32x4;
 
-/// The whole parts of coordinates that are not negative, and what is left of them; 0 where they are NaN. `floor` is a
-/// call on processors that every build must run on.
+/// Whole and fractional parts of coordinates that are not negative; 0 for NaN. `floor` would be a function call on the
+/// oldest processors that a build must run on.
 #[inline]
 pub(crate) fn split(at: Vec3) -> ([usize; 3], Vec3) {
     let whole = f32x4::from([at.x, at.y, at.z, 0.0]).trunc_int();

@@ -69,8 +69,8 @@ impl LevelOfDetail {
         (ROWS / rows.max(1) as f32) * (Camera::default().focal() / camera.focal())
     }
 
-    /// The level for hair of `guide_count` guides of so many points, at view distances \[m\] as for
-    /// [`LevelOfDetail::level_from`]: close up, segments become more only as far as memory is meant for them.
+    /// The level for hair of `guide_count` guides with a number of points, at view distances \[m\] as for
+    /// [`LevelOfDetail::level_from`]. Close up, the number of segments grows up to the memory that is set aside for them.
     pub(crate) fn level_of(
         &self,
         [distance, nearest]: [f32; 2],
@@ -128,9 +128,9 @@ const ROWS: f32 = 600.0;
 const CLOSE: f32 = 1.0 / 3.0;
 /// Points up to which segments become more: some 0.6 GB on a processor, buffers within WebGPU's limits on a GPU.
 const MOST_CLOSE: f32 = 4e6;
-/// Strands of which some are left out.
+/// Number of strands in a group from which some are left out.
 const EIGHT: f32 = 8.0;
-/// The order in which strands of eight stay: each half of them is spread over all.
+/// Ranks of eight strands: those of a higher rank are left out first, so that the rest stays evenly spread.
 const RANKS: [f32; 8] = [0.0, 4.0, 2.0, 6.0, 1.0, 5.0, 3.0, 7.0];
 
 /// True if the strands of a guide are drawn when a number of eight are left out.
@@ -138,12 +138,12 @@ pub(crate) fn is_drawn(guide: usize, left_out: f32) -> bool {
     RANKS[guide % RANKS.len()] < EIGHT - left_out
 }
 
-/// So many strands stand for any more: eight of them cross each cell of a grid of light.
+/// Number of strands that represent any larger number: eight of them cross each cell of a grid of light.
 const ENOUGH: usize = 4096;
-/// One strand stands for so many at most.
+/// Largest number of strands that one strand represents.
 const EVERY: usize = 4;
 
-/// Every so many-th of all strands, spread evenly over guides and clumps, which stand for all.
+/// Every n-th strand, spread evenly over guides and clumps, as a sample of all strands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EveryFew(u32);
 
@@ -155,8 +155,8 @@ impl Default for EveryFew {
 }
 
 impl EveryFew {
-    /// Of so many, counted at full detail, so that nothing jumps with distance. Of few all: what is found of fewer would
-    /// depend on which.
+    /// The sample for a number of strands at full detail, so that nothing jumps with distance. Of few strands it takes all:
+    /// a smaller sample would depend on the choice.
     pub(crate) fn of(full_count: usize) -> Self {
         Self(1 << (full_count / ENOUGH).clamp(1, EVERY).ilog2())
     }
@@ -206,8 +206,8 @@ impl DetailLevel {
         (eights * drawn(RANKS.len()) + drawn(rest)) * self.strand_count()
     }
 
-    /// Width of the strands of a guide of so many as a multiple of that at full detail: over each eight the multiples
-    /// sum to their number.
+    /// Width of the strands of a guide, among `guide_count`, as a multiple of that at full detail. The multiples of each
+    /// eight guides sum to eight.
     pub fn own_width_scale(&self, guide: usize, guide_count: usize) -> f32 {
         let first = guide / RANKS.len() * RANKS.len();
         let presence = |rank: f32| (EIGHT - self.left_out - rank).clamp(0.0, 1.0);

@@ -7,7 +7,7 @@ use crate::fibre::chiang::MOMENTS;
 /// Numbers of a field, each of three channels.
 pub const COEFFICIENTS: usize = 9;
 
-/// Least share of what a fibre would show of even light that it shows of as much light from anywhere.
+/// Least radiance of a fibre in light from any direction, as a share of that in as much uniform light.
 const LEAST_SHOWN: f32 = 0.1;
 
 /// Radiance \[linear RGB\] from a unit direction w as `a + b.w + w.C.w` with a C without trace: a, b, and C's xx, yy,

@@ -19,6 +19,17 @@ pub struct DevicePoints<'a> {
     pub share: f32,
 }
 
+/// Solids that lie on a device.
+#[derive(Debug)]
+pub struct DeviceSolids {
+    /// Rows of four words.
+    pub rows: Buffer<[u32; 4]>,
+    /// Row from which others are counted.
+    pub base: usize,
+    /// Row of the first solid.
+    pub first: usize,
+}
+
 /// A renderer on a GPU.
 #[derive(Debug)]
 pub enum GpuRenderer {}
@@ -38,7 +49,7 @@ impl GpuRenderer {
         match *self {}
     }
 
-    pub fn bind(&mut self, _: &Arc<Binding>, _: &Solids) -> Result<(), RenderError> {
+    pub fn bind(&mut self, _: &Arc<Binding>, _: &Solids, _: Option<DeviceSolids>) -> Result<(), RenderError> {
         match *self {}
     }
 

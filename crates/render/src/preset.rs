@@ -10,11 +10,11 @@ choices! {
         /// Black hair.
         Black = "black",
         /// Blonde hair, lighter toward the tips.
-        Blonde = "blonde",
-        /// Red hair.
-        Red = "red",
+        Blonde = "blonde" or "blond",
+        /// Red hair, also named "copper".
+        Red = "red" or "copper" or "ginger",
         /// Grey hair: white strands among dark ones.
-        Grey = "grey",
+        Grey = "grey" or "gray",
         /// Brown hair as [Chen2011] lights it: the fibre of [Scheuermann2004], brighter surroundings.
         Thesis = "thesis",
     }

@@ -67,7 +67,7 @@ impl Clock {
         self.ticks()
     }
 
-    /// Lets time pass until `time` \[s\]; to one that is past or not finite none does. The last step that is due
+    /// Lets time pass until `time` \[s\]; a time that is past or not finite changes nothing. The last step that is due
     /// ends at that time or reaches beyond it.
     pub fn reach(&mut self, time: f64) -> Ticks {
         if time.is_finite() && time > self.time {

@@ -1,4 +1,4 @@
-//! Hair in a hand: one point of every strand that it holds follows it.
+//! Hair in a hand: one point of every held strand follows the hand.
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
@@ -6,10 +6,10 @@ use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use crate::Model;
 
-/// Stands for the point of a strand that is not held.
+/// Point index of a strand that is not held.
 pub(crate) const NO_POINT: u32 = u32::MAX;
 
-/// Times that a hand between two rooted points is brought into the reach of both in turn.
+/// Rounds that bring a hand between two rooted points into the reach of both.
 const CLAMPS: usize = 8;
 
 /// A hand and the strands in it.
@@ -30,7 +30,7 @@ pub(crate) struct Grip {
     pub offsets: Vec3Lanes,
 }
 
-/// A point that is held and where it has to be \[m\], world space.
+/// A held point and its goal \[m\], world space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pinned {
     pub lane: usize,
@@ -57,8 +57,7 @@ fn to_segment(start: Vec3, end: Vec3) -> f32 {
 }
 
 impl Grab {
-    /// Takes every strand that comes within `radius` \[m\] of the hand, by the nearest free end of the segment
-    /// that is nearest to it.
+    /// Holds every strand within `radius` \[m\] of the hand, by the nearer free end of its nearest segment.
     pub fn new(model: &Model, positions: &[Vec3Lanes], hand: Vec3, radius: f32) -> Self {
         let points = model.points_per_strand;
         let grips: Vec<Grip> = positions
@@ -95,9 +94,8 @@ impl Grab {
         self.grips.iter().map(Grip::count).sum()
     }
 
-    /// Positions of the held points of a block of strands, whose points are `positions` \[m\]: no farther
-    /// from the rooted points on either side than the strand reaches, which a hand cannot stretch. `lengths`
-    /// are those of its segments \[m\].
+    /// Goals of the held points of a block of strands with points at `positions` \[m\]. A hand does not stretch a strand:
+    /// a goal is no farther from the rooted points on either side than the segments, of `lengths` \[m\], reach.
     pub fn pinned(
         &self,
         block: usize,

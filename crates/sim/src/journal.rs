@@ -2,18 +2,21 @@
 
 use std::borrow::Cow;
 
+use strandline_groom::Lanes;
+
 use crate::gpu::ComingState;
 use crate::grab::Grab;
+use crate::length_scale::Lengths;
 use crate::{CpuRunner, Drive, Model, Settings, SimError, State, StepReport};
 
 /// Checkpoints of a simulation and the entries between them.
 ///
 /// On a device `past` holds the checkpoint before the last one, since a picture under way may show a step before the
-/// last. On the CPU every state is at hand: `past` then holds only what a device left, until the next but one run.
+/// last. On the CPU `past` holds only the checkpoints of a lost device, until the next run but one.
 pub(crate) struct Journal {
     past: Vec<Span>,
     last: Span,
-    /// A state on its way from the device, after so many entries of `last`.
+    /// A state on its way from the device, and the number of entries of `last` before it.
     coming: Option<(ComingState, usize)>,
 }
 
@@ -25,6 +28,8 @@ pub(crate) enum Entry {
     Settings(Box<Settings>),
     /// A change of what the hand holds.
     Hold(Grab),
+    /// A change of the lengths of strands: each over its rest length, shape `[block]` of lanes.
+    Lengths(Vec<Lanes>),
 }
 
 /// A state and what happened after it.
@@ -46,7 +51,7 @@ impl Span {
     fn settings_at_end(&self) -> &Settings {
         let changed = self.entries.iter().rev().find_map(|entry| match entry {
             Entry::Settings(settings) => Some(&**settings),
-            Entry::Step(_) | Entry::Hold(_) => None,
+            Entry::Step(_) | Entry::Hold(_) | Entry::Lengths(_) => None,
         });
         changed.unwrap_or(&self.settings)
     }
@@ -55,9 +60,18 @@ impl Span {
     fn grab_at_end(&self) -> &Grab {
         let changed = self.entries.iter().rev().find_map(|entry| match entry {
             Entry::Hold(grab) => Some(grab),
-            Entry::Step(_) | Entry::Settings(_) => None,
+            Entry::Step(_) | Entry::Settings(_) | Entry::Lengths(_) => None,
         });
         changed.unwrap_or(&self.state.grab)
+    }
+
+    /// The lengths of strands at its end.
+    fn lengths_at_end(&self, model: &Model) -> Lengths {
+        let changed = self.entries.iter().rev().find_map(|entry| match entry {
+            Entry::Lengths(scale) => Some(Lengths::of(model, scale.clone())),
+            Entry::Step(_) | Entry::Settings(_) | Entry::Hold(_) => None,
+        });
+        changed.unwrap_or_else(|| self.state.all_lengths())
     }
 
     /// A span of its state without what happened after it.
@@ -83,6 +97,7 @@ impl Span {
                 Entry::Step(drive) => reports.push(runner.step(&mut state, drive)),
                 Entry::Settings(settings) => runner.set_settings(settings).unwrap_or_default(),
                 Entry::Hold(grab) => state.grab.clone_from(grab),
+                Entry::Lengths(scale) => state.set_lengths(&Lengths::of(runner.model(), scale.clone())),
             }
         }
         (runner, state, reports)
@@ -127,12 +142,12 @@ impl Journal {
         (*step, settings, state, entries)
     }
 
-    /// Writes down steps of a device.
+    /// Records steps of a device.
     pub fn stepped(&mut self, drives: &[Drive]) {
         self.last.entries.extend(drives.iter().cloned().map(Entry::Step));
     }
 
-    /// Writes down steps of the CPU, by which the caller advances the state that is returned.
+    /// Records steps of the CPU and returns the state, which the caller advances by them.
     pub fn advance(&mut self, steps: usize) -> &mut State {
         if self.past.last().is_some_and(|left| left.step < self.last.step) {
             self.past.clear();
@@ -141,7 +156,7 @@ impl Journal {
         &mut self.last.state
     }
 
-    /// Writes down a change of the settings.
+    /// Records a change of the settings.
     pub fn set(&mut self, settings: &Settings) {
         match self.last.entries.last_mut() {
             None => self.last.settings.clone_from(settings),
@@ -150,7 +165,7 @@ impl Journal {
         }
     }
 
-    /// Writes down what the hand holds from now on.
+    /// Records the hair in the hand from now on.
     pub fn hold(&mut self, grab: Grab) {
         match self.is_current() {
             true => self.last.state.grab = grab,
@@ -158,7 +173,12 @@ impl Journal {
         }
     }
 
-    /// Makes a state that was changed or replaced the first one.
+    /// Records lengths of strands that the device has applied.
+    pub fn lengthen(&mut self, lengths: Lengths) {
+        self.last.entries.push(Entry::Lengths(lengths.scale));
+    }
+
+    /// Begins anew with a state that was changed or replaced.
     pub fn restart(&mut self) {
         (self.last.step, self.last.settings) = (self.last.end(), self.last.settings_at_end().clone());
         self.last.entries.clear();
@@ -166,7 +186,7 @@ impl Journal {
         self.coming = None;
     }
 
-    /// Writes down that a state was sent on its way from the device, as it is now.
+    /// Records that a read of the device's present state has begun.
     pub fn send(&mut self, coming: ComingState) {
         self.coming = Some((coming, self.last.entries.len()));
     }
@@ -176,22 +196,23 @@ impl Journal {
         self.coming = None;
     }
 
-    /// True if a state is to be sent on its way: none is, and `checkpoint_every` steps were made since the last one.
+    /// True if the next read of the state is due: none is on its way, and `checkpoint_every` steps were made since the last
+    /// checkpoint.
     pub fn is_due(&self) -> bool {
         let every = self.last.settings_at_end().checkpoint_every;
         self.coming.is_none() && self.last.end() - self.last.step >= u64::from(every)
     }
 
-    /// Takes the state that is on its way as a checkpoint, where it has arrived. Steps before it are not computed again,
-    /// so that it waits for their reports: `reported` steps have one. What fails here fails in the next run too.
-    pub fn receive(&mut self, reported: u64) {
+    /// Takes the state that is on its way as a checkpoint if it has arrived and the steps before it, which will not be
+    /// computed again, have their reports: those of `reported` steps are there. A failure shows again in the next run.
+    pub fn receive(&mut self, reported: u64, model: &Model) {
         let Some((coming, count)) = self.coming.take() else { return };
         if self.last.step + steps(&self.last.entries[..count]) > reported {
             self.coming = Some((coming, count));
             return;
         }
         match coming.has_arrived() {
-            Ok(true) => self.renew(coming, count).unwrap_or_default(),
+            Ok(true) => self.renew(coming, count, model).unwrap_or_default(),
             Ok(false) => self.coming = Some((coming, count)),
             Err(_) => {}
         }
@@ -201,18 +222,19 @@ impl Journal {
     ///
     /// # Errors
     /// The device was lost; nothing changes.
-    pub fn read(&mut self, coming: ComingState) -> Result<(), SimError> {
-        self.renew(coming, self.last.entries.len())
+    pub fn read(&mut self, coming: ComingState, model: &Model) -> Result<(), SimError> {
+        self.renew(coming, self.last.entries.len(), model)
     }
 
-    /// Takes the state after so many entries as a checkpoint; the one before the last makes room for it.
-    fn renew(&mut self, coming: ComingState, count: usize) -> Result<(), SimError> {
+    /// Takes the state after `count` entries as a checkpoint, in place of the one before the last.
+    fn renew(&mut self, coming: ComingState, count: usize, model: &Model) -> Result<(), SimError> {
         let mut spare = self.past.pop().unwrap_or_else(|| self.last.begin());
         if let Err(failure) = coming.write(&mut spare.state) {
             self.past.push(spare);
             return Err(failure);
         }
         let entries = self.last.entries.split_off(count);
+        spare.state.keep_lengths(&self.last.lengths_at_end(model));
         let hand = spare.state.grab.hand;
         spare.state.grab = Grab { hand, ..self.last.grab_at_end().clone() };
         let next = self.last.next(spare.state, entries);

@@ -1,18 +1,74 @@
 //! Strands of another length than at rest [Chen2011 fig. 45].
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
+use std::sync::Arc;
 
 use glam::Vec3;
+use strandline_base::SettingError;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
+
+use crate::{Model, SimError};
 
 /// Least length of a segment over its rest length: a segment of no length has no direction.
 const SHORTEST: f32 = 0.05;
 /// Greatest length of a segment over its rest length; with it half of the segments make a strand twice as long.
 const LONGEST: f32 = 3.0;
 
+/// Lengths of the strands of a state.
+#[derive(Clone, Debug)]
+pub(crate) struct Lengths {
+    /// Length over rest length of each strand, shape `[block]` of lanes.
+    pub scale: Vec<Lanes>,
+    /// The rest shape with these lengths, but for its masses.
+    pub rest: Arc<RestShape>,
+}
+
+impl Lengths {
+    /// Least and greatest length of a strand over its rest length.
+    pub const SCALES: RangeInclusive<f32> = 0.05..=2.0;
+
+    /// Lengths from that of each strand over its rest length, shape `[strand]`.
+    ///
+    /// # Errors
+    /// Another number of scales than strands, a scale outside [`Lengths::SCALES`].
+    pub fn new(model: &Model, scales: &[f32]) -> Result<Self, SimError> {
+        let refuse = |found: String, expected: &str| {
+            Err(SettingError::new("the length scale", found, expected).into())
+        };
+        if scales.len() != model.strand_count {
+            return refuse(format!("given for {} strands", scales.len()), "one for each strand");
+        }
+        if let Some(scale) = scales.iter().find(|scale| !Self::SCALES.contains(scale)) {
+            return refuse(scale.to_string(), "0.05 to 2");
+        }
+        let last = scales.len() - 1;
+        let of_block =
+            |block: usize| Lanes(std::array::from_fn(|lane| scales[(block * LANES + lane).min(last)]));
+        Ok(Self::of(model, (0..model.lane_count() / LANES).map(of_block).collect()))
+    }
+
+    /// Lengths from those of all strands over their rest lengths, within [`Lengths::SCALES`], shape `[block]` of lanes.
+    pub fn of(model: &Model, scale: Vec<Lanes>) -> Self {
+        let points = model.points_per_strand;
+        let mut rest = RestShape::clone(&model.rest);
+        for (block, scale) in scale.iter().enumerate() {
+            scale_block(&model.rest, &mut rest, block * points..(block + 1) * points, scale);
+        }
+        Self { scale, rest: Arc::new(rest) }
+    }
+
+    /// Moves the points of all strands \[m\], shape `[block][point]` of lanes, to these lengths along the directions
+    /// that their segments have.
+    pub fn slide(&self, positions: &mut [Vec3Lanes]) {
+        let points = positions.len() / self.scale.len();
+        let blocks = positions.chunks_mut(points).zip(self.rest.stretch.chunks(points));
+        blocks.for_each(|(positions, lengths)| slide(positions, lengths));
+    }
+}
+
 /// Gives the strands of a block their share of the length at rest: the last segments change first, as far
 /// as they may, and those near the root stay.
-pub(crate) fn scale(rest: &RestShape, lengths: &mut RestShape, range: Range<usize>, scale: &Lanes) {
+fn scale_block(rest: &RestShape, lengths: &mut RestShape, range: Range<usize>, scale: &Lanes) {
     let points = range.len();
     let first = range.start;
     for lane in 0..LANES {
@@ -40,7 +96,7 @@ pub(crate) fn scale(rest: &RestShape, lengths: &mut RestShape, range: Range<usiz
 }
 
 /// Moves the points of a block to the given lengths along the directions that its segments have.
-pub(crate) fn slide(positions: &mut [Vec3Lanes], lengths: &[Lanes]) {
+fn slide(positions: &mut [Vec3Lanes], lengths: &[Lanes]) {
     for lane in 0..LANES {
         let mut before = positions[0].get(lane);
         let mut moved = before;

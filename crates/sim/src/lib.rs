@@ -4,10 +4,10 @@
 //! [`State`] is all that changes with time.
 
 #![deny(unsafe_code)]
-// but for instructions of eight lanes: strands/rods/avx.rs
-// Some of what is here is asked for by the kernels alone.
+// except AVX instructions: strands/rods/avx.rs
+// Some items are used only by the GPU backend.
 #![cfg_attr(not(feature = "gpu"), allow(dead_code))]
-#![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
+#![cfg_attr(test, allow(clippy::disallowed_methods))] // tests may use inexact math
 
 pub mod cells;
 pub mod contact;
@@ -43,7 +43,7 @@ pub use clock::{Clock, Ticks};
 pub use cpu::CpuRunner;
 pub use error::SimError;
 pub use model::Model;
-pub use report::{Drift, PressureReport, RodReport, StepReport};
+pub use report::{Drift, PressureReport, RodReport, StepReport, Stiffening};
 pub use settings::{Drag, Preconditioner, Settings, StrandMethod, StrandSettings, VolumeSettings};
 pub use simulator::Simulator;
 pub use state::{Drive, MOST_SPIN, State};

@@ -11,7 +11,7 @@ use crate::strands::rods::model::{Rods, RodsAtRest};
 use crate::strands::rods::other_lengths::Lengthened;
 use crate::strands::rods::rod::Node;
 use crate::strands::rods::settings::Rest;
-use crate::{Settings, SimError, StrandMethod};
+use crate::{Settings, SimError, Stiffening, StrandMethod};
 
 /// All that stages read and that time does not change: rest shape, masses, material, colliders, settings.
 #[derive(Clone)]
@@ -189,6 +189,12 @@ impl Model {
         let mut nodes = self.rods.as_ref()?.nodes.clone();
         strands.change(&mut nodes);
         Some(nodes)
+    }
+
+    /// Stiffening of the strands for the sake of their shape; none with another strand solver.
+    pub fn stiffening(&self) -> Stiffening {
+        let (strands, most) = self.rods.as_ref().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest));
+        Stiffening { strands, of: self.strand_count, most }
     }
 
     /// The compiled rods; none with another strand solver.

@@ -5,6 +5,7 @@ use strandline_gpu::{Buffer, Gpu, GpuError};
 use strandline_groom::Vec3Lanes;
 
 use crate::grab::Grab;
+use crate::length_scale::Lengths;
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 
 /// A runner on a GPU.
@@ -61,6 +62,10 @@ impl GpuRunner {
         match *self {}
     }
 
+    pub fn solids(&self) -> (Buffer<[u32; 4]>, [usize; 2]) {
+        match *self {}
+    }
+
     pub fn positions(&self) -> [&Buffer<f32>; 2] {
         match *self {}
     }
@@ -98,6 +103,10 @@ impl GpuRunner {
     }
 
     pub fn write(&mut self, _: &State) -> Result<(), SimError> {
+        match *self {}
+    }
+
+    pub(crate) fn set_lengths(&mut self, _: &Lengths) -> Result<(), SimError> {
         match *self {}
     }
 

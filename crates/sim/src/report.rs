@@ -36,6 +36,30 @@ impl RodReport {
     }
 }
 
+/// Strands of rods that were made stiffer than their material, since their shape would not be stable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffening {
+    /// Strands that are stiffer.
+    pub strands: usize,
+    /// All strands.
+    pub of: usize,
+    /// Stiffness of the stiffest of them over its own; 1 without any.
+    pub most: f32,
+}
+
+impl Default for Stiffening {
+    fn default() -> Self {
+        Self { strands: 0, of: 0, most: 1.0 }
+    }
+}
+
+impl std::fmt::Display for Stiffening {
+    fn fmt(&self, text: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { strands, of, most } = self;
+        write!(text, "{strands} of {of} strands stiffer than their material, up to {most:.1} times")
+    }
+}
+
 /// Quality and cost of one step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {

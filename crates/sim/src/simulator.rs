@@ -9,6 +9,7 @@ use strandline_gpu::{Buffer, Gpu};
 use crate::gpu::GpuRunner;
 use crate::grab::Grab;
 use crate::journal::{Entry, Journal};
+use crate::length_scale::Lengths;
 use crate::{CpuRunner, Drive, Model, Settings, SimError, State, StepReport};
 
 /// A model, a state and the runner that advances it.
@@ -20,7 +21,7 @@ pub struct Simulator {
     runner: Runner,
     /// The state, of a device as it was last read, and what happened since.
     journal: Journal,
-    /// True if a run of the device failed, so that its state is unknown.
+    /// True after a failed run of the device: its state is unknown.
     lost: bool,
     reports: Reports,
 }
@@ -99,6 +100,15 @@ impl Simulator {
         }
     }
 
+    /// Solids on the device, in rows that `solid_rows` of crates/body describes: their buffer, the row of it from which
+    /// others are counted, and the row of the first solid counted from there.
+    pub fn device_solids(&self) -> Option<(Buffer<[u32; 4]>, [usize; 2])> {
+        match &self.runner {
+            Runner::Gpu(runner) => Some(runner.solids()),
+            Runner::Cpu(_) => None,
+        }
+    }
+
     /// Time of the state \[s\].
     pub fn time(&self) -> f64 {
         match &self.runner {
@@ -107,7 +117,7 @@ impl Simulator {
         }
     }
 
-    /// Steps made since the simulator was.
+    /// Steps made since the simulator was created.
     pub fn steps(&self) -> u64 {
         self.journal.steps()
     }
@@ -125,7 +135,7 @@ impl Simulator {
             let coming = runner.begin_read()?;
             // Steps before the state are not computed again: their reports are kept.
             self.reports.keep(runner.reports()?);
-            self.journal.read(coming)?;
+            self.journal.read(coming, runner.model())?;
         }
         Ok(self.journal.state())
     }
@@ -141,7 +151,7 @@ impl Simulator {
         self.journal.state_after(step, self.runner.model())
     }
 
-    /// Brings a device of which nothing is known to where the simulation is.
+    /// Restores the state of a device after a failed run: writes the last checkpoint and repeats the entries since.
     fn find(&mut self) -> Result<(), SimError> {
         let Runner::Gpu(runner) = &mut self.runner else { return Ok(()) };
         if !self.lost {
@@ -157,6 +167,7 @@ impl Simulator {
                 Entry::Step(drive) => runner.step(drive)?,
                 Entry::Settings(settings) => runner.set_settings(settings)?,
                 Entry::Hold(grab) => runner.write_grab(grab)?,
+                Entry::Lengths(scale) => runner.set_lengths(&Lengths::of(runner.model(), scale.clone()))?,
             }
         }
         self.journal.recall();
@@ -189,7 +200,7 @@ impl Simulator {
                 self.reports.keep(runner.arrived_reports()?);
                 self.lost = false;
                 self.journal.stepped(drives);
-                self.journal.receive(self.reports.reported);
+                self.journal.receive(self.reports.reported, runner.model());
                 if self.journal.is_due()
                     && let Ok(coming) = runner.begin_read()
                 {
@@ -262,7 +273,7 @@ impl Simulator {
         let Runner::Gpu(runner) = &mut self.runner else { return Ok(()) };
         self.journal.restart();
         if self.lost {
-            // Of steps that do not count.
+            // Reports of steps that do not count.
             runner.forget_reports();
             runner.set_settings(self.journal.since().1)?;
             self.reports.next = self.journal.steps();
@@ -273,6 +284,23 @@ impl Simulator {
         self.lost = true;
         runner.write(self.journal.state())?;
         self.lost = false;
+        Ok(())
+    }
+
+    /// Sets the length of every strand: see [`State::set_length_scale`]. A device is not waited for.
+    ///
+    /// # Errors
+    /// As [`State::set_length_scale`]; the device was lost.
+    pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), SimError> {
+        let lengths = Lengths::new(self.runner.model(), scales)?;
+        self.find()?;
+        match &mut self.runner {
+            Runner::Cpu(_) => self.journal.state_mut().set_lengths(&lengths),
+            Runner::Gpu(runner) => {
+                runner.set_lengths(&lengths)?;
+                self.journal.lengthen(lengths);
+            }
+        }
         Ok(())
     }
 

@@ -1,14 +1,13 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use strandline_base::SettingError;
 use strandline_base::par::prelude::*;
 use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
 use crate::contact::contacts::Contacts;
 use crate::grab::Grab;
-use crate::length_scale;
+use crate::length_scale::Lengths;
 use crate::{Model, SimError};
 use strandline_base::vec3x8::{Vec3x8, splat};
 
@@ -54,8 +53,8 @@ pub struct State {
     /// Velocities \[m/s\], world space, shape `[block][point]` of lanes.
     pub velocities: Vec<Vec3Lanes>,
     /// Additions of the next prediction to the velocities \[m/s\], world space, shape `[block][point]` of
-    /// lanes: the length pass returns them for its corrections \[Mueller2012 eq. 9\]. They are no motion of
-    /// the hair: volume, air and springs ignore them.
+    /// lanes: the length pass returns them for its corrections \[Mueller2012 eq. 9\], rods for what rounding left
+    /// out of the positions. They are no motion of the hair: volume, air and springs ignore them.
     pub corrections: Vec<Vec3Lanes>,
     /// Positions \[m\] one step ago, world space, shape `[block][point]` of lanes.
     pub previous_positions: Vec<Vec3Lanes>,
@@ -136,7 +135,7 @@ impl State {
     }
 
     /// Least and greatest length of a strand over its rest length.
-    pub const LENGTH_SCALES: std::ops::RangeInclusive<f32> = 0.05..=2.0;
+    pub const LENGTH_SCALES: std::ops::RangeInclusive<f32> = Lengths::SCALES;
 
     /// Sets the length of every strand, shape `[strand]`: 0.05 to 2 of its rest length
     /// [Chen2011 fig. 45]. Segments near the tip shrink, to no less than a twentieth, or grow, to no more
@@ -147,30 +146,26 @@ impl State {
     /// # Errors
     /// Another number of scales than strands, a scale outside [`State::LENGTH_SCALES`]; then nothing changes.
     pub fn set_length_scale(&mut self, model: &Model, scales: &[f32]) -> Result<(), SimError> {
-        let refuse = |found: String, expected: &str| {
-            Err(SettingError::new("the length scale", found, expected).into())
-        };
-        if scales.len() != model.strand_count {
-            return refuse(format!("given for {} strands", scales.len()), "one for each strand");
-        }
-        if let Some(scale) = scales.iter().find(|scale| !Self::LENGTH_SCALES.contains(scale)) {
-            return refuse(scale.to_string(), "0.05 to 2");
-        }
-        for (block, lanes) in self.length_scale.iter_mut().enumerate() {
-            for (lane, slot) in lanes.0.iter_mut().enumerate() {
-                *slot = scales[(block * LANES + lane).min(scales.len() - 1)];
-            }
-        }
-        let points = model.points_per_strand;
-        let lengths = Arc::make_mut(&mut self.lengths);
-        for (block, scale) in self.length_scale.iter().enumerate() {
-            let range = block * points..(block + 1) * points;
-            length_scale::scale(&model.rest, lengths, range.clone(), scale);
-            let lengths = &lengths.stretch[range.clone()];
-            length_scale::slide(&mut self.positions[range.clone()], lengths);
-            length_scale::slide(&mut self.previous_positions[range], lengths);
-        }
+        self.set_lengths(&Lengths::new(model, scales)?);
         Ok(())
+    }
+
+    /// Takes over lengths; points slide along their strand.
+    pub(crate) fn set_lengths(&mut self, lengths: &Lengths) {
+        lengths.slide(&mut self.positions);
+        lengths.slide(&mut self.previous_positions);
+        self.keep_lengths(lengths);
+    }
+
+    /// The lengths of its strands.
+    pub(crate) fn all_lengths(&self) -> Lengths {
+        Lengths { scale: self.length_scale.clone(), rest: Arc::clone(&self.lengths) }
+    }
+
+    /// Takes over lengths that the points have already.
+    pub(crate) fn keep_lengths(&mut self, lengths: &Lengths) {
+        self.length_scale.clone_from(&lengths.scale);
+        self.lengths = Arc::clone(&lengths.rest);
     }
 }
 

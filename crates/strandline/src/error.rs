@@ -5,7 +5,7 @@ use strandline_gpu::GpuError;
 
 use crate::{body::BodyError, groom::GroomError, render::RenderError, sim::SimError};
 
-/// Why a scene could not be loaded, moved or drawn.
+/// Error of loading, moving or drawing a scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -28,39 +28,39 @@ pub enum Error {
     /// A value of the scene is outside its range.
     #[error(transparent)]
     Value(#[from] SettingError),
-    /// The file with where the hair is could not be read, or is for other hair.
-    #[error("cannot read the pose of the hair: {message}: {}", path.display())]
+    /// The file with the pose of the hair could not be read, or is for other hair.
+    #[error("cannot read the pose of the hair: {problem}: {}", path.display())]
     HairPose {
         /// The file.
         path: PathBuf,
         /// The problem.
-        message: String,
+        problem: FileProblem,
     },
     /// The file with masses and velocities could not be read, or is for other hair.
-    #[error("cannot read the attributes of the hair: {message}: {}", path.display())]
+    #[error("cannot read the attributes of the hair: {problem}: {}", path.display())]
     Attributes {
         /// The file.
         path: PathBuf,
         /// The problem.
-        message: String,
+        problem: FileProblem,
     },
     /// A picture with values over the scalp could not be read.
-    #[error("cannot read the map: {message}: {}", path.display())]
+    #[error("cannot read the map: {problem}: {}", path.display())]
     Map {
         /// The file.
         path: PathBuf,
-        /// The problem and the expectation.
-        message: String,
+        /// The problem.
+        problem: FileProblem,
     },
-    /// The file with hair that moved could not be read, or is for other hair.
-    #[error("cannot read the cache: {message}: {}", path.display())]
+    /// The file of moving hair could not be read, or is for other hair.
+    #[error("cannot read the cache: {problem}: {}", path.display())]
     Cache {
         /// The file.
         path: PathBuf,
         /// The problem.
-        message: String,
+        problem: FileProblem,
     },
-    /// A name that no format of moving hair has.
+    /// The name of a file of moving hair belongs to no format.
     #[error(
         "`{found}` names no format of moving hair, expected .npz, .usda, or a name with a number in it for a file \
          a frame, such as hair.%04d.hair: {}", path.display()
@@ -77,7 +77,7 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
-    /// A scene, or where its hair is, could not be saved.
+    /// A scene or the pose of its hair could not be saved.
     #[error("cannot save {what}: {source}: {}", path.display())]
     Save {
         /// The content.
@@ -106,7 +106,7 @@ pub enum Error {
     /// The system gave no thread for the simulation.
     #[error("cannot start the simulation's thread: {0}")]
     Thread(std::io::Error),
-    /// The simulation's thread ended in the middle: a fault of ours.
+    /// The simulation's thread panicked: a fault of the library.
     #[error("the simulation stopped with an error of the program's own")]
     WorkerGone,
     /// The scene takes more memory than a run may take.
@@ -124,9 +124,33 @@ pub enum Error {
     /// From the renderer.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// From a GPU that was asked for something beside steps and pictures: to be opened, or to copy points.
+    /// From a GPU that was opened or asked to copy points.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+}
+
+/// Problem of a file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileProblem {
+    /// The system cannot read it.
+    #[error(transparent)]
+    Read(#[from] std::io::Error),
+    /// Its content is not as expected: what was found and what was expected.
+    #[error("{0}")]
+    Content(String),
+}
+
+impl From<String> for FileProblem {
+    fn from(found: String) -> Self {
+        Self::Content(found)
+    }
+}
+
+impl From<&str> for FileProblem {
+    fn from(found: &str) -> Self {
+        Self::Content(found.to_owned())
+    }
 }
 
 /// Kind of an error, by what a program may do about it.
@@ -141,6 +165,12 @@ pub enum ErrorKind {
     Refused,
     /// A value is outside its range: another value helps.
     Value,
+    /// The scene takes more memory than a run may take: smaller settings help.
+    TooLarge,
+    /// A file or folder cannot be read or written, or its content is not as expected: another one helps.
+    File,
+    /// Another run writes the file or folder: waiting or another name helps.
+    Busy,
     /// Anything else: its message says what helps.
     Other,
 }
@@ -155,17 +185,42 @@ impl Error {
         }
     }
 
-    /// Its kind: what may be done about it.
+    /// Its kind, by what a program may do about it.
     pub fn kind(&self) -> ErrorKind {
         match (self, self.gpu()) {
             (_, Some(GpuError::Lost { .. })) => ErrorKind::DeviceLost,
             (_, Some(GpuError::OutOfMemory { .. } | GpuError::Limit { .. })) => ErrorKind::OutOfMemory,
-            (_, Some(_)) | (Self::Render(RenderError::TooMany { .. }), None) => ErrorKind::Refused,
-            (
-                Self::Value(_) | Self::Sim(SimError::Setting(_)) | Self::Render(RenderError::Setting(_)),
-                None,
-            ) => ErrorKind::Value,
-            (_, None) => ErrorKind::Other,
+            (_, Some(_)) => ErrorKind::Refused,
+            (_, None) => self.kind_on_host(),
+        }
+    }
+
+    /// The kind of an error that is no GPU's.
+    fn kind_on_host(&self) -> ErrorKind {
+        match self {
+            Self::Value(_) | Self::Sim(SimError::Setting(_)) | Self::Render(RenderError::Setting(_)) => {
+                ErrorKind::Value
+            }
+            Self::Memory(_)
+            | Self::Sim(SimError::Memory(_))
+            | Self::Render(RenderError::Memory { .. } | RenderError::TooMuch(_)) => ErrorKind::TooLarge,
+            Self::Render(RenderError::TooMany { .. }) => ErrorKind::Refused,
+            Self::Busy { .. } | Self::BusyFile { .. } => ErrorKind::Busy,
+            Self::ReadScene { .. }
+            | Self::ParseScene { .. }
+            | Self::HairPose { .. }
+            | Self::Attributes { .. }
+            | Self::Map { .. }
+            | Self::Cache { .. }
+            | Self::OutName { .. }
+            | Self::Save { .. }
+            | Self::Write { .. }
+            | Self::Render(RenderError::Save { .. } | RenderError::Surroundings { .. })
+            | Self::Body(_)
+            | Self::Groom(_) => ErrorKind::File,
+            Self::Thread(_) | Self::WorkerGone | Self::Sim(_) | Self::Render(_) | Self::Gpu(_) => {
+                ErrorKind::Other
+            }
         }
     }
 
@@ -176,8 +231,13 @@ impl Error {
     }
 
     /// For a map over the scalp.
-    pub(crate) fn map(path: &Path, message: String) -> Self {
-        Self::Map { path: path.to_owned(), message }
+    pub(crate) fn map(path: &Path, problem: impl Into<FileProblem>) -> Self {
+        Self::Map { path: path.to_owned(), problem: problem.into() }
+    }
+
+    /// For a file of moving hair.
+    pub(crate) fn cache(path: &Path, problem: impl Into<FileProblem>) -> Self {
+        Self::Cache { path: path.to_owned(), problem: problem.into() }
     }
 
     /// For `map_err` on what writes to `path`.
@@ -212,5 +272,16 @@ mod tests {
         assert_eq!(Error::from(SimError::from(value.clone())).kind(), ErrorKind::Value);
         assert_eq!(Error::from(value).kind(), ErrorKind::Value);
         assert_eq!(Error::WorkerGone.kind(), ErrorKind::Other);
+    }
+
+    #[test]
+    fn an_error_of_a_file_has_its_kind_and_keeps_that_of_the_system() {
+        let path = PathBuf::from("no/such.npz");
+        let error = crate::Cache::open(&path).err().unwrap();
+        assert_eq!(error.kind(), ErrorKind::File);
+        let Error::Cache { problem: FileProblem::Read(source), .. } = error else { panic!("{error:?}") };
+        assert_eq!(source.kind(), std::io::ErrorKind::NotFound);
+        assert_eq!(Error::cache(&path, "other hair").kind(), ErrorKind::File);
+        assert_eq!(Error::Busy { path }.kind(), ErrorKind::Busy);
     }
 }

@@ -57,7 +57,7 @@ pub mod look {
 /// Meshes and the distance to them.
 pub mod mesh {
     pub use crate::body::{Aabb, DistanceGrid, MeshFormat, SignedDistance};
-    pub use crate::prepare::mesh_unit;
+    pub use crate::prepare::{Placement, mesh_unit};
 }
 
 /// GPUs.
@@ -70,9 +70,12 @@ pub mod device {
     }
 }
 
-/// Files that are whole or not there, and text of files for terminals.
+/// Files of pictures and films, files that are whole or not there, their problems, and text of files for terminals.
 pub mod file {
-    pub use strandline_base::{WholeFile, abandon_parts, printable, read_plain};
+    pub use strandline_base::{WholeFile, abandon_unfinished, printable, read_plain};
+
+    pub use crate::error::FileProblem;
+    pub use crate::film::{Film, FilmFiles, PictureFiles};
 }
 
 /// Mathematical functions and random numbers with the same bits on every machine.
@@ -91,7 +94,6 @@ pub(crate) use strandline_sim as sim;
 pub use body::{Mesh, Pose};
 pub use cache::{Cache, Out, OutSettings, Target, What, Written};
 pub use error::{Error, ErrorKind};
-pub use film::{Film, FilmFiles, PictureFiles};
 pub use groom::{Groom, Style};
 pub use hair::Hair;
 pub use live::Live;
@@ -100,7 +102,7 @@ pub use prepare::{Prepared, Sources};
 pub use render::{Camera, Light, Look, Picture, PictureSettings};
 pub use scene::{Devices, HeadMotion, Scene};
 pub use session::{Change, Event, Ray};
-pub use sim::{Backend, Drift, Settings, SimError, StepReport};
+pub use sim::{Backend, Drift, Settings, SimError, StepReport, Stiffening};
 
 // Names of this crate's own modules.
 pub(crate) use strands::bound::BoundStrands;

@@ -1,13 +1,14 @@
+use crate::mesh::Placement;
 use crate::{
     Cache, Devices, Error, Out, OutSettings, Prepared, Scene, Sources, What, Written,
     cache::drawn,
     gpu::Gpu,
     groom::Guides,
     render::{Camera, Look, PictureSettings},
-    scene::devices::device_name,
+    scene::{camera_motion::CameraMotion, devices::device_name},
     session::worker::Worker,
     session::{Change, Event, Session, Simulation, Task, film_timing::FilmTiming},
-    sim::{Drift, Settings, State},
+    sim::{Drift, Settings, State, Stiffening},
 };
 
 /// Plays a scene: an iterator of events, frame after frame, until the film is over.
@@ -19,6 +20,8 @@ pub struct Player {
     /// Changed by [`Player::set_settings`] before the next frame is simulated.
     change: Option<Settings>,
     timing: FilmTiming,
+    /// Motion of the camera, where the scene has one and nobody has set another view.
+    camera: Option<CameraMotion>,
     draw: bool,
     overlap: bool,
     frames: u32,
@@ -29,6 +32,7 @@ pub struct Player {
     undrawn: bool,
     /// True after the simulation failed.
     failed: bool,
+    placement: Placement,
     notes: Vec<String>,
     /// File that frames are written to as they are made.
     out: Option<Out>,
@@ -85,13 +89,15 @@ impl Player {
         devices: impl Into<Devices>,
         draw: bool,
     ) -> Result<Self, Error> {
-        let mut notes = std::mem::take(&mut prepared.notes);
+        let (mut notes, placement) = (std::mem::take(&mut prepared.notes), prepared.placement);
         let mut session = Session::open(prepared, devices.into())?;
         notes.extend(session.take_notes());
         let here = session.simulation().end().world_from_head();
         let timing = FilmTiming::new(session.scene(), session.head().clone(), here);
         let frames = session.scene().film.frames;
+        let camera = CameraMotion::new(&session.scene().camera.keyframes, *session.view().camera())?;
         Ok(Self {
+            camera,
             session: session.beside()?,
             change: None,
             timing,
@@ -102,6 +108,7 @@ impl Player {
             taken: 0,
             undrawn: false,
             failed: false,
+            placement,
             notes,
             out: None,
             cache: None,
@@ -116,8 +123,8 @@ impl Player {
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
     pub fn set_out(&mut self, settings: &OutSettings) -> Result<(), Error> {
         if settings.first >= self.frames {
-            let message = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
-            return Err(Error::Cache { path: settings.path.clone(), message });
+            let found = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
+            return Err(Error::cache(&settings.path, found));
         }
         self.out = Some(self.session.begin_file(settings, &self.timing.body(0.0))?);
         Ok(())
@@ -126,9 +133,11 @@ impl Player {
     /// Resumes the run of a cache. Earlier frames emit no events; files that are written get them too.
     ///
     /// # Errors
-    /// A cache of other hair, without a state, or of a film that was over; a file that cannot be written.
+    /// A cache of other hair or of another film, without a state, or of a film that was over; a file that cannot be
+    /// written.
     pub fn resume(&mut self, cache: &mut Cache) -> Result<(), Error> {
         let made = self.session.resume(cache, self.frames, self.out.as_mut())?;
+        self.notes.extend(self.session.take_notes());
         (self.started, self.taken) = (made, made);
         Ok(())
     }
@@ -171,8 +180,9 @@ impl Player {
         self.session.set_look(look);
     }
 
-    /// Changes the view, from the next picture on.
+    /// Changes the view, from the next picture on; keyframes of the camera no longer count.
     pub fn set_camera(&mut self, camera: Camera) {
+        self.camera = None;
         self.session.set_camera(camera);
     }
 
@@ -197,10 +207,9 @@ impl Player {
         Ok(self.session.peek(Simulation::drift)?)
     }
 
-    /// Strands of rods that had to be stiffer for their shape to be stable, and how many times stiffer the stiffest
-    /// of them is; 0 without rods.
-    pub fn stiffened(&self) -> (usize, f32) {
-        self.session.peek(|simulation| simulation.stiffened())
+    /// Strands of rods that had to be stiffer for their shape to be stable.
+    pub fn stiffening(&self) -> Stiffening {
+        self.session.peek(|simulation| simulation.stiffening())
     }
 
     /// The device that the hair is simulated on; none on the CPU.
@@ -231,6 +240,11 @@ impl Player {
     /// Frames whose events were all emitted.
     pub fn frames_done(&self) -> u32 {
         self.taken - u32::from(self.undrawn)
+    }
+
+    /// Placement of groom and body in head space, and the confidence in it.
+    pub fn placement(&self) -> Placement {
+        self.placement
     }
 
     /// Mends, guesses and omissions of the loading.
@@ -288,6 +302,17 @@ impl Player {
         Ok(())
     }
 
+    /// Draws the frame that was taken.
+    fn draw_taken(&mut self) -> Result<(), Error> {
+        if let Some(motion) = &self.camera {
+            let frame = self.taken.saturating_sub(1);
+            let of_cache = self.cache.as_ref().and_then(|cache| cache.times().get(frame as usize).copied());
+            let time = of_cache.unwrap_or_else(|| self.timing.time(frame));
+            self.session.set_camera(motion.at(self.timing.motion_time(time)));
+        }
+        self.session.draw(None)
+    }
+
     /// Takes the next frame and starts the one after it.
     fn advance(&mut self) -> Result<(), Error> {
         if self.session.started() == 0 {
@@ -308,7 +333,7 @@ impl Iterator for Player {
                 return Some(Ok(event));
             }
             let done = if std::mem::take(&mut self.undrawn) {
-                self.session.draw(None)
+                self.draw_taken()
             } else if self.taken == self.frames || self.failed || self.closing {
                 return None;
             } else {

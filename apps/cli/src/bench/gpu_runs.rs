@@ -40,7 +40,7 @@ impl GradientTimes {
 impl Device {
     /// Plays a scene without pictures.
     pub fn measure(&self, scene: &Scene, what: &'static str) -> anyhow::Result<GpuRun> {
-        let Prepared { guides, colliders, head, .. } = Prepared::new(scene)?;
+        let Prepared { guides, colliders, head, placement, .. } = Prepared::new(scene)?;
         let model = Model::new(&guides, &scene.simulation, colliders)?;
         let begun = model.rest_state(head.pose(0.0));
         let mut runner = GpuRunner::new(&self.gpu, model)?;
@@ -68,11 +68,12 @@ impl Device {
         drop(progress);
         let plain = runner.model();
         let steps = steps.report(Ended {
+            placement,
             backend: self.adapter.name.clone(),
             strands: guides.strand_count(),
             points_per_strand: guides.points_per_strand(),
             drift: plain.drift(&runner.state()?),
-            stiffened: plain.rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest)),
+            stiffening: plain.stiffening(),
             time_step: scene.simulation.time_step,
             tolerance: scene.simulation.volume.tolerance,
         });

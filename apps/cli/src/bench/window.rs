@@ -121,7 +121,9 @@ impl Play {
             for news in self.live.take_events() {
                 match news {
                     LiveEvent::Loaded(_, _, camera, ..) => self.camera = camera,
-                    LiveEvent::NotLoaded(_, error) | LiveEvent::Error(_, error) => anyhow::bail!("{error}"),
+                    LiveEvent::NotLoaded(_, _, error) | LiveEvent::Error(_, error) => {
+                        anyhow::bail!("{error}")
+                    }
                     _ => {}
                 }
             }

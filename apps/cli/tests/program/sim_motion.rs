@@ -76,3 +76,28 @@ fn sim_tells_how_far_and_how_fast_hair_moved() {
         }
     }
 }
+
+#[test]
+fn sim_tells_how_many_strands_are_stiffer_than_their_material() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |rest: &str| {
+        let scene = format!(
+            "[style]\nstyle = \"wavy\"\nstrand_count = 16\n[simulation.volume]\nenabled = false\n\
+             [simulation.strands.rods]\nrest = \"{rest}\"\n[film]\nsettle = 0.0\n"
+        );
+        std::fs::write(folder.path().join("stiff.toml"), scene).unwrap();
+        let run = ["sim", "--scene", "stiff.toml", "--backend", "cpu", "--frames", "1"];
+        let output = Command::new(env!("CARGO_BIN_EXE_strandline"))
+            .args(run)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let stiff = said("sag_free");
+    let note = stiff.lines().find(|line| line.contains(" of 16 strands stiffer than their material, up to "));
+    let most: f32 = note.unwrap().split("up to ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!(most > 1.0, "{stiff}");
+    assert!(!said("unstressed").contains("stiffer than their material"));
+}

@@ -204,17 +204,8 @@ impl Person {
         std::thread::sleep(MOMENT);
     }
 
-    /// Clicks: a button that is held for long is none.
-    pub fn click(&mut self, place: [i16; 2]) {
-        self.point(place);
-        std::thread::sleep(MOMENT);
-        self.fake(4, 1, [0; 2]);
-        self.fake(5, 1, [0; 2]);
-        std::thread::sleep(MOMENT);
-    }
-
-    /// Drags with the left button along places; it is still held.
-    pub fn hold(&mut self, places: &[[i16; 2]]) {
+    /// Drags with the left button along places.
+    pub fn drag(&mut self, places: &[[i16; 2]]) {
         self.point(places[0]);
         self.press(1);
         for pair in places.windows(2) {
@@ -223,10 +214,6 @@ impl Person {
                 self.point([at(0), at(1)]);
             }
         }
-    }
-
-    pub fn drag(&mut self, places: &[[i16; 2]]) {
-        self.hold(places);
         self.release(1);
     }
 
@@ -239,26 +226,11 @@ impl Person {
         least + place.expect("the keyboard has this key") as u8
     }
 
-    /// Holds or lets go of a key, by its X symbol.
-    pub fn key_down(&mut self, symbol: u32) {
+    /// Presses and releases a key, by its X symbol.
+    pub fn key(&mut self, symbol: u32) {
         let code = self.code(symbol);
         self.fake(2, code, [0; 2]);
-    }
-
-    pub fn key_up(&mut self, symbol: u32) {
-        let code = self.code(symbol);
         self.fake(3, code, [0; 2]);
-    }
-
-    pub fn key(&mut self, symbol: u32) {
-        self.key_down(symbol);
-        self.key_up(symbol);
-    }
-
-    pub fn with_control(&mut self, symbol: u32) {
-        self.key_down(CONTROL);
-        self.key(symbol);
-        self.key_up(CONTROL);
     }
 
     pub fn atom(&self, name: &str) -> u32 {
@@ -305,6 +277,3 @@ impl Drop for Person {
         let _ = self.program.wait();
     }
 }
-
-/// X symbols of keys.
-pub const CONTROL: u32 = 0xffe3;

@@ -89,7 +89,7 @@ fn keyframes(motion: &mut MotionSection, ui: &mut Ui) {
 }
 
 fn wind(app: &mut App, ui: &mut Ui) {
-    let before = app.scene.wind;
+    let before = app.scene.wind.clone();
     let (wind, base) = (&mut app.scene.wind, &app.base.wind);
     for (axis, name) in ["wind x", "wind y", "wind z"].into_iter().enumerate() {
         slide(ui, (&mut wind.velocity[axis], base.velocity[axis]), &WindSection::ROWS.velocity, name);
@@ -97,6 +97,6 @@ fn wind(app: &mut App, ui: &mut Ui) {
     slide(ui, (&mut wind.gust, base.gust), &WindSection::ROWS.gust, "gusts");
     slide(ui, (&mut wind.gust_period, base.gust_period), &WindSection::ROWS.gust_period, "gust period");
     if *wind != before {
-        app.live.send(Change::Wind(app.scene.wind));
+        app.live.send(Change::Wind(app.scene.wind.clone()));
     }
 }

@@ -63,7 +63,7 @@ fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {
         slide(ui, (&mut rods.profile[place], base.profile[place]), &rows.profile, name);
     }
     slide(ui, (&mut rods.damping, base.damping), &rows.damping, "bends' damping, s");
-    slide(ui, (&mut rods.substeps, base.substeps), &rows.substeps, "parts of a step");
+    slide(ui, (&mut rods.substeps, base.substeps), &rows.substeps, "substeps");
     slide(ui, (&mut rods.newton_steps, base.newton_steps), &rows.newton_steps, "Newton steps");
 }
 

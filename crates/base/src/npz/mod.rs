@@ -46,6 +46,8 @@ pub enum Kind {
     I32,
     /// 64 bits.
     I64,
+    /// Half precision.
+    F16,
     /// Single precision.
     F32,
     /// Double precision.
@@ -54,7 +56,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind, numpy's name of it, and the bytes \[byte\] of an element.
-    const ALL: [(Self, &'static str, u64); 10] = [
+    const ALL: [(Self, &'static str, u64); 11] = [
         (Self::U8, "|u1", 1),
         (Self::U16, "<u2", 2),
         (Self::U32, "<u4", 4),
@@ -63,6 +65,7 @@ impl Kind {
         (Self::I16, "<i2", 2),
         (Self::I32, "<i4", 4),
         (Self::I64, "<i8", 8),
+        (Self::F16, "<f2", 2),
         (Self::F32, "<f4", 4),
         (Self::F64, "<f8", 8),
     ];
@@ -82,10 +85,15 @@ impl Kind {
         self.row().1
     }
 
-    /// The kind of a name; numpy's truth values are bytes of 0 and 1.
-    fn of_name(name: &str) -> Option<Self> {
+    /// The kind of a name, and true for numbers with the high byte first; numpy's truth values are bytes of 0 and 1.
+    fn of_name(name: &str) -> Option<(Self, bool)> {
         let name = if name == "|b1" { "|u1" } else { name };
-        Self::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
+        let big = name.strip_prefix('>');
+        let is_named = |own: &str| match big {
+            Some(bare) => own.strip_prefix('<') == Some(bare),
+            None => own == name,
+        };
+        Self::ALL.iter().find(|row| is_named(row.1)).map(|row| (row.0, big.is_some()))
     }
 
     /// Elements in double precision; whole numbers of 64 bits are rounded to it.
@@ -103,10 +111,25 @@ impl Kind {
                 let empty = 64 - 8 * element.len() as u32;
                 ((unsigned << empty) as i64 >> empty) as f64
             }
+            Self::F16 => half(unsigned),
             Self::F32 => f64::from(f32::from_bits(unsigned as u32)),
             Self::F64 => f64::from_bits(unsigned),
         }
     }
+}
+
+/// A number of half precision [IEEE 754 binary16] by its bits.
+fn half(bits: u64) -> f64 {
+    let (exponent, fraction) = (bits >> 10 & 31, (bits & 1023) as f64);
+    // 2 to the power of an exponent from 1 on, less 25.
+    let power = |exponent: u64| f64::from_bits((exponent + 1023 - 25) << 52);
+    let size = match exponent {
+        0 => fraction * power(1),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + fraction) * power(exponent),
+    };
+    if bits >> 15 & 1 == 1 { -size } else { size }
 }
 
 /// An array that is written as a whole.

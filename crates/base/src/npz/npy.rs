@@ -1,5 +1,7 @@
 //! The header of a .npy member: a Python literal of a dictionary, padded with spaces.
 
+use std::borrow::Cow;
+
 use super::{Kind, NpzError};
 
 /// First bytes of every array.
@@ -20,6 +22,10 @@ pub struct Header {
     pub shape: Vec<u64>,
     /// Bytes before the data.
     pub length: u64,
+    /// True for numbers with the high byte first.
+    pub is_big_endian: bool,
+    /// True for data whose first index changes fastest.
+    pub is_fortran: bool,
 }
 
 impl Header {
@@ -27,6 +33,55 @@ impl Header {
     pub fn data_bytes(&self) -> Option<u64> {
         self.shape.iter().try_fold(self.kind.bytes(), |bytes, count| bytes.checked_mul(*count))
     }
+
+    /// True for data in C order, little endian.
+    pub fn is_plain(&self) -> bool {
+        !self.is_big_endian && !self.is_fortran
+    }
+
+    /// Data in C order, little endian.
+    pub fn plain<'a>(&self, bytes: Cow<'a, [u8]>) -> Cow<'a, [u8]> {
+        if self.is_plain() {
+            return bytes;
+        }
+        let each = self.kind.bytes() as usize;
+        let mut plain = match self.is_fortran {
+            true => c_order(&bytes, each, &self.shape),
+            false => bytes.into_owned(),
+        };
+        if self.is_big_endian {
+            plain.chunks_exact_mut(each).for_each(<[u8]>::reverse);
+        }
+        plain.into()
+    }
+}
+
+/// Elements of `each` bytes whose first index changes fastest, with the last one fastest.
+fn c_order(bytes: &[u8], each: usize, shape: &[u64]) -> Vec<u8> {
+    let mut plain = Vec::with_capacity(bytes.len());
+    let steps: Vec<usize> = shape
+        .iter()
+        .scan(each, |step, count| {
+            let own = *step;
+            *step *= *count as usize;
+            Some(own)
+        })
+        .collect();
+    let mut index = vec![0; shape.len()];
+    let mut from = 0;
+    while plain.len() < bytes.len() {
+        plain.extend_from_slice(&bytes[from..from + each]);
+        for axis in (0..shape.len()).rev() {
+            index[axis] += 1;
+            from += steps[axis];
+            if index[axis] < shape[axis] {
+                break;
+            }
+            from -= steps[axis] * shape[axis] as usize;
+            index[axis] = 0;
+        }
+    }
+    plain
 }
 
 /// The header of an array, `least` bytes or more.
@@ -49,7 +104,7 @@ pub fn header(kind: Kind, shape: &[u64], least: usize) -> Vec<u8> {
 /// Reads a header through `read`, which fills the slice that it gets.
 ///
 /// # Errors
-/// Those of `read`; bytes that are no header of numbers in C order.
+/// Those of `read`; bytes that are no header of numbers.
 pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<Header, NpzError> {
     let mut start = [0; 8];
     read(&mut start)?;
@@ -79,20 +134,16 @@ pub fn read(mut read: impl FnMut(&mut [u8]) -> Result<(), NpzError>) -> Result<H
         NpzError::new(found, "a dictionary of descr, fortran_order and shape")
     })?;
     let (name, fortran) = (header.descr, header.fortran_order);
-    let kind = Kind::of_name(&name).ok_or_else(|| {
+    let (kind, is_big_endian) = Kind::of_name(&name).ok_or_else(|| {
         let known: Vec<&str> = Kind::ALL.iter().map(|row| row.1).collect();
         let found = format!("elements of type `{}`", name.escape_default());
         let known = known.join(" ");
-        NpzError::new(found, format!("one of the little-endian {known}: convert it with numpy's astype"))
+        NpzError::new(found, format!("one of {known}, or big-endian: convert it with numpy's astype"))
     })?;
-    if fortran && header.shape.iter().filter(|count| **count != 1).count() > 1 {
-        return Err(NpzError::new(
-            "an array in Fortran's order",
-            "C order: numpy.ascontiguousarray makes it",
-        ));
-    }
     header.shape.truncate(MAX_AXES);
-    Ok(Header { kind, shape: header.shape, length: (prefix + length) as u64 })
+    // Of one axis alone both orders are the same.
+    let is_fortran = fortran && header.shape.iter().filter(|count| **count != 1).count() > 1;
+    Ok(Header { kind, shape: header.shape, length: (prefix + length) as u64, is_big_endian, is_fortran })
 }
 
 /// The numbers of a .npy file.
@@ -103,14 +154,14 @@ pub struct Bare<'a> {
     /// Shape.
     pub shape: Vec<u64>,
     /// The elements in C order, little endian.
-    pub bytes: &'a [u8],
+    pub bytes: Cow<'a, [u8]>,
 }
 
 impl<'a> Bare<'a> {
     /// Reads the bytes of a .npy file.
     ///
     /// # Errors
-    /// Bytes that are no array of numbers in C order, or more or fewer of them than the shape takes.
+    /// Bytes that are no array of numbers, or more or fewer of them than the shape takes.
     pub fn new(bytes: &'a [u8]) -> Result<Self, NpzError> {
         let mut rest = bytes;
         let header = read(|wanted| {
@@ -125,7 +176,8 @@ impl<'a> Bare<'a> {
             let each = header.kind.bytes();
             return Err(NpzError::new(found, format!("an array {shape:?} of numbers of {each} bytes")));
         }
-        Ok(Self { kind: header.kind, shape: header.shape, bytes: rest })
+        let bytes = header.plain(rest.into());
+        Ok(Self { kind: header.kind, shape: header.shape, bytes })
     }
 }
 
@@ -232,13 +284,14 @@ mod tests {
             let mut bytes = header(kind, &[3], 0);
             let unsigned = [1_u64, 2, 3].map(|number| number.to_le_bytes());
             let numbers: Vec<u8> = match kind {
+                Kind::F16 => [0x3c00_u16, 0x4000, 0x4200].map(u16::to_le_bytes).concat(),
                 Kind::F32 => [1.0_f32, 2.0, 3.0].map(f32::to_le_bytes).concat(),
                 Kind::F64 => [1.0_f64, 2.0, 3.0].map(f64::to_le_bytes).concat(),
                 _ => unsigned.iter().flat_map(|number| number[..each as usize].to_vec()).collect(),
             };
             bytes.extend(&numbers);
             let bare = Bare::new(&bytes).unwrap();
-            assert_eq!(bare.kind.numbers(bare.bytes).collect::<Vec<_>>(), [1.0, 2.0, 3.0], "{name}");
+            assert_eq!(bare.kind.numbers(&bare.bytes).collect::<Vec<_>>(), [1.0, 2.0, 3.0], "{name}");
             let refused = |bytes: &[u8]| Bare::new(bytes).unwrap_err().to_string();
             assert!(refused(&bytes[..bytes.len() - 1]).contains("bytes behind the header"));
             bytes.push(0);
@@ -283,12 +336,37 @@ mod tests {
     }
 
     #[test]
+    fn other_orders_of_bytes_and_of_axes_become_plain() {
+        // [[[0, 1, 2], [3, 4, 5]]] and more, 2 x 2 x 3, with the first index fastest and the high byte first.
+        let of = |index: [u16; 3]| 6 * index[0] + 3 * index[1] + index[2];
+        let indices = |i: u16| (0..2).flat_map(move |j| (0..3).map(move |k| [i, j, k]));
+        let fastest = (0..3).flat_map(|k| (0..2).flat_map(move |j| (0..2).map(move |i| [i, j, k])));
+        for (kind, order) in [("<u2", "True"), (">u2", "True"), (">u2", "False")] {
+            let text = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': (2, 2, 3), }}");
+            let numbers: Vec<u16> = match order {
+                "True" => fastest.clone().map(of).collect(),
+                _ => (0..2).flat_map(indices).map(of).collect(),
+            };
+            let bytes =
+                |number: &u16| if kind == "<u2" { number.to_le_bytes() } else { number.to_be_bytes() };
+            let file = [literal(&text), numbers.iter().flat_map(bytes).collect()].concat();
+            let bare = Bare::new(&file).unwrap();
+            let found: Vec<f64> = bare.kind.numbers(&bare.bytes).collect();
+            assert_eq!(found, (0..12).map(f64::from).collect::<Vec<_>>(), "{kind} {order}");
+        }
+        let halves = [0x0001_u16, 0x8400, 0x7bff, 0xfc00, 0xbc00].map(u16::to_be_bytes).concat();
+        let file = [literal("{'descr': '>f2', 'fortran_order': False, 'shape': (5,), }"), halves].concat();
+        let found: Vec<f64> = Kind::F16.numbers(&Bare::new(&file).unwrap().bytes).collect();
+        let least = 0.5_f64.powi(24);
+        assert_eq!(found, [least, -1024.0 * least, 65_504.0, f64::NEG_INFINITY, -1.0]);
+        assert!(Kind::F16.numbers(&[1, 0x7c]).all(f64::is_nan));
+    }
+
+    #[test]
     fn what_cannot_be_read_is_refused_with_what_was_found() {
         let refused = |text: &str| parse(&literal(text)).unwrap_err().to_string();
         let objects = refused("{'descr': '|O', 'fortran_order': False, 'shape': (3,), }");
         assert!(objects.contains("type `|O`") && objects.contains("astype"), "{objects}");
-        let order = refused("{'descr': '<f4', 'fortran_order': True, 'shape': (3, 2), }");
-        assert!(order.contains("ascontiguousarray"), "{order}");
         for text in [
             "",
             "{",

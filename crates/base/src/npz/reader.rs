@@ -152,7 +152,13 @@ impl<R: Read + Seek> Npz<R> {
             )
         })?;
         let mut rows = Rows {
-            header: Header { kind: Kind::U8, shape: Vec::new(), length: 0 },
+            header: Header {
+                kind: Kind::U8,
+                shape: Vec::new(),
+                length: 0,
+                is_big_endian: false,
+                is_fortran: false,
+            },
             crc: member.crc,
             size: member.size,
             deflated: member.deflated,
@@ -175,11 +181,17 @@ impl<R: Read + Seek> Npz<R> {
         Ok(rows)
     }
 
-    /// Reads the next bytes of an array.
+    /// Reads the next bytes of an array in C order, little endian.
     ///
     /// # Errors
-    /// The file cannot be read, or ends too early.
+    /// The file cannot be read, or ends too early; another order, which [`Npz::all`] reads.
     pub fn read(&mut self, rows: &mut Rows, bytes: &mut [u8]) -> Result<(), NpzError> {
+        if !rows.header.is_plain() {
+            return Err(NpzError::new(
+                "an array in Fortran's order, or big-endian",
+                "C order, little-endian",
+            ));
+        }
         if rows.left() < bytes.len() as u64 {
             return Err(NpzError::new(format!("{} bytes are left", rows.left()), bytes.len().to_string()));
         }
@@ -207,7 +219,7 @@ impl<R: Read + Seek> Npz<R> {
         Ok(())
     }
 
-    /// Reads all of an array, and checks it against its sum. The caller has looked at its size before.
+    /// Reads all of an array, in C order, little endian, and checks it against its sum. The caller has looked at its size before.
     ///
     /// # Errors
     /// As [`Npz::read`]; damage.
@@ -231,7 +243,7 @@ impl<R: Read + Seek> Npz<R> {
         }
         bytes.truncate(header + data);
         bytes.drain(..header);
-        Ok(bytes)
+        Ok(rows.header.plain(bytes.into()).into_owned())
     }
 
     /// The next bytes of a member.

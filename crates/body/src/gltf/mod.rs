@@ -28,6 +28,7 @@ pub(crate) fn parse(
     bytes: &[u8],
     folder: Option<&Path>,
     mut names: Option<&mut Names>,
+    notes: &mut Vec<String>,
 ) -> Result<Mesh, Refusal> {
     let (document, blob) = document::document(bytes)?;
     let held = load_buffers(&document, blob, folder)?;
@@ -37,6 +38,7 @@ pub(crate) fn parse(
     let mut mesh = Mesh::default();
     let nodes = Nodes::new(&document)?;
     let mut skins = Skins::new(&document);
+    let mut weightless = 0;
     for node in &nodes.shown {
         let Some(part) = node.mesh() else { continue };
         let joints = match node.skin() {
@@ -59,11 +61,20 @@ pub(crate) fn parse(
             let vertices = Vertices::new(&primitive, default_weights(node), &buffers, room)?;
             let Some(vertices) = vertices else { continue };
             let skinned = match joints {
-                Some(joints) => Placement::skinned(&primitive, vertices.positions.len(), joints, &buffers)?,
+                Some(joints) => {
+                    let count = vertices.positions.len();
+                    Placement::skinned(&primitive, count, joints, &buffers, &mut weightless)?
+                }
                 None => None,
             };
             append(&mut mesh, &primitive, &vertices, skinned.as_ref().unwrap_or(&whole), &buffers)?;
         }
+    }
+    if weightless > 0 {
+        notes.push(format!(
+            "{weightless} of {} vertices have no weights of joints: the first joint of their skin carries them",
+            mesh.positions.len()
+        ));
     }
     Ok(mesh)
 }

@@ -83,6 +83,11 @@ pub(super) fn world_from_mesh_by_joint(
     Ok(joints.iter().zip(joint_from_mesh).map(|(joint, own)| world_from_node[*joint] * own).collect())
 }
 
+/// True for a sum of weights that carries a vertex.
+fn is_weight(total: f32) -> bool {
+    total > 0.0 && total.is_finite()
+}
+
 /// Transforms of vertices: one for all, or one for each.
 pub(super) enum Placement {
     Whole(Mat4),
@@ -91,12 +96,13 @@ pub(super) enum Placement {
 
 impl Placement {
     /// The placement of a part of a skinned mesh: its node's own transform does not count.
-    /// `None` where the part has no joints. // glTF 2.0 §3.7.3.3
+    /// `None` where the part has no joints. Counts vertices without weights. // glTF 2.0 §3.7.3.3
     pub fn skinned(
         part: &Primitive,
         count: usize,
         world_from_mesh: &[Mat4],
         buffers: &Buffers,
+        weightless: &mut usize,
     ) -> Result<Option<Self>, Refusal> {
         let mut sums = vec![(Mat4::ZERO, 0.0_f32); count];
         let mut is_skinned = false;
@@ -127,9 +133,12 @@ impl Placement {
                 }
             }
         }
+        if is_skinned {
+            *weightless += sums.iter().filter(|(_, total)| !is_weight(*total)).count();
+        }
         // Vertices without a weight are carried by the first joint.
         let placed = |(sum, total): (Mat4, f32)| {
-            if total > 0.0 && total.is_finite() { sum * (1.0 / total) } else { world_from_mesh[0] }
+            if is_weight(total) { sum * (1.0 / total) } else { world_from_mesh[0] }
         };
         Ok(is_skinned.then(|| Self::Each(sums.into_iter().map(placed).collect())))
     }

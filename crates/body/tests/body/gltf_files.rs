@@ -3,7 +3,9 @@
 use glam::{Mat4, Quat, Vec3};
 use proptest::prelude::*;
 
-use crate::files::{self, cube_bin, cube_json, load_bytes};
+use strandline_body::Mesh;
+
+use crate::files::{self, cube_bin, cube_json, load_bytes, scratch};
 use crate::mesh_files::{check_cube, check_damaged, damage, damaged, refused};
 
 /// The cube with more accessors, each over bytes behind those of the cube, and its document changed.
@@ -241,6 +243,12 @@ fn a_skinned_mesh_stands_in_its_default_pose() {
     }
     let unweighted = load_bytes("cube.glb", &skinned([0.0, 0.0], false).bytes()).unwrap();
     check_cube(&unweighted, Vec3::new(0.0, 1.6, -0.01), 0.01);
+    let notes = |weights: [f32; 2]| {
+        let (_folder, path) = scratch("cube.glb", &skinned(weights, false).bytes());
+        Mesh::load_noted(&path, 1.0).unwrap().1
+    };
+    let note = "8 of 8 vertices have no weights of joints: the first joint of their skin carries them";
+    assert_eq!((notes([0.0, 0.0]), notes([1.0, 0.0])), (vec![note.to_owned()], Vec::new()));
     let file = skinned([1.0, 0.0], false).replace(r#""joints": [2, 3]"#, r#""joints": [2]"#);
     assert!(refused("cube.glb", &file.bytes()).contains("the joint 1 of 1"));
     let file = skinned([1.0, 0.0], false).replace(r#""joints": [2, 3]"#, r#""joints": [2, 3, 3]"#);

@@ -27,7 +27,7 @@ pub use drawing::{BoundDrawing, Drawing, Output};
 pub use gpu::Gpu;
 pub use kernel::{Access, Binding, Bindings, Bound, Declaration, Dispatches, Kernel, Resource, groups};
 pub use layout::{Field, Layout, Mirror, Tail};
-pub use readback::{Copied, Download, Part, Readback};
+pub use readback::{Copied, Download, Readback, Slot};
 pub use recorder::{Amount, Recorder, Targets};
 pub use rigid::Rigid;
 pub use scan::Scan;

@@ -11,13 +11,13 @@ use crate::{Buffer, Gpu, GpuError, Transfer};
 /// Buffers to be copied back together.
 #[derive(Debug, Default)]
 pub struct Readback<'a> {
-    parts: Vec<(&'a wgpu::Buffer, Range<usize>)>,
+    copies: Vec<(&'a wgpu::Buffer, Range<usize>)>,
     bytes: usize,
 }
 
-/// One of the buffers of a [`Readback`].
+/// Place of the copy of one buffer of a [`Readback`].
 #[derive(Clone, Debug)]
-pub struct Part<T> {
+pub struct Slot<T> {
     bytes: Range<usize>,
     element: PhantomData<T>,
 }
@@ -35,15 +35,15 @@ impl<'a> Readback<'a> {
     }
 
     /// Adds the first `count` elements of a buffer, or all where it holds fewer.
-    pub fn add<T: Pod>(&mut self, buffer: &'a Buffer<T>, count: usize) -> Part<T> {
+    pub fn add<T: Pod>(&mut self, buffer: &'a Buffer<T>, count: usize) -> Slot<T> {
         let size = count.min(buffer.len()) * size_of::<T>();
         let bytes = self.bytes..self.bytes + size;
         // Copies start and end at whole words.
         self.bytes = bytes.end.next_multiple_of(4);
         if size > 0 {
-            self.parts.push((buffer.raw(), bytes.start..self.bytes));
+            self.copies.push((buffer.raw(), bytes.start..self.bytes));
         }
-        Part { bytes, element: PhantomData }
+        Slot { bytes, element: PhantomData }
     }
 
     /// Waits for the copies and takes them.
@@ -71,7 +71,7 @@ impl<'a> Readback<'a> {
                 mapped_at_creation: false,
             });
             let mut encoder = gpu.device().create_command_encoder(&Default::default());
-            for (buffer, bytes) in &self.parts {
+            for (buffer, bytes) in &self.copies {
                 let (start, size) = (bytes.start as u64, bytes.len() as u64);
                 encoder.copy_buffer_to_buffer(buffer, 0, &staging, start, size);
             }
@@ -83,8 +83,8 @@ impl<'a> Readback<'a> {
 
 impl Copied {
     /// The elements of one buffer.
-    pub fn take<T: Pod>(&self, part: Part<T>) -> Vec<T> {
-        bytemuck::pod_collect_to_vec(&self.bytes[part.bytes])
+    pub fn take<T: Pod>(&self, slot: Slot<T>) -> Vec<T> {
+        bytemuck::pod_collect_to_vec(&self.bytes[slot.bytes])
     }
 }
 

@@ -94,7 +94,7 @@ impl Groom {
 }
 
 /// The value below which a share of values lies; 0 without a value.
-fn quantile(values: impl IntoIterator<Item = f32>, share: f32) -> f32 {
+pub(super) fn quantile(values: impl IntoIterator<Item = f32>, share: f32) -> f32 {
     let mut values: Vec<f32> = values.into_iter().filter(|value| value.is_finite()).collect();
     if values.is_empty() {
         return 0.0;

@@ -1,7 +1,7 @@
 //! `.hair`, Cem Yuksel's HAIR format: a header of 128 bytes, then arrays in the order of their bits.
 
 use super::bytes::{Source, put, put_u32, vec3};
-use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part, headerless};
+use super::{Attribute, MAX_POINTS, MAX_STRANDS, Parsed, headerless};
 use crate::{Groom, GroomError, Widths};
 
 const HEADER: u64 = 128;
@@ -233,7 +233,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
 fn per_point_widths(groom: &Groom) -> Result<f32, Vec<f32>> {
     match &groom.widths {
         // A default width, taken because a file had none, is no attribute.
-        Widths::Constant(width) => Ok(if Part::Widths.is_in(groom) { *width } else { 0.0 }),
+        Widths::Constant(width) => Ok(if Attribute::Widths.is_in(groom) { *width } else { 0.0 }),
         Widths::PerPoint(widths) => Err(widths.clone()),
         Widths::PerStrand(widths) => {
             let counts = groom.starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize);

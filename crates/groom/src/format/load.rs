@@ -6,9 +6,11 @@ use serde::{Deserialize, Serialize};
 use strandline_base::{Key, Kind, Row, SettingError, Value, choices, math, memory, read_plain};
 
 use super::cleaning::Cleaning;
+use super::ends::RootEnd;
 use super::report::Report;
 use super::{
-    Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Part, Reader, project, sieve::sieve,
+    Attribute, Chosen, Format, HAIR_WIDTH, MAX_FILE_BYTES, MAX_POINTS, MAX_STRANDS, Parsed, Reader, project,
+    sieve::sieve,
 };
 use crate::{Groom, GroomError, Widths};
 
@@ -122,6 +124,10 @@ pub struct LoadOptions {
     pub turn: Vec3,
     /// Points of each strand, for files that hold points and do not say which of them make a strand.
     pub per_strand: Option<u32>,
+    /// Frame of moving hair, from 0, in USD a time code; the first without one.
+    pub frame: Option<u32>,
+    /// The end of each strand at which its root is; [`RootEnd::Auto`] turns strands where `cleaning` mends all.
+    pub root_end: RootEnd,
     /// The treatment of strands unlike the others.
     pub cleaning: Cleaning,
 }
@@ -134,6 +140,8 @@ impl Default for LoadOptions {
             up: Up::Y,
             turn: Vec3::ZERO,
             per_strand: None,
+            frame: None,
+            root_end: RootEnd::Auto,
             cleaning: Cleaning::Named,
         }
     }
@@ -191,7 +199,10 @@ fn parse(path: &Path, options: &LoadOptions) -> Result<Parsed, GroomError> {
     memory::check_file("the groom", path, MAX_FILE_BYTES, format.taken)?;
     let bytes = read_plain(path, MAX_FILE_BYTES).map_err(file)?;
     match format.read {
-        Reader::Bytes(read) => read(&bytes, options.per_strand).map_err(|error| error.of(path)),
+        Reader::Bytes(read) => {
+            let chosen = Chosen { per_strand: options.per_strand, frame: options.frame };
+            read(&bytes, chosen).map_err(|error| error.of(path))
+        }
         Reader::Project => {
             let project = project::read(&bytes).map_err(|error| error.of(path))?;
             let folder = path.parent().unwrap_or(Path::new(""));
@@ -228,11 +239,11 @@ fn joined(
             let expected = format!("{MAX_STRANDS} strands of {MAX_POINTS} points at most");
             return Err(GroomError::from(SettingError::new("the groom", found, expected)).of(&path));
         }
-        for lost in Part::ALL
+        for lost in Attribute::ALL
             .into_iter()
-            .filter(|lost| *lost != Part::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
+            .filter(|lost| *lost != Attribute::Widths && lost.is_in(&whole.groom) != lost.is_in(&part.groom))
         {
-            if !matches!(lost, Part::WidthsAlong | Part::GroupNames) {
+            if !matches!(lost, Attribute::WidthsAlong | Attribute::GroupNames) {
                 whole.problems.push(format!("only some of the files have {}: left out", lost.name()));
             }
         }
@@ -282,6 +293,7 @@ pub fn prepare(parsed: Parsed, options: &LoadOptions) -> Result<Loaded, GroomErr
         Cleaning::Named => problems.extend(groom.strays(HINT)),
         Cleaning::Strays | Cleaning::All => problems.extend(groom.leave_out_strays()),
     }
+    problems.extend(groom.rooted(options.root_end, options.cleaning, HINT));
     let scale = match options.scale {
         Scale::Factor(factor) => factor,
         Scale::Auto => plausible_scale(&groom),

@@ -3,10 +3,14 @@
 //! Readers work on bytes in memory, check every size in 64-bit arithmetic before they allocate,
 //! and never allocate more than a small multiple of their input.
 
+mod attribute;
 pub mod bin;
 mod bytes;
+mod chosen;
 mod cleaning;
 pub mod data;
+mod ends;
+mod fitted;
 pub mod hair;
 mod headerless;
 mod joining;
@@ -14,7 +18,6 @@ mod load;
 pub mod npy;
 pub mod npz;
 pub mod obj;
-mod part;
 pub mod ply;
 pub mod project;
 mod registry;
@@ -25,9 +28,12 @@ pub mod tfx;
 mod tfx_text;
 pub mod usda;
 
+pub use attribute::Attribute;
+pub use chosen::Chosen;
 pub use cleaning::Cleaning;
+pub use ends::{RootEnd, from_tip_note};
+pub use fitted::Fitted;
 pub use load::{LoadOptions, Loaded, Scale, Up, load, load_all, prepare, sieved};
-pub use part::Part;
 pub use registry::{FORMATS, Format, Read, Reader, Write, endings};
 pub use report::{Counts, GroupOf, Lengths, Report};
 pub use save::{Saved, save};

@@ -16,9 +16,10 @@ pub(super) struct Array<'a> {
 }
 
 impl Array<'_> {
-    /// The first `count` numbers.
-    pub fn first_floats(&self, count: usize) -> Vec<f32> {
-        self.kind.numbers(&self.bytes).take(count).map(|number| number as f32).collect()
+    /// `count` numbers from the one with the index `first` on.
+    pub fn floats_from(&self, first: usize, count: usize) -> Vec<f32> {
+        let bytes = self.bytes.get(first * self.kind.bytes() as usize..).unwrap_or_default();
+        self.kind.numbers(bytes).take(count).map(|number| number as f32).collect()
     }
 
     /// All numbers, which are whole ones from 0 on.
@@ -52,7 +53,7 @@ pub(super) fn refused(source: &Source, error: NpzError) -> GroomError {
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".npy" };
     let Bare { kind, shape, bytes } = Bare::new(bytes).map_err(|error| refused(&source, error))?;
-    let array = Array { shape, kind, bytes: bytes.into() };
+    let array = Array { shape, kind, bytes };
     let groom = strands(&source, &array, per_strand)?;
     Ok(Parsed { format: ".npy", groom, problems: Vec::new() })
 }
@@ -68,7 +69,7 @@ pub(super) fn strands(source: &Source, array: &Array, per_strand: Option<u32>) -
         }
         _ => return Err(source.error(format!("an array {:?}", array.shape), "[strand, point, 3]")),
     };
-    even(source, count, each, |count| points(array, count))
+    even(source, count, each, |count| points(array, 0, count))
 }
 
 /// Number of strands that `points` points make, and `each`, the points of one.
@@ -97,9 +98,9 @@ pub(super) fn even(
     Ok(Groom { starts, points: points(count * each), ..Groom::empty(0.0) })
 }
 
-/// The first `count` positions of an array.
-pub(super) fn points(array: &Array, count: u64) -> Vec<Vec3> {
-    array.first_floats(3 * count as usize).chunks_exact(3).map(Vec3::from_slice).collect()
+/// `count` positions of an array from the one with the index `first` on.
+pub(super) fn points(array: &Array, first: u64, count: u64) -> Vec<Vec3> {
+    array.floats_from(3 * first as usize, 3 * count as usize).chunks_exact(3).map(Vec3::from_slice).collect()
 }
 
 /// Writes a `.npy` file: an array \[strand, point, 3\].

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 use strandline_base::npz::{self, Kind, Npz};
 
 use super::bytes::Source;
+use super::chosen::Chosen;
 use super::npy::{self as array, Array, refused};
-use super::{MAX_POINTS, MAX_STRANDS, Parsed, Part};
+use super::{Attribute, MAX_POINTS, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError, Influences, Widths};
 
 /// Names of arrays of points; the first that is present counts.
@@ -36,6 +37,8 @@ struct Meta {
 struct Arrays<'a> {
     source: Source<'a>,
     npz: Npz<Cursor<&'a [u8]>>,
+    /// Frame of a moving cache.
+    frame: u64,
 }
 
 impl<'a> Arrays<'a> {
@@ -48,7 +51,7 @@ impl<'a> Arrays<'a> {
             let found = format!("arrays of {total} bytes in an archive of {}", bytes.len());
             return Err(source.error(found, format!("{most} bytes at most; store them with `numpy.savez`")));
         }
-        Ok(Self { source, npz })
+        Ok(Self { source, npz, frame: 0 })
     }
 
     /// True if an array of this name is present.
@@ -76,19 +79,21 @@ impl<'a> Arrays<'a> {
 
     /// The numbers of an array of rows of `columns` numbers.
     fn floats(&mut self, name: &str, rows: usize, columns: usize) -> Result<Option<Vec<f32>>, GroomError> {
+        let frame = self.frame;
         self.with(name, |source, array| {
-            let is_rows = match array.shape[..] {
-                [found] => columns == 1 && found == rows as u64,
-                [found, each] => found == rows as u64 && each == columns as u64,
-                // Frames of a moving cache: the first one counts.
-                [frames, found, each] => frames > 0 && found == rows as u64 && each == columns as u64,
-                _ => false,
+            let fits = |found: u64, each: u64| found == rows as u64 && each == columns as u64;
+            let first = match array.shape[..] {
+                [found] if fits(found, 1) => Some(0),
+                [found, each] if fits(found, each) => Some(0),
+                // Frames of a moving cache.
+                [frames, found, each] if frame < frames && fits(found, each) => Some(frame as usize),
+                _ => None,
             };
-            if !is_rows {
+            let Some(first) = first else {
                 let found = format!("`{name}` of shape {:?}", array.shape);
                 return Err(source.error(found, format!("[{rows}, {columns}]")));
-            }
-            Ok(array.first_floats(rows * columns))
+            };
+            Ok(array.floats_from(first * rows * columns, rows * columns))
         })
     }
 
@@ -116,9 +121,18 @@ impl<'a> Arrays<'a> {
 /// # Errors
 /// [`GroomError::Malformed`] with the error; arrays that do not fit each other.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
+    read_frame(bytes, Chosen { per_strand, frame: None })
+}
+
+/// Reads a `.npz` file; a moving cache gives the strands of a frame where they lie in the world.
+///
+/// # Errors
+/// As [`read`]; a frame that the file does not have.
+pub(super) fn read_frame(bytes: &[u8], chosen: Chosen) -> Result<Parsed, GroomError> {
     let mut arrays = Arrays::new(bytes)?;
+    arrays.frame = chosen.frame.unwrap_or(0).into();
     let mut problems = Vec::new();
-    let mut groom = places(&mut arrays, per_strand, &mut problems)?;
+    let mut groom = places(&mut arrays, chosen, &mut problems)?;
     let (strands, points) = (groom.strand_count(), groom.points.len());
     if let Some(widths) = arrays.floats("widths", points, 1)? {
         groom.widths = Widths::PerPoint(widths);
@@ -144,34 +158,41 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
 }
 
 /// The strands alone.
-fn places(
-    arrays: &mut Arrays,
-    per_strand: Option<u32>,
-    problems: &mut Vec<String>,
-) -> Result<Groom, GroomError> {
+fn places(arrays: &mut Arrays, chosen: Chosen, problems: &mut Vec<String>) -> Result<Groom, GroomError> {
     let Some(name) = PLACES.iter().find(|name| arrays.has(name)) else {
         let names: Vec<&str> = arrays.npz.names().take(8).collect();
         return Err(arrays.source.error(format!("the arrays {names:?}"), "one of `points` or `positions`"));
     };
     let starts = arrays.with("starts", |source, array| array.whole(source, "starts"))?;
     let placed = arrays.with(name, |source, array| match &starts {
-        None => Ok((array::strands(source, array, per_strand)?, 1)),
-        Some(starts) => from_starts(source, array, starts),
+        None => Ok((array::strands(source, array, chosen.per_strand)?, 1)),
+        Some(starts) => from_starts(source, array, starts, chosen.frame.unwrap_or(0).into()),
     })?;
     let (groom, frames) = placed.expect("the array is there");
     if frames > 1 {
-        problems.push(format!("it holds {frames} frames: the strands of the first are taken"));
+        problems.push(match chosen.frame {
+            None => format!("it holds {frames} frames: the strands of the first are taken"),
+            Some(frame) => format!("it holds {frames} frames: the strands of frame {frame} are taken"),
+        });
     }
     Ok(groom)
 }
 
-/// Strands that begin at `starts` in an array of points or of frames of points, and the number of frames.
-fn from_starts(source: &Source, array: &Array, starts: &[u32]) -> Result<(Groom, u64), GroomError> {
+/// Strands that begin at `starts` in an array of points or in a frame of points, and the number of frames.
+fn from_starts(
+    source: &Source,
+    array: &Array,
+    starts: &[u32],
+    frame: u64,
+) -> Result<(Groom, u64), GroomError> {
     let (frames, points) = match array.shape[..] {
         [points, 3] => (1, points),
         [frames, points, 3] if frames > 0 => (frames, points),
         _ => return Err(source.error(format!("`points` of shape {:?}", array.shape), "[point, 3]")),
     };
+    if frame >= frames {
+        return Err(source.error(format!("{frames} frames"), format!("a frame {frame}, counted from 0")));
+    }
     let rising = starts.windows(2).all(|pair| pair[0] <= pair[1]);
     let whole = starts.first() == Some(&0) && starts.last().map(|last| u64::from(*last)) == Some(points);
     let strands = starts.len() as u64 - u64::from(!starts.is_empty());
@@ -181,7 +202,7 @@ fn from_starts(source: &Source, array: &Array, starts: &[u32]) -> Result<(Groom,
             source.error(found, "the first point of each strand, rising from 0, and the number of points")
         );
     }
-    let points = array::points(array, points);
+    let points = array::points(array, frame * points, points);
     Ok((Groom { starts: starts.to_vec(), points, ..Groom::empty(0.0) }, frames))
 }
 
@@ -227,7 +248,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         vec![vectors("points", points, &groom.points), whole("starts", &[strands + 1], &groom.starts)];
     match &groom.widths {
         Widths::PerPoint(widths) => arrays.push(floats("widths", &[points], widths)),
-        _ if Part::Widths.is_in(groom) => {
+        _ if Attribute::Widths.is_in(groom) => {
             arrays.push(npz::Array::f32s("strand_widths", &[strands], groom.root_widths()));
         }
         // The width that a reader gives where a file has none is left out.

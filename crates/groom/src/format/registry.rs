@@ -2,12 +2,17 @@
 
 use std::path::Path;
 
-use super::part::Part::{self, *};
+use super::attribute::Attribute::{self, *};
+use super::chosen::Chosen;
+use super::fitted::Fitted;
 use super::{Parsed, bin, data, hair, npy, npz, obj, ply, tfx, usda};
 use crate::{Groom, GroomError};
 
-/// Parser of bytes; it takes the number of points per strand for files that leave it open.
-pub type Read = fn(&[u8], Option<u32>) -> Result<Parsed, GroomError>;
+/// Parser of bytes.
+pub type Read = fn(&[u8], Chosen) -> Result<Parsed, GroomError>;
+/// Changes a groom so that it fits the limits of a format.
+pub type Fit = fn(&Groom) -> Result<Fitted, GroomError>;
+
 /// Writer of bytes.
 pub type Write = fn(&Groom) -> Result<Vec<u8>, GroomError>;
 
@@ -31,8 +36,10 @@ pub struct Format {
     pub read: Reader,
     /// Its writer, if there is one.
     pub write: Option<Write>,
+    /// Changes that make a groom fit its limits, where it has some.
+    pub fit: Option<Fit>,
     /// Attributes that it holds beside points.
-    pub holds: &'static [Part],
+    pub holds: &'static [Attribute],
     /// Most memory of reading for each byte of a file \[byte\]: the file and its content. Text is shorter
     /// than its numbers.
     pub taken: u64,
@@ -43,16 +50,18 @@ pub const FORMATS: [Format; 10] = [
     Format {
         ending: "hair",
         about: "HAIR of Cem Yuksel",
-        read: Reader::Bytes(hair::read),
+        read: Reader::Bytes(|bytes, chosen| hair::read(bytes, chosen.per_strand)),
         write: Some(hair::write),
+        fit: None,
         holds: &[Widths, WidthsAlong, Colors, Transparencies],
         taken: 2,
     },
     Format {
         ending: "tfx",
-        about: "TressFX 2 (text), 3 and 4, written as 4; strands of one number of points",
+        about: "TressFX 2 (text), 3 and 4, written as 4 with 4, 8, 16, 32 or 64 points a strand",
         read: Reader::Bytes(|bytes, _| tfx::read(bytes)),
         write: Some(tfx::write),
+        fit: Some(tfx::fitted),
         holds: &[Widths, Colors, RootUvs],
         taken: 2,
     },
@@ -61,14 +70,16 @@ pub const FORMATS: [Format; 10] = [
         about: "a project of TressFX 3: each of its .tfx files becomes a group",
         read: Reader::Project,
         write: None,
+        fit: None,
         holds: &[],
         taken: 2,
     },
     Format {
         ending: "data",
         about: "USC-HairSalon: points alone",
-        read: Reader::Bytes(data::read),
+        read: Reader::Bytes(|bytes, chosen| data::read(bytes, chosen.per_strand)),
         write: Some(data::write),
+        fit: None,
         holds: &[],
         taken: 2,
     },
@@ -76,32 +87,36 @@ pub const FORMATS: [Format; 10] = [
         ending: "bin",
         about: "CT2Hair: points, written in metres (its own files are in millimetres); normals and labels are not read, \
                 and written as 0",
-        read: Reader::Bytes(bin::read),
+        read: Reader::Bytes(|bytes, chosen| bin::read(bytes, chosen.per_strand)),
         write: Some(bin::write),
+        fit: None,
         holds: &[],
         taken: 2,
     },
     Format {
         ending: "ply",
         about: "vertices with `strand` and `edge` elements, edges alone, or bare vertices with `--per-strand N`",
-        read: Reader::Bytes(ply::read),
+        read: Reader::Bytes(|bytes, chosen| ply::read(bytes, chosen.per_strand)),
         write: Some(ply::write),
-        holds: &Part::ALL,
+        fit: None,
+        holds: &Attribute::ALL,
         taken: 16,
     },
     Format {
         ending: "npz",
         about: "NumPy arrays by name: `points` and `starts`, or `positions` [strand, point, 3]",
-        read: Reader::Bytes(npz::read),
+        read: Reader::Bytes(npz::read_frame),
         write: Some(npz::write),
-        holds: &Part::ALL,
+        fit: None,
+        holds: &Attribute::ALL,
         taken: 2,
     },
     Format {
         ending: "npy",
         about: "one NumPy array [strand, point, 3]; points alone",
-        read: Reader::Bytes(npy::read),
+        read: Reader::Bytes(|bytes, chosen| npy::read(bytes, chosen.per_strand)),
         write: Some(npy::write),
+        fit: None,
         holds: &[],
         taken: 2,
     },
@@ -110,14 +125,16 @@ pub const FORMATS: [Format; 10] = [
         about: "lines (`l`), with groups by `g` and colours behind vertices",
         read: Reader::Bytes(|bytes, _| obj::read(bytes)),
         write: Some(obj::write),
+        fit: None,
         holds: &[Colors, Groups, GroupNames],
         taken: 8,
     },
     Format {
         ending: "usda",
-        about: "text USD: `BasisCurves` of a stage at its first time, in its units and axes",
-        read: Reader::Bytes(|bytes, _| usda::read(bytes)),
+        about: "text USD: `BasisCurves` of a stage at one of its times, in its units and axes",
+        read: Reader::Bytes(|bytes, chosen| usda::read_at(bytes, chosen.frame)),
         write: None,
+        fit: None,
         holds: &[],
         taken: 16,
     },

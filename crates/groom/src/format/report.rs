@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::Part;
+use super::Attribute;
 use crate::Groom;
 
 /// Contents of a file.
@@ -78,7 +78,11 @@ impl Report {
             },
             bounds_m: [bounds.min.to_array(), bounds.max.to_array()],
             scale,
-            attributes: Part::ALL.into_iter().filter(|part| part.is_in(groom)).map(Part::name).collect(),
+            attributes: Attribute::ALL
+                .into_iter()
+                .filter(|attribute| attribute.is_in(groom))
+                .map(Attribute::name)
+                .collect(),
             groups: groups(groom),
             problems,
         }

@@ -4,18 +4,21 @@ use std::path::Path;
 
 use strandline_base::WholeFile;
 
-use super::{Format, Part, endings};
+use super::{Attribute, Fitted, Format, endings};
 use crate::{Groom, GroomError};
 
-/// Attributes that the writer left out.
+/// Attributes that the writer left out, and changes that it made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Saved {
     /// Parts of the groom that the format cannot hold.
     pub left_out: Vec<&'static str>,
+    /// Changes that made the groom fit the format, human-readable.
+    pub notes: Vec<String>,
 }
 
 impl Groom {
-    /// Writes a file of the format that its ending names; returns the attributes that the format could not hold.
+    /// Writes a file of the format that its ending names; returns the attributes that the format could not hold and the
+    /// changes that made the groom fit.
     ///
     /// # Errors
     /// See [`GroomError`].
@@ -37,17 +40,19 @@ pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
             path: path.to_owned(),
         });
     };
-    let is_lost = |part: &Part| part.is_in(groom) && !format.holds.contains(part);
-    let mut lost: Vec<Part> = Part::ALL.into_iter().filter(is_lost).collect();
+    let is_lost = |attribute: &Attribute| attribute.is_in(groom) && !format.holds.contains(attribute);
+    let mut lost: Vec<Attribute> = Attribute::ALL.into_iter().filter(is_lost).collect();
     // One of the two says it all.
-    if lost.contains(&Part::Widths) {
-        lost.retain(|part| *part != Part::WidthsAlong);
+    if lost.contains(&Attribute::Widths) {
+        lost.retain(|attribute| *attribute != Attribute::WidthsAlong);
     }
-    let bytes = write(groom).map_err(|error| error.of(path))?;
+    let fitted = format.fit.map(|fit| fit(groom)).transpose().map_err(|error| error.of(path))?;
+    let Fitted { groom: changed, notes } = fitted.unwrap_or_default();
+    let bytes = write(changed.as_ref().unwrap_or(groom)).map_err(|error| error.of(path))?;
     WholeFile::save(path, &bytes).map_err(|source| GroomError::File {
         action: "write",
         path: path.to_owned(),
         source,
     })?;
-    Ok(Saved { left_out: lost.into_iter().map(Part::name).collect() })
+    Ok(Saved { left_out: lost.into_iter().map(Attribute::name).collect(), notes })
 }

@@ -1,13 +1,17 @@
 //! `.tfx`, the format of TressFX: versions 2 (text) and 3 (read) and 4 (read and write).
 
 use super::bytes::{Source, put, put_u32, vec2, vec3};
-use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, Part, tfx_text};
+use super::fitted::Fitted;
+use super::{Attribute, MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, tfx_text};
 use crate::{Groom, GroomError, Widths};
 
 const HEADER_3: u64 = 296;
 const HEADER_4: u64 = 160;
 /// Diameter \[file units\] of a file without one.
 const DEFAULT_WIDTH: f32 = 0.0;
+/// Points of a strand that TressFX takes, and the fewest strands.
+const COUNTS: [usize; 5] = [4, 8, 16, 32, 64];
+const FEWEST_STRANDS: usize = 64;
 
 /// Counts of a header and where its arrays begin; 0 is "not there".
 struct Layout {
@@ -141,6 +145,31 @@ fn check(source: &Source, layout: &Layout) -> Result<(), GroomError> {
     Ok(())
 }
 
+/// Resamples a groom to a number of points that TressFX takes, where it has another one; notes on that.
+///
+/// # Errors
+/// A groom that cannot be resampled.
+pub(super) fn fitted(groom: &Groom) -> Result<Fitted, GroomError> {
+    let mut notes = Vec::new();
+    if groom.strand_count() < FEWEST_STRANDS {
+        notes.push(format!(
+            "TressFX takes {FEWEST_STRANDS} strands or more: the file has {}",
+            groom.strand_count()
+        ));
+    }
+    let counts = || groom.starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize);
+    let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
+    if least == most && COUNTS.contains(&most) {
+        return Ok(Fitted { groom: None, notes });
+    }
+    let count = COUNTS.into_iter().find(|count| *count >= most).unwrap_or(COUNTS[COUNTS.len() - 1]);
+    let found = if least == most { most.to_string() } else { format!("{least} to {most}") };
+    notes.push(format!(
+        "TressFX takes 4, 8, 16, 32 or 64 points a strand: strands of {found} are resampled to {count}"
+    ));
+    Ok(Fitted { groom: Some(groom.resampled(count)?), notes })
+}
+
 /// Writes a `.tfx` file of version 4: the first two points of each strand are marked as fixed.
 ///
 /// # Errors
@@ -162,7 +191,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         None => put(&mut body, std::iter::repeat_n(0.0, 2 * strands)),
     }
     // A default width, taken because a file had none, is no attribute.
-    if Part::Widths.is_in(groom) {
+    if Attribute::Widths.is_in(groom) {
         offsets[3] = here(&body);
         let starts = groom.starts.iter().take(strands);
         put(&mut body, starts.enumerate().map(|(strand, first)| groom.widths.at(strand, *first as usize)));

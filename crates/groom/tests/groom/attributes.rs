@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::{Vec2, Vec3};
 use strandline_groom::format::{
-    FORMATS, LoadOptions, Part, Scale, bin, data, load, load_all, npy, npz, obj, ply,
+    Attribute, FORMATS, LoadOptions, Scale, bin, data, load, load_all, npy, npz, obj, ply,
 };
 use strandline_groom::{Groom, GroomError, Influences, Widths};
 
@@ -34,21 +34,21 @@ fn everything() -> Groom {
 }
 
 /// True if two grooms are the same in one attribute.
-fn agree(part: Part, one: &Groom, two: &Groom) -> bool {
+fn agree(part: Attribute, one: &Groom, two: &Groom) -> bool {
     let along = |groom: &Groom| groom.point_widths().collect::<Vec<_>>();
     match part {
-        Part::Widths => one.root_widths().eq(two.root_widths()),
-        Part::WidthsAlong => along(one) == along(two),
-        Part::Colors => one.colors == two.colors,
-        Part::Transparencies => one.transparencies == two.transparencies,
-        Part::RootUvs => one.root_uvs == two.root_uvs,
-        Part::RootNormals => one.root_normals == two.root_normals,
-        Part::Groups => one.groups == two.groups,
-        Part::GroupNames => one.group_names == two.group_names,
-        Part::GuideFlags => one.guide_flags == two.guide_flags,
-        Part::Influences => one.influences == two.influences,
-        Part::Masses => one.masses == two.masses,
-        Part::Velocities => one.velocities == two.velocities,
+        Attribute::Widths => one.root_widths().eq(two.root_widths()),
+        Attribute::WidthsAlong => along(one) == along(two),
+        Attribute::Colors => one.colors == two.colors,
+        Attribute::Transparencies => one.transparencies == two.transparencies,
+        Attribute::RootUvs => one.root_uvs == two.root_uvs,
+        Attribute::RootNormals => one.root_normals == two.root_normals,
+        Attribute::Groups => one.groups == two.groups,
+        Attribute::GroupNames => one.group_names == two.group_names,
+        Attribute::GuideFlags => one.guide_flags == two.guide_flags,
+        Attribute::Influences => one.influences == two.influences,
+        Attribute::Masses => one.masses == two.masses,
+        Attribute::Velocities => one.velocities == two.velocities,
     }
 }
 
@@ -65,10 +65,11 @@ fn every_format_keeps_a_part_to_the_bit_or_names_it_as_lost() {
         let left_out = whole.save(&path).unwrap().left_out;
         let read = load(&path, &as_it_is()).unwrap().groom;
         assert_eq!((&read.points, &read.starts), (&whole.points, &whole.starts), ".{}", format.ending);
-        for part in Part::ALL {
+        for part in Attribute::ALL {
             let is_named = left_out.contains(&part.name());
             // Widths that are lost are not named twice.
-            let is_named = is_named || part == Part::WidthsAlong && left_out.contains(&Part::Widths.name());
+            let is_named =
+                is_named || part == Attribute::WidthsAlong && left_out.contains(&Attribute::Widths.name());
             assert_eq!(agree(part, &whole, &read), !is_named, ".{}: {}", format.ending, part.name());
         }
     }
@@ -110,7 +111,7 @@ fn files_of_parts_become_groups_of_one_groom() {
         "version 3.0\nback.tfx 4 0.4 5.0 back.tfxsim the-back # a part\nfringe.tfx\nhairColor 1 0.5 0\n";
     std::fs::write(&project, text).unwrap();
     let whole = load(&project, &as_it_is()).unwrap().groom;
-    assert_eq!(whole.starts, [0, 2, 4]);
+    assert_eq!(whole.starts, [0, 4, 8], "strands of two points are written with four");
     assert_eq!(whole.groups, Some(vec![0, 1]));
     assert_eq!(whole.group_names[&0], "the-back");
     assert_eq!(whole.group_names[&1], "fringe");
@@ -169,10 +170,7 @@ fn sizes_that_no_file_has_are_refused_before_memory_is_taken() {
     refused(npy::read(&array("(4000000000, 4000000000, 3)"), None), &["0 bytes behind the header"]);
     refused(npy::read(&array("(8000000, 4096, 3)"), None), &["0 bytes behind"]);
     refused(npy::read(&array("(0, 4, 3)"), None), &["0 strands of 4 points"]);
-    refused(
-        npy::read(&header("{'descr': '>f4', 'shape': (1, 2, 3)}"), None),
-        &["type `>f4`", "little-endian"],
-    );
+    refused(npy::read(&header("{'descr': '<c8', 'shape': (1, 2, 3)}"), None), &["type `<c8`", "big-endian"]);
     refused(npy::read(b"\x93NUMPY\x02\x00\xff\xff\xff\xff", None), &["a header of 4294967295 bytes"]);
     let vertices = |count: &str| {
         format!(

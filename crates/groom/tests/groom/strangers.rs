@@ -1,8 +1,9 @@
 //! Files of other programs: segments, marks, old versions, no headers.
 
 use glam::{Vec2, Vec3};
-use strandline_groom::Groom;
-use strandline_groom::format::{bin, data, hair, obj, ply, tfx, usda};
+use strandline_base::npz;
+use strandline_groom::format::{LoadOptions, Scale, bin, data, hair, load, obj, ply, tfx, usda};
+use strandline_groom::{Groom, Widths};
 
 /// Three strands of four points.
 fn strands() -> Vec<Vec<Vec3>> {
@@ -255,4 +256,94 @@ fn files_of_other_programs_are_told_the_way_in() {
     }
     std::fs::write(folder.path().join("a.usd"), seed("own")).unwrap();
     assert_eq!(Groom::load(folder.path().join("a.usd")).unwrap().strand_count(), 2);
+}
+
+#[test]
+fn values_of_curves_are_read_by_their_number_and_others_are_named() {
+    let curves = |more: &str| {
+        let text = format!(
+            "#usda 1.0\n(\nmetersPerUnit = 1\n)\ndef BasisCurves \"fur\" {{\nuniform token type = \"linear\"\n\
+             int[] curveVertexCounts = [2, 3]\npoint3f[] points = [(0,0,0), (0,1,0), (1,0,0), (1,1,0), (1,2,0)]\n{more}\n}}\n"
+        );
+        usda::read(text.as_bytes()).unwrap()
+    };
+    for (name, more) in [
+        ("widths", "float[] widths = [1, 2, 3]"),
+        ("colours", "color3f[] primvars:displayColor = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1)]"),
+        ("root coordinates", "texCoord2f[] primvars:st = [(0, 0), (0, 1), (1, 1)]"),
+        ("groups", "int[] primvars:group_id = [1, 2, 3]"),
+    ] {
+        let parsed = curves(more);
+        let values = if name == "colours" { 4 } else { 3 };
+        let expected = format!("{name} of `fur` are not read: {values} values for 2 curves of 5 points");
+        assert_eq!(parsed.problems, [expected]);
+        let groom = parsed.groom;
+        let has = (groom.widths.clone(), groom.colors.is_some(), groom.root_uvs, groom.groups);
+        assert_eq!(has, (Widths::Constant(0.0), false, None, None), "{name}");
+    }
+    let of_points = curves("texCoord2f[] primvars:st = [(0.1, 0), (0, 0), (0.2, 1), (0, 0), (0, 0)]");
+    let uvs = of_points.groom.root_uvs.unwrap();
+    assert_eq!((uvs[0].x, uvs[1].x, of_points.problems), (0.1, 0.2, Vec::new()), "those of the roots");
+    let one = curves("int[] primvars:group_id = [7]\nfloat[] widths = [0.5]").groom;
+    assert_eq!((one.groups, one.widths), (Some(vec![7; 2]), Widths::PerPoint(vec![0.5; 5])));
+}
+
+#[test]
+fn tfx_files_have_numbers_of_points_that_tressfx_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.tfx");
+    let of = |strands: usize, points: &[usize]| {
+        let mut groom = Groom::empty(9e-5);
+        for strand in 0..strands {
+            let count = points[strand % points.len()];
+            groom.push((0..count).map(|point| Vec3::new(strand as f32, point as f32, 0.0) * 0.01));
+        }
+        groom
+    };
+    for (counts, written) in [(&[24][..], 32), (&[2], 4), (&[5, 9], 16), (&[100], 64), (&[3, 16], 16)] {
+        let notes = of(64, counts).save(&path).unwrap().notes;
+        assert!(notes.len() == 1 && notes[0].ends_with(&format!("resampled to {written}")), "{notes:?}");
+        let read = Groom::load(&path).unwrap();
+        assert!(read.starts.windows(2).all(|pair| pair[1] - pair[0] == written), "{counts:?}");
+        let (length, own) = (read.lengths()[1], of(64, counts).lengths()[1]);
+        assert!((length - own).abs() < 1e-5, "{counts:?}: {length} {own}");
+    }
+    let kept = of(64, &[16]);
+    assert!(kept.save(&path).unwrap().notes.is_empty());
+    assert_eq!(Groom::load(&path).unwrap().points, kept.points);
+    let notes = of(20, &[16]).save(&path).unwrap().notes;
+    assert_eq!(notes, ["TressFX takes 64 strands or more: the file has 20"]);
+}
+
+#[test]
+fn a_frame_of_moving_hair_is_chosen() {
+    let text = "#usda 1.0\n(\nmetersPerUnit = 1\n)\ndef BasisCurves \"fur\" {\nuniform token type = \"linear\"\n\
+                int[] curveVertexCounts = [2]\npoint3f[] points.timeSamples = {\n\
+                1: [(0,0,0), (0,1,0)],\n2.5: [(0,0,0), (0,2,0)],\n7: [(0,0,0), (0,3,0)],\n}\n}\n";
+    let length = |frame: Option<u32>| {
+        let parsed = usda::read_at(text.as_bytes(), frame).unwrap();
+        assert_eq!(parsed.problems.len(), 1, "{:?}", parsed.problems);
+        parsed.groom.points[1].y
+    };
+    let found = [None, Some(0), Some(1), Some(2), Some(3), Some(6), Some(7), Some(90)].map(length);
+    assert_eq!(found, [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("moving.npz");
+    let places = (0..3).flat_map(|frame| [[0.0_f32; 3], [0.0, 1.0 + frame as f32, 0.0]]).flatten();
+    let arrays = [
+        npz::Array::f32s("points", &[3, 2, 3], places),
+        npz::Array::u32s("starts", &[2], [0, 2]),
+        npz::Array::f32s("velocities", &[3, 2, 3], (0..18).map(|number| number as f32)),
+    ];
+    std::fs::write(&path, npz::pack(&arrays)).unwrap();
+    let read = |frame: Option<u32>| {
+        let options = LoadOptions { scale: Scale::Factor(1.0), frame, ..LoadOptions::default() };
+        load(&path, &options).map(|loaded| (loaded.groom.points[1].y, loaded.groom.velocities.unwrap()[0].x))
+    };
+    assert_eq!(
+        [None, Some(1), Some(2)].map(|frame| read(frame).unwrap()),
+        [(1.0, 0.0), (2.0, 6.0), (3.0, 12.0)]
+    );
+    let refused = read(Some(3)).unwrap_err().to_string();
+    assert!(refused.contains("3 frames, expected a frame 3"), "{refused}");
 }

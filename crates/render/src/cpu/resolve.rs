@@ -16,7 +16,7 @@ const KNEE: f32 = 0.6;
 /// 0.2 of an 8-bit step.
 const TABLE: usize = 16_384;
 
-/// The stage and what it keeps from frame to frame.
+/// The stage and its state from frame to frame.
 #[derive(Debug)]
 pub struct Resolve {
     /// 8-bit sRGB of linear light 0..1 in equal steps.
@@ -92,8 +92,8 @@ fn straight(color: Vec4) -> Vec3 {
 impl ToneMap {
     /// Brings linear light into 0..1.
     ///
-    /// The filmic curve works on the largest component and scales the others along, so that hue stays;
-    /// what the curve takes away turns the colour toward white, as film does. That of ACES works on each.
+    /// The filmic curve maps the largest component and scales the others along, so that hue stays; the compression turns
+    /// the colour toward white, as film does. The curve of ACES maps each component.
     #[inline]
     pub fn apply(self, light: Vec3) -> Vec3 {
         let light = light.max(Vec3::ZERO);

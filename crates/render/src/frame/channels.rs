@@ -26,8 +26,10 @@ impl Known {
     /// The channels of a picture.
     pub fn layers(self, settings: &PictureSettings) -> Layers {
         let Self { light, covered, directions, bodies, strands } = self;
-        let depth = |(hair, body): (&Vec4, &f32)| {
-            if hair.x >= 0.5 || (*body == 0.0 && hair.x > 0.0) { hair.y / hair.x } else { *body }
+        let depth = |(hair, body): (&Vec4, &f32)| match (hair.x, *body) {
+            (covered, body) if covered >= 0.5 || (body == 0.0 && covered > 0.0) => hair.y / covered,
+            (_, 0.0) => f32::INFINITY,
+            (_, body) => body,
         };
         let tangent = |(way, hair): (&Vec4, &Vec4)| way.truncate() / hair.x.max(1e-6);
         let tangents: Vec<Vec3> = directions.iter().zip(&covered).map(tangent).collect();

@@ -29,8 +29,8 @@ pub(crate) fn body_depths(samples: &Samples, scale: usize) -> Vec<f32> {
     (0..width * height).map(nearest).map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 }).collect()
 }
 
-/// Number of the strand, from 1, that is nearest in every pixel of `scale` samples a side, 0 where there is none or the
-/// body hides it. Strands are taken as lines.
+/// Number of the nearest strand, from 1, in every pixel of `scale` samples a side; 0 without one, or where the body hides
+/// it. Strands count as lines.
 pub(crate) fn nearest_strands(
     strands: &Strands,
     camera: &Camera,

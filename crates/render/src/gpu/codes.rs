@@ -17,7 +17,7 @@ pub const SPOT: u32 = 1;
 pub const POINT: u32 = 2;
 pub const SURFACE: u32 = 3;
 
-/// Bodies: none, one that light passes between its edges, and one of which every edge joins two triangles.
+/// Kinds of bodies: none, an open mesh, and a closed mesh, each of whose edges joins two triangles.
 pub const NO_BODY: u32 = 0;
 pub const OPEN: u32 = 1;
 pub const CLOSED: u32 = 2;

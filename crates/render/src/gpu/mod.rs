@@ -26,6 +26,7 @@ mod strands;
 pub use linked::modules;
 pub use renderer::GpuRenderer;
 pub use stages::declarations;
+pub use strands::bound_solids::DeviceSolids;
 pub use strands::device_points::DevicePoints;
 
 /// Most lights of a picture.

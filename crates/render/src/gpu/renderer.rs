@@ -15,9 +15,8 @@ use super::scene::Scene;
 use super::shade::{LayerColoring, Numbers};
 use super::skin::Skin;
 use super::stages::{Kernels, Stages};
-use super::strands::device_points::DevicePoints;
-use super::strands::points::GuidePoints;
-use super::strands::tessellate;
+use super::strands::bound_solids::DeviceSolids;
+use super::strands::{device_points::DevicePoints, points::GuidePoints, tessellate};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw};
 use crate::frame::{bounds, middle};
 use crate::lights::at_samples;
@@ -139,12 +138,18 @@ impl GpuRenderer {
     }
 
     /// Lets guides carry the renderer's strands, which are those of `binding`: the points of its pictures are from
-    /// now on those of the guides, and the device places the strands, out of the solids.
+    /// now on those of the guides, and the device places the strands, out of the solids. A simulation may have these on
+    /// the device already.
     ///
     /// # Errors
     /// Strands that are not the renderer's; whatever the device refuses.
-    pub fn bind(&mut self, binding: &Arc<Binding>, solids: &Solids) -> Result<(), RenderError> {
-        self.points.bind(&self.gpu, &self.groom, &self.guides, binding, solids)
+    pub fn bind(
+        &mut self,
+        binding: &Arc<Binding>,
+        solids: &Solids,
+        on_device: Option<DeviceSolids>,
+    ) -> Result<(), RenderError> {
+        self.points.bind(&self.gpu, &self.groom, &self.guides, binding, (solids, on_device))
     }
 
     /// As [`Renderer::show_layers`](crate::Renderer::show_layers).
@@ -382,13 +387,11 @@ impl GpuRenderer {
         let groom = &self.groom;
         groom.write_frame(scene)?;
         groom.bounds.write(&Groom::no_bounds())?;
-        strands.tables.write(&tessellate::tables(
-            scene.guide_points,
-            &scene.level,
-            &scene.input.look.clump,
-        ))?;
-        let scales = (0..scene.level.strand_count()).map(|index| scene.level.width_scale(index));
-        strands.scales.write(&scales.collect::<Vec<f32>>())?;
+        let clump = &scene.input.look.clump;
+        strands.tables.write(&tessellate::tables(scene.guide_points, &scene.level, clump))?;
+        let level = &scene.level;
+        let scales: Vec<f32> = (0..level.strand_count()).map(|index| level.width_scale(index)).collect();
+        strands.scales.write(&scales)?;
         if host_points {
             self.points.of_host(groom).write(floats(scene.input.positions))?;
         }

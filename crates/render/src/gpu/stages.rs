@@ -11,8 +11,8 @@ use super::shadow::{fit, opacity_depth, opacity_layers};
 use super::strands::{bind, interpolate, tessellate};
 use super::{draw, resolve, shade};
 
-/// Declares what of a frame is bound once for all pictures: each kernel, and each drawing with how it joins what is
-/// behind it, with its buffers. What compiles, keeps and binds them follows from that.
+/// Declares the kernels and drawings that are bound once for all pictures: each with its buffers, a drawing also with its
+/// blend mode. The code that compiles, keeps and binds them derives from that.
 macro_rules! stages {
     (
         |$groom:ident, $strands:ident, $maps:ident| { $($rooms:tt)* }

@@ -71,11 +71,11 @@ impl Source {
 
     /// A pigment as a share of that of the darkest hair.
     pub(crate) fn of_darkest(&self, pigment: Vec3) -> Vec3 {
-        // Channels without pigment in the darkest hair have none anywhere.
+        // Channels without pigment in the darkest hair have no pigment in any hair.
         Vec3::select(self.darkest.cmpgt(Vec3::ZERO), pigment / self.darkest, Vec3::ONE)
     }
 
-    /// That of the lightest hair; none where all is the same.
+    /// The same of the lightest hair; `None` where all hair is alike.
     pub(crate) fn lightest_of_darkest(&self) -> Option<Pigments> {
         let share = self.of_darkest(self.lightest);
         let even = share == Vec3::splat(share.x);

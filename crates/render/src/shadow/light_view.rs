@@ -1,4 +1,4 @@
-//! Views of lights: how points lie on the plane of a light, and the part of it that a map covers.
+//! Views of lights: the projection of points onto the plane of a light, and the section of it that a map covers.
 
 use glam::{Vec2, Vec3};
 use strandline_base::math;
@@ -55,7 +55,7 @@ impl LightView {
         }
     }
 
-    /// The unit direction on the plane that points down in the world; along the rows where none does.
+    /// Unit direction on the plane that points down in the world; +y where the plane is horizontal.
     pub(crate) fn down(&self) -> Vec2 {
         let down = -Vec2::new(self.right.y, self.up.y);
         if down.length() > 1e-3 { down.normalize() } else { Vec2::Y }
@@ -81,7 +81,7 @@ fn across(forward: Vec3) -> (Vec3, Vec3) {
     (Vec3::X - forward.x * turned, Vec3::Z - forward.z * turned)
 }
 
-/// A number rounded down to so many bits behind the first: steps that small changes rarely cross.
+/// A number rounded down to `bits` bits of its mantissa: small changes rarely cross such a step.
 pub(crate) fn stepped_down(number: f32, bits: u32) -> f32 {
     f32::from_bits(number.to_bits() & (u32::MAX << (23 - bits)))
 }

@@ -11,8 +11,8 @@ const FARTHEST: f32 = 0.15;
 
 impl ShadowMap {
     /// The share of light that the first layer takes away as red, the first two as green and all three
-    /// as blue [Chen2011 fig. 9]: what lies in the first layer is white, in the second cyan, in the third
-    /// blue, and black holds no hair. Neither tone map nor transfer curve is applied.
+    /// as blue [Chen2011 fig. 9]: hair in the first layer is white, in the second cyan, in the third blue; black is free
+    /// of hair. Neither tone map nor transfer curve is applied.
     pub fn opacity_picture(&self) -> Picture {
         self.picture(|texel| {
             [texel.x, texel.x + texel.y, texel.x + texel.y + texel.z]

@@ -8,7 +8,7 @@ use strandline_groom::Guides;
 
 /// Share of the surface of the box around the roots on which they lie.
 const COVERED: f32 = 0.4;
-/// One of so many roots at either end of an axis may lie anywhere: a strand that strayed is no part of the scalp.
+/// One in this many roots at either end of an axis is ignored as a stray, which is no part of the scalp.
 const STRAYS: usize = 50;
 
 /// Density of roots about every vertex over their mean density, 0 to 1; head space.

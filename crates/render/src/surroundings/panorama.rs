@@ -82,7 +82,7 @@ impl Panorama {
         &self.pixels
     }
 
-    /// Means of blocks, of at most so many rows where they can be divided.
+    /// Means of blocks, with at most `rows` rows if the number of rows can be halved so far.
     pub(super) fn reduced(&self, rows: usize) -> Self {
         let can = |of: &Self| of.size()[1] > rows && of.size()[1].is_multiple_of(2);
         if !can(self) {

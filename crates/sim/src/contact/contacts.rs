@@ -1,12 +1,12 @@
-//! Contact planes: what the constraints see of the solids.
+//! Contact planes: the solids as half spaces, one for each point near them.
 //!
 //! Signed-distance lookups are expensive, so each point remembers the last one, in the space that
-//! carries the solid: where it was taken (the anchor), the distance and the normal. A distance is
-//! never more than the true one, which changes no faster than the point moves, so a point far from all
-//! solids needs no new one for many steps, and hair that rests on a moving head none at all.
+//! carries the solid: its place (the anchor), the distance and the normal. A distance is never more
+//! than the true one, which changes no faster than the point moves. So a point far from all solids
+//! needs no look-up for many steps, and hair that rests on a moving head needs none.
 //!
-//! A point that goes far in a step is followed along its way, so that it meets the near side of what
-//! lies in between.
+//! A point that moves far in a step is followed along its path, so that it meets the near side of a
+//! solid in between.
 
 use glam::Vec3;
 use strandline_body::{BodyFrame, Carrier, Collider, Pose};
@@ -20,10 +20,10 @@ use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 /// Precision of a look-up of the solids.
 #[derive(Clone, Copy)]
 pub struct Care {
-    /// A plane serves until its point has moved so far \[m\]; on a ball of radius r it is then wrong
-    /// by its square over 2 r.
+    /// Distance \[m\] that a point may move before its plane is renewed; on a ball of radius r the plane is then wrong
+    /// by the square of this distance over 2 r.
     pub stale: f32,
-    /// A point nearer than its margin and this \[m\] gets a plane.
+    /// Distance \[m\] beyond its margin within which a point gets a plane.
     pub near: f32,
 }
 
@@ -34,7 +34,7 @@ impl Care {
     pub const ROUNDS: Self = Self { stale: 1e-3, near: 1e-2 };
     /// For the places where points stay: wrong by 1 um on a skull, by 0.03 mm on the tip of a nose.
     pub const EXACT: Self = Self { stale: 5e-4, near: 0.0 };
-    /// For places that the plane before has put to.
+    /// For positions that were just moved onto their plane.
     pub const ANEW: Self = Self { stale: 0.0, near: 0.0 };
 }
 
@@ -72,7 +72,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Nothing known: far from everything, and possibly deep inside.
+    /// An unknown plane: its point may be anywhere, inside or outside.
     const UNKNOWN: Self = Self {
         anchor: Vec3Lanes { x: [1e9; LANES], y: [1e9; LANES], z: [1e9; LANES] },
         normal: Vec3Lanes { x: [0.0; LANES], y: [1.0; LANES], z: [0.0; LANES] },
@@ -95,7 +95,7 @@ impl Plane {
 }
 
 impl Contacts {
-    /// Planes for a number of blocks, nothing known yet; the order of a block is `[carrier][point]`.
+    /// Unknown planes for a number of blocks; the order of a block is `[carrier][point]`.
     pub fn new(colliders: &[Collider], block_count: usize, points: usize) -> Self {
         Self { blocks: vec![vec![Plane::UNKNOWN; carriers(colliders).len() * points]; block_count] }
     }
@@ -217,15 +217,15 @@ impl<'a> Solids<'a> {
         touch
     }
 
-    /// Depth \[m\] of points of one index inside the solids, 0 outside: the lanes in `counted`, looked up
-    /// again, so that it also sees what the remembered planes may have missed.
+    /// Depth \[m\] of points of one index inside the solids, 0 outside, for the lanes in `counted`. It looks distances up
+    /// again, so that it also finds what the remembered planes may have missed.
     pub fn depth(&self, position: Vec3x8, counted: impl Fn(usize) -> bool) -> f32 {
         let mut deepest = 0.0_f32;
         for group in &self.groups {
             let mut local = Vec3Lanes::default();
             group.carrier_from_world.points(position).store(&mut local);
             for point in (0..LANES).filter(|lane| counted(*lane)).map(|lane| local.get(lane)) {
-                // Most points are known to be outside without asking where the surface is.
+                // A lower bound shows that most points are outside; the surface is not searched for those.
                 let near =
                     group.colliders.iter().filter(|collider| collider.shape.distance_at_least(point) <= 0.0);
                 let distances = near.map(|collider| collider.shape.distance(point));
@@ -245,17 +245,16 @@ impl<'a> Solids<'a> {
 
 /// Masks of lanes after a look.
 struct Look {
-    /// May be nearer than what was asked for.
+    /// Lanes that may be nearer than the requested distance.
     near: f32x8,
-    /// A solid keeps the point from where it would go.
+    /// Lanes whose point a solid stops on its path.
     blocked: f32x8,
 }
 
 impl Group<'_> {
-    /// Looks up distances where the remembered plane no longer serves, for points that matter when they
-    /// are nearer than `reach` \[m\].
+    /// Renews planes that are out of date, for points that matter only within `reach` \[m\] of a solid.
     ///
-    /// `stuck` is where the points would be had they stuck to the solid: where their way begins.
+    /// `stuck` are the positions of points that stick to the solid, where their paths begin.
     fn refresh(
         &self,
         plane: &mut Plane,
@@ -324,15 +323,15 @@ impl Touch {
         self.normal.dot(position) - self.offset
     }
 
-    /// Way \[m\] that friction may take points back in this step [Macklin2014 eq. 24]: it follows from how
-    /// deep the prediction lies, and from nothing that the rounds do, so that their number does not count.
+    /// Distance \[m\] that friction may move points back in this step [Macklin2014 eq. 24]. It follows from the depth of
+    /// the prediction alone, so that the number of rounds does not change it.
     #[inline(always)]
     pub fn friction_of(&self, predicted: Vec3x8) -> f32x8 {
         self.friction * (-self.height(predicted)).fast_max(splat(0.0))
     }
 
-    /// Pushes points out of the solid and takes back their slip, as far as what is `left` \[m\] of
-    /// friction holds: until the step ends, whether a round has lifted the point a little or not.
+    /// Pushes points out of the solid and takes back their slip, up to the `left` \[m\] of friction. Friction holds until
+    /// the step ends, even where a round has lifted the point a little.
     #[inline(always)]
     pub fn resolve(&self, position: Vec3x8, left: &mut f32x8) -> Vec3x8 {
         let height = self.height(position);
@@ -365,7 +364,7 @@ impl Touch {
         }
     }
 
-    /// This but where the mask is set, where nothing is touched.
+    /// This, without a touch where the mask is set.
     pub fn except(&self, mask: f32x8) -> Self {
         Self { offset: mask.bitselect(splat(f32::NEG_INFINITY), self.offset), ..*self }
     }

@@ -42,7 +42,7 @@ impl<'a> Obstacles<'a> {
         Self { colliders, start, end, time_step, pieces }
     }
 
-    /// A point in the space of the thing that carries a collider.
+    /// A point in the space of a collider's carrier.
     #[inline]
     fn local(&self, collider: &Collider, point: Vec3) -> Vec3 {
         match collider.carrier {

@@ -15,20 +15,20 @@ pub struct Seen {
     pub friction: f32,
 }
 
-/// Ways up to this \[m\] are not followed: half of it is less than what a lobe of an ear is thick.
+/// Longest path \[m\] that is not followed: half of it is less than the thickness of an ear lobe.
 const SHORT: f32 = 4e-3;
-/// Most looks along a way.
+/// Most look-ups along a path.
 const LOOKS: usize = 32;
-/// A stride is this share of a way at least, so that looks suffice for a way that slides along a solid.
+/// Least share of a path in one stride, so that the look-ups suffice for a path that slides along a solid.
 const LEAST_STRIDE: f32 = 1.0 / 24.0;
-/// A point that has so far \[m\] to go has arrived.
+/// Remaining distance \[m\] at which a point has arrived.
 const ARRIVED: f32 = 1e-4;
 
-/// Follows a point from `start` to `end` \[m\] and looks at the solids where it comes to: at the end itself
-/// unless something lies before it.
+/// Follows a point from `start` to `end` \[m\] and returns the look-up where it stops: at the end, or at a solid before
+/// it.
 ///
-/// A stride is as long as the way is free, which the distance tells [Hart1996]. At a surface the point goes
-/// on along it: what would take it deeper is lost, as in an impact without a rebound.
+/// A stride is as long as the signed distance, within which the path is free [Hart1996]. At a surface the point slides on
+/// along it: the motion into the solid is lost, as in an impact without a rebound.
 pub fn met(start: Vec3, end: Vec3, nearest: impl Fn(Vec3) -> Seen) -> Seen {
     let at_end = nearest(end);
     let way = start.distance(end);
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_way_that_is_free_ends_at_its_end() {
-        // A longer way that passes a solid within a least stride is turned aside, although it is free.
+        // A longer path that passes a solid within a least stride is turned aside, although it is free.
         for end in [Vec3::new(0.05, 0.06, 0.0), Vec3::new(-0.05, 0.3, 0.1), Vec3::new(-0.049, 0.06, 0.0)] {
             let seen = met(Vec3::new(-0.05, 0.06, 0.0), end, ball);
             assert!(!seen.is_before(end), "{end}: {seen:?}");

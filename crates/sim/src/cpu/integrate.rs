@@ -11,7 +11,8 @@ use crate::strands::constrain::springs::{Elastic, Strand};
 use crate::{Model, State};
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 
-/// Applies gravity, drag and the pull of springs to the velocities of free points and predicts their positions. `wind` is the velocity of the air \[m/s\], world space.
+/// Applies gravity, drag and the pull of springs to the velocities of free points and predicts their positions. `wind` is
+/// the velocity of the air \[m/s\], world space.
 pub fn integrate(model: &Model, state: &mut State, scratch: &mut Scratch, wind: Vec3) {
     let points = model.points_per_strand;
     let (lengths, masses) = (&state.lengths, &scratch.masses);
@@ -53,7 +54,7 @@ impl Fall {
         Self::for_time(model, model.settings.time_step, wind)
     }
 
-    /// For a time \[s\] that is a part of a step.
+    /// Accelerations over a time \[s\], a substep or a whole step.
     pub(crate) fn for_time(model: &Model, time_step: f32, wind: Vec3) -> Self {
         let settings = &model.settings;
         let taken = |rate: f32| -math::exp_m1(-rate * time_step);
@@ -67,7 +68,7 @@ impl Fall {
         }
     }
 
-    /// Velocities \[m/s\] after gravity, the air and a kick, of points with a tangent.
+    /// Velocities \[m/s\] of points with a tangent after gravity, the air and an impulse.
     #[inline(always)]
     fn velocity(&self, before: Vec3x8, tangent: Vec3x8, kick: Vec3x8) -> Vec3x8 {
         let pushed = before + self.gravity + kick;
@@ -76,7 +77,7 @@ impl Fall {
         (pushed + (relative - along) * self.across + along * self.along) * self.kept
     }
 
-    /// Velocities \[m/s\] after the air and gravity: what rests has the whole weight, whatever damps it.
+    /// Velocities \[m/s\] after the air, then gravity: damping takes nothing of the weight of resting hair.
     #[inline(always)]
     pub(crate) fn weighted(&self, before: Vec3x8, tangent: Vec3x8) -> Vec3x8 {
         let relative = self.wind - before;

@@ -11,9 +11,9 @@ use crate::contact::Obstacles;
 /// [Chen2011 fig. 21, McAdams2009, Bridson2008].
 ///
 /// A cell that holds points is fluid unless its middle lies deeper in a solid than one cell: hair
-/// lies on the skin, so the cells of its roots straddle the surface, and were they solid the hair
-/// in them would be torn from the volume. Of the other cells only neighbours of fluid ones matter;
-/// they are solid where their middle is inside. Signed distances are looked up for these alone.
+/// lies on the skin, so the cells of its roots straddle the surface; as solid cells they would tear
+/// that hair from the volume. Of the other cells only neighbours of fluid ones matter; they are
+/// solid where their middle is inside. Signed distances are looked up for these alone.
 pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
     for &cell in &volume.marked {
         volume.kinds[cell as usize] = Kind::Air;
@@ -58,9 +58,9 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
     }
 }
 
-/// Signed distances \[m\] at the middles of cells; what is farther than a cell is at least so far.
+/// Signed distances \[m\] at the middles of cells; beyond one cell a lower bound.
 fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
-    /// Cells whose first looks are under way together.
+    /// Cells whose first look-ups run together.
     const TOGETHER: usize = 64;
     let center = |cell: &u32| grid.center(*cell as usize);
     let mut distances = vec![0.0; cells.len()];
@@ -69,7 +69,7 @@ fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
         for (distance, cell) in distances.iter_mut().zip(cells) {
             *distance = obstacles.at_least(center(cell));
         }
-        // In a loop of its own: else the processor waits for each first look to know whether to take a second.
+        // A loop of its own: in one loop the processor would wait for each first look-up to decide on a second.
         for (distance, cell) in distances.iter_mut().zip(cells).filter(|(least, _)| **least <= grid.spacing())
         {
             *distance = obstacles.distance(center(cell));

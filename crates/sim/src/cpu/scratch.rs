@@ -15,14 +15,14 @@ use crate::{Model, State};
 /// Scratch of the CPU's stages; all of it follows from the model and the state.
 #[derive(Clone)]
 pub struct Scratch {
-    /// Positions at the end of the step \[m\], world space, shape `[block][point]` of lanes: what the
-    /// stages between `pose_roots` and `advance` work on.
+    /// Predicted positions at the end of the step \[m\], world space, shape `[block][point]` of lanes; the stages between
+    /// `pose_roots` and `advance` work on them.
     pub predicted: Vec<Vec3Lanes>,
     /// Masses of points at the lengths of the state.
     pub(crate) masses: Masses,
-    /// Nodes of rods at these lengths; none where all are those at rest, and with another strand solver.
+    /// Nodes of rods at these lengths; `None` where all lengths are those at rest, and with another strand solver.
     pub(crate) nodes: Option<Vec<Node<f32x8>>>,
-    /// The fluid volume; none while it is off.
+    /// The fluid volume; `None` while it is off.
     pub(crate) volume: Option<Volume>,
     /// Points sorted by cell; `None` while nothing reads them.
     pub(crate) cells: Option<Cells>,
@@ -30,7 +30,7 @@ pub struct Scratch {
     made_from: Made,
 }
 
-/// Tells apart what masses and nodes are made from.
+/// Identity of the inputs of masses and nodes.
 #[derive(Clone)]
 struct Made {
     lengths: Arc<RestShape>,
@@ -70,7 +70,7 @@ impl Scratch {
         }
     }
 
-    /// Makes again what follows from lengths, masses or rods that have changed, and the volume from its settings.
+    /// Derives masses and nodes again where lengths, masses or rods have changed, and the volume from its settings.
     pub(crate) fn refresh(&mut self, model: &Model, state: &State) {
         let made = Made::new(model, state);
         if !made.is(&self.made_from) {
@@ -87,8 +87,8 @@ impl Scratch {
             .map(|edge| Cells::keep_or_new(old, edge, model.strand_count, model.points_per_strand));
     }
 
-    /// Makes the volume fit its settings, and its box that of the state: one of other cells, or of a state that has
-    /// none yet, begins where hair is.
+    /// Makes the volume fit its settings, with the box of the state. The box of a state without one, or of another number
+    /// of cells, is placed anew around the hair.
     fn refresh_volume(&mut self, model: &Model, place: Option<[f32; 4]>) {
         let settings = &model.settings.volume;
         let old = self.volume.take();
@@ -160,7 +160,7 @@ mod tests {
             state
         };
         let drive = Drive { wind: glam::Vec3::Z, ..Drive::default() };
-        // A box that larger hair left would be kept for hair that needs most of it.
+        // The hysteresis of the box would keep one of larger hair.
         let scales = [1.0, 0.9];
         let mut shared = CpuRunner::from(model.clone());
         let mut together = scales.map(begun);

@@ -1,5 +1,5 @@
-//! Lengths of strands that are held at more than their root: between two holds a walk from the root
-//! would leave all that is too long or too short to its last segment.
+//! Lengths of strands that are held at more than their root. Between two holds a walk from the root would leave the whole
+//! error of the lengths to the last segment.
 //!
 //! The strand goes to the nearest place, by mass, of its prediction where its segments have their
 //! lengths: 1/2 sum m |x - y|^2 is least under |x_i+1 - x_i| = l_i. Alternating directions take turns
@@ -13,7 +13,7 @@ use wide::f32x8;
 use crate::contact::contacts::Touch;
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 
-/// Turns between directions and points. A rope of 62 segments, its ends 0.95 lengths apart, then keeps
+/// Number of turns between directions and points. A rope of 62 segments, its ends 0.95 lengths apart, then keeps
 /// lengths to 1e-4.
 const TURNS: usize = 32;
 /// Newton steps after them: strands in motion are left 3e-3 off by the turns alone.
@@ -24,8 +24,8 @@ const TAUT_FROM: f32 = 1.0 - 1e-4;
 const STIFFNESS: f32 = 100.0;
 /// Stiffness of a segment over tension and length, at least, so that the turns converge on a taut strand.
 const TAUT: f32 = 4.0;
-/// Share of a constraint that gives way in the guess of the tension: a strand that is too short has
-/// none that is finite.
+/// Compliance of constraints in the guess of the tension, as a share: a strand that is too short has no finite
+/// tension.
 const GIVES_WAY: f32 = 1e-5;
 
 /// Stiffness of a touch over that of a segment: stiffer, points stick to where they touched first.
@@ -37,7 +37,7 @@ pub struct Spans {
     weights: Vec<f32x8>,
     /// Lanes of strands that are held behind a free point.
     pub held_behind: f32x8,
-    /// The last rooted point of each strand, -1 where none is.
+    /// Last rooted point of each strand, -1 without one.
     pub last_rooted: f32x8,
     /// The prediction \[m\], from the first point on.
     goals: Vec<Vec3x8>,
@@ -48,7 +48,7 @@ pub struct Spans {
     shares: Vec<f32x8>,
     /// Pull along each segment, over the time step squared \[kg m\].
     pulls: Vec<f32x8>,
-    /// Length over pull by which a segment gives way \[1/kg\].
+    /// Compliance of each segment: length over pull \[1/kg\].
     gives_way: f32x8,
     /// Depth of each touch \[m\], 0 or less.
     depths: Vec<f32x8>,
@@ -162,7 +162,7 @@ impl Spans {
         stiffness
     }
 
-    /// Takes the lengths that the turns leave to the last bit, by Newton steps [Goldenthal2007].
+    /// Corrects the lengths that the turns leave, to the last bit, by Newton steps [Goldenthal2007].
     fn sharpen(&mut self, lengths: &[Lanes]) {
         for _ in 0..NEWTON_STEPS {
             self.goals.copy_from_slice(&self.positions);
@@ -178,8 +178,8 @@ impl Spans {
         }
     }
 
-    /// Lays what is taut between two holds on the line between them, every segment its share of the way:
-    /// the lengths alone do not tell the place of a point aside.
+    /// Puts the points of a taut span on the line between its two holds, evenly by length: the lengths alone do not
+    /// determine how far a point lies beside that line.
     fn straighten(&self, lane: usize, lengths: &[Lanes], positions: &mut [Vec3Lanes]) {
         let (mut hold, mut reach): (Option<usize>, f32) = (None, 0.0);
         for point in 0..positions.len() {
@@ -263,7 +263,7 @@ impl Spans {
             let pivot = splat(1.0) / sum;
             self.shares[point] = free & (spring * pivot);
             before = (right * pivot).or(free, here);
-            // Points behind still need where this one was: its place waits for the way back.
+            // Points behind still need the old position: the new one is stored on the way back.
             self.positions[point] = before;
             (spring_before, wanted_before) = (spring, wanted);
         }

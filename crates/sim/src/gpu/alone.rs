@@ -1,4 +1,4 @@
-//! Kernels timed alone, as the thesis timed one of its own.
+//! Kernels timed alone, as the thesis timed its pressure gradient.
 
 use strandline_gpu::{Buffer, Recorder, Timer};
 

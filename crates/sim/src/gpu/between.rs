@@ -16,10 +16,10 @@ pub fn read_between(
     positions: &mut Vec<Vec3Lanes>,
 ) -> Result<(), GpuError> {
     let mut batch = Readback::new();
-    let parts = states.map(|buffer| batch.add(buffer, buffer.len()));
+    let slots = states.map(|buffer| batch.add(buffer, buffer.len()));
     let copied = batch.read(states[0].gpu())?;
-    let [before, after] = parts.map(|part| {
-        let numbers = copied.take(part);
+    let [before, after] = slots.map(|slot| {
+        let numbers = copied.take(slot);
         let mut lanes = vec![Vec3Lanes::default(); numbers.len() * size_of::<f32>() / size_of::<Vec3Lanes>()];
         floats_mut(&mut lanes).copy_from_slice(&numbers);
         lanes

@@ -5,7 +5,7 @@ use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 use super::buffers::Buffers;
 use super::stage::{StageKernels, Target};
 use super::{
-    advance, cells, constrain, gather, integrate, lengths_alone, mark, pose_roots, solve_pressure,
+    advance, cells, constrain, gather, integrate, lengths_alone, mark, pose_roots, slide, solve_pressure,
     solve_rods, splat,
 };
 use crate::Preconditioner;
@@ -16,6 +16,7 @@ macro_rules! kernels {
     ($($stage:ident => $module:ident,)*) => {
         pub(super) struct Kernels {
             scan: Scan,
+            pub slide: slide::Slide,
             $(pub $module: $module::Stage,)*
         }
 
@@ -23,6 +24,7 @@ macro_rules! kernels {
             pub fn new(gpu: &Gpu, points_per_strand: usize) -> Result<Self, GpuError> {
                 Ok(Self {
                     scan: Scan::new(gpu)?,
+                    slide: slide::Slide::new(gpu)?,
                     $($module: $module::Stage::new(gpu, points_per_strand)?,)*
                 })
             }
@@ -37,6 +39,7 @@ macro_rules! kernels {
         /// Every kernel's declaration, to be held against its shader.
         pub fn declarations() -> Vec<Declaration> {
             let mut all: Vec<Declaration> = lengths_alone::declarations().into();
+            all.push(slide::Slide::declaration());
             $(all.extend($module::Stage::declarations());)*
             all
         }

@@ -42,7 +42,7 @@ pub struct LengthsInput<'a> {
     pub rounds: u32,
 }
 
-/// Projects the lengths of strands `count` times from the same start, which shows what a form costs.
+/// Projects the lengths of strands `count` times from the same start, to measure the time of a form.
 ///
 /// Returns the points as they are then, and seconds of one time by the device's own clock, where it offers
 /// timestamps.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use strandline_base::Stopwatch;
-use strandline_gpu::{Buffer, Gpu, GpuError, Part, Readback, Timer, Transfer};
+use strandline_gpu::{Buffer, Gpu, GpuError, Readback, Slot, Timer, Transfer};
 
 use super::buffers::REPORTS;
 use super::records::Report;
@@ -23,8 +23,8 @@ pub(super) struct Pending {
 /// Reports on their way, and the times of the stages of their steps.
 struct OnWay {
     transfer: Transfer,
-    reports: Part<Report>,
-    marks: Part<u64>,
+    reports: Slot<Report>,
+    marks: Slot<u64>,
     count: usize,
     /// Stages of these steps, as they were recorded.
     stages: Vec<&'static str>,

@@ -17,7 +17,7 @@ pub(super) struct RodBuffers {
 }
 
 impl RodBuffers {
-    /// Room for the nodes, the grips and the traits of so many strands, and for those that are solved at a time.
+    /// Buffers for nodes, grips and traits of a number of strands, and for the strands that are solved at a time.
     pub fn new(gpu: &Gpu, lane_count: usize, points: usize) -> Result<Self, GpuError> {
         let groups = groups_at_once(lane_count, points);
         Ok(Self {

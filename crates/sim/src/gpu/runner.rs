@@ -33,7 +33,7 @@ pub struct GpuRunner {
     pub(super) buffers: Buffers,
     /// Which of the two buffers of positions is the newer.
     pub(super) side: usize,
-    /// The stages bound to the buffers, in order, for both sides; none after a change.
+    /// The stages bound to the buffers, in order, for both sides; `None` after a change.
     bound: Option<[Vec<(Stage, Dispatches)>; 2]>,
     pub(super) body: BodyFrame,
     pub(super) time: f64,
@@ -222,10 +222,15 @@ impl GpuRunner {
         Ok(std::mem::take(&mut self.reports))
     }
 
-    /// Forgets the reports of steps that are made again.
+    /// Forgets the reports of steps that will be computed again.
     pub fn forget_reports(&mut self) {
         self.pending.forget();
         self.reports.clear();
+    }
+
+    /// See [`Simulator::device_solids`](crate::Simulator::device_solids).
+    pub fn solids(&self) -> (Buffer<[u32; 4]>, [usize; 2]) {
+        solids::rows(&self.buffers.step, &self.model.colliders)
     }
 
     /// Records and submits the stages of a step that are wanted.

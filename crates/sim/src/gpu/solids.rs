@@ -32,9 +32,17 @@ pub(super) fn write_pieces(
 pub(super) fn behind_step(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<Step>, SimError> {
     let before = PIECE * (piece_count(colliders) - 1);
     let mut all = vec![[0; 4]; before];
-    // Simulated strands keep the margin of the settings from every solid.
-    all.append(&mut solid_rows(colliders.iter().map(|collider| (collider, 0.0)), before)?);
+    // Pictures on the same device read the clearance.
+    let solids = colliders.iter().map(|collider| (collider, collider.shape.clearance()));
+    all.append(&mut solid_rows(solids, before)?);
     let buffer = Buffer::with_tail::<[u32; 4]>(gpu, "step and solids", 1, all.len())?;
     buffer.write_tail(&all)?;
     Ok(buffer)
+}
+
+/// The rows of the colliders where they lie: the buffer, the first row to which they count, and the first collider's row
+/// from there.
+pub(super) fn rows(buffer: &Buffer<Step>, colliders: &[Collider]) -> (Buffer<[u32; 4]>, [usize; 2]) {
+    let base = size_of::<Step>() / size_of::<[u32; 4]>();
+    (buffer.viewed_as(), [base, PIECE * (piece_count(colliders) - 1)])
 }

@@ -21,7 +21,7 @@ pub(super) trait StageKernels: Sized {
     /// Their declarations, to be compared with their shaders.
     fn declarations() -> Vec<Declaration>;
 
-    /// Compiles them, for strands of so many points.
+    /// Compiles the kernels for strands of a number of points.
     fn new(gpu: &Gpu, points_per_strand: usize) -> Result<Self, GpuError>;
 
     /// Dispatches of a step, in order; empty for a stage without work.

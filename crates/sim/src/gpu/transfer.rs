@@ -4,8 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use strandline_body::BodyFrame;
-use strandline_gpu::{Copied, Part, Readback, Transfer};
-use strandline_groom::Vec3Lanes;
+use strandline_gpu::{Copied, Readback, Slot, Transfer};
 
 use super::buffers::{floats, floats_mut, speeds};
 use super::runner::GpuRunner;
@@ -45,11 +44,11 @@ impl GpuRunner {
         let [positions, previous] = self.positions();
         let velocities = &self.buffers.velocities;
         let mut batch = Readback::new();
-        let parts = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
+        let slots = [positions, previous, velocities].map(|buffer| batch.add(buffer, buffer.len()));
         let grid = self.buffers.volume.as_ref().map(|volume| batch.add(&volume.grid, 1));
         let transfer = batch.begin(velocities.gpu())?;
         let content = Content {
-            parts,
+            slots,
             grid,
             has_rods: self.buffers.rods.is_some(),
             body: self.body.clone(),
@@ -94,11 +93,11 @@ pub struct ComingState {
     content: Content,
 }
 
-/// Places of its parts, and their copies on the host.
+/// Places of its arrays in the copied bytes, and what the host knew.
 #[derive(Debug)]
 struct Content {
-    parts: [Part<f32>; 3],
-    grid: Option<Part<GridState>>,
+    slots: [Slot<f32>; 3],
+    grid: Option<Slot<GridState>>,
     has_rods: bool,
     body: BodyFrame,
     time: f64,
@@ -128,14 +127,14 @@ impl Content {
     fn write(&self, copied: &Copied, state: &mut State) {
         let grid = self.grid.clone();
         state.volume_box = grid.and_then(|grid| copied.take(grid).first().map(GridState::place));
-        let [positions, previous, velocities] = self.parts.clone().map(|part| copied.take(part));
+        let [positions, previous, velocities] = self.slots.clone().map(|slot| copied.take(slot));
         floats_mut(&mut state.positions).copy_from_slice(&positions);
         floats_mut(&mut state.previous_positions).copy_from_slice(&previous);
         let count = positions.len() / 3;
         let (velocities, others) = velocities.split_at(3 * count);
         floats_mut(&mut state.velocities).copy_from_slice(velocities);
         if self.has_rods {
-            state.corrections.fill(Vec3Lanes::default());
+            floats_mut(&mut state.corrections).copy_from_slice(&others[others.len() - 3 * count..]);
             floats_mut(&mut state.sections).copy_from_slice(&others[..3 * count]);
             bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
         } else {

@@ -41,7 +41,7 @@ pub(super) fn expect(rows: &Rows, name: &str, kind: Kind, shape: &[Option<u64>])
     Ok(first)
 }
 
-/// Refuses what would take too much memory, in bytes of the file and so many times that.
+/// Refuses an array that would take too much memory: its bytes in the file times a factor.
 pub(super) fn check_memory(name: &str, bytes: u64, times: u64) -> Result<(), String> {
     memory::check(&[Need::new(format!("the array {name}"), bytes, times)]).map_err(|error| error.to_string())
 }

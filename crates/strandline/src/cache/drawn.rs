@@ -10,7 +10,7 @@ use crate::{
     strands::tags::Tags,
 };
 
-/// Most points of a strand that a simulation has; strands of more are drawn by so many, evenly along them.
+/// Most points of a simulated strand; longer strands of a cache are drawn by this number of points, evenly along them.
 const POINTS: usize = 64;
 
 /// Loads a scene for pictures, with the strands of a cache in the place of its own.
@@ -50,7 +50,7 @@ pub(crate) fn prepared(scene: &Scene, cache: &mut Cache) -> Result<Prepared, Err
 /// Farther away than any camera \[m\].
 const FAR: f32 = 1e4;
 
-/// The strands of the first frame, head space, with what the cache has of their look.
+/// The strands of the first frame, head space, with the attributes of look that the cache has.
 fn rest(cache: &mut Cache) -> Result<Groom, Error> {
     let mut places = Vec::new();
     let head = cache.read(0, &mut places)?.world_from_head().inverse();

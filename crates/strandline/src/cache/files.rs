@@ -17,6 +17,7 @@ pub(super) struct Files {
     pattern: (String, usize, String),
     groom: Groom,
     left_out: Vec<String>,
+    notes: Vec<String>,
     bytes: u64,
     _lock: FolderLock,
 }
@@ -26,7 +27,8 @@ fn pattern(name: &str) -> Option<(String, usize, String)> {
     let (before, rest) = name.split_once('%')?;
     let (digits, after) = rest.split_once('d')?;
     let count = if digits.is_empty() { 1 } else { digits.strip_prefix('0')?.parse().ok()? };
-    (1..=9).contains(&count).then(|| (before.to_owned(), count, after.to_owned()))
+    let is_one = !after.contains('%');
+    (is_one && (1..=9).contains(&count)).then(|| (before.to_owned(), count, after.to_owned()))
 }
 
 /// The size of a file \[byte\].
@@ -46,7 +48,7 @@ impl Files {
         let pattern = pattern(&name)
             .ok_or_else(|| Error::OutName { found: name.into_owned(), path: path.to_owned() })?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let lock = crate::film::claim(folder)?;
+        let lock = crate::film::claim_name(path)?;
         let mut groom = Groom::empty(0.0);
         groom.starts.clone_from(&shape.starts);
         let attributes = &shape.attributes;
@@ -66,7 +68,8 @@ impl Files {
         }
         let names = (0..).zip(&attributes.group_names).filter(|(_, name)| !name.is_empty());
         groom.group_names = names.map(|(group, name)| (group, name.clone())).collect();
-        Ok(Self { folder: folder.to_owned(), pattern, groom, left_out: Vec::new(), bytes: 0, _lock: lock })
+        let (left_out, notes) = (Vec::new(), Vec::new());
+        Ok(Self { folder: folder.to_owned(), pattern, groom, left_out, notes, bytes: 0, _lock: lock })
     }
 
     /// Writes the file of a frame.
@@ -75,19 +78,24 @@ impl Files {
         self.groom.points.extend_from_slice(frame.points);
         let (before, digits, after) = &self.pattern;
         let path = self.folder.join(format!("{before}{:0digits$}{after}", frame.number));
-        for part in self.groom.save(&path)?.left_out {
-            let part = part.to_string();
-            if !self.left_out.contains(&part) {
-                self.left_out.push(part);
-            }
+        let saved = self.groom.save(&path)?;
+        let own = |part: &'static str| part.to_owned();
+        let both = [
+            (&mut self.left_out, saved.left_out.into_iter().map(own).collect()),
+            (&mut self.notes, saved.notes),
+        ];
+        // Frames are alike: what is said of one is said of all.
+        for (known, found) in both {
+            let new: Vec<String> = found.into_iter().filter(|text| !known.contains(text)).collect();
+            known.extend(new);
         }
         self.bytes += size(&path);
         Ok(())
     }
 
-    /// Bytes of all files, the folder, and what the format could not hold.
-    pub fn finish(self) -> (u64, PathBuf, Vec<String>) {
-        (self.bytes, self.folder, self.left_out)
+    /// Bytes of all files, the folder, attributes that the format could not hold, and notes on changes.
+    pub fn finish(self) -> (u64, PathBuf, Vec<String>, Vec<String>) {
+        (self.bytes, self.folder, self.left_out, self.notes)
     }
 }
 
@@ -99,7 +107,7 @@ mod tests {
     fn a_name_with_a_number_in_it_is_a_sequence() {
         assert_eq!(pattern("a.%04d.hair"), Some(("a.".to_owned(), 4, ".hair".to_owned())));
         assert_eq!(pattern("%d.tfx"), Some((String::new(), 1, ".tfx".to_owned())));
-        for name in ["a.hair", "a%.hair", "%4d.hair", "%00d.hair", "%099d.hair", "%sd"] {
+        for name in ["a.hair", "a%.hair", "%4d.hair", "%00d.hair", "%099d.hair", "%sd", "s.%04d%04d.hair"] {
             assert_eq!(pattern(name), None, "{name}");
         }
         assert!(is_sequence(Path::new("x/%03d.hair")) && !is_sequence(Path::new("%03d/a.hair")));

@@ -32,7 +32,7 @@ pub(super) struct Meta {
     pub steps: u64,
     #[serde(default)]
     pub group_names: Vec<String>,
-    /// The scene as TOML, and the folder that its paths start from.
+    /// The scene as TOML, and the folder that its paths start from, seen from that of the cache.
     #[serde(default)]
     pub scene: String,
     #[serde(default)]
@@ -58,7 +58,7 @@ fn one() -> u32 {
 #[serde(default)]
 pub(super) struct Report {
     pub steps: Vec<u32>,
-    /// Length over rest length - 1; null for what is no number.
+    /// Length over rest length - 1; null for NaN.
     pub stretch_mean: Vec<Option<f32>>,
     pub stretch_max: Vec<Option<f32>>,
     /// Deepest point inside a solid \[m\].

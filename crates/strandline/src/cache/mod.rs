@@ -10,6 +10,7 @@ mod files;
 mod meta;
 mod out;
 mod read;
+pub(crate) mod relative;
 mod shape;
 mod snapshot;
 mod store;

@@ -28,7 +28,7 @@ pub struct OutSettings {
     pub every: u32,
     /// The first frame that is written.
     pub first: u32,
-    /// For whom units and axes are.
+    /// Program whose units and axes the file has.
     pub target: Target,
 }
 
@@ -49,6 +49,8 @@ pub struct Written {
     pub time: Duration,
     /// Parts of the hair that the format cannot hold.
     pub left_out: Vec<String>,
+    /// Changes that made the hair fit the format, human-readable.
+    pub notes: Vec<String>,
 }
 
 /// A file of moving hair that is being written.
@@ -91,7 +93,7 @@ fn format(path: &Path) -> Result<Format, Error> {
 }
 
 impl OutSettings {
-    /// Everything as it is when nothing else is said.
+    /// Default settings for a file.
     pub fn new(path: impl Into<PathBuf>) -> Self {
         Self { path: path.into(), what: What::default(), first: 0, every: 1, target: Target::default() }
     }
@@ -99,7 +101,7 @@ impl OutSettings {
     /// Refuses a name that no format has, and units that its format does not, before anything is loaded.
     ///
     /// # Errors
-    /// See [`Error::OutName`]; [`OutSettings::target`] of what is no `.usda`.
+    /// See [`Error::OutName`]; an [`OutSettings::target`] for a file other than `.usda`.
     pub fn check(&self) -> Result<(), Error> {
         self.format().map(|_| ())
     }
@@ -227,21 +229,17 @@ impl Out {
                 1 => format!("every frame from {first} on"),
                 _ => format!("frames {first}, {} and so on", first.saturating_add(every)),
             };
-            return Err(Error::Cache {
-                path: cache.path().to_owned(),
-                message: format!(
-                    "it holds {what}, {frames}, and the run would write something else: resume it with --what {what} \
-                     --every {every} --from {first}"
-                ),
-            });
+            let found = format!(
+                "it holds {what}, {frames}, and the run would write something else: resume it with --what {what} \
+                 --every {every} --from {first}"
+            );
+            return Err(Error::cache(cache.path(), found));
         }
         let after = state.frame.checked_sub(self.first);
         let count = after.map_or(0, |frames| (frames / self.every + 1) as usize);
         if cache.starts() != self.shape.starts || cache.len() < count {
-            return Err(Error::Cache {
-                path: cache.path().to_owned(),
-                message: format!("it holds {} frames of other hair or too few", cache.len()),
-            });
+            let found = format!("it holds {} frames of other hair or too few", cache.len());
+            return Err(Error::cache(cache.path(), found));
         }
         let mut points = Vec::new();
         for index in 0..count {
@@ -261,14 +259,14 @@ impl Out {
     pub(crate) fn close(self, whole: bool, state: Option<&Snapshot>) -> Result<Written, Error> {
         let (strands, points) = (self.shape.strand_count(), self.shape.point_count());
         let watch = Stopwatch::start();
-        let one = |path: PathBuf| (size(&path), path, Vec::new());
-        let (bytes, place, left_out) = match self.writer {
+        let one = |path: PathBuf| (size(&path), path, Vec::new(), Vec::new());
+        let (bytes, place, left_out, notes) = match self.writer {
             Writer::Store(store) if whole => one(store.finish(state)?),
             Writer::Store(store) => one(store.leave(state)?),
             Writer::Usd(usd) => one(usd.finish(whole)?),
             Writer::Files(files) => files.finish(),
         };
         let time = self.time + watch.elapsed();
-        Ok(Written { place, frames: self.frames, strands, points, bytes, time, left_out })
+        Ok(Written { place, frames: self.frames, strands, points, bytes, time, left_out, notes })
     }
 }

@@ -9,14 +9,15 @@ use strandline_base::{
     fill_lanes,
     memory::{self, Need},
     npz::{Kind, Npz, Rows, f32s, f64s},
-    open_plain,
+    open_plain, refuse_busy,
 };
 
 use super::arrays::{check_memory, expect, missing, numbers, read_meta, starts, text};
-use super::{Snapshot, What, meta, snapshot};
+use super::{Snapshot, What, meta, relative, snapshot};
 use crate::{
     Error, Scene,
     body::{BodyFrame, Pose},
+    error::FileProblem,
     groom::{LANES, Vec3Lanes, block_count},
     sim::Part,
     strands::bodies::{self, LISTS, OF_FRAMES, OF_STATE, WIDTHS},
@@ -51,14 +52,24 @@ impl Cache {
     /// # Errors
     /// A file that cannot be read, or is no cache of this layout.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let refuse = |message: String| Error::Cache { path: path.to_owned(), message };
-        let file = open_plain(path, u64::MAX - 1).map_err(|error| refuse(error.to_string()))?.into_inner();
-        let frames = Frames::new(file).map_err(refuse)?;
+        let file = open_plain(path, u64::MAX - 1).map_err(|error| Error::cache(path, error))?.into_inner();
+        let frames = Frames::new(file).map_err(|found| Error::cache(path, found))?;
         Ok(Self { path: path.to_owned(), frames })
     }
 
-    fn refuse(&self, message: impl Into<String>) -> Error {
-        Error::Cache { path: self.path.clone(), message: message.into() }
+    /// Opens a cache whose run is to be resumed.
+    ///
+    /// # Errors
+    /// As [`Cache::open`]; another run is writing it.
+    pub fn open_to_resume(path: &Path) -> Result<Self, Error> {
+        if refuse_busy(path).is_err() {
+            return Err(Error::BusyFile { path: path.to_owned() });
+        }
+        Self::open(path)
+    }
+
+    fn refuse(&self, found: impl Into<FileProblem>) -> Error {
+        Error::cache(&self.path, found)
     }
 
     /// The file.
@@ -111,7 +122,8 @@ impl Cache {
             return Err(self.refuse("it names no scene, expected one in `meta`: name it with --scene"));
         }
         let mut scene = Scene::parse(&meta.scene, &format!("{} (in the cache)", self.path.display()))?;
-        scene.folder = PathBuf::from(&meta.scene_folder);
+        // Older caches have an absolute folder.
+        scene.folder = relative::folder_of(&self.path).join(&meta.scene_folder);
         Ok(scene)
     }
 
@@ -121,7 +133,7 @@ impl Cache {
     /// The file cannot be read, or holds points that are not finite.
     pub fn read(&mut self, frame: usize, points: &mut Vec<Vec3>) -> Result<BodyFrame, Error> {
         let body = self.frames.read(frame, points);
-        body.map_err(|message| Error::Cache { path: self.path.clone(), message })
+        body.map_err(|found| Error::cache(&self.path, found))
     }
 
     /// Reads a frame into blocks of lanes, `points_per_strand` points of each strand: its own, or as many evenly along
@@ -166,7 +178,7 @@ impl Cache {
     /// Numbers that it has for each point, rows of `columns`; none where it has none of a name.
     pub(crate) fn per_point(&mut self, name: &str, columns: u64) -> Result<Option<Vec<f32>>, Error> {
         let found = self.frames.per_point(name, columns);
-        found.map_err(|message| Error::Cache { path: self.path.clone(), message })
+        found.map_err(|found| Error::cache(&self.path, found))
     }
 
     /// Refuses other hair than guides of this shape.
@@ -192,7 +204,7 @@ impl Cache {
     /// State of the run, for guides of this shape; none in a cache without it.
     pub(crate) fn snapshot(&mut self, strands: usize, points: usize) -> Result<Option<Snapshot>, Error> {
         let snapshot = self.frames.snapshot((block_count(strands) * LANES * points) as u64);
-        snapshot.map_err(|message| Error::Cache { path: self.path.clone(), message })
+        snapshot.map_err(|found| Error::cache(&self.path, found))
     }
 
     /// Steps of the run so far, without settling.

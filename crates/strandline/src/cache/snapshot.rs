@@ -53,7 +53,7 @@ impl Snapshot {
     /// A snapshot of the numbers of a file.
     ///
     /// # Errors
-    /// Numbers that are none of a snapshot.
+    /// Numbers that do not make a snapshot.
     pub fn new(
         clock: &[f64],
         poses: &[f32],

@@ -8,6 +8,7 @@ use strandline_base::npz::{Array, Growing, GrowingNpz, Kind};
 use super::{
     Frame, Snapshot,
     meta::{LAYOUT, Meta, Report},
+    relative,
     shape::{Attributes, Shape},
     snapshot,
 };
@@ -29,8 +30,8 @@ pub(super) struct Store {
 }
 
 impl Store {
-    /// Begins a cache for at most so many frames of the scene's film, of which `every`-th is written, from the
-    /// `first` on. `body` is the body at the beginning: all frames get room for what it has.
+    /// Begins a cache for at most a number of frames of the scene's film, from the `first` on, every `every`-th. All frames
+    /// get room for the arrays of `body`, the body at the beginning.
     pub fn new(
         path: &Path,
         scene: &Scene,
@@ -38,7 +39,7 @@ impl Store {
         body: &BodyFrame,
         [first, every]: [u32; 2],
     ) -> Result<Self, Error> {
-        let folder = std::path::absolute(&scene.folder).unwrap_or_default();
+        let moved = relative::from(path, scene);
         let meta = Meta {
             layout: LAYOUT,
             written_by: format!("strandline {}", env!("CARGO_PKG_VERSION")),
@@ -50,8 +51,8 @@ impl Store {
             every,
             steps: 0,
             group_names: shape.attributes.group_names.clone(),
-            scene: scene.to_toml(),
-            scene_folder: folder.to_string_lossy().into_owned(),
+            scene: moved.to_toml(),
+            scene_folder: String::new(),
             report: Report::default(),
         };
         let lists = Lists::of([body]);
@@ -117,7 +118,7 @@ impl Store {
         npz.set_tail(&tail(meta, names, state)).map_err(Error::write("the cache", path))
     }
 
-    /// Takes over what a cache said of the frames that were copied from it.
+    /// Takes over the report of a cache on the frames that were copied from it.
     pub fn inherit(&mut self, steps: u64, report: Report) {
         (self.meta.steps, self.meta.report) = (steps, report);
     }

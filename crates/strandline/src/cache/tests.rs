@@ -162,9 +162,10 @@ fn attributes_that_there_are_leave_with_the_strands() {
     let files = folder.path().join("f/%d.hair");
     let mut files = files::Files::new(&files, &shape).unwrap();
     files.add(&frame).unwrap();
-    let (bytes, place, left_out) = files.finish();
+    let (bytes, place, left_out, notes) = files.finish();
     assert_eq!(bytes, std::fs::metadata(place.join("0.hair")).unwrap().len());
     assert_eq!(left_out, ["root coordinates", "groups", "names of groups"]);
+    assert!(notes.is_empty());
     let groom = Groom::load(place.join("0.hair")).unwrap();
     assert_eq!(groom.colors.unwrap()[14], [0.25, 0.5, 1.0]);
     assert_eq!(groom.widths.at(2, 14), 1e-5 * 14.0);

@@ -4,28 +4,58 @@
 //! Attributes and conventions: UsdGeomBasisCurves and primvars as OpenUSD's schema has them; for Unreal the
 //! groom_* primvars of its groom schema 1.5.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
-use strandline_base::GrowingFile;
+use strandline_base::{FolderLock, GrowingFile};
 
 use super::{
     Frame, Target, What,
     shape::{Attributes, Shape},
     usd_text::{list, put, put_points, put_tuple, quoted},
 };
-use crate::{Error, Scene, body::Pose};
+use crate::{Error, Scene, body::Pose, prepare::looks};
 
 /// Characters that the first and the last time code may have.
 const DIGITS: usize = 24;
 /// A time code is a whole number where it is this near to one: times of frames are rounded.
 const WHOLE: f64 = 1e-6;
 
+/// A preview of the look: the colours of the strands under a smooth surface [UsdPreviewSurface]. Renderers for hair
+/// take the colours alone.
+const MATERIAL: &str = r#"    def Scope "looks"
+    {
+        def Material "fibre"
+        {
+            token outputs:surface.connect = </hair/looks/fibre/surface.outputs:surface>
+
+            def Shader "surface"
+            {
+                uniform token info:id = "UsdPreviewSurface"
+                color3f inputs:diffuseColor.connect = </hair/looks/fibre/color.outputs:result>
+                float inputs:roughness = 0.4
+                token outputs:surface
+            }
+
+            def Shader "color"
+            {
+                uniform token info:id = "UsdPrimvarReader_float3"
+                string inputs:varname = "displayColor"
+                float3 outputs:result
+            }
+        }
+    }
+
+"#;
+
 /// A file under way.
 pub(super) struct Usd {
     path: PathBuf,
     file: GrowingFile,
+    /// Keeps other runs off the name, which the file gets at its end.
+    _lock: FolderLock,
     /// Bytes so far, and where the first and the last time code stand.
     length: u64,
     ends_at: [u64; 2],
@@ -81,6 +111,7 @@ impl Space {
 impl Usd {
     /// Begins a file.
     pub fn new(path: &Path, scene: &Scene, shape: &Shape, target: Target) -> Result<Self, Error> {
+        let lock = crate::film::claim_name(path)?;
         let file = GrowingFile::create(path).map_err(|error| match error.kind() {
             std::io::ErrorKind::ResourceBusy => Error::BusyFile { path: path.to_owned() },
             _ => Error::write("the USD file", path)(error),
@@ -89,6 +120,7 @@ impl Usd {
         let mut usd = Self {
             path: path.to_owned(),
             file,
+            _lock: lock,
             length: 0,
             ends_at: [0; 2],
             space: Space::of(target),
@@ -101,7 +133,7 @@ impl Usd {
         let (head, ends_at) = usd.head(target);
         usd.ends_at = ends_at.map(|at| at as u64);
         usd.put(&head)?;
-        usd.put(&usd.curves(shape, target))?;
+        usd.put(&usd.curves(scene, shape, target))?;
         Ok(usd)
     }
 
@@ -135,19 +167,21 @@ impl Usd {
             text.push_str("    prepend apiSchemas = [\"GroomAPI\"]\n");
         }
         text.push_str("    kind = \"component\"\n)\n{\n");
+        text.push_str(MATERIAL);
         (text, [start_at, end_at])
     }
 
     /// The prim of the curves up to its points.
-    fn curves(&self, shape: &Shape, target: Target) -> String {
+    fn curves(&self, scene: &Scene, shape: &Shape, target: Target) -> String {
         let counts = shape.starts.windows(2).map(|pair| pair[1] - pair[0]);
         let counts = list(counts, |text, count| text.push_str(&count.to_string()));
         let mut text = format!(
-            "    def BasisCurves \"{}\"\n    {{\n        uniform token type = \"linear\"\n        uniform token wrap = \
+            "    def BasisCurves \"{}\" (\n        prepend apiSchemas = [\"MaterialBindingAPI\"]\n    )\n    {{\n        \
+             rel material:binding = </hair/looks/fibre>\n        uniform token type = \"linear\"\n        uniform token wrap = \
              \"nonperiodic\"\n        int[] curveVertexCounts = {counts}\n",
             shape.what.name()
         );
-        for Primvar { of, name, values, interpolation } in self.primvars(shape, target) {
+        for Primvar { of, name, values, interpolation } in self.primvars(scene, shape, target) {
             let name = if name == "widths" { name.to_owned() } else { format!("primvars:{name}") };
             let _ = write!(
                 text,
@@ -159,7 +193,7 @@ impl Usd {
     }
 
     /// The attributes that there are.
-    fn primvars(&self, shape: &Shape, target: Target) -> Vec<Primvar> {
+    fn primvars(&self, scene: &Scene, shape: &Shape, target: Target) -> Vec<Primvar> {
         let Attributes { widths, colors, root_uvs, groups, group_names, .. } = &shape.attributes;
         let unreal = target == Target::Unreal;
         let mut all = Vec::new();
@@ -172,8 +206,12 @@ impl Usd {
                 "vertex",
             );
         }
-        if let Some(colors) = colors {
-            let values = || list(colors, |text, color| put_tuple(text, color));
+        {
+            // Strands without colours of their own have those of the look.
+            let of_look = || looks::colors_along(&scene.look, &shape.starts);
+            let colors =
+                &colors.as_ref().map_or_else(|| Cow::Owned(of_look()), |colors| Cow::Borrowed(&colors[..]));
+            let values = || list(&**colors, |text, color| put_tuple(text, color));
             add("color3f", "displayColor", values(), "vertex");
             if unreal {
                 add("float3", "groom_color", values(), "vertex");

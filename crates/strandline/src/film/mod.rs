@@ -1,4 +1,4 @@
-//! Writes a film as it is drawn: frames, a contact sheet, and a video or an animated image.
+//! A film that is written while it is drawn: frames, a contact sheet, and a video or an animated image.
 
 mod animation;
 mod picture_files;
@@ -26,10 +26,10 @@ const ANIMATION: &str = "animation.gif";
 ///
 /// Every file is whole once it has its name, and replaces one of an earlier film only then; one that could not
 /// be finished is removed. One film at a time is written into a folder. Frames of an earlier, longer film stay
-/// there, and a note says so: what this run did not write is not its to remove.
+/// there, and a note says so: a run removes only its own files.
 pub struct Film {
     folder: PathBuf,
-    /// Number of frames; none while it is not known.
+    /// Number of frames; `None` while it is not known.
     frames: Option<u32>,
     frames_per_second: f32,
     files: Vec<PathBuf>,
@@ -141,8 +141,8 @@ impl Film {
         Ok(self.into_files(frames, video_failed))
     }
 
-    /// Closes a film that was stopped early: no contact sheet, and a moving picture of the frames so far where none
-    /// of an earlier film would be replaced by it.
+    /// Closes a film that was stopped early: no contact sheet, and a moving picture of the frames so far unless it would
+    /// replace one of an earlier film.
     ///
     /// # Errors
     /// As [`Film::finish`].
@@ -154,6 +154,11 @@ impl Film {
             self.keep(file)?;
         }
         Ok(self.into_files(frames, false))
+    }
+
+    /// Gives up a film that failed. Returns a note on files of an earlier film beside its frames.
+    pub fn give_up(self) -> Vec<String> {
+        leftovers(&self.folder, self.files.len(), &self.files).into_iter().collect()
     }
 
     fn keep(&mut self, file: WholeFile) -> Result<(), Error> {
@@ -214,11 +219,21 @@ impl Film {
     }
 }
 
-/// Makes a folder where it is not there, and keeps other runs out of it.
+/// Creates a folder unless it exists, and keeps other runs out of it.
 pub(crate) fn claim(folder: &Path) -> Result<FolderLock, Error> {
     fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
     FolderLock::take(folder).map_err(|error| match error.kind() {
         ErrorKind::ResourceBusy => Error::Busy { path: folder.to_owned() },
+        _ => Error::write("into the output folder", folder)(error),
+    })
+}
+
+/// Makes the folder of a file where it is not there, and keeps other runs off its name.
+pub(crate) fn claim_name(path: &Path) -> Result<FolderLock, Error> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(Error::write("the output folder", folder))?;
+    FolderLock::take_name(path).map_err(|error| match error.kind() {
+        ErrorKind::ResourceBusy => Error::BusyFile { path: path.to_owned() },
         _ => Error::write("into the output folder", folder)(error),
     })
 }
@@ -314,6 +329,17 @@ mod tests {
         (0..2).for_each(|_| broken.add(&filled(32, 8)).unwrap());
         assert_eq!(broken.stop_early().unwrap().files.last(), Some(&moving));
         assert!(moving.is_file());
+    }
+
+    #[test]
+    fn a_film_that_failed_tells_what_lies_beside_its_frames() {
+        let folder = tempfile::tempdir().unwrap();
+        film(folder.path(), 5);
+        let mut failed = Film::new(folder.path(), 5, 30.0).unwrap();
+        (0..3).for_each(|_| failed.add(&filled(16, 8)).unwrap());
+        let notes = failed.give_up();
+        assert!(notes.len() == 1 && notes[0].contains("earlier film there are still 4 files"), "{notes:?}");
+        assert!(notes[0].contains("frame_0004.png"), "{notes:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use strandline_base::FolderLock;
 
-use super::{claim, still_there, unlocked};
+use super::{claim_name, still_there, unlocked};
 use crate::{
     Error,
     render::{Layers, Picture},
@@ -13,7 +13,8 @@ use crate::{
 /// Receives the pictures of a film in order, or their layers, and writes a file for each, .png or .exr.
 ///
 /// A film of one picture is the file that is named; of more, each has its number before the ending:
-/// `hair_0000.png`. Every file is whole once it has its name. One film at a time is written into a folder.
+/// `hair_0000.png`. Every file is whole once it has its name. One film at a time is written under a name: those of
+/// other names may be written into the same folder meanwhile.
 pub struct PictureFiles {
     path: PathBuf,
     frames: u32,
@@ -25,9 +26,9 @@ impl PictureFiles {
     /// A film of `frames` pictures; the folder of the file is made when it is not there.
     ///
     /// # Errors
-    /// The folder cannot be made or written, or another film is being written there.
+    /// The folder cannot be made or written, or another film is being written there under that name.
     pub fn new(path: &Path, frames: u32) -> Result<Self, Error> {
-        let lock = claim(folder(path))?;
+        let lock = claim_name(path)?;
         Ok(Self { path: path.to_owned(), frames, files: Vec::new(), lock })
     }
 
@@ -115,6 +116,7 @@ mod tests {
         let film = PictureFiles::new(&path, 3).unwrap();
         let busy = PictureFiles::new(&path, 3).err().expect("a folder that is taken").to_string();
         assert!(busy.contains("new"), "{busy}");
+        assert!(PictureFiles::new(&path.with_file_name("other.exr"), 3).is_ok(), "another name is free");
         for name in ["hair_0000.exr", "hair_0002.exr", "hair_00x2.exr", "other_0009.exr", "hair_0001.png"] {
             std::fs::write(path.with_file_name(name), b"old").unwrap();
         }

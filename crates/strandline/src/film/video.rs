@@ -17,16 +17,17 @@ use crate::render::Picture;
 pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 /// Between two looks at whether it ended.
 const LOOK: Duration = Duration::from_millis(10);
-/// Bytes of what ffmpeg says that are kept.
+/// Bytes of ffmpeg's messages that are kept.
 const SAID: usize = 4096;
 
 /// A video under way: ffmpeg writes it under a temporary name, and it gets its own when it is whole.
 ///
 /// Nothing here waits for ffmpeg without an end: a thread of its own feeds it, and one that is stuck is ended.
-/// Programs that it may have started are left alone, so the threads that talk to it are never waited for.
+/// Programs that it may have started are ended with it where the system has groups of processes; the threads that talk
+/// to it are never waited for.
 pub(super) struct Video {
     child: Child,
-    /// Pictures on their way; none when it ended or is to end.
+    /// Pictures on their way; `None` once it ended or has to end.
     pictures: Option<Sender<Vec<u8>>>,
     /// One for each picture that ffmpeg took.
     taken: Receiver<()>,
@@ -49,7 +50,7 @@ impl Video {
         patience: Duration,
     ) -> Result<Result<Self>> {
         let file = WholeFile::for_program(path)?;
-        let mut child = match start(program, picture, frames_per_second, file.part()) {
+        let mut child = match start(program, picture, frames_per_second, file.temporary()) {
             Ok(child) => child,
             Err(error) => return Ok(Err(error)),
         };
@@ -96,7 +97,7 @@ impl Video {
                 return Err(failed);
             }
             let ended = self.child.try_wait();
-            let part = self.file.as_ref().and_then(|file| file.part().metadata().ok());
+            let part = self.file.as_ref().and_then(|file| file.temporary().metadata().ok());
             let written = part.map_or(0, |part| part.len());
             idle = if written == length { idle + LOOK } else { Duration::ZERO };
             length = written;
@@ -127,6 +128,8 @@ impl Video {
     /// Ends ffmpeg, and lets the system forget it.
     fn end(&mut self) {
         // It may have ended by itself.
+        #[cfg(unix)]
+        let _ = end_group(self.child.id());
         let _ = self.child.kill();
         for _ in 0..100 {
             if !matches!(self.child.try_wait(), Ok(None)) {
@@ -160,6 +163,13 @@ impl Drop for Video {
     }
 }
 
+/// Ends all programs of a group of processes.
+#[cfg(unix)]
+fn end_group(number: u32) -> Result<std::process::ExitStatus> {
+    let group = format!("-{number}");
+    Command::new("kill").args(["-KILL", "--", &group]).stderr(Stdio::null()).status()
+}
+
 fn start(program: &Path, picture: &Picture, frames_per_second: f32, part: &Path) -> Result<Child> {
     let size = format!("{}x{}", picture.width, picture.height);
     // Neither an option nor an address, whatever the folder is called.
@@ -169,7 +179,9 @@ fn start(program: &Path, picture: &Picture, frames_per_second: f32, part: &Path)
     command
         .args(["-loglevel", "error", "-y", "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", &size])
         .args(["-framerate", &frames_per_second.to_string(), "-i", "-"])
-        .args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", "-crf", "18", "-f", "mp4"])
+        .args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", "-crf", "18"])
+        // The encoder divides its work among threads, and its bytes depend on their number.
+        .args(["-threads", "1", "-f", "mp4"])
         .arg(target)
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
@@ -269,7 +281,7 @@ mod tests {
         assert_eq!(finished, Err("ffmpeg wrote nothing".to_owned()), "though it says that it went well");
     }
 
-    /// Also when what is stuck is a program that it started, which holds the pipes open.
+    /// A program that ffmpeg started may be stuck too and hold the pipes open.
     #[test]
     fn a_program_that_is_stuck_is_ended() {
         let stuck = "sleep 4\n";
@@ -284,6 +296,31 @@ mod tests {
             assert_eq!(names, ["video.mp4"]);
             assert!(took < Duration::from_secs(4), "{took:?}");
         }
+    }
+
+    #[test]
+    fn what_a_stuck_program_has_started_ends_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let number = folder.path().join("number");
+        let (finished, ..) =
+            film(&format!("#!/bin/sh\nsleep 60 &\necho $! > '{}'\nwait\n", number.display()));
+        assert!(finished.unwrap_err().contains("took no picture"));
+        let number = fs::read_to_string(number).unwrap();
+        let is_there = || Command::new("kill").args(["-0", number.trim()]).stderr(Stdio::null()).status();
+        let begin = Instant::now();
+        while is_there().unwrap().success() {
+            assert!(begin.elapsed() < Duration::from_secs(20), "process {number} lives on");
+            sleep(LOOK);
+        }
+    }
+
+    #[test]
+    fn the_encoder_has_one_thread_on_every_machine() {
+        let target = "for last; do true; done\n";
+        let (finished, ..) = film(&format!(
+            "#!/bin/sh\n{target}case \"$*\" in *' -threads 1 '*) cat > \"${{last#file:}}\";; *) exit 4;; esac\n"
+        ));
+        assert_eq!(finished, Ok(()));
     }
 
     #[test]

@@ -129,8 +129,8 @@ impl Hair {
         Ok(reports)
     }
 
-    /// Takes hair into a hand, and lets go of what it held: the strands that come within `radius` \[m\]
-    /// of `hand` \[m\], world space, each at its nearest point. Returns how many there are.
+    /// Takes hair into a hand in place of the hair that it held: the strands within `radius` \[m\] of `hand` \[m\], world
+    /// space, each at its nearest point. Returns the number of strands.
     ///
     /// # Errors
     /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
@@ -138,8 +138,8 @@ impl Hair {
         Ok(self.session.simulation_mut().grab(hand, radius)?)
     }
 
-    /// The hair that a line of sight meets first before the body \[m\], world space: where a hand takes
-    /// what lies within `radius` \[m\] of it. The picture of [`Ray::new`] is the one of now.
+    /// The first hair within `radius` \[m\] of a line of sight, before the body: its place \[m\], world space, for
+    /// [`Hair::grab`]. [`Ray::new`] takes the present picture.
     ///
     /// # Errors
     /// As [`Hair::grab`].
@@ -167,7 +167,7 @@ impl Hair {
         self.session.set_fall_back(fall_back);
     }
 
-    /// The device that the hair is simulated on; none on the CPU.
+    /// The device of the simulation; `None` on the CPU.
     pub fn gpu(&self) -> Option<&Gpu> {
         self.session.simulation().gpu()
     }
@@ -282,7 +282,7 @@ impl Hair {
         Ok(self.picture_with_report(camera, look)?.0)
     }
 
-    /// Draws the hair as it is now, and says what it cost.
+    /// Draws the hair as it is now, and reports the work of the picture.
     ///
     /// # Errors
     /// As [`Hair::picture`].
@@ -353,10 +353,10 @@ impl Hair {
         Ok(self.session.simulation_mut().state()?)
     }
 
-    /// Saves where the hair is and how it moves: what `groom.pose` of a scene names. Four tensors of the
-    /// safetensors format, 32-bit floats: `positions` \[m\], `velocities` \[m/s\] and `corrections`, what the
-    /// next step's prediction adds to them \[m/s\], world space, shape `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and a translation
-    /// \[m\]. A hand that holds hair is not in it.
+    /// Saves positions and motion of the hair, for `groom.pose` of a scene. Four tensors of the safetensors format, 32-bit
+    /// floats: `positions` \[m\], `velocities` \[m/s\] and `corrections`, which the next step's prediction adds to them
+    /// \[m/s\], world space, shape `[strand][point][3]`; `world_from_head`, shape `[7]`, a unit quaternion x, y, z, w and
+    /// a translation \[m\]. A hand that holds hair is not in it.
     ///
     /// # Errors
     /// The file cannot be written.

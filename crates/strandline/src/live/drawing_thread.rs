@@ -12,7 +12,8 @@ use super::messages::{Command, LiveEvent, Out, Shown};
 use super::playing::{Drafts, Playing, changes_cost, of_size};
 use super::recorder::Recorder;
 use crate::{
-    Error, ErrorKind, FilmFiles, Scene, Sources,
+    Error, ErrorKind, Scene, Sources,
+    film::FilmFiles,
     render::{FrameReport, Picture},
     session::{Change, Event, FRAME},
 };
@@ -170,7 +171,7 @@ impl DrawingThread {
                 (playing.scene, playing.loaded) = (Some(loaded), load);
                 (playing.step, playing.is_frame) = (None, false);
             }
-            Err(error) => self.emit(LiveEvent::NotLoaded(load, error.to_string())),
+            Err(error) => self.emit(LiveEvent::NotLoaded(load, error.kind(), error.to_string())),
         }
     }
 
@@ -188,7 +189,8 @@ impl DrawingThread {
         };
         if let Err(error) = std::thread::Builder::new().name("loading".to_owned()).spawn(job) {
             playing.loading -= 1;
-            self.emit(LiveEvent::NotLoaded(number, Error::Thread(error).to_string()));
+            let error = Error::Thread(error);
+            self.emit(LiveEvent::NotLoaded(number, error.kind(), error.to_string()));
         }
     }
 
@@ -336,6 +338,7 @@ impl DrawingThread {
             drawing,
             step: playing.step.take(),
             grabbed: session.grabbed(),
+            stiffening: session.stiffening(),
             places: [session.simulated_on().to_owned(), session.view().drawn_on()],
         };
         let mut out = self.out.lock().unwrap_or_else(PoisonError::into_inner);

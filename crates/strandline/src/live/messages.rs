@@ -8,7 +8,7 @@ use crate::{
     body::Aabb,
     render::{Camera, FrameReport, Picture},
     session::Change,
-    sim::StepReport,
+    sim::{StepReport, Stiffening},
 };
 
 /// A command to a [`Live`](crate::Live).
@@ -65,6 +65,8 @@ pub struct Shown {
     pub step: Option<StepReport>,
     /// Strands in the hand.
     pub grabbed: usize,
+    /// Strands that are stiffer than their material.
+    pub stiffening: Stiffening,
     /// Devices of simulation and pictures.
     pub places: [String; 2],
 }
@@ -75,11 +77,11 @@ pub enum LiveEvent {
     /// The scene of the command with this number is there: with what it left open chosen to fit its groom, its
     /// camera, the box around hair and body \[m\], and what a person should read.
     Loaded(u64, Box<Scene>, Camera, Aabb, Vec<String>),
-    /// Something that a person should read.
+    /// A note, human-readable.
     Note(String),
-    /// The scene of the command with this number could not be loaded; what was there stays.
-    NotLoaded(u64, String),
-    /// Something could not be done, what may be done about it and why; what was there stays.
+    /// The scene of the command with this number could not be loaded: kind and text of the error. The old scene stays.
+    NotLoaded(u64, ErrorKind, String),
+    /// Kind and text of an error; nothing else changes.
     Error(ErrorKind, String),
     /// It stands still, since a frame failed: its error came before.
     Paused,

@@ -66,8 +66,8 @@ impl Live {
         self.sent.fetch_add(1, Ordering::Relaxed) + 1
     }
 
-    /// Waits until nothing is left to do but what only time brings: no scene is loaded, nothing plays or changes. What
-    /// was drawn until then is there.
+    /// Waits until all work is done that does not wait for time: no scene is loading, nothing plays or changes. The last
+    /// picture can be taken then.
     pub fn wait_idle(&self) {
         let (idler, idle) = channel();
         let sent = self.commands.as_ref().is_some_and(|commands| commands.send(Message::Idle(idler)).is_ok());

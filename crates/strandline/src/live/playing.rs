@@ -14,8 +14,8 @@ use crate::{
 
 /// A picture that takes longer than this \[s\] is drawn simpler while the hair moves.
 const SLOW: f64 = 0.08;
-/// Simpler pictures become coarser where so many one after the other take longer than the first time \[s\], and finer
-/// where they take less than the second: eight a second are to be shown, and each is handed on.
+/// Simpler pictures become coarser after [`ALIKE`] in a row that take longer than the first time \[s\], and finer after as
+/// many that take less than the second: the aim is eight a second.
 const SLOW_DRAFT: f64 = 0.12;
 const QUICK_DRAFT: f64 = 0.06;
 const ALIKE: i32 = 3;
@@ -71,7 +71,7 @@ pub(super) struct Playing {
     pub loaded: u64,
     pub loading: usize,
     pub recorder: Option<Recorder>,
-    /// The last step, and whether there is a frame, of which no picture was drawn yet.
+    /// The last step without a picture yet, and true where a frame has none yet.
     pub step: Option<StepReport>,
     pub is_frame: bool,
     /// Number of the last film.

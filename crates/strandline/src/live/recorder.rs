@@ -1,12 +1,16 @@
-//! A video of what plays, written on a thread of its own.
+//! A video of the playing hair, written on a thread of its own.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
-use crate::{Error, Film, FilmFiles, render::Picture};
+use crate::{
+    Error,
+    film::{Film, FilmFiles},
+    render::Picture,
+};
 
-/// Pictures that wait to be written; who draws faster than that waits for the disk.
+/// Most pictures that wait to be written; the drawing thread then waits for the disk.
 const WAITING: usize = 4;
 
 /// A film under way.

@@ -9,10 +9,7 @@ use super::loading::Loading;
 use crate::{
     Scene,
     body::Mesh,
-    groom::{
-        Groom,
-        format::{HAIR_WIDTH, Part},
-    },
+    groom::{Groom, format::Attribute},
     render::{GroupLook, LevelOfDetail},
 };
 
@@ -20,14 +17,15 @@ use crate::{
 const DRAWN: usize = 40_000;
 /// Most strands that are drawn about each.
 const MOST_FOLLOW: usize = 32;
-/// Segments of a picture \[segment\]: what can be drawn in a second or two on a processor.
+/// Number of segments that a CPU draws in a second or two.
 const SEGMENTS: usize = 2_200_000;
 /// Radius of a clump as a share of the distance between strands, at the roots and the tips; and the amplitude of
 /// waves of its own that a drawn strand has.
 const ROOT_SHARE: f32 = 0.35;
 const TIP_SHARE: f32 = 0.22;
 const WAVE_SHARE: f32 = 0.13;
-/// Points that a strand may have, and how far from it \[m\], and as a share of its length, a polyline of fewer may be.
+/// Numbers of points of a strand to choose from, and the allowed distance of such a polyline from it, \[m\] and as a share
+/// of its length.
 const POINTS: [u32; 7] = [8, 12, 16, 24, 32, 48, 64];
 const ASTRAY: f32 = 3e-4;
 const ASTRAY_SHARE: f32 = 0.002;
@@ -36,14 +34,18 @@ const CELLS: f32 = 250.0;
 const COARSEST: f32 = 0.1;
 /// Distance up to which all is drawn, over the diagonal of the body: a picture that it fills.
 const NEAR: f32 = 2.5;
+/// Hairs for which a strand stands at least: one hair alone is thinner than can be seen.
+const SHOWN: u64 = 6;
 /// Strands that are looked at.
 const LOOKED_AT: usize = 400;
-/// Groups that are looked at: of so many strands, and so many of them; whose roots are so much closer than those of all.
+/// Groups that are examined: least number of strands, number of groups, and distance of their roots over that of all.
 const FEWEST: usize = 20;
 const MOST_GROUPS: usize = 64;
 const CLOSER: f32 = 0.7;
-/// Diameter of a hair over the distance of hairs on a head of a hundred thousand.
+/// Diameter of a hair over the distance of hairs on a head of a hundred thousand, and the share of it with which strands
+/// of a file are all of its hair; thinner ones are guides.
 const DENSITY: f32 = 0.095;
+const ALL_HAIR: f32 = 0.5;
 
 /// Chooses settings that the scene leaves open, to fit a groom from a source.
 pub(super) fn fit(loading: &mut Loading) {
@@ -63,9 +65,15 @@ fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<Strin
         scene.groom.points_per_strand = points(groom);
         chosen.push(format!("groom.points_per_strand = {}", scene.groom.points_per_strand));
     }
+    let spacing = spacing(groom);
+    fit_widths(scene, groom, spacing, &default, &mut chosen);
     let look = &mut scene.look;
     if !given.follow_strands && look.follow_strands == default.look.follow_strands {
         look.follow_strands = DRAWN.div_ceil(strands).clamp(1, MOST_FOLLOW) as u32;
+        if look.hair_count > 0 && (strands as u64).pow(2) < u64::from(default.look.hair_count) {
+            // Few strands stand for few hairs, each drawn once.
+            look.follow_strands = look.follow_strands.min(look.hair_count.div_ceil(strands as u32));
+        }
         chosen.push(format!("look.follow_strands = {}", look.follow_strands));
     }
     let level = &mut scene.level_of_detail;
@@ -75,7 +83,6 @@ fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<Strin
         level.segments_per_span = (SEGMENTS / spans.max(1)).clamp(1, 3) as u32;
         chosen.push(format!("level_of_detail.segments_per_span = {}", level.segments_per_span));
     }
-    let spacing = spacing(groom);
     let are_open = !given.root_radius && !given.tip_radius && look.clump == default.look.clump;
     let clump = &mut look.clump;
     let of_default = default.look.clump;
@@ -92,7 +99,6 @@ fn choose(scene: &mut Scene, groom: &Groom, mesh: Option<&Mesh>) -> Option<Strin
     if are_open {
         fit_clumps(scene, groom, spacing, &mut chosen);
     }
-    fit_widths(scene, groom, spacing, &default, &mut chosen);
     let size = mesh.and_then(Mesh::bounds).map_or(0.0, |bounds| bounds.min.distance(bounds.max));
     let body = &mut scene.body;
     if !given.spacing && body.spacing == default.body.spacing && size > CELLS * body.spacing {
@@ -137,21 +143,48 @@ fn fit_clumps(scene: &mut Scene, groom: &Groom, of_all: f32, chosen: &mut Vec<St
     }
 }
 
-/// Widths: with those of the file drawn strands cover together what its strands cover, without them as much of
-/// the skin as hairs do.
+/// Widths and the number of hairs: strands of a file that are as wide as hair is dense are all of its hair; thinner ones
+/// and those without widths are guides, which cover as much of the skin as hairs do. Few guides stand for few hairs.
 fn fit_widths(scene: &mut Scene, groom: &Groom, spacing: f32, default: &Scene, chosen: &mut Vec<String>) {
-    let look = &mut scene.look;
-    let is_open = !scene.given.width_scale && look.width_scale == default.look.width_scale;
-    if !Part::Widths.is_in(groom) && is_open && look.hair_count > 0 {
+    let (look, strands) = (&mut scene.look, groom.strand_count());
+    let is_count_open = !scene.given.hair_count && look.hair_count == default.look.hair_count;
+    let is_scale_open = !scene.given.width_scale && look.width_scale == default.look.width_scale;
+    let (has_widths, width) = (Attribute::Widths.is_in(groom), mean_width(groom));
+    if has_widths && width >= ALL_HAIR * DENSITY * spacing {
+        if is_count_open {
+            look.hair_count = strands as u32;
+            chosen.push(format!("look.hair_count = {strands}"));
+        }
+        return;
+    }
+    if is_scale_open && look.hair_count > 0 && spacing > 0.0 && width > 0.0 {
         // Hairs are as much denser than strands as they are more.
-        let of_hairs = spacing * (groom.strand_count() as f32 / look.hair_count as f32).sqrt();
-        look.width_scale = (DENSITY * of_hairs / HAIR_WIDTH).clamp(0.5, 50.0);
+        let of_hairs = spacing * (strands as f32 / look.hair_count as f32).sqrt();
+        look.width_scale = (DENSITY * of_hairs / width).clamp(0.5, 50.0);
         chosen.push(format!("look.width_scale = {:.2}", look.width_scale));
     }
-    if Part::Widths.is_in(groom) && !scene.given.hair_count && look.hair_count == default.look.hair_count {
-        look.hair_count = groom.strand_count() as u32;
-        chosen.push(format!("look.hair_count = {}", look.hair_count));
+    // A strand stands for no more hairs than there are strands, or than show one alone.
+    let each = (strands as u64).max(SHOWN);
+    let most = (strands as u64 * each).min(u64::from(look.hair_count)) as u32;
+    if is_count_open && most < look.hair_count {
+        look.hair_count = most;
+        chosen.push(format!("look.hair_count = {most}"));
+    } else if has_widths && is_count_open {
+        chosen
+            .push(format!("look.hair_count = {most} (too thin for all of the hair, the strands are guides)"));
     }
+}
+
+/// Mean diameter \[m\] of strands.
+fn mean_width(groom: &Groom) -> f32 {
+    let (mut sum, mut count) = (0.0_f64, 0);
+    for strand in some(groom) {
+        for point in groom.range(strand) {
+            sum += f64::from(groom.widths.at(strand, point));
+            count += 1;
+        }
+    }
+    (sum / f64::from(count.max(1))) as f32
 }
 
 fn some(groom: &Groom) -> impl Iterator<Item = usize> {
@@ -168,7 +201,7 @@ fn points(groom: &Groom) -> u32 {
     POINTS.into_iter().find(|count| keeps(*count)).unwrap_or(most)
 }
 
-/// Deviation of strands of so many points from themselves over the tolerance, for 95 in 100.
+/// Deviation of strands resampled to `count` points from themselves, over the tolerance, for 95 in 100.
 fn astray(groom: &Groom, count: usize) -> f32 {
     let mut found: Vec<f32> = some(groom)
         .map(|strand| {
@@ -202,6 +235,7 @@ fn spacing(groom: &Groom) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::groom::{Widths, format::HAIR_WIDTH};
     use crate::scene::Given;
 
     /// Strands on a square at distances of 2 mm that hang or curl.
@@ -251,6 +285,52 @@ mod tests {
         given.look.group = vec![own.clone()];
         choose(&mut given, &groom, None);
         assert_eq!(given.look.group, [own]);
+    }
+
+    /// Strands on a square of 10 cm, as many on each side.
+    fn square(side: usize, widths: Widths) -> Groom {
+        let mut groom = Groom::empty(HAIR_WIDTH);
+        for strand in 0..side * side {
+            let root = Vec3::new((strand % side) as f32, 0.0, (strand / side) as f32) * (0.1 / side as f32);
+            groom.push([root, root - Vec3::Y * 0.1, root - Vec3::Y * 0.2]);
+        }
+        groom.widths = widths;
+        groom
+    }
+
+    fn chosen(groom: &Groom) -> Scene {
+        let mut scene = Scene::default();
+        scene.groom.file = Some("a.hair".into());
+        choose(&mut scene, groom, None);
+        scene
+    }
+
+    #[test]
+    fn thin_strands_with_widths_are_drawn_as_those_without() {
+        let bare = chosen(&square(50, Widths::Constant(HAIR_WIDTH))).look;
+        let same = chosen(&square(50, Widths::PerStrand(vec![HAIR_WIDTH; 2500]))).look;
+        let thinner = chosen(&square(50, Widths::PerStrand(vec![0.5 * HAIR_WIDTH; 2500]))).look;
+        assert_eq!((same.hair_count, same.width_scale), (bare.hair_count, bare.width_scale));
+        assert!(bare.hair_count == 100_000 && (thinner.width_scale - 2.0 * bare.width_scale).abs() < 1e-3);
+        // Strands 2 mm apart that are 0.2 mm wide leave no room for others.
+        let all = chosen(&square(50, Widths::PerStrand(vec![2e-4; 2500]))).look;
+        assert_eq!((all.hair_count, all.width_scale), (2500, 1.0));
+    }
+
+    #[test]
+    fn few_strands_stand_for_few_hairs() {
+        for (side, hairs, follow) in
+            [(1, 6, 6), (2, 24, 6), (4, 256, 16), (10, 10_000, 32), (20, 100_000, 32)]
+        {
+            let look = chosen(&square(side, Widths::Constant(HAIR_WIDTH))).look;
+            assert_eq!((look.hair_count, look.follow_strands), (hairs, follow), "{side}");
+            let drawn = look.width_scale * look.hair_count as f32
+                / (look.follow_strands as usize * side * side) as f32;
+            // The width of one that is drawn over that of a hair.
+            assert!(drawn < 20.0 && (side > 1 || drawn == 1.0), "{side}: {drawn}");
+        }
+        let one = chosen(&square(1, Widths::PerStrand(vec![HAIR_WIDTH]))).look;
+        assert_eq!((one.hair_count, one.width_scale), (6, 1.0));
     }
 
     #[test]

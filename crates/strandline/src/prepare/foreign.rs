@@ -1,14 +1,16 @@
 //! A groom that was made for another head: its scalp is fitted to the head of the body.
 
 use glam::{Quat, Vec3};
+use strandline_base::math;
 
-use super::guess;
-use super::head;
-use super::placing::{Placing, Placings};
-use super::sample::{self, HEIGHTS};
+use super::evidence::Hair;
+use super::head::{UPS, turns, turns_of};
+use super::placing::{Placing, upright};
+use super::relation::{Found, MOST, PIECE, Search, fits};
+use super::sample::HEIGHTS;
 use super::skull::Skull;
+use super::units::unit_of_width;
 use crate::{
-    Scene,
     body::Mesh,
     groom::{
         Groom,
@@ -16,84 +18,106 @@ use crate::{
     },
 };
 
-/// Middle distance of roots from a body that is not theirs, as a share of the body's size.
-const APART: f32 = 0.1;
-/// Width of a scalp over that of the skull below or above which the two have other units.
-const WIDTHS: std::ops::RangeInclusive<f32> = 0.1..=3.0;
 /// Depth over the width of what may be a scalp.
 const DEPTHS: std::ops::RangeInclusive<f32> = 0.7..=1.8;
 /// Width, height and depth of the roots on a head over those of its skull.
 const OF_SKULL: Vec3 = Vec3::new(1.0, 0.97, 0.94);
+/// Evidence against axes that no standard has, and against hair that looks another way than its standard says.
+const STRANGE: f32 = 1.5;
+const ROUND: f32 = 0.7;
+/// Difference of a scale from 1 that is none.
+const SAME_SIZE: f32 = 0.03;
 
-/// The places of a groom and a body that do not belong together, where a scene leaves both open; none where they do,
-/// or the groom is not the hair of a head.
-pub(super) fn placings(scene: &Scene, groom: &Groom, mesh: &Mesh, as_one: &Placings) -> Option<Placings> {
-    if !is_open(scene) {
+/// The place of hair of another head, before it is fitted, given the unit of its file where its width shows none: the axes with which it lies most
+/// like hair once it is fitted. None where a scene places the groom, or it is not the hair of a head.
+pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
+    let (given, skull) = (&search.scene.groom, search.head.skull.as_ref()?);
+    let is_open = given.scale == Scale::Auto && given.translation == Vec3::ZERO;
+    if !is_open || !search.hair.is_full(None) {
         return None;
     }
-    let roots = placed(groom.roots(), &as_one.groom);
-    let vertices = placed(mesh.positions.iter().copied(), &as_one.body);
-    let (scalp, skull) = (Skull::of(&roots)?, Skull::of(&vertices)?);
-    let apart = sample::roots_apart(groom, mesh, &as_one.groom, &as_one.body);
-    if apart <= APART && WIDTHS.contains(&(scalp.size.x / skull.size.x)) {
-        return None;
+    let tried: Vec<Quat> = match given.up {
+        Up::Auto if given.rotation == Vec3::ZERO => turns().collect(),
+        Up::Auto => [Up::Y, Up::Z, Up::MinusY].map(upright).to_vec(),
+        up => vec![upright(up)],
+    };
+    let own = math::pitch_yaw_roll(given.rotation);
+    let fitted = |turn: &Quat| {
+        let hair = search.hair.placed(|point| own * *turn * (unit * point));
+        let fitting = Fitting::new(hair.many_roots(), skull)?;
+        let scalp = skull.size.x / (fitting.scale.x / OF_SKULL.x);
+        let usual = unit_of_width(scalp / unit, unit);
+        let placing = Placing { scale: if usual.1.is_none() { usual.0 } else { unit }, turn: *turn };
+        Some((placing, hair.placed(|point| fitting.place(point))))
+    };
+    let (places, hair): (Vec<Placing>, Vec<Hair>) = tried.iter().filter_map(fitted).unzip();
+    let fits = fits(&search.head.mesh, &hair);
+    let mut found: Vec<(f32, Placing, f32)> = (0..places.len())
+        .map(|index| {
+            let lies = hair[index].on(skull, search.head.pose.shows_front);
+            let evidence = lies - (fits[index] / PIECE).min(MOST) - against(places[index].turn);
+            (evidence, places[index], fits[index])
+        })
+        .collect();
+    found.sort_by(|one, two| two.0.total_cmp(&one.0));
+    let (evidence, placing, fit) = *found.first()?;
+    let margin = found.get(1).map_or(MOST, |other| evidence - other.0);
+    Some(Found { placing, fit, margin, is_foreign: true })
+}
+
+/// Evidence against axes of a groom of another head.
+fn against(turn: Quat) -> f32 {
+    let place = UPS.iter().flat_map(|up| turns_of(*up)).position(|one| one.angle_between(turn) < 0.01);
+    match place.map(|place| (place / 4, place % 4)) {
+        Some((0..3, 0)) => 0.0,
+        Some((0..3, 1)) => ROUND,
+        _ => STRANGE,
     }
-    let alone = guess::placings(scene, &[groom], None).groom;
-    let body = guess::placings(scene, &[], Some(mesh)).body;
-    let (roots, vertices) = (placed(groom.roots(), &alone), placed(mesh.positions.iter().copied(), &body));
-    let tips = (0..groom.strand_count()).map(|strand| groom.strand(strand)[groom.strand(strand).len() - 1]);
-    let (turn_hair, turn_body) = (front_of_hair(&roots, &placed(tips, &alone))?, head::front(&vertices)?);
-    let turned = |placing: Placing, turn: Quat| Placing { turn: turn * placing.turn, ..placing };
-    let (groom, body) = (turned(alone, turn_hair), turned(body, turn_body));
-    Some(Placings { groom, body, note: None })
 }
 
-/// True where a scene leaves the placement of groom and body open.
-fn is_open(scene: &Scene) -> bool {
-    let (groom, body) = (&scene.groom, &scene.body);
-    let still = [groom.rotation, groom.translation, body.rotation, body.translation];
-    groom.scale == Scale::Auto
-        && body.scale == Scale::Auto
-        && groom.up == Up::Auto
-        && body.up == Up::Auto
-        && still.iter().all(|part| *part == Vec3::ZERO)
+/// A map of the scalp of one head to another: crown on crown and back on back.
+struct Fitting {
+    from: Vec3,
+    to: Vec3,
+    scale: Vec3,
 }
 
-fn placed(places: impl Iterator<Item = Vec3>, placing: &Placing) -> Vec<Vec3> {
-    places.map(|place| placing.turn * (placing.scale * place)).collect()
-}
-
-/// Turns hair so that it is combed to the back, -z; none where roots do not lie as those on a head.
-fn front_of_hair(roots: &[Vec3], tips: &[Vec3]) -> Option<Quat> {
-    let scalp = Skull::of(roots)?;
-    let lowest = roots.iter().map(|root| root.y).fold(f32::INFINITY, f32::min);
-    let width = scalp.size.x.min(scalp.size.y);
-    let deep = scalp.size.max_element() / width;
-    if !(DEPTHS.contains(&deep) && HEIGHTS.contains(&((scalp.top - lowest) / width))) {
-        return None;
+impl Fitting {
+    /// Brings roots to a skull; none where they do not lie as those of a head of hair.
+    fn new(roots: &[Vec3], to: &Skull) -> Option<Self> {
+        let from = Skull::of(roots)?;
+        let lowest = roots.iter().map(|root| root.y).fold(f32::INFINITY, f32::min);
+        let width = from.size.min_element();
+        let deep = from.size.max_element() / width;
+        if !(DEPTHS.contains(&deep) && HEIGHTS.contains(&((from.top - lowest) / width))) {
+            return None;
+        }
+        // Roots lie around as much of a skull on all heads that were looked at: all of its width, and 0.93 to 0.97 of its
+        // depth.
+        let ratio = to.size / from.size;
+        let scale = Vec3::new(ratio.x, 0.5 * (ratio.x + ratio.y), ratio.y) * OF_SKULL;
+        let anchor =
+            |skull: &Skull| Vec3::new(skull.middle.x, skull.top, skull.middle.y - 0.5 * skull.size.y);
+        Some(Self { from: anchor(&from), to: anchor(to), scale })
     }
-    let combed = tips.iter().zip(roots).map(|(tip, root)| *tip - *root).sum::<Vec3>();
-    let combed = combed / (roots.len() as f32 * scalp.size.max_element());
-    Some(head::turned_to_z(head::is_long(&scalp), -combed))
+
+    fn place(&self, point: Vec3) -> Vec3 {
+        self.to + self.scale * (point - self.from)
+    }
 }
 
-/// Fits hair that is placed by [`placings`] to the head of a mesh, head space: crown on crown and back on back.
-/// Returns a note.
+/// Fits hair that is placed as [`found`] to the head of a mesh, head space. Returns a note.
 pub(super) fn fit(groom: &mut Groom, mesh: &Mesh) -> Option<String> {
-    let roots: Vec<Vec3> = groom.roots().collect();
-    let (from, to) = (Skull::of(&roots)?, Skull::of(&mesh.positions)?);
-    // Roots lie around as much of a skull on all heads that were looked at: all of its width, and 0.93 to 0.97 of its
-    // depth.
-    let ratio = to.size / from.size;
-    let scale = Vec3::new(ratio.x, 0.5 * (ratio.x + ratio.y), ratio.y) * OF_SKULL;
-    let anchor = |skull: &Skull| Vec3::new(skull.middle.x, skull.top, skull.middle.y - 0.5 * skull.size.y);
-    let (from, to) = (anchor(&from), anchor(&to));
-    groom.points.iter_mut().for_each(|point| *point = to + scale * (*point - from));
+    let fitting = Fitting::new(&groom.roots().collect::<Vec<_>>(), &Skull::of_body(mesh)?)?;
+    groom.points.iter_mut().for_each(|point| *point = fitting.place(*point));
+    let scale = fitting.scale / OF_SKULL;
+    let is_same = (scale - Vec3::ONE).abs().max_element() < SAME_SIZE;
+    let kind = if is_same { "lies elsewhere" } else { "was made for another head" };
     Some(format!(
-        "the groom was made for another head: it is fitted to the highest part of this body, {:.0} % as wide and \
+        "the groom {kind}: it is fitted to the highest part of this body, {:.0} % as wide and \
          {:.0} % as deep; `scale`, `up`, `rotation` and `translation` of [groom] and [body] place both otherwise",
-        100.0 * scale.x,
-        100.0 * scale.z
+        100.0 * fitting.scale.x,
+        100.0 * fitting.scale.z
     ))
 }
 

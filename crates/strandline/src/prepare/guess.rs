@@ -1,13 +1,17 @@
-//! Units and axes of a groom and its body, guessed from both together where a scene leaves them open.
+//! Units and axes of a groom and its body, taken from both where a scene leaves them open.
 
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
 use super::{
-    head,
-    placing::{Placing, Placings, diagonal, upright},
+    evidence::Hair,
+    foreign, head,
+    noted::noted,
+    placing::{Defined, Placing, Placings, diagonal, place_mesh, upright},
+    relation::{Found, Head, Search},
     sample::{NEAR, NEARER, Sample, UNITS},
     skull::Skull,
+    units::{SCALPS, unit_of_width},
 };
 use crate::{
     Scene,
@@ -26,10 +30,18 @@ const GROOMS: std::ops::RangeInclusive<f32> = 0.05..=2.0;
 /// Least advantage of z over y in the height of roots for z to be up, and in all evidence.
 const HIGHER: f32 = 0.15;
 const SURER: f32 = 0.3;
-/// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
-/// head that no unit brings there is given.
-const SCALPS: std::ops::RangeInclusive<f32> = 0.09..=0.3;
-const SCALP: f32 = 0.15;
+/// Evidence beyond that for the axes of a file with which others are taken for a groom without a body.
+const SURE_ALONE: f32 = 2.5;
+/// Distance of roots over their size at which nothing is left of the confidence in their place.
+const ASTRAY: f32 = 0.2;
+/// Confidence in a body that shows neither face nor feet, in a person whose face does not show, in hair that is fitted to
+/// another head than its own, and in hair away from the body.
+const SHAPELESS: f32 = 0.75;
+const FACELESS: f32 = 0.9;
+const FOREIGN: f32 = 0.8;
+const AWAY: f32 = 0.1;
+/// Share of the confidence that a doubt leaves.
+const DOUBTED: f32 = 0.3;
 
 fn units(scale: Scale) -> Option<f32> {
     match scale {
@@ -42,77 +54,152 @@ fn first_of(diagonal: f32, sizes: &std::ops::RangeInclusive<f32>) -> f32 {
     UNITS.into_iter().find(|unit| sizes.contains(&(unit * diagonal))).unwrap_or(1.0)
 }
 
-/// Placements of the files of a groom, which share theirs, and of a body's files, where there are some of each.
-pub(super) fn placings(scene: &Scene, grooms: &[&Groom], mesh: Option<&Mesh>) -> Placings {
-    let (of_groom, of_body) = (&scene.groom, &scene.body);
-    let body_diagonal = mesh.and_then(Mesh::bounds).map_or(0.0, diagonal);
-    let body_unit = units(of_body.scale).unwrap_or_else(|| first_of(body_diagonal, &BODIES));
-    let Some(mesh) = mesh.filter(|_| !grooms.is_empty()) else {
-        return each_alone(scene, grooms, mesh, body_unit);
-    };
-    let sample = Sample::new(grooms, mesh);
-    let [groom_up, body_up] = agreed(scene, &sample, body_unit);
-    let mut groom =
-        Placing { scale: unit_of(scene, &sample, body_unit, [groom_up, body_up]), turn: upright(groom_up) };
-    let mut body = Placing { scale: body_unit, turn: upright(body_up) };
-    let is_free = of_groom.rotation == Vec3::ZERO && of_body.rotation == Vec3::ZERO;
-    let turn = if is_free { sample.to_front(&groom, &body) } else { Quat::IDENTITY };
-    (groom.turn, body.turn) = (turn * groom.turn, turn * body.turn);
-    let is_open = of_groom.scale == Scale::Auto && of_body.scale == Scale::Auto;
-    let scalp = sample.scalp(&groom, &body).filter(|width| is_open && !SCALPS.contains(width));
-    if let Some(width) = scalp {
-        let scale = as_written(body.scale * SCALP / width);
-        groom.scale *= scale / body.scale;
-        body.scale = scale;
-    }
-    let mut note = noted(scene, groom, body, true, turn);
-    note_strange(&mut note, scalp);
-    Placings { groom, body, note }
-}
-
-/// The places of a groom without a body, or of a body without one: a style grows on its head.
-fn each_alone(scene: &Scene, grooms: &[&Groom], mesh: Option<&Mesh>, body_unit: f32) -> Placings {
-    let (of_groom, of_body) = (&scene.groom, &scene.body);
+/// Metres of a unit of a groom alone.
+pub(super) fn unit_alone(grooms: &[&Groom]) -> f32 {
     let bounds = grooms.iter().map(|groom| groom.bounds());
     let bounds = bounds.reduce(|one, two| Aabb { min: one.min.min(two.min), max: one.max.max(two.max) });
-    let alone = bounds.map_or(1.0, |bounds| first_of(diagonal(bounds), &GROOMS));
-    let groom = Placing { scale: units(of_groom.scale).unwrap_or(alone), turn: upright(of_groom.up) };
-    let Some(mesh) = mesh else {
-        let body = Placing { scale: body_unit, turn: upright(of_body.up) };
-        return Placings { groom, body, note: noted(scene, groom, body, false, Quat::IDENTITY) };
+    bounds.map_or(1.0, |bounds| first_of(diagonal(bounds), &GROOMS))
+}
+
+/// Placements of the files of a groom, which share theirs, and of a body's files, where there are some of each.
+pub(super) fn placings(scene: &Scene, grooms: &[&Groom], mesh: Option<&Mesh>, defined: Defined) -> Placings {
+    match mesh {
+        None => hair_alone(scene, grooms),
+        Some(mesh) if grooms.is_empty() => body_alone(scene, mesh, defined),
+        Some(mesh) => together(scene, grooms, mesh, defined),
+    }
+}
+
+/// The place of a groom without a body.
+fn hair_alone(scene: &Scene, grooms: &[&Groom]) -> Placings {
+    let given = &scene.groom;
+    let hair = Hair::new(grooms);
+    let is_free = given.up == Up::Auto && given.rotation == Vec3::ZERO;
+    let shown = if is_free && hair.is_full(None) { shown_alone(&hair) } else { None };
+    let turn = shown.unwrap_or_else(|| upright(given.up));
+    let scale = units(given.scale).unwrap_or_else(|| unit_alone(grooms));
+    let groom = Placing { scale, turn };
+    let placings = Placings { groom, ..Placings::new(if given.up == Up::Auto { SHAPELESS } else { 1.0 }) };
+    Placings { notes: noted(scene, &placings, false, None), ..placings }
+}
+
+/// The axes that strands alone show surely: they hang, and roots lie high.
+fn shown_alone(hair: &Hair) -> Option<Quat> {
+    let upright = |turn: Quat| hair.placed(|point| turn * point).upright();
+    let own = upright(Quat::IDENTITY);
+    let others = [Up::Z, Up::MinusY, Up::MinusZ, Up::X, Up::MinusX].map(|up| up.rotation());
+    let best = others.into_iter().map(|turn| (upright(turn), turn));
+    let (best, turn) = best.fold((own, Quat::IDENTITY), |best, one| if one.0 > best.0 { one } else { best });
+    (best > own + SURE_ALONE).then_some(turn)
+}
+
+/// The place of a body that a style grows on.
+fn body_alone(scene: &Scene, mesh: &Mesh, defined: Defined) -> Placings {
+    let (body, pose, width) = of_body(scene, mesh, defined);
+    let placings = Placings { body, ..Placings::new(confidence_of(scene, defined, &pose)) };
+    Placings { notes: noted(scene, &placings, true, width), ..placings }
+}
+
+/// The place of a body, the pose that it shows, and the width \[m\] of a head that no usual unit makes that of a person.
+fn of_body(scene: &Scene, mesh: &Mesh, defined: Defined) -> (Placing, head::Pose, Option<f32>) {
+    let given = &scene.body;
+    let ups = match (given.up, defined) {
+        (Up::Auto, Defined::Nothing) => head::UPS.to_vec(),
+        (Up::Auto, Defined::Up | Defined::All) => vec![Up::Y],
+        (up, _) => vec![up],
     };
-    let up = if of_body.up == Up::Auto { head::up(&mesh.positions) } else { of_body.up };
-    let body = Placing { scale: body_unit, turn: upright(up) };
-    let is_free = of_body.rotation == Vec3::ZERO;
-    let placed: Vec<Vec3> = mesh.positions.iter().map(|place| body.turn * (body.scale * *place)).collect();
-    let turn = if is_free { head::front(&placed) } else { None }.unwrap_or(Quat::IDENTITY);
-    let mut body = Placing { turn: turn * body.turn, ..body };
-    // From ear to ear: a quarter turn makes that of x what was that of z.
-    let placed: Vec<Vec3> = placed.iter().map(|place| turn * *place).collect();
-    let strange = Skull::of(&placed)
-        .map(|skull| skull.size.x)
-        .filter(|width| of_body.scale == Scale::Auto && !SCALPS.contains(width));
-    if let Some(width) = strange {
-        body.scale = as_written(body.scale * SCALP / width);
+    let mut pose = head::pose(mesh, &ups);
+    // An axis that is given names the front too, and a turn that is given is that of the file's own axes.
+    if given.up != Up::Auto || defined == Defined::All {
+        (pose.turn, pose.shows_front, pose.is_sure) = (upright(ups[0]), true, true);
+    } else if given.rotation != Vec3::ZERO {
+        (pose.turn, pose.shows_front) = (pose.up.rotation(), true);
     }
-    let mut note = noted(scene, groom, body, true, turn);
-    note_strange(&mut note, strange);
-    Placings { groom, body, note }
+    let (turn, diagonal) = (pose.turn, mesh.bounds().map_or(0.0, diagonal));
+    let given = units(given.scale).or((defined != Defined::Nothing).then_some(1.0));
+    let scale = given.unwrap_or_else(|| first_of(diagonal, &BODIES));
+    let mut upright = mesh.clone();
+    place_mesh(&mut upright, Placing { scale, turn }, Vec3::ZERO, Vec3::ZERO);
+    let width = Skull::of_body(&upright).map(|skull| skull.size.x / scale);
+    let width = width.filter(|width| given.is_none() && !SCALPS.contains(&(scale * width)));
+    match width.filter(|_| pose.is_person) {
+        Some(width) => {
+            let (scale, strange) = unit_of_width(width, scale);
+            (Placing { scale, turn }, pose, strange)
+        }
+        None => (Placing { scale, turn }, pose, None),
+    }
 }
 
-/// A scale of two digits, as a person would write it.
-fn as_written(scale: f32) -> f32 {
-    let digit = math::powf(10.0, math::log10(scale).floor() - 1.0);
-    (scale / digit).round() * digit
+/// Confidence in the place of a body.
+fn confidence_of(scene: &Scene, defined: Defined, pose: &head::Pose) -> f32 {
+    match (scene.body.up, defined) {
+        (Up::Auto, Defined::Nothing | Defined::Up) if !pose.is_sure => SHAPELESS,
+        (Up::Auto, Defined::Nothing | Defined::Up) if !pose.shows_front => FACELESS,
+        _ => 1.0,
+    }
 }
 
-/// Says of a head of which width \[m\] no usual unit makes that of a person.
-fn note_strange(note: &mut Option<String>, width: Option<f32>) {
-    if let (Some(width), Some(note)) = (width, note) {
-        note.push_str(&format!(
-            " (in no usual unit is it the head of a person: the scalp would be {width:.2} m wide)"
-        ));
+/// The places of a groom and a body.
+fn together(scene: &Scene, grooms: &[&Groom], mesh: &Mesh, defined: Defined) -> Placings {
+    let (mut body, pose, mut strange) = of_body(scene, mesh, defined);
+    let (hair, sample) = (Hair::new(grooms), Sample::new(grooms, mesh));
+    if !pose.is_sure && scene.groom.up == Up::Auto && shows_z(&sample) {
+        body.turn = upright(Up::Z);
     }
+    let head = Head::new(scene, mesh, body, pose);
+    let search = Search { scene, hair: &hair, head: &head };
+    let found = search.found();
+    let sure = confidence_of(scene, defined, &pose);
+    let mut placings = Placings { body, ..Placings::new(sure) };
+    match found.or_else(|| foreign::found(&search, unit_alone(grooms))) {
+        Some(Found { placing, fit, margin, is_foreign }) => {
+            let fitting = (1.0 - fit / ASTRAY).clamp(AWAY, 1.0) * (1.0 - 0.5 * math::exp(-margin));
+            let known = if is_foreign { FOREIGN } else { 1.0 };
+            (placings.groom, placings.is_foreign) = (placing, is_foreign);
+            placings.confidence = sure * fitting * known;
+        }
+        None => (placings.groom, placings.confidence) = (away(&search, grooms), AWAY),
+    }
+    let is_faceless = pose.is_person == pose.is_sure && !pose.shows_front;
+    if placings.groom.turn == body.turn && is_faceless && search.may_turn_both() {
+        let turn = sample.to_front(&placings.groom, &body);
+        let turned = |placing: Placing| Placing { turn: turn * placing.turn, ..placing };
+        let (groom, body) = (turned(placings.groom), turned(body));
+        if sample.scalp(&groom, &body).is_some() {
+            (placings.groom, placings.body) = (groom, body);
+        }
+    }
+    let is_open = scene.groom.scale == Scale::Auto && scene.body.scale == Scale::Auto;
+    let is_guessed = is_open && defined == Defined::Nothing && !pose.is_person && !placings.is_foreign;
+    let scalp = sample.scalp(&placings.groom, &placings.body);
+    if let Some(width) = scalp.filter(|width| is_guessed && !SCALPS.contains(width)) {
+        let (scale, odd) = unit_of_width(width / body.scale, body.scale);
+        placings.groom.scale *= scale / body.scale;
+        (placings.body.scale, strange) = (scale, odd);
+    }
+    let mut notes = noted(scene, &placings, true, strange);
+    if !placings.is_foreign && placings.body == body {
+        let doubts = search.doubts(&placings.groom);
+        placings.confidence *= math::powf(DOUBTED, doubts.len() as f32);
+        notes.extend(doubts);
+    }
+    Placings { notes, ..placings }
+}
+
+/// The place of a groom that lies away from the body: in its unit, unless that makes it no hair.
+fn away(search: &Search, grooms: &[&Groom]) -> Placing {
+    let (same, alone) = (search.same(), unit_alone(grooms));
+    let is_hair = grooms.iter().any(|groom| GROOMS.contains(&(same.scale * diagonal(groom.bounds()))));
+    let is_given = search.scene.groom.scale != Scale::Auto;
+    if is_hair || is_given { same } else { Placing { scale: alone, ..same } }
+}
+
+/// True where hair shows that z points up in the file of a body that itself does not show an axis.
+fn shows_z(sample: &Sample) -> bool {
+    let ([high_y, hangs_y], [high_z, hangs_z]) = (sample.upness(Vec3::Y), sample.upness(Vec3::Z));
+    // Fur that is combed along z hangs down z, but grows no higher there.
+    high_z > high_y + HIGHER && high_z + hangs_z > high_y + hangs_y + SURER
 }
 
 /// The place of a further groom: given, or that of the first unless another unit or axis brings its roots to the
@@ -138,65 +225,6 @@ pub(super) fn of_part(groom: &Groom, part: &GroomPart, first: Placing, mesh: Opt
         }
     }
     best
-}
-
-/// Metres of a unit of the groom: given, or what brings its roots to the body.
-fn unit_of(scene: &Scene, sample: &Sample, body_unit: f32, [groom_up, body_up]: [Up; 2]) -> f32 {
-    units(scene.groom.scale).unwrap_or_else(|| sample.unit(body_unit, groom_up, body_up))
-}
-
-/// The axes that point up: given, or those that agree with each other.
-fn agreed(scene: &Scene, sample: &Sample, body_unit: f32) -> [Up; 2] {
-    let open = |up: Up| if up == Up::Auto { vec![Up::Y, Up::Z] } else { vec![up] };
-    let (of_groom, of_body) = (open(scene.groom.up), open(scene.body.up));
-    let pairs: Vec<[Up; 2]> =
-        of_groom.iter().flat_map(|one| of_body.iter().map(move |two| [*one, *two])).collect();
-    let apart = |pair: &[Up; 2]| {
-        let unit = unit_of(scene, sample, body_unit, *pair);
-        sample.apart(unit, upright(pair[0]), body_unit, upright(pair[1]))
-    };
-    let mut best = pairs[0];
-    let mut least = apart(&best);
-    for pair in &pairs[1..] {
-        let found = apart(pair);
-        if found < NEARER * least && least > NEAR {
-            (best, least) = (*pair, found);
-        }
-    }
-    // Which of the two axes that both share is up shows in how hair grows and hangs.
-    let may_turn = pairs.contains(&[Up::Z, Up::Z]) && best == [Up::Y, Up::Y];
-    let ([high_y, hangs_y], [high_z, hangs_z]) = (sample.upness(Vec3::Y), sample.upness(Vec3::Z));
-    // Fur that is combed along z hangs down z, but grows no higher there.
-    let is_z = high_z > high_y + HIGHER && high_z + hangs_z > high_y + hangs_y + SURER;
-    if may_turn && is_z { [Up::Z, Up::Z] } else { best }
-}
-
-/// One line of what was chosen; none where nothing was open, or all is as it stands in the files.
-fn noted(scene: &Scene, groom: Placing, body: Placing, has_body: bool, turn: Quat) -> Option<String> {
-    let mut words = Vec::new();
-    let mut say = |what: &str, placing: Placing, open: bool, up: Up| {
-        if open && placing.scale != 1.0 {
-            words.push(format!("a unit of the {what} is {} m", placing.scale));
-        }
-        if up == Up::Auto && (turn.inverse() * placing.turn).angle_between(upright(Up::Z)) < 0.1 {
-            words.push(format!("z points up in the {what}"));
-        }
-    };
-    if scene.groom.file.is_some() {
-        say("groom", groom, scene.groom.scale == Scale::Auto, scene.groom.up);
-    }
-    if has_body {
-        say("body", body, scene.body.scale == Scale::Auto, scene.body.up);
-    }
-    if turn != Quat::IDENTITY {
-        let what = if scene.groom.file.is_some() { "both are" } else { "the body is" };
-        let front = turn * Vec3::Z;
-        // Half a turn has no sign.
-        let degrees = if front.z < -0.999 { 180.0 } else { math::atan2(front.x, front.z).to_degrees() };
-        words.push(format!("{what} turned by {degrees:.0} degrees to look along +z"));
-    }
-    let keys = "`scale`, `up`, `rotation` and `translation` of [groom] and [body] say otherwise";
-    (!words.is_empty()).then(|| format!("taken from the files: {}; {keys}", words.join(", ")))
 }
 
 /// Describes a groom and a body \[m\], head space, that do not meet.

@@ -1,94 +1,135 @@
-//! The pose of a head estimated from its mesh alone: which way it stands and looks, and how wide it is.
+//! The pose of a body estimated from its mesh alone: which way it stands and looks.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
-use super::skull::Skull;
+use super::profile::Profile;
+use super::sample::surface;
+use crate::body::{Mannequin, Mesh};
 use crate::groom::format::Up;
 
-/// Share of the head by which a face reaches out, or hair is combed, to one side.
-const ASIDE: f32 = 0.04;
-/// Heights below the crown, over the width of the skull, between which the face is.
-const FACE: [f32; 2] = [1.0, 1.4];
-/// Vertices whose mirrored places are looked for, and among how many.
-const MIRRORED: usize = 300;
-const AMONG: usize = 20_000;
-/// Distance of mirrored places from vertices along the axis from left to right, over that along the others.
-const ALIKE: f32 = 0.5;
-/// Length over height of a body that lies: one whose file has z up.
-const LYING: f32 = 1.15;
+/// Places of a body's surface that are looked at.
+const PLACES: usize = 4000;
+/// Difference from the head of a person up to which a head is one.
+const PERSON: f32 = 0.055;
+/// Difference over that of the axes as they are in the file below which others are surely right.
+const SURER: f32 = 0.75;
+/// Difference of two fronts over their sum that decides, and of noses where that does not.
+const FRONTS: f32 = 0.2;
+const NOSES: f32 = 0.04;
+/// Lowest part of an animal that stands, over its height; how much of its length and width it covers at least; and the
+/// share of it that may lie in the middle of the length.
+const FEET: f32 = 0.06;
+const COVERED: f32 = 0.35;
+const BETWEEN: f32 = 0.12;
 
-/// The axis along which both halves of a body are alike; none where no one is surely it.
-fn side_axis(places: &[Vec3]) -> Option<usize> {
-    let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let (low, high) = places.iter().fold(start, |(low, high), place| (low.min(*place), high.max(*place)));
-    let among: Vec<Vec3> = places.iter().step_by(places.len().div_ceil(AMONG).max(1)).copied().collect();
-    let every = among.len().div_ceil(MIRRORED).max(1);
-    let astray = |axis: usize| {
-        let mut apart: Vec<f32> = among
-            .iter()
-            .step_by(every)
-            .map(|place| {
-                let mut mirrored = *place;
-                mirrored[axis] = low[axis] + high[axis] - place[axis];
-                among.iter().map(|other| other.distance_squared(mirrored)).fold(f32::INFINITY, f32::min)
-            })
-            .collect();
-        apart.sort_by(f32::total_cmp);
-        apart.get(apart.len() / 2).copied().unwrap_or(0.0).sqrt()
-    };
-    let found: [f32; 3] = std::array::from_fn(astray);
-    (0..3).find(|axis| (0..3).all(|other| other == *axis || found[*axis] < ALIKE * found[other]))
+/// Axes that may point up, likelier ones first.
+pub(super) const UPS: [Up; 6] = [Up::Y, Up::Z, Up::MinusY, Up::MinusZ, Up::X, Up::MinusX];
+
+/// The pose of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pose {
+    /// Rotation that stands it upright, its face along +z.
+    pub turn: Quat,
+    /// True where it has the head of a person.
+    pub is_person: bool,
+    /// True where its face shows.
+    pub shows_front: bool,
+    /// The axis of its file that points up.
+    pub up: Up,
+    /// True where its shape shows that axis.
+    pub is_sure: bool,
 }
 
-/// The axis that points up in the vertices of a body: heads and bodies are higher than deep.
-pub(super) fn up(places: &[Vec3]) -> Up {
-    let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let (low, high) = places.iter().fold(start, |(low, high), place| (low.min(*place), high.max(*place)));
-    let size = high - low;
-    match side_axis(places) {
-        Some(0) if size.z > LYING * size.y => Up::Z,
-        Some(1) => Up::Z,
-        _ => Up::Y,
+/// The rotations of a file whose given axis points up, the likeliest first: as [`Up`] has its face, turned round, to
+/// the left and to the right.
+pub(super) fn turns_of(up: Up) -> [Quat; 4] {
+    let yaws = [0.0, PI, FRAC_PI_2, -FRAC_PI_2];
+    yaws.map(|yaw| if yaw == 0.0 { up.rotation() } else { math::rotation(Vec3::Y, yaw) * up.rotation() })
+}
+
+/// All rotations that exchange axes, likelier ones first.
+pub(super) fn turns() -> impl Iterator<Item = Quat> {
+    UPS.into_iter().flat_map(turns_of)
+}
+
+/// The pose that a body shows, given the axes that may point up: those of its file where it shows none.
+pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
+    let places = surface(mesh, PLACES);
+    let Some(person) = Profile::of(&surface(&Mannequin::new().mesh(), PLACES)) else {
+        unreachable!("the built-in head is a head")
+    };
+    let seen: Vec<Seen> = ups.iter().map(|up| Seen::new(&places, &person, *up)).collect();
+    let Some((first, others)) = seen.split_first() else { unreachable!("an axis that may point up") };
+    let best = others.iter().fold(first, |best, one| {
+        let limit = if std::ptr::eq(best, first) { SURER * best.strange } else { best.strange };
+        if one.strange < limit { one } else { best }
+    });
+    if best.strange < PERSON {
+        return best.pose();
+    }
+    let standing = |seen: &&Seen| stands(&places, seen.up.rotation());
+    let found = if standing(&first) { Some(first) } else { seen.iter().find(standing) };
+    let up = found.unwrap_or(first).up;
+    Pose { turn: up.rotation(), is_person: false, shows_front: false, up, is_sure: found.is_some() }
+}
+
+/// A body with an axis up.
+struct Seen {
+    up: Up,
+    /// Difference from the head of a person: the least of all fronts.
+    strange: f32,
+    /// Profiles' difference from a person's and the noses, by the fronts of [`turns_of`].
+    fronts: [(f32, [f32; 2]); 4],
+}
+
+impl Seen {
+    fn new(places: &[Vec3], person: &Profile, up: Up) -> Self {
+        let mut strange = f32::INFINITY;
+        let fronts = turns_of(up).map(|turn| {
+            let turned: Vec<Vec3> = places.iter().map(|place| turn * *place).collect();
+            let Some(profile) = Profile::of(&turned) else { return (f32::INFINITY, [0.0; 2]) };
+            strange = strange.min(profile.strange(person));
+            (profile.unlike(person), profile.noses)
+        });
+        Self { up, strange, fronts }
+    }
+
+    fn pose(&self) -> Pose {
+        let [ahead, back, left, right] = self.fronts;
+        // A head is longer than wide.
+        let first = if left.0.min(right.0) < SURER * ahead.0.min(back.0) { 2 } else { 0 };
+        let (one, other) = (self.fronts[first], self.fronts[first + 1]);
+        let ratio = (other.0 - one.0) / (other.0 + one.0).max(f32::MIN_POSITIVE);
+        let noses = one.1[0] - one.1[1];
+        let [decides, shows] = if ratio.abs() > FRONTS { [ratio, FRONTS] } else { [noses, NOSES] };
+        let shows_front = decides.abs() > shows;
+        let front = first + usize::from(shows_front && decides < 0.0);
+        let turn = turns_of(self.up)[front];
+        Pose { turn, is_person: true, shows_front, up: self.up, is_sure: true }
     }
 }
 
-/// Turns an upright head so that its face looks along +z: at its height a head reaches out to the front, and has most
-/// vertices there. None where there is no head.
-pub(super) fn front(vertices: &[Vec3]) -> Option<Quat> {
-    let skull = Skull::of(vertices)?;
-    let [high, low] = FACE.map(|below| skull.top - below * skull.size.min_element());
-    let face = vertices.iter().filter(|vertex| (low..=high).contains(&vertex.y));
-    let reach = 0.75 * skull.size.max_element();
-    let beside = face.map(|vertex| *vertex - Vec3::new(skull.middle.x, vertex.y, skull.middle.y));
-    let near: Vec<Vec3> = beside.filter(|beside| beside.length() < reach).collect();
-    let mean = near.iter().sum::<Vec3>() / near.len().max(1) as f32;
-    let start = (Vec3::ZERO, Vec3::ZERO);
-    let (least, most) = near.iter().fold(start, |(least, most), by| (least.min(*by), most.max(*by)));
-    let ahead = (mean + 0.5 * (least + most)) / skull.size.max_element();
-    let along_z = match side_axis(vertices) {
-        Some(0) => true,
-        Some(2) => false,
-        _ => is_long(&skull),
+/// True where an animal stands on four feet once it is turned: what is lowest lies apart, with nothing in the middle.
+fn stands(places: &[Vec3], turn: Quat) -> bool {
+    let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let turned: Vec<Vec3> = places.iter().map(|place| turn * *place).collect();
+    let bounds =
+        |places: &[Vec3]| places.iter().fold(start, |(low, high), place| (low.min(*place), high.max(*place)));
+    let (low, high) = bounds(&turned);
+    let feet: Vec<Vec3> =
+        turned.iter().filter(|place| place.y < low.y + FEET * (high.y - low.y)).copied().collect();
+    let (feet_low, feet_high) = bounds(&feet);
+    let covered = (feet_high - feet_low) / (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
+    let between = |axis: usize| {
+        let third = (feet_high[axis] - feet_low[axis]) / 3.0;
+        let inner = feet_low[axis] + third..feet_high[axis] - third;
+        let count = feet.iter().filter(|place| inner.contains(&place[axis])).count();
+        (count as f32) < BETWEEN * feet.len() as f32
     };
-    Some(turned_to_z(along_z, ahead))
-}
-
-/// True where a head looks along z, or against it: heads are longer from front to back than from ear to ear.
-pub(super) fn is_long(skull: &Skull) -> bool {
-    skull.size.y >= skull.size.x
-}
-
-/// The turn about y after which a head looks along +z, given whether it does so along z or along x, and what reaches
-/// out to its front \[share of the head\].
-pub(super) fn turned_to_z(along_z: bool, front: Vec3) -> Quat {
-    match [along_z, front.x < 0.0, front.z < -ASIDE] {
-        [true, _, true] => math::rotation(Vec3::Y, PI),
-        [true, _, false] => Quat::IDENTITY,
-        [false, is_left, _] => math::rotation(Vec3::Y, if is_left { FRAC_PI_2 } else { -FRAC_PI_2 }),
-    }
+    covered.x > COVERED && covered.z > COVERED && between(0) && between(2)
 }
 
 #[cfg(test)]
@@ -98,27 +139,23 @@ mod tests {
 
     #[test]
     fn a_head_in_any_axes_stands_up_and_looks_along_z() {
-        let bust = Mannequin::new().mesh().positions;
         let z_up = math::rotation(Vec3::X, FRAC_PI_2);
-        for (turn, expected) in [
-            (Quat::IDENTITY, Up::Y),
-            (math::rotation(Vec3::Y, PI), Up::Y),
-            (math::rotation(Vec3::Y, FRAC_PI_2), Up::Y),
-            (math::rotation(Vec3::Y, -FRAC_PI_2), Up::Y),
-            (z_up, Up::Z),
-            (z_up * math::rotation(Vec3::Y, FRAC_PI_2), Up::Z),
-            (z_up * math::rotation(Vec3::Y, PI), Up::Z),
+        for turn in [
+            Quat::IDENTITY,
+            math::rotation(Vec3::Y, PI),
+            math::rotation(Vec3::Y, FRAC_PI_2),
+            math::rotation(Vec3::Y, -FRAC_PI_2),
+            math::rotation(Vec3::X, PI),
+            math::rotation(Vec3::Z, FRAC_PI_2),
+            z_up,
+            z_up * math::rotation(Vec3::Y, FRAC_PI_2),
+            z_up * math::rotation(Vec3::Y, PI),
         ] {
-            let turned: Vec<Vec3> = bust.iter().map(|place| turn * *place).collect();
-            assert_eq!(up(&turned), expected, "{turn}");
-            let upright =
-                if expected == Up::Z { math::rotation(Vec3::X, -FRAC_PI_2) } else { Quat::IDENTITY };
-            let upright: Vec<Vec3> = turned.iter().map(|place| upright * *place).collect();
-            let front = front(&upright).unwrap();
-            // Its middle need not be that of its axes.
-            let back = |place: &Vec3| front * *place;
-            let astray = upright.iter().map(back).zip(&bust).map(|(one, two)| one.distance(*two));
-            assert!(astray.fold(0.0, f32::max) < 1e-4, "{turn}");
+            let mut mesh = Mannequin::new().mesh();
+            mesh.positions.iter_mut().for_each(|place| *place = turn * *place);
+            let pose = pose(&mesh, &UPS);
+            assert!(pose.is_person && pose.shows_front, "{turn}: {pose:?}");
+            assert!((pose.turn * turn).angle_between(Quat::IDENTITY) < 1e-3, "{turn}: {pose:?}");
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::{
     body::Mesh,
     groom::{
         Groom,
-        format::{MAX_POINTS, MAX_STRANDS, Part, Scale, Up},
+        format::{Attribute, MAX_POINTS, MAX_STRANDS, Scale, Up},
     },
     scene::{BodyPart, GroomPart},
 };
@@ -58,8 +58,8 @@ pub(super) fn part_placing(part: &BodyPart, first: Placing) -> Placing {
     Placing { scale, turn }
 }
 
-/// Further grooms that seem to have the units and axes of the first: the scene gives them none of their own, they have
-/// its size, and they are near it.
+/// Further grooms that seem to have the units and axes of the first: the scene gives them no units or axes, and they have
+/// its size and lie near it.
 pub(super) fn placed_as_first<'a>(
     scene: &'a Scene,
     first: Option<&Groom>,
@@ -116,11 +116,11 @@ pub(super) fn add_grooms(
             return Err(SettingError::new("groom.parts", found, expected).into());
         }
         alike(scene, groom, &mut further);
-        for lost in Part::ALL {
-            let is_own = matches!(lost, Part::Widths | Part::WidthsAlong | Part::GroupNames);
+        for lost in Attribute::ALL {
+            let is_own = matches!(lost, Attribute::Widths | Attribute::WidthsAlong | Attribute::GroupNames);
             if !is_own && lost.is_in(groom) != lost.is_in(&further) {
                 notes.push(format!("only some of the files have {}: left out", lost.name()));
-            } else if lost == Part::Influences && lost.is_in(groom) {
+            } else if lost == Attribute::Influences && lost.is_in(groom) {
                 // Each counts its own guides from 0.
                 notes.push(format!("{} of files that are brought together are left out", lost.name()));
             }
@@ -151,7 +151,7 @@ fn name_groups(groom: &mut Groom, first: u32, name: String) {
     }
 }
 
-/// Gives each of two grooms what only the other has, where there is something that means the same.
+/// Gives each of two grooms the attributes that only the other has, with values that mean the same.
 fn alike(scene: &Scene, one: &mut Groom, two: &mut Groom) {
     if one.colors.is_some() != two.colors.is_some() {
         for groom in [&mut *one, &mut *two] {

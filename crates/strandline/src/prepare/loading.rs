@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::Sources;
 use super::memory;
-use super::placing::{Placing, Placings};
+use super::placing::Placings;
 use crate::{
     Error, Scene,
     body::{Collider, Mesh, Pose, Shape},
@@ -71,7 +71,7 @@ impl<'a> Loading<'a> {
             mesh: None,
             further_meshes: Vec::new(),
             solid_mesh: None,
-            placings: Placings { groom: Placing::IDENTITY, body: Placing::IDENTITY, note: None },
+            placings: Placings::new(1.0),
             is_foreign: false,
             shape: None,
             colliders: Vec::new(),

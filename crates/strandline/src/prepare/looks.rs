@@ -72,7 +72,7 @@ fn dress(scene: &Scene, sources: &Sources, groom: &mut Groom) -> Result<(), Erro
     Ok(())
 }
 
-/// Multiples of how far drawn strands lie about those of a groom; none where no group has its own.
+/// Factors of the spread of drawn strands about those of a groom, shape `[strand]`; `None` where no group has its own.
 pub(super) fn spreads(look: &Look, groom: &Groom) -> Result<Option<Vec<f32>>, Error> {
     if look.group.iter().all(|group| group.clump.is_none()) {
         return Ok(None);
@@ -132,9 +132,14 @@ fn widths<'a>(groom: &Groom, dressed: impl Fn(usize) -> Dressed<'a>) -> Widths {
 
 /// The colours of a look along every strand.
 pub(super) fn gradient(look: &Look, groom: &Groom) -> Vec<[f32; 3]> {
-    let mut colors = vec![[0.0; 3]; groom.points.len()];
-    for strand in 0..groom.strand_count() {
-        fill(&mut colors[groom.range(strand)], of_look(look, strand));
+    colors_along(look, &groom.starts)
+}
+
+/// The colours of a look, linear RGB, along strands whose first points are given, and the number of points.
+pub(crate) fn colors_along(look: &Look, starts: &[u32]) -> Vec<[f32; 3]> {
+    let mut colors = vec![[0.0; 3]; starts.last().map_or(0, |end| *end as usize)];
+    for (strand, ends) in starts.windows(2).enumerate() {
+        fill(&mut colors[ends[0] as usize..ends[1] as usize], of_look(look, strand));
     }
     colors
 }

@@ -30,9 +30,8 @@ impl Map {
     /// # Errors
     /// The file cannot be read, is no .png or has too many pixels.
     pub fn load(path: &Path) -> Result<Self, Error> {
-        let refuse = |message: String| Error::map(path, message);
-        let bytes = read_plain(path, Scene::MAX_MAP_BYTES).map_err(|error| refuse(error.to_string()))?;
-        Self::parse(bytes).map_err(refuse)
+        let bytes = read_plain(path, Scene::MAX_MAP_BYTES).map_err(|error| Error::map(path, error))?;
+        Self::parse(bytes).map_err(|found| Error::map(path, found))
     }
 
     /// A map of a picture in memory.

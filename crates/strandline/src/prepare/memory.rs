@@ -5,8 +5,7 @@ use strandline_base::memory;
 
 use crate::{Error, Scene, render::memory::Drawn};
 
-/// Refuses a scene of so many strands that are simulated, and that others are grown about for pictures, that would
-/// take more memory than a run may.
+/// Refuses a scene that would take more memory than a run may, by its numbers of simulated and of drawn strands.
 pub(crate) fn check(scene: &Scene, simulated: usize, drawn: usize) -> Result<(), Error> {
     let points_per_strand = scene.groom.points_per_strand as usize;
     let mut needs = scene.simulation.memory(simulated, points_per_strand);

@@ -1,5 +1,7 @@
 //! Loading of a scene: strands, body, solids and motion, a stage after the other.
 
+mod ends;
+mod evidence;
 mod fit;
 mod foreign;
 mod framing;
@@ -8,22 +10,30 @@ mod guides;
 mod head;
 mod join;
 mod loading;
-mod looks;
+pub(crate) mod looks;
 mod map;
 mod marked;
 pub(crate) mod memory;
+mod noted;
 mod place;
 mod placing;
+mod profile;
 mod read;
+mod relation;
 mod roots;
 mod sample;
 mod skull;
 mod solids;
 mod sources;
+mod units;
 mod wrap;
+
+#[cfg(test)]
+mod axes_tests;
 
 pub(crate) use framing::{bounds, center};
 pub use map::read_map;
+pub use placing::Placement;
 pub use sample::mesh_unit;
 pub use sources::Sources;
 
@@ -34,9 +44,8 @@ use loading::Loading;
 
 use crate::{
     BoundStrands, Camera, Error, HeadMotion, Scene,
-    body::{Aabb, Collider, Mesh},
+    body::{Aabb, Collider, Mesh, Shape},
     groom::{Binding, Guides},
-    strands::bound::clearance,
     strands::hair_pose::HairPose,
     strands::tags::Tags,
 };
@@ -61,6 +70,8 @@ pub struct Prepared {
     pub bounds: Aabb,
     /// The scene, with the settings that it leaves open chosen to fit its groom.
     pub scene: Scene,
+    /// Placement of groom and body, and the confidence in it.
+    pub placement: Placement,
     /// Mends, guesses and omissions, human-readable.
     pub notes: Vec<String>,
 }
@@ -81,6 +92,7 @@ impl Prepared {
     pub fn from_sources(scene: &Scene, sources: &Sources) -> Result<Self, Error> {
         let mut loading = Loading::new(scene, sources)?;
         read::read(&mut loading)?;
+        ends::turn(&mut loading);
         place::place(&mut loading)?;
         fit::fit(&mut loading);
         solids::solids(&mut loading)?;
@@ -93,6 +105,7 @@ impl Prepared {
 
 /// Last stage of loading: all strands bound to their guides, and the motion of the head.
 fn bind(loading: Loading) -> Result<Prepared, Error> {
+    let placement = loading.placings.placement();
     let Loading { scene, notes, groom, mesh, colliders, pivot, strands, chosen, guides, start, .. } = loading;
     let (Some(groom), Some(mut all), Some(guides)) = (groom, strands, guides) else {
         unreachable!("the stages before end with strands or an error")
@@ -102,7 +115,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         None => None,
         Some(chosen) => {
             // The note about the guides stands for these too, which are near them.
-            guides::move_outside(&mut all, start, &colliders, clearance);
+            guides::move_outside(&mut all, start, &colliders, Shape::clearance);
             let binding = Binding::new(&groom, &chosen, all, guides.clone())?;
             Some(BoundStrands::new(binding, colliders.clone()))
         }
@@ -114,7 +127,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let mesh = mesh.filter(|_| scene.body.visible);
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
     let head = head_motion(&scene, pivot, bounds)?;
-    Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, notes })
+    Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, placement, notes })
 }
 
 impl Prepared {

@@ -6,13 +6,13 @@ use strandline_base::math;
 use super::{
     foreign, guess, join,
     loading::Loading,
-    placing::{Placing, place_mesh},
+    placing::{Defined, Placing, place_mesh},
 };
 use crate::{
     Error, Scene,
     groom::{
         Groom, Widths,
-        format::{HAIR_WIDTH, Part},
+        format::{Attribute, HAIR_WIDTH},
     },
 };
 
@@ -27,12 +27,10 @@ pub(super) fn place(loading: &mut Loading) -> Result<(), Error> {
 fn choose(loading: &mut Loading) {
     let Loading { scene, groom, further_grooms: further, mesh, .. } = loading;
     let together = groom.iter().chain(join::placed_as_first(scene, groom.as_ref(), further));
-    let placings = guess::placings(scene, &together.collect::<Vec<_>>(), mesh.as_ref());
-    let pair = groom.as_ref().zip(mesh.as_ref());
-    let foreign = pair.and_then(|(groom, mesh)| foreign::placings(scene, groom, mesh, &placings));
-    loading.is_foreign = foreign.is_some();
-    loading.placings = foreign.unwrap_or(placings);
-    loading.notes.extend(loading.placings.note.take());
+    let defined = scene.body.file.as_ref().map_or(Defined::Nothing, |file| loading.sources.defined(file));
+    loading.placings = guess::placings(scene, &together.collect::<Vec<_>>(), mesh.as_ref(), defined);
+    loading.is_foreign = loading.placings.is_foreign;
+    loading.notes.append(&mut loading.placings.notes);
 }
 
 /// Brings the meshes into head space.
@@ -67,7 +65,7 @@ fn place_groom(groom: &mut Groom, placing: Placing, scene: &Scene, turn: Vec3, t
     if !scene.groom.own_look {
         groom.colors = None;
     }
-    let has_widths = scene.groom.own_look && Part::Widths.is_in(groom);
+    let has_widths = scene.groom.own_look && Attribute::Widths.is_in(groom);
     groom.transform(placing.scale, placing.turn, Vec3::ZERO);
     groom.transform(1.0, math::pitch_yaw_roll(turn), translation);
     // The width of a hair is in metres already.

@@ -1,6 +1,7 @@
 //! Placement of a file's points in head space.
 
 use glam::{Quat, Vec3};
+use serde::Serialize;
 use strandline_base::math;
 
 use crate::{
@@ -45,6 +46,64 @@ pub(super) fn diagonal(bounds: Aabb) -> f32 {
 pub(super) struct Placings {
     pub groom: Placing,
     pub body: Placing,
-    /// Choices that were made.
-    pub note: Option<String>,
+    /// True where the groom was made for another head, which it is fitted to.
+    pub is_foreign: bool,
+    /// Confidence in the choices, 0 to 1.
+    pub confidence: f32,
+    /// Choices that were made, and what speaks against them.
+    pub notes: Vec<String>,
+}
+
+impl Placings {
+    /// Head space already, with a confidence.
+    pub fn new(confidence: f32) -> Self {
+        Self {
+            groom: Placing::IDENTITY,
+            body: Placing::IDENTITY,
+            is_foreign: false,
+            confidence,
+            notes: Vec::new(),
+        }
+    }
+}
+
+/// The placement of a groom and a body in head space, as it was given or chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Placement {
+    /// Confidence in it, 0 to 1: 1 where files and settings leave nothing open.
+    pub confidence: f32,
+    /// Metres of a unit of the groom's file.
+    pub groom_scale: f32,
+    /// Rotation of the groom's file into head space before that of the scene: a quaternion x, y, z, w.
+    pub groom_rotation: [f32; 4],
+    /// Metres of a unit of the body's file.
+    pub body_scale: f32,
+    /// Rotation of the body's file into head space before that of the scene: a quaternion x, y, z, w.
+    pub body_rotation: [f32; 4],
+    /// True where the groom was made for another head, and is fitted to this one.
+    pub is_fitted: bool,
+}
+
+impl Placings {
+    /// The placement as it is reported.
+    pub fn placement(&self) -> Placement {
+        Placement {
+            confidence: self.confidence,
+            groom_scale: self.groom.scale,
+            groom_rotation: self.groom.turn.to_array(),
+            body_scale: self.body.scale,
+            body_rotation: self.body.turn.to_array(),
+            is_fitted: self.is_foreign,
+        }
+    }
+}
+
+/// Definitions that the format of a body's file makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Defined {
+    Nothing,
+    /// Metres and y up.
+    Up,
+    /// Metres, y up and the front along +z.
+    All,
 }

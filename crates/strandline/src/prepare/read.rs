@@ -15,10 +15,17 @@ pub(super) fn read(loading: &mut Loading) -> Result<(), Error> {
     let section = &scene.groom;
     loading.groom = section.file.as_ref().map(|file| groom(file, section.per_strand)).transpose()?;
     let body = &scene.body;
-    loading.mesh = body.file.as_ref().map(|file| sources.mesh(scene, file)).transpose()?;
+    let mut noted = Vec::new();
+    let mut mesh = |name| {
+        let (mesh, notes) = sources.mesh_noted(scene, name)?;
+        noted.extend(notes);
+        Ok::<_, Error>(mesh)
+    };
+    loading.mesh = body.file.as_ref().map(|file| mesh(file)).transpose()?;
     let parts = section.parts.iter().map(|part| groom(&part.file, part.per_strand));
     loading.further_grooms = parts.collect::<Result<_, _>>()?;
-    let parts = body.parts.iter().map(|part| sources.mesh(scene, &part.file));
+    let parts = body.parts.iter().map(|part| mesh(&part.file));
     loading.further_meshes = parts.collect::<Result<_, _>>()?;
+    notes.extend(noted);
     Ok(())
 }

@@ -5,14 +5,14 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
-use super::placing::{Placing, diagonal, upright};
+use super::placing::{Placing, diagonal};
 use crate::{
     body::{Aabb, Mesh, Random},
-    groom::{Groom, format::Up},
+    groom::Groom,
 };
 
 /// Metres that a unit of a file may be, likelier ones first.
-pub(super) const UNITS: [f32; 4] = [1.0, 0.01, 0.001, 0.0254];
+pub(super) const UNITS: [f32; 5] = [1.0, 0.01, 0.001, 0.0254, 0.00254];
 /// Roots and vertices that are looked at.
 const ROOTS: usize = 200;
 const VERTICES: usize = 3000;
@@ -49,7 +49,7 @@ impl Sample {
         let strands = || all().step_by(every);
         let vertices = (mesh.positions.len() / VERTICES).max(1);
         let mut skin: Vec<Vec3> = mesh.positions.iter().step_by(vertices).copied().collect();
-        skin.extend(on_triangles(mesh));
+        skin.extend(on_triangles(mesh, VERTICES));
         let nothing = Aabb { min: Vec3::ZERO, max: Vec3::ZERO };
         Self {
             roots: strands().map(|strand| strand[0]).collect(),
@@ -58,19 +58,6 @@ impl Sample {
             skin,
             bounds: mesh.bounds().unwrap_or(nothing),
         }
-    }
-
-    /// Metres of a unit of the groom: what brings its roots to the body; that of the body where it does not matter.
-    pub fn unit(&self, body_unit: f32, groom_up: Up, body_up: Up) -> f32 {
-        let apart = |unit| self.apart(unit, upright(groom_up), body_unit, upright(body_up));
-        let (mut best, mut least) = (body_unit, apart(body_unit));
-        for unit in UNITS {
-            let found = apart(unit);
-            if found < NEARER * least && least > NEAR {
-                (best, least) = (unit, found);
-            }
-        }
-        best
     }
 
     /// Middle distance of roots from the nearest place on the body, as a share of the body's size.
@@ -158,8 +145,16 @@ impl Sample {
     }
 }
 
+/// Vertices of a mesh and places on its triangles, about as many of each.
+pub(super) fn surface(mesh: &Mesh, count: usize) -> Vec<Vec3> {
+    let every = mesh.positions.len().div_ceil(count).max(1);
+    let mut places: Vec<Vec3> = mesh.positions.iter().step_by(every).copied().collect();
+    places.extend(on_triangles(mesh, count));
+    places
+}
+
 /// Places spread over the triangles of a mesh by their areas.
-fn on_triangles(mesh: &Mesh) -> Vec<Vec3> {
+fn on_triangles(mesh: &Mesh, count: usize) -> Vec<Vec3> {
     let corners = |index: usize| mesh.triangles[index].map(|corner| mesh.positions[corner as usize]);
     let mut total = 0.0;
     let areas: Vec<f64> = (0..mesh.triangles.len())
@@ -169,9 +164,9 @@ fn on_triangles(mesh: &Mesh) -> Vec<Vec3> {
             total
         })
         .collect();
-    (0..VERTICES)
+    (0..count)
         .map(|place| {
-            let wanted = total * (place as f64 + 0.5) / VERTICES as f64;
+            let wanted = total * (place as f64 + 0.5) / count as f64;
             let [a, b, c] = corners(areas.partition_point(|area| *area <= wanted).min(areas.len() - 1));
             let mut random = Random::new(0, place as u64);
             let (mut u, mut v) = (random.unit(), random.unit());
@@ -181,11 +176,6 @@ fn on_triangles(mesh: &Mesh) -> Vec<Vec3> {
             a + (b - a) * u + (c - a) * v
         })
         .collect()
-}
-
-/// Middle distance of roots from a body, both placed, as a share of the body's size.
-pub(super) fn roots_apart(groom: &Groom, mesh: &Mesh, of_groom: &Placing, of_body: &Placing) -> f32 {
-    Sample::new(&[groom], mesh).apart(of_groom.scale, of_groom.turn, of_body.scale, of_body.turn)
 }
 
 /// Metres of a unit of a mesh that strands \[m\] grow on: given, or what brings it to their roots. And how far half of

@@ -2,6 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
+use super::sample::surface;
+use crate::body::Mesh;
+
 /// Depth below the crown over the width of the skull at which it is widest, above brows and ears.
 const WIDEST: f32 = 0.6;
 /// Width at which the search begins over the height of the body.
@@ -9,6 +12,19 @@ const START: f32 = 0.12;
 /// Rounds in which the width is found, and what it changes by in the last one, as a share of it.
 const ROUNDS: usize = 64;
 const CONVERGED: f32 = 1e-3;
+/// Slices from front to back in which the width is measured, and the rank of the one that ears do not reach with the
+/// share of the whole width that it has.
+const SLICES: usize = 12;
+const BESIDE_EARS: usize = 3;
+const OF_WIDTH: f32 = 0.95;
+/// Width over that without ears above which there are ears.
+const EARS: f32 = 1.25;
+/// Half of the width of the strip in the middle in which the crown is, over that of the skull, and the height of ears
+/// above it that count.
+const STRIP: f32 = 0.12;
+const ABOVE: f32 = 0.03;
+/// Places of a body's surface that are looked at.
+const PLACES: usize = 6000;
 
 /// The upper part of a head, where hair grows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +38,11 @@ pub(super) struct Skull {
 }
 
 impl Skull {
+    /// The middle of the head \[m\].
+    pub fn center(&self) -> Vec3 {
+        Vec3::new(self.middle.x, self.top - WIDEST * 0.5 * self.size.element_sum(), self.middle.y)
+    }
+
     /// That of the highest part of a body, given its vertices, or of a head, given the roots of its hair \[m\]. It stands
     /// upright and looks along z.
     pub fn of(places: &[Vec3]) -> Option<Self> {
@@ -49,4 +70,66 @@ impl Skull {
         }
         None
     }
+
+    /// That of the highest part of a body, without ears that stand out or up.
+    pub fn of_body(mesh: &Mesh) -> Option<Self> {
+        let plain = Self::of(&mesh.positions)?;
+        let Some(bare) = Self::without_ears(&surface(mesh, PLACES)) else { return Some(plain) };
+        let has_ears = plain.size.x > EARS * bare.size.x || plain.top > bare.top + STRIP * bare.size.x;
+        Some(if has_ears { bare } else { plain })
+    }
+
+    /// That of the highest part of a body without ears, given places all over its surface \[m\].
+    pub fn without_ears(places: &[Vec3]) -> Option<Self> {
+        let heights = places.iter().map(|place| place.y);
+        let (low, mut top) = heights.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, top), height| {
+            (low.min(height), top.max(height))
+        });
+        let mut found = Self::below(places, top, low)?;
+        for _ in 0..SLICES {
+            let strip = places
+                .iter()
+                .filter(|place| place.y <= top && (place.x - found.middle.x).abs() < STRIP * found.size.x);
+            let crown = strip.map(|place| place.y).fold(f32::NEG_INFINITY, f32::max);
+            if crown >= top - ABOVE * found.size.x || crown <= low {
+                break;
+            }
+            top = crown;
+            found = Self::below(places, top, low)?;
+        }
+        (found.size.min_element() > 0.0).then_some(found)
+    }
+
+    /// That whose crown is at a height, its width without ears.
+    fn below(places: &[Vec3], top: f32, low: f32) -> Option<Self> {
+        let mut width = START * (top - low);
+        for _ in 0..ROUNDS {
+            let upper = places.iter().filter(|place| (top - WIDEST * width..=top).contains(&place.y));
+            let upper: Vec<Vec2> = upper.map(|place| Vec2::new(place.x, place.z)).collect();
+            let start = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+            let (min, max) = upper.iter().fold(start, |(low, high), at| (low.min(*at), high.max(*at)));
+            let found = bare_width(&upper, min, max).max(width);
+            if found - width < CONVERGED * width {
+                let size = Vec2::new(found, max.y - min.y);
+                return size.is_finite().then_some(Self { top, size, middle: 0.5 * (min + max) });
+            }
+            width = found;
+        }
+        None
+    }
+}
+
+/// The width of places seen from above, without what stands out to both sides in few slices.
+fn bare_width(places: &[Vec2], min: Vec2, max: Vec2) -> f32 {
+    let whole = max.x - min.x;
+    let mut slices = [(f32::INFINITY, f32::NEG_INFINITY); SLICES];
+    for place in places {
+        let slice = (place.y - min.y) / (max.y - min.y).max(f32::MIN_POSITIVE) * SLICES as f32;
+        let (low, high) = &mut slices[(slice as usize).min(SLICES - 1)];
+        (*low, *high) = (low.min(place.x), high.max(place.x));
+    }
+    let mut widths = slices.map(|(low, high)| (high - low).max(0.0));
+    widths.sort_by(f32::total_cmp);
+    let bare = widths[SLICES - 1 - BESIDE_EARS] / OF_WIDTH;
+    if whole > EARS * bare && bare > 0.0 { bare } else { whole }
 }

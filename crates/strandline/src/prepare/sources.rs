@@ -9,9 +9,10 @@ use glam::Vec3;
 use strandline_base::SettingError;
 
 use super::map::Map;
+use super::placing::Defined;
 use crate::{
     Error, Scene,
-    body::Mesh,
+    body::{Mesh, MeshFormat},
     groom::{
         Groom,
         format::{self, Cleaning, LoadOptions, Scale, Up},
@@ -88,6 +89,8 @@ impl Sources {
             up: Up::Y,
             turn: Vec3::ZERO,
             per_strand,
+            frame: scene.groom.frame,
+            root_end: scene.groom.root_end,
             cleaning: Cleaning::Strays,
         };
         let loaded = match self.grooms.get(name) {
@@ -103,10 +106,31 @@ impl Sources {
 
     /// A mesh, in its own units and axes.
     pub(super) fn mesh(&self, scene: &Scene, name: &Path) -> Result<Mesh, Error> {
-        Ok(match self.meshes.get(name) {
-            Some(mesh) => Mesh::clone(mesh).checked()?,
-            None => Mesh::load(&scene.path(name), 1.0)?,
-        })
+        Ok(self.mesh_noted(scene, name)?.0)
+    }
+
+    /// A mesh, in its own units and axes, with a note on all that is odd.
+    pub(super) fn mesh_noted(&self, scene: &Scene, name: &Path) -> Result<(Mesh, Vec<String>), Error> {
+        let (mesh, notes) = match self.meshes.get(name) {
+            Some(mesh) => (Mesh::clone(mesh).checked()?, Vec::new()),
+            None => Mesh::load_noted(&scene.path(name), 1.0)?,
+        };
+        let noted = |note: String| format!("{}: {note}", name.display());
+        Ok((mesh, notes.into_iter().map(noted).collect()))
+    }
+
+    /// Definitions that the format of a mesh makes; none for a mesh in memory. Earlier avatars look along -z, later ones
+    /// along +z.
+    pub(super) fn defined(&self, name: &Path) -> Defined {
+        let format = MeshFormat::of(name).ok().filter(|_| !self.meshes.contains_key(name));
+        match format {
+            Some(format) if !format.defines_space() => Defined::Nothing,
+            Some(_) if name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vrm")) => {
+                Defined::Up
+            }
+            Some(_) => Defined::All,
+            None => Defined::Nothing,
+        }
     }
 
     /// The part of a mesh that has a name: of a mesh in memory the entry of that name.

@@ -9,7 +9,7 @@ use crate::{
     groom::Groom,
 };
 
-/// Times that a root is led to the surface, and how far \[m\] a strand is led with it at most.
+/// Rounds that move a root to the surface, and the largest distance \[m\] that its strand moves along.
 const STEPS: usize = 4;
 const REACH: f32 = 0.1;
 
@@ -25,7 +25,7 @@ pub(super) fn onto(
     shape: Option<&Shape>,
 ) -> Result<Option<String>, Error> {
     let built_in = Skull::of(&Mannequin::new().mesh().positions);
-    let Some((from, to)) = built_in.zip(Skull::of(&mesh.positions)) else { return Ok(None) };
+    let Some((from, to)) = built_in.zip(Skull::of_body(mesh)) else { return Ok(None) };
     let ratio = to.size / from.size;
     let scale = Vec3::new(ratio.x, ratio.x, ratio.y);
     let place = |point: Vec3| {

@@ -56,10 +56,12 @@ settings! {
         scalp: Option<String> = None;
         /// A closed mesh that hair hits in place of the drawn one.
         collider_file: Option<PathBuf> = None;
-        /// Metres per unit of the body's files; "auto" takes the first of 1, 0.01, 0.001 and 0.0254 that makes the
-        /// body as large as a doll to a bear.
+        /// Metres per unit of the body's files; "auto" takes 1 for a glTF, which is in metres, and else that of 1, 0.01,
+        /// 0.001, 0.0254 and 0.00254 that makes the head most like that of a person, or a body without such a head as
+        /// large as a doll to a bear.
         scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
-        /// The files' axis that points up; "auto" as for the groom.
+        /// The files' axis that points up; "auto" takes y for a glTF, whose face looks along +z, and else the axis that
+        /// the body shows: the head of a person, or the four feet of an animal. A given axis gives the front too.
         up: Up = Up::default();
         /// Turns the body of a file: pitch (about x), yaw (about y), roll (about z).
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];

@@ -12,7 +12,7 @@ use crate::{
 };
 
 impl Scene {
-    /// The demo: the default style shakes its head for 4 s; what an empty file says.
+    /// The demo: the default style shakes its head for 4 s. An empty scene file is the same scene.
     pub fn demo() -> Self {
         Self::default()
     }
@@ -66,14 +66,14 @@ impl Scene {
 impl FromStr for Scene {
     type Err = Error;
 
-    /// A built-in scene by its name, `demo` or `thesis`.
+    /// A built-in scene by its name, `demo` or `thesis`, in letters of either case.
     fn from_str(name: &str) -> Result<Self, Error> {
-        match name {
+        match name.to_ascii_lowercase().as_str() {
             "demo" => Ok(Self::demo()),
             "thesis" => Ok(Self::thesis()),
-            found => {
+            _ => {
                 let expected = "demo, thesis or the path of a .toml file";
-                Err(SettingError::new("scene", format!("`{found}`"), expected).into())
+                Err(SettingError::new("scene", format!("`{name}`"), expected).into())
             }
         }
     }

@@ -26,7 +26,7 @@ pub(crate) struct Opened {
     pub fall_back: bool,
 }
 
-/// Both devices, and what a person should know of them.
+/// Both devices, with notes on them, human-readable.
 pub(crate) struct Pair {
     pub simulation: Opened,
     pub pictures: Opened,
@@ -42,7 +42,7 @@ impl Devices {
             (pictures, Some(_)) if pictures == self.simulation => true,
             (Backend::Gpu(Some(index)), Some(gpu)) => gpu.adapter().index == index,
             (Backend::Gpu(None), Some(gpu)) => gpu.adapter().index == 0,
-            // Hardware comes first: what auto would open.
+            // Hardware comes first, as `auto` opens it.
             (Backend::Auto, Some(gpu)) => gpu.adapter().index == 0 && !gpu.adapter().software,
             _ => false,
         };

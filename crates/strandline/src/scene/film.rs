@@ -1,7 +1,10 @@
 use glam::Vec3;
 use strandline_base::{Key, SettingError, choices, settings};
 
-use crate::{body::Aabb, render::Camera};
+use crate::{
+    body::{Aabb, Interpolation},
+    render::Camera,
+};
 
 choices! {
     /// From where the camera looks when its position is not given.
@@ -31,6 +34,26 @@ impl View {
 }
 
 settings! {
+    /// The camera at a time, about where `[camera]` has it.
+    pub struct CameraKeyframe: Copy {
+        /// Time; each later than the one before.
+        time: f64 = 0.0, in [-1e6, 1e6] "s";
+        /// Turn about a vertical through the target, counter-clockwise as seen from above; whole turns count.
+        turn: f32 = 0.0, in [-36_000.0, 36_000.0] "degrees", slider [-180.0, 180.0];
+        /// Rise about the target, up to 89 degrees above it or below.
+        rise: f32 = 0.0, in [-180.0, 180.0] "degrees", more "a view from further above";
+        /// Distance from the target over that of `[camera]`.
+        distance: f32 = 1.0, in [0.01, 1000.0], slider [0.2, 5.0], more "a view from further away";
+        /// Displacement of camera and target, world space.
+        translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// The way to the next keyframe; "smooth" without it.
+        interpolation: Option<Interpolation> = None;
+        /// A jump: the view before is held until this one.
+        cut: bool = false;
+    }
+}
+
+settings! {
     /// View of the pictures.
     pub struct CameraSection {
         /// From where it looks when its position is not given; hair and body fill the picture.
@@ -41,6 +64,8 @@ settings! {
         target: Option<Vec3> = None, in [-1e4, 1e4] "m";
         /// Vertical field of view; without it that of the framing.
         field_of_view: Option<f32> = None, in [1.0, 170.0] "degrees", more "a wider view";
+        /// Views of a film, in the order of their times; a window has its own.
+        keyframes: Vec<CameraKeyframe> = Vec::new(), in [0, 100_000];
     }
     also CameraSection::apart;
 }

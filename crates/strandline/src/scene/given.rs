@@ -1,5 +1,5 @@
-/// Which settings a scene file gives that a groom would else choose. Scenes are the same whether a file gave what
-/// they say or not.
+/// Settings that a scene file gives, among those that would otherwise be chosen to fit the groom. Comparisons of scenes
+/// ignore it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Given {
     pub follow_strands: bool,

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 use strandline_base::settings;
 
-use crate::groom::format::{Scale, Up};
+use crate::groom::format::{RootEnd, Scale, Up};
 
 settings! {
     /// Strands of a further file: brows, a beard.
@@ -32,19 +32,26 @@ settings! {
         /// A file of any of the formats that `strandline convert --help` lists; without one the `[style]` is
         /// grown.
         file: Option<PathBuf> = None;
-        /// Metres per unit of the file; "auto" takes that of 1, 0.01, 0.001 and 0.0254 that brings the roots to
-        /// the body, or that of the body; without a body the first that makes the groom as large as a head of
-        /// hair can be.
+        /// Metres per unit of the file; "auto" takes that of the body where the roots then lie on its skin, or else the
+        /// unit that brings them there: 1, 0.01, 0.001, 0.0254, 0.00254, or any for a full head of hair; without a
+        /// body the first that makes the groom as large as a head of hair can be.
         scale: Scale = Scale::default(), in [1e-6, 1e6] "m";
-        /// The file's axis that points up; "auto" takes z where roots lie high along it on the body and
-        /// strands hang down it, or where it alone brings groom and body together.
+        /// The file's axis that points up; "auto" takes the axes of the body's file, unless others alone bring the
+        /// roots to the skin, or a full head of hair then hangs and leaves the face free. A given axis gives the front
+        /// too, and nothing is turned.
         up: Up = Up::default();
         /// Points of each strand, for files that hold points and do not say which of them make a strand.
         per_strand: Option<u32> = None, in [1, 4096];
+        /// The frame of moving hair that is read of a file, from 0, in USD a time code; without it the first. Strands are
+        /// taken where they lie in the world.
+        frame: Option<u32> = None, in [0, 10_000_000];
+        /// The end of each strand at which its root is; "auto" turns strands whose last point lies on the body and
+        /// whose first does not, and without a body those that taper the other way or end among the roots of all others.
+        root_end: RootEnd = RootEnd::default();
         /// Draws colours and widths of the file in place of the look's.
         own_look: bool = true;
-        /// Turns the strands of a file: pitch (about x), yaw (about y), roll (about z). Where neither groom nor
-        /// body is turned, both are when hair shows that the face does not look along +z.
+        /// Turns the strands of a file: pitch (about x), yaw (about y), roll (about z). Where a scene turns neither and
+        /// the body shows no face, a full head of hair shows the front of both.
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-180.0, 180.0];
         /// Moves the strands of a file, head space.
         translation: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";

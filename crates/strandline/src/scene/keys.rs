@@ -3,6 +3,7 @@
 use strandline_base::{Group, Kind, Row, SettingError, Table, Value, printable};
 use toml::Value as Toml;
 
+use super::colors::{hex_color, is_color};
 use super::{FilmSection, Scene};
 use crate::{Error, render::Preset, sim::StrandMethod};
 
@@ -176,6 +177,9 @@ fn resolve(key: &str) -> Result<(Vec<Step>, &'static Row), Error> {
 
 /// A value of a setting: TOML, or a text without quotes where the setting takes one.
 fn parsed(row: &Row, text: &str) -> Option<Toml> {
+    if let Some(color) = hex_color(text.trim_matches(['"', '\''])).filter(|_| is_color(row)) {
+        return Some(Toml::Array(color.map(|value| Toml::Float(f64::from(value))).into()));
+    }
     let takes_text = matches!(row.kind, Kind::Words(_) | Kind::Text(_) | Kind::NumberOr(_));
     let is_text = matches!(row.kind, Kind::Words(_) | Kind::Text(_));
     let table = toml::from_str::<toml::Table>(&format!("value = {text}")).ok();

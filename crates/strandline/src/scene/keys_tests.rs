@@ -19,7 +19,9 @@ fn full() -> Scene {
                 lights = [{ position = [0,1,2] }]\n\
                 look.group = [{ name = \"brows\" }]\n\
                 simulation.groups = [{ group = \"fringe\" }]\n\
-                motion.keyframes = [{ time = 0 }]";
+                motion.keyframes = [{ time = 0 }]\n\
+                wind.keyframes = [{ time = 0 }]\n\
+                camera.keyframes = [{ time = 0 }]";
     Scene::parse(text, "scene").unwrap()
 }
 
@@ -157,4 +159,21 @@ fn settings_explain_themselves() {
         let text = Scene::default().explain(key).unwrap();
         assert!(text.contains("  lights[0].color: "), "{text}");
     }
+}
+
+#[test]
+fn colours_are_set_as_in_other_programs() {
+    let mut scene = full();
+    for text in ["#ff0000", "\"#FF0000\"", "[1, 0, 0]"] {
+        scene.set("look.root_color", "[0, 1, 0]").unwrap();
+        scene.set("look.root_color", text).unwrap();
+        assert_eq!(scene.look.root_color, Vec3::X, "{text}");
+    }
+    scene.set("lights[0].color", "#00ff00").unwrap();
+    assert_eq!(scene.lights[0].color, Vec3::Y);
+    assert!(refused("simulation.gravity", "#ff0000").contains("expected 3 numbers"));
+    assert!(refused("look.root_color", "#ff00").contains("expected 3 numbers"));
+    scene.set("look.preset", "Copper").unwrap();
+    assert_eq!(scene.look.preset.name(), "red");
+    assert!(refused("look.preset", "purple").contains("brown, black, blonde, red, grey"));
 }

@@ -2,6 +2,8 @@
 
 mod body;
 mod builtin;
+pub(crate) mod camera_motion;
+mod colors;
 pub(crate) mod devices;
 mod film;
 mod given;
@@ -16,12 +18,13 @@ use std::path::{Path, PathBuf};
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
 pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
+pub use colors::hex_color;
 pub use devices::Devices;
-pub use film::{CameraSection, FilmSection, View};
+pub use film::{CameraKeyframe, CameraSection, FilmSection, View};
 pub(crate) use given::Given;
 pub use groom::{GroomPart, GroomSection};
 pub use head::HeadMotion;
-pub use motion::{KeyframeSection, MotionName, MotionSection, WindSection};
+pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection};
 pub use surroundings::SurroundingsSection;
 
 pub use crate::body::Interpolation;
@@ -146,16 +149,17 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Reads TOML text; `origin` names it in errors.
+    /// Reads TOML text; `origin` names it in errors. A colour may be written as `"#rrggbb"`, sRGB.
     ///
     /// # Errors
     /// As [`Scene::load`].
     pub fn parse(text: &str, origin: &str) -> Result<Self, Error> {
-        let scene: Self = toml::from_str(text).map_err(|error| Error::ParseScene {
-            origin: origin.to_owned(),
-            // It quotes the file.
-            message: printable(error.to_string().trim_end()).into_owned(),
-        })?;
+        let scene: Self =
+            toml::from_str(&colors::spelled_out(text, &Self::TABLE)).map_err(|error| Error::ParseScene {
+                origin: origin.to_owned(),
+                // It quotes the file.
+                message: printable(error.to_string().trim_end()).into_owned(),
+            })?;
         scene.check()?;
         Ok(scene)
     }
@@ -193,6 +197,8 @@ impl Scene {
         }
         self.picture.validate()?;
         self.motion.motion()?;
+        self.wind.curve()?;
+        camera_motion::curve(&self.camera.keyframes)?;
         if matches!(self.devices.simulation, Backend::Gpu(_)) {
             self.simulation.check_on_gpu()?;
         }

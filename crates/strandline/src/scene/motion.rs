@@ -4,7 +4,7 @@ use strandline_base::{choices, settings};
 
 use crate::{
     Error,
-    body::{Interpolation, Keyframe, Motion},
+    body::{Curve, Interpolation, Key, Keyframe, Motion},
 };
 
 choices! {
@@ -92,14 +92,30 @@ impl KeyframeSection {
 }
 
 settings! {
+    /// Mean velocity of the air at a time.
+    pub struct WindKeyframe: Copy {
+        /// Time; each later than the one before.
+        time: f64 = 0.0, in [-1e6, 1e6] "s";
+        /// Mean velocity, world space.
+        velocity: Vec3 = Vec3::ZERO, in [-100.0, 100.0] "m/s", slider [-10.0, 10.0];
+        /// The way to the next keyframe; "smooth" without it.
+        interpolation: Option<Interpolation> = None;
+        /// A jump: the velocity before is held until this one.
+        cut: bool = false;
+    }
+}
+
+settings! {
     /// Motion of the air.
-    pub struct WindSection: Copy {
+    pub struct WindSection {
         /// Mean velocity, world space.
         velocity: Vec3 = Vec3::ZERO, in [-100.0, 100.0] "m/s", slider [-10.0, 10.0];
         /// Share of the velocity that comes and goes.
         gust: f32 = 0.5, in [0.0, 1.0], more "stronger gusts and lulls";
         /// Time from gust to gust.
         gust_period: f32 = 1.7, in [0.05, 1000.0] "s", slider [0.2, 10.0], more "slower gusts";
+        /// Mean velocities in the order of their times, in the place of `velocity`.
+        keyframes: Vec<WindKeyframe> = Vec::new(), in [0, 100_000];
     }
 }
 
@@ -108,6 +124,56 @@ impl WindSection {
     pub fn at(&self, time: f64) -> Vec3 {
         let phase = std::f64::consts::TAU * time / f64::from(self.gust_period);
         let swing = 0.7 * math::sin(phase) + 0.3 * math::sin(2.618 * phase);
-        self.velocity * (1.0 + self.gust * swing as f32)
+        self.mean(time) * (1.0 + self.gust * swing as f32)
+    }
+
+    /// Mean velocity of the air \[m/s\] at a time \[s\].
+    fn mean(&self, time: f64) -> Vec3 {
+        // A scene with keyframes out of order is refused.
+        let Ok(Some(curve)) = self.curve() else { return self.velocity };
+        glam::DVec3::from(curve.at(time)).as_vec3()
+    }
+
+    /// The curve through the keyframes; none without them.
+    ///
+    /// # Errors
+    /// Times that do not rise.
+    pub(super) fn curve(&self) -> Result<Option<Curve<3>>, Error> {
+        let key = |key: &WindKeyframe| Key {
+            time: key.time,
+            value: key.velocity.as_dvec3().to_array(),
+            interpolation: key.interpolation.unwrap_or_default(),
+            is_cut: key.cut,
+        };
+        if self.keyframes.is_empty() {
+            return Ok(None);
+        }
+        Ok(Some(Curve::new(self.keyframes.iter().map(key).collect())?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wind_follows_its_keyframes() {
+        let mut wind = WindSection { velocity: Vec3::Z, gust: 0.0, ..WindSection::default() };
+        assert_eq!(wind.at(1.0), Vec3::Z);
+        let key = |time: f64, x: f32| WindKeyframe {
+            time,
+            velocity: Vec3::X * x,
+            interpolation: Some(Interpolation::Linear),
+            ..WindKeyframe::default()
+        };
+        wind.keyframes = vec![key(0.0, 0.0), key(2.0, 4.0), WindKeyframe { cut: true, ..key(3.0, -1.0) }];
+        for (time, x) in [(-1.0, 0.0), (0.5, 1.0), (2.0, 4.0), (2.9, 4.0), (3.0, -1.0), (9.0, -1.0)] {
+            assert_eq!(wind.at(time), Vec3::X * x, "{time} s");
+        }
+        wind.gust = 1.0;
+        assert_ne!(wind.at(2.3), Vec3::X * 4.0, "gusts come and go beside keyframes");
+        let mut scene = crate::Scene::default();
+        scene.wind.keyframes = vec![key(1.0, 0.0), key(1.0, 1.0)];
+        assert!(scene.check().unwrap_err().to_string().contains("keyframe 1 has the time 1 s"));
     }
 }

@@ -5,8 +5,8 @@ use crate::{
     sim::Settings,
 };
 
-/// A change of hair that plays. What changes the picture shows in the next one that is begun, what changes the motion
-/// in the one after it.
+/// A change of hair that plays. The next picture that is begun shows changes of the picture, the one after it changes of
+/// the motion.
 pub enum Change {
     /// Back to rest, and to the beginning of the motion.
     Reset,
@@ -31,9 +31,9 @@ pub enum Change {
     /// Another motion of the head, from its beginning, or a further turn added to it; the
     /// pivot stays.
     Motion(Box<MotionSection>),
-    /// Takes the hair that a line of sight meets first, and all within a distance \[m\] of it, into a hand.
+    /// Takes the first hair on a line of sight, and all hair within a distance \[m\] of it, into a hand.
     Grab(Ray, f32),
-    /// Moves the hand to a line of sight, as far from the camera as it is.
+    /// Moves the hand to a line of sight at its present distance from the camera.
     Drag(Ray),
     /// Lets go of the hair.
     Release,

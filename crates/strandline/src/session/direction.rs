@@ -32,14 +32,14 @@ impl Direction {
     /// That of a scene whose head moves so.
     pub fn new(scene: &Scene, head: HeadMotion) -> Self {
         let start = scene.film.start;
-        let (wind, motion) = (scene.wind, scene.motion.clone());
+        let (wind, motion) = (scene.wind.clone(), scene.motion.clone());
         Self { wind, motion, head, begun: start, time: start, counts: true, hand: None }
     }
 
     /// Drive of the next frame.
     pub fn next(&mut self) -> Live {
         self.counts = true;
-        let (head, wind) = (self.head.clone(), self.wind);
+        let (head, wind) = (self.head.clone(), self.wind.clone());
         Live { begin: self.time, seconds: FRAME, most_steps: MOST_STEPS, head, wind, hand: self.hand }
     }
 

@@ -3,9 +3,8 @@
 use super::view::View;
 use crate::render::{LevelOfDetail, Light, PictureSettings};
 
-/// A simpler picture has no more segments of a strand than these ask for, shadow maps of so many texels a side, one
-/// place on each light, and light that is scattered so often in so many cells; it has the samples that keep its edges
-/// smooth.
+/// Limits of a simpler picture: segments of a strand, texels along a side of a shadow map, rounds and cells of scattered
+/// light. Each light has one sample point; the samples of a pixel stay, so that edges are smooth.
 const FEW_SEGMENTS: usize = 24;
 const SMALL_MAP: u32 = 192;
 const FEW_SCATTERINGS: u32 = 2;

@@ -8,6 +8,7 @@ use strandline_gpu::{Buffer, Gpu};
 use crate::{
     body::BodyFrame,
     groom::Vec3Lanes,
+    render::gpu::DeviceSolids,
     sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
     strands::hair_pose::HairPose,
 };
@@ -51,6 +52,12 @@ impl Engine {
     /// Positions on the device \[m\] at the last state and at the one before it.
     pub fn device_points(&self) -> Option<[&Buffer<f32>; 2]> {
         self.simulator.device_points()
+    }
+
+    /// Solids on a device, if the simulation runs there.
+    pub fn device_solids(&self, gpu: &Gpu) -> Option<DeviceSolids> {
+        let (rows, [base, first]) = self.simulator.device_solids()?;
+        gpu.is_same(rows.gpu()).then_some(DeviceSolids { rows, base, first })
     }
 
     /// Strands in the hand.
@@ -153,7 +160,7 @@ impl Engine {
 
     /// Scales the length of every strand.
     pub fn set_length_scale(&mut self, scales: &[f32]) -> Result<(), SimError> {
-        self.guarded(|simulator| simulator.change(|state, model| state.set_length_scale(model, scales)))
+        self.guarded(|simulator| simulator.set_length_scale(scales))
     }
 
     /// Does something; where the device fails, and it is allowed, again on the CPU.

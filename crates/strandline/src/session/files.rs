@@ -1,6 +1,6 @@
 //! Files of moving hair that a session writes and resumes from.
 
-use super::{Executor, Session};
+use super::{Executor, Session, resuming};
 use crate::{
     Cache, Error, OutSettings, What, Written,
     body::BodyFrame,
@@ -53,22 +53,23 @@ impl<E: Executor> Session<E> {
         if cache.what() == What::Guides {
             cache.check_guides(strands, points)?;
         }
-        let path = cache.path().to_owned();
-        let refuse = |message: String| Error::Cache { path, message };
         let Some(state) = cache.snapshot(strands, points)? else {
-            return Err(refuse(
-                "it holds no state, expected the state_* arrays that `sim --out` writes".to_owned(),
-            ));
+            let found = "it holds no state, expected the state_* arrays that `sim --out` writes";
+            return Err(Error::cache(cache.path(), found));
         };
+        let differences =
+            cache.scene().map_or_else(|_| Ok(None), |former| resuming::check(&former, &self.scene));
+        let differences = differences.map_err(|found| Error::cache(cache.path(), found))?;
         let made = state.frame + 1;
         if made >= frames {
-            return Err(refuse(format!(
-                "its run made {made} frames, and the film has {frames}: ask for more with --frames"
-            )));
+            let found =
+                format!("its run made {made} frames, and the film has {frames}: ask for more with --frames");
+            return Err(Error::cache(cache.path(), found));
         }
         let steps = cache.steps();
         self.with(|simulation| simulation.restore(&state, steps))?;
         self.drawn = made;
+        self.view.painter.notes.extend(differences);
         if let Some(out) = out {
             out.copy(cache, &state)?;
         }

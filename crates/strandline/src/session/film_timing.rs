@@ -33,7 +33,7 @@ const JOINING: f64 = 1.0 / 30.0;
 impl FilmTiming {
     /// The timing of a scene with a motion of the head, which is `here` at the beginning.
     pub fn new(scene: &Scene, head: HeadMotion, here: Pose) -> Self {
-        let (wind, there) = (scene.wind, head.pose(scene.film.start));
+        let (wind, there) = (scene.wind.clone(), head.pose(scene.film.start));
         Self {
             body: Arc::new(move |time| head.pose(time).into()),
             wind: Arc::new(move |time| wind.at(time)),
@@ -62,6 +62,11 @@ impl FilmTiming {
     /// Time of the film at which a frame is shown \[s\].
     pub fn time(&self, frame: u32) -> f64 {
         f64::from(frame + u32::from(!self.posed)) / self.frames_per_second
+    }
+
+    /// Time of motion, wind and camera at a time of the film \[s\].
+    pub fn motion_time(&self, time: f64) -> f64 {
+        self.start + time
     }
 
     /// Body at a time of the film \[s\].

@@ -12,7 +12,7 @@ use crate::{
     scene::WindSection,
     scene::devices::device_name,
     session::worker::{Gone, Work, Worker},
-    sim::{Settings, SimError, StepReport},
+    sim::{Settings, SimError, StepReport, Stiffening},
 };
 
 /// A task of a simulation.
@@ -125,6 +125,7 @@ pub(crate) struct Done {
     pub commands: u64,
     /// Device of the job: cpu, or the adapter.
     pub simulated_on: String,
+    pub stiffening: Stiffening,
 }
 
 impl Work for Simulation {
@@ -152,7 +153,8 @@ impl Work for Simulation {
         let simulated_on = device_name(self.engine.gpu());
         let (seconds, grabbed) = (self.passed - before, self.engine.grabbed());
         let notes = self.engine.take_notes();
-        Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on }
+        let stiffening = self.stiffening();
+        Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on, stiffening }
     }
 }
 

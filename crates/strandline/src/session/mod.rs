@@ -15,6 +15,7 @@ mod painter;
 mod pick;
 #[cfg(test)]
 mod pieces_tests;
+mod resuming;
 mod simulation;
 mod sync;
 mod view;
@@ -40,7 +41,7 @@ use crate::{
     Error, HeadMotion, Scene,
     groom::LANES,
     render::{Camera, FrameReport, Look, Picture, PictureSettings, RenderError, memory::check_lights},
-    sim::StepReport,
+    sim::{StepReport, Stiffening},
     strands::tags::Tags,
 };
 use direction::Direction;
@@ -62,6 +63,7 @@ pub(crate) struct Session<E> {
     draft: Option<Draft>,
     /// Device on which the hair of the last result was simulated: cpu, or the adapter.
     simulated_on: String,
+    stiffening: Stiffening,
     /// Strands in the hand.
     grabbed: usize,
     /// Commands that the shown moment has received.
@@ -95,6 +97,11 @@ impl<E: Executor> Session<E> {
     /// Device on which the hair of the last result was simulated: cpu, or the adapter.
     pub fn simulated_on(&self) -> &str {
         &self.simulated_on
+    }
+
+    /// Strands that are stiffer than their material, after the last task.
+    pub fn stiffening(&self) -> Stiffening {
+        self.stiffening
     }
 
     /// Strands in the hand.
@@ -151,12 +158,13 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// The error of the task; the simulation's thread has ended.
     pub fn take(&mut self) -> Result<bool, Error> {
-        let Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on } =
-            self.executor.finish().map_err(|_| Error::WorkerGone)?;
+        let done = self.executor.finish().map_err(|_| Error::WorkerGone)?;
+        let Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on, stiffening } =
+            done;
         if is_frame {
             self.direction.pass(seconds);
         }
-        (self.simulated_on, self.grabbed) = (simulated_on, grabbed);
+        (self.simulated_on, self.grabbed, self.stiffening) = (simulated_on, grabbed, stiffening);
         self.simulated_after = self.simulated_after.max(commands);
         self.spare.push(std::mem::replace(&mut self.shown, moment));
         self.events.extend(notes.into_iter().map(Event::Note));

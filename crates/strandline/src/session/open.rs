@@ -34,9 +34,11 @@ impl Session<Inline> {
         let Pair { simulation: Opened { gpu, fall_back }, pictures, notes } = devices;
         let mut engine = Engine::new(gpu.as_ref(), Model::new(&guides, settings, colliders)?, fall_back)?;
         engine.notes.extend(notes);
+        let are_same = bound.as_ref().is_some_and(|bound| bound.solids().are(engine.model().colliders()));
+        let solids = pictures.gpu.as_ref().filter(|_| are_same).and_then(|gpu| engine.device_solids(gpu));
         let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
         let view = View {
-            painter: Painter::new(pictures, &guides, bound, mesh)?,
+            painter: Painter::new(pictures, &guides, bound, mesh, solids)?,
             guides,
             bounds,
             camera: Camera::front(),
@@ -48,6 +50,7 @@ impl Session<Inline> {
         let mut scene = Scene { simulation: settings.clone(), ..Scene::default() };
         scene.groom.points_per_strand = view.guides.points_per_strand() as u32;
         let simulated_on = device_name(engine.gpu());
+        let stiffening = engine.model().stiffening();
         Ok(Self {
             scene,
             tags: Tags::default(),
@@ -57,6 +60,7 @@ impl Session<Inline> {
             settings: PictureSettings::default(),
             draft: None,
             simulated_on,
+            stiffening,
             grabbed: 0,
             simulated_after: 0,
             spare: Vec::new(),
@@ -118,6 +122,7 @@ impl Session<Inline> {
             settings: self.settings,
             draft: self.draft,
             simulated_on: self.simulated_on,
+            stiffening: self.stiffening,
             grabbed: self.grabbed,
             simulated_after: self.simulated_after,
             spare: self.spare,

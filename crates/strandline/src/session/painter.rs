@@ -8,15 +8,15 @@ use crate::{
     groom::Guides,
     render::{
         FrameInput, FrameReport, Picture, PictureSettings, RenderError, Renderer,
-        gpu::{DevicePoints, GpuRenderer},
+        gpu::{DevicePoints, DeviceSolids, GpuRenderer},
     },
     scene::devices::{Opened, device_name},
 };
 
-/// A renderer and what it takes to start another one on the CPU.
+/// A renderer, and the data to start another one on the CPU.
 pub(crate) struct Painter {
     place: Place,
-    /// Draws what is more than the GPU draws, and whether it drew the last picture.
+    /// Renderer on the CPU for pictures beyond the limits of the GPU; `stands_in` while it draws.
     stand_in: Option<Box<Renderer>>,
     stands_in: bool,
     /// The strands that are drawn, at rest.
@@ -39,18 +39,19 @@ enum Place {
 }
 
 impl Painter {
-    /// A painter on a device, or on the CPU without one.
+    /// A painter on a device, or on the CPU without one. The solids of a simulation may lie on that device.
     pub fn new(
         device: Opened,
         guides: &Guides,
         bound: Option<BoundStrands>,
         mesh: Option<&Mesh>,
+        solids: Option<DeviceSolids>,
     ) -> Result<Self, RenderError> {
         let strands = bound.as_ref().map_or(guides, BoundStrands::strands).clone();
         let settings = PictureSettings::default();
         let mut notes = Vec::new();
         let placed = match &device.gpu {
-            Some(gpu) => match on_gpu(gpu, &strands, bound.as_ref(), mesh, &settings) {
+            Some(gpu) => match on_gpu(gpu, &strands, bound.as_ref(), mesh, &settings, solids) {
                 Err(error) if device.fall_back => {
                     notes.push(format!("drawing on the CPU: {error}"));
                     None
@@ -157,10 +158,10 @@ impl Painter {
         renderer.draw_into(input, picture)
     }
 
-    /// Makes the renderer that draws what is more than the GPU draws.
+    /// Creates the renderer for pictures beyond the limits of the GPU.
     fn stand_in(&mut self, failure: RenderError) -> Result<(), RenderError> {
         if self.stand_in.is_none() {
-            self.notes.push(format!("drawing on the CPU as long as it is so: {failure}"));
+            self.notes.push(format!("drawing on the CPU until the scene fits the GPU: {failure}"));
             let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_ref(), &self.settings)?;
             self.stand_in = Some(renderer.into());
         }
@@ -177,8 +178,8 @@ impl Painter {
         Ok(pair.0.zip(pair.1).map(|(opacity, depth)| [opacity, depth]))
     }
 
-    /// Falls back to the CPU, if that is allowed and the failure is the GPU's; for as long as a picture is more than
-    /// the GPU draws.
+    /// Falls back to the CPU, if that is allowed and the failure is the GPU's; where a picture is beyond the limits of the
+    /// GPU, only until it fits.
     pub fn recover_from(&mut self, failure: RenderError) -> Result<(), RenderError> {
         if self.fall_back && self.gpu().is_some() && matches!(failure, RenderError::TooMany { .. }) {
             return Ok(());
@@ -219,10 +220,11 @@ fn on_gpu(
     bound: Option<&BoundStrands>,
     mesh: Option<&Mesh>,
     settings: &PictureSettings,
+    solids: Option<DeviceSolids>,
 ) -> Result<GpuRenderer, RenderError> {
     let mut renderer = GpuRenderer::new(gpu, strands, mesh, settings)?;
     if let Some(bound) = bound {
-        renderer.bind(bound.binding(), bound.solids())?;
+        renderer.bind(bound.binding(), bound.solids(), solids)?;
     }
     Ok(renderer)
 }

@@ -25,7 +25,7 @@ impl Ray {
         Self { origin: camera.position, direction: direction.normalize_or(Vec3::NEG_Z) }
     }
 
-    /// Intersection with the plane through a point that faces the camera \[m\]; none behind the origin.
+    /// Intersection with the plane through a point, parallel to the picture \[m\]; `None` behind the origin.
     pub(crate) fn at_depth_of(&self, camera: &Camera, point: Vec3) -> Option<Vec3> {
         let forward = (camera.target - camera.position).normalize_or(Vec3::NEG_Z);
         let along = (point - self.origin).dot(forward) / self.direction.dot(forward);
@@ -62,7 +62,7 @@ impl Ray {
 
     /// The hair that it meets first before the body: the end of a segment that comes within `radius` \[m\] of
     /// it, the nearest to its beginning and to itself. `positions` \[m\] are those of `strands` guides, world
-    /// space, shape `[block][point]` of lanes, of so many points each.
+    /// space, shape `[block][point]` of lanes, with `points` points each.
     pub(crate) fn hair(
         self,
         positions: &[Vec3Lanes],

@@ -14,7 +14,7 @@ use crate::{
     body::BodyFrame,
     cache::Snapshot,
     groom::Vec3Lanes,
-    sim::{Clock, Drift, Drive, Settings, SimError, State, StepReport, Ticks},
+    sim::{Clock, Drift, Drive, Settings, SimError, State, StepReport, Stiffening, Ticks},
     strands::hair_pose::HairPose,
 };
 
@@ -97,10 +97,9 @@ impl Simulation {
         self.engine.drift()
     }
 
-    /// Strands of rods that had to be stiffer for their shape to be stable, and the stiffest of them over its own
-    /// stiffness; 0 and 1 without rods.
-    pub fn stiffened(&self) -> (usize, f32) {
-        self.engine.model().rods().map_or((0, 1.0), |rods| (rods.stiffened, rods.stiffest))
+    /// Strands of rods that had to be stiffer for their shape to be stable.
+    pub fn stiffening(&self) -> Stiffening {
+        self.engine.model().stiffening()
     }
 
     /// Allows or forbids falling back to the CPU when the GPU fails.

@@ -26,7 +26,7 @@ pub(crate) trait Work: Send + 'static {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Gone;
 
-/// A thread and what it works on.
+/// A thread and the object that its jobs work on.
 pub(crate) struct Worker<W: Work> {
     work: Arc<Mutex<W>>,
     jobs: Option<Sender<W::Job>>,

@@ -7,7 +7,7 @@ use glam::Vec3;
 use safetensors::{SafeTensors, tensor::Dtype};
 use strandline_base::read_plain;
 
-use crate::{Error, groom::Guides};
+use crate::{Error, error::FileProblem, groom::Guides};
 
 /// Room for the names and shapes in a file \[byte\].
 const HEADER: u64 = 65_536;
@@ -20,9 +20,9 @@ const NUMBERS: u64 = 64;
 /// # Errors
 /// The file cannot be read, has neither, or does not fit the guides.
 pub(crate) fn load(path: &Path, guides: &mut Guides) -> Result<(), Error> {
-    let refuse = |message: String| Error::Attributes { path: path.to_owned(), message };
+    let refuse = |problem| Error::Attributes { path: path.to_owned(), problem };
     let bytes = read(path, guides).map_err(refuse)?;
-    give(&bytes, guides).map_err(refuse)
+    give(&bytes, guides).map_err(|found| refuse(found.into()))
 }
 
 fn give(bytes: &[u8], guides: &mut Guides) -> Result<(), String> {
@@ -63,14 +63,14 @@ fn numbers(tensors: &SafeTensors, name: &str, shape: &[usize]) -> Result<Option<
 }
 
 /// Reads no more than a file for these guides may have.
-fn read(path: &Path, guides: &Guides) -> Result<Vec<u8>, String> {
+fn read(path: &Path, guides: &Guides) -> Result<Vec<u8>, FileProblem> {
     let [strands, points] = [guides.strand_count(), guides.points_per_strand()];
     let most = HEADER + 4 * NUMBERS * (strands * points) as u64;
     read_plain(path, most).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
-            format!("larger than {strands} strands of {points} points can be ({most} bytes)")
+            format!("larger than {strands} strands of {points} points can be ({most} bytes)").into()
         }
-        _ => error.to_string(),
+        _ => error.into(),
     })
 }
 

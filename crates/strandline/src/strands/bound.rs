@@ -3,22 +3,9 @@
 use std::sync::Arc;
 
 use crate::{
-    body::{BodyFrame, Collider, Shape, Solids},
+    body::{BodyFrame, Collider, Solids},
     groom::{Binding, Frames, Guides, Vec3Lanes},
 };
-
-/// Share of the distance between samples of a solid that strands stay away from it, and how far at most \[m\]: samples
-/// err by about so much where the surface curves.
-const CLEARANCE: f32 = 0.25;
-const MOST_CLEARANCE: f32 = 0.002;
-
-/// Distance \[m\] that bound strands keep from a solid.
-pub(crate) fn clearance(shape: &Shape) -> f32 {
-    match shape {
-        Shape::Grid(grid) => (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE),
-        Shape::Sphere { .. } | Shape::Capsule { .. } | Shape::Mannequin(_) => 0.0,
-    }
-}
 
 /// All strands of a groom, bound to the simulated ones among them, and the solids that they stay out of.
 #[derive(Clone, Debug)]
@@ -28,10 +15,10 @@ pub struct BoundStrands {
 }
 
 impl BoundStrands {
-    /// Strands and solids; what the head carries is in head space.
+    /// Strands and solids; solids that the head carries are in head space.
     pub fn new(binding: Binding, solids: Vec<Collider>) -> Self {
         let away = |solid: Collider| {
-            let clearance = clearance(&solid.shape);
+            let clearance = solid.shape.clearance();
             (solid, clearance)
         };
         Self { binding: Arc::new(binding), solids: Solids::new(solids.into_iter().map(away)) }

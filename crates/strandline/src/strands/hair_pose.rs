@@ -15,6 +15,7 @@ use super::bodies::{self, LISTS, Lists, OF_FRAMES, ROOTS, WIDTHS};
 use crate::{
     Error,
     body::{BodyFrame, Pose},
+    error::FileProblem,
     groom::Vec3Lanes,
     sim::{MOST_SPIN, State},
 };
@@ -49,6 +50,9 @@ const HEADER: u64 = 65_536;
 const MOST_PIECES: usize = 1024;
 /// Farther than this \[m\], or faster \[m/s\], is no hair. Its sections spin faster: no more than [`MOST_SPIN`].
 const MOST: f32 = 1e4;
+
+/// A tensor of a file: name, shape and numbers.
+type Tensor = (&'static str, Vec<usize>, Vec<f32>);
 
 impl HairPose {
     /// Takes positions \[m\] that are shown, world space, shape `[block][point]` of lanes, and how a
@@ -142,7 +146,7 @@ impl HairPose {
     }
 
     /// Tensors of the body beside the head: name, shape, numbers.
-    fn lists(&self) -> Result<Vec<(&'static str, Vec<usize>, Vec<f32>)>, String> {
+    fn lists(&self) -> Result<Vec<Tensor>, String> {
         let lists = Lists::of([&self.body]);
         if lists.0[0] > MOST_PIECES {
             return Err(format!("{} pieces of the body, expected {MOST_PIECES} at most", lists.0[0]));
@@ -160,9 +164,9 @@ impl HairPose {
     /// # Errors
     /// It cannot be read, is of another kind, or is for other hair or another mesh.
     pub fn load(path: &Path, shape: [usize; 2], vertices: usize) -> Result<Self, Error> {
-        let refuse = |message: String| Error::HairPose { path: path.to_owned(), message };
+        let refuse = |problem| Error::HairPose { path: path.to_owned(), problem };
         let bytes = read(path, shape, vertices).map_err(refuse)?;
-        Self::parse(&bytes, shape, Some(vertices)).map_err(refuse)
+        Self::parse(&bytes, shape, Some(vertices)).map_err(|found| refuse(found.into()))
     }
 
     fn parse(bytes: &[u8], shape: [usize; 2], vertices: Option<usize>) -> Result<Self, String> {
@@ -174,7 +178,7 @@ impl HairPose {
         };
         let rods = tensors.names().contains(&"sections");
         let head = numbers(&tensors, "world_from_head", &[7])?;
-        // As it is, to the bit: what is drawn is then what was.
+        // Not normalised again: the picture is then the same to the bit.
         let rotation = Quat::from_slice(&head[..4]);
         if !rotation.is_normalized() {
             return Err(format!("world_from_head with the quaternion {rotation}, expected one of length 1"));
@@ -243,14 +247,14 @@ fn check(name: &str, numbers: &[f32]) -> Result<(), String> {
 }
 
 /// Reads no more than a pose of this shape needs.
-fn read(path: &Path, [strands, points]: [usize; 2], vertices: usize) -> Result<Vec<u8>, String> {
+fn read(path: &Path, [strands, points]: [usize; 2], vertices: usize) -> Result<Vec<u8>, FileProblem> {
     let body = 28 * (strands + MOST_PIECES) + 12 * vertices;
     let most = HEADER + (strands * points * 52 + body) as u64;
     read_plain(path, most).map_err(|error| match error.kind() {
         ErrorKind::FileTooLarge => {
-            format!("larger than {strands} strands of {points} points can be ({most} bytes)")
+            format!("larger than {strands} strands of {points} points can be ({most} bytes)").into()
         }
-        _ => error.to_string(),
+        _ => error.into(),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::groom::Groom;
 
-/// Largest group number that is kept as it is: names lie in a list by their numbers.
+/// Largest group number that is kept unchanged: names lie in a list by their numbers.
 const MOST_NUMBER: u32 = 4095;
 
 /// Groups and root coordinates of the strands of a groom.
@@ -14,7 +14,7 @@ pub struct Tags {
     pub groups: Option<Vec<u16>>,
     /// Names of groups by their numbers; empty where they have none.
     pub group_names: Vec<String>,
-    /// The strands that are simulated, in rising order; none means all.
+    /// Indices of the simulated strands, ascending; `None` for all.
     pub guides: Option<Vec<usize>>,
 }
 
@@ -56,7 +56,7 @@ impl Tags {
         }
     }
 
-    /// Those of strands of which each stands for several.
+    /// The tags with each strand repeated, for strands that stand for several.
     pub(crate) fn repeated(&self, times: usize) -> Self {
         fn each<T: Copy>(values: Option<&Vec<T>>, times: usize) -> Option<Vec<T>> {
             values.map(|all| all.iter().flat_map(|one| std::iter::repeat_n(*one, times)).collect())

@@ -3,7 +3,7 @@
 
 use strandline::{
     Backend, Cache, Devices, Event, Groom, OutSettings, Picture, Player, Prepared, Scene, What,
-    format::{Part, Scale},
+    format::{Attribute, Scale},
     look::Preset,
     scene::{BodyPart, GroomPart, MotionName},
 };
@@ -95,7 +95,7 @@ fn guides_are_those_that_a_file_marks_or_a_scene_asks_for() {
     assert_eq!(marked.guides.strand_count(), 50);
     let bound = marked.bound.unwrap();
     assert_eq!(bound.strands().strand_count(), 200);
-    assert!(bound.strands().colors().is_some(), "{}", Part::Colors.name());
+    assert!(bound.strands().colors().is_some(), "{}", Attribute::Colors.name());
     assert!(marked.notes.iter().any(|note| note.contains("50 strands are simulated (marked in the file)")));
     let asked = prepared(|scene| scene.groom.guides = Some(20));
     assert!((18..=20).contains(&asked.guides.strand_count()));
@@ -323,7 +323,7 @@ fn files_of_one_groom_are_placed_together() {
     scene.body.file = Some("head.obj".into());
     let notes = Prepared::new(&scene).unwrap().notes;
     let said = |words: &str| notes.iter().any(|note| note.contains(words));
-    assert!(said("turned by 180 degrees") && said("the head of a person"), "{notes:?}");
+    assert!(said("turned by 180 degrees") && said("a unit of the groom is 0.00254 m"), "{notes:?}");
 }
 
 #[test]

@@ -16,7 +16,12 @@ fn scene(time_step: f32, frames_per_second: f32, seconds: f32) -> Scene {
     scene.simulation.time_step = time_step;
     scene.simulation.volume.cells = [8; 3];
     scene.motion.name = MotionName::Shake;
-    scene.wind = WindSection { velocity: Vec3::new(4.0, 0.0, 1.0), gust: 0.9, gust_period: 0.4 };
+    scene.wind = WindSection {
+        velocity: Vec3::new(4.0, 0.0, 1.0),
+        gust: 0.9,
+        gust_period: 0.4,
+        ..WindSection::default()
+    };
     scene.film.frames_per_second = frames_per_second;
     scene.film.frames = (seconds * frames_per_second).round() as u32;
     scene.film.settle = 0.05;

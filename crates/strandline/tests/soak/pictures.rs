@@ -96,7 +96,7 @@ impl Person {
                 LiveEvent::Loaded(number, ..) => {
                     (self.loaded, self.loads) = (number, self.loads + 1);
                 }
-                LiveEvent::NotLoaded(_, error) => assert!(error.contains("bad.hair"), "{error}"),
+                LiveEvent::NotLoaded(_, _, error) => assert!(error.contains("bad.hair"), "{error}"),
                 LiveEvent::Error(_, error) if error.contains("save again") => self.saved += 1,
                 LiveEvent::Error(_, error) => {
                     // Of all that it does only settings outside their ranges may be refused.
@@ -272,7 +272,7 @@ impl Person {
             Change::Release,
             Change::Settings(Box::new(base.simulation.clone())),
             Change::Length(1.0),
-            Change::Wind(base.wind),
+            Change::Wind(base.wind.clone()),
             Change::Look(Box::new(base.look.clone())),
             Change::BodyLook(base.body_look),
             Change::Lights(base.lights.clone()),

@@ -28,10 +28,10 @@ const OF_EDGES: [&str; 2] = ["vertex1", "vertex2"];
 /// [`GroomError::Malformed`] with the error.
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".ply" };
-    let asked: [(&str, &[&str]); 3] =
-        [("vertex", &OF_VERTICES), ("strand", &OF_STRANDS), ("edge", &OF_EDGES)];
+    let asked: [(&str, &[&str]); 4] =
+        [("vertex", &OF_VERTICES), ("strand", &OF_STRANDS), ("edge", &OF_EDGES), ("face", &[])];
     let file = ply::read(bytes, asked).map_err(|mismatch| source.error(mismatch.found, mismatch.expected))?;
-    let [vertices, strands, edges] = &file.tables;
+    let [vertices, strands, edges, faces] = &file.tables;
     let count = vertices.rows as u64;
     if !(1..=MAX_POINTS).contains(&count) {
         return Err(source.error(format!("{count} vertices"), format!("1 to {MAX_POINTS}")));
@@ -50,6 +50,10 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
             let (chains, notes) = joined(&source, edges, count)?;
             problems = notes;
             chains
+        }
+        (None, None) if faces.rows > 0 => {
+            let found = format!("a mesh of {} faces", faces.rows);
+            return Err(source.error(found, "strands; a mesh is a body (`--body`)"));
         }
         (None, None) => {
             let expected = "`strand` and `edge` elements, or the points of a strand (`--per-strand N`)";

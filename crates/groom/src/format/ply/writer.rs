@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::super::Part;
+use super::super::Attribute;
 use super::super::bytes::{put, put_u32};
 use super::super::tfx::longest;
 use crate::{Groom, GroomError, Widths};
@@ -76,7 +76,7 @@ fn header(groom: &Groom) -> String {
 
 /// True if strands have a width each; a default width, taken because a file had none, is not written.
 fn of_strands(groom: &Groom) -> bool {
-    Part::Widths.is_in(groom) && !matches!(groom.widths, Widths::PerPoint(_))
+    Attribute::Widths.is_in(groom) && !matches!(groom.widths, Widths::PerPoint(_))
 }
 
 fn vertices(groom: &Groom, out: &mut Vec<u8>) {

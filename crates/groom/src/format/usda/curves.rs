@@ -62,7 +62,12 @@ impl Curve {
 }
 
 /// The strands of a prim, in its own space; widths are diameters.
-pub(super) fn groom(source: &Source, prim: &Prim, problems: &mut Vec<String>) -> Result<Groom, GroomError> {
+pub(super) fn groom(
+    source: &Source,
+    prim: &Prim,
+    frame: Option<u32>,
+    problems: &mut Vec<String>,
+) -> Result<Groom, GroomError> {
     let numbers = |name: &str| match prim.properties.get(name) {
         Some(Value::Numbers(numbers)) => Some(&numbers[..]),
         _ => None,
@@ -101,9 +106,14 @@ pub(super) fn groom(source: &Source, prim: &Prim, problems: &mut Vec<String>) ->
         start += own.len();
     }
     if prim.samples > 1 {
-        problems.push(format!("the first of {} times of `{}` is read", prim.samples, prim.name));
+        let (count, name) = (prim.samples, &prim.name);
+        problems.push(match frame {
+            None => format!("the first of {count} times of `{name}` is read"),
+            Some(frame) => format!("of {count} times of `{name}` the last up to time code {frame} is read"),
+        });
     }
-    attributes(&mut groom, prim, &of_points, controls.len());
+    let (strands, controls) = (groom.strand_count(), controls.len());
+    Attributes { prim, strands, of_points: &of_points, controls, problems }.take(&mut groom);
     Ok(groom)
 }
 
@@ -127,44 +137,100 @@ fn primvar(prim: &Prim, names: &[&str], size: usize) -> Option<Vec<f32>> {
     })
 }
 
-/// Takes widths, colours, root coordinates and groups, by the number of their values.
-fn attributes(groom: &mut Groom, prim: &Prim, of_points: &[usize], controls: usize) {
-    let strands = groom.strand_count();
-    if let Some(widths) = primvar(prim, &["widths", "primvars:widths", "primvars:groom_width"], 1) {
-        groom.widths = match widths.len() {
-            1 => Widths::Constant(widths[0]),
-            count if count == strands => Widths::PerStrand(widths),
-            count if count == controls => {
-                Widths::PerPoint(of_points.iter().map(|point| widths[*point]).collect())
-            }
-            _ => Widths::Constant(0.0),
-        };
+/// Values of an attribute by the number that there is: one for all, for each strand, or for each control point.
+enum Spread<T> {
+    All(T),
+    Strands(Vec<T>),
+    Points(Vec<T>),
+}
+
+/// Attributes of the strands of a prim.
+struct Attributes<'a> {
+    prim: &'a Prim,
+    strands: usize,
+    /// The control point of each point, and the number of control points.
+    of_points: &'a [usize],
+    controls: usize,
+    problems: &'a mut Vec<String>,
+}
+
+impl Attributes<'_> {
+    /// Adds a note on values that are not read.
+    fn refuse(&mut self, name: &str, found: usize) {
+        let (prim, strands, controls) = (&self.prim.name, self.strands, self.controls);
+        let note = format!(
+            "{name} of `{prim}` are not read: {found} values for {strands} curves of {controls} points"
+        );
+        self.problems.push(note);
     }
-    if let Some(colors) = primvar(prim, &["primvars:displayColor", "primvars:groom_color"], 3) {
-        let colors: Vec<[f32; 3]> =
-            colors.chunks_exact(3).map(|color| [color[0], color[1], color[2]]).collect();
-        groom.colors = match colors.len() {
-            1 => Some(vec![colors[0]; groom.points.len()]),
-            count if count == strands => {
+
+    /// Values of `N` numbers, by their count; a note where it is none of the curves.
+    fn spread<const N: usize>(&mut self, name: &str, names: &[&str]) -> Option<Spread<[f32; N]>> {
+        let values = primvar(self.prim, names, N)?;
+        let values = values.as_chunks().0.to_vec();
+        match values.len() {
+            1 => Some(Spread::All(values[0])),
+            count if count == self.strands => Some(Spread::Strands(values)),
+            count if count == self.controls => {
+                Some(Spread::Points(self.of_points.iter().map(|point| values[*point]).collect()))
+            }
+            count => {
+                self.refuse(name, count);
+                None
+            }
+        }
+    }
+
+    /// Values of `N` numbers of each strand, of those of points the root's.
+    fn of_strands<const N: usize>(
+        &mut self,
+        name: &str,
+        names: &[&str],
+        groom: &Groom,
+    ) -> Option<Vec<[f32; N]>> {
+        Some(match self.spread(name, names)? {
+            Spread::Strands(values) => values,
+            Spread::All(value) => vec![value; self.strands],
+            Spread::Points(values) => {
+                let root = |start: &u32| values.get(*start as usize).copied().unwrap_or([0.0; N]);
+                groom.starts[..self.strands].iter().map(root).collect()
+            }
+        })
+    }
+
+    /// Takes widths, colours, root coordinates and groups.
+    fn take(mut self, groom: &mut Groom) {
+        let strands = self.strands;
+        let widths = self.spread("widths", &["widths", "primvars:widths", "primvars:groom_width"]);
+        groom.widths = match widths {
+            None => Widths::Constant(0.0),
+            Some(Spread::All([width])) => Widths::Constant(width),
+            Some(Spread::Strands(widths)) => Widths::PerStrand(widths.into_iter().flatten().collect()),
+            Some(Spread::Points(widths)) => Widths::PerPoint(widths.into_iter().flatten().collect()),
+        };
+        let colors = self.spread("colours", &["primvars:displayColor", "primvars:groom_color"]);
+        groom.colors = colors.map(|colors| match colors {
+            Spread::All(color) => vec![color; groom.points.len()],
+            Spread::Strands(colors) => {
                 let of_strand =
                     |strand: usize| std::iter::repeat_n(colors[strand], groom.range(strand).len());
-                Some((0..strands).flat_map(of_strand).collect())
+                (0..strands).flat_map(of_strand).collect()
             }
-            count if count == controls => Some(of_points.iter().map(|point| colors[*point]).collect()),
-            _ => None,
-        };
-    }
-    const UVS: [&str; 3] = ["primvars:st", "primvars:groom_root_uv", "primvars:surface_uv_coordinate"];
-    let uvs = primvar(prim, &UVS, 2).filter(|uvs| uvs.len() == 2 * strands);
-    groom.root_uvs = uvs.map(|uvs| uvs.chunks_exact(2).map(Vec2::from_slice).collect());
-    let groups = primvar(prim, &["primvars:group_id", "primvars:groom_group_id"], 1);
-    groom.groups = groups
-        .filter(|groups| groups.len() == strands)
-        .map(|groups| groups.into_iter().map(|group| group as u32).collect());
-    let names = ["primvars:group_name", "primvars:groom_group_name"].map(|name| prim.properties.get(name));
-    if let (Some(Value::Texts(names)), Some(groups)) = (names[0].or(names[1]), &groom.groups)
-        && names.len() == strands
-    {
-        groom.group_names = groups.iter().copied().zip(names.iter().cloned()).collect();
+            Spread::Points(colors) => colors,
+        });
+        const UVS: [&str; 3] = ["primvars:st", "primvars:groom_root_uv", "primvars:surface_uv_coordinate"];
+        let uvs = self.of_strands("root coordinates", &UVS, groom);
+        groom.root_uvs = uvs.map(|uvs| uvs.into_iter().map(Vec2::from_array).collect());
+        let groups = self.of_strands("groups", &["primvars:group_id", "primvars:groom_group_id"], groom);
+        groom.groups = groups.map(|groups| groups.into_iter().map(|[group]| group as u32).collect());
+        let names = ["primvars:group_name", "primvars:groom_group_name"];
+        let names = names.map(|name| self.prim.properties.get(name));
+        if let (Some(Value::Texts(names)), Some(groups)) = (names[0].or(names[1]), &groom.groups) {
+            if names.len() == strands {
+                groom.group_names = groups.iter().copied().zip(names.iter().cloned()).collect();
+            } else {
+                self.refuse("names of groups", names.len());
+            }
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! `.usda`: the curves of a text USD, as strands in metres, y up; of values over time the first.
+//! `.usda`: the curves of a text USD at one of its times, as strands in metres, y up.
 
 mod curves;
 mod text;
@@ -12,11 +12,19 @@ use super::{MAX_POINTS, MAX_STRANDS, Parsed};
 use crate::{Groom, GroomError, Widths};
 use text::{Prim, Value};
 
-/// Reads the `BasisCurves` of a file; each prim is a group, unless one alone has groups of its own.
+/// Reads the `BasisCurves` of a file at its first time; each prim is a group, unless one alone has groups of its own.
 ///
 /// # Errors
 /// [`GroomError::Malformed`] with the byte that is wrong, or a file without curves.
 pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
+    read_at(bytes, None)
+}
+
+/// As [`read`], at a time code: values are the last up to it, or the first.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_at(bytes: &[u8], frame: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".usda" };
     if bytes.starts_with(b"PXR-USDC") || bytes.starts_with(b"PK") {
         return Err(GroomError::Malformed {
@@ -32,10 +40,11 @@ pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
             source.error(format!("starts with `{}`", bytes[..bytes.len().min(8)].escape_ascii()), "`#usda`")
         );
     }
-    let stage = text::read(&text, is_asked)
+    let stage = text::read(&text, is_asked, frame.map(f64::from))
         .map_err(|wrong| source.error(format!("something else at byte {}", wrong.at), wrong.expected))?;
     let mut reading = Reading {
         source,
+        frame,
         strands: None,
         first_name: String::new(),
         next_group: 0,
@@ -61,6 +70,8 @@ fn is_asked(name: &str) -> bool {
 
 struct Reading<'a> {
     source: Source<'a>,
+    /// Time code at which values are read, or the first time.
+    frame: Option<u32>,
     strands: Option<Groom>,
     /// The name of the first prim: of one alone it is no group's.
     first_name: String,
@@ -84,7 +95,7 @@ impl Reading<'_> {
         }
         let world_from_prim = world_from_parent * transform::local(prim, &mut self.problems);
         if prim.kind == "BasisCurves" {
-            let mut groom = curves::groom(&self.source, prim, &mut self.problems)?;
+            let mut groom = curves::groom(&self.source, prim, self.frame, &mut self.problems)?;
             for point in &mut groom.points {
                 *point = world_from_prim.transform_point3(*point);
             }

@@ -21,7 +21,7 @@ pub enum Value {
 pub struct Prim {
     pub kind: String,
     pub name: String,
-    /// Values by name; of values over time the first.
+    /// Values by name; of values over time those of the time asked for.
     pub properties: BTreeMap<String, Value>,
     /// Times that the points have values for.
     pub samples: usize,
@@ -37,9 +37,10 @@ pub struct Wrong {
     pub expected: &'static str,
 }
 
-/// Reads a text: the metadata of its stage as properties of a nameless prim, all prims below it.
-pub fn read(text: &[u8], is_asked: fn(&str) -> bool) -> Result<Prim, Wrong> {
-    let mut reader = Reader { text, at: 0, is_asked };
+/// Reads a text: the metadata of its stage as properties of a nameless prim, all prims below it. Of values over time the
+/// last up to a time code is kept, the first where there is none.
+pub fn read(text: &[u8], is_asked: fn(&str) -> bool, time_code: Option<f64>) -> Result<Prim, Wrong> {
+    let mut reader = Reader { text, at: 0, is_asked, time_code: time_code.unwrap_or(f64::NEG_INFINITY) };
     let mut stage = Prim::default();
     reader.metadata(&mut stage.properties, 0)?;
     while reader.peek().is_some() {
@@ -52,6 +53,7 @@ struct Reader<'a> {
     text: &'a [u8],
     at: usize,
     is_asked: fn(&str) -> bool,
+    time_code: f64,
 }
 
 impl<'a> Reader<'a> {
@@ -331,27 +333,27 @@ impl<'a> Reader<'a> {
         self.metadata(&mut BTreeMap::new(), depth)
     }
 
-    /// Values over time: the first is kept, the others are counted.
+    /// Values over time, which rises: that of the time asked for is kept, the others are counted.
     fn samples(&mut self, keep: bool, name: &str, prim: &mut Prim, depth: usize) -> Result<Value, Wrong> {
         if !self.take(b'{') {
             return self.wrong("values over time");
         }
-        let (mut first, mut count) = (Value::Other, 0);
+        let (mut kept, mut count) = (Value::Other, 0);
         while !self.take(b'}') {
-            let time = self.word();
-            if time.trim_end_matches(':').parse::<f64>().is_err() {
+            let Ok(time) = self.word().trim_end_matches(':').parse::<f64>() else {
                 return self.wrong("a time");
-            }
+            };
             self.take(b':');
-            let value = self.value(keep && count == 0, depth + 1)?;
-            if count == 0 {
-                first = value;
+            let is_wanted = count == 0 || time <= self.time_code;
+            let value = self.value(keep && is_wanted, depth + 1)?;
+            if is_wanted {
+                kept = value;
             }
             count += 1;
         }
         if name == "points" {
             prim.samples = count;
         }
-        Ok(first)
+        Ok(kept)
     }
 }

@@ -1,4 +1,4 @@
-//! One ribbon segment in one tile: how much of each sample it covers, composited under what is there.
+//! One ribbon segment in one tile: its coverage of each sample, composited under the segments before it.
 //!
 //! Along the axis in which a segment is longer, it is cut into steps one sample wide; across, at each
 //! step, the ribbon is a box as wide as the ribbon is along that axis, and at least one sample wide,
@@ -55,7 +55,7 @@ pub struct TileSamples<'a> {
 }
 
 impl TileSamples<'_> {
-    /// Composites a segment, from `first` to `last` along its strand, under what is there.
+    /// Composites a segment, from `first` to `last` along its strand, under the segments before it.
     pub fn add(&mut self, first: &End, last: &End, along_y: bool) {
         match (along_y, self.depths.is_some()) {
             (false, false) => self.fill::<false, false>(first, last),

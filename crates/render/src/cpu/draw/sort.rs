@@ -7,7 +7,7 @@ const PASSES: u32 = 2;
 /// Largest key.
 pub const MAX_KEY: u32 = (1 << (DIGIT_BITS * PASSES)) - 1;
 
-/// Puts a key of at most [`MAX_KEY`] in front of what it sorts.
+/// Joins a key of at most [`MAX_KEY`] and its payload, key first.
 pub fn keyed(key: u32, payload: u32) -> u64 {
     u64::from(key) << 32 | u64::from(payload)
 }

@@ -51,8 +51,8 @@ pub struct Occlusion {
 }
 
 impl Occlusion {
-    /// Cells keep their places beside a place of the head \[m\], world space, and are so many along the longest side of
-    /// the hair; beside the origin, and as many as there may be, else.
+    /// Anchors the cells to a point of the head \[m\], world space, or to the origin if it is not finite, and sets their
+    /// number along the longest side of the hair.
     pub fn set_grid(&mut self, middle: Vec3, longest: u32) {
         self.middle = if middle.is_finite() { middle } else { Vec3::ZERO };
         self.longest = longest.min(LONGEST);
@@ -87,7 +87,7 @@ impl Occlusion {
     }
 
     /// Radiance that reaches a surface of the given unit normal at a point \[m\], weighted with the
-    /// cosine: what a white matte surface there shows.
+    /// cosine: the radiance of a white matte surface there.
     pub fn ambient_on(&self, point: Vec3, normal: Vec3, environment: &Environment) -> Vec3 {
         let cube = self.cube(point);
         // Over the cosine lobe about a normal, the height of a direction averages two thirds of the normal's.
@@ -260,7 +260,7 @@ struct Grid {
 
 impl Grid {
     /// Spreads the area of a segment, given by the place and the width \[m\] of its ends, in pieces no longer
-    /// than a cell: what a piece gives to the eight cells around it changes as smoothly as it moves.
+    /// than a cell. The shares of a piece in the eight cells around it change smoothly with its place.
     #[inline]
     fn spread(&self, start: (Vec3, f32), end: (Vec3, f32), areas: &mut [u64]) {
         let way = end.0 - start.0;

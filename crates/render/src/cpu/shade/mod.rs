@@ -225,7 +225,7 @@ impl<'a> Scheuermann<'a> {
         lanes
     }
 
-    /// Hairs crossed on the way to a light, and the share of it that the body leaves open.
+    /// Number of hairs between a point and a light, and the share of the light that the body does not hide.
     fn shadow(
         &self,
         light: usize,

@@ -17,7 +17,7 @@ pub trait Shading: Sync {
     fn fill(&self, strand: usize, first: usize, radiances: &mut [Vec3]);
 }
 
-/// Finds the light of every point of what is drawn.
+/// Computes the light of every point of the drawn strands.
 pub(crate) fn fill_all(strands: &Strands, shading: &dyn Shading, radiances: &mut Vec<Vec3>) {
     let count = strands.points_per_strand;
     radiances.resize(strands.positions.len(), Vec3::ZERO);
@@ -124,7 +124,7 @@ mod tests {
     use crate::shadow::Shadows;
     use crate::{BodyLook, Camera, Environment};
 
-    /// Hair whose light is a number of its point, and how much of it was asked for.
+    /// Hair whose light numbers its points, and a count of the points asked for.
     struct Numbered<'a>(&'a Strands, AtomicUsize);
 
     impl Shading for Numbered<'_> {

@@ -21,7 +21,7 @@ use crate::{Light, Look};
 
 /// Noise nodes along a strand.
 const NODES: usize = 8;
-/// A share of a light of which nothing is seen.
+/// Share of a light below which it is invisible.
 const LEAST_SHARE: f32 = 1e-5;
 
 /// State that the stage keeps from frame to frame.
@@ -70,7 +70,7 @@ impl Scattering {
         strands.radiances = radiances;
     }
 
-    /// Finds what reaches every point and what is scattered; `occlusion` is filled here from the strands.
+    /// Computes the light that reaches every point and the scattered light; fills `occlusion` from the strands.
     pub(crate) fn prepare(&mut self, strands: &Strands, lit: &Lit, occlusion: &mut Occlusion) {
         let look = lit.look;
         if lit.lights.iter().all(|light| light.shadow) {
@@ -179,12 +179,12 @@ impl<'a> Strand<'a> {
     }
 }
 
-/// A light, and what it is to the hair.
+/// A light, with its shadows on the hair.
 struct Shone<'a> {
     from: Shining<'a>,
     /// Its shadows.
     map: Option<&'a ShadowMap>,
-    /// Share of it that reaches points, shape `[point]`; empty without shadow.
+    /// Share of the light that reaches each point, shape `[point]`; empty without shadow.
     reached: &'a Vec<f32>,
 }
 
@@ -197,13 +197,13 @@ impl Shone<'_> {
     }
 }
 
-/// Shading of strands by \[Chiang2016\], with what is scattered among them.
+/// Shading of strands by \[Chiang2016\], with the light that they scatter among each other.
 pub(crate) struct ChiangShading<'a> {
     strands: &'a Strands,
     lit: &'a Lit<'a>,
     table: &'a Table,
     lights: Vec<Shone<'a>>,
-    /// The strands of which it is known what reaches them.
+    /// The sample of strands whose incoming light is known.
     summed: EveryFew,
     grid: &'a LightGrid,
     occlusion: &'a Occlusion,
@@ -223,7 +223,7 @@ impl Shading for ChiangShading<'_> {
 }
 
 impl ChiangShading<'_> {
-    /// Light of a point, which is the one of this index on its strand, of which it is known what reaches it or not.
+    /// Light of a point, the `index`-th of its strand; `known` where its strand is in the sample.
     fn radiance(&self, own: &Strand, point: usize, index: usize, known: bool) -> Vec3 {
         let (place, t) = (self.strands.positions[point], self.strands.tangents[point]);
         let share = index as f32 / (self.strands.points_per_strand - 1) as f32;

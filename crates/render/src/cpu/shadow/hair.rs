@@ -16,16 +16,16 @@ const MOST_ROWS: f32 = 256.0;
 /// Strands whose bounds are found together.
 const CHUNK: usize = 4096;
 
-/// Parts for the next of so many maps that are filled together. As many maps as threads are filled whole, one by
-/// each thread: parts must be cleared and summed.
+/// Number of parts of the next among `maps` maps that are filled together. While there are as many maps as threads, each
+/// thread fills a whole map, since parts have to be cleared and summed.
 pub(crate) fn parts_of(map: usize, maps: usize) -> usize {
     let threads = part_count();
     let left = maps % threads;
     if map < maps - left { 1 } else { threads.div_ceil(left) }
 }
 
-/// From a row to the next of maps that are filled, so many texels wide. Rows that lie a power of two apart meet in the
-/// same lines of a cache, and hair hangs down across them.
+/// Distance between rows of a map of `size` texels while it is filled. Rows a power of two apart share lines of the cache,
+/// and hair hangs down across rows.
 pub(crate) fn stride(size: usize) -> usize {
     size + 16
 }
@@ -131,7 +131,7 @@ struct Line {
     at: Vec4,
     step: Vec4,
     pieces: i32,
-    /// Length of a piece \[texel\], times what it weighs.
+    /// Length of a piece \[texel\] times its weight.
     length: f32,
     /// Texels along a side of the map.
     size: usize,
@@ -153,7 +153,7 @@ impl Line {
         }
     }
 
-    /// [`Line::row`] of hair that is laid out in so many rows, and the way from one to the next over its width.
+    /// [`Line::row`] for each of a number of rows across the width; `aside` is the step from one row to the next.
     #[cold]
     fn rows(self, rows: f32, aside: Vec2, take: &mut impl FnMut(Piece)) {
         let mut at = self.at;

@@ -1,8 +1,8 @@
 //! The fibre of \[Chiang2016\]: rough dielectric cylinder with absorption, in double precision.
 //!
 //! Directions are given by their inclination toward the tip and by the turn about the fibre between light and
-//! eye; `h` is how far beside the axis the eye looks, -1 to 1. Four kinds of paths are distinguished: R is reflected
-//! at the surface, TT goes through, TRT is reflected once inside, and what is left is the rest.
+//! eye; `h` is the offset of the line of sight from the axis, -1 to 1. There are four kinds of paths: R is reflected at
+//! the surface, TT passes through, TRT is reflected once inside, and all others.
 
 use std::f64::consts::{PI, TAU};
 

@@ -64,7 +64,7 @@ pub struct Seen {
     angle: f32,
     sine: f32,
     square: f32,
-    /// The node before it and how far the next one is.
+    /// Node before the angle, and share of the way to the next one.
     row: (usize, f32),
     /// Levels of the pigment, of one channel or of three.
     levels: [(usize, f32); 3],
@@ -256,7 +256,7 @@ impl Table {
         self.seen_moments(&Seen::new(eye, pigments))
     }
 
-    /// [`Table::moments`] of what is seen.
+    /// [`Table::moments`] as the eye sees a fibre.
     #[inline]
     pub fn seen_moments(&self, seen: &Seen) -> [Vec4; MOMENTS] {
         if seen.even {
@@ -301,12 +301,12 @@ pub(crate) fn arc_sine(sine: f32) -> f32 {
     (FRAC_PI_2 as f32 - (1.0 - x).sqrt() * series).copysign(sine)
 }
 
-/// A node of so many from -`end` to `end`.
+/// The `index`-th of `count` nodes from -`end` to `end`.
 fn node(index: usize, count: usize, end: f64) -> f64 {
     end * (2.0 * index as f64 / (count - 1) as f64 - 1.0)
 }
 
-/// The node before a share of the way, and how far the next one is.
+/// Node before a share of the range, and share of the way to the next one.
 #[inline]
 fn place(share: f32, count: usize) -> (usize, f32) {
     let at = (share * (count - 1) as f32).clamp(0.0, count as f32 - 1.0);
@@ -314,7 +314,7 @@ fn place(share: f32, count: usize) -> (usize, f32) {
     (low, at - low as f32)
 }
 
-/// The level before a multiple of the pigment, and how far the next one is.
+/// Level before a multiple of the pigment, and share of the way to the next one.
 #[inline]
 fn level_of(pigment: f32) -> (usize, f32) {
     let level = LEVELS[1..LEVEL_COUNT - 1].iter().filter(|level| pigment >= **level).count();
@@ -326,7 +326,7 @@ fn vector(channels: [f64; 3]) -> Vec3 {
     Vec3::from(channels.map(|channel| channel as f32))
 }
 
-/// The mean over the width of shares times densities of the turn, at every node of it, for each level of pigment.
+/// Mean over the width of share times density of the turn, at each node of the turn, for each level of pigment.
 fn rings(lobes: &Lobes, eye: f64, absorption: [f64; 3]) -> [Ring; LEVEL_COUNT] {
     let absorptions = LEVELS.map(|level| absorption.map(|channel| channel * f64::from(level)));
     let mut rings = LEVELS.map(|_| vec![[[0.0; 3]; LOBES]; TURNS]);
@@ -352,7 +352,7 @@ fn rings(lobes: &Lobes, eye: f64, absorption: [f64; 3]) -> [Ring; LEVEL_COUNT] {
     rings
 }
 
-/// Scales each kind of path so that what the table's straight lines sum to is the share that goes that way.
+/// Scales each kind of path so that the table, linear between nodes, integrates to the share of light on that path.
 fn balance(ring: &mut Ring, lobes: &Lobes, eye: f64, absorption: [f64; 3]) {
     let mut shares = [[0.0; 3]; LOBES];
     for offset in 0..4 * OFFSETS {

@@ -6,7 +6,7 @@ use strandline_body::{BodyFrame, Solids};
 use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, kernel, wgpu};
 use strandline_groom::Binding;
 
-use super::bound_solids::BoundSolids;
+use super::bound_solids::{BoundSolids, DeviceSolids};
 use super::device_points::DevicePoints;
 use crate::RenderError;
 use crate::gpu::buffers::{Strands, floats};
@@ -18,7 +18,7 @@ kernel! {
     pub(crate) struct FollowGuides in "bound_frames" (crate::gpu::linked::BOUND_FRAMES), entry "follow_guides" {
         0 frame: Read Frame,
         2 rest: Read f32,
-        4 solids: Read [u32; 4],
+        4 body: Read [u32; 4],
         5 frames: ReadWrite [f32; 4],
         7 before: Read f32,
         8 after: Read f32,
@@ -31,9 +31,10 @@ kernel! {
         0 frame: Read Frame,
         2 rest: Read f32,
         3 influences: Read [u32; 4],
-        4 solids: Read [u32; 4],
+        4 body: Read [u32; 4],
         5 frames: Read [f32; 4],
         6 places: ReadWrite f32,
+        9 solids: Read [u32; 4],
     }
 }
 
@@ -42,7 +43,8 @@ kernel! {
     pub(crate) struct KeepOutside in "bound_outside" (crate::gpu::linked::BOUND_OUTSIDE), entry "keep_outside" {
         0 frame: Read Frame,
         1 points: ReadWrite [f32; 4],
-        4 solids: Read [u32; 4],
+        4 body: Read [u32; 4],
+        9 solids: Read [u32; 4],
         10 tables: Read Tap,
     }
 }
@@ -79,7 +81,7 @@ impl BoundStrands {
     pub fn new(
         gpu: &Gpu,
         binding: &Arc<Binding>,
-        solids: &Solids,
+        (solids, on_device): (&Solids, Option<DeviceSolids>),
         frame: &Buffer<Frame>,
         places: &Buffer<f32>,
     ) -> Result<Self, RenderError> {
@@ -93,7 +95,7 @@ impl BoundStrands {
             .map(|one| [one.guide, one.weight.to_bits(), one.pace.to_bits(), 0])
             .collect();
         let influences = Buffer::from_slice(gpu, "influences of guides", &influences)?;
-        let solids = BoundSolids::new(gpu, guides.strand_count(), solids)?;
+        let solids = BoundSolids::new(gpu, guides.strand_count(), solids, on_device)?;
         let frames = Buffer::new(gpu, "frames of guides", 3 * points + guides.strand_count())?;
         let place = Kernel::<PlaceBound<'static>>::new(gpu, &[])?;
         let place = place.bind(
@@ -102,7 +104,8 @@ impl BoundStrands {
                 frame,
                 rest: &of_strands,
                 influences: &influences,
-                solids: solids.rows(),
+                body: solids.body(),
+                solids: solids.solids(),
                 frames: &frames,
                 places,
             },
@@ -159,9 +162,9 @@ impl BoundStrands {
             Some(bound) => bound,
             None => {
                 let Self { rest, frames, .. } = &*self;
-                let solids = self.solids.rows();
+                let body = self.solids.body();
                 let bound =
-                    self.follow.bind(gpu, &FollowGuides { frame, rest, solids, frames, before, after })?;
+                    self.follow.bind(gpu, &FollowGuides { frame, rest, body, frames, before, after })?;
                 if self.follows.len() > 1 {
                     self.follows.remove(0);
                 }
@@ -183,12 +186,13 @@ impl BoundStrands {
         strands: &Strands,
         count: usize,
     ) -> Result<(Bound, [u32; 3]), GpuError> {
-        let (raw, solids) = (strands.points.raw().clone(), self.solids.rows());
+        let raw = strands.points.raw().clone();
+        let (body, solids) = (self.solids.body(), self.solids.solids());
         let bound = match self.kept.take_if(|(known, _)| *known == raw) {
             Some((_, bound)) => bound,
             None => {
                 let (points, tables) = (&strands.points, &strands.tables);
-                self.keep_outside.bind(gpu, &KeepOutside { frame, points, solids, tables })?
+                self.keep_outside.bind(gpu, &KeepOutside { frame, points, body, solids, tables })?
             }
         };
         self.kept = Some((raw, bound.clone()));

@@ -9,6 +9,7 @@ use strandline_gpu::{Bound, Buffer, Gpu, GpuError, Kernel, wgpu};
 use strandline_groom::{Binding, Guides};
 
 use super::bind::BoundStrands;
+use super::bound_solids::DeviceSolids;
 use super::device_points::DevicePoints;
 use super::tessellate::Tessellate;
 use crate::gpu::buffers::{Groom, Strands, floats, roots};
@@ -36,7 +37,7 @@ impl GuidePoints {
         groom: &Groom,
         guides: &Guides,
         binding: &Arc<Binding>,
-        solids: &Solids,
+        solids: (&Solids, Option<DeviceSolids>),
     ) -> Result<(), RenderError> {
         check_strands(guides, binding)?;
         self.bound = Some(BoundStrands::new(gpu, binding, solids, &groom.frame, &groom.places)?);

@@ -41,7 +41,7 @@ pub struct Strand<'a> {
 }
 
 impl Strand<'_> {
-    /// Adds what a kind of spring changes the velocities by \[m/s\] in a step.
+    /// Adds the changes of velocity \[m/s\] by one kind of spring in a step.
     ///
     /// A point has at most six springs. With k <= m / (12 dt^2) and c <= m / (12 dt) for each, the
     /// largest eigenvalues keep dt^2 w^2 <= 1 and c dt / m <= 2, inside the bound dt^2 w^2 + 2 c dt

@@ -5,13 +5,13 @@ use super::joint::{Joint, Slope};
 use super::real::{Real, Vector};
 use super::rod::{Node, Pull, Work};
 
-/// A point that is no farther \[m\] from where a solid presses is there.
+/// Distance \[m\] from a solid's plane within which a point touches it.
 const ROUNDING: f64 = 1e-6;
 
 impl<R: Real> Work<R> {
     /// Assembles the gradient and the Hessian, and eliminates from root to tip; with `turns` 0 only the Hessian's
-    /// positive part. Tells the force \[N\] with which a solid presses each strand at most, at `first` also one that may
-    /// come to press, and 1 where what was eliminated is positive definite, else 0.
+    /// positive part. Returns the largest force \[N\] of a solid on each strand, at `first` also of solids that may come to
+    /// press, and 1 where the eliminated matrix is positive definite, else 0.
     #[inline(always)]
     pub(super) fn factorise(
         &mut self,
@@ -60,10 +60,10 @@ impl<R: Real> Work<R> {
         }
     }
 
-    /// A solid presses with the force that its spring has, at `first` where it touches with the one that would stop the
-    /// inertia of its point. Across the normal it holds with a spring too, as weak as Coulomb's limit asks for the
-    /// slip that there was: it never pushes a point farther back than it came from. Returns the force of
-    /// a solid \[N\], at `first` of one that it only may come to touch, too: bends may hold it up.
+    /// A solid presses with the force of its spring, at `first` with the force that stops the inertia of a touching point.
+    /// Across the normal a second spring acts, as weak as Coulomb's limit asks for the slip so far: it never pushes a
+    /// point back beyond its start. Returns the force of a solid \[N\], at `first` also of a solid that the point may only
+    /// come to touch, since bends may hold it up.
     #[inline(always)]
     fn add_pull(&self, front: &mut Front<R>, pull: &Pull<R>, inertia: R, first: bool) -> R {
         let vector = |[x, y, z, _]: [R; UNKNOWNS]| Vector::new(x, y, z);

@@ -1,5 +1,5 @@
-//! Rods of eight strands on processors that have registers for eight numbers (AVX), whatever the program was compiled
-//! for: twice as fast, and the same bits.
+//! Rods of eight strands by AVX instructions where the processor has them, whatever target the program was compiled for:
+//! twice as fast, with the same bits.
 #![allow(unsafe_code)] // see Eight
 
 use std::arch::x86_64::{
@@ -18,9 +18,8 @@ use super::rod::{Node, Pull, Solved, StepSettings, Work};
 /// Eight numbers in a register.
 ///
 /// # Safety of its operations
-/// They are instructions that a processor without AVX does not have. The type is private to this file, and every value
-/// of it belongs to an [`Avx`], which is only made where the processor says that it has them: no operation runs
-/// elsewhere.
+/// A processor without AVX does not have these instructions. The type is private to this file, and every value of it
+/// belongs to an [`Avx`], which is made only after the processor was asked: no operation runs elsewhere.
 #[derive(Clone, Copy)]
 struct Eight(__m256);
 
@@ -142,7 +141,7 @@ pub(crate) struct Avx {
 }
 
 impl Avx {
-    /// For rods of so many points; none where the processor has no such registers.
+    /// Scratch for rods of a number of points; `None` on a processor without AVX.
     pub(crate) fn new(points: usize) -> Option<Self> {
         std::arch::is_x86_feature_detected!("avx").then(|| Self {
             work: Work::new(points),
@@ -357,7 +356,7 @@ mod tests {
         assert!(steps.chunks(2).any(|pair| pair[0] > pair[1]));
     }
 
-    /// Functions outside the loop are called for every addition, which is ten times slower.
+    /// A function that is not inlined is called for every addition, which is ten times slower.
     #[test]
     fn it_is_the_faster_way() {
         let Some(mut avx) = Avx::new(POINTS) else { return };

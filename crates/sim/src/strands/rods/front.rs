@@ -35,12 +35,12 @@ pub struct Spring<R> {
     pub slope: Slope<R>,
     /// The same times the stiffness.
     pub scaled: Slope<R>,
-    /// Force on the strain: stiffness times what it lacks.
+    /// Force on the strain: stiffness times the strain that is missing.
     pub moment: R,
 }
 
 impl<R: Real> Spring<R> {
-    /// A spring of a stiffness whose strain lacks so much.
+    /// A spring of a stiffness, from its missing strain.
     #[inline(always)]
     pub fn new(slope: Slope<R>, stiffness: R, lacks: R) -> Self {
         let scaled = Slope {
@@ -86,7 +86,7 @@ impl<R: Real> Factors<R> {
     }
 }
 
-/// The rows at work: of the node that is eliminated next, and of what it touches.
+/// The active rows: those of the next node to be eliminated and of the unknowns that it touches.
 pub struct Front<R> {
     entries: [R; ENTRIES],
     right: [R; ROWS],
@@ -127,8 +127,7 @@ impl<R: Real> Front<R> {
         }
     }
 
-    /// Adds a joint. The rows of the angle above and of the point beyond hold nothing before: what they held is
-    /// lost.
+    /// Adds a joint. Overwrites the rows of the angle above and of the point beyond, which are empty before.
     #[inline(always)]
     pub fn set_joint(&mut self, bends: &Bends<R>) {
         self.set_axis::<0>(bends);
@@ -210,7 +209,7 @@ impl<R: Real> Front<R> {
 
     /// Eliminates the first four rows and moves the others up. `free` is 1 for unknowns that move and
     /// 0 for those that stay. Returns 1 where the pivots of all free unknowns are positive, as those of a positive
-    /// definite system, else 0; a pivot that is no number is none.
+    /// definite system, else 0; NaN is not positive.
     #[inline(always)]
     pub fn eliminate(&mut self, factors: &mut Factors<R>, free: [R; UNKNOWNS]) -> R {
         let mut whole = [[R::of(0.0); ROWS]; UNKNOWNS];
@@ -242,7 +241,7 @@ impl<R: Real> Front<R> {
             factors.below[COLUMN][row] = scaled;
             self.right[row] -= scaled * right;
         }
-        // Of the others that are eliminated here; the rest follows at once.
+        // Updates of the rows that are eliminated here; the rest follows below.
         for other in COLUMN + 1..UNKNOWNS {
             for row in other..ROWS {
                 self.entries[entry(row, other)] -= factors.below[COLUMN][row] * whole[COLUMN][other];

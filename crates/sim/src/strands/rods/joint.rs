@@ -2,7 +2,7 @@
 
 use super::real::{Real, Vector};
 
-/// A segment: where it points and how its section is turned.
+/// A segment: length, tangent and rotation of its section.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment<R> {
     /// Length \[m\].
@@ -162,7 +162,7 @@ impl<R: Real> Joint<R> {
         [self.turning(lower, lower, upper, moments), self.turning(upper, lower, upper, moments)]
     }
 
-    // Not a closure: of one that is not compiled into its caller every operation would be a call.
+    // Not a closure: one that is not inlined would make a call of every operation.
     #[inline(always)]
     fn turning(
         &self,

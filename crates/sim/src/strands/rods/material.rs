@@ -91,8 +91,8 @@ pub struct Section {
 }
 
 impl Material {
-    /// Stiffness and weight of what a guide stands for: E I, G J and rho A of an ellipse, as often as there are
-    /// hairs; what is glued has its second moments as of one bundle of their area.
+    /// Stiffness and weight of the hairs that a guide stands for: E I, G J and rho A of an ellipse times their number;
+    /// glued hairs have the second moments of one bundle of their area.
     pub fn section(&self) -> Section {
         let (a, b) = (self.radius, self.radius * self.ellipticity);
         let area = std::f64::consts::PI * a * b;
@@ -116,7 +116,7 @@ const INEXTENSIBLE: f64 = 1e4;
 
 /// The nodes of a strand with points \[m\]; `held` tells which are held. Rest shapes are not set.
 ///
-/// A segment whose both ends are held has no part in the joints beside it: a clamp is half a
+/// A segment with both ends held takes no part in the joints beside it: a clamp is half a
 /// Voronoi cell.
 pub fn nodes(points: &[Vector<f64>], section: &Section, held: impl Fn(usize) -> bool) -> Vec<Node<f64>> {
     let count = points.len();

@@ -1,4 +1,4 @@
-//! Rods of other lengths than at rest: what is left keeps its shape.
+//! Rods of other lengths than at rest: a cut strand keeps the shape of the rest of it.
 
 use glam::Vec3;
 use strandline_base::par::prelude::*;
@@ -10,10 +10,10 @@ use super::real::{Real, Vector};
 use super::rest::{across, sag_free, segments};
 use super::rod::Node;
 
-/// Strands as they are at rest and what became of them, shapes `[block][point]` of lanes.
+/// Strands at rest and with their lengths now, shapes `[block][point]` of lanes.
 pub(crate) struct Lengthened<'a> {
     pub points_per_strand: usize,
-    /// Places at rest \[m\].
+    /// Positions at rest \[m\].
     pub positions: &'a [Vec3Lanes],
     /// Lengths of segments at rest, and now \[m\].
     pub rest: &'a [Lanes],
@@ -25,9 +25,8 @@ pub(crate) struct Lengthened<'a> {
 }
 
 impl Lengthened<'_> {
-    /// Changes nodes: stiffness follows the lengths, curvatures and twists per length stay, and the shape that this
-    /// makes of the rest shape carries the weight that is there now, so that hair which loses its tips does not
-    /// spring up.
+    /// Changes nodes: stiffness follows the lengths; curvatures and twists per length stay. The new rest shape carries the
+    /// weight that is left, so that hair without its tips does not spring up.
     pub fn change(&self, nodes: &mut [Node<f32x8>]) {
         let points = self.points_per_strand;
         nodes.par_chunks_mut(points).enumerate().for_each(|(block, nodes)| {
@@ -45,13 +44,13 @@ impl Lengthened<'_> {
     }
 }
 
-/// Most that bending may pull harder at a point beside its inertia where segments are shorter than at rest: with
-/// the length of a segment it goes as its fourth power, and single precision carries no 160,000 times. Only what is
-/// left of the segments of a cut end, which are a twentieth as long, is softer than it should be.
+/// Largest growth of bending over inertia where segments are shorter than at rest. The ratio grows with the fourth power
+/// of the shortening, and single precision does not carry a factor of 160,000. Only the segments at a cut end, a twentieth
+/// as long, are softer than they should be.
 const STIFFEST: f64 = 16.0;
 
 /// Gives eight strands segments of other lengths \[m\] than at rest: curvatures and twists per length stay, masses
-/// \[kg\] and stiffness follow. Returns how many times its strains each joint has.
+/// \[kg\] and stiffness follow. Returns the factor of the strains of each joint.
 fn follow_lengths(
     nodes: &mut [Node<f32x8>],
     rest: &[Lanes],
@@ -112,8 +111,8 @@ fn carry_weight(
     }
 }
 
-/// Points and segments of a strand of which each segment has a length \[m\] and each joint so many times the strains
-/// that it has in `segments`.
+/// Points and segments of a strand with the given lengths of segments \[m\] and the strains of `segments` times a factor
+/// for each joint.
 fn shape(
     root: Vector<f64>,
     segments: &[Segment<f64>],

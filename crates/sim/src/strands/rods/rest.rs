@@ -1,5 +1,5 @@
-//! The rest shape of a rod: lengths, bends and twists at which it is without moments or at which, under
-//! its load, it keeps the shape that it has.
+//! The rest shape of a rod: lengths, bends and twists without moments, or those that keep its shape in equilibrium under a
+//! load.
 
 use super::joint::Joint;
 use super::joint::Segment;
@@ -40,7 +40,7 @@ pub fn across(points: &[Vector<f64>]) -> Vector<f64> {
     }
 }
 
-/// Makes a shape the one without moments: rest strains are those of the shape.
+/// Makes a shape free of moments: its rest strains are its own strains.
 pub fn unstressed(rod: &mut [Node<f64>], segments: &[Segment<f64>]) {
     for (node, segment) in rod.iter_mut().zip(segments) {
         node.length = segment.length;
@@ -50,13 +50,12 @@ pub fn unstressed(rod: &mut [Node<f64>], segments: &[Segment<f64>]) {
     }
 }
 
-/// Makes a shape an equilibrium under forces on its points \[N\]: what the load bends, twists and
-/// stretches is taken off the rest strains and lengths, from tip to root, in closed form.
+/// Makes a shape an equilibrium under forces on its points \[N\]: subtracts the bends, twists and stretches of the load
+/// from the rest strains and lengths, from tip to root, in closed form.
 ///
 /// The moment that a joint carries is that of all forces beyond it; three strains give any moment.
-/// An equilibrium that would not be stable is made so by bends and twists that are stiffer, each joint in proportion
-/// to the moment that it carries, so that what hangs stays as supple as it is; returns how many times at most, 1 where
-/// nothing was changed.
+/// An unstable equilibrium is stabilised by stiffer bends and twists, each joint in proportion to the moment that it
+/// carries, so that hanging hair stays supple. Returns the largest factor of stiffness, 1 where nothing changed.
 pub fn sag_free(
     rod: &mut [Node<f64>],
     points: &[Vector<f64>],
@@ -100,7 +99,7 @@ pub fn sag_free(
 /// a strand that stands upright carries none, and is stiffened evenly.
 const EVEN: f64 = 0.01;
 
-/// Share of each joint in what a strand is stiffened by, 1 where the moment \[N m\] is largest.
+/// Share of each joint in the stiffening of its strand, 1 where the moment \[N m\] is largest.
 fn shares(moments: &[f64], even: f64) -> Vec<f64> {
     let most = moments.iter().fold(0.0_f64, |most, moment| most.max(*moment));
     moments

@@ -6,7 +6,7 @@ use super::real::{Real, Vector};
 
 /// A node of a rod: a point, the segment from it to the next, and the joint at it.
 ///
-/// The first and the last point have no joint, the last no segment; what they lack is 0.
+/// The first and the last point have no joint, the last has no segment: their numbers are 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Node<R> {
     /// Mass of the point \[kg\].
@@ -66,13 +66,13 @@ pub struct Pull<R> {
     pub node: usize,
     /// Unit direction.
     pub normal: Vector<R>,
-    /// Displacement \[m\] along the direction at which nothing pulls.
+    /// Displacement \[m\] along the direction at which the force is 0.
     pub reach: R,
     /// Force over displacement \[N/m\]; 0 in lanes without.
     pub stiffness: R,
     /// True if it only pushes, as a solid does: while the displacement is less than the reach.
     pub one_sided: bool,
-    /// Coulomb friction coefficient of what only pushes.
+    /// Coulomb friction coefficient, where it only pushes.
     pub friction: R,
     /// Displacement \[m\] with which the node sticks to it.
     pub stuck: Vector<R>,
@@ -94,10 +94,10 @@ pub struct StepSettings<R> {
     pub time_step: f64,
     /// Most Newton steps.
     pub newton_steps: u32,
-    /// A strand is solved when a Newton step turns none of its segments farther than this \[rad\].
+    /// Largest turn of a segment \[rad\] in the last Newton step of a solved strand.
     pub tolerance: f64,
-    /// Relaxation time of bends and twists, which is moment over stiffness and strain rate as of Kelvin and Voigt, over
-    /// the length of the step.
+    /// Kelvin-Voigt relaxation time of bends and twists (moment over stiffness and strain rate), over the length of the
+    /// step.
     pub viscous: R,
 }
 
@@ -116,7 +116,7 @@ pub struct Work<R> {
 }
 
 impl<R: Real> Work<R> {
-    /// For rods of so many points.
+    /// Scratch for rods of a number of points.
     pub fn new(points: usize) -> Self {
         let zero = Vector::zero();
         let segment = Segment { length: R::of(1.0), tangent: zero, across: zero };
@@ -145,24 +145,23 @@ impl<R: Real> Work<R> {
             self.segments[index] = Segment { length, tangent, across };
         }
         self.moved.fill([R::of(0.0); UNKNOWNS]);
-        self.step.fill([R::of(0.0); UNKNOWNS]);
     }
 
-    /// Sets where each node would be without elastic forces: displacement \[m\] and angle \[rad\].
+    /// Sets the inertial target of each node, its place without elastic forces: displacement \[m\] and angle \[rad\].
     #[inline(always)]
     pub fn want(&mut self, node: usize, unknowns: [R; UNKNOWNS]) {
         self.wanted[node] = unknowns;
     }
 
-    /// Sets where Newton's method begins: displacement \[m\] and angle \[rad\] of a node, 0 for what is held.
+    /// Sets where Newton's method begins: displacement \[m\] and angle \[rad\] of a node, 0 for what is held. Without,
+    /// it begins at the shape.
     #[inline(always)]
     pub fn guess(&mut self, node: usize, unknowns: [R; UNKNOWNS]) {
         self.step[node] = unknowns;
     }
 
     /// An implicit Euler step: minimises inertia and elastic energy over all displacements and angles
-    /// of the strand by Newton's method. A strand that is solved
-    /// stays, whatever the others of its block need.
+    /// of the strand by Newton's method. A solved strand keeps its numbers while the others of its block go on.
     #[inline(always)]
     pub fn solve(&mut self, rod: &[Node<R>], pulls: &[Pull<R>], settings: &StepSettings<R>) -> Solved<R> {
         let viscous = settings.viscous;
@@ -197,11 +196,12 @@ impl<R: Real> Work<R> {
             unsolved = unsolved.choose(open, R::of(0.0));
             steps += 1;
         }
+        self.step.fill([R::of(0.0); UNKNOWNS]);
         Solved { steps, unsolved, residual, pressed: touched }
     }
 
-    /// Turns the segments to where the guess takes them, each as long as it was: their tensions stay those of the
-    /// shape that the head carried, which is what the first Newton step needs of them.
+    /// Turns the segments to the guess and keeps their lengths, so that their tensions stay those of the shape carried by
+    /// the head: the first Newton step needs these.
     #[inline(always)]
     fn take_guess(&mut self, rod: &[Node<R>]) {
         let share = (R::of(FARTHEST_GUESS) - self.turn()).choose(R::of(1.0), R::of(0.0));
@@ -239,8 +239,8 @@ impl<R: Real> Work<R> {
     }
 
     /// Moves the strands that are not solved by the Newton step, shortened where a segment would turn too
-    /// far. One that comes from a system that is not `sound` (0), or is no number, is none: the strand stays unsolved.
-    /// Returns how far one turns at most \[rad\].
+    /// far. A step from a system that is not `sound` (0), or a NaN, is skipped: the strand stays unsolved.
+    /// Returns the largest turn of a segment \[rad\].
     #[inline(always)]
     fn take_step(&mut self, unsolved: R, sound: R) -> R {
         let last = self.moved.len() - 1;
@@ -252,7 +252,7 @@ impl<R: Real> Work<R> {
         let moves = unsolved.choose(sound, R::of(0.0));
         for index in 0..=last {
             for row in 0..UNKNOWNS {
-                // A strand that is solved keeps its bits, whatever those beside it need: so does what -0 is added to.
+                // A solved strand keeps its bits while others of its block go on: adding -0 changes none.
                 self.step[index][row] = moves.choose(self.step[index][row] * share, R::of(-0.0));
                 self.moved[index][row] += self.step[index][row];
             }
@@ -272,22 +272,21 @@ impl<R: Real> Work<R> {
 /// Quality of the solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Solved<R> {
-    /// Newton steps that were made.
+    /// Number of Newton steps.
     pub steps: u32,
-    /// Above 0 for strands that were not solved by them.
+    /// Above 0 for unsolved strands.
     pub unsolved: R,
     /// Largest turn of a segment in the last Newton step of its strand \[rad\].
     pub residual: R,
-    /// Force \[N\] with which a solid presses a strand at most.
+    /// Largest force \[N\] of a solid on a strand.
     pub pressed: R,
 }
 
-/// Most that an end of a segment moves beside the other in a Newton step, over the segment's length, and most
-/// that a section turns \[rad\]: beyond, the linearised bends say nothing.
+/// Largest relative motion of the ends of a segment in a Newton step, over its length, and largest turn of a section
+/// \[rad\]: the linearised bends do not hold beyond.
 const LONGEST_TURN: f64 = 1.0;
 
-/// Turn of a segment by the guess \[rad\] beyond which a strand begins at the shape carried by the head: such
-/// fast hair does not keep its velocity.
+/// Largest turn of a segment in the first guess \[rad\]: faster strands begin at the shape carried by the head.
 const FARTHEST_GUESS: f64 = 0.5;
 
 #[cfg(test)]
@@ -321,7 +320,7 @@ mod tests {
         };
         let (sound, moved) = solved(|_| ());
         assert!(sound.unsolved <= 0.0 && moved[4][1] < -5e-4, "{sound:?} {moved:?}");
-        // Bends that push, a point that nothing carries, and one of which a number is none.
+        // Bends that push, a point without support, and a point with a NaN.
         let spoil: [Change; 3] = [
             |rod| rod[2].stiffness = [-1e3; 3],
             |rod| (rod[4].mass, rod[3].stretch, rod[3].stiffness) = (0.0, 0.0, [0.0; 3]),

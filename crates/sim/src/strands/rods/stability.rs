@@ -6,9 +6,9 @@ use super::joint::{Joint, Segment};
 use super::real::Vector;
 use super::rod::Node;
 
-/// Stiffness that a stable shape has to spare: it is still stable with a tenth less.
+/// Margin of stability: a stable shape is still stable with a tenth less stiffness.
 const MARGIN: f64 = 1.1;
-/// Most that a strand is stiffened: beyond, it is a wire whose shape no load can have made.
+/// Largest stiffening of a strand. A stiffer strand would be a wire, which no such load could have bent.
 const MOST: f64 = 1e4;
 
 /// Stiffening of bends and twists that makes the shape of a sag-free strand a stable equilibrium, with a
@@ -16,7 +16,7 @@ const MOST: f64 = 1e4;
 /// strains under the load, which the stiffness does not change; a joint takes its part of `shares` of the
 /// stiffening.
 ///
-/// The pivots of the second derivative of the energy are positive exactly where it is.
+/// The shape is stable exactly where the pivots of the second derivative of the energy are positive.
 pub fn stiffening(rod: &[Node<f64>], segments: &[Segment<f64>], loads: &[[f64; 3]], shares: &[f64]) -> f64 {
     let curvatures: Vec<_> = (0..segments.len())
         .map(|joint| {
@@ -70,7 +70,7 @@ fn is_positive(
             add_bent(&mut front, &bent[index + 1]);
         }
         let free = [node.free, node.free, node.free, node.free_angle];
-        // Factors of an indefinite system mean nothing any more.
+        // The factors of an indefinite system are meaningless.
         if front.eliminate(&mut factors, free) == 0.0 {
             return false;
         }
@@ -133,7 +133,7 @@ fn bent(lower: &Segment<f64>, upper: &Segment<f64>, load: [f64; 3]) -> [[f64; 8]
     second
 }
 
-/// Adds what edges and angles say to the unknowns of the joint: an edge is the difference of two points.
+/// Adds a derivative by edges and angles to the unknowns of the joint: an edge is the difference of two points.
 fn add_bent(front: &mut Front<f64>, second: &[[f64; 8]; 8]) {
     // Places of the eleven unknowns in the eight: (index, sign).
     let parts = |unknown: usize| -> [(usize, f64); 2] {

@@ -1,7 +1,7 @@
 //! Loss of a GPU, and a GPU without memory.
 
 use strandline::{
-    Backend, ErrorKind, Event, Film, Hair, Player, Settings, device::Gpu, settings::VolumeSettings,
+    Backend, ErrorKind, Event, Hair, Player, Settings, device::Gpu, file::Film, settings::VolumeSettings,
 };
 
 use super::{apart, gpu, hair, scene, turned};

@@ -183,7 +183,7 @@ fn more_lights_than_a_gpu_draws_are_refused_or_drawn_on_the_cpu() {
         assert!(hair.opacity_map(8).unwrap().is_some(), "the map of a light that a GPU does not draw");
     }
     let notes = hair.take_notes();
-    assert!(notes.len() == 1 && notes[0].contains("as long as it is so: 9 lights"), "{notes:?}");
+    assert!(notes.len() == 1 && notes[0].contains("until the scene fits the GPU: 9 lights"), "{notes:?}");
     hair.set_lights(vec![light; 8]).unwrap();
     hair.picture(&camera, &look).unwrap();
     assert!(hair.drawn_on().starts_with("gpu:"), "{}", hair.drawn_on());

@@ -60,7 +60,7 @@ pub fn still() -> (Live, Shown) {
 pub fn error(live: &Live) -> String {
     wait(|| {
         live.take_events().into_iter().find_map(|news| match news {
-            LiveEvent::Error(_, error) | LiveEvent::NotLoaded(_, error) => Some(error),
+            LiveEvent::Error(_, error) | LiveEvent::NotLoaded(_, _, error) => Some(error),
             _ => None,
         })
     })

@@ -1,5 +1,6 @@
 //! Hair that plays live, on the thread of a window.
 
+mod as_film;
 mod files;
 mod helpers;
 

@@ -109,6 +109,8 @@ fn item(list: &str) -> toml::Table {
         "groom.parts" => toml::Table::try_from(GroomPart::default()),
         "body.parts" => toml::Table::try_from(BodyPart::default()),
         "motion.keyframes" => toml::Table::try_from(KeyframeSection::default()),
+        "wind.keyframes" => toml::Table::try_from(strandline::scene::WindKeyframe::default()),
+        "camera.keyframes" => toml::Table::try_from(strandline::scene::CameraKeyframe::default()),
         "colliders" => {
             let sphere = ColliderSection::Sphere(SphereSection { center: Vec3::ZERO, ..Default::default() });
             let capsule = ColliderSection::Capsule(CapsuleSection::default());

@@ -1,124 +1,14 @@
-//! The window as a person uses it, without a display: its contents are laid out and fed events.
+//! The window as a person uses it, without a display: its contents are laid out, found by their labels and fed events.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+mod panels;
+mod person;
+
+use std::time::Duration;
 
 use eframe::egui;
+use person::{Window, button, scene};
 use strandline::{Picture, Scene};
 use strandline_viewer::App;
-
-/// A window of 900 x 600 points.
-struct Window {
-    context: egui::Context,
-    app: App,
-}
-
-/// A file that a person drops.
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|error| error.to_string())
-    }
-}
-
-fn scene() -> Scene {
-    let mut scene = Scene::demo();
-    scene.style.strand_count = 60;
-    scene.body.spacing = 0.01;
-    scene.simulation.volume.cells = [12; 3];
-    scene.devices.simulation = strandline::Backend::Cpu;
-    scene.devices.pictures = strandline::Backend::Cpu;
-    scene.look = strandline::Look {
-        follow_strands: 1,
-        hair_count: 0,
-        width_scale: 10.0,
-        ..strandline::Look::thesis()
-    };
-    scene
-}
-
-impl Window {
-    fn new() -> Self {
-        Self::on(scene())
-    }
-
-    fn on(scene: Scene) -> Self {
-        let context = egui::Context::default();
-        let app = App::new(scene).unwrap();
-        Self { context, app }
-    }
-
-    /// Lays the window out once with events, as a display would.
-    fn pass(&mut self, events: Vec<egui::Event>, dropped: Option<&Path>) {
-        let mut input = egui::RawInput {
-            screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(900.0, 600.0))),
-            events,
-            ..Default::default()
-        };
-        if let Some(path) = dropped {
-            input.dropped_files.push(Arc::new(Dropped(path.to_owned())));
-        }
-        let app = &mut self.app;
-        let mut output = self.context.run_ui(input, |ui| app.show(ui));
-        // Shapes and textures are for a painter; here they only have to be made.
-        output.textures_delta.clear();
-    }
-
-    /// Lets time pass until something holds, for at most a minute.
-    fn until(&mut self, what: &str, holds: impl Fn(&App) -> bool) {
-        let begin = Instant::now();
-        while !holds(&self.app) {
-            assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}");
-            self.pass(Vec::new(), None);
-            std::thread::sleep(Duration::from_millis(2));
-        }
-    }
-
-    fn press(&mut self, key: egui::Key) {
-        self.press_with(egui::Modifiers::NONE, key);
-    }
-
-    fn press_with(&mut self, modifiers: egui::Modifiers, key: egui::Key) {
-        for pressed in [true, false] {
-            let event = egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
-            self.pass(vec![event], None);
-        }
-    }
-
-    fn frame(&self) -> u64 {
-        self.app.shown().map_or(0, |shown| shown.frame)
-    }
-
-    fn picture(&self) -> Picture {
-        self.app.shown().unwrap().picture.clone()
-    }
-
-    /// Waits until no event comes any more and the picture is drawn in full.
-    fn settle(&mut self) {
-        let (mut last, mut since) = (self.frame(), Instant::now());
-        let is_draft = |app: &App| app.shown().is_some_and(|shown| shown.draft);
-        while since.elapsed() < Duration::from_millis(1500) || is_draft(&self.app) {
-            self.pass(Vec::new(), None);
-            if self.frame() != last {
-                (last, since) = (self.frame(), Instant::now());
-            }
-            std::thread::sleep(Duration::from_millis(2));
-        }
-    }
-}
-
-/// The left button, pressed or let go.
-fn button(pos: egui::Pos2, pressed: bool) -> egui::Event {
-    let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::default());
-    egui::Event::PointerButton { pos, button, pressed, modifiers }
-}
 
 #[test]
 fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays() {
@@ -159,7 +49,7 @@ fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays
     let size = |picture: &Picture| [picture.width, picture.height];
     assert_eq!(size(&after), size(&before));
     assert!(after != before, "it does not follow");
-    assert!(!window.app.is_playing());
+    assert!(!window.app().is_playing());
     window.pass(vec![button(away, false)], None);
     window.until("it is let go", |app| app.shown().is_some_and(|shown| shown.grabbed == 0));
 }
@@ -168,12 +58,12 @@ fn hair_is_grabbed_where_the_button_was_pressed_and_follows_though_nothing_plays
 fn pictures_are_saved_in_full_while_it_plays_though_the_window_is_closed() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = Window::new();
-    window.app.folder = folder.path().to_owned();
+    window.app_mut().folder = folder.path().to_owned();
     window.until("a picture", |app| app.shown().is_some());
-    window.app.save_picture(Some(folder.path().join("named")));
-    window.app.save_picture(None);
-    window.app.save_picture(None);
-    assert!(window.app.is_playing());
+    window.app_mut().save_picture(Some(folder.path().join("named")));
+    window.app_mut().save_picture(None);
+    window.app_mut().save_picture(None);
+    assert!(window.app().is_playing());
     drop(window);
     for name in ["named.png", "view_000.png", "view_001.png"] {
         let picture = image::open(folder.path().join(name)).unwrap();
@@ -188,7 +78,7 @@ fn it_opens_plays_and_stands_still_at_the_space_bar() {
     let first = window.frame();
     window.until("it plays", |app| app.shown().is_some_and(|shown| shown.frame > first + 2));
     window.press(egui::Key::Space);
-    assert!(!window.app.is_playing());
+    assert!(!window.app().is_playing());
     window.settle();
     let picture = window.picture();
     // The picture fills the room beside the panels.
@@ -235,27 +125,27 @@ fn a_dropped_groom_is_loaded_and_a_bad_file_shows_its_error_while_the_old_hair_s
     std::fs::write(&bad, b"PK nothing").unwrap();
     window.pass(Vec::new(), Some(&bad));
     window.until("the error", |app| app.error().is_some());
-    assert!(window.app.error().unwrap().contains("bad.hair"), "{:?}", window.app.error());
+    assert!(window.app().error().unwrap().contains("bad.hair"), "{:?}", window.app().error());
     window.settle();
-    assert_eq!(window.app.shown().unwrap().drawing.strands, 60, "the old hair stays");
+    assert_eq!(window.app().shown().unwrap().drawing.strands, 60, "the old hair stays");
     assert_eq!(window.picture(), before);
-    assert_eq!(window.app.seen().groom.file, None, "a scene that is saved now is that of the old hair");
+    assert_eq!(window.app().seen().groom.file, None, "a scene that is saved now is that of the old hair");
     let text = folder.path().join("notes.txt");
     std::fs::write(&text, b"x").unwrap();
     window.pass(Vec::new(), Some(&text));
-    assert!(window.app.error().unwrap().contains(".toml scene"));
+    assert!(window.app().error().unwrap().contains(".toml scene"));
 
     window.pass(Vec::new(), Some(&groom));
     let segments = |app: &App| app.shown().map_or(0, |shown| shown.drawing.strands);
     window.until("the groom", |app| segments(app) == 40);
-    assert_eq!(window.app.error(), None);
+    assert_eq!(window.app().error(), None);
 }
 
 #[test]
 fn a_scene_saved_in_mid_swing_begins_with_the_picture_that_was_seen() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = Window::new();
-    window.app.folder = folder.path().join("saved");
+    window.app_mut().folder = folder.path().join("saved");
     window.until("pictures", |app| app.shown().is_some_and(|shown| shown.frame > 20));
     window.press(egui::Key::Space);
     window.press(egui::Key::ArrowLeft);

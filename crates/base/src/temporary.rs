@@ -1,5 +1,5 @@
-//! Files under a temporary name: which are ours, which this process writes, and which a run that was ended
-//! left behind.
+//! Files under a temporary name: the pattern of such names, the list of those that this process writes, and the removal
+//! of those that a killed run left.
 
 use std::collections::HashSet;
 use std::ffi::{OsStr, OsString};
@@ -19,42 +19,42 @@ const FOLDERS: usize = 1024;
 
 /// Files to remove when the process ends at once, and the folders that were cleared. There is one list per
 /// process, because a thread that handles signals sees nothing else of the writers.
-static PARTS: Mutex<Option<Parts>> = Mutex::new(None);
+static TEMPORARY: Mutex<Option<Temporary>> = Mutex::new(None);
 
 #[derive(Debug, Default)]
-pub(crate) struct Parts {
+pub(crate) struct Temporary {
     written: Vec<PathBuf>,
     cleared: HashSet<PathBuf>,
     count: u64,
 }
 
-/// The parts of this process, for as long as it is held.
-pub(crate) struct Held(MutexGuard<'static, Option<Parts>>);
+/// The temporary files of this process, for as long as it is held.
+pub(crate) struct Held(MutexGuard<'static, Option<Temporary>>);
 
 pub(crate) fn hold() -> Held {
-    Held(PARTS.lock().unwrap_or_else(PoisonError::into_inner))
+    Held(TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
 impl Held {
-    fn parts(&mut self) -> &mut Parts {
+    fn list(&mut self) -> &mut Temporary {
         self.0.get_or_insert_default()
     }
 
     /// Lets a file be removed when the process ends at once.
     pub fn add(&mut self, path: &Path) {
-        self.parts().written.push(path.to_owned());
+        self.list().written.push(path.to_owned());
     }
 
     /// A file has its own name, or is gone.
     pub fn forget(&mut self, path: &Path) {
-        self.parts().written.retain(|part| part != path);
+        self.list().written.retain(|temporary| temporary != path);
     }
 
-    /// A number that no other part of this process has.
+    /// A number that no other temporary file of this process has.
     fn number(&mut self) -> u64 {
-        let parts = self.parts();
-        parts.count += 1;
-        parts.count
+        let list = self.list();
+        list.count += 1;
+        list.count
     }
 }
 
@@ -65,16 +65,16 @@ pub struct Abandoned {
 
 /// Removes every unfinished file of this process, and lets none begin or get its name
 /// until the value is dropped: for a process that is about to end at once.
-pub fn abandon_parts() -> Abandoned {
+pub fn abandon_unfinished() -> Abandoned {
     let mut held = hold();
-    for part in std::mem::take(&mut held.parts().written) {
-        // A part that is gone already needs no removal.
-        let _ = fs::remove_file(part);
+    for temporary in std::mem::take(&mut held.list().written) {
+        // A temporary file that is gone already needs no removal.
+        let _ = fs::remove_file(temporary);
     }
     Abandoned { _held: held }
 }
 
-/// Writer of a part.
+/// Writer of a temporary file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Writer {
     /// This process, which holds a lock on it.
@@ -83,29 +83,29 @@ pub(crate) enum Writer {
     Foreign,
 }
 
-/// Creates a part of `path` beside it, under a unique name.
+/// Creates a temporary file of `path` beside it, under a unique name.
 pub(crate) fn create(path: &Path, writer: Writer) -> Result<(PathBuf, File)> {
     let name = path.file_name().ok_or(ErrorKind::InvalidFilename)?;
     clear_once(folder_of(path));
     loop {
         let mut held = hold();
-        let part = path.with_file_name(part_name(name, std::process::id(), held.number(), writer));
-        let file = match OpenOptions::new().write(true).create_new(true).open(&part) {
+        let temporary = path.with_file_name(temporary_name(name, std::process::id(), held.number(), writer));
+        let file = match OpenOptions::new().write(true).create_new(true).open(&temporary) {
             // Another process of the same number, in a container of its own.
             Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
             created => created?,
         };
-        held.add(&part);
+        held.add(&temporary);
         drop(held);
         if writer == Writer::Here {
-            // On a file system without locks the parts stay.
+            // On a file system without locks the temporary files stay.
             let _ = file.lock();
         }
-        // A run that clears may have taken it for a part of an ended run before it was locked.
-        if fs::symlink_metadata(&part).is_ok() {
-            return Ok((part, file));
+        // A run that clears may have taken it for a temporary file of an ended run before it was locked.
+        if fs::symlink_metadata(&temporary).is_ok() {
+            return Ok((temporary, file));
         }
-        hold().forget(&part);
+        hold().forget(&temporary);
     }
 }
 
@@ -120,7 +120,7 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 /// Clears a folder the first time that this process writes into it.
 fn clear_once(folder: &Path) {
     let mut held = hold();
-    let cleared = &mut held.parts().cleared;
+    let cleared = &mut held.list().cleared;
     if cleared.len() >= FOLDERS {
         cleared.clear();
     }
@@ -130,20 +130,20 @@ fn clear_once(folder: &Path) {
     }
 }
 
-/// Removes the parts that ended runs left in a folder. A part whose writer lives is locked; the system frees
-/// the lock of an ended process. Parts that another program writes have no lock:
+/// Removes the temporary files that ended runs left in a folder. While its writer lives a temporary file is locked; the
+/// system frees the lock of an ended process. Temporary files that another program writes have no lock:
 /// `Writer::Foreign` needs the lock of the folder.
 pub(crate) fn clear(folder: &Path, writer: Writer) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        if !is_part(&entry.file_name(), writer) || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
+        if !is_temporary(&entry.file_name(), writer) || !entry.file_type().is_ok_and(|kind| kind.is_file()) {
             continue;
         }
-        let part = entry.path();
-        // A part that cannot be opened or locked may be in use.
-        let Ok(file) = OpenOptions::new().write(true).open(&part) else { continue };
+        let temporary = entry.path();
+        // A temporary file that cannot be opened or locked may be in use.
+        let Ok(file) = OpenOptions::new().write(true).open(&temporary) else { continue };
         if file.try_lock().is_ok() {
             // Removed before the lock is given back.
-            let _ = fs::remove_file(&part);
+            let _ = fs::remove_file(&temporary);
         }
     }
 }
@@ -156,13 +156,13 @@ fn suffix(writer: Writer) -> &'static str {
 }
 
 /// `wavy.hair` becomes `wavy.hair.1234-1.strandline-part`; a long name is cut.
-fn part_name(name: &OsStr, process: u32, number: u64, writer: Writer) -> OsString {
+fn temporary_name(name: &OsStr, process: u32, number: u64, writer: Writer) -> OsString {
     let name = name.to_string_lossy();
     let stem = &name[..name.floor_char_boundary(NAME_BYTES)];
     format!("{stem}.{process}-{number}{}", suffix(writer)).into()
 }
 
-fn is_part(name: &OsStr, writer: Writer) -> bool {
+fn is_temporary(name: &OsStr, writer: Writer) -> bool {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     name.to_str()
         .and_then(|name| name.strip_suffix(suffix(writer))?.rsplit_once('.')?.1.split_once('-'))
@@ -186,15 +186,15 @@ mod tests {
     fn only_names_of_the_pattern_are_parts() {
         for name in ["a", "wavy.hair", &"ä".repeat(200)] {
             for writer in [Writer::Here, Writer::Foreign] {
-                let part = part_name(OsStr::new(name), 12, 3, writer);
-                assert!(is_part(&part, writer) && part.len() < 255, "{part:?}");
+                let temporary = temporary_name(OsStr::new(name), 12, 3, writer);
+                assert!(is_temporary(&temporary, writer) && temporary.len() < 255, "{temporary:?}");
             }
-            assert!(!is_part(&part_name(OsStr::new(name), 12, 3, Writer::Foreign), Writer::Here));
+            assert!(!is_temporary(&temporary_name(OsStr::new(name), 12, 3, Writer::Foreign), Writer::Here));
         }
         for name in
             ["z.part", "a.1-2.part", ".strandline-part", "a.1.strandline-part", "a.x-1.strandline-part"]
         {
-            assert!(!is_part(OsStr::new(name), Writer::Here), "{name}");
+            assert!(!is_temporary(OsStr::new(name), Writer::Here), "{name}");
         }
     }
 

@@ -6,7 +6,7 @@ use super::HAIR_WIDTH;
 
 /// Something that a groom may have beside its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum Attribute {
     /// A diameter for each strand, or one for all.
     Widths,
     /// Diameters that change along strands.
@@ -33,7 +33,7 @@ pub enum Part {
     Velocities,
 }
 
-impl Part {
+impl Attribute {
     /// All of them.
     pub const ALL: [Self; 12] = [
         Self::Widths,

@@ -1,0 +1,66 @@
+//! Notes of placements that were chosen.
+
+use glam::{Quat, Vec3};
+use strandline_base::math;
+
+use super::head::UPS;
+use super::placing::{Placing, Placings};
+use crate::{
+    Scene,
+    groom::format::{Scale, Up},
+};
+
+/// Angle \[rad\] below which rotations are the same.
+const ALIKE: f32 = 0.01;
+/// Confidence below which a note says that it is not sure.
+const UNSURE: f32 = 0.6;
+
+/// A rotation as the axis that points up and the turn about y \[degrees\] after that.
+fn parts(turn: Quat) -> (Up, f32) {
+    let is_up = |up: &&Up| (turn * up.rotation().inverse() * Vec3::Y).distance(Vec3::Y) < ALIKE;
+    let up = UPS.iter().find(is_up).copied().unwrap_or(Up::Y);
+    let front = turn * up.rotation().inverse() * Vec3::Z;
+    // Half a turn has no sign.
+    let degrees = if front.z < -0.999 { 180.0 } else { math::atan2(front.x, front.z).to_degrees() };
+    (up, degrees.round())
+}
+
+/// One line of the choices; none where nothing was open, or all is as it stands in the files. `width` \[m\] is that of a
+/// head that no usual unit makes that of a person.
+pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: Option<f32>) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut say = |name: &str, placing: &Placing, scale: Scale, up: Up| {
+        if scale == Scale::Auto && placing.scale != 1.0 {
+            words.push(format!("a unit of the {name} is {} m", placing.scale));
+        }
+        let (found, degrees) = parts(placing.turn);
+        if up == Up::Auto && found != Up::Y {
+            words.push(format!("{} points up in the {name}", found.name()));
+        }
+        degrees
+    };
+    let has_groom = scene.groom.file.is_some();
+    let of_groom =
+        if has_groom { say("groom", &placings.groom, scene.groom.scale, scene.groom.up) } else { 0.0 };
+    let of_body = if has_body { say("body", &placings.body, scene.body.scale, scene.body.up) } else { 0.0 };
+    if has_groom && has_body && of_groom == of_body && of_body != 0.0 {
+        words.push(format!("both are turned by {of_body:.0} degrees to look along +z"));
+    } else {
+        if of_body != 0.0 {
+            words.push(format!("the body is turned by {of_body:.0} degrees to look along +z"));
+        }
+        if of_groom != 0.0 {
+            words.push(format!(
+                "the groom is turned by {of_groom:.0} degrees to lie on the head as hair does"
+            ));
+        }
+    }
+    let unsure = if placings.confidence < UNSURE { ", which is not sure" } else { "" };
+    let keys = "`scale`, `up`, `rotation` and `translation` of [groom] and [body] say otherwise, and so do --scale, --up \
+                and --turn for the groom";
+    let strange = width.map_or(String::new(), |width| {
+        format!(" (in no usual unit is it the head of a person: the scalp would be {width:.2} m wide)")
+    });
+    let note = || format!("taken from the files{unsure}: {}; {keys}{strange}", words.join(", "));
+    (!words.is_empty()).then(note).into_iter().collect()
+}

@@ -1,0 +1,336 @@
+//! The place of a groom on a body: the axes and the unit of its file with which its roots lie on the skin.
+
+use glam::{Quat, Vec3};
+use strandline_base::math;
+
+use super::evidence::Hair;
+use super::head::{Pose, turns};
+use super::placing::{Placing, place_mesh, upright};
+use super::sample::UNITS;
+use super::skull::Skull;
+use crate::{
+    Scene,
+    body::{Aabb, Mesh},
+    groom::format::{Scale, Up},
+};
+
+/// Distance of roots from the skin over their size with which they lie on it, and over that of others below which a
+/// place is surely better.
+pub(super) const ON_SKIN: f32 = 0.03;
+const SURER: f32 = 0.4;
+/// Distance of roots from the skin over their size up to which they float above it and belong to it.
+const FLOATING: f32 = 0.15;
+/// Share of the distance of the farther roots that counts.
+const FARTHER: f32 = 0.25;
+/// Distance of roots over their size that counts as one piece of evidence, and most pieces.
+pub(super) const PIECE: f32 = 0.02;
+pub(super) const MOST: f32 = 6.0;
+/// Evidence against axes: of a standard other than the body's own, turned round, and any others; and units.
+const OTHER: f32 = 0.5;
+const ROUND: f32 = 1.5;
+const STRANGE: f32 = 3.0;
+const ODD_UNIT: f32 = 1.0;
+/// Advantage of other axes over those of the body's file with which they are taken, where both fit.
+const CLEAR: f32 = 1.5;
+/// Share of the way from root to tip that leads down below which strands stand, height of roots over half of the width of
+/// the skull below which they are low, and share of them on the face that no hair has.
+const STANDS: f32 = -0.3;
+const LOW: f32 = 0.1;
+const ON_FACE: f32 = 0.25;
+/// Step between units that are tried, their number, the smallest size of roots over that of the skull, and how far how
+/// many of them may reach out of the body's box over its size.
+const STEP: f32 = 1.1;
+const STEPS: usize = 50;
+const SMALLEST: f32 = 0.15;
+const OUT: f32 = 0.1;
+const MOST_ROOTS: f32 = 0.8;
+/// Every n-th strand that is tried with all units, and axes that are then tried with finer ones.
+const FEWER: usize = 4;
+const AXES: usize = 6;
+/// Units beside [`UNITS`] that a scale found by fitting is taken for, and how near they must be.
+const FURTHER: [f32; 3] = [0.1, 0.3048, 1e-4];
+const ALIKE: f32 = 0.015;
+
+/// A body in head space that hair is brought to.
+pub(super) struct Head {
+    pub mesh: Mesh,
+    pub skull: Option<Skull>,
+    pub pose: Pose,
+    /// Placement of the body's file.
+    pub placing: Placing,
+}
+
+impl Head {
+    /// A body at its place, turned and moved as a scene says.
+    pub fn new(scene: &Scene, mesh: &Mesh, placing: Placing, pose: Pose) -> Self {
+        let mut mesh = mesh.clone();
+        place_mesh(&mut mesh, placing, scene.body.rotation, scene.body.translation);
+        Self { skull: Skull::of_body(&mesh), mesh, pose, placing }
+    }
+}
+
+/// A place of a groom.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub placing: Placing,
+    /// Distance of roots from the skin over their size.
+    pub fit: f32,
+    /// Evidence beyond that of the next place.
+    pub margin: f32,
+    /// True where it is fitted to another head than its own.
+    pub is_foreign: bool,
+}
+
+/// A search for the place of a groom.
+#[derive(Clone, Copy)]
+pub(super) struct Search<'a> {
+    pub scene: &'a Scene,
+    /// Strands in units and axes of their file.
+    pub hair: &'a Hair,
+    pub head: &'a Head,
+}
+
+impl Search<'_> {
+    /// The axes and the unit of the groom: those of the body's file where roots then lie on the skin and nothing
+    /// speaks against it, others where they alone bring them there. None where nothing does.
+    pub fn found(&self) -> Option<Found> {
+        let same = self.same();
+        let fit = self.fits(&[same])[0];
+        if fit <= ON_SKIN {
+            return Some(self.against(same, fit));
+        }
+        let is_full = self.hair.is_full(None);
+        let better = |tried: Vec<Placing>| {
+            let fits = self.fits(&tried);
+            let better = tried.into_iter().zip(fits).filter(|(_, found)| *found < ON_SKIN.min(SURER * fit));
+            self.best(better.collect())
+        };
+        let is_open = is_full && self.scene.groom.scale == Scale::Auto;
+        if let Some(found) = better(self.usual(is_full)) {
+            return Some(found);
+        }
+        // Roots may float a little.
+        if fit <= FLOATING {
+            return Some(self.against(same, fit));
+        }
+        if is_open { better(self.any_unit()) } else { None }
+    }
+
+    /// The axes and the unit of the body's file, or those that the scene gives.
+    pub fn same(&self) -> Placing {
+        let (groom, body) = (&self.scene.groom, self.head.placing);
+        let turn = if groom.up == Up::Auto { body.turn } else { upright(groom.up) };
+        match groom.scale {
+            Scale::Auto => Placing { scale: body.scale, turn },
+            Scale::Factor(scale) => Placing { scale, turn },
+        }
+    }
+
+    /// The place that the body's file gives, or other axes that the roots fit as well and that the hair surely shows.
+    fn against(&self, same: Placing, fit: f32) -> Found {
+        let sure = Found { placing: same, fit, margin: MOST, is_foreign: false };
+        let placed = self.placed(&same);
+        let Some(skull) = &self.head.skull else { return sure };
+        let is_fixed = self.scene.groom.up != Up::Auto || !self.is_free();
+        if is_fixed || !placed.is_full(Some(skull.center())) {
+            return sure;
+        }
+        let tried: Vec<Placing> = turns().map(|turn| Placing { turn, ..same }).collect();
+        let fits = self.fits(&tried);
+        let fitting = tried.into_iter().zip(fits).filter(|(_, found)| *found < ON_SKIN.max(2.0 * fit));
+        let own = self.evidence(&same, fit);
+        match self.best(fitting.collect()) {
+            Some(best) if self.evidence(&best.placing, best.fit) > own + CLEAR => best,
+            Some(best) if best.placing == same => Found { margin: best.margin, ..sure },
+            Some(best) => Found { margin: own + CLEAR - self.evidence(&best.placing, best.fit), ..sure },
+            None => sure,
+        }
+    }
+
+    /// Properties of hair at a place that no hair of a head has, human-readable.
+    pub fn doubts(&self, placing: &Placing) -> Vec<String> {
+        let placed = self.placed(placing);
+        let Some(skull) = self.head.skull.as_ref().filter(|skull| placed.is_full(Some(skull.center())))
+        else {
+            return Vec::new();
+        };
+        let mut doubts = Vec::new();
+        let (hangs, high) = (placed.hangs(), placed.high(skull));
+        if self.head.pose.is_person && hangs < STANDS && high < LOW {
+            doubts.push("the strands lead up from roots below the middle of the head".to_owned());
+        }
+        let on_face = placed.on_face(skull);
+        if self.head.pose.is_person && self.head.pose.shows_front && on_face > ON_FACE {
+            doubts.push(format!("{:.0} % of the roots lie on the face", 100.0 * on_face));
+        }
+        let mend = "`up`, `rotation` and `translation` of [groom], or --up and --turn, place it otherwise";
+        doubts.iter().map(|doubt| format!("{doubt}, which hair of a head does not: {mend}")).collect()
+    }
+
+    /// True where hair may show the front of groom and body: it is a full head of hair, and a scene turns neither.
+    pub fn may_turn_both(&self) -> bool {
+        let (groom, body) = (&self.scene.groom, &self.scene.body);
+        let is_open = groom.up == Up::Auto && body.up == Up::Auto;
+        let is_free = groom.rotation == Vec3::ZERO && body.rotation == Vec3::ZERO;
+        let middle = self.head.skull.as_ref().map(Skull::center);
+        is_open && is_free && self.placed(&self.same()).is_full(middle)
+    }
+
+    fn is_free(&self) -> bool {
+        self.scene.groom.rotation == Vec3::ZERO && self.scene.groom.translation == Vec3::ZERO
+    }
+
+    /// The strands at a place, turned and moved as the scene says.
+    fn placed(&self, placing: &Placing) -> Hair {
+        let groom = &self.scene.groom;
+        let turn = math::pitch_yaw_roll(groom.rotation) * placing.turn;
+        self.hair.placed(|point| turn * (placing.scale * point) + groom.translation)
+    }
+
+    /// Distances of roots from the skin over their size, for each of some places; infinite for those away from the body.
+    fn fits(&self, tried: &[Placing]) -> Vec<f32> {
+        let Some(bounds) = self.head.mesh.bounds() else { return vec![f32::INFINITY; tried.len()] };
+        let is_within: Vec<bool> = tried.iter().map(|placing| self.is_within(placing, bounds)).collect();
+        let near = tried.iter().zip(&is_within).filter(|(_, is_within)| **is_within);
+        let hair: Vec<Hair> = near.map(|(placing, _)| self.placed(placing)).collect();
+        let mut found = fits(&self.head.mesh, &hair).into_iter();
+        is_within
+            .into_iter()
+            .map(|is_within| if is_within { found.next() } else { None }.unwrap_or(f32::INFINITY))
+            .collect()
+    }
+
+    /// Evidence for a place.
+    fn evidence(&self, placing: &Placing, fit: f32) -> f32 {
+        let near = |one: Quat, two: Quat| one.angle_between(two) < 0.01;
+        let standard = [Up::Y, Up::Z, Up::MinusY].map(upright);
+        let body = self.head.placing;
+        let against = if near(placing.turn, body.turn) {
+            0.0
+        } else if standard.iter().any(|turn| near(placing.turn, *turn)) {
+            OTHER
+        } else if standard
+            .iter()
+            .any(|turn| near(placing.turn, math::rotation(Vec3::Y, std::f32::consts::PI) * *turn))
+        {
+            ROUND
+        } else {
+            STRANGE
+        };
+        let is_usual = UNITS.contains(&placing.scale) || placing.scale == body.scale;
+        let unit = if is_usual { 0.0 } else { ODD_UNIT };
+        let placed = self.placed(placing);
+        let lies = self.head.skull.as_ref().filter(|skull| placed.is_full(Some(skull.center())));
+        let lies = lies.map_or(0.0, |skull| placed.on(skull, self.head.pose.shows_front));
+        lies - (fit / PIECE).min(MOST) - against - unit
+    }
+
+    /// The place for which most speaks.
+    fn best(&self, tried: Vec<(Placing, f32)>) -> Option<Found> {
+        let mut found: Vec<(f32, Placing, f32)> =
+            tried.into_iter().map(|(placing, fit)| (self.evidence(&placing, fit), placing, fit)).collect();
+        found.sort_by(|one, two| two.0.total_cmp(&one.0));
+        let (evidence, placing, fit) = *found.first()?;
+        let is_other = |one: &&(f32, Placing, f32)| {
+            one.1.turn.angle_between(placing.turn) > 0.01 || (one.1.scale / placing.scale - 1.0).abs() > 0.1
+        };
+        let margin = found.iter().find(is_other).map_or(MOST, |other| evidence - other.0);
+        Some(Found { placing, fit, margin, is_foreign: false })
+    }
+
+    /// Axes that are tried: all for a full head of hair, the usual ones otherwise; one that the scene gives.
+    fn axes(&self, is_full: bool) -> Vec<Quat> {
+        match self.scene.groom.up {
+            Up::Auto if is_full && self.is_free() => turns().collect(),
+            Up::Auto => {
+                [self.head.placing.turn].into_iter().chain([Up::Y, Up::Z, Up::MinusY].map(upright)).collect()
+            }
+            given => vec![upright(given)],
+        }
+    }
+
+    /// Usual units with the axes that are tried.
+    fn usual(&self, is_full: bool) -> Vec<Placing> {
+        let scales: Vec<f32> = match self.scene.groom.scale {
+            Scale::Auto => [self.head.placing.scale].into_iter().chain(UNITS).collect(),
+            Scale::Factor(scale) => vec![scale],
+        };
+        let axes = self.axes(is_full);
+        axes.iter()
+            .flat_map(|turn| scales.iter().map(|scale| Placing { scale: *scale, turn: *turn }))
+            .collect()
+    }
+
+    /// The unit with which roots lie nearest to the skin, for the axes with which they lie near it.
+    fn any_unit(&self) -> Vec<Placing> {
+        let Some(bounds) = self.head.mesh.bounds() else { return Vec::new() };
+        let width = self.head.skull.map_or(bounds.max.distance(bounds.min), |skull| skull.size.x);
+        let smallest = SMALLEST * width / self.hair.size().max(f32::MIN_POSITIVE);
+        let scales = (0..STEPS).map(|step| smallest * math::powf(STEP, step as f32));
+        let scales: Vec<f32> = scales.collect();
+        let tried = self
+            .axes(true)
+            .into_iter()
+            .flat_map(|turn| scales.iter().map(move |scale| Placing { scale: *scale, turn }));
+        let tried: Vec<Placing> = tried.collect();
+        let fewer = self.hair.fewer(FEWER);
+        let mut near = nearest(&tried, &Search { hair: &fewer, ..*self }.fits(&tried));
+        near.truncate(AXES);
+        let around = |best: &Placing| {
+            let Placing { scale, turn } = *best;
+            (-10..=10).map(move |step| Placing { scale: scale * math::powf(STEP, 0.1 * step as f32), turn })
+        };
+        let finer: Vec<Placing> = near.iter().flat_map(around).collect();
+        let found = nearest(&finer, &self.fits(&finer)).into_iter();
+        found.map(|best| Placing { scale: as_unit(best.scale, self.head.placing.scale), ..best }).collect()
+    }
+
+    /// True where most roots reach out of a box by little.
+    fn is_within(&self, placing: &Placing, bounds: Aabb) -> bool {
+        let out = OUT * bounds.max.distance(bounds.min);
+        let groom = &self.scene.groom;
+        let turn = math::pitch_yaw_roll(groom.rotation) * placing.turn;
+        let is_near = |root: &Vec3| {
+            let place = turn * (placing.scale * *root) + groom.translation;
+            (bounds.min - place).max(place - bounds.max).max_element() < out
+        };
+        self.hair.roots().filter(is_near).count() as f32 >= MOST_ROOTS * self.hair.strands.len() as f32
+    }
+}
+
+/// Distances of roots from a mesh over their size, for each of some places of strands.
+pub(super) fn fits(mesh: &Mesh, hair: &[Hair]) -> Vec<f32> {
+    let roots: Vec<Vec3> = hair.iter().flat_map(Hair::roots).collect();
+    let mut skin = mesh.nearest_places(&roots).into_iter();
+    let fit = |hair: &Hair| {
+        let mut apart: Vec<f32> =
+            hair.roots().zip(skin.by_ref()).map(|(root, skin)| root.distance(skin)).collect();
+        apart.sort_by(f32::total_cmp);
+        let at = |percent: usize| apart.get(apart.len() * percent / 100).copied().unwrap_or(0.0);
+        (at(50) + FARTHER * at(80)) / hair.size().max(f32::MIN_POSITIVE)
+    };
+    hair.iter().map(fit).collect()
+}
+
+/// The nearest place of each of some axes, the nearest first.
+fn nearest(tried: &[Placing], fits: &[f32]) -> Vec<Placing> {
+    let mut order: Vec<usize> = (0..tried.len()).collect();
+    order.sort_by(|one, two| fits[*one].total_cmp(&fits[*two]));
+    let mut found: Vec<Placing> = Vec::new();
+    for index in order {
+        if found.iter().all(|other| other.turn != tried[index].turn) {
+            found.push(tried[index]);
+        }
+    }
+    found
+}
+
+/// A usual unit near a scale found by fitting, or that in three digits.
+fn as_unit(scale: f32, body: f32) -> f32 {
+    let units = UNITS.into_iter().chain(FURTHER).chain([body]);
+    let near = units.into_iter().find(|unit| (scale / unit - 1.0).abs() < ALIKE);
+    near.unwrap_or_else(|| {
+        let digit = math::powf(10.0, math::log10(scale).floor() - 2.0);
+        (scale / digit).round() * digit
+    })
+}

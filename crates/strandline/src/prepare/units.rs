@@ -1,0 +1,27 @@
+//! Units of files, told by the width of a head.
+
+use strandline_base::math;
+
+use super::sample::UNITS;
+
+/// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
+/// head that no unit brings there is given.
+pub(super) const SCALPS: std::ops::RangeInclusive<f32> = 0.09..=0.3;
+const SCALP: f32 = 0.15;
+
+/// The unit with which a head of a width \[units\] is most like that of a person; with it, where no usual one does, the
+/// width \[m\] that another unit would make it.
+pub(super) fn unit_of_width(width: f32, unit: f32) -> (f32, Option<f32>) {
+    let odd = |unit: &f32| math::ln(unit * width / SCALP).abs();
+    let usual = UNITS.into_iter().filter(|unit| SCALPS.contains(&(unit * width)));
+    match usual.min_by(|one, two| odd(one).total_cmp(&odd(two))) {
+        Some(unit) => (unit, None),
+        None => (as_written(SCALP / width), Some(unit * width)),
+    }
+}
+
+/// A scale of two digits, as a person would write it.
+fn as_written(scale: f32) -> f32 {
+    let digit = math::powf(10.0, math::log10(scale).floor() - 1.0);
+    (scale / digit).round() * digit
+}
