@@ -44,7 +44,7 @@ impl FolderLock {
     pub fn take_name(file: &Path) -> Result<Self> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let short = &name[..name.floor_char_boundary(NAME_BYTES)];
-        let lock = Self::at(file.with_file_name(format!("{NAME}-{short}")))?;
+        let lock = Self::at(file.with_file_name(format!(".{short}{NAME}")))?;
         temporary::clear(file.parent().unwrap_or(Path::new("")), Writer::Here);
         Ok(lock)
     }
