@@ -115,7 +115,8 @@ mod tests {
         for backend in [Backend::Auto, Backend::Cpu, Backend::Gpu(None), Backend::Gpu(Some(3))] {
             assert_eq!(backend.to_string().parse::<Backend>().unwrap(), backend);
         }
-        for wrong in ["", "GPU", "gpu:", "gpu:-1", "gpu:x", "cuda"] {
+        assert_eq!("GPU".parse::<Backend>().unwrap(), Backend::Gpu(None));
+        for wrong in ["", "gpu:", "gpu:-1", "gpu:x", "cuda"] {
             let error = wrong.parse::<Backend>().unwrap_err().to_string();
             assert!(error.contains("expected auto, cpu, gpu"), "{error}");
         }

@@ -209,7 +209,7 @@ fn files_that_would_take_more_than_is_allowed() {
     refused(&output, &TOO_MUCH);
     let mesh = folder.path().join("large.obj");
     std::fs::File::create(mesh).unwrap().set_len(200 << 20).unwrap();
-    let output = limited(folder.path(), &["sim", "--body", "large.obj"]);
+    let output = limited(folder.path(), &["sim", "--body", "large.obj", "--set", "style.strand_count=100"]);
     refused(&output, &["the body of ", "large.obj would take 6000 MiB"]);
     refused(&output, &TOO_MUCH);
 }
