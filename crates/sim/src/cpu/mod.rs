@@ -19,7 +19,6 @@ pub mod volume;
 
 pub(crate) mod length_pass;
 mod rod_pulls;
-mod rod_rest;
 pub(crate) mod spans;
 
 pub use runner::CpuRunner;

@@ -231,7 +231,7 @@ fn grip(grip: &Grip, lane: usize) -> [f32; 4] {
 }
 
 /// Velocities and what the next prediction adds to them, as the device has them; of rods sections and their
-/// speeds, room for how strands were solved, and last what the next prediction adds.
+/// speeds, and room for how strands were solved.
 pub(super) fn speeds(state: &State) -> Vec<f32> {
     if state.sections.is_empty() {
         return [floats(&state.velocities), floats(&state.corrections)].concat();
@@ -239,8 +239,7 @@ pub(super) fn speeds(state: &State) -> Vec<f32> {
     let blocks = state.length_scale.len();
     let outcomes = vec![0.0; 2 * LANES * blocks];
     let spins: &[f32] = bytemuck::cast_slice(&state.spins);
-    let corrections = floats(&state.corrections);
-    [floats(&state.velocities), floats(&state.sections), spins, &outcomes, corrections].concat()
+    [floats(&state.velocities), floats(&state.sections), spins, &outcomes].concat()
 }
 
 /// Vectors as the numbers that they are.
