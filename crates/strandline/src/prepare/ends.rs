@@ -40,13 +40,13 @@ const NEARLY_ALL: f32 = 0.9;
 
 /// Turns strands of the scene's grooms that are stored from tip to root, where the scene leaves their ends open.
 pub(super) fn turn(loading: &mut Loading) {
+    let defined = loading.defined();
     let Loading { scene, groom, further_grooms, mesh, notes, .. } = loading;
     if scene.groom.root_end != RootEnd::Auto {
         return;
     }
     let mut scene = scene.clone();
     let parts = scene.groom.parts.clone();
-    let defined = scene.body.file.as_ref().map_or(Defined::Nothing, |file| loading.sources.defined(file));
     let further = further_grooms.iter_mut().zip(parts.iter().map(Some));
     for (groom, part) in groom.iter_mut().map(|groom| (groom, None)).chain(further) {
         if let Some(part) = part {

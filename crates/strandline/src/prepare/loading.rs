@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::Sources;
 use super::memory;
-use super::placing::Placings;
+use super::placing::{Defined, Placings};
 use crate::{
     Error, Scene,
     body::{Collider, Mesh, Pose, Shape},
@@ -86,5 +86,11 @@ impl<'a> Loading<'a> {
     /// The drawn body, where it comes from a source.
     pub fn own_mesh(&self) -> Option<&Mesh> {
         self.mesh.as_ref().filter(|_| self.scene.body.file.is_some())
+    }
+
+    /// Definitions that the format of the body makes.
+    pub fn defined(&self) -> Defined {
+        let file = self.scene.body.file.as_ref();
+        file.map_or(Defined::Nothing, |file| self.sources.defined(file))
     }
 }

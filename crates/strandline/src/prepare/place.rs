@@ -6,7 +6,7 @@ use strandline_base::math;
 use super::{
     foreign, guess, join,
     loading::Loading,
-    placing::{Defined, Placing, place_mesh},
+    placing::{Placing, place_mesh},
 };
 use crate::{
     Error, Scene,
@@ -25,9 +25,9 @@ pub(super) fn place(loading: &mut Loading) -> Result<(), Error> {
 
 /// Chooses the placements.
 fn choose(loading: &mut Loading) {
+    let defined = loading.defined();
     let Loading { scene, groom, further_grooms: further, mesh, .. } = loading;
     let together = groom.iter().chain(join::placed_as_first(scene, groom.as_ref(), further));
-    let defined = scene.body.file.as_ref().map_or(Defined::Nothing, |file| loading.sources.defined(file));
     loading.placings = guess::placings(scene, &together.collect::<Vec<_>>(), mesh.as_ref(), defined);
     loading.is_foreign = loading.placings.is_foreign;
     loading.notes.append(&mut loading.placings.notes);
