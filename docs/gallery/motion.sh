@@ -10,5 +10,5 @@ if [ -z "$program" ]; then
     program=target/release/strandline
 fi
 "$program" render --scene docs/gallery/motion.toml --out out/motion
-ffmpeg -v error -y -framerate 20 -i out/motion/frame_%04d.png -c:v libwebp_anim -q:v 82 -compression_level 6 -loop 0 \
+ffmpeg -v error -y -framerate 20 -i out/motion/frame_%04d.png -c:v libwebp_anim -q:v 94 -compression_level 6 -loop 0 \
     docs/gallery/motion.webp
