@@ -6,6 +6,8 @@ mod distance_grid;
 mod files;
 mod gltf_files;
 mod mesh_files;
+mod posed_skin;
 mod scans;
 mod shapes;
+mod skin_roots;
 mod thin_triangles;
