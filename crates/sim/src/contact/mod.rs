@@ -3,6 +3,10 @@
 
 pub(crate) mod contacts;
 mod obstacles;
+mod riders;
+pub(crate) mod touch;
 mod way;
+
+pub(crate) use obstacles::Skins;
 
 pub use obstacles::Obstacles;
