@@ -134,37 +134,6 @@ fn hair_stays_outside_a_bust_that_turns_and_shrugs() {
             deepest = depths.into_iter().fold(deepest, f32::max);
         }
     }
-    println!("{inside} of {all} inside, {deepest} m deepest");
     assert!(inside * 1000 <= all, "{inside} of {all} points inside");
     assert!(deepest < 2e-3, "{deepest} m deep");
-}
-
-/// Milliseconds of steps on a skin and on a rigid body, in pairs.
-#[test]
-#[ignore = "a measurement"]
-fn measure() {
-    let bust = Bust::new(2000);
-    println!("{} triangles", bust.mesh.triangles.len());
-    let Shape::Skin(skin) = &bust.skin else { unreachable!() };
-    let models = [bust.model(Shape::Grid(skin.grid().clone())), bust.model(bust.skin.clone())];
-    let mut runs = models.map(|model| (model.rest_state(BodyFrame::REST), CpuRunner::from(model)));
-    let mut sums = [0.0; 2];
-    let mut stages = [std::collections::BTreeMap::new(), std::collections::BTreeMap::new()];
-    for step in 1..=120 {
-        let body = bust.frame(step as f32 * STEP);
-        let rigid = BodyFrame::from(body.world_from_head());
-        for (index, body) in [rigid, body].into_iter().enumerate() {
-            let (state, runner) = &mut runs[index];
-            let start = std::time::Instant::now();
-            let report = runner.step(state, &Drive::of(body));
-            if step > 20 {
-                sums[index] += start.elapsed().as_secs_f64() * 10.0;
-                for (name, seconds) in report.seconds {
-                    *stages[index].entry(name).or_insert(0.0) += seconds * 10.0;
-                }
-            }
-        }
-    }
-    println!("rigid {:.2} ms, skin {:.2} ms a step", sums[0], sums[1]);
-    println!("{stages:.2?}");
 }

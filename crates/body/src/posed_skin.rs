@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec3, Vec3A};
 
 use crate::nearest_corner::{Feature, nearest_on};
 use crate::skin_solid::{NONE, SkinSolid};
@@ -25,7 +25,7 @@ pub struct PosedSkin {
     start: Vec<Vec3>,
     end: Vec<Vec3>,
     /// Corners of the box of each node at the end.
-    boxes: Vec<[Vec3; 2]>,
+    boxes: Vec<[Vec3A; 2]>,
     most_shift: f32,
 }
 
@@ -135,9 +135,10 @@ impl PosedSkin {
     /// times that of the best.
     fn search(&self, point: Vec3, before: u32, slack: f32) -> (u32, f32) {
         let nodes = &self.solid.nodes;
+        let wide = Vec3A::from(point);
         let from_box = |index: u32| {
             let [min, max] = self.boxes[index as usize];
-            point.distance_squared(point.clamp(min, max))
+            wide.distance_squared(wide.max(min).min(max))
         };
         let from_triangle = |index: u32| {
             let place = nearest_on(self.corners(&self.end, index), point).0;
@@ -250,14 +251,14 @@ impl PosedSkin {
 }
 
 /// Boxes of all nodes about positions, the children before their parents.
-fn refitted(solid: &SkinSolid, positions: &[Vec3]) -> Vec<[Vec3; 2]> {
-    let mut boxes = vec![[Vec3::ZERO; 2]; solid.nodes.len()];
+fn refitted(solid: &SkinSolid, positions: &[Vec3]) -> Vec<[Vec3A; 2]> {
+    let mut boxes = vec![[Vec3A::ZERO; 2]; solid.nodes.len()];
     for (index, node) in solid.nodes.iter().enumerate().rev() {
         boxes[index] = if node.right == 0 {
             let corners = solid.triangles[node.range[0] as usize..node.range[1] as usize].iter().flatten();
             corners
-                .map(|corner| positions[*corner as usize])
-                .fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[min, max], corner| {
+                .map(|corner| Vec3A::from(positions[*corner as usize]))
+                .fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
                     [min.min(corner), max.max(corner)]
                 })
         } else {

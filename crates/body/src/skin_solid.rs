@@ -163,7 +163,7 @@ fn across(triangles: &[[u32; 3]], welded: &[u32]) -> Vec<[u32; 3]> {
     edges.sort_unstable();
     let mut across = vec![[NONE; 3]; triangles.len()];
     for group in edges.chunk_by(|one, other| one.0 == other.0) {
-        // Where more than two meet each has one of the others.
+        // At an edge of more than two triangles each has one of the others.
         for (place, (_, index, edge)) in group.iter().enumerate() {
             let other = group[(place + 1) % group.len()].1;
             across[*index as usize][*edge] = if other == *index { NONE } else { other };

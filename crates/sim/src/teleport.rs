@@ -4,7 +4,7 @@ use strandline_base::par::prelude::*;
 use strandline_body::{BodyFrame, Pose};
 use strandline_groom::{LANES, Vec3Lanes};
 
-use crate::contact::contacts::Contacts;
+use crate::contact::planes::Contacts;
 use crate::{Model, State};
 
 impl State {
@@ -36,7 +36,7 @@ impl State {
         for turned in [&mut self.velocities, &mut self.corrections, &mut self.sections] {
             all(turned, false);
         }
-        // What points remember of solids that ride the head stays right only where all rides the head.
+        // Planes of solids on the head stay right only where all rides the head.
         if !(self.body.is_rigid() && body.is_rigid()) || model.is_beside_world() {
             self.contacts = Contacts::new(&model.colliders, blocks, points);
         }

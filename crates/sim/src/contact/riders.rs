@@ -12,7 +12,8 @@ use strandline_base::vec3x8::{Vec3x8, load, splat};
 use strandline_body::PosedSkin;
 use strandline_groom::{LANES, Vec3Lanes};
 
-use super::contacts::{Contacts, Group, Plane, Solids};
+use super::contacts::{Group, Solids};
+use super::planes::{Contacts, Plane, Rider};
 
 /// Distance \[m\] from the skin within which a plane rides a triangle.
 const CLOSE: f32 = 0.02;
@@ -21,23 +22,6 @@ const CLOSE: f32 = 0.02;
 const MOST_OFF: f32 = 5e-4;
 const OF_ERROR: f32 = 2.0;
 const OF_SHIFT: f32 = 0.02;
-
-/// The rider of a plane, which is stored as a plane.
-pub(super) struct Rider<'a>(pub &'a mut Plane);
-
-impl Rider<'_> {
-    /// Triangle of a lane.
-    pub fn triangle(&self, lane: usize) -> u32 {
-        self.0.friction.0[lane].to_bits()
-    }
-
-    /// Sets the triangle of a lane and the way \[m\] of its material through the step, carrier space.
-    pub fn set(&mut self, lane: usize, triangle: u32, moved: Vec3) {
-        self.0.friction.0[lane] = f32::from_bits(triangle);
-        self.0.distance.0[lane] = 0.0;
-        self.0.anchor.set(lane, moved);
-    }
-}
 
 impl Group<'_> {
     /// Way \[m\] of the material under points of one index through the step beside that of the carrier, world space.

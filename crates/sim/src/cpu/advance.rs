@@ -8,7 +8,8 @@ use wide::f32x8;
 
 use super::Scratch;
 use crate::contact::Obstacles;
-use crate::contact::contacts::{Plane, Solids};
+use crate::contact::contacts::Solids;
+use crate::contact::planes::Plane;
 use crate::{Model, State};
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 

@@ -5,7 +5,8 @@ use strandline_body::turned_out;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use crate::contact::contacts::{Care, Plane, Query, Solids};
+use crate::contact::contacts::{Care, Query, Solids};
+use crate::contact::planes::Plane;
 use crate::contact::touch::Touch;
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 
