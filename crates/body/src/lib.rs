@@ -8,6 +8,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
 mod buried;
+mod bvh;
 mod closing;
 mod collider;
 mod curve;
@@ -39,7 +40,10 @@ mod part_names;
 mod ply;
 mod polar;
 mod posed_skin;
+mod recorded;
+mod rigid_fit;
 mod scalp;
+mod skin_motion;
 mod skin_roots;
 mod skin_solid;
 mod solid_table;
@@ -48,6 +52,8 @@ mod stl;
 mod triangle;
 mod triangle_tree;
 mod turn_out;
+mod vertex_file;
+mod vertex_frames;
 mod welding;
 
 pub use collider::{Carrier, Collider, Shape};
@@ -63,7 +69,9 @@ pub use mesh_format::MeshFormat;
 pub use motion::Motion;
 pub use moved_skin::MovedSkin;
 pub use posed_skin::{PosedSkin, SkinPlace, TriangleMotion};
+pub use recorded::RecordedMotion;
 pub use scalp::{Root, Scalp};
+pub use skin_motion::{Playback, SkinMotion, VertexMotion};
 pub use skin_roots::SkinRoots;
 pub use skin_solid::SkinSolid;
 pub use solid_table::solid_rows;

@@ -1,6 +1,7 @@
 //! The body from outside: files, holes, distance grids.
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
+mod clips;
 mod closing;
 mod distance_grid;
 mod files;
@@ -11,3 +12,4 @@ mod scans;
 mod shapes;
 mod skin_roots;
 mod thin_triangles;
+mod vertices;
