@@ -137,3 +137,71 @@ fn hair_stays_outside_a_bust_that_turns_and_shrugs() {
     assert!(inside * 1000 <= all, "{inside} of {all} points inside");
     assert!(deepest < 2e-3, "{deepest} m deep");
 }
+/// A closed tube along y of 40 cm, and guides that stand on it around its middle.
+fn tube() -> (Mesh, Guides) {
+    let (rings, around) = (41_u32, 24_u32);
+    let at = |ring: u32, side: u32| {
+        let angle = std::f32::consts::TAU * side as f32 / around as f32;
+        vec3(0.05 * angle.cos(), 0.01 * ring as f32, 0.05 * angle.sin())
+    };
+    let positions = (0..rings).flat_map(|ring| (0..around).map(move |side| at(ring, side))).collect();
+    let quad = |ring: u32, side: u32| {
+        let next = (side + 1) % around;
+        let [a, b, c, d] = [(ring, side), (ring, next), (ring + 1, side), (ring + 1, next)]
+            .map(|(ring, side)| ring * around + side);
+        [[a, c, b], [b, c, d]]
+    };
+    let triangles = (0..rings - 1).flat_map(|ring| (0..around).flat_map(move |side| quad(ring, side)));
+    let mesh = Mesh::new(positions, triangles.collect()).unwrap().closed();
+    let mut groom = Groom::empty(8e-5);
+    for strand in 0..96 {
+        let (root, out) = (at(12 + strand % 16, 5 * strand), at(0, 5 * strand).normalize());
+        groom.push((0..=16).map(|point| root + out * 0.005 * point as f32));
+    }
+    (mesh, Guides::resample(&groom, POINTS).unwrap())
+}
+
+/// Runs hair on the tube under skins over time and returns the greatest speed \[m/s\] of a point.
+fn fastest(skin: impl Fn(f32, Vec3) -> Vec3) -> f32 {
+    let (mesh, guides) = tube();
+    let grid = DistanceGrid::of_mesh(&mesh, 0.005, 0.02).unwrap();
+    let shape = Shape::Skin(Arc::new(SkinSolid::new(&mesh, grid.into()).unwrap()));
+    let solid = Collider::new(shape, Carrier::HEAD, 0.3).unwrap();
+    let model =
+        Model::new(&guides, &Settings { time_step: STEP, ..Settings::default() }, vec![solid]).unwrap();
+    let roots: Vec<Vec3> = (0..guides.strand_count()).map(|strand| guides.position(strand, 0)).collect();
+    let roots = SkinRoots::new(&mesh, &roots);
+    let mut state = model.rest_state(BodyFrame::REST);
+    let mut runner = CpuRunner::from(model);
+    let mut fastest = 0.0_f32;
+    for step in 1..=240 {
+        let time = step as f32 * STEP;
+        let skin: Vec<Vec3> = mesh.positions.iter().map(|place| skin(time, *place)).collect();
+        let body = roots.placed(BodyFrame::REST.with_skin(skin), &state.body);
+        let report = runner.step(&mut state, &Drive::of(body.clone()));
+        assert_eq!(report.non_finite, 0, "at {time} s");
+        fastest = fastest.max(report.speed_max);
+        let root = body.root(0).point(guides.position(0, 0));
+        assert!(state.positions[0].get(0).distance(root) < 1e-5, "a root leaves the skin at {time} s");
+    }
+    fastest
+}
+
+#[test]
+fn a_limb_that_passes_through_another_throws_nobody() {
+    let bent = |time: f32, place: Vec3| {
+        let angle = 1.65 * (1.0 - (std::f32::consts::PI * time).cos());
+        let turn = Quat::from_rotation_x(angle * smooth(0.15, 0.25, place.y));
+        Pose::rotation_about(Vec3::Y * 0.2, turn).point(place)
+    };
+    // The end of the limb moves at 1.3 m/s; hair that comes free of it whips.
+    let fastest = fastest(bent);
+    assert!(fastest < 10.0, "{fastest} m/s");
+}
+
+#[test]
+fn a_skin_that_grows_and_shrinks_keeps_its_hair() {
+    let scaled = |time: f32, place: Vec3| place * (1.0 + 0.3 * (3.0 * time).sin());
+    let fastest = fastest(scaled);
+    assert!(fastest < 4.0, "{fastest} m/s");
+}

@@ -15,6 +15,8 @@ const TOUCHING: f32 = 1e-5;
 /// Share of the distance that the quick search may be off, and the lower bound that it leaves.
 const QUICK: f32 = 0.64;
 const AT_LEAST: f32 = 0.8;
+/// Distance \[m\] beyond which a bound serves contacts.
+const FAR: f32 = 0.03;
 
 /// A skin at the start and at the end of a step.
 #[derive(Clone, Debug)]
@@ -119,6 +121,19 @@ impl PosedSkin {
         self.seen(point, triangle, squared.sqrt())
     }
 
+    /// The same; farther than 3 cm outside a lower bound of the distance, no less than 0.8 of it, and the gradient at about
+    /// the nearest place.
+    pub fn near(&self, point: Vec3, before: u32) -> SkinPlace {
+        let (triangle, squared) = self.search(point, before, QUICK);
+        if squared > FAR * FAR {
+            let found = self.seen(point, triangle, squared.sqrt());
+            if found.distance > 0.0 {
+                return SkinPlace { distance: AT_LEAST * found.distance, ..found };
+            }
+        }
+        self.nearest(point, triangle)
+    }
+
     /// Signed distance \[m\] and unit gradient at a point \[m\] at the end of the step, head space.
     pub fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
         let SkinPlace { distance, normal, .. } = self.nearest(point, Self::UNKNOWN);
@@ -127,8 +142,13 @@ impl PosedSkin {
 
     /// Lower bound \[m\] of the distance of a point at the end, 0 where it may be inside.
     pub fn at_least(&self, point: Vec3) -> f32 {
-        let (triangle, squared) = self.search(point, NONE, QUICK);
-        AT_LEAST * self.seen(point, triangle, squared.sqrt()).distance.max(0.0)
+        self.at_least_about(point, NONE).0
+    }
+
+    /// The same by a search that begins at a triangle near the point, and a triangle nearer to it.
+    pub fn at_least_about(&self, point: Vec3, before: u32) -> (f32, u32) {
+        let (triangle, squared) = self.search(point, before, QUICK);
+        (AT_LEAST * self.seen(point, triangle, squared.sqrt()).distance.max(0.0), triangle)
     }
 
     /// The nearest triangle, and its squared distance; nodes are left out whose squared distance is more than `slack`

@@ -21,6 +21,10 @@ use super::touch::Touch;
 use super::way::{Seen, met};
 use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 
+/// Depth \[m\] in a skin that moves by itself out of which a look brings a point at most: the way of a longer path is
+/// followed, so that only a part of the skin that passes through another has points deeper, which it must not throw.
+const MOST_DEPTH: f32 = 5e-3;
+
 /// Precision of a look-up of the solids.
 #[derive(Clone, Copy)]
 pub struct Care {
@@ -255,7 +259,8 @@ impl Group<'_> {
         for lane in (0..LANES).filter(|lane| stale & (1 << lane) != 0) {
             let triangle =
                 Cell::new(rider.as_mut().map_or(PosedSkin::UNKNOWN, |rider| Rider(rider).triangle(lane)));
-            let seen = met(from.get(lane), here.get(lane), |point| self.nearest(point, &triangle));
+            let seen =
+                met(from.get(lane), here.get(lane), |point| self.nearest(point, &triangle, MOST_DEPTH));
             if seen.is_before(here.get(lane)) {
                 blocked[lane] = f32::from_bits(u32::MAX);
             }
@@ -272,15 +277,16 @@ impl Group<'_> {
         Look { near: (load(&plane.distance) - moved).simd_le(reach), blocked: f32x8::from(blocked) }
     }
 
-    /// The nearest solid; the triangle of the skin is kept where that is it.
-    pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>) -> Seen {
+    /// The nearest solid, and a triangle of a skin for the next look. Points deeper in a skin than `most_depth` \[m\] are
+    /// taken for that deep.
+    pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>, most_depth: f32) -> Seen {
         let mut nearest = Seen { place: point, distance: f32::INFINITY, normal: Vec3::Y, friction: 0.0 };
         for (collider, skin) in &self.colliders {
             let (distance, normal) = match skin {
                 Some(skin) => {
-                    let found = skin.nearest(point, triangle.get());
+                    let found = skin.near(point, triangle.get());
                     triangle.set(found.triangle);
-                    (found.distance, found.normal)
+                    (found.distance.max(-most_depth), found.normal)
                 }
                 None => collider.shape.distance_and_gradient(point),
             };

@@ -73,6 +73,11 @@ impl<'a> Obstacles<'a> {
         &self.skins
     }
 
+    /// True where a skin moves by itself.
+    pub fn has_moving_skin(&self) -> bool {
+        self.skins.iter().any(Option::is_some)
+    }
+
     /// Colliders with their skins.
     pub(super) fn solids(&self) -> impl Iterator<Item = (&Collider, Option<&PosedSkin>)> {
         self.colliders.iter().zip(self.skins.iter().map(Option::as_deref))
@@ -105,12 +110,29 @@ impl<'a> Obstacles<'a> {
         self.solids().enumerate().map(look).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
+    /// Lower bound \[m\] of the distance of all solids from a point at the end of the step, 0 where it may be inside
+    /// one; quicker than [`Self::nearest`]. World space. `before` is the triangle of a skin near the last point, for
+    /// points one beside the other.
+    pub fn at_least(&self, point: Vec3, before: &mut u32) -> f32 {
+        let least = self.solids().map(|(collider, skin)| {
+            let local = self.local(collider, point);
+            let Some(skin) = skin else { return collider.shape.distance_at_least(local) };
+            let (least, triangle) = skin.at_least_about(local, *before);
+            *before = triangle;
+            least
+        });
+        least.fold(f32::INFINITY, f32::min)
+    }
+
     /// Signed distance \[m\] to the nearest solid at the end of the step, infinite without solids: that of
-    /// [`Self::nearest`]. World space.
-    pub fn distance(&self, point: Vec3) -> f32 {
+    /// [`Self::nearest`]. World space. `before` is as in [`Self::at_least`].
+    pub fn distance(&self, point: Vec3, before: &mut u32) -> f32 {
         let distances = self.solids().map(|(collider, skin)| {
             let local = self.local(collider, point);
-            skin.map_or_else(|| collider.shape.distance(local), |skin| skin.distance_and_gradient(local).0)
+            let Some(skin) = skin else { return collider.shape.distance(local) };
+            let found = skin.nearest(local, *before);
+            *before = found.triangle;
+            found.distance
         });
         distances.fold(f32::INFINITY, f32::min)
     }
@@ -122,16 +144,6 @@ impl<'a> Obstacles<'a> {
         let together = self.colliders.iter().all(|collider| collider.carrier == first.carrier);
         let nearest = if together { 0 } else { self.nearest(point)?.2 };
         Some(self.velocity(nearest, point))
-    }
-
-    /// Lower bound \[m\] of the distance of all solids from a point at the end of the step, 0 where it may be inside
-    /// one; quicker than [`Self::nearest`]. World space.
-    pub fn at_least(&self, point: Vec3) -> f32 {
-        let least = self.solids().map(|(collider, skin)| {
-            let local = self.local(collider, point);
-            skin.map_or_else(|| collider.shape.distance_at_least(local), |skin| skin.at_least(local))
-        });
-        least.fold(f32::INFINITY, f32::min)
     }
 
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.

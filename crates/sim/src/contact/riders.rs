@@ -45,7 +45,7 @@ impl Group<'_> {
         let lanes = (0..LANES).filter(|lane| is_near & (1 << lane) != 0 && counted(*lane));
         let depths = lanes.map(|lane| {
             let triangle = rider.map_or(PosedSkin::UNKNOWN, |rider| rider.friction.0[lane].to_bits());
-            -self.nearest(here.get(lane), &Cell::new(triangle)).distance
+            -self.nearest(here.get(lane), &Cell::new(triangle), f32::INFINITY).distance
         });
         depths.fold(0.0, f32::max)
     }

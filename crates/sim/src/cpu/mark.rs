@@ -1,6 +1,8 @@
 //! `mark`: every cell near hair is fluid, solid or air.
 
+use glam::Vec3;
 use strandline_base::par::prelude::*;
+use strandline_body::PosedSkin;
 
 use super::volume::Volume;
 use crate::cells::Grid;
@@ -66,13 +68,21 @@ fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
     let mut distances = vec![0.0; cells.len()];
     let parts = distances.par_chunks_mut(TOGETHER).zip(cells.par_chunks(TOGETHER));
     parts.with_min_len(4).for_each(|(distances, cells)| {
+        let mut near = PosedSkin::UNKNOWN;
+        // A skin that moves is looked up where the last look-up tells too little.
+        let (mut last, is_moving) = ((Vec3::ZERO, f32::NEG_INFINITY), obstacles.has_moving_skin());
         for (distance, cell) in distances.iter_mut().zip(cells) {
-            *distance = obstacles.at_least(center(cell));
+            let place = center(cell);
+            *distance = last.1 - place.distance(last.0);
+            if !is_moving || *distance <= grid.spacing() {
+                *distance = obstacles.at_least(place, &mut near);
+                last = (place, *distance);
+            }
         }
         // A loop of its own: in one loop the processor would wait for each first look-up to decide on a second.
         for (distance, cell) in distances.iter_mut().zip(cells).filter(|(least, _)| **least <= grid.spacing())
         {
-            *distance = obstacles.distance(center(cell));
+            *distance = obstacles.distance(center(cell), &mut near);
         }
     });
     distances

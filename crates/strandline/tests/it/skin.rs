@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3, vec3};
 use strandline::{
-    Backend, Groom, Hair, Mesh, Settings,
+    Backend, Groom, Hair, Mesh, Pose, Settings,
     low_level::{
         body::{BodyFrame, SkinRoots},
         groom::Guides,
@@ -87,5 +87,33 @@ fn hair_at_rest_on_a_posed_skin_stays() {
     for (now, rest) in state.positions.iter().zip(&rest) {
         let moved = (0..8).map(|lane| now.get(lane).distance(rest.get(lane))).fold(0.0, f32::max);
         assert!(moved < 1e-6, "hair on a skin that stands moved by {moved} m");
+    }
+}
+
+#[test]
+fn hair_is_carried_over_a_jump_and_it_is_noted() {
+    let (mesh, guides) = sheet();
+    let settings = Settings { gravity: Vec3::ZERO, ..Settings::default() };
+    let hair = || Hair::with_body(Backend::Cpu, guides.clone(), Some(&mesh), Vec::new(), &settings).unwrap();
+    let there = Pose { rotation: Quat::from_rotation_x(3.0), translation: vec3(2.0, 0.5, 0.0) };
+    let aside = Pose { translation: Vec3::X * 0.01, ..Pose::IDENTITY };
+    for (body, jumps) in [
+        (BodyFrame::from(there), true),
+        (BodyFrame::from(aside).after_jump(), true),
+        (BodyFrame::from(aside), false),
+        (Pose { rotation: Quat::from_rotation_y(0.3), ..aside }.into(), false),
+    ] {
+        let mut hair = hair();
+        let reports = hair.step(1.0 / 60.0, body.clone()).unwrap();
+        let notes = hair.take_notes();
+        assert_eq!(notes.iter().any(|note| note.contains("the body jumps")), jumps, "{notes:?}");
+        if !jumps {
+            continue;
+        }
+        assert!(reports.iter().all(|report| report.speed_max < 0.1), "{reports:?}");
+        for (index, point) in hair.points().unwrap().iter().enumerate() {
+            let home = body.root(index / 8).point(guides.position(index / 8, index % 8));
+            assert!(point.distance(home) < 1e-5, "point {index} lies {} m off", point.distance(home));
+        }
     }
 }
