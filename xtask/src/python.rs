@@ -1,4 +1,4 @@
-//! A Python with numpy and usd-core, which read files of the program.
+//! A Python with numpy and usd-core, which read files of the program, and with what tests its package.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -9,8 +9,12 @@ use crate::cargo::root;
 pub const NAMED: &str = "STRANDLINE_PYTHON";
 
 /// Summary of the tests that need Python.
-pub const NONE: &str = "no Python with numpy and usd-core: nobody else read moving caches and USD \
-                        (STRANDLINE_PYTHON names one; with STRANDLINE_REQUIRE_PYTHON the test fails without it)";
+pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, pytest and mypy: nobody else read moving caches and USD, and \
+                        the Python package was not tested (STRANDLINE_PYTHON names one; with \
+                        STRANDLINE_REQUIRE_PYTHON the tests fail without it)";
+
+/// Packages that the tests need.
+const PACKAGES: [&str; 5] = ["numpy", "usd-core", "alembic3d>=1.8.12,<2", "pytest>=8", "mypy>=1.15"];
 
 /// The Python of the tests, if it has their packages. `setup` makes one in `target` if there is none, and
 /// packages can be had.
@@ -23,7 +27,7 @@ pub fn prepare(setup: bool) -> Option<String> {
     }
     let made = setup
         && run("python3", &["-m", "venv", &folder().to_string_lossy()])
-        && run(&own, &["-m", "pip", "install", "--quiet", "numpy", "usd-core"]);
+        && run(&own, &[&["-m", "pip", "install", "--quiet"], &PACKAGES[..]].concat());
     (made && is_whole(&own)).then_some(own)
 }
 
@@ -32,7 +36,7 @@ fn folder() -> PathBuf {
 }
 
 fn is_whole(python: &str) -> bool {
-    run(python, &["-c", "import numpy, pxr"])
+    run(python, &["-c", "import numpy, pxr, alembic3d, pytest, mypy"])
 }
 
 fn run(program: &str, arguments: &[&str]) -> bool {
