@@ -62,6 +62,9 @@ pub fn test(setup: bool) -> bool {
     let workflows = workflows::check_if_installed();
     report.step("workflows", |_| workflows.unwrap_or(true));
     tests(&mut report, &wanted);
+    if let Some(python) = &python {
+        report.step("Python package", |tally| python::test_package(python, tally));
+    }
     let missing = [
         (there.adapter, adapter::UNTESTED),
         (there.display, adapter::NO_WINDOW),
