@@ -8,6 +8,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))] // what is held to others may be rounded
 
 mod buried;
+mod bvh;
 mod closing;
 mod collider;
 mod curve;
@@ -36,13 +37,18 @@ mod obj;
 mod parsing;
 mod part_names;
 mod ply;
+mod recorded;
+mod rigid_fit;
 mod scalp;
+mod skin_motion;
 mod solid_table;
 mod solids;
 mod stl;
 mod triangle;
 mod triangle_tree;
 mod turn_out;
+mod vertex_file;
+mod vertex_frames;
 mod welding;
 
 pub use collider::{Carrier, Collider, Shape};
@@ -57,7 +63,9 @@ pub use mesh::Mesh;
 pub use mesh_format::MeshFormat;
 pub use motion::Motion;
 pub use moved_skin::MovedSkin;
+pub use recorded::RecordedMotion;
 pub use scalp::{Root, Scalp};
+pub use skin_motion::{Playback, SkinMotion, VertexMotion};
 pub use solid_table::solid_rows;
 pub use solids::{PlacedSolids, Solids};
 pub use strandline_base::{Pose, Random};

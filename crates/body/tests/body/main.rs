@@ -1,6 +1,7 @@
 //! The body from outside: files, holes, distance grids.
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
+mod clips;
 mod closing;
 mod distance_grid;
 mod files;
@@ -9,3 +10,4 @@ mod mesh_files;
 mod scans;
 mod shapes;
 mod thin_triangles;
+mod vertices;

@@ -259,8 +259,7 @@ impl<E: Executor> Session<E> {
             }
             Change::Reset => {
                 self.direction.reset();
-                let (body, settle) =
-                    (self.direction.head.pose(0.0).into(), f64::from(self.scene.film.settle));
+                let (body, settle) = (self.direction.head.frame(0.0), f64::from(self.scene.film.settle));
                 let wind = self.direction.wind.at(0.0);
                 self.start(Task::Reset { body, settle, wind }, false, 0)?;
             }

@@ -7,7 +7,7 @@ use strandline_base::{Group, par::Pool};
 use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
 use crate::{
     BoundStrands, Devices, Error, Prepared, Scene,
-    body::{Collider, Mesh, Pose},
+    body::{BodyFrame, Collider, Mesh},
     groom::Guides,
     prepare,
     render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
@@ -95,10 +95,10 @@ impl Session<Inline> {
             simulation.set_length_scale(&scales)?;
         }
         // A head that is turned at first does not whip its hair there.
-        let start = head.pose(scene.film.start);
+        let start = head.frame(scene.film.start);
         match &pose {
             Some(pose) => simulation.place(pose)?,
-            None if start != Pose::IDENTITY => simulation.reset(start.into())?,
+            None if start != BodyFrame::REST => simulation.reset(start)?,
             None => {}
         }
         session.direction = Direction::new(&scene, head);

@@ -6,6 +6,7 @@ mod cache;
 mod corpora;
 mod export_time;
 mod live;
+mod moving;
 mod outside;
 mod pose;
 mod readme;
