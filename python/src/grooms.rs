@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
-use numpy::PyReadonlyArrayDyn;
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,7 +12,7 @@ use strandline::{
     Error, Groom, Mesh,
     format::{self, Cleaning, LoadOptions, Scale},
     low_level::{
-        body::Mannequin,
+        body::{Mannequin, VertexMotion},
         groom::{Influences, Widths},
     },
 };
@@ -225,4 +225,15 @@ pub fn mesh(
     let corners = arrays::numbers(triangles, "faces", &[None, Some(3)])?;
     let mesh = Mesh::new(positions, corners.as_chunks::<3>().0.to_vec());
     mesh.map_err(|error| errors::refused(vertices.py(), &Error::from(error)))
+}
+
+/// The motion of a mesh of its vertices over time, shape (frame, vertex, 3).
+pub fn motion(frames: &PyReadonlyArrayDyn<'_, f32>, frames_per_second: f64) -> PyResult<VertexMotion> {
+    let numbers = arrays::numbers(frames, "motion", &[None, None, Some(3)])?;
+    let (count, vertices) = (frames.shape()[0], frames.shape()[1]);
+    let points: Vec<Vec3> = numbers.as_chunks::<3>().0.iter().map(|point| Vec3::from_array(*point)).collect();
+    let frames_of = points.chunks(vertices.max(1)).map(<[Vec3]>::to_vec).collect();
+    let times = (0..count).map(|frame| frame as f64 / frames_per_second).collect();
+    let motion = VertexMotion::sampled(times, frames_of);
+    motion.map_err(|error| errors::refused(frames.py(), &Error::from(error)))
 }

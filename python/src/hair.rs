@@ -40,7 +40,7 @@ const CLOSED: &str = "the simulation is closed: make another one";
 
 #[pymethods]
 impl Hair {
-    /// Loads a scene in TOML, with grooms and meshes from memory by name.
+    /// Loads a scene in TOML, with grooms, meshes and their motion from memory by name.
     #[new]
     fn new(
         py: Python<'_>,
@@ -48,6 +48,7 @@ impl Hair {
         folder: PathBuf,
         groom: Vec<(String, Bound<'_, PyDict>)>,
         mesh: Vec<(String, PyReadonlyArrayDyn<'_, f32>, PyReadonlyArrayDyn<'_, u32>)>,
+        motion: Vec<(String, PyReadonlyArrayDyn<'_, f32>, f64)>,
     ) -> PyResult<Self> {
         let scene = scenes::parsed(py, scene, &folder)?;
         let mut sources = Sources::default();
@@ -56,6 +57,9 @@ impl Hair {
         }
         for (name, vertices, triangles) in &mesh {
             sources = sources.with_mesh(name, grooms::mesh(vertices, triangles)?);
+        }
+        for (name, frames, frames_per_second) in &motion {
+            sources = sources.with_motion(name, grooms::motion(frames, *frames_per_second)?);
         }
         let playing = errors::run(py, || {
             let mut prepared = Prepared::from_sources(&scene, &sources)?;

@@ -187,7 +187,7 @@ class Groom:
         if layout is not None:
             return research.save(self, path, layout)
         suffix = os.path.splitext(os.fspath(path))[1].lower()
-        if suffix in (".usdc", ".usd", ".usdz"):
+        if suffix in (".usdc", ".usda", ".usd"):
             from . import usd
 
             return usd.save_groom(self, path)

@@ -204,7 +204,7 @@ class Settings(_Section):
 
 
 class Look(_Section):
-    """Settings of the section ``look``: colour and shape of the drawn hair. ``Look(color="#5a3825")``."""
+    """Settings of the section ``look``: colour and shape of the drawn hair. ``Look(follow_strands=8)``."""
 
     _name = "look"
 

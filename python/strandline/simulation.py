@@ -90,7 +90,9 @@ class Simulation:
         if motion is None and moving:
             motion = Motion.still()
         changes: dict[str, Any] = dict(sections)
-        grooms, meshes = [], []
+        grooms: list[Any] = []
+        meshes: list[Any] = []
+        motions: list[Any] = []
         if isinstance(groom, str | os.PathLike):
             changes["groom.file"] = os.path.abspath(groom)
         elif groom is not None:
@@ -103,6 +105,8 @@ class Simulation:
         elif body is not None:
             changes.update({"body.file": "body", "body.scale": 1.0, "body.up": "y"})
             meshes.append(("body", np.ascontiguousarray(body.vertices), np.ascontiguousarray(body.faces)))
+            if body.motion is not None:
+                motions.append(("body", np.ascontiguousarray(body.motion), body.frames_per_second))
         if motion is not None:
             changes["motion"] = Motion(motion) if isinstance(motion, str) else motion
         changes.update({name: part for name, part in (("simulation", settings), ("look", look)) if part is not None})
@@ -111,8 +115,7 @@ class Simulation:
         if frames is not None:
             changes["film.frames"] = frames
         scene.update(changes)
-        self._moving = moving
-        self._native = _native.Hair(_toml.document(scene.given), scene.folder, grooms, meshes)
+        self._native = _native.Hair(_toml.document(scene.given), scene.folder, grooms, meshes, motions)
         self._view = self._native.memory().view()
         self._view.flags.writeable = False
         self._fresh = False
@@ -121,7 +124,6 @@ class Simulation:
         self._scene = scene
         fitted = tomllib.loads(self._native.scene())
         self._fitted = fitted
-        self._frames_per_second = float(fitted["film"]["frames_per_second"])
         self.simulated_on, self.drawn_on, self.notes = self._native.about()
 
     # Time
@@ -175,21 +177,10 @@ class Simulation:
 
     def _next(self) -> Frame:
         index = self._frame
-        if self._moving:
-            assert self._body is not None
-            if index == 0 and float(self._fitted["film"]["settle"]) > 0:
-                self._native.settle(float(self._fitted["film"]["settle"]))
-            time = (index + 1) / self._frames_per_second
-            head = _native.head(_toml.document({"motion": self._fitted["motion"]}), [time], [0.0, 0.0, 0.0])[0]
-            stepped = self._native.step(1 / self._frames_per_second, head, self._body.at(time), self._wind())
-        else:
-            time, stepped = self._native.play(index)
+        time, stepped = self._native.play(index)
         self._fresh = False
         self._frame, self._time = index + 1, time
         return Frame(index, time, self.points, [StepReport(*report) for report in stepped])
-
-    def _wind(self) -> list[float]:
-        return [float(part) for part in self._fitted["wind"]["velocity"]]
 
     def settle(self, seconds: float) -> None:
         """Lets the hair hang on the resting body for a time [s]; no time of the film passes."""
@@ -267,7 +258,7 @@ class Simulation:
 
     def set(self, settings: Mapping[str, Any] | None = None, /, **sections: Any) -> None:
         """Changes settings of simulation, look, body_look, lights, level_of_detail or picture while it runs:
-        ``simulation.set({"simulation.gravity": (0, 0, 0)})`` or ``simulation.set(look={"color": "#5a3825"})``."""
+        ``simulation.set({"simulation.gravity": (0, 0, 0)})`` or ``simulation.set(look={"follow_strands": 8})``."""
         for key, value in {**(settings or {}), **sections}.items():
             self._change(key, getattr(value, "given", value))
 

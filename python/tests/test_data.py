@@ -57,7 +57,7 @@ def test_attributes_go_in_and_come_out_by_name(points):
         Groom(points, groups=[0, 1, 2])
 
 
-@pytest.mark.parametrize("suffix", ["hair", "npz", "usda", "ply", "data", "tfx", "obj", "npy"])
+@pytest.mark.parametrize("suffix", ["hair", "npz", "bin", "ply", "data", "tfx", "obj", "npy"])
 def test_every_format_of_the_engine_is_written_and_read(tmp_path, points, suffix):
     groom = Groom(points)
     groom.save(tmp_path / f"one.{suffix}")
@@ -94,7 +94,7 @@ def test_scenes_take_sections_and_keys():
     scene["film.frames"] = 7
     assert scene["film"]["frames"] == 7
     assert "gravity" in scene.explain("simulation.gravity")
-    scene["look.color"] = "#5a3825"
+    scene["body_look.color"] = "#5a3825"
     for key, words in {"simulation.gravty": "`simulation.gravity`", "film.frame": "`film.frames`", "sytle": "`style`"}.items():
         with pytest.raises(Error, match=words):
             scene[key] = 1
@@ -107,8 +107,8 @@ def test_scenes_take_sections_and_keys():
 
 def test_sections_are_classes_too():
     assert Settings(gravity=(0, 0, 0)).given == {"gravity": [0, 0, 0]}
-    with pytest.raises(Error, match="look.colour.*`look.color`"):
-        Look(colour="#ffffff")
+    with pytest.raises(Error, match="look.folow_strands.*`look.follow_strands`"):
+        Look(folow_strands=4)
     motion = Motion.keyframes([(0, (0, 0, 0)), (0.5, (0, 90, 0))])
     matrices = motion.matrices([0.0, 0.5])
     assert matrices.shape == (2, 4, 4) and np.allclose(matrices[0], np.eye(4), atol=1e-6)

@@ -16,7 +16,7 @@ def test_sections_are_written_from_the_table():
     writer = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(writer)
     page = writer.page(_native.settings())
-    assert (HERE / "strandline" / "sections.py").read_text(encoding="utf-8") == page, "run python/write_sections.py"
+    assert (HERE / "strandline" / "sections.py").read_text(encoding="utf-8") == page, "run python -P python/write_sections.py"
 
 
 def test_stubs_are_those_of_the_extension(tmp_path):
