@@ -1,6 +1,6 @@
 //! Construction of sessions.
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 use strandline_base::{Group, par::Pool};
 
@@ -14,6 +14,7 @@ use crate::{
     scene::FilmSection,
     scene::devices::{Opened, Pair, device_name},
     session::painter::Painter,
+    session::skin_carrier::SkinCarrier,
     session::worker::Worker,
     sim::{Model, Settings},
     strands::tags::Tags,
@@ -38,6 +39,8 @@ impl Session<Inline> {
         let are_same = bound.as_ref().is_some_and(|bound| bound.solids().are(engine.model().colliders()));
         let solids = pictures.gpu.as_ref().filter(|_| are_same).and_then(|gpu| engine.device_solids(gpu));
         let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
+        let mesh = mesh.cloned().map(Arc::new);
+        let skin = SkinCarrier::new(mesh.clone(), &guides);
         let view = View {
             painter: Painter::new(pictures, &guides, bound, mesh, solids)?,
             guides,
@@ -52,10 +55,12 @@ impl Session<Inline> {
         scene.groom.points_per_strand = view.guides.points_per_strand() as u32;
         let simulated_on = device_name(engine.gpu());
         let stiffening = engine.model().stiffening();
+        let mut simulation = Simulation::new(engine, settings.time_step);
+        simulation.skin = skin;
         Ok(Self {
             scene,
             tags: Tags::default(),
-            executor: Inline::new(Simulation::new(engine, settings.time_step)),
+            executor: Inline::new(simulation),
             view,
             direction: Direction::default(),
             settings: PictureSettings::default(),

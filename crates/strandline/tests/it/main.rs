@@ -11,6 +11,7 @@ mod outside;
 mod pose;
 mod readme;
 mod scene_reference;
+mod skin;
 mod time;
 mod workers;
 mod written;
