@@ -26,7 +26,7 @@ pub struct Hair {
     points: Py<PyArray3<f32>>,
 }
 
-/// What is lost with `close`.
+/// All that `close` gives back.
 struct Playing {
     hair: Moving,
     /// The scene with all changes.

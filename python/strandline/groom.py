@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,11 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from . import _native, _toml, research
 from .errors import Error
 from .scene import Scene
-
-if TYPE_CHECKING:
-    from typing import Unpack
-
-    from . import sections
 
 #: Attributes, the type of their numbers, their columns (0 for one number), and whether they are per point or strand.
 ATTRIBUTES: dict[str, tuple[Any, int, str]] = {
@@ -276,7 +271,7 @@ def load(
     return groom
 
 
-def grow(style: str = "long", **settings: Unpack[sections.Style]) -> Groom:
+def grow(style: str = "long", **settings: Any) -> Groom:
     """Grows a built-in style on the built-in bust: bob, long, wavy, curly, pixie or ponytail. Keywords are the settings of
     the section ``style``: ``grow("bob", strand_count=500, seed=3)``."""
     scene = Scene({"style": {"style": style, **settings}})
