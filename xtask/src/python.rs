@@ -1,16 +1,23 @@
-//! A Python with numpy and usd-core, which read files of the program.
+//! A Python with numpy and usd-core, which read files of the program, and with what tests its package.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use crate::cargo::root;
+use anyhow::{Context, Result};
+
+use crate::cargo::{cargo_command, root};
+use crate::programs::Tally;
 
 /// Variable that names the interpreter to the tests.
 pub const NAMED: &str = "STRANDLINE_PYTHON";
 
 /// Summary of the tests that need Python.
-pub const NONE: &str = "no Python with numpy and usd-core: nobody else read moving caches and USD \
-                        (STRANDLINE_PYTHON names one; with STRANDLINE_REQUIRE_PYTHON the test fails without it)";
+pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, pytest and mypy: nobody else read moving caches and USD, and \
+                        the Python package was not tested (STRANDLINE_PYTHON names one; with \
+                        STRANDLINE_REQUIRE_PYTHON the tests fail without it)";
+
+/// Packages that the tests need.
+const PACKAGES: [&str; 5] = ["numpy", "usd-core", "alembic3d>=1.8.12,<2", "pytest>=8", "mypy>=1.15"];
 
 /// The Python of the tests, if it has their packages. `setup` makes one in `target` if there is none, and
 /// packages can be had.
@@ -23,8 +30,64 @@ pub fn prepare(setup: bool) -> Option<String> {
     }
     let made = setup
         && run("python3", &["-m", "venv", &folder().to_string_lossy()])
-        && run(&own, &["-m", "pip", "install", "--quiet", "numpy", "usd-core"]);
+        && run(&own, &[&["-m", "pip", "install", "--quiet"], &PACKAGES[..]].concat());
     (made && is_whole(&own)).then_some(own)
+}
+
+/// Builds the Python package in the target folder and runs its tests, which count as others do.
+pub fn test_package(python: &str, tally: &mut Tally) -> bool {
+    let tested = installed().and_then(|site| {
+        println!("\n== pytest python/tests");
+        let words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "python/tests"];
+        let mut command = Command::new(python);
+        command.args(words).current_dir(root()).env("PYTHONPATH", site).env("PYTHONDONTWRITEBYTECODE", "1");
+        command.output().context(python.to_owned())
+    });
+    match tested {
+        Ok(output) => {
+            let text = String::from_utf8_lossy(&output.stdout);
+            println!("{text}{}", String::from_utf8_lossy(&output.stderr));
+            let last = text.lines().last().unwrap_or_default();
+            let [passed, failed, ignored] = ["passed", "failed", "skipped"].map(|word| counted(last, word));
+            tally.join(Tally { passed, failed, ignored });
+            output.status.success()
+        }
+        Err(error) => {
+            println!("the Python package is not tested: {error:#}");
+            false
+        }
+    }
+}
+
+/// The number before a word in the last line of pytest.
+fn counted(line: &str, word: &str) -> u64 {
+    let words: Vec<&str> = line.split([' ', ',']).filter(|word| !word.is_empty()).collect();
+    let number = words.windows(2).find(|pair| pair[1] == word).and_then(|pair| pair[0].parse().ok());
+    number.unwrap_or(0)
+}
+
+/// The folder that has the package as it would be installed: its files, and the extension beside them.
+fn installed() -> Result<PathBuf> {
+    // The tests use no GPU, whose crates would be compiled once more.
+    let place = ["--manifest-path", "python/Cargo.toml", "--target-dir", "target"];
+    let words = [&["build", "--quiet", "--no-default-features"], &place[..]].concat();
+    anyhow::ensure!(cargo_command(&words).status()?.success(), "its extension is not built");
+    let site = root().join("target/python-package");
+    let package = site.join("strandline");
+    std::fs::create_dir_all(&package)?;
+    for entry in std::fs::read_dir(root().join("python/strandline"))? {
+        let path = entry?.path();
+        let is_part =
+            path.extension().is_some_and(|ending| ["py", "pyi", "typed"].iter().any(|own| ending == *own));
+        if let Some(name) = path.file_name().filter(|_| is_part) {
+            std::fs::copy(&path, package.join(name))?;
+        }
+    }
+    let [prefix, suffix] = [std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX];
+    let library = root().join(format!("target/debug/{prefix}_native{suffix}"));
+    let name = if cfg!(windows) { "_native.pyd" } else { "_native.abi3.so" };
+    std::fs::copy(&library, package.join(name)).with_context(|| library.display().to_string())?;
+    Ok(site)
 }
 
 fn folder() -> PathBuf {
@@ -32,11 +95,23 @@ fn folder() -> PathBuf {
 }
 
 fn is_whole(python: &str) -> bool {
-    run(python, &["-c", "import numpy, pxr"])
+    run(python, &["-c", "import numpy, pxr, alembic3d, pytest, mypy"])
 }
 
 fn run(program: &str, arguments: &[&str]) -> bool {
     let mut command = Command::new(program);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.status().is_ok_and(|status| status.success())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_line_of_pytest_is_counted() {
+        let line = "2 failed, 40 passed, 1 skipped in 9.31s";
+        assert_eq!(["passed", "failed", "skipped"].map(|word| counted(line, word)), [40, 2, 1]);
+        assert_eq!(counted("40 passed in 9.31s", "failed"), 0);
+    }
 }

@@ -62,6 +62,9 @@ pub fn test(setup: bool) -> bool {
     let workflows = workflows::check_if_installed();
     report.step("workflows", |_| workflows.unwrap_or(true));
     tests(&mut report, &wanted);
+    if let Some(python) = &python {
+        report.step("Python package", |tally| python::test_package(python, tally));
+    }
     let missing = [
         (there.adapter, adapter::UNTESTED),
         (there.display, adapter::NO_WINDOW),
@@ -172,7 +175,7 @@ pub fn bless() -> bool {
 
 /// Writes docs/scene.md from the settings table, and docs/cli.md from the arguments of the program.
 pub fn docs() -> bool {
-    let pages = [["--test", "it", "scene_reference::the_page"], ["--bin", "strandline", "the_page"]];
+    let pages = [["--test", "it", "scene_reference::the_page"], ["--lib", "--quiet", "documents::the_page"]];
     let write = |page: &[&str; 3]| {
         let arguments: Vec<&str> = ["test", "--workspace"].iter().chain(page).copied().collect();
         cargo(&arguments, &[("STRANDLINE_BLESS", "1")], &mut Tally::default())

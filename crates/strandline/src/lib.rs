@@ -54,9 +54,9 @@ pub mod look {
     };
 }
 
-/// Meshes and the distance to them.
+/// Meshes, their motion and the distance to them.
 pub mod mesh {
-    pub use crate::body::{Aabb, DistanceGrid, MeshFormat, SignedDistance};
+    pub use crate::body::{Aabb, DistanceGrid, MeshFormat, SignedDistance, VertexMotion};
     pub use crate::prepare::{Placement, mesh_unit};
 }
 

@@ -21,7 +21,7 @@ const LONGEST_SHADER: usize = 200;
 const LONGEST_FUNCTION: usize = 60;
 
 /// Each crate and those of ours that it may use.
-const ARROWS: [(&str, &[&str]); 9] = [
+const ARROWS: [(&str, &[&str]); 10] = [
     ("crates/base", &[]),
     ("crates/body", &["strandline-base"]),
     ("crates/gpu", &["strandline-base"]),
@@ -41,6 +41,7 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ),
     ("apps/viewer", &["strandline"]),
     ("apps/cli", &["strandline", "strandline-viewer"]),
+    ("python", &["strandline", "strandline-cli"]),
 ];
 
 /// Folders of which the first imports nothing from the second.
@@ -95,7 +96,7 @@ fn problems(root: &Path) -> Result<Vec<String>> {
 }
 
 /// Folders of code.
-const PLACES: [&str; 6] = ["apps", "checks", "crates", "examples", "fuzz", "xtask"];
+const PLACES: [&str; 7] = ["apps", "checks", "crates", "examples", "fuzz", "python", "xtask"];
 
 fn look(root: &Path) -> Result<Found> {
     let mut found = Found::default();

@@ -14,7 +14,8 @@ impl Hair {
         Ok(out)
     }
 
-    /// Adds the hair as it is now as the next frame, at the time that has passed. Where the runs of [`Hair::step`] are not
+    /// Adds the hair as it is now as the next frame, at the time that has passed, or after [`Hair::play`] at the time of its
+    /// frame. Where the runs of [`Hair::step`] are not
     /// whole steps, hair and body are those of one step earlier, as pictures show them. The file gets the reports of the
     /// steps since the last frame of any file.
     ///
@@ -23,7 +24,7 @@ impl Hair {
     /// failed.
     pub fn write(&mut self, out: &mut Out) -> Result<(), Error> {
         let frame = out.offered();
-        let time = self.session.simulation().passed;
+        let time = self.played.unwrap_or(self.session.simulation().passed);
         out.check_next(self.session.scene().film.frames, time)?;
         self.reports()?;
         self.session.show()?;

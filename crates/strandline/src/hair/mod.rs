@@ -1,4 +1,5 @@
 mod files;
+mod film;
 
 use std::path::Path;
 
@@ -12,7 +13,7 @@ use crate::{
     render::{BodyLook, Camera, FrameReport, LevelOfDetail, Light, Look, Picture, PictureSettings},
     scene::GroomSection,
     scene::devices::{Opened, Pair, device_name},
-    session::{Change, Inline, Session},
+    session::{Change, Inline, Session, film_timing::FilmTiming},
     sim::{Settings, State, StepReport},
     strands::tags::Tags,
 };
@@ -24,6 +25,10 @@ pub struct Hair {
     pub wind: Vec3,
     /// Reports of steps since the last frame that was written, from the first file on.
     unwritten: Option<Vec<StepReport>>,
+    /// Timing of the scene's film, from its first frame on.
+    timing: Option<FilmTiming>,
+    /// Time of the frame of the film that is shown \[s\]; none after a step beside the film.
+    played: Option<f64>,
 }
 
 impl Hair {
@@ -96,7 +101,7 @@ impl Hair {
     }
 
     fn of(session: Session<Inline>) -> Self {
-        Self { session, wind: Vec3::ZERO, unwritten: None }
+        Self { session, wind: Vec3::ZERO, unwritten: None, timing: None, played: None }
     }
 
     /// Lets `seconds` pass while the body moves evenly to `body`: a [`BodyFrame`], or the pose of a rigid head. Steps
@@ -123,6 +128,7 @@ impl Hair {
         body: impl Fn(f32) -> B,
     ) -> Result<Vec<StepReport>, Error> {
         let wind = self.wind;
+        self.played = None;
         let simulation = self.session.simulation_mut();
         let reports = simulation.step_along(seconds, &|share| (body(share).into(), wind))?;
         self.note_reports(&reports);

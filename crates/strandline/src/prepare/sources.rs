@@ -175,7 +175,8 @@ impl Sources {
     /// The part of a mesh that has a name: of a mesh in memory the entry of that name.
     pub(super) fn mesh_part(&self, scene: &Scene, mesh: &Path, part: &str) -> Result<Option<Mesh>, Error> {
         if !self.meshes.contains_key(mesh) {
-            return Ok(Mesh::load_part(&scene.path(mesh), part)?);
+            let path = scene.path(mesh);
+            return if Mesh::is_sequence(&path) { Ok(None) } else { Ok(Mesh::load_part(&path, part)?) };
         }
         let part = self.meshes.get(Path::new(part));
         Ok(part.map(|mesh| Mesh::clone(mesh).checked()).transpose()?)
@@ -184,7 +185,9 @@ impl Sources {
     /// Names of the parts of a mesh: of a mesh in memory those of all entries.
     pub(super) fn part_names(&self, scene: &Scene, mesh: &Path) -> Result<Vec<String>, Error> {
         if !self.meshes.contains_key(mesh) {
-            return Ok(Mesh::part_names(&scene.path(mesh))?);
+            // A body in motion has no parts with names.
+            let path = scene.path(mesh);
+            return if Mesh::is_sequence(&path) { Ok(Vec::new()) } else { Ok(Mesh::part_names(&path)?) };
         }
         Ok(self.meshes.keys().map(|name| name.display().to_string()).collect())
     }

@@ -37,7 +37,7 @@ pub(crate) use view::View;
 use std::collections::VecDeque;
 
 use glam::Vec3;
-use strandline_base::Group;
+use strandline_base::{Group, par::prelude::*};
 
 use crate::{
     Error, HeadMotion, Scene,
@@ -326,15 +326,31 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// As [`Session::pick`].
     pub fn points(&mut self) -> Result<&[Vec3], Error> {
-        let Self { executor, shown, view, points, .. } = self;
-        executor.with(|simulation| simulation.bring_home(shown))?;
-        let (strands, each) = (view.guides.strand_count(), view.guides.points_per_strand());
-        points.clear();
-        points.extend((0..strands).flat_map(|strand| {
-            let block = &shown.positions()[strand / LANES * each..][..each];
-            block.iter().map(move |lanes| lanes.get(strand % LANES))
-        }));
+        let guides = &self.view.guides;
+        let mut points = std::mem::take(&mut self.points);
+        points.resize(guides.strand_count() * guides.points_per_strand(), Vec3::ZERO);
+        let filled = self.points_into(&mut points);
+        self.points = points;
+        filled?;
         Ok(&self.points)
+    }
+
+    /// Puts the points of [`Session::points`] into memory of the caller, as many as there are.
+    ///
+    /// # Errors
+    /// As [`Session::pick`].
+    pub fn points_into(&mut self, points: &mut [Vec3]) -> Result<(), Error> {
+        let Self { executor, shown, view, .. } = self;
+        executor.with(|simulation| simulation.bring_home(shown))?;
+        let each = view.guides.points_per_strand();
+        assert_eq!(points.len(), view.guides.strand_count() * each, "room for every point");
+        let blocks = points.par_chunks_mut(LANES * each).zip(shown.positions().par_chunks(each));
+        blocks.for_each(|(strands, block)| {
+            for (lane, strand) in strands.chunks_mut(each).enumerate() {
+                strand.iter_mut().zip(block).for_each(|(point, lanes)| *point = lanes.get(lane));
+            }
+        });
+        Ok(())
     }
 
     /// Notes on the devices, human-readable.

@@ -2,7 +2,7 @@
 
 use std::{collections::VecDeque, sync::Arc};
 
-use strandline_base::par::Pool;
+use strandline_base::{Group, par::Pool};
 
 use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
 use crate::{
@@ -11,6 +11,7 @@ use crate::{
     groom::Guides,
     prepare,
     render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
+    scene::FilmSection,
     scene::devices::{Opened, Pair, device_name},
     session::painter::Painter,
     session::skin_carrier::SkinCarrier,
@@ -176,6 +177,17 @@ impl Session<Inline> {
     pub fn set_fall_back(&mut self, fall_back: bool) {
         self.executor.simulation_mut().set_fall_back(fall_back);
         self.view.painter.fall_back = fall_back;
+    }
+
+    /// Changes the number of frames of the scene's film.
+    ///
+    /// # Errors
+    /// A number outside its range; it then stays.
+    pub fn set_frames(&mut self, frames: u32) -> Result<(), Error> {
+        let film = FilmSection { frames, ..self.scene.film };
+        film.check_as("film")?;
+        self.scene.film = film;
+        Ok(())
     }
 
     /// Sets the strands' attributes that files are given.

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use glam::{Quat, Vec3};
 use strandline::{
     Backend, Event, Mesh, Picture, Player, Pose, Prepared, Scene, Sources, Style,
-    low_level::body::{BodyFrame, VertexMotion},
-    scene::MotionName,
+    low_level::body::BodyFrame,
+    mesh::VertexMotion,
+    scene::{BodyPart, MotionName},
 };
 
 fn bust() -> PathBuf {
@@ -148,6 +149,68 @@ fn a_motion_in_memory_moves_a_mesh_in_memory() {
     memory.body.clip = Some("nod".into());
     let error = Prepared::from_sources(&memory, &Sources::default().with_mesh("bust", mesh)).err().unwrap();
     assert!(error.to_string().contains("a clip of a body in memory"), "{error}");
+}
+
+/// Writes a mesh as an .obj file, raised \[m\].
+fn write_obj(path: &Path, mesh: &Mesh, raised: f32) {
+    use std::fmt::Write;
+    let mut text = String::new();
+    for place in &mesh.positions {
+        writeln!(text, "v {} {} {}", place.x, place.y + raised, place.z).unwrap();
+    }
+    for [a, b, c] in mesh.triangles.iter().map(|corners| corners.map(|corner| corner + 1)) {
+        writeln!(text, "f {a} {b} {c}").unwrap();
+    }
+    std::fs::write(path, text).unwrap();
+}
+
+#[test]
+fn files_of_a_walk_move_the_body_and_its_further_meshes_ride_the_head() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = Mesh::load(&bust(), 1.0).unwrap();
+    for frame in 0..3 {
+        write_obj(&folder.path().join(format!("walk{frame:04}.obj")), &mesh, 0.1 * frame as f32);
+    }
+    let mut walks = scene("nod");
+    (walks.body.clip, walks.body.file) = (None, Some(folder.path().join("walk%04d.obj")));
+    walks.body.frames_per_second = 4.0;
+    walks.body.scale = strandline::format::Scale::Factor(1.0);
+    let collar = BodyPart { file: bust(), ..BodyPart::default() };
+    walks.body.parts = vec![collar];
+    let prepared = Prepared::new(&walks).unwrap();
+    let rest = &prepared.mesh.as_ref().unwrap().positions;
+    assert_eq!(rest.len(), 2 * mesh.positions.len());
+    for (time, raised) in [(0.0, 0.0), (0.25, 0.1), (0.375, 0.15), (9.0, 0.2)] {
+        let frame = prepared.head.frame(time);
+        assert!(frame.check(None, Some(rest.len())).is_ok());
+        for (found, rest) in in_world(&frame).iter().zip(rest) {
+            assert!(found.distance(*rest + Vec3::Y * raised) < 1e-5, "{found} {rest} at {time}");
+        }
+    }
+}
+
+#[test]
+fn the_head_follows_a_joint_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("turn.bvh");
+    let text = "HIERARCHY ROOT Head { OFFSET 0 0 0 CHANNELS 3 Yrotation Xrotation Zrotation } MOTION Frames: 2 \
+                Frame Time: 0.5 10 0 0 50 0 0";
+    std::fs::write(&path, text).unwrap();
+    let mut turns = scene("nod");
+    (turns.body.clip, turns.body.file, turns.motion.name) = (None, None, MotionName::File);
+    let error = turns.check().unwrap_err().to_string();
+    assert!(error.contains("motion.file"), "{error}");
+    turns.motion.file = Some(path);
+    let head = Prepared::new(&turns).unwrap().head;
+    for (time, degrees) in [(-1.0, 0.0_f32), (0.25, 20.0), (3.0, 40.0)] {
+        let pose = head.pose(time);
+        assert!(pose.point(head.pivot()).distance(head.pivot()) < 1e-6);
+        let face = pose.direction(Vec3::Z);
+        assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-3, "{face} at {time}");
+    }
+    turns.motion.joint = "Hips".to_owned();
+    let error = Prepared::new(&turns).err().unwrap().to_string();
+    assert!(error.contains("no joint `Hips` among `Head`"), "{error}");
 }
 
 #[test]

@@ -1,0 +1,71 @@
+//! The film of a scene, frame by frame, in a loop of one's own.
+
+use glam::Vec3;
+
+use super::Hair;
+use crate::{Error, body::BodyFrame, session::film_timing::FilmTiming, sim::StepReport};
+
+impl Hair {
+    /// Moves to the end of a frame of the scene's film, with the motion and the wind of the scene: frames in order, from
+    /// 0, are those of [`Player`](crate::Player) to the bit. Before the first one hair settles as the scene has it.
+    /// Returns the reports as [`Hair::step`] does.
+    ///
+    /// # Errors
+    /// As [`Hair::step`].
+    pub fn play(&mut self, frame: u32) -> Result<Vec<StepReport>, Error> {
+        let timing = self.timing().clone();
+        let reports = timing.run(self.session.simulation_mut(), frame)?;
+        self.played = Some(timing.time(frame));
+        self.note_reports(&reports);
+        Ok(reports)
+    }
+
+    /// Changes the number of frames of the scene's film, which is the most that a file takes.
+    ///
+    /// # Errors
+    /// A number outside its range; it then stays.
+    pub fn set_frames(&mut self, frames: u32) -> Result<(), Error> {
+        self.session.set_frames(frames)
+    }
+
+    /// Time of the film at which a frame is shown \[s\].
+    pub fn frame_time(&mut self, frame: u32) -> f64 {
+        self.timing().time(frame)
+    }
+
+    /// The timing of the scene's film, which begins with the body as it is at the first call.
+    fn timing(&mut self) -> &FilmTiming {
+        let session = &self.session;
+        self.timing.get_or_insert_with(|| {
+            let here = session.simulation().end().world_from_head();
+            FilmTiming::new(session.scene(), session.head().clone(), here)
+        })
+    }
+
+    /// Lets the hair hang on the resting body for a time \[s\], in whole steps without reports: no time of the film
+    /// passes.
+    ///
+    /// # Errors
+    /// As [`Hair::step`].
+    pub fn settle(&mut self, seconds: f64) -> Result<(), Error> {
+        let wind = self.wind;
+        Ok(self.session.simulation_mut().settle(seconds, wind)?)
+    }
+
+    /// The body at the end of the last step.
+    pub fn body(&self) -> &BodyFrame {
+        self.session.simulation().end()
+    }
+
+    /// Puts the points of [`Hair::points`] into memory of the caller, shape `[strand][point]`.
+    ///
+    /// # Errors
+    /// As [`Hair::points`].
+    ///
+    /// # Panics
+    /// Another number of points than the guides have.
+    pub fn points_into(&mut self, points: &mut [Vec3]) -> Result<(), Error> {
+        self.session.show()?;
+        self.session.points_into(points)
+    }
+}

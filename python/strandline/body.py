@@ -1,0 +1,87 @@
+"""Bodies that hair grows on and hits."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from .errors import Error
+
+
+class Body:
+    """A triangle mesh, head space [m], y up: ``Body(vertices, faces)``, of shapes (n, 3).
+
+    ``motion`` holds its vertices over time, shape (frame, n, 3), at ``frames_per_second``: then the body moves with
+    every frame of a simulation. Plain data: it can be pickled.
+    """
+
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    notes: list[str]
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        motion: ArrayLike | None = None,
+        frames_per_second: float = 24.0,
+        notes: Sequence[str] = (),
+    ) -> None:
+        self.vertices = np.ascontiguousarray(vertices, dtype=np.float32)
+        if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
+            raise Error(f"vertices has the shape {self.vertices.shape}, expected (n, 3)", "value")
+        corners = np.asarray(faces)
+        if corners.size and corners.min() < 0:
+            raise Error(f"faces has the index {corners.min()}, expected 0 or more", "value")
+        self.faces = np.ascontiguousarray(corners, dtype=np.uint32)
+        if self.faces.ndim != 2 or self.faces.shape[1] != 3:
+            raise Error(f"faces has the shape {self.faces.shape}, expected (n, 3): triangles", "value")
+        self.motion: NDArray[np.float32] | None = None
+        if motion is not None:
+            moving = np.ascontiguousarray(motion, dtype=np.float32)
+            if moving.ndim != 3 or moving.shape[1:] != self.vertices.shape:
+                raise Error(f"motion has the shape {moving.shape}, expected (frame, {len(self.vertices)}, 3)", "value")
+            self.motion = moving
+        if not frames_per_second > 0:
+            raise Error(f"frames_per_second is {frames_per_second}, expected a number above 0", "value")
+        self.frames_per_second = float(frames_per_second)
+        self.notes = list(notes)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], scale: float = 1.0) -> Body:
+        """Reads a mesh of an .obj, .gltf, .glb, .vrm, .ply or .stl, or with the extra [usd] of a .usd; ``scale`` is metres
+        for each unit of the file."""
+        path = os.fspath(path)
+        if os.path.splitext(path)[1].lower() in (".usd", ".usdc", ".usda", ".usdz"):
+            from . import usd
+
+            return usd.load_body(path)
+        vertices, faces, notes = _native.load_mesh(path, scale)
+        return cls(vertices, faces, notes=notes)
+
+    @classmethod
+    def mannequin(cls) -> Body:
+        """The built-in bust."""
+        vertices, faces, _ = _native.mannequin()
+        return cls(vertices, faces)
+
+    def at(self, time: float) -> NDArray[np.float32]:
+        """Vertices at a time [s], between frames on straight lines; those at rest without a motion."""
+        if self.motion is None:
+            return self.vertices
+        place = float(np.clip(time * self.frames_per_second, 0, len(self.motion) - 1))
+        low = min(int(place), len(self.motion) - 1)
+        high = min(low + 1, len(self.motion) - 1)
+        share = np.float32(place - low)
+        if share == 0 or low == high:
+            return np.asarray(self.motion[low])
+        return np.asarray(self.motion[low] * (1 - share) + self.motion[high] * share)
+
+    def __repr__(self) -> str:
+        moves = "" if self.motion is None else f", {len(self.motion)} frames"
+        return f"Body({len(self.vertices)} vertices, {len(self.faces)} faces{moves})"

@@ -1,0 +1,196 @@
+"""Grooms, bodies, scenes and errors as plain data."""
+
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import strandline
+from strandline import Error, Groom, Look, Motion, Scene, Settings
+
+
+def refused(kind, *words):
+    return pytest.raises(Error, match="(?s)" + ".*".join(words)), kind
+
+
+def test_import_is_quick_and_loads_no_gpu_or_window_library():
+    code = (
+        "import time; import numpy; begun = time.perf_counter(); import strandline; "
+        "spent = time.perf_counter() - begun; maps = open('/proc/self/maps').read(); "
+        "print(spent, [name for name in ('libvulkan', 'libX11', 'libwayland', 'libGL') if name in maps])"
+    )
+    spent, _, found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.partition(" ")
+    assert found.strip() == "[]"
+    assert float(spent) < 0.15 * 4, "a busy machine is given four times the bound"
+
+
+def test_a_groom_of_an_array_is_a_view_of_shape_strand_point(points):
+    groom = Groom(points)
+    assert groom.array.shape == points.shape and groom.array.dtype == np.float32
+    assert np.shares_memory(groom.array, points)
+    assert len(groom) == 64 and groom.is_uniform
+
+
+def test_ragged_grooms_have_starts():
+    groom = Groom(np.arange(21).reshape(7, 3), starts=[0, 3, 7], widths=[1e-4, 2e-4])
+    assert [len(strand) for strand in groom.strands()] == [3, 4]
+    with pytest.raises(Error, match="different numbers of points"):
+        groom.array
+    one = groom.selected([1])
+    assert np.array_equal(one.points, groom.points[3:]) and np.allclose(one.widths, [2e-4])
+    even = groom.resampled(5)
+    assert even.array.shape == (2, 5, 3)
+    assert np.allclose(even.array[:, 0], groom.points[[0, 3]]) and np.allclose(even.array[:, -1], groom.points[[2, 6]])
+
+
+def test_attributes_go_in_and_come_out_by_name(points):
+    groom = Groom(points, colors=np.full((512, 3), 0.5), root_uvs=np.zeros((64, 2)), groups=np.arange(64) % 2)
+    assert groom["groups"].dtype == np.uint32 and "colors" in groom
+    groom["guide_flags"] = np.arange(64) % 4 == 0
+    with pytest.raises(Error, match="`colour` is no attribute of a groom, expected `colors`"):
+        groom["colour"] = np.zeros((512, 3))
+    with pytest.raises(Error, match=r"colors has the shape \(5,\)"):
+        groom["colors"] = np.zeros(5)
+    with pytest.raises(Error, match="groups has 3 rows, expected 64, one for each strand"):
+        Groom(points, groups=[0, 1, 2])
+
+
+@pytest.mark.parametrize("suffix", ["hair", "npz", "bin", "ply", "data", "tfx", "obj", "npy"])
+def test_every_format_of_the_engine_is_written_and_read(tmp_path, points, suffix):
+    groom = Groom(points)
+    groom.save(tmp_path / f"one.{suffix}")
+    back = strandline.load(tmp_path / f"one.{suffix}", scale=1)
+    assert len(back) == 64
+    assert np.allclose(back.points, groom.points, atol=1e-6)
+
+
+def test_attributes_survive_a_file(tmp_path, points):
+    colors = np.linspace(0, 1, 512 * 3, dtype=np.float32).reshape(512, 3)
+    groom = Groom(points, widths=np.full(512, 1e-4), colors=colors, root_uvs=np.full((64, 2), 0.25), groups=np.arange(64) % 3)
+    groom.save(tmp_path / "one.npz")
+    back = strandline.load(tmp_path / "one.npz", scale=1)
+    for name in ("colors", "root_uvs", "groups"):
+        assert np.array_equal(back[name], groom[name]), name
+
+
+def test_styles_grow_by_keyword():
+    groom = strandline.grow("bob", strand_count=40, seed=3)
+    assert len(groom) == 40
+    again = strandline.grow("bob", strand_count=40, seed=3)
+    assert np.array_equal(groom.points, again.points)
+    assert not np.array_equal(groom.points, strandline.grow("bob", strand_count=40, seed=4).points)
+    with pytest.raises(Error, match="style.strand_cuont.*`style.strand_count`"):
+        strandline.grow("bob", strand_cuont=40)
+    with pytest.raises(Error, match="mohawk"):
+        strandline.grow("mohawk")
+
+
+def test_scenes_take_sections_and_keys():
+    scene = Scene({"simulation.gravity": (0, -1.6, 0)}, style={"style": "bob", "strand_count": 50}, film={"frames": 3})
+    assert scene["simulation.gravity"] == [0, -1.6, 0] or np.allclose(scene["simulation.gravity"], [0, -1.6, 0])
+    assert scene["style.strand_count"] == 50
+    scene["film.frames"] = 7
+    assert scene["film"]["frames"] == 7
+    assert "gravity" in scene.explain("simulation.gravity")
+    scene["body_look.color"] = "#5a3825"
+    for key, words in {"simulation.gravty": "`simulation.gravity`", "film.frame": "`film.frames`", "sytle": "`style`"}.items():
+        with pytest.raises(Error, match=words):
+            scene[key] = 1
+    with pytest.raises(Error, match="film.frames is .*0.*expected 1 to"):
+        scene["film.frames"] = 0
+    with pytest.raises(Error, match="film.frames is .*many"):
+        scene["film.frames"] = "many"
+    assert scene["film.frames"] == 7, "a refused setting leaves the scene as it was"
+
+
+def test_sections_are_classes_too():
+    assert Settings(gravity=(0, 0, 0)).given == {"gravity": [0, 0, 0]}
+    with pytest.raises(Error, match="look.folow_strands.*`look.follow_strands`"):
+        Look(folow_strands=4)
+    motion = Motion.keyframes([(0, (0, 0, 0)), (0.5, (0, 90, 0))])
+    matrices = motion.matrices([0.0, 0.5])
+    assert matrices.shape == (2, 4, 4) and np.allclose(matrices[0], np.eye(4), atol=1e-6)
+    assert np.allclose(matrices[1][:3, :3] @ [0, 0, 1], [1, 0, 0], atol=1e-5)
+    with pytest.raises(Error, match="keyframe"):
+        Scene(motion=Motion.keyframes([(1, (0, 0, 0)), (0.5, (0, 90, 0))]))
+
+
+def test_scene_files_are_read_and_named_in_errors(tmp_path):
+    scene = Scene(style={"strand_count": 12}, motion={"name": "nod"})
+    scene.save(tmp_path / "a.toml")
+    assert Scene.load(tmp_path / "a.toml") == scene
+    (tmp_path / "b.toml").write_text("[film]\nframes = 0\n")
+    with pytest.raises(Error, match="film.frames.*b.toml") as caught:
+        Scene.load(tmp_path / "b.toml")
+    assert caught.value.kind == "value"
+    with pytest.raises(Error, match="cannot read the scene.*none.toml") as caught:
+        Scene.load(tmp_path / "none.toml")
+    assert caught.value.kind == "file"
+
+
+def test_plain_data_is_pickled(points, ball):
+    groom = Groom(points, groups=np.arange(64) % 2)
+    scene = Scene(film={"frames": 3})
+    scene.folder = "there"
+    for one in (groom, ball, scene, Settings(gravity=(0, 0, 0)), Motion("nod"), Error("a text", "busy")):
+        back = pickle.loads(pickle.dumps(one))
+        assert type(back) is type(one)
+    back = pickle.loads(pickle.dumps(scene))
+    assert back == scene and back.folder == "there"
+    assert np.array_equal(pickle.loads(pickle.dumps(groom)).points, groom.points)
+    error = pickle.loads(pickle.dumps(Error("a text", "busy")))
+    assert (str(error), error.kind) == ("a text", "busy")
+
+
+def test_errors_have_the_program_s_texts_and_kinds(tmp_path):
+    path = tmp_path / "wavy.hair"
+    path.write_bytes(b"PK" + bytes(200))
+    with pytest.raises(Error, match="HAIR.*wavy.hair") as caught:
+        strandline.load(path)
+    assert caught.value.kind == "file"
+    with pytest.raises(Error, match="none.hair"):
+        strandline.load(tmp_path / "none.hair")
+    with pytest.raises(Error, match="expected"):
+        strandline.load(tmp_path / "none.docx")
+
+
+@pytest.mark.parametrize("layout", ["usc", "ct2hair", "neural", "positions", "points"])
+def test_research_layouts_come_back(tmp_path, points, layout):
+    from strandline.research import LAYOUTS
+
+    groom = Groom(points).resampled(100) if layout == "neural" else Groom(points)
+    path = tmp_path / f"one{LAYOUTS[layout].suffix}"
+    groom.save(path, layout=layout)
+    back = strandline.load(path, layout=layout)
+    assert back.array.shape == groom.array.shape
+    assert np.allclose(back.points, groom.points, atol=1e-6)
+
+
+def test_a_layout_that_nobody_has_is_refused(tmp_path, points):
+    with pytest.raises(Error, match="`nueral` is no layout, expected `neural`"):
+        strandline.load(tmp_path / "a.ply", layout="nueral")
+    with pytest.raises(Error, match="expected .ply for neural"):
+        Groom(points).save(tmp_path / "a.obj", layout="neural")
+
+
+def test_root_coordinates_come_from_a_second_file(tmp_path, points):
+    Groom(points).save(tmp_path / "a.npz", layout="positions")
+    np.savez(tmp_path / "uv.npz", uv_coords=np.full((64, 2), 0.5), other=np.zeros(3))
+    groom = strandline.load(tmp_path / "a.npz", layout="positions", root_uvs=tmp_path / "uv.npz")
+    assert np.array_equal(groom["root_uvs"], np.full((64, 2), 0.5, dtype=np.float32))
+
+
+def test_gpus_are_listed():
+    for gpu in strandline.gpus():
+        assert gpu.name and gpu.index >= 0
+
+
+def test_the_program_runs_through_the_extension(tmp_path):
+    run = lambda *words: subprocess.run([sys.executable, "-m", "strandline", *words], capture_output=True, text=True)  # noqa: E731
+    assert run("--version").returncode == 0
+    wrong = run("sim", "--fames", "3")
+    assert wrong.returncode == 2 and "--frames" in wrong.stderr
+    missing = run("info", str(tmp_path / "none.hair"))
+    assert missing.returncode == 1 and "none.hair" in missing.stderr and "Traceback" not in missing.stderr

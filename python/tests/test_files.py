@@ -1,0 +1,172 @@
+"""USD and Alembic: what is written is read by the others' own libraries."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import shake
+
+import strandline
+from strandline import Body, Error, Groom
+
+pxr = pytest.importorskip("pxr")
+pytest.importorskip("alembic3d")
+
+
+@pytest.fixture
+def rich(points):
+    generator = np.random.default_rng(2)
+    return Groom(
+        points,
+        widths=generator.uniform(5e-5, 1e-4, 512),
+        colors=generator.random((512, 3)),
+        root_uvs=generator.random((64, 2)),
+        groups=np.arange(64) % 3,
+        guide_flags=np.arange(64) % 4 == 0,
+    )
+
+
+@pytest.mark.parametrize("suffix", ["usdc", "usda", "abc"])
+def test_grooms_come_back(tmp_path, rich, suffix):
+    rich.save(tmp_path / f"a.{suffix}")
+    back = strandline.load(tmp_path / f"a.{suffix}")
+    assert np.allclose(back.points, rich.points, rtol=1e-6, atol=1e-9)
+    assert np.allclose(back.widths, rich.widths, rtol=1e-6)
+    for name in ("colors", "root_uvs", "groups", "guide_flags"):
+        assert np.array_equal(back[name], rich[name]), name
+
+
+@pytest.mark.parametrize("for_", ["any", "unreal", "blender"])
+def test_a_stage_is_as_its_receiver_wants_it(tmp_path, rich, for_):
+    from pxr import Usd, UsdGeom
+
+    from strandline import usd
+
+    usd.save_groom(rich, tmp_path / "a.usdc", for_=for_)
+    stage = Usd.Stage.Open(str(tmp_path / "a.usdc"))
+    unit, up = {"any": (1.0, "Y"), "unreal": (0.01, "Z"), "blender": (1.0, "Z")}[for_]
+    assert (UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)) == (unit, up)
+    curves = UsdGeom.BasisCurves(stage.GetPrimAtPath("/Groom/Hair"))
+    assert curves.GetTypeAttr().Get() == "linear" and curves.GetWidthsInterpolation() == "vertex"
+    assert "GroomAPI" in str(stage.GetDefaultPrim().GetMetadata("apiSchemas"))
+    names = {primvar.GetPrimvarName() for primvar in UsdGeom.PrimvarsAPI(curves).GetPrimvars()}
+    wanted = {"groom_color", "groom_root_uv", "groom_group_id", "groom_guide", "groom_width", "groom_id"} if for_ == "unreal" else {"displayColor", "st"}
+    assert wanted <= names
+    points = np.asarray(curves.GetPointsAttr().Get())
+    if up == "Z":
+        assert np.allclose(points[:, 2] * unit, rich.points[:, 1], rtol=1e-6, atol=1e-8)
+    assert np.allclose(strandline.load(tmp_path / "a.usdc").points, rich.points, rtol=1e-6, atol=1e-7)
+
+
+@pytest.mark.parametrize("suffix", ["usdc", "abc"])
+def test_moving_hair_comes_back_frame_by_frame(tmp_path, groom, suffix):
+    with shake(groom) as simulation:
+        simulation.record(tmp_path / "a.npz", frames=5)
+    with shake(groom) as simulation:
+        written = simulation.record(tmp_path / f"a.{suffix}", frames=5)
+    assert written.frames == 5
+    cache = strandline.Cache(tmp_path / "a.npz")
+    for frame in range(5):
+        back = strandline.load(tmp_path / f"a.{suffix}", frame=frame)
+        assert np.allclose(back.points, cache[frame], rtol=1e-6, atol=1e-8), frame
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["a.npz", f"a.{suffix}"])
+
+
+def test_the_program_writes_what_extras_write(tmp_path):
+    (tmp_path / "a.toml").write_text('[style]\nstyle = "pixie"\nstrand_count = 20\n[film]\nframes = 3\n[devices]\nsimulation = "cpu"\n')
+    for suffix in ("usdc", "abc"):
+        path = tmp_path / f"a.{suffix}"
+        words = [sys.executable, "-m", "strandline", "sim", "--scene", str(tmp_path / "a.toml"), "--out", str(path), "--for", "blender"]
+        done = subprocess.run(words, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert "wrote 3 frames" in done.stdout and len(strandline.load(path)) == 20
+
+
+def test_a_mesh_over_time_is_a_moving_body(tmp_path):
+    from pxr import Gf, Usd, UsdGeom, Vt
+
+    stage = Usd.Stage.CreateNew(str(tmp_path / "a.usdc"))
+    UsdGeom.SetStageUpAxis(stage, "Z")
+    UsdGeom.SetStageMetersPerUnit(stage, 0.01)
+    stage.SetTimeCodesPerSecond(24)
+    UsdGeom.Xform.Define(stage, "/Up").AddTranslateOp().Set(Gf.Vec3d(0, 0, 100))
+    mesh = UsdGeom.Mesh.Define(stage, "/Up/Body")
+    mesh.CreateFaceVertexCountsAttr([4])
+    mesh.CreateFaceVertexIndicesAttr([0, 1, 2, 3])
+    square = np.array([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], dtype=np.float32)
+    for code in range(3):
+        mesh.CreatePointsAttr().Set(Vt.Vec3fArray.FromNumpy(square + np.float32([0, 0, code])), code)
+    stage.GetRootLayer().Save()
+    body = Body.load(tmp_path / "a.usdc")
+    assert body.faces.tolist() == [[0, 1, 2], [0, 2, 3]]
+    assert body.motion.shape == (3, 4, 3) and body.frames_per_second == 24
+    assert np.allclose(body.motion[2][2], [0.1, 1.02, -0.1], atol=1e-6)
+
+
+def test_joints_carry_a_body(tmp_path):
+    from pxr import Gf, Usd, UsdGeom, UsdSkel, Vt
+
+    stage = Usd.Stage.CreateNew(str(tmp_path / "a.usdc"))
+    UsdGeom.SetStageUpAxis(stage, "Y")
+    UsdGeom.SetStageMetersPerUnit(stage, 1)
+    stage.SetTimeCodesPerSecond(24)
+    stage.SetStartTimeCode(0)
+    stage.SetEndTimeCode(2)
+    UsdSkel.Root.Define(stage, "/Root")
+    mesh = UsdGeom.Mesh.Define(stage, "/Root/Body")
+    mesh.CreateFaceVertexCountsAttr([3])
+    mesh.CreateFaceVertexIndicesAttr([0, 1, 2])
+    mesh.CreatePointsAttr([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    skeleton = UsdSkel.Skeleton.Define(stage, "/Root/Skeleton")
+    skeleton.CreateJointsAttr(["joint"])
+    skeleton.CreateBindTransformsAttr([Gf.Matrix4d(1)])
+    skeleton.CreateRestTransformsAttr([Gf.Matrix4d(1)])
+    animation = UsdSkel.Animation.Define(stage, "/Root/Animation")
+    animation.CreateJointsAttr(["joint"])
+    for code in range(3):
+        animation.CreateTranslationsAttr().Set([Gf.Vec3f(0, code, 0)], code)
+    animation.CreateRotationsAttr([Gf.Quatf(1)])
+    animation.CreateScalesAttr(Vt.Vec3hArray([Gf.Vec3h(1)]))
+    binding = UsdSkel.BindingAPI.Apply(mesh.GetPrim())
+    binding.CreateSkeletonRel().SetTargets(["/Root/Skeleton"])
+    UsdSkel.BindingAPI.Apply(skeleton.GetPrim()).CreateAnimationSourceRel().SetTargets(["/Root/Animation"])
+    binding.CreateJointIndicesPrimvar(False, 1).Set([0, 0, 0])
+    binding.CreateJointWeightsPrimvar(False, 1).Set([1.0, 1.0, 1.0])
+    stage.GetRootLayer().Save()
+    body = Body.load(tmp_path / "a.usdc")
+    assert body.motion.shape == (3, 3, 3)
+    assert np.allclose(body.motion[2] - body.motion[0], [0, 2, 0], atol=1e-6)
+
+
+@pytest.mark.parametrize("suffix", ["usdc", "abc"])
+def test_changed_bytes_are_refused_or_read_and_never_crash(tmp_path, rich, suffix):
+    rich.save(tmp_path / f"a.{suffix}")
+    whole = (tmp_path / f"a.{suffix}").read_bytes()
+    generator = np.random.default_rng(7)
+    for at in range(60):
+        mutant = bytearray(whole)
+        for place in generator.integers(0, len(mutant), 1 + at % 8):
+            mutant[place] = generator.integers(0, 256)
+        if at % 5 == 0:
+            mutant = mutant[: generator.integers(0, len(mutant))]
+        (tmp_path / f"{at}.{suffix}").write_bytes(mutant)
+    code = (
+        "import sys, strandline\n"
+        "for at in range(60):\n"
+        "    try:\n"
+        f"        strandline.load(sys.argv[1] + f'/{{at}}.{suffix}')\n"
+        "    except strandline.Error as error:\n"
+        f"        assert f'{{at}}.{suffix}' in str(error) or error.kind == 'value', error\n"
+        "print('all')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True)
+    assert done.returncode == 0 and done.stdout.strip() == "all", done.stderr[-2000:]
+
+
+def test_a_missing_extra_is_named(tmp_path, rich, monkeypatch):
+    for module, suffix, extra in (("pxr", "usdc", "usd"), ("alembic3d", "abc", "abc")):
+        monkeypatch.setitem(sys.modules, module, None)
+        with pytest.raises(Error, match=rf"pip install 'strandline\[{extra}\]'") as caught:
+            rich.save(tmp_path / f"a.{suffix}")
+        assert caught.value.kind == "extra"
