@@ -68,6 +68,7 @@ pub use mesh::Mesh;
 pub use mesh_format::MeshFormat;
 pub use motion::Motion;
 pub use moved_skin::MovedSkin;
+pub use nearest_place::NearestSurface;
 pub use posed_skin::{PosedSkin, SkinPlace, TriangleMotion};
 pub use recorded::RecordedMotion;
 pub use scalp::{Root, Scalp};

@@ -8,8 +8,21 @@ use crate::layers::Corners;
 use crate::triangle::nearest_place;
 use crate::triangle_tree::{Nearest, TriangleTree};
 
-impl Mesh {
-    /// The place on the surface \[m\] that is nearest to each of the points.
+/// The surface of a mesh, made ready for searches of the places on it that are nearest to points.
+pub struct NearestSurface {
+    tree: TriangleTree<'static>,
+}
+
+impl NearestSurface {
+    /// The surface of a mesh, in its space.
+    pub fn new(mesh: &Mesh) -> Self {
+        let corner = |corner: u32| mesh.positions[corner as usize].as_dvec3();
+        let triangles: Vec<Corners> = mesh.triangles.iter().map(|corners| corners.map(corner)).collect();
+        let order = (0..triangles.len() as u32).collect();
+        Self { tree: TriangleTree::new(triangles, order) }
+    }
+
+    /// The place on the surface \[m\] that is nearest to each of the points; not a number on a mesh without triangles.
     pub fn nearest_places(&self, points: &[Vec3]) -> Vec<Vec3> {
         self.nearest(points, |_, triangle, point| {
             triangle.map_or(DVec3::NAN, |triangle| nearest_place(triangle, point)).as_vec3()
@@ -30,16 +43,25 @@ impl Mesh {
         points: &[Vec3],
         value: impl Fn(u32, Option<&Corners>, DVec3) -> T + Sync,
     ) -> Vec<T> {
-        let corner = |corner: u32| self.positions[corner as usize].as_dvec3();
-        let triangles: Vec<Corners> = self.triangles.iter().map(|corners| corners.map(corner)).collect();
-        let tree = TriangleTree::new(&triangles, (0..triangles.len() as u32).collect());
         let nearest = |point: &Vec3| {
             let point = point.as_dvec3();
             let mut found = Nearest::NONE;
-            tree.search(point, u64::MAX, &mut found);
-            value(found.triangle, triangles.get(found.triangle as usize), point)
+            self.tree.search(point, u64::MAX, &mut found);
+            value(found.triangle, self.tree.triangles().get(found.triangle as usize), point)
         };
         points.par_iter().map(nearest).collect()
+    }
+}
+
+impl Mesh {
+    /// The place on the surface \[m\] that is nearest to each of the points; [`NearestSurface`] answers more than once.
+    pub fn nearest_places(&self, points: &[Vec3]) -> Vec<Vec3> {
+        NearestSurface::new(self).nearest_places(points)
+    }
+
+    /// The triangle that is nearest to each of the points, and the shares of its corners in the place there.
+    pub(crate) fn nearest_triangles(&self, points: &[Vec3]) -> Vec<(u32, Vec3)> {
+        NearestSurface::new(self).nearest_triangles(points)
     }
 }
 

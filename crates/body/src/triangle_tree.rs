@@ -1,5 +1,7 @@
 //! The search for the triangle that is nearest to a point.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
 use crate::layers::Corners;
@@ -12,7 +14,7 @@ const DEPTH: usize = 40;
 
 /// A tree of boxes over triangles.
 pub(crate) struct TriangleTree<'a> {
-    triangles: &'a [Corners],
+    triangles: Cow<'a, [Corners]>,
     /// The triangles of the tree, those of a leaf beside each other.
     order: Vec<u32>,
     nodes: Vec<Node>,
@@ -55,7 +57,8 @@ impl Node {
 
 impl<'a> TriangleTree<'a> {
     /// A tree over those of the triangles that `order` lists.
-    pub fn new(triangles: &'a [Corners], order: Vec<u32>) -> Self {
+    pub fn new(triangles: impl Into<Cow<'a, [Corners]>>, order: Vec<u32>) -> Self {
+        let triangles = triangles.into();
         let mut tree = Self { triangles, nodes: Vec::with_capacity(order.len()), order };
         let count = tree.order.len();
         if count > 0 {
@@ -89,6 +92,11 @@ impl<'a> TriangleTree<'a> {
         self.grow(start, start + half);
         self.nodes[node].right = self.nodes.len() as u32;
         self.grow(start + half, end);
+    }
+
+    /// The triangles, by their indices.
+    pub fn triangles(&self) -> &[Corners] {
+        &self.triangles
     }
 
     /// Takes a triangle for the nearest where it is nearer.

@@ -5,9 +5,10 @@ use std::f32::consts::{FRAC_PI_2, PI};
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
-use super::guess;
+use super::guess::{self, Strands};
 use super::head::turns;
 use super::placing::{Defined, Placing, Placings, place_mesh};
+use super::shown::{Body, Shown};
 use crate::{
     Scene,
     body::{Mannequin, Mesh},
@@ -38,7 +39,7 @@ fn is_near(found: Placing, expected: Placing) -> bool {
 }
 
 fn found(groom: &Groom, mesh: &Mesh, defined: Defined) -> Placings {
-    guess::placings(&scene(), &[groom], Some(mesh), defined)
+    guess::of_files(&scene(), &[groom], Some(mesh), defined)
 }
 
 const HERE: Placing = Placing::IDENTITY;
@@ -136,7 +137,7 @@ fn glb_is_believed() {
     let found = found(&groom, &mesh, Defined::All);
     assert!(is_near(found.body, HERE), "{:?} {:?}", found.body, found.notes);
     // An avatar of the older kind shows where it looks.
-    let avatar = guess::placings(&scene(), &[], Some(&mesh), Defined::Up);
+    let avatar = guess::of_files(&scene(), &[], Some(&mesh), Defined::Up);
     assert!(is_near(avatar.body, turned(math::rotation(Vec3::Y, PI))), "{:?}", avatar.body);
 }
 
@@ -226,7 +227,7 @@ fn large_ears_change_neither_the_unit_nor_the_axes() {
     for ears in [[beside(-1.0), beside(1.0)], [above(-1.0), above(1.0)]] {
         let mut mesh = Mannequin::new().mesh();
         mesh.append(&balls(&ears)).unwrap();
-        let alone = guess::placings(&scene(), &[], Some(&mesh), Defined::Nothing);
+        let alone = guess::of_files(&scene(), &[], Some(&mesh), Defined::Nothing);
         assert!(is_near(alone.body, HERE), "{:?} {:?}", alone.body, alone.notes);
         let (groom, body) = filed(&hair(Style::Bob), &mesh, Placing { scale: 0.01, ..HERE }, HERE);
         let found = found(&groom, &body, Defined::Nothing);
@@ -238,7 +239,7 @@ fn large_ears_change_neither_the_unit_nor_the_axes() {
 fn hair_without_a_body_hangs() {
     for (up, style) in [(Up::Y, Style::Bob), (Up::Z, Style::Long), (Up::MinusY, Style::Wavy)] {
         let (groom, _) = filed(&hair(style), &Mannequin::new().mesh(), turned(up.rotation()), HERE);
-        let found = guess::placings(&scene(), &[&groom], None, Defined::Nothing);
+        let found = guess::of_files(&scene(), &[&groom], None, Defined::Nothing);
         assert!(is_near(found.groom, turned(up.rotation())), "{up:?}: {:?}", found.notes);
     }
 }
@@ -249,10 +250,67 @@ fn an_axis_that_a_scene_gives_is_kept_and_doubted() {
     let (groom, mesh) = filed(&hair(Style::Long), &mesh, turned(Up::MinusY.rotation()), HERE);
     let mut given = scene();
     given.groom.up = Up::Y;
-    let found = guess::placings(&given, &[&groom], Some(&mesh), Defined::Nothing);
+    let found = guess::of_files(&given, &[&groom], Some(&mesh), Defined::Nothing);
     assert_eq!(found.groom.turn, Quat::IDENTITY);
     assert!(found.confidence < 0.5, "{}", found.confidence);
     given.groom.rotation = Vec3::X * (2.0 * FRAC_PI_2).to_degrees();
-    let turned = guess::placings(&given, &[&groom], Some(&mesh), Defined::Nothing);
+    let turned = guess::of_files(&given, &[&groom], Some(&mesh), Defined::Nothing);
     assert!(turned.groom.turn == Quat::IDENTITY && turned.confidence > 0.9, "{:?}", turned.notes);
+}
+
+/// A ball, and strands that stand on the half of it whose middle lies along a way.
+fn dandelion(way: Vec3) -> (Groom, Mesh) {
+    let mesh = balls(&[(Vec3::ZERO, Vec3::splat(0.1))]);
+    let mut groom = Groom::empty(8e-5);
+    for index in 0..800 {
+        let height = 1.0 - (index as f32 + 0.5) / 400.0;
+        let (flat, around) = ((1.0 - height * height).sqrt(), 2.399_963 * index as f32);
+        let normal = Vec3::new(flat * around.cos(), height, flat * around.sin());
+        if normal.dot(way) > -0.2 {
+            groom.push((0..5).map(|point| normal * (0.1 + 0.01 * point as f32)));
+        }
+    }
+    (groom, mesh)
+}
+
+#[test]
+fn a_place_that_is_not_sure_is_told_with_the_flag_of_the_other_one() {
+    // In the body's axes the half of the ball that hair covers lies between two sides.
+    let (groom, mesh) = dandelion(Vec3::new(0.0, 1.0, 1.0).normalize());
+    let open = found(&groom, &mesh, Defined::Nothing);
+    assert!(open.confidence < 0.6, "{} {:?}", open.confidence, open.notes);
+    let note = &open.notes[0];
+    assert!(note.contains("which is not sure") && note.contains("--up z fits nearly as well"), "{note}");
+}
+
+#[test]
+fn a_groom_whose_format_defines_its_space_is_believed_where_it_fits() {
+    let mesh = Mannequin::new().mesh();
+    let groom = hair(Style::Bob);
+    let placed = |groom: &Groom, mesh: &Mesh| {
+        let shown = Shown::new(&scene(), mesh, Defined::Nothing);
+        let strands = Strands { grooms: &[groom], is_defined: true };
+        guess::placings(&scene(), strands, Some(Body { mesh, shown: &shown }))
+    };
+    let (_, body) = filed(&groom, &mesh, HERE, Placing { scale: 0.01, turn: Up::Z.rotation() });
+    let believed = placed(&groom, &body);
+    assert!(is_near(believed.groom, HERE) && !believed.is_against, "{:?}", believed.notes);
+    let (wrong, _) = filed(&groom, &mesh, Placing { scale: 0.01, ..HERE }, HERE);
+    let mended = placed(&wrong, &mesh);
+    assert!(is_near(mended.groom, Placing { scale: 0.01, ..HERE }), "{:?}", mended.groom);
+    assert!(mended.notes[0].contains("otherwise than the format of its file defines"), "{:?}", mended.notes);
+}
+
+#[test]
+fn hair_of_metres_is_doubted() {
+    let mesh = Mannequin::new().mesh();
+    let mut groom = hair(Style::Long);
+    for strand in 0..groom.strand_count() {
+        let range = groom.range(strand);
+        let root = groom.points[range.start];
+        groom.points[range].iter_mut().for_each(|point| *point = root + (*point - root) * 10.0);
+    }
+    let found = found(&groom, &mesh, Defined::Nothing);
+    assert!(found.confidence < 0.5, "{} {:?}", found.confidence, found.notes);
+    assert!(found.notes.iter().any(|note| note.contains("m long in the mean")), "{:?}", found.notes);
 }

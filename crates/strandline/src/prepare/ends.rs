@@ -4,14 +4,15 @@ use glam::Vec3;
 use strandline_base::math;
 
 use super::{
-    guess,
+    guess::{self, Strands},
     loading::Loading,
-    placing::{Defined, Placing, Placings, diagonal},
+    placing::{Placing, Placings, diagonal},
     sample::NEAR,
+    shown::Body,
 };
 use crate::{
     Scene,
-    body::Mesh,
+    body::NearestSurface,
     groom::{
         Groom,
         format::{RootEnd, from_tip_note},
@@ -40,11 +41,13 @@ const NEARLY_ALL: f32 = 0.9;
 
 /// Turns strands of the scene's grooms that are stored from tip to root, where the scene leaves their ends open.
 pub(super) fn turn(loading: &mut Loading) {
-    let defined = loading.defined();
-    let Loading { scene, groom, further_grooms, mesh, notes, .. } = loading;
-    if scene.groom.root_end != RootEnd::Auto {
+    if loading.scene.groom.root_end != RootEnd::Auto || loading.groom.is_none() {
         return;
     }
+    loading.look_at_body();
+    let Loading { sources, scene, groom, further_grooms, mesh, shown, notes, .. } = loading;
+    let body = mesh.as_ref().zip(shown.as_ref()).map(|(mesh, shown)| Body { mesh, shown });
+    let surface = body.map(|body| NearestSurface::new(body.mesh));
     let mut scene = scene.clone();
     let parts = scene.groom.parts.clone();
     let further = further_grooms.iter_mut().zip(parts.iter().map(Some));
@@ -52,9 +55,11 @@ pub(super) fn turn(loading: &mut Loading) {
         if let Some(part) = part {
             (scene.groom.scale, scene.groom.up) = (part.scale, part.up);
             (scene.groom.rotation, scene.groom.translation) = (part.rotation, part.translation);
+            scene.groom.file = Some(part.file.clone());
         }
-        let turned = match mesh {
-            Some(mesh) => on_skin(&scene, groom, mesh, defined),
+        let is_defined = sources.defines_groom(&scene);
+        let turned = match body.zip(surface.as_ref()) {
+            Some((body, surface)) => on_skin(&scene, groom, is_defined, body, surface),
             None => groom.from_tip(),
         };
         let Some(turned) = turned else { continue };
@@ -66,22 +71,29 @@ pub(super) fn turn(loading: &mut Loading) {
 
 /// Strands whose last point lies on the skin and whose first does not; shape `[strand]`. `None` where there are none, or
 /// the groom does not belong to the body.
-fn on_skin(scene: &Scene, groom: &Groom, mesh: &Mesh, defined: Defined) -> Option<Vec<bool>> {
+fn on_skin(
+    scene: &Scene,
+    groom: &Groom,
+    is_defined: bool,
+    body: Body,
+    surface: &NearestSurface,
+) -> Option<Vec<bool>> {
     let every = groom.strand_count().div_ceil(LOOKED_AT).max(1);
     let few: Vec<usize> = (0..groom.strand_count()).step_by(every).collect();
     let few = groom.select(&few);
-    let stored = guess::placings(scene, &[&few], Some(mesh), defined);
-    let mut skin = Skin { scene, mesh, placings: stored };
+    let stored = guess::placings(scene, Strands { grooms: &[&few], is_defined }, Some(body));
+    let size = body.mesh.bounds().map_or(1.0, diagonal).max(f32::MIN_POSITIVE);
+    let mut skin = Skin { scene, surface, size, placings: stored };
     let mut apart = skin.apart(&few);
     let first = median(apart.iter().map(|apart| apart[0]));
     if first > SURELY {
         // Tips that were taken for roots may have misled the placement.
         let mut turned = few.clone();
         turned.turn_strands(&vec![true; few.strand_count()]);
-        let of_turned = guess::placings(scene, &[&turned], Some(mesh), defined);
+        let of_turned = guess::placings(scene, Strands { grooms: &[&turned], is_defined }, Some(body));
         let body = skin.placings.body;
         for placings in [of_turned, Placings { groom: body, body, ..Placings::new(1.0) }] {
-            let other = Skin { scene, mesh, placings };
+            let other = Skin { placings, ..skin };
             let found = other.apart(&few);
             if nearer(&found) < nearer(&apart) {
                 (skin, apart) = (other, found);
@@ -120,7 +132,9 @@ fn nearer(apart: &[[f32; 2]]) -> f32 {
 /// A body and the placement of a groom by it.
 struct Skin<'a> {
     scene: &'a Scene,
-    mesh: &'a Mesh,
+    surface: &'a NearestSurface,
+    /// Length of the diagonal of the box around it.
+    size: f32,
     placings: Placings,
 }
 
@@ -139,10 +153,9 @@ impl Skin<'_> {
         let strands = (0..groom.strand_count()).map(|strand| groom.strand(strand));
         let ends: Vec<Vec3> =
             strands.flat_map(|strand| [&strand[0], &strand[strand.len() - 1]]).map(to_body).collect();
-        let size = self.mesh.bounds().map_or(1.0, diagonal).max(f32::MIN_POSITIVE);
-        let places = self.mesh.nearest_places(&ends);
+        let places = self.surface.nearest_places(&ends);
         let apart: Vec<f32> =
-            ends.iter().zip(places).map(|(end, place)| end.distance(place) / size).collect();
+            ends.iter().zip(places).map(|(end, place)| end.distance(place) / self.size).collect();
         apart.as_chunks().0.to_vec()
     }
 }

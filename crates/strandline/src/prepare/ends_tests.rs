@@ -1,11 +1,12 @@
-use glam::Quat;
+use glam::{Quat, Vec3};
 use strandline_base::math;
 
 use super::*;
+use crate::prepare::{placing::Defined, shown::Shown};
 use crate::{
     Prepared, Sources,
     body::Mannequin,
-    groom::{Style, StyleSettings},
+    groom::{Style, StyleSettings, format::Up},
 };
 
 fn hair(style: Style) -> Groom {
@@ -20,7 +21,9 @@ fn found(groom: &Groom, scene: impl Fn(&mut Scene)) -> Option<Vec<bool>> {
     own.groom.file = Some("hair".into());
     own.body.file = Some("head".into());
     scene(&mut own);
-    on_skin(&own, groom, &Mannequin::new().mesh(), Defined::Nothing)
+    let mesh = Mannequin::new().mesh();
+    let shown = Shown::new(&own, &mesh, Defined::Nothing);
+    on_skin(&own, groom, false, Body { mesh: &mesh, shown: &shown }, &NearestSurface::new(&mesh))
 }
 
 #[test]
@@ -104,4 +107,47 @@ fn tips_that_lie_on_a_shoulder_are_no_roots() {
         }
     }
     assert_eq!(found(&groom, |_| ()), None);
+}
+
+#[test]
+fn strands_from_the_tip_in_other_axes_and_units_at_once_come_to_the_head_as_the_others() {
+    let mesh = Mannequin::new().mesh();
+    let mut scene = Scene::default();
+    (scene.groom.file, scene.body.file) = (Some("hair".into()), Some("head".into()));
+    scene.body.solid = false;
+    let load = |groom: Groom| {
+        let sources = Sources::default().with_groom("hair", groom).with_mesh("head", mesh.clone());
+        Prepared::from_sources(&scene, &sources).unwrap()
+    };
+    let back = math::rotation(Vec3::Y, std::f32::consts::PI);
+    for style in [Style::Bob, Style::Long] {
+        let whole = load(hair(style));
+        for (scale, turn) in [
+            (0.01, Up::Z.rotation()),
+            (0.01, back * Up::Z.rotation()),
+            (0.001, Up::MinusY.rotation()),
+            (0.01, back),
+            (0.0254, Up::X.rotation()),
+        ] {
+            let mut groom = hair(style);
+            groom.turn_strands(&[true; 400]);
+            groom.transform(1.0 / scale, turn.inverse(), Vec3::ZERO);
+            let found = load(groom);
+            let strands = 0..whole.guides.strand_count();
+            let apart = |point: usize| {
+                let far = |strand| {
+                    whole.guides.position(strand, point).distance(found.guides.position(strand, point))
+                };
+                strands.clone().map(far).fold(0.0, f32::max)
+            };
+            let last = whole.guides.points_per_strand() - 1;
+            assert!(
+                apart(0) < 1e-3 && apart(last) < 1e-3,
+                "{style:?} {scale} {turn}: roots {}, tips {} m off; {:?}",
+                apart(0),
+                apart(last),
+                found.notes
+            );
+        }
+    }
 }

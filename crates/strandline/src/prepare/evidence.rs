@@ -86,7 +86,7 @@ impl Hair {
     }
 
     /// Mean distance of tips from roots.
-    fn length(&self) -> f32 {
+    pub fn length(&self) -> f32 {
         mean_of(self.strands.iter().map(|strand| way(strand).length()))
     }
 

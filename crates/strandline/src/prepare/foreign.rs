@@ -51,7 +51,7 @@ pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
         Some((placing, hair.placed(|point| fitting.place(point))))
     };
     let (places, hair): (Vec<Placing>, Vec<Hair>) = tried.iter().filter_map(fitted).unzip();
-    let fits = fits(&search.head.mesh, &hair);
+    let fits = fits(&search.head.surface, &hair);
     let mut found: Vec<(f32, Placing, f32)> = (0..places.len())
         .map(|index| {
             let lies = hair[index].on(skull, search.head.pose.shows_front);
@@ -62,7 +62,7 @@ pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
     found.sort_by(|one, two| two.0.total_cmp(&one.0));
     let (evidence, placing, fit) = *found.first()?;
     let margin = found.get(1).map_or(MOST, |other| evidence - other.0);
-    Some(Found { placing, fit, margin, is_foreign: true })
+    Some(Found { placing, fit, margin, next: found.get(1).map(|other| other.1), is_foreign: true })
 }
 
 /// Evidence against axes of a groom of another head.

@@ -26,7 +26,7 @@ fn scene() -> Scene {
 }
 
 fn placed(scene: &Scene, groom: &Groom, mesh: &Mesh) -> Placings {
-    guess::placings(scene, &[groom], Some(mesh), Defined::Nothing)
+    guess::of_files(scene, &[groom], Some(mesh), Defined::Nothing)
 }
 
 #[test]

@@ -5,13 +5,13 @@ use strandline_base::math;
 
 use super::{
     evidence::Hair,
-    foreign, head,
+    foreign,
     noted::noted,
-    placing::{Defined, Placing, Placings, diagonal, place_mesh, upright},
+    placing::{Defined, Placing, Placings, diagonal, upright},
     relation::{Found, Head, Search},
     sample::{NEAR, NEARER, Sample, UNITS},
-    skull::Skull,
-    units::{SCALPS, unit_of_width},
+    shown::{Body, SHAPELESS, Shown},
+    units::{SCALPS, first_of, given_unit, unit_of_width},
 };
 use crate::{
     Scene,
@@ -23,8 +23,6 @@ use crate::{
     scene::GroomPart,
 };
 
-/// Diagonal of the box around a body \[m\]: a doll to a bear.
-const BODIES: std::ops::RangeInclusive<f32> = 0.15..=4.0;
 /// Diagonal of the box around a groom without a body \[m\].
 const GROOMS: std::ops::RangeInclusive<f32> = 0.05..=2.0;
 /// Least advantage of z over y in the height of roots for z to be up, and in all evidence.
@@ -34,25 +32,13 @@ const SURER: f32 = 0.3;
 const SURE_ALONE: f32 = 2.5;
 /// Distance of roots over their size at which nothing is left of the confidence in their place.
 const ASTRAY: f32 = 0.2;
-/// Confidence in a body that shows neither face nor feet, in a person whose face does not show, in hair that is fitted to
-/// another head than its own, and in hair away from the body.
-const SHAPELESS: f32 = 0.75;
-const FACELESS: f32 = 0.9;
+/// Confidence in hair that is fitted to another head than its own, and in hair away from the body.
 const FOREIGN: f32 = 0.8;
 const AWAY: f32 = 0.1;
+/// Evidence by which the best place is better than the next, below which that is named.
+const CLOSE: f32 = 0.7;
 /// Share of the confidence that a doubt leaves.
 const DOUBTED: f32 = 0.3;
-
-fn units(scale: Scale) -> Option<f32> {
-    match scale {
-        Scale::Auto => None,
-        Scale::Factor(factor) => Some(factor),
-    }
-}
-
-fn first_of(diagonal: f32, sizes: &std::ops::RangeInclusive<f32>) -> f32 {
-    UNITS.into_iter().find(|unit| sizes.contains(&(unit * diagonal))).unwrap_or(1.0)
-}
 
 /// Metres of a unit of a groom alone.
 pub(super) fn unit_alone(grooms: &[&Groom]) -> f32 {
@@ -62,22 +48,33 @@ pub(super) fn unit_alone(grooms: &[&Groom]) -> f32 {
 }
 
 /// Placements of the files of a groom, which share theirs, and of a body's files, where there are some of each.
-pub(super) fn placings(scene: &Scene, grooms: &[&Groom], mesh: Option<&Mesh>, defined: Defined) -> Placings {
-    match mesh {
-        None => hair_alone(scene, grooms),
-        Some(mesh) if grooms.is_empty() => body_alone(scene, mesh, defined),
-        Some(mesh) => together(scene, grooms, mesh, defined),
+pub(super) fn placings(scene: &Scene, strands: Strands, body: Option<Body>) -> Placings {
+    match body {
+        None => hair_alone(scene, strands),
+        Some(body) if strands.grooms.is_empty() => body_alone(scene, body.shown),
+        Some(body) => together(scene, strands, body),
     }
 }
 
+/// The files of a groom.
+#[derive(Clone, Copy)]
+pub(super) struct Strands<'a> {
+    pub grooms: &'a [&'a Groom],
+    /// True where the format of the first defines metres and y up.
+    pub is_defined: bool,
+}
+
 /// The place of a groom without a body.
-fn hair_alone(scene: &Scene, grooms: &[&Groom]) -> Placings {
+fn hair_alone(scene: &Scene, Strands { grooms, is_defined }: Strands) -> Placings {
+    if is_defined && scene.groom.scale == Scale::Auto && scene.groom.up == Up::Auto {
+        return Placings::new(1.0);
+    }
     let given = &scene.groom;
     let hair = Hair::new(grooms);
     let is_free = given.up == Up::Auto && given.rotation == Vec3::ZERO;
     let shown = if is_free && hair.is_full(None) { shown_alone(&hair) } else { None };
     let turn = shown.unwrap_or_else(|| upright(given.up));
-    let scale = units(given.scale).unwrap_or_else(|| unit_alone(grooms));
+    let scale = given_unit(given.scale).unwrap_or_else(|| unit_alone(grooms));
     let groom = Placing { scale, turn };
     let placings = Placings { groom, ..Placings::new(if given.up == Up::Auto { SHAPELESS } else { 1.0 }) };
     Placings { notes: noted(scene, &placings, false, None), ..placings }
@@ -94,73 +91,24 @@ fn shown_alone(hair: &Hair) -> Option<Quat> {
 }
 
 /// The place of a body that a style grows on.
-fn body_alone(scene: &Scene, mesh: &Mesh, defined: Defined) -> Placings {
-    let (body, pose, width) = of_body(scene, mesh, defined);
-    let placings = Placings { body, ..Placings::new(confidence_of(scene, defined, &pose)) };
-    Placings { notes: noted(scene, &placings, true, width), ..placings }
-}
-
-/// The place of a body, the pose that it shows, and the width \[m\] of a head that no usual unit makes that of a person.
-fn of_body(scene: &Scene, mesh: &Mesh, defined: Defined) -> (Placing, head::Pose, Option<f32>) {
-    let given = &scene.body;
-    let ups = match (given.up, defined) {
-        (Up::Auto, Defined::Nothing) => head::UPS.to_vec(),
-        (Up::Auto, Defined::Up | Defined::All) => vec![Up::Y],
-        (up, _) => vec![up],
-    };
-    let mut pose = head::pose(mesh, &ups);
-    // An axis that is given names the front too, and a turn that is given is that of the file's own axes.
-    if given.up != Up::Auto || defined == Defined::All {
-        (pose.turn, pose.shows_front, pose.is_sure) = (upright(ups[0]), true, true);
-    } else if given.rotation != Vec3::ZERO {
-        (pose.turn, pose.shows_front) = (pose.up.rotation(), true);
-    }
-    let (turn, diagonal) = (pose.turn, mesh.bounds().map_or(0.0, diagonal));
-    let given = units(given.scale).or((defined != Defined::Nothing).then_some(1.0));
-    let scale = given.unwrap_or_else(|| first_of(diagonal, &BODIES));
-    let mut upright = mesh.clone();
-    place_mesh(&mut upright, Placing { scale, turn }, Vec3::ZERO, Vec3::ZERO);
-    let width = Skull::of_body(&upright).map(|skull| skull.size.x / scale);
-    let width = width.filter(|width| given.is_none() && !SCALPS.contains(&(scale * width)));
-    match width.filter(|_| pose.is_person) {
-        Some(width) => {
-            let (scale, strange) = unit_of_width(width, scale);
-            (Placing { scale, turn }, pose, strange)
-        }
-        None => (Placing { scale, turn }, pose, None),
-    }
-}
-
-/// Confidence in the place of a body.
-fn confidence_of(scene: &Scene, defined: Defined, pose: &head::Pose) -> f32 {
-    match (scene.body.up, defined) {
-        (Up::Auto, Defined::Nothing | Defined::Up) if !pose.is_sure => SHAPELESS,
-        (Up::Auto, Defined::Nothing | Defined::Up) if !pose.shows_front => FACELESS,
-        _ => 1.0,
-    }
+fn body_alone(scene: &Scene, shown: &Shown) -> Placings {
+    let placings = Placings { body: shown.placing, ..Placings::new(shown.confidence) };
+    Placings { notes: noted(scene, &placings, true, shown.strange), ..placings }
 }
 
 /// The places of a groom and a body.
-fn together(scene: &Scene, grooms: &[&Groom], mesh: &Mesh, defined: Defined) -> Placings {
-    let (mut body, pose, mut strange) = of_body(scene, mesh, defined);
+fn together(scene: &Scene, strands: Strands, Body { mesh, shown }: Body) -> Placings {
+    let Strands { grooms, is_defined } = strands;
+    let Shown { mut placing, pose, mut strange, confidence: sure, .. } = *shown;
     let (hair, sample) = (Hair::new(grooms), Sample::new(grooms, mesh));
+    let mut other = None;
     if !pose.is_sure && scene.groom.up == Up::Auto && shows_z(&sample) {
-        body.turn = upright(Up::Z);
+        placing.turn = upright(Up::Z);
+        other = Some(Head::new(scene, mesh, placing, pose));
     }
-    let head = Head::new(scene, mesh, body, pose);
-    let search = Search { scene, hair: &hair, head: &head };
-    let found = search.found();
-    let sure = confidence_of(scene, defined, &pose);
-    let mut placings = Placings { body, ..Placings::new(sure) };
-    match found.or_else(|| foreign::found(&search, unit_alone(grooms))) {
-        Some(Found { placing, fit, margin, is_foreign }) => {
-            let fitting = (1.0 - fit / ASTRAY).clamp(AWAY, 1.0) * (1.0 - 0.5 * math::exp(-margin));
-            let known = if is_foreign { FOREIGN } else { 1.0 };
-            (placings.groom, placings.is_foreign) = (placing, is_foreign);
-            placings.confidence = sure * fitting * known;
-        }
-        None => (placings.groom, placings.confidence) = (away(&search, grooms), AWAY),
-    }
+    let (body, head) = (placing, other.as_ref().unwrap_or(&shown.head));
+    let search = Search { scene, hair: &hair, is_defined, head };
+    let mut placings = found(&search, grooms, Placings { body, ..Placings::new(sure) });
     let is_faceless = pose.is_person == pose.is_sure && !pose.shows_front;
     if placings.groom.turn == body.turn && is_faceless && search.may_turn_both() {
         let turn = sample.to_front(&placings.groom, &body);
@@ -171,13 +119,14 @@ fn together(scene: &Scene, grooms: &[&Groom], mesh: &Mesh, defined: Defined) -> 
         }
     }
     let is_open = scene.groom.scale == Scale::Auto && scene.body.scale == Scale::Auto;
-    let is_guessed = is_open && defined == Defined::Nothing && !pose.is_person && !placings.is_foreign;
+    let is_guessed = is_open && shown.defined == Defined::Nothing && !pose.is_person && !placings.is_foreign;
     let scalp = sample.scalp(&placings.groom, &placings.body);
     if let Some(width) = scalp.filter(|width| is_guessed && !SCALPS.contains(width)) {
         let (scale, odd) = unit_of_width(width / body.scale, body.scale);
         placings.groom.scale *= scale / body.scale;
         (placings.body.scale, strange) = (scale, odd);
     }
+    placings.is_against = is_defined && !placings.is_foreign && placings.groom.differs(&search.same());
     let mut notes = noted(scene, &placings, true, strange);
     if !placings.is_foreign && placings.body == body {
         let doubts = search.doubts(&placings.groom);
@@ -185,6 +134,24 @@ fn together(scene: &Scene, grooms: &[&Groom], mesh: &Mesh, defined: Defined) -> 
         notes.extend(doubts);
     }
     Placings { notes, ..placings }
+}
+
+/// Placements with the place of the groom that is found, given that of the body and the confidence in it.
+fn found(search: &Search, grooms: &[&Groom], of_body: Placings) -> Placings {
+    let sure = of_body.confidence;
+    let Some(found) = search.found().or_else(|| foreign::found(search, unit_alone(grooms))) else {
+        return Placings { groom: away(search, grooms), confidence: AWAY, ..of_body };
+    };
+    let Found { placing, fit, margin, next, is_foreign } = found;
+    let fitting = (1.0 - fit / ASTRAY).clamp(AWAY, 1.0) * (1.0 - 0.5 * math::exp(-margin));
+    let known = if is_foreign { FOREIGN } else { 1.0 };
+    Placings {
+        groom: placing,
+        is_foreign,
+        confidence: sure * fitting * known,
+        rival: next.filter(|_| margin < CLOSE),
+        ..of_body
+    }
 }
 
 /// The place of a groom that lies away from the body: in its unit, unless that makes it no hair.
@@ -205,7 +172,7 @@ fn shows_z(sample: &Sample) -> bool {
 /// The place of a further groom: given, or that of the first unless another unit or axis brings its roots to the
 /// body.
 pub(super) fn of_part(groom: &Groom, part: &GroomPart, first: Placing, mesh: Option<&Mesh>) -> Placing {
-    let given = |scale: f32| units(part.scale).unwrap_or(scale);
+    let given = |scale: f32| given_unit(part.scale).unwrap_or(scale);
     let turned = |up: Up| if part.up == Up::Auto { upright(up) } else { upright(part.up) };
     let start = Placing {
         scale: given(first.scale),
@@ -246,6 +213,17 @@ pub(super) fn apart(groom: &Groom, mesh: &Mesh) -> Option<String> {
     };
     let mend = "`scale`, `up`, `rotation` and `translation` of [groom] and [body] bring them together";
     Some(format!("{what}; the groom lies in {}, the body in {} m; {mend}", text(of_groom), text(of_body)))
+}
+
+/// Placements of grooms and a body whose file's format makes some definitions.
+#[cfg(test)]
+pub(super) fn of_files(scene: &Scene, grooms: &[&Groom], mesh: Option<&Mesh>, defined: Defined) -> Placings {
+    let shown = mesh.map(|mesh| Shown::new(scene, mesh, defined));
+    placings(
+        scene,
+        Strands { grooms, is_defined: false },
+        mesh.zip(shown.as_ref()).map(|(mesh, shown)| Body { mesh, shown }),
+    )
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ fn scene() -> Scene {
 /// Places groom and mesh as guessed; how far \[m\] they then are from where they should be, and what is said.
 fn off(scene: &Scene, groom: &Groom, mesh: &Mesh) -> ([f32; 2], Option<String>) {
     let (wanted, body) = head();
-    let placings = placings(scene, &[groom], Some(mesh), Defined::Nothing);
+    let placings = of_files(scene, &[groom], Some(mesh), Defined::Nothing);
     let Placings { groom: of_groom, body: of_body, notes, .. } = placings;
     let note = (!notes.is_empty()).then(|| notes.join("; "));
     let apart = |one: &[Vec3], two: &[Vec3]| {
@@ -97,14 +97,14 @@ fn units_axes_and_the_face_are_found_from_both() {
 fn a_head_that_no_unit_makes_that_of_a_person_is_made_one() {
     let (groom, mesh) = head();
     let (large, body) = turned(&groom, &mesh, 10.0, Quat::IDENTITY);
-    let found = placings(&scene(), &[&large], Some(&body), Defined::Nothing);
+    let found = of_files(&scene(), &[&large], Some(&body), Defined::Nothing);
     // Roots on a ball of 24 cm span 21 cm; 0.15 m are asked for, in two digits.
     let scale = found.groom.scale;
     assert!((0.055..=0.085).contains(&scale) && found.body.scale == scale, "{scale}");
     assert!(found.notes[0].contains("m wide"));
     let mut given = scene();
     given.body.scale = Scale::Factor(0.01);
-    assert_eq!(placings(&given, &[&large], Some(&body), Defined::Nothing).groom.scale, 0.01);
+    assert_eq!(of_files(&given, &[&large], Some(&body), Defined::Nothing).groom.scale, 0.01);
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn fur_that_is_combed_backward_does_not_turn_the_animal() {
     for position in mesh.positions.iter().step_by(3) {
         fur.push([*position, *position + Vec3::NEG_Z * 0.03]);
     }
-    let placings = placings(&scene(), &[&fur], Some(&mesh), Defined::Nothing);
+    let placings = of_files(&scene(), &[&fur], Some(&mesh), Defined::Nothing);
     // Back to the front is another question: what leads to -z grows at the back.
     assert_eq!(placings.body, Placing { scale: 1.0, turn: Quat::IDENTITY }, "{:?}", placings.notes);
 }
@@ -141,7 +141,7 @@ fn what_is_given_is_not_guessed() {
     (own.groom.scale, own.body.scale) = (Scale::Factor(0.5), Scale::Factor(0.25));
     (own.groom.up, own.body.up) = (Up::Y, Up::Z);
     own.groom.rotation = Vec3::Y * 5.0;
-    let placings = placings(&own, &[&groom], Some(&mesh), Defined::Nothing);
+    let placings = of_files(&own, &[&groom], Some(&mesh), Defined::Nothing);
     assert_eq!(placings.groom, Placing { scale: 0.5, turn: Quat::IDENTITY });
     assert_eq!(placings.body, Placing { scale: 0.25, turn: upright(Up::Z) });
     assert!(placings.notes.is_empty());
@@ -174,7 +174,7 @@ fn a_brush_on_a_box_is_no_head() {
             - Vec3::new(0.043, 0.0, 0.043);
         brush.push([root, root + Vec3::Y * 0.3]);
     }
-    let placings = placings(&scene(), &[&brush], Some(&mesh), Defined::Nothing);
+    let placings = of_files(&scene(), &[&brush], Some(&mesh), Defined::Nothing);
     assert_eq!((placings.groom, placings.notes), (Placing { scale: 1.0, turn: Quat::IDENTITY }, Vec::new()));
     assert_eq!(apart(&brush, &mesh), None, "eight vertices are far from most roots, the sides are not");
 }
@@ -187,8 +187,8 @@ fn files_of_one_groom_are_placed_together() {
     let low: Vec<usize> = (0..groom.strand_count()).filter(|strand| strand % 3 == 0).collect();
     let rest: Vec<usize> = (0..groom.strand_count()).filter(|strand| strand % 3 != 0).collect();
     let (one, two) = (groom.select(&low), groom.select(&rest));
-    let whole = placings(&scene(), &[&groom], Some(&mesh), Defined::Nothing);
-    let parts = placings(&scene(), &[&one, &two], Some(&mesh), Defined::Nothing);
+    let whole = of_files(&scene(), &[&groom], Some(&mesh), Defined::Nothing);
+    let parts = of_files(&scene(), &[&one, &two], Some(&mesh), Defined::Nothing);
     assert_eq!(parts.body.turn, whole.body.turn);
     assert!((parts.body.scale / whole.body.scale - 1.0).abs() < 0.06);
 }

@@ -16,6 +16,7 @@ use crate::{
 };
 
 use super::{
+    cover::Cover,
     guess, looks,
     placing::{Placing, diagonal, place_mesh, upright},
 };
@@ -26,13 +27,14 @@ const ALIKE: f32 = 30.0;
 const LEAST_GUIDES: usize = 16;
 
 /// Adds a scene's further meshes to the first, which is in head space. Returns the mesh that hair hits, where it is not
-/// the drawn one.
+/// the drawn one, and the parts that may cover hair.
 pub(super) fn add_meshes(
     scene: &Scene,
     drawn: &mut Mesh,
     further: Vec<Mesh>,
     first: Placing,
-) -> Result<Option<Mesh>, Error> {
+) -> Result<(Option<Mesh>, Vec<Cover>), Error> {
+    let mut covers = Vec::new();
     let mut solid = (!further.is_empty()).then(|| drawn.clone());
     for (part, mut mesh) in scene.body.parts.iter().zip(further) {
         place_mesh(&mut mesh, part_placing(part, first), part.rotation, part.translation);
@@ -44,8 +46,9 @@ pub(super) fn add_meshes(
         {
             solid.append(&mesh)?;
         }
+        covers.push(Cover { mesh, name: part.file.display().to_string(), covers: part.covers });
     }
-    Ok(solid)
+    Ok((solid, covers))
 }
 
 /// Placement of a further mesh, given that of the first.

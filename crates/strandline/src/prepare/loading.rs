@@ -3,8 +3,11 @@
 use glam::Vec3;
 
 use super::Sources;
+use super::cover::Cover;
 use super::memory;
 use super::placing::{Defined, Placings};
+use super::shown::Shown;
+use super::skull::Skull;
 use crate::{
     Error, Scene,
     body::{Collider, Mesh, Pose, Shape, SkinMotion, VertexMotion},
@@ -28,12 +31,17 @@ pub(super) struct Loading<'a> {
     pub mesh: Option<Mesh>,
     /// Meshes of `body.parts`, until `place` adds them.
     pub further_meshes: Vec<Mesh>,
+    /// The pose that the body shows in its own axes, from `ends` or `place`.
+    pub shown: Option<Shown>,
     /// Motion of the drawn body's vertices, in the units and axes of its file, from `read`.
     pub motion: Option<VertexMotion>,
     /// Motion of the body in head space, from `guides`.
     pub skin: Option<SkinMotion>,
     /// The mesh that hair hits, where it is not the drawn one.
     pub solid_mesh: Option<Mesh>,
+    /// The skull of a body with parts, and the parts, which may cover hair, from `place`.
+    pub skull: Option<Skull>,
+    pub covers: Vec<Cover>,
     /// Placements of files, from `place`.
     pub placings: Placings,
     /// True where the groom was made for another head, from `place`.
@@ -74,9 +82,12 @@ impl<'a> Loading<'a> {
             further_grooms: Vec::new(),
             mesh: None,
             further_meshes: Vec::new(),
+            shown: None,
             motion: None,
             skin: None,
             solid_mesh: None,
+            skull: None,
+            covers: Vec::new(),
             placings: Placings::new(1.0),
             is_foreign: false,
             shape: None,
@@ -94,8 +105,15 @@ impl<'a> Loading<'a> {
         self.mesh.as_ref().filter(|_| self.scene.body.file.is_some())
     }
 
+    /// Looks at the pose that the body shows in its own axes, if nobody did.
+    pub fn look_at_body(&mut self) {
+        if let (Some(mesh), None) = (&self.mesh, &self.shown) {
+            self.shown = Some(Shown::new(&self.scene, mesh, self.defined()));
+        }
+    }
+
     /// Definitions that the format of the body makes.
-    pub fn defined(&self) -> Defined {
+    fn defined(&self) -> Defined {
         let file = self.scene.body.file.as_ref();
         file.map_or(Defined::Nothing, |file| self.sources.defined(file))
     }

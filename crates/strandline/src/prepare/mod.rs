@@ -1,5 +1,6 @@
 //! Loading of a scene: strands, body, solids and motion, a stage after the other.
 
+mod cover;
 mod ends;
 mod evidence;
 mod fit;
@@ -23,6 +24,7 @@ mod read;
 mod relation;
 mod roots;
 mod sample;
+mod shown;
 mod skull;
 mod solids;
 mod sources;

@@ -25,6 +25,19 @@ fn parts(turn: Quat) -> (Up, f32) {
     (up, degrees.round())
 }
 
+/// The flags that give a groom one place and not another.
+fn flags(placing: &Placing, other: &Placing) -> String {
+    let (up, degrees) = parts(placing.turn);
+    let mut flags = format!("--up {}", up.name());
+    if degrees != 0.0 {
+        flags += &format!(" --turn 0,{degrees:.0},0");
+    }
+    if (placing.scale / other.scale - 1.0).abs() > 0.01 {
+        flags += &format!(" --scale {}", placing.scale);
+    }
+    flags
+}
+
 /// One line of the choices; none where nothing was open, or all is as it stands in the files. `width` \[m\] is that of a
 /// head that no usual unit makes that of a person.
 pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: Option<f32>) -> Vec<String> {
@@ -55,12 +68,22 @@ pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: O
             ));
         }
     }
-    let unsure = if placings.confidence < UNSURE { ", which is not sure" } else { "" };
+    let is_unsure = placings.confidence < UNSURE;
+    let rival = placings.rival.filter(|_| is_unsure && has_groom);
+    if rival.is_some() && words.is_empty() {
+        words.push("axes and units are those of the files".to_owned());
+    }
+    if placings.is_against {
+        words.push("the groom is placed otherwise than the format of its file defines".to_owned());
+    }
+    let unsure = if is_unsure { ", which is not sure" } else { "" };
+    let rival = rival
+        .map_or(String::new(), |rival| format!("; {} fits nearly as well", flags(&rival, &placings.groom)));
     let keys = "`scale`, `up`, `rotation` and `translation` of [groom] and [body] say otherwise, and so do --scale, --up \
                 and --turn for the groom";
     let strange = width.map_or(String::new(), |width| {
         format!(" (in no usual unit is it the head of a person: the scalp would be {width:.2} m wide)")
     });
-    let note = || format!("taken from the files{unsure}: {}; {keys}{strange}", words.join(", "));
+    let note = || format!("taken from the files{unsure}: {}{rival}; {keys}{strange}", words.join(", "));
     (!words.is_empty()).then(note).into_iter().collect()
 }

@@ -4,9 +4,13 @@ use glam::Vec3;
 use strandline_base::math;
 
 use super::{
-    foreign, guess, join,
+    foreign,
+    guess::{self, Strands},
+    join,
     loading::Loading,
     placing::{Placing, place_mesh},
+    shown::Body,
+    skull::Skull,
 };
 use crate::{
     Error, Scene,
@@ -25,10 +29,13 @@ pub(super) fn place(loading: &mut Loading) -> Result<(), Error> {
 
 /// Chooses the placements.
 fn choose(loading: &mut Loading) {
-    let defined = loading.defined();
-    let Loading { scene, groom, further_grooms: further, mesh, .. } = loading;
-    let together = groom.iter().chain(join::placed_as_first(scene, groom.as_ref(), further));
-    loading.placings = guess::placings(scene, &together.collect::<Vec<_>>(), mesh.as_ref(), defined);
+    loading.look_at_body();
+    let Loading { sources, scene, groom, further_grooms: further, mesh, shown, .. } = loading;
+    let grooms: Vec<&Groom> =
+        groom.iter().chain(join::placed_as_first(scene, groom.as_ref(), further)).collect();
+    let body = mesh.as_ref().zip(shown.as_ref()).map(|(mesh, shown)| Body { mesh, shown });
+    let strands = Strands { grooms: &grooms, is_defined: sources.defines_groom(scene) };
+    loading.placings = guess::placings(scene, strands, body);
     loading.is_foreign = loading.placings.is_foreign;
     loading.notes.append(&mut loading.placings.notes);
 }
@@ -39,7 +46,8 @@ fn place_body(loading: &mut Loading) -> Result<(), Error> {
     let (scene, placing) = (&loading.scene, loading.placings.body);
     place_mesh(mesh, placing, scene.body.rotation, scene.body.translation);
     let further = std::mem::take(&mut loading.further_meshes);
-    loading.solid_mesh = join::add_meshes(scene, mesh, further, placing)?;
+    loading.skull = if further.is_empty() { None } else { Skull::of_body(mesh) };
+    (loading.solid_mesh, loading.covers) = join::add_meshes(scene, mesh, further, placing)?;
     Ok(())
 }
 

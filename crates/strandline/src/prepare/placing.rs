@@ -19,6 +19,11 @@ pub(super) struct Placing {
 impl Placing {
     /// Head space already.
     pub const IDENTITY: Self = Self { scale: 1.0, turn: Quat::IDENTITY };
+
+    /// True for a place at which hair looks otherwise: turned, or of another size.
+    pub fn differs(&self, other: &Self) -> bool {
+        self.turn.angle_between(other.turn) > 0.01 || (self.scale / other.scale - 1.0).abs() > 0.1
+    }
 }
 
 /// Rotation from a file whose given axis points up to y up.
@@ -50,6 +55,10 @@ pub(super) struct Placings {
     pub is_foreign: bool,
     /// Confidence in the choices, 0 to 1.
     pub confidence: f32,
+    /// Another place of the groom for which nearly as much speaks.
+    pub rival: Option<Placing>,
+    /// True where the groom is placed otherwise than the format of its file defines.
+    pub is_against: bool,
     /// Choices that were made, and what speaks against them.
     pub notes: Vec<String>,
 }
@@ -62,6 +71,8 @@ impl Placings {
             body: Placing::IDENTITY,
             is_foreign: false,
             confidence,
+            rival: None,
+            is_against: false,
             notes: Vec::new(),
         }
     }

@@ -10,7 +10,7 @@ use super::sample::UNITS;
 use super::skull::Skull;
 use crate::{
     Scene,
-    body::{Aabb, Mesh},
+    body::{Aabb, Mesh, NearestSurface},
     groom::format::{Scale, Up},
 };
 
@@ -37,6 +37,8 @@ const CLEAR: f32 = 1.5;
 const STANDS: f32 = -0.3;
 const LOW: f32 = 0.1;
 const ON_FACE: f32 = 0.25;
+/// Mean length of strands over the width of the skull that no hair has: two metres.
+const LONGEST: f32 = 13.0;
 /// Step between units that are tried, their number, the smallest size of roots over that of the skull, and how far how
 /// many of them may reach out of the body's box over its size.
 const STEP: f32 = 1.1;
@@ -53,7 +55,8 @@ const ALIKE: f32 = 0.015;
 
 /// A body in head space that hair is brought to.
 pub(super) struct Head {
-    pub mesh: Mesh,
+    pub surface: NearestSurface,
+    pub bounds: Option<Aabb>,
     pub skull: Option<Skull>,
     pub pose: Pose,
     /// Placement of the body's file.
@@ -65,7 +68,8 @@ impl Head {
     pub fn new(scene: &Scene, mesh: &Mesh, placing: Placing, pose: Pose) -> Self {
         let mut mesh = mesh.clone();
         place_mesh(&mut mesh, placing, scene.body.rotation, scene.body.translation);
-        Self { skull: Skull::of_body(&mesh), mesh, pose, placing }
+        let surface = NearestSurface::new(&mesh);
+        Self { surface, bounds: mesh.bounds(), skull: Skull::of_body(&mesh), pose, placing }
     }
 }
 
@@ -75,8 +79,9 @@ pub(super) struct Found {
     pub placing: Placing,
     /// Distance of roots from the skin over their size.
     pub fit: f32,
-    /// Evidence beyond that of the next place.
+    /// Evidence beyond that of the next place, and that place where there is one.
     pub margin: f32,
+    pub next: Option<Placing>,
     /// True where it is fitted to another head than its own.
     pub is_foreign: bool,
 }
@@ -87,6 +92,8 @@ pub(super) struct Search<'a> {
     pub scene: &'a Scene,
     /// Strands in units and axes of their file.
     pub hair: &'a Hair,
+    /// True where the format of their file defines metres and y up.
+    pub is_defined: bool,
     pub head: &'a Head,
 }
 
@@ -116,9 +123,15 @@ impl Search<'_> {
         if is_open { better(self.any_unit()) } else { None }
     }
 
-    /// The axes and the unit of the body's file, or those that the scene gives.
+    /// The place that the format of the groom's file defines, or else that of the body's file.
+    fn own(&self) -> Placing {
+        if self.is_defined { Placing::IDENTITY } else { self.head.placing }
+    }
+
+    /// The axes and the unit of the body's file or the groom's format, or those that the scene gives.
     pub fn same(&self) -> Placing {
-        let (groom, body) = (&self.scene.groom, self.head.placing);
+        let groom = &self.scene.groom;
+        let body = self.own();
         let turn = if groom.up == Up::Auto { body.turn } else { upright(groom.up) };
         match groom.scale {
             Scale::Auto => Placing { scale: body.scale, turn },
@@ -128,10 +141,10 @@ impl Search<'_> {
 
     /// The place that the body's file gives, or other axes that the roots fit as well and that the hair surely shows.
     fn against(&self, same: Placing, fit: f32) -> Found {
-        let sure = Found { placing: same, fit, margin: MOST, is_foreign: false };
+        let sure = Found { placing: same, fit, margin: MOST, next: None, is_foreign: false };
         let placed = self.placed(&same);
         let Some(skull) = &self.head.skull else { return sure };
-        let is_fixed = self.scene.groom.up != Up::Auto || !self.is_free();
+        let is_fixed = self.is_defined || self.scene.groom.up != Up::Auto || !self.is_free();
         if is_fixed || !placed.is_full(Some(skull.center())) {
             return sure;
         }
@@ -141,8 +154,12 @@ impl Search<'_> {
         let own = self.evidence(&same, fit);
         match self.best(fitting.collect()) {
             Some(best) if self.evidence(&best.placing, best.fit) > own + CLEAR => best,
-            Some(best) if best.placing == same => Found { margin: best.margin, ..sure },
-            Some(best) => Found { margin: own + CLEAR - self.evidence(&best.placing, best.fit), ..sure },
+            Some(best) if best.placing == same => Found { margin: best.margin, next: best.next, ..sure },
+            Some(best) => Found {
+                margin: own + CLEAR - self.evidence(&best.placing, best.fit),
+                next: Some(best.placing),
+                ..sure
+            },
             None => sure,
         }
     }
@@ -150,11 +167,15 @@ impl Search<'_> {
     /// Properties of hair at a place that no hair of a head has, human-readable.
     pub fn doubts(&self, placing: &Placing) -> Vec<String> {
         let placed = self.placed(placing);
-        let Some(skull) = self.head.skull.as_ref().filter(|skull| placed.is_full(Some(skull.center())))
-        else {
-            return Vec::new();
-        };
+        let Some(skull) = self.head.skull.as_ref() else { return Vec::new() };
         let mut doubts = Vec::new();
+        let length = placed.length();
+        if self.head.pose.is_person && length > LONGEST * skull.size.x {
+            doubts.push(format!("the strands are {length:.1} m long in the mean"));
+        }
+        if !placed.is_full(Some(skull.center())) {
+            return told(&doubts);
+        }
         let (hangs, high) = (placed.hangs(), placed.high(skull));
         if self.head.pose.is_person && hangs < STANDS && high < LOW {
             doubts.push("the strands lead up from roots below the middle of the head".to_owned());
@@ -163,8 +184,7 @@ impl Search<'_> {
         if self.head.pose.is_person && self.head.pose.shows_front && on_face > ON_FACE {
             doubts.push(format!("{:.0} % of the roots lie on the face", 100.0 * on_face));
         }
-        let mend = "`up`, `rotation` and `translation` of [groom], or --up and --turn, place it otherwise";
-        doubts.iter().map(|doubt| format!("{doubt}, which hair of a head does not: {mend}")).collect()
+        told(&doubts)
     }
 
     /// True where hair may show the front of groom and body: it is a full head of hair, and a scene turns neither.
@@ -189,11 +209,11 @@ impl Search<'_> {
 
     /// Distances of roots from the skin over their size, for each of some places; infinite for those away from the body.
     fn fits(&self, tried: &[Placing]) -> Vec<f32> {
-        let Some(bounds) = self.head.mesh.bounds() else { return vec![f32::INFINITY; tried.len()] };
+        let Some(bounds) = self.head.bounds else { return vec![f32::INFINITY; tried.len()] };
         let is_within: Vec<bool> = tried.iter().map(|placing| self.is_within(placing, bounds)).collect();
         let near = tried.iter().zip(&is_within).filter(|(_, is_within)| **is_within);
         let hair: Vec<Hair> = near.map(|(placing, _)| self.placed(placing)).collect();
-        let mut found = fits(&self.head.mesh, &hair).into_iter();
+        let mut found = fits(&self.head.surface, &hair).into_iter();
         is_within
             .into_iter()
             .map(|is_within| if is_within { found.next() } else { None }.unwrap_or(f32::INFINITY))
@@ -204,7 +224,7 @@ impl Search<'_> {
     fn evidence(&self, placing: &Placing, fit: f32) -> f32 {
         let near = |one: Quat, two: Quat| one.angle_between(two) < 0.01;
         let standard = [Up::Y, Up::Z, Up::MinusY].map(upright);
-        let body = self.head.placing;
+        let body = self.own();
         let against = if near(placing.turn, body.turn) {
             0.0
         } else if standard.iter().any(|turn| near(placing.turn, *turn)) {
@@ -231,11 +251,9 @@ impl Search<'_> {
             tried.into_iter().map(|(placing, fit)| (self.evidence(&placing, fit), placing, fit)).collect();
         found.sort_by(|one, two| two.0.total_cmp(&one.0));
         let (evidence, placing, fit) = *found.first()?;
-        let is_other = |one: &&(f32, Placing, f32)| {
-            one.1.turn.angle_between(placing.turn) > 0.01 || (one.1.scale / placing.scale - 1.0).abs() > 0.1
-        };
-        let margin = found.iter().find(is_other).map_or(MOST, |other| evidence - other.0);
-        Some(Found { placing, fit, margin, is_foreign: false })
+        let other = found.iter().find(|one| one.1.differs(&placing));
+        let margin = other.map_or(MOST, |other| evidence - other.0);
+        Some(Found { placing, fit, margin, next: other.map(|other| other.1), is_foreign: false })
     }
 
     /// Axes that are tried: all for a full head of hair, the usual ones otherwise; one that the scene gives.
@@ -243,7 +261,7 @@ impl Search<'_> {
         match self.scene.groom.up {
             Up::Auto if is_full && self.is_free() => turns().collect(),
             Up::Auto => {
-                [self.head.placing.turn].into_iter().chain([Up::Y, Up::Z, Up::MinusY].map(upright)).collect()
+                [self.same().turn].into_iter().chain([Up::Y, Up::Z, Up::MinusY].map(upright)).collect()
             }
             given => vec![upright(given)],
         }
@@ -252,7 +270,7 @@ impl Search<'_> {
     /// Usual units with the axes that are tried.
     fn usual(&self, is_full: bool) -> Vec<Placing> {
         let scales: Vec<f32> = match self.scene.groom.scale {
-            Scale::Auto => [self.head.placing.scale].into_iter().chain(UNITS).collect(),
+            Scale::Auto => [self.same().scale].into_iter().chain(UNITS).collect(),
             Scale::Factor(scale) => vec![scale],
         };
         let axes = self.axes(is_full);
@@ -263,7 +281,7 @@ impl Search<'_> {
 
     /// The unit with which roots lie nearest to the skin, for the axes with which they lie near it.
     fn any_unit(&self) -> Vec<Placing> {
-        let Some(bounds) = self.head.mesh.bounds() else { return Vec::new() };
+        let Some(bounds) = self.head.bounds else { return Vec::new() };
         let width = self.head.skull.map_or(bounds.max.distance(bounds.min), |skull| skull.size.x);
         let smallest = SMALLEST * width / self.hair.size().max(f32::MIN_POSITIVE);
         let scales = (0..STEPS).map(|step| smallest * math::powf(STEP, step as f32));
@@ -298,10 +316,16 @@ impl Search<'_> {
     }
 }
 
-/// Distances of roots from a mesh over their size, for each of some places of strands.
-pub(super) fn fits(mesh: &Mesh, hair: &[Hair]) -> Vec<f32> {
+/// Notes on properties that no hair of a head has.
+fn told(doubts: &[String]) -> Vec<String> {
+    let mend = "`scale`, `up`, `rotation` and `translation` of [groom], or --scale, --up and --turn, place it otherwise";
+    doubts.iter().map(|doubt| format!("{doubt}, unlike hair of a head: {mend}")).collect()
+}
+
+/// Distances of roots from a surface over their size, for each of some places of strands.
+pub(super) fn fits(surface: &NearestSurface, hair: &[Hair]) -> Vec<f32> {
     let roots: Vec<Vec3> = hair.iter().flat_map(Hair::roots).collect();
-    let mut skin = mesh.nearest_places(&roots).into_iter();
+    let mut skin = surface.nearest_places(&roots).into_iter();
     let fit = |hair: &Hair| {
         let mut apart: Vec<f32> =
             hair.roots().zip(skin.by_ref()).map(|(root, skin)| root.distance(skin)).collect();

@@ -1,9 +1,10 @@
 //! Fifth stage of loading: roots on the skin.
 
-use super::{guess, loading::Loading, marked, wrap};
+use super::{cover, guess, loading::Loading, marked, wrap};
 use crate::{Error, Scene, groom::Groom};
 
-/// Grows the style where the scene names no groom, and leads roots of a style or of another head's hair to the skin.
+/// Grows the style where the scene names no groom, leads roots of a style or of another head's hair to the skin, and
+/// presses hair under a hat.
 pub(super) fn roots(loading: &mut Loading) -> Result<(), Error> {
     match &mut loading.groom {
         Some(groom) => {
@@ -12,6 +13,9 @@ pub(super) fn roots(loading: &mut Loading) -> Result<(), Error> {
             }
         }
         None => loading.groom = Some(grown(loading)?),
+    }
+    if let Some(groom) = &mut loading.groom {
+        loading.notes.extend(cover::press(groom, &loading.covers, loading.skull.as_ref()));
     }
     let pair = loading.groom.as_ref().zip(loading.own_mesh());
     let apart = pair.and_then(|(groom, mesh)| guess::apart(groom, mesh));

@@ -15,7 +15,7 @@ use crate::{
     body::{Mesh, MeshFormat, VertexMotion},
     groom::{
         Groom,
-        format::{self, Cleaning, LoadOptions, Scale, Up},
+        format::{self, Cleaning, Format, LoadOptions, Scale, Up},
     },
     render::Picture,
 };
@@ -170,6 +170,13 @@ impl Sources {
             Some(_) => Defined::All,
             None => Defined::Nothing,
         }
+    }
+
+    /// True where the format of a scene's groom defines units and axes, which its reader brings to metres and y up; never
+    /// for a groom in memory.
+    pub(super) fn defines_groom(&self, scene: &Scene) -> bool {
+        let file = scene.groom.file.as_ref().filter(|file| !self.grooms.contains_key(*file));
+        file.and_then(|file| Format::of(file).ok()).is_some_and(|format| format.defines_space)
     }
 
     /// The part of a mesh that has a name: of a mesh in memory the entry of that name.

@@ -3,11 +3,25 @@
 use strandline_base::math;
 
 use super::sample::UNITS;
+use crate::groom::format::Scale;
 
 /// Distance from ear to ear \[m\] of the roots on a head: that of a doll to that of a giant, and that of a person, which a
 /// head that no unit brings there is given.
 pub(super) const SCALPS: std::ops::RangeInclusive<f32> = 0.09..=0.3;
 const SCALP: f32 = 0.15;
+
+/// The unit that a scene gives.
+pub(super) fn given_unit(scale: Scale) -> Option<f32> {
+    match scale {
+        Scale::Auto => None,
+        Scale::Factor(factor) => Some(factor),
+    }
+}
+
+/// The first unit with which a length \[units\] is one of some \[m\]; a metre where none is.
+pub(super) fn first_of(length: f32, lengths: &std::ops::RangeInclusive<f32>) -> f32 {
+    UNITS.into_iter().find(|unit| lengths.contains(&(unit * length))).unwrap_or(1.0)
+}
 
 /// The unit with which a head of a width \[units\] is most like that of a person; with it, where no usual one does, the
 /// width \[m\] that another unit would make it.

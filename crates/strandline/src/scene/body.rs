@@ -24,7 +24,7 @@ choices! {
 }
 
 settings! {
-    /// A further mesh of the body: eyes, teeth, a collar.
+    /// A further mesh of the body: eyes, teeth, a collar, a hat.
     pub struct BodyPart {
         /// An .obj, .gltf, .glb, .vrm, .ply or .stl file.
         file: PathBuf = PathBuf::new(), required true;
@@ -41,6 +41,8 @@ settings! {
         /// Makes it solid; without this a closed mesh is solid, and one with an open rim, such as lashes, is
         /// not.
         solid: Option<bool> = None;
+        /// Presses hair that starts under it beneath it; without this a part does that covers as many roots as a hat.
+        covers: Option<bool> = None;
     }
 }
 
