@@ -27,7 +27,7 @@ pub(super) struct Cover {
     pub mesh: Mesh,
     /// The name of its file.
     pub name: String,
-    /// What the scene says: whether it covers hair.
+    /// The setting of the scene: true presses hair, false leaves it, none lets the roots under it decide.
     pub covers: Option<bool>,
 }
 
