@@ -69,11 +69,9 @@ fn largest_eigenvector(mut matrix: [[f64; 4]; 4]) -> [f64; 4] {
             for row in &mut matrix {
                 (row[p], row[q]) = (cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]);
             }
-            for column in 0..4 {
-                let (upper, lower) = (matrix[p][column], matrix[q][column]);
-                matrix[p][column] = cosine * upper - sine * lower;
-                matrix[q][column] = sine * upper + cosine * lower;
-            }
+            let (upper, lower) = (matrix[p], matrix[q]);
+            matrix[p] = std::array::from_fn(|column| cosine * upper[column] - sine * lower[column]);
+            matrix[q] = std::array::from_fn(|column| sine * upper[column] + cosine * lower[column]);
             for row in &mut vectors {
                 (row[p], row[q]) = (cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]);
             }

@@ -195,7 +195,7 @@ impl Place {
         for (turn, share) in turns.into_iter().zip(self.shares.to_array()) {
             let Some(turn) = turn else { continue };
             let share = f64::from(share) * if turn.dot(first) < 0.0 { -1.0 } else { 1.0 };
-            sum = sum + turn * share;
+            sum += turn * share;
         }
         Some(sum.normalize().as_quat().normalize())
     }

@@ -1,5 +1,7 @@
 //! Jumps of a body: teleports and cuts, over which hair is carried.
 
+use strandline_base::math;
+
 use crate::body::BodyFrame;
 
 /// Least rotation \[rad\] and way \[m\] of a jump, and the mean speeds \[rad/s\] and \[m/s\] above which they are one: heads
@@ -13,7 +15,7 @@ const WAY_SPEED: f64 = 25.0;
 pub(super) fn jump(from: &BodyFrame, to: &BodyFrame, seconds: f64) -> Option<String> {
     let [start, end] = [from, to].map(BodyFrame::world_from_head);
     let way = start.translation.distance(end.translation);
-    let turn = 2.0 * (start.rotation.conjugate() * end.rotation).xyz().length().min(1.0).asin();
+    let turn = 2.0 * math::asin((start.rotation.conjugate() * end.rotation).xyz().length().min(1.0));
     let is_turn = turn > LEAST_TURN && f64::from(turn) > TURN_SPEED * seconds;
     let is_way = way > LEAST_WAY && f64::from(way) > WAY_SPEED * seconds;
     let marked = to.has_jumped() && from != to;

@@ -1,5 +1,7 @@
 //! Hair on a skin that moves by itself.
 
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+
 use glam::{Quat, Vec3, vec3};
 use strandline::{
     Backend, Groom, Hair, Mesh, Pose, Settings,
