@@ -27,6 +27,7 @@ mod rod_waves;
 mod rods;
 mod shake;
 mod sintel;
+mod skin_contact;
 mod small_motion;
 mod spans;
 mod springs;

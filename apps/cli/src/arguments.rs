@@ -44,7 +44,7 @@ pub enum Command {
     Groom(GroomOptions),
     /// Read a groom and write it in another format.
     Convert(ConvertOptions),
-    /// Print the contents of a groom file.
+    /// Print the contents of a groom file, or of a glTF body: its clips.
     Info(InfoOptions),
     /// Print a scene as TOML, every key spelled out: a start for your own.
     Scene(SceneOptions),
@@ -112,6 +112,9 @@ pub struct Inputs {
     /// built-in scalp, brought onto the skull].
     #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "groom")]
     pub scalp: Option<String>,
+    /// Move the body by this clip of its glTF file.
+    #[arg(long, value_name = "NAME")]
+    pub clip: Option<String>,
     /// The axis of the groom's files that points up: auto, x, y, z, -x, -y or -z [default: the scene's, auto].
     #[arg(long, value_name = "AXIS", value_parser = parse_up, allow_hyphen_values = true)]
     pub up: Option<Up>,
@@ -264,7 +267,7 @@ pub struct ConvertOptions {
 #[derive(Args, Debug)]
 #[command(after_help = formats())]
 pub struct InfoOptions {
-    /// The groom to read.
+    /// The groom to read, or a .gltf, .glb or .vrm body.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     #[command(flatten)]

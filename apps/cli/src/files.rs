@@ -1,6 +1,6 @@
 //! `strandline groom`, `info` and `scene`: files without motion.
 
-use strandline::{Groom, format, settings::StyleSettings};
+use strandline::{Groom, Mesh, format, mesh::MeshFormat, settings::StyleSettings};
 
 use crate::arguments::{GroomOptions, InfoOptions, SceneOptions};
 use crate::inputs;
@@ -40,6 +40,9 @@ const MOST_GROUPS: usize = 20;
 
 /// Prints the contents of a file.
 pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
+    if MeshFormat::of(&options.file).is_ok_and(MeshFormat::defines_space) {
+        return body_info(options);
+    }
     let report = format::load(&options.file, &options.reading.options())?.report;
     if options.json {
         output::program(&format!("{}\n", serde_json::to_string(&report)?));
@@ -68,6 +71,27 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     }
     for problem in &report.problems {
         print_line!("problem   {problem}");
+    }
+    Ok(())
+}
+
+/// Prints the contents of a glTF body: its size and its clips.
+fn body_info(options: &InfoOptions) -> anyhow::Result<()> {
+    let mesh = Mesh::load(&options.file, 1.0)?;
+    let clips = Mesh::clip_names(&options.file)?;
+    let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+    if options.json {
+        let file = options.file.display().to_string();
+        let object =
+            serde_json::json!({ "file": file, "vertices": vertices, "triangles": triangles, "clips": clips });
+        output::program(&format!("{object}\n"));
+        return Ok(());
+    }
+    print_line!("{}: glTF", options.file.display());
+    print_line!("vertices  {vertices}");
+    print_line!("triangles {triangles}");
+    for clip in clips {
+        print_line!("clip      {clip}");
     }
     Ok(())
 }

@@ -46,6 +46,9 @@ impl Inputs {
         if let Some(name) = &self.scalp {
             scene.body.scalp = Some(name.clone());
         }
+        if let Some(name) = &self.clip {
+            scene.body.clip = Some(name.clone());
+        }
         if let Some(hair) = self.hair {
             if scene.simulation.strands.method == StrandMethod::Constrain {
                 let mend = "--hair is for rods, and the scene's strands are not: simulation.strands.method is \

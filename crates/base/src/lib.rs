@@ -38,7 +38,9 @@ pub use plain_file::{open_plain, read_plain};
 pub use pose::Pose;
 pub use printable::printable;
 pub use random::Random;
-pub use setting::{Group, Items, Key, Kind, Overrides, Row, SettingError, Table, Value, Word, number};
+pub use setting::{
+    Group, Items, Key, Kind, Overrides, Row, SettingError, Table, Value, Word, number, plain_name,
+};
 pub use stopwatch::{Stopwatch, timed};
 pub use temporary::{Abandoned, abandon_unfinished};
 pub use text::{utf8_text, whole_lines};

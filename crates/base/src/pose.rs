@@ -39,6 +39,12 @@ impl Pose {
         Self { rotation, translation: -(rotation * self.translation) }
     }
 
+    /// The pose after a motion in the space that it leads to.
+    #[inline]
+    pub fn carried_by(&self, motion: &Self) -> Self {
+        Self { rotation: motion.rotation * self.rotation, translation: motion.point(self.translation) }
+    }
+
     /// The motion from this pose to another, in the space that both lead to.
     pub fn motion_to(&self, end: &Self) -> Self {
         let back = self.inverse();

@@ -279,6 +279,14 @@ pub trait Overrides<Base> {
     fn over(&self, base: &Base) -> Base;
 }
 
+/// The name of a field as a file has it: without the `r#` of a word that the language keeps for itself.
+pub const fn plain_name(name: &'static str) -> &'static str {
+    match name.as_bytes() {
+        [b'r', b'#', ..] => name.split_at(2).1,
+        _ => name,
+    }
+}
+
 /// A number as a person reads it.
 pub fn number(value: f64) -> String {
     if value != 0.0 && (value.abs() < 1e-3 || value.abs() >= 1e15) {

@@ -108,7 +108,7 @@ macro_rules! settings {
                 type Rows = Rows;
                 const ROWS: Rows = Rows {
                     $($field: $crate::Row {
-                        name: stringify!($field),
+                        name: $crate::plain_name(stringify!($field)),
                         doc: concat!($($doc, "\n"),+),
                         kind: <$Type as $crate::Value>::KIND,
                         range: $crate::settings!(@ends $($least, $most)?),
@@ -168,17 +168,17 @@ macro_rules! settings {
                     $($crate::Value::check(
                         &self.$field,
                         &<Self as $crate::Group>::ROWS.$field,
-                        &key.of(stringify!($field)),
+                        &key.of($crate::plain_name(stringify!($field))),
                     )?;)*
                     $($($crate::Value::check(
                         &self.$share,
                         &<Self as $crate::Group>::ROWS.$share,
-                        &key.of(stringify!($share)),
+                        &key.of($crate::plain_name(stringify!($share))),
                     )?;)*)*
                     $($($crate::Value::check(
                         &self.$over,
                         &<Self as $crate::Group>::ROWS.$over,
-                        &key.of(stringify!($over)),
+                        &key.of($crate::plain_name(stringify!($over))),
                     )?;)*)*
                     $($also(self, key)?;)?
                     Ok(())
@@ -216,10 +216,10 @@ macro_rules! settings {
                         return Err(<D::Error as ::serde::de::Error>::custom(now));
                     })*)?
                     $(if (false $(|| $required)?) && given.$field.is_none() {
-                        return Err(<D::Error as ::serde::de::Error>::missing_field(stringify!($field)));
+                        return Err(<D::Error as ::serde::de::Error>::missing_field($crate::plain_name(stringify!($field))));
                     })*
                     $($(if <$Shared as $crate::Group>::ROWS.$share.required && given.$share.is_none() {
-                        return Err(<D::Error as ::serde::de::Error>::missing_field(stringify!($share)));
+                        return Err(<D::Error as ::serde::de::Error>::missing_field($crate::plain_name(stringify!($share))));
                     })*)*
                     let mut value = Self::default();
                     $crate::Value::take(&mut value, given);

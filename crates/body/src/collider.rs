@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::{Aabb, BodyError, DistanceGrid, Mannequin, SignedDistance};
+use crate::{Aabb, BodyError, DistanceGrid, Mannequin, SignedDistance, SkinSolid};
 
 /// The carrier of a collider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -41,6 +41,8 @@ pub enum Shape {
     Mannequin(Arc<Mannequin>),
     /// A sampled signed distance.
     Grid(Arc<DistanceGrid>),
+    /// The skin of a body: where the vertices of a body frame move by themselves its triangles, else the samples.
+    Skin(Arc<SkinSolid>),
 }
 
 /// Share of the distance between samples of a grid that drawn strands stay away from it, and the most \[m\]: samples err
@@ -86,6 +88,7 @@ impl Shape {
             }
             Self::Mannequin(mannequin) => mannequin.distance_and_gradient(point),
             Self::Grid(grid) => grid.distance_and_gradient(point),
+            Self::Skin(skin) => skin.grid().distance_and_gradient(point),
         }
     }
 
@@ -94,6 +97,7 @@ impl Shape {
         match self {
             Self::Mannequin(mannequin) => mannequin.distance(point),
             Self::Grid(grid) => grid.distance(point),
+            Self::Skin(skin) => skin.grid().distance(point),
             Self::Sphere { .. } | Self::Capsule { .. } => self.distance_and_gradient(point).0,
         }
     }
@@ -104,14 +108,17 @@ impl Shape {
     pub fn distance_at_least(&self, point: Vec3) -> f32 {
         match self {
             Self::Grid(grid) => grid.distance_at_least(point),
+            Self::Skin(skin) => skin.grid().distance_at_least(point),
             Self::Mannequin(_) | Self::Sphere { .. } | Self::Capsule { .. } => self.distance(point).max(0.0),
         }
     }
 
     /// Distance \[m\] that drawn strands keep from the shape.
     pub fn clearance(&self) -> f32 {
+        let of_grid = |grid: &DistanceGrid| (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE);
         match self {
-            Self::Grid(grid) => (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE),
+            Self::Grid(grid) => of_grid(grid),
+            Self::Skin(skin) => of_grid(skin.grid()),
             Self::Sphere { .. } | Self::Capsule { .. } | Self::Mannequin(_) => 0.0,
         }
     }
@@ -127,6 +134,7 @@ impl Shape {
             }
             (Self::Mannequin(one), Self::Mannequin(other)) => Arc::ptr_eq(one, other),
             (Self::Grid(one), Self::Grid(other)) => Arc::ptr_eq(one, other),
+            (Self::Skin(one), Self::Skin(other)) => Arc::ptr_eq(one, other),
             _ => false,
         }
     }
@@ -140,6 +148,7 @@ impl Shape {
             }
             Self::Mannequin(mannequin) => mannequin.bounds(),
             Self::Grid(grid) => grid.bounds(),
+            Self::Skin(skin) => skin.bounds(),
         }
     }
 }
@@ -195,7 +204,7 @@ impl Collider {
         let shape = match shape {
             Shape::Sphere { center, radius } => Shape::sphere(center, radius)?,
             Shape::Capsule { start, end, radius } => Shape::capsule(start, end, radius)?,
-            Shape::Mannequin(_) | Shape::Grid(_) => shape,
+            Shape::Mannequin(_) | Shape::Grid(_) | Shape::Skin(_) => shape,
         };
         if !friction.is_finite() || friction < 0.0 {
             return Err(BodyError::Value {

@@ -21,7 +21,11 @@ pub struct BodyFrame {
     /// The pieces after the head.
     others: Option<Arc<[Pose]>>,
     roots: Option<Arc<[Pose]>>,
+    /// True for root frames that follow from the skin.
+    rides_skin: bool,
     skin: Option<Arc<[Vec3]>>,
+    /// True after a jump.
+    has_jumped: bool,
 }
 
 impl From<Pose> for BodyFrame {
@@ -63,7 +67,14 @@ fn same<T: PartialEq>(one: Option<&Arc<[T]>>, other: Option<&Arc<[T]>>) -> bool 
 
 impl BodyFrame {
     /// A rigid head that rests.
-    pub const REST: Self = Self { world_from_head: Pose::IDENTITY, others: None, roots: None, skin: None };
+    pub const REST: Self = Self {
+        world_from_head: Pose::IDENTITY,
+        others: None,
+        roots: None,
+        rides_skin: false,
+        skin: None,
+        has_jumped: false,
+    };
 
     /// Adds the transforms of the pieces after the head, `world_from_piece`, piece 1 first.
     pub fn with_pieces(self, others: impl Into<Arc<[Pose]>>) -> Self {
@@ -73,26 +84,48 @@ impl BodyFrame {
     /// Adds a root frame for each simulated strand, in the order of strands. A root frame carries the strand at rest,
     /// head space, into the world.
     pub fn with_roots(self, roots: impl Into<Arc<[Pose]>>) -> Self {
-        Self { roots: Some(roots.into()), ..self }
+        Self { roots: Some(roots.into()), rides_skin: false, ..self }
     }
 
-    /// Adds the positions of all skin vertices \[m\], head space, in the order of the mesh. The head carries them.
+    /// Adds the root frames that follow from the skin: between two frames they follow from the skin there.
+    pub(crate) fn with_skin_roots(self, roots: Arc<[Pose]>) -> Self {
+        Self { roots: Some(roots), rides_skin: true, ..self }
+    }
+
+    /// Adds the positions of all skin vertices \[m\], head space, in the order of the mesh. The head carries them. Root
+    /// frames that follow from another skin go.
     pub fn with_skin(self, skin: impl Into<Arc<[Vec3]>>) -> Self {
-        Self { skin: Some(skin.into()), ..self }
+        let roots = self.roots.filter(|_| !self.rides_skin);
+        Self { roots, rides_skin: false, skin: Some(skin.into()), ..self }
+    }
+
+    /// Marks a jump: the body is here at once, and hair is carried with it instead of being pulled through the way from
+    /// the frame before.
+    pub fn after_jump(self) -> Self {
+        Self { has_jumped: true, ..self }
+    }
+
+    /// True for a frame that [`Self::after_jump`] marked.
+    pub fn has_jumped(&self) -> bool {
+        self.has_jumped
+    }
+
+    /// The frame without root frames.
+    pub(crate) fn without_roots(self) -> Self {
+        Self { roots: None, rides_skin: false, ..self }
     }
 
     /// The frame after a motion of everything in world space.
     pub fn carried_by(&self, motion: &Pose) -> Self {
-        let carry = |pose: &Pose| Pose {
-            rotation: motion.rotation * pose.rotation,
-            translation: motion.point(pose.translation),
-        };
+        let carry = |pose: &Pose| pose.carried_by(motion);
         let all = |poses: &Arc<[Pose]>| poses.iter().map(carry).collect();
         Self {
             world_from_head: carry(&self.world_from_head),
             others: self.others.as_ref().map(all),
             roots: self.roots.as_ref().map(all),
+            rides_skin: self.rides_skin,
             skin: self.skin.clone(),
+            has_jumped: self.has_jumped,
         }
     }
 
@@ -137,8 +170,13 @@ impl BodyFrame {
     }
 
     /// The frame on the way to `end`: `share` is 0 here and 1 at `end`. Poses as [`Pose::toward`], vertices on straight
-    /// lines in head space. A skin that one of the two frames lacks is taken from the other.
+    /// lines in head space. A skin that one of the two frames lacks is taken from the other. Root frames that follow from
+    /// the skin, as [`SkinRoots::placed`](crate::SkinRoots::placed) adds them, are left to follow from the skin there.
+    /// To a frame after a jump there is no way: it is that frame.
     pub fn toward(&self, end: &Self, share: f32) -> Self {
+        if end.has_jumped {
+            return end.clone();
+        }
         if self == end {
             return self.clone();
         }
@@ -146,7 +184,8 @@ impl BodyFrame {
         let others: Option<Arc<[Pose]>> = (count > 1)
             .then(|| (1..count).map(|piece| self.piece(piece).toward(&end.piece(piece), share)).collect());
         let strands = [self, end].map(|frame| frame.roots().map_or(0, <[_]>::len));
-        let roots: Option<Arc<[Pose]>> = (self.roots.is_some() || end.roots.is_some()).then(|| {
+        let have_own = [self, end].iter().any(|frame| frame.roots.is_some() && !frame.rides_skin);
+        let roots: Option<Arc<[Pose]>> = have_own.then(|| {
             let between = |strand| self.root(strand).toward(&end.root(strand), share);
             (0..strands[0].max(strands[1])).map(between).collect()
         });
@@ -161,7 +200,9 @@ impl BodyFrame {
             world_from_head: self.world_from_head.toward(&end.world_from_head, share),
             others,
             roots,
+            rides_skin: false,
             skin,
+            has_jumped: false,
         }
     }
 

@@ -2,10 +2,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use strandline_base::par::prelude::*;
 
-use crate::Mesh;
 use crate::buried::OutsideCounts;
 use crate::far_nodes::FarNodes;
 use crate::inside::inside_nodes;
@@ -13,12 +12,16 @@ use crate::lattice::{Lattice, SLAB};
 use crate::layers::{Corners, Layers};
 use crate::near_surface::{REACH, paint};
 use crate::triangle_tree::{Nearest, TriangleTree};
+use crate::{Aabb, BodyError, Mesh};
 
 /// Triangles that are looked at for all nodes together, and for each node, on the average: more than meshes of bodies
 /// need. Where triangles overlap so much that it does not suffice, as thousands of thin ones that meet in one vertex,
 /// [`spread`] finds what is nearest beyond [`REACH`] of the surface, to about a quarter of a cell.
 const LOOKS: u64 = 100_000_000;
 const LOOKS_OF_A_NODE: std::ops::RangeInclusive<u64> = 32..=128;
+
+/// Most cells along a side of the lattice that finds shells within others.
+const SIDE_OF_SHELLS: f32 = 256.0;
 
 /// Signed distance \[m\] at each node, in the order of storage.
 ///
@@ -55,6 +58,21 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
         *distance = if inside { -*distance } else { *distance };
     });
     distances
+}
+
+/// Indices of the triangles of a closed mesh that are not within another of its shells, found at a spacing \[m\] at least,
+/// and -1 for a mesh that is inside out, else 1.
+pub(crate) fn skin_triangles(mesh: &Mesh, spacing: f32) -> Result<(Vec<u32>, f32), BodyError> {
+    let bounds = mesh.bounds().unwrap_or(Aabb { min: Vec3::ZERO, max: Vec3::ZERO });
+    let finest = (bounds.max - bounds.min).max_element() / SIDE_OF_SHELLS;
+    let lattice = Lattice::around(bounds, spacing.max(finest), 0.0)?;
+    let triangles = corners_in_cells(mesh, &lattice);
+    let mut skin: Vec<u32> = (0..triangles.len() as u32).collect();
+    let is_turned = signed_volume(&triangles) < 0.0;
+    let inside = inside_nodes(&Layers::new(&triangles, skin.clone()), is_turned, &lattice);
+    let outside = OutsideCounts::new(&inside, &lattice);
+    skin.retain(|index| !outside.is_buried(&triangles[*index as usize]));
+    Ok((skin, if is_turned { -1.0 } else { 1.0 }))
 }
 
 /// Nearest triangle of a node.

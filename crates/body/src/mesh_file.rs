@@ -4,11 +4,12 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use crate::gltf::{self, Fault};
 use crate::mesh::vertex_normals;
 use crate::mesh_format::MeshFormat;
 use crate::parsing::{Refusal, read_file};
 use crate::part_names::Names;
-use crate::{BodyError, Mesh};
+use crate::{BodyError, Mesh, VertexMotion};
 
 /// Reads a file by its ending, or the part of it that has a name, in the units of the file; adds notes.
 fn read(path: &Path, names: Option<&mut Names>, notes: &mut Vec<String>) -> Result<Mesh, BodyError> {
@@ -16,6 +17,19 @@ fn read(path: &Path, names: Option<&mut Names>, notes: &mut Vec<String>) -> Resu
     format.parse(&read_file(path)?, path.parent(), names, notes).map_err(|(found, expected)| {
         BodyError::Mesh { path: path.into(), found, expected, mend: format.mend() }
     })
+}
+
+/// The format of a file, which has clips.
+fn clips_of(path: &Path) -> Result<MeshFormat, BodyError> {
+    match MeshFormat::of(path)? {
+        MeshFormat::Gltf => Ok(MeshFormat::Gltf),
+        _ => Err(BodyError::Mesh {
+            path: path.into(),
+            found: "a file without clips".into(),
+            expected: "gltf, glb or vrm",
+            mend: "export the body and its animation as glTF 2.0",
+        }),
+    }
 }
 
 impl Mesh {
@@ -48,6 +62,37 @@ impl Mesh {
         let mut mesh = read(path, None, &mut notes)?;
         mesh.positions.iter_mut().for_each(|position| *position *= scale);
         Ok((mesh.complete(path)?, notes))
+    }
+
+    /// Loads a glTF file and its motion in a clip of a name, in the units of the file, with notes.
+    ///
+    /// # Errors
+    /// See [`BodyError`]: another format, no clip of that name, more memory than may be taken.
+    pub fn load_moving(path: &Path, clip: &str) -> Result<(Self, VertexMotion, Vec<String>), BodyError> {
+        let format = clips_of(path)?;
+        let mut notes = Vec::new();
+        let read = gltf::parse_moving(&read_file(path)?, path.parent(), clip, &mut notes);
+        let (mesh, rig) = read.map_err(|fault| match fault {
+            Fault::Memory(error) => BodyError::Memory(error),
+            Fault::Refused((found, expected)) => {
+                BodyError::Mesh { path: path.into(), found, expected, mend: format.mend() }
+            }
+        })?;
+        Ok((mesh.complete(path)?, VertexMotion::of_clip(rig), notes))
+    }
+
+    /// Names of the clips of a glTF file, in their order; a clip without a name has that of its number.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn clip_names(path: &Path) -> Result<Vec<String>, BodyError> {
+        let format = clips_of(path)?;
+        gltf::clip_names(&read_file(path)?).map_err(|(found, expected)| BodyError::Mesh {
+            path: path.into(),
+            found,
+            expected,
+            mend: format.mend(),
+        })
     }
 
     /// Loads the part of a file that has a name, in the units of the file; `None` where nothing has it.

@@ -11,6 +11,25 @@ use crate::triangle_tree::{Nearest, TriangleTree};
 impl Mesh {
     /// The place on the surface \[m\] that is nearest to each of the points.
     pub fn nearest_places(&self, points: &[Vec3]) -> Vec<Vec3> {
+        self.nearest(points, |_, triangle, point| {
+            triangle.map_or(DVec3::NAN, |triangle| nearest_place(triangle, point)).as_vec3()
+        })
+    }
+
+    /// The triangle that is nearest to each of the points, and the shares of its corners in the place there.
+    pub(crate) fn nearest_triangles(&self, points: &[Vec3]) -> Vec<(u32, Vec3)> {
+        self.nearest(points, |index, triangle, point| {
+            let shares = |triangle: &Corners| shares_of(triangle, nearest_place(triangle, point)).as_vec3();
+            (index, triangle.map_or(Vec3::X, shares))
+        })
+    }
+
+    /// A value of each point, made from the index and the corners of its nearest triangle.
+    fn nearest<T: Send>(
+        &self,
+        points: &[Vec3],
+        value: impl Fn(u32, Option<&Corners>, DVec3) -> T + Sync,
+    ) -> Vec<T> {
         let corner = |corner: u32| self.positions[corner as usize].as_dvec3();
         let triangles: Vec<Corners> = self.triangles.iter().map(|corners| corners.map(corner)).collect();
         let tree = TriangleTree::new(&triangles, (0..triangles.len() as u32).collect());
@@ -18,11 +37,27 @@ impl Mesh {
             let point = point.as_dvec3();
             let mut found = Nearest::NONE;
             tree.search(point, u64::MAX, &mut found);
-            let place = |triangle: &Corners| nearest_place(triangle, point);
-            triangles.get(found.triangle as usize).map_or(DVec3::NAN, place).as_vec3()
+            value(found.triangle, triangles.get(found.triangle as usize), point)
         };
         points.par_iter().map(nearest).collect()
     }
+}
+
+/// Shares of the corners of a triangle in one of its places; of a triangle without an area those of its longest edge.
+fn shares_of([a, b, c]: &Corners, place: DVec3) -> DVec3 {
+    let normal = (*b - *a).cross(*c - *a);
+    let area = normal.length_squared();
+    let longest = a.distance_squared(*b).max(b.distance_squared(*c)).max(c.distance_squared(*a));
+    if area > 1e-20 * longest * longest {
+        let part =
+            |start: DVec3, end: DVec3| ((end - start).cross(place - start).dot(normal) / area).max(0.0);
+        let shares = DVec3::new(part(*b, *c), part(*c, *a), part(*a, *b));
+        return shares / (shares.x + shares.y + shares.z);
+    }
+    let weight = |corner: &DVec3| longest.sqrt() - corner.distance(place).min(longest.sqrt());
+    let shares = DVec3::new(weight(a), weight(b), weight(c));
+    let sum = shares.x + shares.y + shares.z;
+    if sum > 0.0 { shares / sum } else { DVec3::X }
 }
 
 #[cfg(test)]

@@ -66,6 +66,23 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
     Ok(mesh)
 }
 
+/// For each vertex of the mesh its place among the vertices (v) of the file, from 0, and the number of these.
+pub(crate) fn order(bytes: &[u8]) -> Result<(Vec<u32>, usize), Refusal> {
+    let text = whole_lines(bytes);
+    let (mut numbered, mut count) = (Vec::with_capacity(text.len()), 0);
+    for line in text.split_inclusive(|byte| *byte == b'\n') {
+        match line.trim_ascii_start() {
+            [b'v', b' ' | b'\t', ..] => {
+                // Single precision counts to 16 million, as many vertices as a file can hold.
+                numbered.extend_from_slice(format!("v {count} 0 0\n").as_bytes());
+                count += 1;
+            }
+            _ => numbered.extend_from_slice(line),
+        }
+    }
+    Ok((parse(&numbered)?.positions.iter().map(|place| place.x as u32).collect(), count))
+}
+
 fn append(mesh: &mut Mesh, part: &tobj::Mesh) {
     let first = mesh.positions.len() as u32;
     mesh.positions.extend(part.positions.chunks_exact(3).map(Vec3::from_slice));

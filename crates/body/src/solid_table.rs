@@ -65,6 +65,7 @@ pub fn solid_rows<'a>(
                 })?)
             }
             Shape::Grid(grid) => add_grid(grid),
+            Shape::Skin(skin) => add_grid(skin.grid()),
         };
         rows.extend(numbers.rows(solid, kept));
     }

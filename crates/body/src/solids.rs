@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::{BodyFrame, Carrier, Collider, Pose};
+use crate::{BodyFrame, Carrier, Collider, Pose, PosedSkin};
 
 /// Solids, each with the distance \[m\] that strands keep from it.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +43,8 @@ impl Solids {
             let world_from_piece = body.piece(piece);
             [world_from_piece, world_from_piece.inverse()]
         };
-        PlacedSolids { solids: &self.0, pieces: (0..count).map(place).collect() }
+        let posed = self.0.iter().map(|(solid, _)| PosedSkin::of(solid, &body, &body)).collect();
+        PlacedSolids { solids: &self.0, posed, pieces: (0..count).map(place).collect() }
     }
 }
 
@@ -51,6 +52,8 @@ impl Solids {
 #[derive(Clone, Debug)]
 pub struct PlacedSolids<'a> {
     solids: &'a [(Collider, f32)],
+    /// Skins that move by themselves.
+    posed: Vec<Option<PosedSkin>>,
     /// Transform and inverse of each piece that carries solids.
     pieces: Vec<[Pose; 2]>,
 }
@@ -65,8 +68,13 @@ impl PlacedSolids<'_> {
     /// it, and its unit gradient.
     pub fn at(&self, point: Vec3) -> (f32, Vec3) {
         let start = (f32::INFINITY, Vec3::Y, Carrier::World);
-        let (distance, gradient, carrier) = self.solids.iter().fold(start, |best, (solid, away)| {
-            let (distance, gradient) = solid.shape.distance_and_gradient(self.local(solid.carrier, point));
+        let solids = self.solids.iter().zip(&self.posed);
+        let (distance, gradient, carrier) = solids.fold(start, |best, ((solid, away), posed)| {
+            let local = self.local(solid.carrier, point);
+            let (distance, gradient) = match posed {
+                Some(skin) => skin.distance_and_gradient(local),
+                None => solid.shape.distance_and_gradient(local),
+            };
             if distance - away < best.0 { (distance - away, gradient, solid.carrier) } else { best }
         });
         let turned = match carrier {
@@ -86,10 +94,14 @@ impl PlacedSolids<'_> {
 
     /// No more than that distance, and 0 where the point may be inside: quick.
     pub fn at_least(&self, point: Vec3) -> f32 {
-        let least = self
-            .solids
-            .iter()
-            .map(|(solid, away)| solid.shape.distance_at_least(self.local(solid.carrier, point)) - away);
+        let least = self.solids.iter().zip(&self.posed).map(|((solid, away), posed)| {
+            let local = self.local(solid.carrier, point);
+            let least = match posed {
+                Some(skin) => skin.at_least(local),
+                None => solid.shape.distance_at_least(local),
+            };
+            least - away
+        });
         least.fold(f32::INFINITY, f32::min)
     }
 }

@@ -37,6 +37,7 @@ mod simulator;
 mod state;
 mod step;
 pub mod strands;
+mod teleport;
 
 pub use checkpoint::{Checkpoint, Part};
 pub use clock::{Clock, Ticks};

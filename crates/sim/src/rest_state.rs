@@ -9,7 +9,7 @@ use strandline_body::{BodyFrame, Pose};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
 use crate::at_rest::carried;
-use crate::contact::contacts::Contacts;
+use crate::contact::planes::Contacts;
 use crate::grab::Grab;
 use crate::{Drift, Model, State};
 

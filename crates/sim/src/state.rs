@@ -5,7 +5,7 @@ use strandline_base::par::prelude::*;
 use strandline_body::BodyFrame;
 use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 
-use crate::contact::contacts::Contacts;
+use crate::contact::planes::Contacts;
 use crate::grab::Grab;
 use crate::length_scale::Lengths;
 use crate::{Model, SimError};

@@ -1,5 +1,6 @@
 //! The program as a person or a script calls it: commands, limits, hostile files, files for others.
 
+mod clips;
 mod command_line;
 mod flags;
 #[cfg(target_os = "linux")]

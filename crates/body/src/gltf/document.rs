@@ -1,16 +1,24 @@
-//! Shape of a glTF file: the document without looks and clips, and the bytes behind it.
+//! Shape of a glTF file: the document without looks, its clips apart, and the bytes behind it.
 
 use ::gltf::Document;
 use ::gltf::json::{Root, Value, deserialize};
 
 use strandline_base::utf8_text;
 
+use super::clips::Clips;
 use crate::parsing::Refusal;
 
-/// The document, validated, and the binary part of the file where it has one.
-///
-/// Looks and clips are left out before the file is validated: they may use any extension.
-pub(super) fn document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Refusal> {
+/// A file in its parts.
+pub(super) struct Parts {
+    /// The document, validated.
+    pub document: Document,
+    pub clips: Clips,
+    /// The binary part of the file, where it has one.
+    pub blob: Option<Vec<u8>>,
+}
+
+/// Parses a file. Looks and clips are left out before the document is validated: they may use any extension.
+pub(super) fn document(bytes: &[u8]) -> Result<Parts, Refusal> {
     check_container(bytes)?;
     let refused = |error: ::gltf::Error| (format!("bad glTF ({error})"), "valid glTF 2.0");
     let unread = |error| refused(::gltf::Error::Deserialize(error));
@@ -22,10 +30,11 @@ pub(super) fn document(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), Refu
     };
     let mut value: Value = deserialize::from_slice(&text).map_err(unread)?;
     check_required(&value)?;
+    let clips = Clips::new(value.get_mut("animations").map(Value::take));
     keep_shape(&mut value);
     let root: Root = deserialize::from_value(value).map_err(unread)?;
     check_positions(&root)?;
-    Ok((Document::from_json(root).map_err(refused)?, blob))
+    Ok(Parts { document: Document::from_json(root).map_err(refused)?, clips, blob })
 }
 
 /// A binary file says its own length, which the parser subtracts from without a look.

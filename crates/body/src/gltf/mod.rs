@@ -1,82 +1,172 @@
-//! Reading glTF 2.0: the shape of a file at rest, skins and morph targets in their default pose.
+//! Reading glTF 2.0: the shape of a file at rest, skins and morph targets in their default pose, and its motion.
 
 mod address;
 mod buffers;
+mod clips;
 mod document;
 mod nodes;
+mod rig;
+mod track;
 mod vertices;
 
 use std::path::Path;
 
 use ::gltf::mesh::{Mode, Primitive};
+use ::gltf::{Document, Node};
 use glam::Vec3;
+use strandline_base::memory::{self, MemoryError};
 
 use crate::Mesh;
 use crate::parsing::Refusal;
 use crate::part_names::Names;
 use buffers::{Buffers, load_buffers};
+use clips::Clips;
+use document::Parts;
 use nodes::Nodes;
-use vertices::{Placement, Skins, Vertices, default_weights};
+pub(crate) use rig::Rig;
+use vertices::{Influences, Placement, Skins, Vertices, default_weights};
 
 /// The most vertices and the most triangles of one body, and those of a small file.
 const COUNT_LIMIT: usize = 16 << 20;
 const LEAST_COUNT_LIMIT: usize = 1 << 16;
+
+/// Why a file is not read.
+pub(crate) enum Fault {
+    Refused(Refusal),
+    Memory(MemoryError),
+}
+
+impl From<Refusal> for Fault {
+    fn from(refusal: Refusal) -> Self {
+        Self::Refused(refusal)
+    }
+}
 
 /// Reads a mesh, or the part of it that has a name, in the units of the file, all nodes in place; vertices without a
 /// normal get a zero one. Without a folder no file beside it is read.
 pub(crate) fn parse(
     bytes: &[u8],
     folder: Option<&Path>,
-    mut names: Option<&mut Names>,
+    names: Option<&mut Names>,
     notes: &mut Vec<String>,
 ) -> Result<Mesh, Refusal> {
-    let (document, blob) = document::document(bytes)?;
-    let held = load_buffers(&document, blob, folder)?;
-    // Nodes that repeat a mesh make much of a small file: beyond what it could hold itself it is refused.
-    let size = bytes.len() + held.iter().map(Vec::len).sum::<usize>();
-    let buffers = Buffers::new(held, size.clamp(LEAST_COUNT_LIMIT, COUNT_LIMIT));
-    let mut mesh = Mesh::default();
-    let nodes = Nodes::new(&document)?;
-    let mut skins = Skins::new(&document);
-    let mut weightless = 0;
-    for node in &nodes.shown {
-        let Some(part) = node.mesh() else { continue };
-        let joints = match node.skin() {
-            Some(skin) => Some(skins.joints(&skin, &nodes.world_from_node, &buffers)?),
-            None => None,
-        };
-        let whole = Placement::Whole(nodes.world_from_node[node.index()]);
-        for primitive in part.primitives() {
-            if let Some(names) = &mut names {
-                let own = [node.name(), part.name(), primitive.material().name()];
-                let is_asked = own.map(|name| name.is_some_and(|name| names.add(name)));
-                if !is_asked.contains(&true) {
-                    continue;
-                }
-            }
-            if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-                continue;
-            }
-            let room = buffers.limit.saturating_sub(mesh.positions.len());
-            let vertices = Vertices::new(&primitive, default_weights(node), &buffers, room)?;
-            let Some(vertices) = vertices else { continue };
-            let skinned = match joints {
-                Some(joints) => {
-                    let count = vertices.positions.len();
-                    Placement::skinned(&primitive, count, joints, &buffers, &mut weightless)?
-                }
+    let file = File::open(bytes, folder)?;
+    let nodes = Nodes::new(&file.document)?;
+    file.mesh(&nodes, names, notes, &mut |_, _, _| Ok(()))
+}
+
+/// Reads a mesh as [`parse`] does, and its motion in a clip.
+pub(crate) fn parse_moving(
+    bytes: &[u8],
+    folder: Option<&Path>,
+    clip: &str,
+    notes: &mut Vec<String>,
+) -> Result<(Mesh, Rig), Fault> {
+    let file = File::open(bytes, folder)?;
+    let nodes = Nodes::new(&file.document)?;
+    let tracks = file.clips.tracks(clip, &file.document, &file.buffers, notes)?;
+    let mut rig = Rig::new(&nodes, tracks);
+    memory::check(&[rig.need(&nodes.shown, file.buffers.limit)]).map_err(Fault::Memory)?;
+    let add = &mut |node: &Node<'_>, part: &Primitive<'_>, influences| {
+        rig.add(node, part, influences, &file.buffers)
+    };
+    let mesh = file.mesh(&nodes, None, notes, add)?;
+    Ok((mesh, rig))
+}
+
+/// Reads the nodes of a file and their motion in a clip, without its mesh.
+pub(crate) fn parse_nodes(
+    bytes: &[u8],
+    folder: Option<&Path>,
+    clip: &str,
+    notes: &mut Vec<String>,
+) -> Result<Rig, Fault> {
+    let file = File::open(bytes, folder)?;
+    let nodes = Nodes::new(&file.document)?;
+    let tracks = file.clips.tracks(clip, &file.document, &file.buffers, notes)?;
+    Ok(Rig::new(&nodes, tracks))
+}
+
+/// Names of the clips of a file, in their order.
+pub(crate) fn clip_names(bytes: &[u8]) -> Result<Vec<String>, Refusal> {
+    Ok(document::document(bytes)?.clips.names())
+}
+
+/// A file with its buffers.
+struct File {
+    document: Document,
+    clips: Clips,
+    buffers: Buffers,
+}
+
+/// Receives a part of a mesh with its node, and with the joints of its vertices where a skin carries it.
+type Receiver<'a> = &'a mut dyn FnMut(&Node<'_>, &Primitive<'_>, Option<Influences>) -> Result<(), Refusal>;
+
+impl File {
+    fn open(bytes: &[u8], folder: Option<&Path>) -> Result<Self, Refusal> {
+        let Parts { document, clips, blob } = document::document(bytes)?;
+        let held = load_buffers(&document, blob, folder)?;
+        // Nodes that repeat a mesh make much of a small file: beyond what it could hold itself it is refused.
+        let size = bytes.len() + held.iter().map(Vec::len).sum::<usize>();
+        let buffers = Buffers::new(held, size.clamp(LEAST_COUNT_LIMIT, COUNT_LIMIT));
+        Ok(Self { document, clips, buffers })
+    }
+
+    /// The mesh at rest; hands over each part of it, in the order of its vertices.
+    fn mesh(
+        &self,
+        nodes: &Nodes<'_>,
+        mut names: Option<&mut Names>,
+        notes: &mut Vec<String>,
+        each: Receiver<'_>,
+    ) -> Result<Mesh, Refusal> {
+        let (buffers, mut mesh) = (&self.buffers, Mesh::default());
+        let mut skins = Skins::new(&self.document);
+        let mut weightless = 0;
+        for node in &nodes.shown {
+            let Some(part) = node.mesh() else { continue };
+            let joints = match node.skin() {
+                Some(skin) => Some(skins.joints(&skin, &nodes.world_from_node, buffers)?),
                 None => None,
             };
-            append(&mut mesh, &primitive, &vertices, skinned.as_ref().unwrap_or(&whole), &buffers)?;
+            let whole = Placement::Whole(nodes.world_from_node[node.index()]);
+            for primitive in part.primitives() {
+                if !is_asked(names.as_deref_mut(), [node.name(), part.name(), primitive.material().name()]) {
+                    continue;
+                }
+                if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+                    continue;
+                }
+                let room = buffers.limit.saturating_sub(mesh.positions.len());
+                let vertices = Vertices::new(&primitive, default_weights(node), buffers, room)?;
+                let Some(vertices) = vertices else { continue };
+                let count = vertices.positions.len();
+                let influences = match joints {
+                    Some(joints) => Influences::new(&primitive, count, joints.len(), buffers)?,
+                    None => None,
+                };
+                let skinned = influences.as_ref().zip(joints);
+                let skinned = skinned.map(|(influences, joints)| {
+                    Placement::skinned(influences, count, joints, &mut weightless)
+                });
+                append(&mut mesh, &primitive, &vertices, skinned.as_ref().unwrap_or(&whole), buffers)?;
+                each(node, &primitive, influences)?;
+            }
         }
+        if weightless > 0 {
+            notes.push(format!(
+                "{weightless} of {} vertices have no weights of joints: the first joint of their skin carries them",
+                mesh.positions.len()
+            ));
+        }
+        Ok(mesh)
     }
-    if weightless > 0 {
-        notes.push(format!(
-            "{weightless} of {} vertices have no weights of joints: the first joint of their skin carries them",
-            mesh.positions.len()
-        ));
-    }
-    Ok(mesh)
+}
+
+/// Notes the names of a part; true where one of them is asked for, or none is.
+fn is_asked(names: Option<&mut Names>, own: [Option<&str>; 3]) -> bool {
+    let Some(names) = names else { return true };
+    own.map(|name| name.is_some_and(|name| names.add(name))).contains(&true)
 }
 
 fn append(

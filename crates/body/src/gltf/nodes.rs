@@ -12,8 +12,12 @@ const DEPTH_LIMIT: usize = 64;
 pub(super) struct Nodes<'a> {
     /// Those of the scene that is shown, by number.
     pub shown: Vec<Node<'a>>,
-    /// Transforms of all nodes, shown or not, shape `[node]`.
+    /// All nodes, shown or not, by number.
+    pub all: Vec<Node<'a>>,
+    /// Transforms of all nodes, shape `[node]`.
     pub world_from_node: Vec<Mat4>,
+    /// Nodes and the nodes above them, those above first.
+    pub order: Vec<(usize, Option<usize>)>,
 }
 
 impl<'a> Nodes<'a> {
@@ -26,32 +30,35 @@ impl<'a> Nodes<'a> {
             }
         }
         let roots = document.nodes().filter(|node| !is_child[node.index()]);
-        let world_from_node = transforms(document, roots)?;
+        let (world_from_node, order) = transforms(document, roots)?;
         let scene = document.default_scene().or_else(|| document.scenes().next());
         let shown = match scene {
             Some(scene) => below(document, scene.nodes())?,
             None => document.nodes().collect(),
         };
-        Ok(Self { shown, world_from_node })
+        Ok(Self { shown, all: document.nodes().collect(), world_from_node, order })
     }
 }
 
-/// The transforms of all nodes. Every node is below one other at most, so the walk meets each once and ends.
-fn transforms<'a>(
-    document: &'a Document,
-    roots: impl Iterator<Item = Node<'a>>,
-) -> Result<Vec<Mat4>, Refusal> {
+/// Transforms of nodes, and the order in which each follows the node above it.
+type Tree = (Vec<Mat4>, Vec<(usize, Option<usize>)>);
+
+/// The tree of all nodes. Every node is below one other at most, so the walk meets each once and ends.
+fn transforms<'a>(document: &'a Document, roots: impl Iterator<Item = Node<'a>>) -> Result<Tree, Refusal> {
     let mut world_from_node = vec![Mat4::IDENTITY; document.nodes().len()];
-    let mut waiting: Vec<_> = roots.map(|node| (node, Mat4::IDENTITY, 0)).collect();
-    while let Some((node, world_from_parent, depth)) = waiting.pop() {
+    let mut order = Vec::with_capacity(world_from_node.len());
+    let mut waiting: Vec<_> = roots.map(|node| (node, None, 0)).collect();
+    while let Some((node, above, depth)) = waiting.pop() {
         if depth > DEPTH_LIMIT {
             return Err((format!("node {} more than {DEPTH_LIMIT} deep", node.index()), "fewer levels"));
         }
-        let own = world_from_parent * Mat4::from_cols_array_2d(&node.transform().matrix());
+        let world_from_above = above.map_or(Mat4::IDENTITY, |above: usize| world_from_node[above]);
+        let own = world_from_above * Mat4::from_cols_array_2d(&node.transform().matrix());
         world_from_node[node.index()] = own;
-        waiting.extend(node.children().map(|child| (child, own, depth + 1)));
+        order.push((node.index(), above));
+        waiting.extend(node.children().map(|child| (child, Some(node.index()), depth + 1)));
     }
-    Ok(world_from_node)
+    Ok((world_from_node, order))
 }
 
 /// The nodes below the roots of a scene, by number.

@@ -61,12 +61,8 @@ pub(super) fn default_weights<'a>(node: &Node<'a>) -> &'a [f32] {
     node.weights().or_else(of_mesh).unwrap_or_default()
 }
 
-/// The transforms of a skin's joints at rest, from the space of its mesh to the world; at least one.
-pub(super) fn world_from_mesh_by_joint(
-    skin: &Skin,
-    world_from_node: &[Mat4],
-    buffers: &Buffers,
-) -> Result<Vec<Mat4>, Refusal> {
+/// The joints of a skin, each with its inverse bind matrix; at least one.
+pub(super) fn joints_of(skin: &Skin, buffers: &Buffers) -> Result<Vec<(usize, Mat4)>, Refusal> {
     let joints: Vec<usize> = skin.joints().map(|joint| joint.index()).collect();
     if joints.is_empty() {
         return Err((format!("skin {} without joints", skin.index()), "one joint at least"));
@@ -79,13 +75,84 @@ pub(super) fn world_from_mesh_by_joint(
         let found = format!("{} inverse bind matrices for {} joints", inverse.len(), joints.len());
         return Err((found, "one for each joint"));
     }
-    let joint_from_mesh = inverse.iter().map(Mat4::from_cols_array);
-    Ok(joints.iter().zip(joint_from_mesh).map(|(joint, own)| world_from_node[*joint] * own).collect())
+    Ok(joints.into_iter().zip(inverse.iter().map(Mat4::from_cols_array)).collect())
 }
 
 /// True for a sum of weights that carries a vertex.
 fn is_weight(total: f32) -> bool {
     total > 0.0 && total.is_finite()
+}
+
+/// Joints of the vertices of a part with their weights, as the file has them: sets of four, shape `[set][vertex]`.
+#[derive(Debug)]
+pub(super) struct Influences(Vec<Vec<Set>>);
+
+/// Four joints of a vertex, and their weights.
+type Set = ([u32; 4], [f32; 4]);
+
+impl Influences {
+    /// The joints of a part of a skinned mesh, all of them among the `joints` of its skin; `None` where it has none.
+    pub fn new(
+        part: &Primitive,
+        count: usize,
+        joints: usize,
+        buffers: &Buffers,
+    ) -> Result<Option<Self>, Refusal> {
+        let mut sets = Vec::new();
+        for set in 0.. {
+            let accessors = part.get(&Semantic::Joints(set)).zip(part.get(&Semantic::Weights(set)));
+            let Some((indices, weights)) = accessors else { break };
+            if set == SETS_LIMIT {
+                return Err((
+                    format!("more than {SETS_LIMIT} sets of joints"),
+                    "fewer joints for each vertex",
+                ));
+            }
+            let indices = buffers.joints(&indices, count)?;
+            let kinds = [DataType::F32, DataType::U8, DataType::U16];
+            let weights = buffers.numbers::<4>(&weights, &kinds, count)?;
+            if indices.len() < count || weights.len() < count {
+                return Err(("fewer joints or weights than vertices".to_owned(), "four for each vertex"));
+            }
+            let set: Vec<Set> = indices.into_iter().zip(weights).collect();
+            let beyond = |(joint, weight): (&u32, &f32)| *weight > 0.0 && *joint as usize >= joints;
+            for (indices, weights) in &set {
+                if let Some((joint, _)) = indices.iter().zip(weights).find(|pair| beyond(*pair)) {
+                    return Err((format!("the joint {joint} of {joints}"), "joints of the skin"));
+                }
+            }
+            sets.push(set);
+        }
+        Ok((!sets.is_empty()).then_some(Self(sets)))
+    }
+
+    /// Joints of a vertex with their shares of it; without a sum of weights the first joint carries it.
+    pub fn shares(&self, vertex: usize) -> impl Iterator<Item = (usize, f32)> {
+        let weighted = move || {
+            let of_set = move |set: &Vec<Set>| {
+                let (indices, weights) = set[vertex];
+                indices.into_iter().zip(weights).filter(|(_, weight)| *weight > 0.0)
+            };
+            self.0.iter().flat_map(of_set)
+        };
+        let total: f32 = weighted().map(|(_, weight)| weight).sum();
+        let first = (!is_weight(total)).then_some((0, 1.0));
+        let shares = weighted().filter(move |_| is_weight(total));
+        first.into_iter().chain(shares.map(move |(joint, weight)| (joint as usize, weight / total)))
+    }
+
+    /// The transform of a vertex, and the sum of its weights; without a sum of weights the first joint carries it.
+    pub fn transform(&self, vertex: usize, joints: &[Mat4]) -> (Mat4, f32) {
+        let (mut sum, mut total) = (Mat4::ZERO, 0.0_f32);
+        for set in &self.0 {
+            let (indices, weights) = set[vertex];
+            for (joint, weight) in indices.into_iter().zip(weights).filter(|(_, weight)| *weight > 0.0) {
+                sum += joints[joint as usize] * weight;
+                total += weight;
+            }
+        }
+        (if is_weight(total) { sum * (1.0 / total) } else { joints[0] }, total)
+    }
 }
 
 /// Transforms of vertices: one for all, or one for each.
@@ -96,51 +163,19 @@ pub(super) enum Placement {
 
 impl Placement {
     /// The placement of a part of a skinned mesh: its node's own transform does not count.
-    /// `None` where the part has no joints. Counts vertices without weights. // glTF 2.0 §3.7.3.3
+    /// Counts vertices without weights. // glTF 2.0 §3.7.3.3
     pub fn skinned(
-        part: &Primitive,
+        influences: &Influences,
         count: usize,
         world_from_mesh: &[Mat4],
-        buffers: &Buffers,
         weightless: &mut usize,
-    ) -> Result<Option<Self>, Refusal> {
-        let mut sums = vec![(Mat4::ZERO, 0.0_f32); count];
-        let mut is_skinned = false;
-        for set in 0.. {
-            let accessors = part.get(&Semantic::Joints(set)).zip(part.get(&Semantic::Weights(set)));
-            let Some((joints, weights)) = accessors else { break };
-            if set == SETS_LIMIT {
-                return Err((
-                    format!("more than {SETS_LIMIT} sets of joints"),
-                    "fewer joints for each vertex",
-                ));
-            }
-            is_skinned = true;
-            let joints = buffers.joints(&joints, count)?;
-            let kinds = [DataType::F32, DataType::U8, DataType::U16];
-            let weights = buffers.numbers::<4>(&weights, &kinds, count)?;
-            if joints.len() < count || weights.len() < count {
-                return Err(("fewer joints or weights than vertices".to_owned(), "four for each vertex"));
-            }
-            for ((sum, total), (joints, weights)) in sums.iter_mut().zip(joints.iter().zip(&weights)) {
-                for (joint, weight) in joints.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
-                    let Some(transform) = world_from_mesh.get(*joint as usize) else {
-                        let found = format!("the joint {joint} of {}", world_from_mesh.len());
-                        return Err((found, "joints of the skin"));
-                    };
-                    *sum += *transform * *weight;
-                    *total += weight;
-                }
-            }
-        }
-        if is_skinned {
-            *weightless += sums.iter().filter(|(_, total)| !is_weight(*total)).count();
-        }
-        // Vertices without a weight are carried by the first joint.
-        let placed = |(sum, total): (Mat4, f32)| {
-            if is_weight(total) { sum * (1.0 / total) } else { world_from_mesh[0] }
+    ) -> Self {
+        let placed = |vertex| {
+            let (transform, total) = influences.transform(vertex, world_from_mesh);
+            *weightless += usize::from(!is_weight(total));
+            transform
         };
-        Ok(is_skinned.then(|| Self::Each(sums.into_iter().map(placed).collect())))
+        Self::Each((0..count).map(placed).collect())
     }
 
     fn of(&self, vertex: usize) -> &Mat4 {
@@ -170,7 +205,7 @@ impl Placement {
     }
 }
 
-/// The joints of every skin that a document's shown nodes use, read once.
+/// Transforms of the joints of every skin that a document's shown nodes use, each read once.
 pub(super) struct Skins(Vec<Option<Vec<Mat4>>>);
 
 impl Skins {
@@ -178,7 +213,7 @@ impl Skins {
         Self(vec![None; document.skins().len()])
     }
 
-    /// See [`world_from_mesh_by_joint`].
+    /// The transforms of a skin's joints at rest, from the space of its mesh to the world; at least one.
     pub fn joints(
         &mut self,
         skin: &Skin,
@@ -188,7 +223,10 @@ impl Skins {
         let slot = &mut self.0[skin.index()];
         match slot {
             Some(joints) => Ok(joints),
-            None => Ok(slot.insert(world_from_mesh_by_joint(skin, world_from_node, buffers)?)),
+            None => {
+                let joints = joints_of(skin, buffers)?;
+                Ok(slot.insert(joints.iter().map(|(joint, own)| world_from_node[*joint] * *own).collect()))
+            }
         }
     }
 }

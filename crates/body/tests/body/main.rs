@@ -1,11 +1,15 @@
 //! The body from outside: files, holes, distance grids.
 #![allow(clippy::disallowed_methods)] // what is held to others may be rounded
 
+mod clips;
 mod closing;
 mod distance_grid;
 mod files;
 mod gltf_files;
 mod mesh_files;
+mod posed_skin;
 mod scans;
 mod shapes;
+mod skin_roots;
 mod thin_triangles;
+mod vertices;

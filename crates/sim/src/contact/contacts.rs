@@ -8,12 +8,16 @@
 //! A point that moves far in a step is followed along its path, so that it meets the near side of a
 //! solid in between.
 
+use std::cell::Cell;
+
 use glam::Vec3;
-use strandline_body::{BodyFrame, Carrier, Collider, Pose};
-use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use strandline_body::{BodyFrame, Carrier, Collider, Pose, PosedSkin};
+use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::obstacles::Obstacles;
+use super::planes::{Plane, Rider, carriers};
+use super::touch::Touch;
 use super::way::{Seen, met};
 use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
 
@@ -38,12 +42,6 @@ impl Care {
     pub const ANEW: Self = Self { stale: 0.0, near: 0.0 };
 }
 
-/// The planes of all points, shape `[block]`.
-#[derive(Clone, Debug)]
-pub struct Contacts {
-    pub blocks: Vec<Vec<Plane>>,
-}
-
 /// Points of the same index, for a look-up of the solids.
 #[derive(Clone, Copy)]
 pub struct Query {
@@ -62,71 +60,6 @@ pub struct Query {
     pub part: u32,
 }
 
-/// Contact planes kept by the points of one index in a block, in the space of their carrier.
-#[derive(Clone, Copy, Debug)]
-pub struct Plane {
-    anchor: Vec3Lanes,
-    normal: Vec3Lanes,
-    distance: Lanes,
-    friction: Lanes,
-}
-
-impl Plane {
-    /// An unknown plane: its point may be anywhere, inside or outside.
-    const UNKNOWN: Self = Self {
-        anchor: Vec3Lanes { x: [1e9; LANES], y: [1e9; LANES], z: [1e9; LANES] },
-        normal: Vec3Lanes { x: [0.0; LANES], y: [1.0; LANES], z: [0.0; LANES] },
-        distance: Lanes([f32::NEG_INFINITY; LANES]),
-        friction: Lanes([0.0; LANES]),
-    };
-    /// Numbers for each strand.
-    const NUMBERS: usize = 8;
-
-    fn numbers(&self) -> [[f32; LANES]; Self::NUMBERS] {
-        let Self { anchor, normal, distance, friction } = self;
-        [anchor.x, anchor.y, anchor.z, normal.x, normal.y, normal.z, distance.0, friction.0]
-    }
-
-    fn of_numbers(numbers: &[f32]) -> Self {
-        let part = |index: usize| std::array::from_fn(|lane| numbers[index * LANES + lane]);
-        let vector = |first: usize| Vec3Lanes { x: part(first), y: part(first + 1), z: part(first + 2) };
-        Self { anchor: vector(0), normal: vector(3), distance: Lanes(part(6)), friction: Lanes(part(7)) }
-    }
-}
-
-impl Contacts {
-    /// Unknown planes for a number of blocks; the order of a block is `[carrier][point]`.
-    pub fn new(colliders: &[Collider], block_count: usize, points: usize) -> Self {
-        Self { blocks: vec![vec![Plane::UNKNOWN; carriers(colliders).len() * points]; block_count] }
-    }
-
-    /// Numbers of a plane for each strand.
-    pub fn numbers_per_plane(&self) -> usize {
-        Plane::NUMBERS
-    }
-
-    /// The numbers of all planes, shape `[block][plane][number]` of lanes.
-    pub fn numbers(&self) -> Vec<f32> {
-        self.blocks.iter().flatten().flat_map(Plane::numbers).flatten().collect()
-    }
-
-    /// Takes over the numbers of all planes, of that shape.
-    pub fn set_numbers(&mut self, numbers: &[f32]) {
-        let planes = self.blocks.iter_mut().flatten();
-        for (plane, numbers) in planes.zip(numbers.chunks_exact(Plane::NUMBERS * LANES)) {
-            *plane = Plane::of_numbers(numbers);
-        }
-    }
-}
-
-/// The carriers of colliders, each once: pieces of the body in their order, then the world.
-pub(crate) fn carriers(colliders: &[Collider]) -> Vec<Carrier> {
-    let mut carriers: Vec<Carrier> = colliders.iter().map(|collider| collider.carrier).collect();
-    carriers.sort_unstable();
-    carriers.dedup();
-    carriers
-}
-
 /// Transform of a carrier, `world_from_carrier`.
 fn pose(frame: &BodyFrame, carrier: Carrier) -> Pose {
     match carrier {
@@ -142,10 +75,12 @@ pub struct Solids<'a> {
     points: usize,
 }
 
-struct Group<'a> {
-    colliders: Vec<&'a Collider>,
-    carrier_from_world: Rigid,
-    world_from_carrier: Rigid,
+pub(super) struct Group<'a> {
+    colliders: Vec<(&'a Collider, Option<&'a PosedSkin>)>,
+    /// The skin among them that moves by itself.
+    skin: Option<&'a PosedSkin>,
+    pub(super) carrier_from_world: Rigid,
+    pub(super) world_from_carrier: Rigid,
     /// Carries what rests on the solid from the start to the end of the step.
     end_from_start: Rigid,
     /// Carries it through each part of the step; empty for a step in one.
@@ -158,8 +93,11 @@ impl<'a> Solids<'a> {
         let group = |carrier| {
             let [start, end] = [&obstacles.start, &obstacles.end].map(|frame| pose(frame, carrier));
             let moved = if carrier == Carrier::World { Pose::IDENTITY } else { start.motion_to(&end) };
+            let solids = obstacles.solids().filter(|(collider, _)| collider.carrier == carrier);
+            let colliders: Vec<_> = solids.collect();
             Group {
-                colliders: obstacles.colliders.iter().filter(|c| c.carrier == carrier).collect(),
+                skin: colliders.iter().find_map(|(_, skin)| *skin),
+                colliders,
                 carrier_from_world: Rigid::new(&end.inverse()),
                 world_from_carrier: Rigid::new(&end),
                 end_from_start: Rigid::new(&moved),
@@ -186,14 +124,36 @@ impl<'a> Solids<'a> {
         self.groups.is_empty()
     }
 
+    /// Points of a strand.
+    pub(super) fn points(&self) -> usize {
+        self.points
+    }
+
+    /// Number of carriers.
+    pub(super) fn carrier_count(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// Skins that move by themselves, each with the place of its carrier.
+    pub(super) fn skins(&self) -> impl Iterator<Item = (usize, &'a PosedSkin)> {
+        self.groups.iter().enumerate().filter_map(|(index, group)| Some((index, group.skin?)))
+    }
+
     /// Solid near the points of one index; `None` if no free lane is near one.
     pub fn touch(&self, planes: &mut [Plane], point: usize, query: Query) -> Option<Touch> {
         let Query { position, start, margin, free, care, part } = query;
         let mut touch: Option<Touch> = None;
+        let (planes, riders) = planes.split_at_mut(self.groups.len() * self.points);
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
             let plane = &mut planes[point];
-            let stuck = start.map(|start| group.end_from_start.points(start));
-            let look = group.refresh(plane, position, stuck, margin + splat(care.near), care.stale);
+            let mut rider = riders.get_mut(point).filter(|_| group.skin.is_some());
+            let carried = start.map(|start| group.end_from_start.points(start));
+            let along = group.along(rider.as_deref());
+            let stuck = carried.map(|carried| along.map_or(carried, |along| carried + along));
+            let reach = margin + splat(care.near);
+            let look = group.refresh(plane, rider.as_deref_mut(), position, stuck, reach, care.stale);
+            let along = group.along(rider.as_deref());
+            let stuck = carried.map(|carried| along.map_or(carried, |along| carried + along));
             let near = look.near & free;
             if !near.any() {
                 continue;
@@ -207,7 +167,10 @@ impl<'a> Solids<'a> {
                 offset: near.bitselect(offset, splat(f32::NEG_INFINITY)),
                 friction: load(&plane.friction),
                 stuck: match (start, group.part_moves.get(part as usize)) {
-                    (Some(start), Some(moved)) => moved.points(start),
+                    (Some(start), Some(moved)) => {
+                        let share = splat(1.0 / group.part_moves.len() as f32);
+                        along.map_or(moved.points(start), |along| moved.points(start) + along * share)
+                    }
                     _ => stuck.unwrap_or(position),
                 },
                 place: anchor.or(look.blocked & near, position),
@@ -219,16 +182,30 @@ impl<'a> Solids<'a> {
 
     /// Depth \[m\] of points of one index inside the solids, 0 outside, for the lanes in `counted`. It looks distances up
     /// again, so that it also finds what the remembered planes may have missed.
-    pub fn depth(&self, position: Vec3x8, counted: impl Fn(usize) -> bool) -> f32 {
+    /// On a skin that moves by itself the planes of points tell which are outside for certain.
+    pub fn depth(
+        &self,
+        position: Vec3x8,
+        (planes, index): (&[Plane], usize),
+        counted: impl Fn(usize) -> bool,
+    ) -> f32 {
         let mut deepest = 0.0_f32;
-        for group in &self.groups {
+        for (number, group) in self.groups.iter().enumerate() {
+            if group.skin.is_some() {
+                let plane = &planes[number * self.points + index];
+                let rider = planes.get(self.groups.len() * self.points + index);
+                deepest = deepest.max(group.depth_on(position, plane, rider, &counted));
+                continue;
+            }
             let mut local = Vec3Lanes::default();
             group.carrier_from_world.points(position).store(&mut local);
             for point in (0..LANES).filter(|lane| counted(*lane)).map(|lane| local.get(lane)) {
                 // A lower bound shows that most points are outside; the surface is not searched for those.
-                let near =
-                    group.colliders.iter().filter(|collider| collider.shape.distance_at_least(point) <= 0.0);
-                let distances = near.map(|collider| collider.shape.distance(point));
+                let near = group
+                    .colliders
+                    .iter()
+                    .filter(|(collider, _)| collider.shape.distance_at_least(point) <= 0.0);
+                let distances = near.map(|(collider, _)| collider.shape.distance(point));
                 deepest = distances.fold(deepest, |deepest, distance| deepest.max(-distance));
             }
         }
@@ -258,6 +235,7 @@ impl Group<'_> {
     fn refresh(
         &self,
         plane: &mut Plane,
+        mut rider: Option<&mut Plane>,
         position: Vec3x8,
         stuck: Option<Vec3x8>,
         reach: f32x8,
@@ -275,7 +253,9 @@ impl Group<'_> {
         local.store(&mut here);
         stuck.map_or(local, |stuck| self.carrier_from_world.points(stuck)).store(&mut from);
         for lane in (0..LANES).filter(|lane| stale & (1 << lane) != 0) {
-            let seen = met(from.get(lane), here.get(lane), |point| self.nearest(point));
+            let triangle =
+                Cell::new(rider.as_mut().map_or(PosedSkin::UNKNOWN, |rider| Rider(rider).triangle(lane)));
+            let seen = met(from.get(lane), here.get(lane), |point| self.nearest(point, &triangle));
             if seen.is_before(here.get(lane)) {
                 blocked[lane] = f32::from_bits(u32::MAX);
             }
@@ -284,88 +264,30 @@ impl Group<'_> {
             plane.normal.set(lane, normal);
             plane.distance.0[lane] = distance;
             plane.friction.0[lane] = friction;
+            if let (Some(rider), Some(skin)) = (rider.as_mut(), self.skin) {
+                Rider(rider).set(lane, triangle.get(), skin.shift(triangle.get(), place));
+            }
         }
         let moved = (local - Vec3x8::load(&plane.anchor)).length();
         Look { near: (load(&plane.distance) - moved).simd_le(reach), blocked: f32x8::from(blocked) }
     }
 
-    fn nearest(&self, point: Vec3) -> Seen {
+    /// The nearest solid; the triangle of the skin is kept where that is it.
+    pub(super) fn nearest(&self, point: Vec3, triangle: &Cell<u32>) -> Seen {
         let mut nearest = Seen { place: point, distance: f32::INFINITY, normal: Vec3::Y, friction: 0.0 };
-        for collider in &self.colliders {
-            let (distance, normal) = collider.shape.distance_and_gradient(point);
+        for (collider, skin) in &self.colliders {
+            let (distance, normal) = match skin {
+                Some(skin) => {
+                    let found = skin.nearest(point, triangle.get());
+                    triangle.set(found.triangle);
+                    (found.distance, found.normal)
+                }
+                None => collider.shape.distance_and_gradient(point),
+            };
             if distance < nearest.distance {
                 nearest = Seen { distance, normal, friction: collider.friction, ..nearest };
             }
         }
         nearest
-    }
-}
-
-/// A half space for the points of one index, world space.
-#[derive(Clone, Copy)]
-pub struct Touch {
-    /// Unit normal, out of the solid.
-    pub normal: Vec3x8,
-    /// Points stay where normal . x is at least this \[m\].
-    pub offset: f32x8,
-    /// Coulomb friction coefficient.
-    pub friction: f32x8,
-    /// Positions of points that stuck to the solid \[m\].
-    pub stuck: Vec3x8,
-    /// Positions after the look-up: unchanged, or where a solid stopped the points on their path \[m\].
-    pub place: Vec3x8,
-}
-
-impl Touch {
-    /// Height \[m\] above the plane.
-    #[inline(always)]
-    pub fn height(&self, position: Vec3x8) -> f32x8 {
-        self.normal.dot(position) - self.offset
-    }
-
-    /// Distance \[m\] that friction may move points back in this step [Macklin2014 eq. 24]. It follows from the depth of
-    /// the prediction alone, so that the number of rounds does not change it.
-    #[inline(always)]
-    pub fn friction_of(&self, predicted: Vec3x8) -> f32x8 {
-        self.friction * (-self.height(predicted)).fast_max(splat(0.0))
-    }
-
-    /// Pushes points out of the solid and takes back their slip, up to the `left` \[m\] of friction. Friction holds until
-    /// the step ends, even where a round has lifted the point a little.
-    #[inline(always)]
-    pub fn resolve(&self, position: Vec3x8, left: &mut f32x8) -> Vec3x8 {
-        let height = self.height(position);
-        if !(height.simd_lt(splat(0.0)) | left.simd_gt(splat(0.0))).any() {
-            return position;
-        }
-        let out = position - self.normal * height.fast_min(splat(0.0));
-        let slip = out - self.stuck;
-        let slip = slip - self.normal * self.normal.dot(slip);
-        let size = slip.length();
-        let taken = left.fast_min(size);
-        *left -= taken;
-        out - slip * (taken / size)
-    }
-
-    #[inline(always)]
-    fn nearer(&self, other: &Self, position: Vec3x8) -> Self {
-        self.or(self.height(position).simd_lt(other.height(position)), other)
-    }
-
-    /// This where the mask is set, else `other`.
-    #[inline(always)]
-    pub fn or(&self, mask: f32x8, other: &Self) -> Self {
-        Self {
-            normal: self.normal.or(mask, other.normal),
-            offset: mask.bitselect(self.offset, other.offset),
-            friction: mask.bitselect(self.friction, other.friction),
-            stuck: self.stuck.or(mask, other.stuck),
-            place: self.place.or(mask, other.place),
-        }
-    }
-
-    /// This, without a touch where the mask is set.
-    pub fn except(&self, mask: f32x8) -> Self {
-        Self { offset: mask.bitselect(splat(f32::NEG_INFINITY), self.offset), ..*self }
     }
 }

@@ -3,6 +3,11 @@
 
 pub(crate) mod contacts;
 mod obstacles;
+pub(crate) mod planes;
+mod riders;
+pub(crate) mod touch;
 mod way;
+
+pub(crate) use obstacles::Skins;
 
 pub use obstacles::Obstacles;

@@ -1,7 +1,9 @@
 //! Colliders placed in the world for the duration of a step.
 
+use std::sync::Arc;
+
 use glam::Vec3;
-use strandline_body::{BodyFrame, Carrier, Collider, Pose};
+use strandline_body::{BodyFrame, Carrier, Collider, Pose, PosedSkin};
 
 /// The colliders at the end of a step, and their motion through it.
 #[derive(Clone)]
@@ -16,7 +18,12 @@ pub struct Obstacles<'a> {
     pub time_step: f32,
     /// The pieces that carry solids, by their number.
     pieces: Vec<Placed>,
+    /// For each collider its skin, where that moves by itself.
+    skins: Skins,
 }
+
+/// For each collider its skin, where that moves by itself.
+pub type Skins = Vec<Option<Arc<PosedSkin>>>;
 
 /// A piece through a step.
 #[derive(Clone, Copy)]
@@ -29,6 +36,25 @@ struct Placed {
 impl<'a> Obstacles<'a> {
     /// Places colliders for a step of `time_step` \[s\] between two frames of the body.
     pub fn new(colliders: &'a [Collider], start: BodyFrame, end: BodyFrame, time_step: f32) -> Self {
+        Self::after(&[], colliders, start, end, time_step)
+    }
+
+    /// The same after a step with these skins, which are used again where they stand still.
+    pub fn after(
+        known: &[Option<Arc<PosedSkin>>],
+        colliders: &'a [Collider],
+        start: BodyFrame,
+        end: BodyFrame,
+        time_step: f32,
+    ) -> Self {
+        let skin = |(index, collider): (usize, &Collider)| {
+            let is_known = |known: &&Arc<PosedSkin>| known.is_of(collider, &start, &end);
+            match known.get(index).and_then(Option::as_ref).filter(is_known) {
+                Some(known) => Some(Arc::clone(known)),
+                None => PosedSkin::of(collider, &start, &end).map(Arc::new),
+            }
+        };
+        let skins = colliders.iter().enumerate().map(skin).collect();
         let piece = |collider: &Collider| match collider.carrier {
             Carrier::Piece(piece) => usize::from(piece) + 1,
             Carrier::World => 0,
@@ -39,7 +65,17 @@ impl<'a> Obstacles<'a> {
             Placed { start, end, piece_from_world: end.inverse() }
         };
         let pieces = (0..count).map(place).collect();
-        Self { colliders, start, end, time_step, pieces }
+        Self { colliders, start, end, time_step, pieces, skins }
+    }
+
+    /// For each collider its skin, where that moves by itself.
+    pub fn skins(&self) -> &Skins {
+        &self.skins
+    }
+
+    /// Colliders with their skins.
+    pub(super) fn solids(&self) -> impl Iterator<Item = (&Collider, Option<&PosedSkin>)> {
+        self.colliders.iter().zip(self.skins.iter().map(Option::as_deref))
     }
 
     /// A point in the space of a collider's carrier.
@@ -54,22 +90,28 @@ impl<'a> Obstacles<'a> {
     /// Signed distance \[m\] to the nearest solid at the end of the step, its unit gradient, and
     /// the solid's index; `None` without colliders. World space.
     pub fn nearest(&self, point: Vec3) -> Option<(f32, Vec3, usize)> {
-        let look = |(index, collider): (usize, &Collider)| {
-            let (distance, gradient) = collider.shape.distance_and_gradient(self.local(collider, point));
+        let look = |(index, (collider, skin)): (usize, (&Collider, Option<&PosedSkin>))| {
+            let local = self.local(collider, point);
+            let (distance, gradient) = match skin {
+                Some(skin) => skin.distance_and_gradient(local),
+                None => collider.shape.distance_and_gradient(local),
+            };
             let gradient = match collider.carrier {
                 Carrier::World => gradient,
                 Carrier::Piece(piece) => self.pieces[usize::from(piece)].end.direction(gradient),
             };
             (distance, gradient, index)
         };
-        self.colliders.iter().enumerate().map(look).min_by(|a, b| a.0.total_cmp(&b.0))
+        self.solids().enumerate().map(look).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Signed distance \[m\] to the nearest solid at the end of the step, infinite without solids: that of
     /// [`Self::nearest`]. World space.
     pub fn distance(&self, point: Vec3) -> f32 {
-        let distances =
-            self.colliders.iter().map(|collider| collider.shape.distance(self.local(collider, point)));
+        let distances = self.solids().map(|(collider, skin)| {
+            let local = self.local(collider, point);
+            skin.map_or_else(|| collider.shape.distance(local), |skin| skin.distance_and_gradient(local).0)
+        });
         distances.fold(f32::INFINITY, f32::min)
     }
 
@@ -85,10 +127,10 @@ impl<'a> Obstacles<'a> {
     /// Lower bound \[m\] of the distance of all solids from a point at the end of the step, 0 where it may be inside
     /// one; quicker than [`Self::nearest`]. World space.
     pub fn at_least(&self, point: Vec3) -> f32 {
-        let least = self
-            .colliders
-            .iter()
-            .map(|collider| collider.shape.distance_at_least(self.local(collider, point)));
+        let least = self.solids().map(|(collider, skin)| {
+            let local = self.local(collider, point);
+            skin.map_or_else(|| collider.shape.distance_at_least(local), |skin| skin.at_least(local))
+        });
         least.fold(f32::INFINITY, f32::min)
     }
 
@@ -98,7 +140,12 @@ impl<'a> Obstacles<'a> {
             Carrier::World => Vec3::ZERO,
             Carrier::Piece(piece) => {
                 let Placed { start, piece_from_world, .. } = self.pieces[usize::from(piece)];
-                (point - start.point(piece_from_world.point(point))) / self.time_step
+                let local = piece_from_world.point(point);
+                let shift = |skin: &Arc<PosedSkin>| {
+                    skin.shift(skin.nearest(local, PosedSkin::UNKNOWN).triangle, local)
+                };
+                let before = self.skins[collider].as_ref().map_or(local, |skin| local - shift(skin));
+                (point - start.point(before)) / self.time_step
             }
         }
     }

@@ -9,6 +9,7 @@ use wide::f32x8;
 use super::Scratch;
 use crate::contact::Obstacles;
 use crate::contact::contacts::Solids;
+use crate::contact::planes::Plane;
 use crate::{Model, State};
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 
@@ -58,7 +59,7 @@ pub fn advance(model: &Model, state: &mut State, scratch: &mut Scratch, obstacle
     std::mem::swap(&mut state.positions, &mut scratch.predicted);
     state.body = obstacles.end.clone();
     state.time += f64::from(model.settings.time_step);
-    let lengths = &state.lengths.stretch;
+    let (lengths, contacts) = (&state.lengths.stretch, &state.contacts.blocks);
     let speeds = state.velocities.par_chunks_mut(points).zip(state.corrections.par_chunks_mut(points));
     let outcomes: Vec<Outcome> = state
         .positions
@@ -87,7 +88,7 @@ pub fn advance(model: &Model, state: &mut State, scratch: &mut Scratch, obstacle
                 speeds.add(moved * splat(1.0 / model.settings.time_step), there);
             }
             outcome.take(&stretches, &speeds);
-            outcome.penetration_max = deepest(&solids, positions, inverse_mass, live);
+            outcome.penetration_max = deepest(&solids, positions, &contacts[block], inverse_mass, live);
             outcome
         })
         .collect();
@@ -158,14 +159,21 @@ fn larger(one: f32, other: f32) -> f32 {
 }
 
 /// Depth \[m\] of the deepest free point of a block inside the solids.
-fn deepest(solids: &Solids, positions: &[Vec3Lanes], inverse_mass: &[Lanes], live: usize) -> f32 {
+fn deepest(
+    solids: &Solids,
+    positions: &[Vec3Lanes],
+    planes: &[Plane],
+    inverse_mass: &[Lanes],
+    live: usize,
+) -> f32 {
     if solids.is_empty() {
         return 0.0;
     }
-    let depth = |(position, inverse_mass): (&Vec3Lanes, &Lanes)| {
-        solids.depth(Vec3x8::load(position), |lane| lane < live && inverse_mass.0[lane] > 0.0)
+    let depth = |(index, (position, inverse_mass)): (usize, (&Vec3Lanes, &Lanes))| {
+        let is_counted = |lane: usize| lane < live && inverse_mass.0[lane] > 0.0;
+        solids.depth(Vec3x8::load(position), (planes, index), is_counted)
     };
-    positions.iter().zip(inverse_mass).map(depth).fold(0.0, f32::max)
+    positions.iter().zip(inverse_mass).enumerate().map(depth).fold(0.0, f32::max)
 }
 
 /// The changing state of a block of strands, shape `[point]` of lanes, world space.

@@ -5,7 +5,9 @@ use strandline_body::turned_out;
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use crate::contact::contacts::{Care, Plane, Query, Solids, Touch};
+use crate::contact::contacts::{Care, Query, Solids};
+use crate::contact::planes::Plane;
+use crate::contact::touch::Touch;
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Times that a point is placed again at most when the solid under it curves: enough for an ear.

@@ -5,7 +5,8 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::solve_rods::Strands;
-use crate::contact::contacts::{Care, Plane, Query};
+use crate::contact::contacts::{Care, Query};
+use crate::contact::planes::Plane;
 use crate::grab::Pinned;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::Pull;

@@ -14,7 +14,7 @@ use super::pose_roots::pose_roots;
 use super::solve_pressure::solve_pressure;
 use super::solve_rods::solve_rods;
 use super::splat::splat;
-use crate::contact::Obstacles;
+use crate::contact::{Obstacles, Skins, contacts::Solids};
 use crate::step::{Stage, stages};
 use crate::{Drive, Model, Settings, SimError, State, StepReport};
 
@@ -22,11 +22,13 @@ use crate::{Drive, Model, Settings, SimError, State, StepReport};
 pub struct CpuRunner {
     model: Model,
     scratch: Option<Scratch>,
+    /// Skins of the last step.
+    skins: Skins,
 }
 
 impl From<Model> for CpuRunner {
     fn from(model: Model) -> Self {
-        Self { model, scratch: None }
+        Self { model, scratch: None, skins: Skins::new() }
     }
 }
 
@@ -58,7 +60,10 @@ impl CpuRunner {
         let drive = drive.or_still_at(&state.body, model.strand_count);
         state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
         let (start, end) = (state.body.clone(), drive.body);
-        let obstacles = Obstacles::new(&model.colliders, start, end, model.settings.time_step);
+        let time_step = model.settings.time_step;
+        let obstacles = Obstacles::after(&self.skins, &model.colliders, start, end, time_step);
+        self.skins.clone_from(obstacles.skins());
+        state.contacts.ride(&Solids::new(&obstacles, model.points_per_strand));
         let (wind, report) = (drive.wind, StepReport::default());
         let mut step = Step { model, state, scratch, obstacles, wind, report };
         par::awake(|| {

@@ -11,7 +11,8 @@ use super::advance::{Block, NonFinite, recover};
 use super::integrate::Fall;
 use super::length_pass::Follow;
 use crate::contact::Obstacles;
-use crate::contact::contacts::{Plane, Solids};
+use crate::contact::contacts::Solids;
+use crate::contact::planes::Plane;
 use crate::grab::Pinned;
 use crate::strands::rods::hairs::{Traits, lone};
 use crate::strands::rods::real::{Real, Vector};
@@ -360,8 +361,7 @@ impl Strands<'_> {
         self.count(space, solved, moves);
     }
 
-    /// Most way \[m\] of a strand at rest in a part of a step, and most difference from the way before, from the square of
-    /// the part \[s^2\].
+    /// Most way \[m\] of a strand at rest in a part of a step of a square \[s^2\], and most change of it.
     fn rest_within(&self, pressed: f32x8, square: f64) -> (f32x8, f32x8) {
         let held_by = |rubbing: f64| {
             let loose = f32x8::of((STILL_FREE * square).min(STILL_LOOSE).max(rubbing * square));

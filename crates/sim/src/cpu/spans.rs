@@ -10,7 +10,7 @@
 use strandline_groom::{Lanes, Vec3Lanes};
 use wide::f32x8;
 
-use crate::contact::contacts::Touch;
+use crate::contact::touch::Touch;
 use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Number of turns between directions and points. A rope of 62 segments, its ends 0.95 lengths apart, then keeps

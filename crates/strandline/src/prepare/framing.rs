@@ -4,14 +4,20 @@ use glam::Vec3;
 
 use crate::{
     Error, HeadMotion, Scene,
-    body::{Aabb, Mesh},
+    body::{Aabb, Mesh, RecordedMotion},
     groom::Guides,
 };
 
 /// Motion of the head: about the scene's pivot, the body's, or a low point in the box around hair and body.
 pub fn head_motion(scene: &Scene, pivot: Option<Vec3>, bounds: Aabb) -> Result<HeadMotion, Error> {
     let pivot = scene.motion.pivot.or(pivot).unwrap_or_else(|| low_center(bounds));
-    HeadMotion::new(&scene.motion, pivot)
+    let section = &scene.motion;
+    let load = |file| {
+        let clip = section.clip.as_deref();
+        RecordedMotion::load(&scene.path(file), &section.joint, clip, f64::from(section.scale))
+    };
+    let recorded = section.file.as_ref().map(|file| load(file)).transpose()?;
+    Ok(HeadMotion::new(section, pivot)?.with_recorded(recorded))
 }
 
 /// The box around strands and body \[m\].

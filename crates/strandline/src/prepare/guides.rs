@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{
     Error, Scene,
-    body::{Carrier, Collider, Mesh, Pose, Shape, Solids},
+    body::{Carrier, Collider, Mesh, Pose, Shape, SkinMotion, Solids},
     groom::{Groom, Guides, Outside},
     strands::attributes,
 };
@@ -12,7 +12,7 @@ use crate::{
 use super::{
     framing::{bounds, head_motion},
     loading::Loading,
-    looks, memory,
+    looks, memory, moving,
 };
 
 /// Depth \[m\] up to which no note is made: less than the error of a sampled body.
@@ -40,7 +40,14 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     if let Some(file) = &scene.groom.attributes {
         attributes::load(&scene.path(file), &mut guides)?;
     }
-    let start = start(scene, loading.pivot, &all, loading.mesh.as_ref())?;
+    loading.skin = match (loading.motion.take(), &loading.mesh) {
+        (Some(motion), Some(mesh)) => {
+            let placing = moving::placing(scene, loading.placings.body);
+            Some(moving::skin(scene, motion, mesh, placing, &guides)?)
+        }
+        _ => None,
+    };
+    let start = start(scene, loading.pivot, &all, loading.mesh.as_ref(), loading.skin.as_ref())?;
     notes.extend(move_outside(&mut guides, start, &loading.colliders, |_| 0.0));
     loading.start = start;
     (loading.strands, loading.chosen, loading.guides) = (Some(all), chosen, Some(guides));
@@ -81,8 +88,15 @@ fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<u
 }
 
 /// Pose of the head when the hair begins to move. Hair with a pose of its own rests as it did where its run began.
-fn start(scene: &Scene, pivot: Option<Vec3>, strands: &Guides, mesh: Option<&Mesh>) -> Result<Pose, Error> {
+fn start(
+    scene: &Scene,
+    pivot: Option<Vec3>,
+    strands: &Guides,
+    mesh: Option<&Mesh>,
+    skin: Option<&SkinMotion>,
+) -> Result<Pose, Error> {
     let head = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
+    let head = head.with_body(skin.cloned());
     Ok(head.pose(if scene.groom.pose.is_some() { 0.0 } else { scene.film.start }))
 }
 

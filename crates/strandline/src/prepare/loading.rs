@@ -7,7 +7,7 @@ use super::memory;
 use super::placing::{Defined, Placings};
 use crate::{
     Error, Scene,
-    body::{Collider, Mesh, Pose, Shape},
+    body::{Collider, Mesh, Pose, Shape, SkinMotion, VertexMotion},
     groom::{Groom, Guides},
 };
 
@@ -28,6 +28,10 @@ pub(super) struct Loading<'a> {
     pub mesh: Option<Mesh>,
     /// Meshes of `body.parts`, until `place` adds them.
     pub further_meshes: Vec<Mesh>,
+    /// Motion of the drawn body's vertices, in the units and axes of its file, from `read`.
+    pub motion: Option<VertexMotion>,
+    /// Motion of the body in head space, from `guides`.
+    pub skin: Option<SkinMotion>,
     /// The mesh that hair hits, where it is not the drawn one.
     pub solid_mesh: Option<Mesh>,
     /// Placements of files, from `place`.
@@ -70,6 +74,8 @@ impl<'a> Loading<'a> {
             further_grooms: Vec::new(),
             mesh: None,
             further_meshes: Vec::new(),
+            motion: None,
+            skin: None,
             solid_mesh: None,
             placings: Placings::new(1.0),
             is_foreign: false,

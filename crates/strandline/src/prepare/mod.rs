@@ -14,6 +14,7 @@ pub(crate) mod looks;
 mod map;
 mod marked;
 pub(crate) mod memory;
+mod moving;
 mod noted;
 mod place;
 mod placing;
@@ -106,7 +107,8 @@ impl Prepared {
 /// Last stage of loading: all strands bound to their guides, and the motion of the head.
 fn bind(loading: Loading) -> Result<Prepared, Error> {
     let placement = loading.placings.placement();
-    let Loading { scene, notes, groom, mesh, colliders, pivot, strands, chosen, guides, start, .. } = loading;
+    let Loading { scene, notes, groom, mesh, colliders, pivot, strands, chosen, guides, start, skin, .. } =
+        loading;
     let (Some(groom), Some(mut all), Some(guides)) = (groom, strands, guides) else {
         unreachable!("the stages before end with strands or an error")
     };
@@ -126,7 +128,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let pose = scene.groom.pose.as_ref().map(load).transpose()?;
     let mesh = mesh.filter(|_| scene.body.visible);
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
-    let head = head_motion(&scene, pivot, bounds)?;
+    let head = head_motion(&scene, pivot, bounds)?.with_body(skin);
     Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, placement, notes })
 }
 

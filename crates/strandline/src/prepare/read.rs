@@ -16,12 +16,19 @@ pub(super) fn read(loading: &mut Loading) -> Result<(), Error> {
     loading.groom = section.file.as_ref().map(|file| groom(file, section.per_strand)).transpose()?;
     let body = &scene.body;
     let mut noted = Vec::new();
+    (loading.mesh, loading.motion) = match &body.file {
+        Some(file) => {
+            let (mesh, motion, notes) = sources.body(scene, file)?;
+            noted.extend(notes);
+            (Some(mesh), motion)
+        }
+        None => (None, None),
+    };
     let mut mesh = |name| {
         let (mesh, notes) = sources.mesh_noted(scene, name)?;
         noted.extend(notes);
         Ok::<_, Error>(mesh)
     };
-    loading.mesh = body.file.as_ref().map(|file| mesh(file)).transpose()?;
     let parts = section.parts.iter().map(|part| groom(&part.file, part.per_strand));
     loading.further_grooms = parts.collect::<Result<_, _>>()?;
     let parts = body.parts.iter().map(|part| mesh(&part.file));

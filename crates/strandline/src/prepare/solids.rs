@@ -8,7 +8,7 @@ use super::loading::Loading;
 use super::placing::place_mesh;
 use crate::{
     Error,
-    body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape},
+    body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape, SkinSolid},
     scene::Model,
 };
 
@@ -76,7 +76,12 @@ fn own_shape(loading: &mut Loading) -> Result<Shape, Error> {
         }
         (None, mesh) => kept_grid(mesh.unwrap_or(&Mesh::default()), body.spacing)?,
     };
-    Ok(grid_shape(loading, grid))
+    let follows = loading.motion.is_some() && body.collider_file.is_none();
+    let shape = grid_shape(loading, grid);
+    match (loading.mesh.as_ref().filter(|_| follows), shape) {
+        (Some(mesh), Shape::Grid(grid)) => Ok(Shape::Skin(Arc::new(SkinSolid::new(mesh, grid)?))),
+        (_, shape) => Ok(shape),
+    }
 }
 
 /// A grid as a solid. Adds a note where it is coarser than the scene asks for.

@@ -12,7 +12,7 @@ use super::map::Map;
 use super::placing::Defined;
 use crate::{
     Error, Scene,
-    body::{Mesh, MeshFormat},
+    body::{Mesh, MeshFormat, VertexMotion},
     groom::{
         Groom,
         format::{self, Cleaning, LoadOptions, Scale, Up},
@@ -45,8 +45,12 @@ use crate::{
 pub struct Sources {
     grooms: BTreeMap<PathBuf, Arc<Groom>>,
     meshes: BTreeMap<PathBuf, Arc<Mesh>>,
+    motions: BTreeMap<PathBuf, VertexMotion>,
     maps: BTreeMap<PathBuf, Arc<Map>>,
 }
+
+/// A body, its motion where it has one, and notes.
+type Body = (Mesh, Option<VertexMotion>, Vec<String>);
 
 impl Sources {
     /// Adds a groom, in its own units and axes: for `groom.file` and `groom.parts[..].file`.
@@ -61,6 +65,14 @@ impl Sources {
     #[must_use]
     pub fn with_mesh(mut self, name: impl Into<PathBuf>, mesh: impl Into<Arc<Mesh>>) -> Self {
         self.meshes.insert(name.into(), mesh.into());
+        self
+    }
+
+    /// Adds the motion of the vertices of the mesh for `body.file`, by the name of that mesh, in its units and axes; the
+    /// mesh may be in memory or in a file.
+    #[must_use]
+    pub fn with_motion(mut self, name: impl Into<PathBuf>, motion: VertexMotion) -> Self {
+        self.motions.insert(name.into(), motion);
         self
     }
 
@@ -119,6 +131,33 @@ impl Sources {
         Ok((mesh, notes.into_iter().map(noted).collect()))
     }
 
+    /// The body in its own units and axes, its motion where it has one, and notes.
+    pub(super) fn body(&self, scene: &Scene, name: &Path) -> Result<Body, Error> {
+        let own = self.motions.get(name).cloned();
+        let (body, path) = (&scene.body, scene.path(name));
+        let Some(clip) = &body.clip else {
+            if !self.meshes.contains_key(name) && Mesh::is_sequence(&path) {
+                let (mesh, motion) = Mesh::load_sequence(&path, body.frames_per_second)?;
+                return Ok((mesh, Some(motion), Vec::new()));
+            }
+            let (mesh, notes) = self.mesh_noted(scene, name)?;
+            let file = (!self.meshes.contains_key(name)).then_some(&*path);
+            let load = |vertices: &PathBuf| {
+                VertexMotion::load(&scene.path(vertices), &mesh, file, body.frames_per_second)
+            };
+            let motion = body.vertices.as_ref().map(load).transpose()?;
+            let own = own.map(|motion| motion.with_rest(&mesh.positions));
+            return Ok((mesh, motion.or(own), notes));
+        };
+        if self.meshes.contains_key(name) {
+            let found = "a clip of a body in memory";
+            return Err(SettingError::new("body.clip", found, "a motion among the sources").into());
+        }
+        let (mesh, motion, notes) = Mesh::load_moving(&path, clip)?;
+        let noted = |note: String| format!("{}: {note}", name.display());
+        Ok((mesh, Some(motion), notes.into_iter().map(noted).collect()))
+    }
+
     /// Definitions that the format of a mesh makes; none for a mesh in memory. Earlier avatars look along -z, later ones
     /// along +z.
     pub(super) fn defined(&self, name: &Path) -> Defined {
@@ -163,6 +202,7 @@ impl Sources {
         let mut named: Vec<PathBuf> = scene.clone().paths_mut().map(|path| path.clone()).collect();
         named.extend(scene.body.scalp.as_ref().map(PathBuf::from));
         let own = self.grooms.keys().chain(self.meshes.keys()).chain(self.maps.keys());
+        let own = own.chain(self.motions.keys());
         let unused = |name: &&PathBuf| !named.contains(name);
         let Some(name) = own.clone().find(unused) else { return Ok(()) };
         let listed = named.iter().map(|name| format!("`{}`", name.display())).collect::<Vec<_>>();

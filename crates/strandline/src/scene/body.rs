@@ -49,11 +49,26 @@ settings! {
     pub struct BodySection {
         /// The body when no file is named.
         model: Model = Model::default();
-        /// An .obj, .gltf, .glb, .vrm, .ply or .stl file.
+        /// An .obj, .gltf, .glb, .vrm, .ply or .stl file; or a body in motion: an .npz with `vertices` over time and
+        /// `faces`, a folder of .obj files with the same faces, or such files by a pattern, `walk%04d.obj`.
         file: Option<PathBuf> = None;
         /// Part of the body on which a style grows, by its name in the body's files: an object, a group or a material
         /// of an .obj, a node, a mesh or a material of a glTF. Without it the built-in scalp is brought onto the skull.
         scalp: Option<String> = None;
+        /// Clip of the body's glTF file that moves it, by its name: skins, morph targets and nodes. The head is where the
+        /// roots of the hair are; without a clip the body rests in its default pose.
+        clip: Option<String> = None;
+        /// The body's vertices over time, in the units, axes and order of `file`: a .npy or .npz file of an array
+        /// `[frame, vertex, 3]`, named vertices, verts, positions or v, with `times` or `fps` beside it.
+        vertices: Option<PathBuf> = None;
+        /// Rate of files, and of arrays without times.
+        frames_per_second: f64 = 24.0, in [0.001, 10_000.0] "1/s";
+        /// Time of the motion at the time 0 of the scene; the motion is held before its beginning and after its end.
+        start: f64 = 0.0, in [-1e6, 1e6] "s", slider [0.0, 10.0];
+        /// Seconds of the motion in a second of the scene.
+        speed: f64 = 1.0, in [-1000.0, 1000.0], slider [0.0, 4.0], more "a faster motion";
+        /// Begins the motion again after its end.
+        r#loop: bool = false;
         /// A closed mesh that hair hits in place of the drawn one.
         collider_file: Option<PathBuf> = None;
         /// Metres per unit of the body's files; "auto" takes 1 for a glTF, which is in metres, and else that of 1, 0.01,

@@ -3,16 +3,21 @@ use strandline_base::math;
 
 use crate::{
     Error,
-    body::{Motion, Pose},
-    scene::MotionSection,
+    body::{BodyFrame, Motion, Pose, RecordedMotion, SkinMotion},
+    scene::{MotionName, MotionSection},
 };
 
-/// Pose of a head at every time: a motion about a pivot, and a turn added to it.
+/// Pose of a head at every time: a motion about a pivot, and a turn added to it. A body that moves by itself is carried
+/// by them as a whole.
 #[derive(Clone, Debug)]
 pub struct HeadMotion {
     motion: Motion,
     pivot: Vec3,
     turn: Quat,
+    body: Option<SkinMotion>,
+    /// Motion from a file, in the place of `motion` where the section asks for it.
+    recorded: Option<RecordedMotion>,
+    is_recorded: bool,
 }
 
 impl HeadMotion {
@@ -22,17 +27,64 @@ impl HeadMotion {
     /// Keyframes that are missing, not finite or not in the order of their times.
     pub fn new(section: &MotionSection, pivot: Vec3) -> Result<Self, Error> {
         let turn = math::pitch_yaw_roll(section.rotation);
-        Ok(Self { motion: section.motion()?, pivot, turn })
+        let is_recorded = section.name == MotionName::File;
+        Ok(Self { motion: section.motion()?, pivot, turn, body: None, recorded: None, is_recorded })
+    }
+
+    /// The same motion, which carries a body that moves by itself.
+    pub(crate) fn with_body(self, body: Option<SkinMotion>) -> Self {
+        Self { body, ..self }
+    }
+
+    /// The same motion, with that of a file for a section that asks for it.
+    pub(crate) fn with_recorded(self, recorded: Option<RecordedMotion>) -> Self {
+        Self { recorded, ..self }
+    }
+
+    /// Motion from a file.
+    pub(crate) fn recorded(&self) -> Option<&RecordedMotion> {
+        self.recorded.as_ref()
+    }
+
+    /// Motion of the body itself; `None` for a rigid one.
+    pub(crate) fn body(&self) -> Option<&SkinMotion> {
+        self.body.as_ref()
     }
 
     /// A head that rests.
     pub(crate) fn still() -> Self {
-        Self { motion: Motion::Still, pivot: Vec3::ZERO, turn: Quat::IDENTITY }
+        Self {
+            motion: Motion::Still,
+            pivot: Vec3::ZERO,
+            turn: Quat::IDENTITY,
+            body: None,
+            recorded: None,
+            is_recorded: false,
+        }
     }
 
     /// The pose of the head at a time \[s\].
     pub fn pose(&self, time: f64) -> Pose {
-        let pose = self.motion.pose(time, self.pivot);
+        match &self.body {
+            Some(_) => self.frame(time).world_from_head(),
+            None => self.carrying(time),
+        }
+    }
+
+    /// The body at a time \[s\]: the pose of the head, and the skin where it moves by itself.
+    pub fn frame(&self, time: f64) -> BodyFrame {
+        match &self.body {
+            Some(body) => body.frame(time).carried_by(&self.carrying(time)),
+            None => self.carrying(time).into(),
+        }
+    }
+
+    /// Transform of everything by the motion about the pivot.
+    fn carrying(&self, time: f64) -> Pose {
+        let pose = match self.recorded.as_ref().filter(|_| self.is_recorded) {
+            Some(recorded) => recorded.pose(time, self.pivot),
+            None => self.motion.pose(time, self.pivot),
+        };
         let rotation = pose.rotation * self.turn;
         Pose { rotation, translation: pose.point(self.pivot) - rotation * self.pivot }
     }
@@ -46,7 +98,6 @@ impl HeadMotion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::MotionName;
 
     #[test]
     fn the_turn_goes_about_the_pivot_and_moves_with_the_head() {

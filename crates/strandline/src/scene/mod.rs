@@ -186,10 +186,24 @@ impl Scene {
         self.check_as("")?;
         let (further, part) = ("further files without a first one", "a part of a body without a file");
         let (no_groom, no_body) = (self.groom.file.is_none(), self.body.file.is_none());
+        let no_motion = self.motion.name == MotionName::File && self.motion.file.is_none();
         for (key, missing, found, whole) in [
             ("groom.parts", no_groom && !self.groom.parts.is_empty(), further, "groom.file"),
             ("body.parts", no_body && !self.body.parts.is_empty(), further, "body.file"),
             ("body.scalp", no_body && self.body.scalp.is_some(), part, "body.file"),
+            (
+                "body.clip",
+                no_body && self.body.clip.is_some(),
+                "a clip of a body without a file",
+                "body.file",
+            ),
+            ("motion.name", no_motion, "\"file\" without one", "motion.file"),
+            (
+                "body.vertices",
+                no_body && self.body.vertices.is_some(),
+                "a motion without a body",
+                "body.file",
+            ),
         ] {
             if missing {
                 return Err(SettingError::new(key, found, format!("`{whole}` too")).into());
@@ -212,11 +226,13 @@ impl Scene {
 
     /// Every path of the scene but that of the hair's pose.
     pub fn paths_mut(&mut self) -> impl Iterator<Item = &mut PathBuf> {
-        let Self { groom, body, look, surroundings, .. } = self;
+        let Self { groom, body, motion, look, surroundings, .. } = self;
         let named = [
             &mut groom.file,
             &mut groom.attributes,
             &mut body.file,
+            &mut body.vertices,
+            &mut motion.file,
             &mut body.collider_file,
             &mut surroundings.file,
             &mut look.color_map,

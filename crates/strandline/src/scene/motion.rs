@@ -1,3 +1,5 @@
+use std::path::PathBuf;
+
 use glam::Vec3;
 use strandline_base::math;
 use strandline_base::{choices, settings};
@@ -20,6 +22,8 @@ choices! {
         Turn = "turn",
         /// The poses of `[[motion.keyframes]]`.
         Keyframes = "keyframes",
+        /// The motion of a joint of `motion.file`, from its first moment on.
+        File = "file",
     }
     default Shake
 }
@@ -54,6 +58,14 @@ settings! {
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-70.0, 70.0];
         /// The way from pose to pose, where a pose does not name its own.
         interpolation: Interpolation = Interpolation::default();
+        /// A .bvh, .gltf, .glb or .vrm file with a skeleton; used by "file".
+        file: Option<PathBuf> = None;
+        /// The joint of that file that moves as the head does, a node of a glTF.
+        joint: String = "Head".to_owned();
+        /// Clip of that file, where it is a glTF; without a name its first.
+        clip: Option<String> = None;
+        /// Metres per unit of that file.
+        scale: f32 = 1.0, in [1e-6, 1e6] "m";
         /// Poses, in the order of their times; used by "keyframes".
         keyframes: Vec<KeyframeSection> = Vec::new();
     }
@@ -66,7 +78,8 @@ impl MotionSection {
     /// Keyframes that are missing, not finite or not in the order of their times.
     pub fn motion(&self) -> Result<Motion, Error> {
         Ok(match self.name {
-            MotionName::Still => Motion::Still,
+            // That of a file is loaded with the scene.
+            MotionName::Still | MotionName::File => Motion::Still,
             MotionName::Shake => Motion::Shake,
             MotionName::Nod => Motion::Nod,
             MotionName::Turn => Motion::Turn,

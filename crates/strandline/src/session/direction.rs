@@ -66,7 +66,9 @@ impl Direction {
     /// A setting outside its range.
     pub fn set_motion(&mut self, motion: MotionSection) -> Result<(), Error> {
         motion.check_as("motion")?;
-        self.head = HeadMotion::new(&motion, self.head.pivot())?;
+        let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
+        let head = HeadMotion::new(&motion, self.head.pivot())?;
+        self.head = head.with_body(body).with_recorded(recorded);
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             (self.begun, self.time, self.counts) = (0.0, 0.0, false);
         }

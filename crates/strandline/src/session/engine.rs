@@ -132,6 +132,16 @@ impl Engine {
         })
     }
 
+    /// Moves the body to another place at once and carries the hair with it.
+    pub fn carry(&mut self, body: &BodyFrame) -> Result<(), SimError> {
+        self.guarded(|simulator| {
+            simulator.change(|state, model| {
+                state.carry(model, body);
+                Ok(())
+            })
+        })
+    }
+
     /// Goes back to a state that was saved.
     pub fn restore(&mut self, from: &Checkpoint) -> Result<(), SimError> {
         self.guarded(|simulator| simulator.change(|state, model| state.restore(model, from)))

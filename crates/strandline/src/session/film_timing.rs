@@ -35,7 +35,7 @@ impl FilmTiming {
     pub fn new(scene: &Scene, head: HeadMotion, here: Pose) -> Self {
         let (wind, there) = (scene.wind.clone(), head.pose(scene.film.start));
         Self {
-            body: Arc::new(move |time| head.pose(time).into()),
+            body: Arc::new(move |time| head.frame(time)),
             wind: Arc::new(move |time| wind.at(time)),
             frames_per_second: f64::from(scene.film.frames_per_second),
             settle_seconds: f64::from(scene.film.settle),

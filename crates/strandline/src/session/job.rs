@@ -85,10 +85,10 @@ impl Live {
         let seconds = self.seconds.min(self.most_steps * simulation.time_step());
         // A head that was turned by hand meanwhile goes straight to where its motion has it.
         let follows = is_near(&start.world_from_head(), &self.head.pose(self.begin));
-        let end = BodyFrame::from(self.head.pose(self.begin + seconds));
+        let end = self.head.frame(self.begin + seconds);
         simulation.step_along(seconds, &|share| {
             let time = self.begin + seconds * f64::from(share);
-            let body = if follows { self.head.pose(time).into() } else { start.toward(&end, share) };
+            let body = if follows { self.head.frame(time) } else { start.toward(&end, share) };
             (body, self.wind.at(time))
         })
     }

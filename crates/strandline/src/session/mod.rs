@@ -9,6 +9,7 @@ mod event;
 mod files;
 pub(crate) mod film_timing;
 mod job;
+mod jump;
 pub(crate) mod moment;
 mod open;
 mod painter;
@@ -17,6 +18,7 @@ mod pick;
 mod pieces_tests;
 mod resuming;
 mod simulation;
+mod skin_carrier;
 mod sync;
 mod view;
 pub(crate) mod worker;
@@ -259,8 +261,7 @@ impl<E: Executor> Session<E> {
             }
             Change::Reset => {
                 self.direction.reset();
-                let (body, settle) =
-                    (self.direction.head.pose(0.0).into(), f64::from(self.scene.film.settle));
+                let (body, settle) = (self.direction.head.frame(0.0), f64::from(self.scene.film.settle));
                 let wind = self.direction.wind.at(0.0);
                 self.start(Task::Reset { body, settle, wind }, false, 0)?;
             }

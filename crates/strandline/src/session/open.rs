@@ -1,18 +1,19 @@
 //! Construction of sessions.
 
-use std::collections::VecDeque;
+use std::{collections::VecDeque, sync::Arc};
 
 use strandline_base::par::Pool;
 
 use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
 use crate::{
     BoundStrands, Devices, Error, Prepared, Scene,
-    body::{Collider, Mesh, Pose},
+    body::{BodyFrame, Collider, Mesh},
     groom::Guides,
     prepare,
     render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
     scene::devices::{Opened, Pair, device_name},
     session::painter::Painter,
+    session::skin_carrier::SkinCarrier,
     session::worker::Worker,
     sim::{Model, Settings},
     strands::tags::Tags,
@@ -37,6 +38,8 @@ impl Session<Inline> {
         let are_same = bound.as_ref().is_some_and(|bound| bound.solids().are(engine.model().colliders()));
         let solids = pictures.gpu.as_ref().filter(|_| are_same).and_then(|gpu| engine.device_solids(gpu));
         let bounds = prepare::bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh);
+        let mesh = mesh.cloned().map(Arc::new);
+        let skin = SkinCarrier::new(mesh.clone(), &guides);
         let view = View {
             painter: Painter::new(pictures, &guides, bound, mesh, solids)?,
             guides,
@@ -51,10 +54,12 @@ impl Session<Inline> {
         scene.groom.points_per_strand = view.guides.points_per_strand() as u32;
         let simulated_on = device_name(engine.gpu());
         let stiffening = engine.model().stiffening();
+        let mut simulation = Simulation::new(engine, settings.time_step);
+        simulation.skin = skin;
         Ok(Self {
             scene,
             tags: Tags::default(),
-            executor: Inline::new(Simulation::new(engine, settings.time_step)),
+            executor: Inline::new(simulation),
             view,
             direction: Direction::default(),
             settings: PictureSettings::default(),
@@ -94,10 +99,10 @@ impl Session<Inline> {
             simulation.set_length_scale(&scales)?;
         }
         // A head that is turned at first does not whip its hair there.
-        let start = head.pose(scene.film.start);
+        let start = head.frame(scene.film.start);
         match &pose {
             Some(pose) => simulation.place(pose)?,
-            None if start != Pose::IDENTITY => simulation.reset(start.into())?,
+            None if start != BodyFrame::REST => simulation.reset(start)?,
             None => {}
         }
         session.direction = Direction::new(&scene, head);

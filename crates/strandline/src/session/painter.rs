@@ -1,5 +1,7 @@
 //! Pictures on whichever backend draws them.
 
+use std::sync::Arc;
+
 use strandline_gpu::Gpu;
 
 use crate::{
@@ -23,7 +25,7 @@ pub(crate) struct Painter {
     strands: Guides,
     /// Their guides, where they are not simulated themselves.
     bound: Option<BoundStrands>,
-    mesh: Option<Mesh>,
+    mesh: Option<Arc<Mesh>>,
     settings: PictureSettings,
     /// The light whose layers colour the hair.
     pub layers_of: Option<usize>,
@@ -44,14 +46,14 @@ impl Painter {
         device: Opened,
         guides: &Guides,
         bound: Option<BoundStrands>,
-        mesh: Option<&Mesh>,
+        mesh: Option<Arc<Mesh>>,
         solids: Option<DeviceSolids>,
     ) -> Result<Self, RenderError> {
         let strands = bound.as_ref().map_or(guides, BoundStrands::strands).clone();
         let settings = PictureSettings::default();
         let mut notes = Vec::new();
         let placed = match &device.gpu {
-            Some(gpu) => match on_gpu(gpu, &strands, bound.as_ref(), mesh, &settings, solids) {
+            Some(gpu) => match on_gpu(gpu, &strands, bound.as_ref(), mesh.as_deref(), &settings, solids) {
                 Err(error) if device.fall_back => {
                     notes.push(format!("drawing on the CPU: {error}"));
                     None
@@ -62,7 +64,7 @@ impl Painter {
         };
         let place = match placed {
             Some(place) => place,
-            None => Place::Cpu(on_cpu(&strands, bound.as_ref(), mesh, &settings)?.into()),
+            None => Place::Cpu(on_cpu(&strands, bound.as_ref(), mesh.as_deref(), &settings)?.into()),
         };
         Ok(Self {
             place,
@@ -70,7 +72,7 @@ impl Painter {
             stands_in: false,
             strands,
             bound,
-            mesh: mesh.cloned(),
+            mesh,
             settings,
             layers_of: None,
             fall_back: device.fall_back,
@@ -103,7 +105,7 @@ impl Painter {
 
     /// The body that is drawn, head space.
     pub fn mesh(&self) -> Option<&Mesh> {
-        self.mesh.as_ref()
+        self.mesh.as_deref()
     }
 
     /// Changes size and finish of the pictures; nothing changes when that fails.
@@ -162,7 +164,7 @@ impl Painter {
     fn stand_in(&mut self, failure: RenderError) -> Result<(), RenderError> {
         if self.stand_in.is_none() {
             self.notes.push(format!("drawing on the CPU until the scene fits the GPU: {failure}"));
-            let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_ref(), &self.settings)?;
+            let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), &self.settings)?;
             self.stand_in = Some(renderer.into());
         }
         Ok(())
@@ -192,7 +194,7 @@ impl Painter {
         if !(self.fall_back && failure.is_of_gpu() && self.gpu().is_some()) {
             return Err(failure);
         }
-        let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_ref(), settings)?;
+        let renderer = on_cpu(&self.strands, self.bound.as_ref(), self.mesh.as_deref(), settings)?;
         self.place = Place::Cpu(renderer.into());
         self.notes.push(format!("drawing on the CPU from here on: {failure}"));
         Ok(())

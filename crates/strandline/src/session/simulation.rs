@@ -8,7 +8,9 @@ use strandline_gpu::Gpu;
 
 use super::{
     engine::Engine,
+    jump::jump,
     moment::{Moment, When},
+    skin_carrier::SkinCarrier,
 };
 use crate::{
     body::BodyFrame,
@@ -38,6 +40,8 @@ pub(crate) struct Simulation {
     pub passed: f64,
     /// Position of the hand that holds hair, and its target in the next run \[m\]; `None` without one.
     hand: Option<[Vec3; 2]>,
+    /// Roots that the skin carries.
+    pub skin: SkinCarrier,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
     pub threads: Option<Pool>,
 }
@@ -53,6 +57,7 @@ impl Simulation {
             end: BodyFrame::REST,
             passed: 0.0,
             hand: None,
+            skin: SkinCarrier::default(),
             threads: None,
         }
     }
@@ -114,6 +119,7 @@ impl Simulation {
 
     /// Goes back to rest on a body: the same steps follow as the first time.
     pub fn reset(&mut self, body: BodyFrame) -> Result<(), SimError> {
+        let body = self.skin.placed(body, &BodyFrame::REST);
         self.engine.reset(body.clone())?;
         self.begin_at(body);
         Ok(())
@@ -121,7 +127,8 @@ impl Simulation {
 
     /// Puts hair and body where a pose has them.
     pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
-        self.engine.place(hair)?;
+        let hair = hair.clone().on(self.skin.placed(hair.body().clone(), &BodyFrame::REST));
+        self.engine.place(&hair)?;
         self.begin_at(hair.body().clone());
         Ok(())
     }
@@ -136,7 +143,7 @@ impl Simulation {
     /// Goes back to where a run stood after so many steps: what follows is what followed there.
     pub fn restore(&mut self, from: &Snapshot, steps: u64) -> Result<(), SimError> {
         self.engine.restore(&from.state)?;
-        let [before, now, end] = from.bodies.clone();
+        let [before, now, end] = from.bodies.clone().map(|body| self.skin.recognized(body));
         self.begin_at(end);
         self.bodies = [before, now];
         (self.clock, self.share) = Clock::resumed(self.settings().time_step, from.time, steps);
@@ -147,7 +154,7 @@ impl Simulation {
     /// Shows a frame of a cache: no time passes.
     pub fn show_cached(&mut self, body: BodyFrame, place: impl Fn(&mut [Vec3Lanes])) -> Result<(), SimError> {
         self.engine.show(place)?;
-        self.begin_at(body);
+        self.begin_at(self.skin.recognized(body));
         Ok(())
     }
 
@@ -264,7 +271,8 @@ impl Simulation {
         span: Range<f64>,
         drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
-        let outcome = self.drives(ticks, &span, drive).and_then(|drives| {
+        let outcome = self.drives(ticks, &span, drive).and_then(|mut drives| {
+            self.carry_over_jumps(&mut drives, span.end - span.start)?;
             let reports = self.engine.run(&drives)?;
             Ok((drives, reports))
         });
@@ -275,9 +283,25 @@ impl Simulation {
         }
         self.hand = self.hand.map(|[_, to]| [to; 2]);
         self.share = ticks.share;
-        self.end = drive(span.end).0;
+        self.end = self.skin.placed(drive(span.end).0, &self.bodies[1]);
         self.passed += span.end - span.start;
         Ok(reports)
+    }
+
+    /// Carries the hair to where a jump leads within these drives, which are `seconds` of the run: a run with a jump is
+    /// made where the body ends.
+    fn carry_over_jumps(&mut self, drives: &mut [Drive], seconds: f64) -> Result<(), SimError> {
+        let Some(end) = drives.last().map(|drive| drive.body.clone()) else { return Ok(()) };
+        let step = self.time_step();
+        let here = &self.bodies[1];
+        let before = std::iter::once(here).chain(drives.iter().map(|drive| &drive.body));
+        let found = before.zip(&*drives).find_map(|(before, drive)| jump(before, &drive.body, step));
+        let Some(note) = found.or_else(|| jump(here, &end, seconds.max(step))) else { return Ok(()) };
+        self.engine.carry(&end)?;
+        self.engine.notes.push(note);
+        self.bodies = [end.clone(), end.clone()];
+        drives.iter_mut().for_each(|drive| drive.body = end.clone());
+        Ok(())
     }
 
     /// Drives of the hair for each due step, sampled at the end of the step.
@@ -293,9 +317,12 @@ impl Simulation {
             return Err(SettingError::new("simulation.time_step", found, expected).into());
         }
         let seconds = span.end - span.start;
+        let mut last = self.bodies[1].clone();
         let drives = (1..=u64::from(ticks.count)).map(|step| {
             let time = self.clock.step_time(ticks.first + step);
             let (body, wind) = drive(time);
+            let body = self.skin.placed(body, &last);
+            last = body.clone();
             let share = ((time - span.start) / seconds).clamp(0.0, 1.0);
             let hand = self.hand.map(|[from, to]| from.lerp(to, share as f32));
             Drive { body, wind, hand }
@@ -308,7 +335,8 @@ impl Simulation {
     pub fn show(&mut self, gpu: Option<&Gpu>, moment: &mut Moment) -> Result<(), SimError> {
         let share = self.share;
         let [before, after] = &self.bodies;
-        moment.body = self.exact.clone().unwrap_or_else(|| before.toward(after, share));
+        let between = || self.skin.placed(before.toward(after, share), after);
+        moment.body = self.exact.clone().unwrap_or_else(between);
         moment.at = When { step: self.engine.steps(), share };
         let rests = *before == moment.body && *after == moment.body;
         moment.between = (self.exact.is_some() && share < 1.0 && !rests).then(|| self.bodies.clone());

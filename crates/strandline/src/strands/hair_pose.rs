@@ -80,6 +80,11 @@ impl HairPose {
         &self.body
     }
 
+    /// The same hair on a body with other root frames.
+    pub(crate) fn on(self, body: BodyFrame) -> Self {
+        Self { body, ..self }
+    }
+
     /// Puts the hair of a state there, now and one step ago.
     pub fn place(&self, state: &mut State) {
         let [strands, points] = self.shape;

@@ -1,0 +1,303 @@
+//! Writes a small rigged glTF of the built-in bust: five joints, a smile as a morph target, and four clips.
+//!
+//! ```text
+//! cargo run -p strandline-body --example bust -- examples/bust.glb
+//! ```
+//!
+//! Clips: `nod` (the chin to the chest and up again), `look` (over the left shoulder, a rest, and back), `shrug` and
+//! `smile`. Everything is quantised (KHR_mesh_quantization).
+
+#![allow(clippy::print_stdout)] // a program for a terminal
+
+use fast_surface_nets::ndshape::RuntimeShape;
+use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
+use glam::{Mat4, Quat, UVec3, Vec3, vec3};
+use strandline_base::math;
+use strandline_body::{Mannequin, SignedDistance};
+
+/// Spacing of the samples of the skin \[m\].
+const SPACING: f32 = 0.0065;
+/// Steps of a coordinate over the box of the bust.
+const STEPS: f32 = 65535.0;
+/// Joints with the joint above and the place of each \[m\], head space.
+const JOINTS: [(&str, Option<usize>, Vec3); 5] = [
+    ("chest", None, vec3(0.0, -0.26, -0.04)),
+    ("neck", Some(0), vec3(0.0, -0.185, -0.03)),
+    ("head", Some(1), vec3(0.0, -0.062, -0.016)),
+    ("shoulder.L", Some(0), vec3(0.03, -0.21, -0.05)),
+    ("shoulder.R", Some(0), vec3(-0.03, -0.21, -0.05)),
+];
+
+/// The skin as triangles.
+fn skin() -> (Vec<Vec3>, Vec<u32>) {
+    let bust = Mannequin::new();
+    let bounds = bust.bounds();
+    let origin = bounds.min - Vec3::splat(2.0 * SPACING);
+    let size = ((bounds.max - origin) / SPACING).as_uvec3() + UVec3::splat(4);
+    let place = |index: u32| {
+        let cell = UVec3::new(index % size.x, index / size.x % size.y, index / (size.x * size.y));
+        origin + cell.as_vec3() * SPACING
+    };
+    let samples: Vec<f32> = (0..size.x * size.y * size.z).map(|index| bust.distance(place(index))).collect();
+    let mut buffer = SurfaceNetsBuffer::default();
+    let shape = RuntimeShape::<u32, 3>::new(size.to_array());
+    surface_nets(&samples, &shape, [0; 3], (size - UVec3::ONE).to_array(), &mut buffer);
+    let settled = |cell: &[f32; 3]| bust.nearest_skin(origin + Vec3::from_array(*cell) * SPACING).0;
+    (buffer.positions.iter().map(settled).collect(), buffer.indices)
+}
+
+/// From 0 below a range to 1 above it.
+fn rise(value: f32, from: f32, to: f32) -> f32 {
+    let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// Weights of the joints at a place of the skin, in bytes whose sum is 255.
+fn weights(place: Vec3) -> [u8; 5] {
+    // The chin belongs to the head, the throat behind it to the neck.
+    let head = rise(place.y + 0.8 * place.z, -0.125, -0.075);
+    let above_chest = rise(place.y + 0.2 * place.z, -0.235, -0.155);
+    let neck = above_chest * (1.0 - head) * (1.0 - rise(place.x.abs(), 0.05, 0.09));
+    let rest = 1.0 - head - neck;
+    let side = rise(place.x.abs(), 0.04, 0.12) * rest;
+    let [left, right] = if place.x > 0.0 { [side, 0.0] } else { [0.0, side] };
+    let mut bytes = [0.0, neck, head, left, right].map(|weight: f32| (255.0 * weight).round() as u8);
+    bytes[0] = 255 - bytes[1..].iter().fold(0, |sum: u8, byte| sum.saturating_add(*byte));
+    bytes
+}
+
+/// Displacement of a place of the skin by a smile \[m\].
+fn smile(place: Vec3) -> Vec3 {
+    let side = place.x.signum();
+    let near = |center: Vec3, reach: f32| {
+        let distance = (place * vec3(side, 1.0, 1.0)).distance(center) / reach;
+        math::exp(-distance * distance)
+    };
+    let corner = near(vec3(0.0245, -0.0786, 0.088), 0.014) * vec3(0.006, 0.008, -0.004);
+    let cheek = near(vec3(0.045, -0.05, 0.072), 0.02) * vec3(0.002, 0.004, 0.002);
+    (corner + cheek) * vec3(side, 1.0, 1.0)
+}
+
+/// The parts of the file: bytes, and the views and accessors over them as text.
+#[derive(Default)]
+struct Parts {
+    bytes: Vec<u8>,
+    views: Vec<String>,
+    accessors: Vec<String>,
+}
+
+impl Parts {
+    fn view(&mut self, bytes: &[u8], stride: usize) -> usize {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let (offset, length) = (self.bytes.len(), bytes.len());
+        let stride = if stride > 0 { format!(r#","byteStride":{stride}"#) } else { String::new() };
+        self.views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length}{stride}}}"#));
+        self.bytes.extend_from_slice(bytes);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, bytes: &[u8], stride: usize, members: &str) -> usize {
+        let view = self.view(bytes, stride);
+        self.accessors.push(format!(r#"{{"bufferView":{view},{members}}}"#));
+        self.accessors.len() - 1
+    }
+
+    fn floats(&mut self, numbers: &[f32], kind: &str, more: &str) -> usize {
+        let width = match kind {
+            "SCALAR" => 1,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 16,
+        };
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        let count = numbers.len() / width;
+        let members = format!(r#""componentType":5126,"count":{count},"type":"{kind}"{more}"#);
+        self.accessor(&bytes, 0, &members)
+    }
+
+    /// A clip whose channels rest at every key: a name, times \[s\], and nodes with path, kind and values.
+    fn clip(&mut self, name: &str, times: &[f32], channels: &[(usize, &str, &str, Vec<f32>)]) -> String {
+        let last = times[times.len() - 1];
+        let input = self.floats(times, "SCALAR", &format!(r#","min":[0],"max":[{last}]"#));
+        let (mut samplers, mut targets) = (Vec::new(), Vec::new());
+        for (index, (node, path, kind, values)) in channels.iter().enumerate() {
+            let width = values.len() / times.len();
+            let rest = vec![0.0; width];
+            let cubic: Vec<f32> =
+                values.chunks(width).flat_map(|value| [&rest[..], value, &rest[..]].concat()).collect();
+            let output = self.floats(&cubic, kind, "");
+            samplers.push(format!(r#"{{"input":{input},"output":{output},"interpolation":"CUBICSPLINE"}}"#));
+            targets.push(format!(r#"{{"sampler":{index},"target":{{"node":{node},"path":"{path}"}}}}"#));
+        }
+        let (samplers, targets) = (samplers.join(","), targets.join(","));
+        format!(r#"{{"name":"{name}","samplers":[{samplers}],"channels":[{targets}]}}"#)
+    }
+}
+
+/// Rotations about pitch and yaw \[degrees\] and roll, one behind the other.
+fn turns(degrees: &[[f32; 3]]) -> Vec<f32> {
+    degrees.iter().flat_map(|degrees| math::pitch_yaw_roll(Vec3::from(*degrees)).to_array()).collect()
+}
+
+fn clips(parts: &mut Parts) -> Vec<String> {
+    let turn = |node: usize, degrees: &[[f32; 3]]| (node, "rotation", "VEC4", turns(degrees));
+    let still = [0.0; 3];
+    vec![
+        parts.clip(
+            "nod",
+            &[0.0, 0.6, 1.0, 1.5, 2.0],
+            &[
+                turn(1, &[still, [14.0, 0.0, 0.0], [14.0, 0.0, 0.0], [-6.0, 0.0, 0.0], still]),
+                turn(2, &[still, [24.0, 0.0, 0.0], [24.0, 0.0, 0.0], [-9.0, 0.0, 0.0], still]),
+            ],
+        ),
+        parts.clip(
+            "look",
+            &[0.0, 0.7, 1.4, 2.2],
+            &[
+                turn(1, &[still, [2.0, 24.0, -3.0], [2.0, 24.0, -3.0], still]),
+                turn(2, &[still, [6.0, 46.0, -4.0], [6.0, 46.0, -4.0], still]),
+            ],
+        ),
+        parts.clip(
+            "shrug",
+            &[0.0, 0.45, 0.9, 1.5],
+            &[
+                turn(3, &[still, [0.0, 0.0, 16.0], [0.0, 0.0, 16.0], still]),
+                turn(4, &[still, [0.0, 0.0, -16.0], [0.0, 0.0, -16.0], still]),
+                turn(1, &[still, [3.0, 0.0, 0.0], [3.0, 0.0, 0.0], still]),
+                turn(2, &[still, [-5.0, 0.0, 6.0], [-5.0, 0.0, 6.0], still]),
+            ],
+        ),
+        parts.clip("smile", &[0.0, 0.5, 1.3, 2.0], &[(5, "weights", "SCALAR", vec![0.0, 1.0, 1.0, 0.0])]),
+    ]
+}
+
+/// The whole file.
+fn bust() -> Vec<u8> {
+    let (places, corners) = skin();
+    let bounds = Mannequin::new().bounds();
+    let (origin, size) = (bounds.min, (bounds.max - bounds.min).max_element());
+    let mut parts = Parts::default();
+    let count = places.len();
+    let quantised =
+        |place: &Vec3| ((*place - origin) / size * STEPS).round().to_array().map(|step| step as u16);
+    // Padded to four bytes.
+    let steps: Vec<u8> = places
+        .iter()
+        .flat_map(|place| quantised(place).into_iter().chain([0]).flat_map(u16::to_le_bytes))
+        .collect();
+    let high = (bounds.max - origin) / size * STEPS;
+    let range = format!(r#""min":[0,0,0],"max":[{},{},{}]"#, high.x as u16, high.y as u16, high.z as u16);
+    let position =
+        parts.accessor(&steps, 8, &format!(r#""componentType":5123,"count":{count},"type":"VEC3",{range}"#));
+    // Of five joints at most four carry a vertex: no vertex is on both sides.
+    let (mut joints, mut shares) = (Vec::new(), Vec::new());
+    for place in &places {
+        let weights = weights(*place);
+        let side = if place.x > 0.0 { 3 } else { 4 };
+        joints.extend([0, 1, 2, side as u8]);
+        shares.extend([weights[0], weights[1], weights[2], weights[side]]);
+    }
+    let members = format!(r#""componentType":5121,"count":{count},"type":"VEC4""#);
+    let joints = parts.accessor(&joints, 0, &members);
+    let shares = parts.accessor(&shares, 0, &format!(r#"{members},"normalized":true"#));
+    let indices: Vec<u8> = corners.iter().flat_map(|corner| (*corner as u16).to_le_bytes()).collect();
+    let indices = parts.accessor(
+        &indices,
+        0,
+        &format!(r#""componentType":5123,"count":{},"type":"SCALAR""#, corners.len()),
+    );
+    let target = smile_target(&mut parts, &places, size);
+    let unit = Mat4::from_scale_rotation_translation(Vec3::splat(size / STEPS), Quat::IDENTITY, origin);
+    let inverse: Vec<f32> = JOINTS
+        .iter()
+        .flat_map(|(_, _, place)| (Mat4::from_translation(-*place) * unit).to_cols_array())
+        .collect();
+    let inverse = parts.floats(&inverse, "MAT4", "");
+    let clips = clips(&mut parts).join(",");
+    let nodes = nodes().join(",");
+    let mesh = format!(
+        r#"{{"name":"bust","weights":[0],"extras":{{"targetNames":["smile"]}},"primitives":[{{"attributes":{{"POSITION":{position},"JOINTS_0":{joints},"WEIGHTS_0":{shares}}},"indices":{indices},"targets":[{{"POSITION":{target}}}]}}]}}"#
+    );
+    let (views, accessors, length) = (parts.views.join(","), parts.accessors.join(","), parts.bytes.len());
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0","generator":"strandline"}},"extensionsUsed":["KHR_mesh_quantization"],"extensionsRequired":["KHR_mesh_quantization"],"scene":0,"scenes":[{{"nodes":[0,5]}}],"nodes":[{nodes}],"skins":[{{"joints":[0,1,2,3,4],"inverseBindMatrices":{inverse}}}],"meshes":[{mesh}],"animations":[{clips}],"accessors":[{accessors}],"bufferViews":[{views}],"buffers":[{{"byteLength":{length}}}]}}"#
+    );
+    container(json.into_bytes(), parts.bytes)
+}
+
+/// The morph target: whole steps where the smile moves the skin, zeros elsewhere.
+fn smile_target(parts: &mut Parts, places: &[Vec3], size: f32) -> usize {
+    let (mut indices, mut values, mut changed) = (Vec::new(), Vec::new(), 0);
+    let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
+    for (index, place) in places.iter().enumerate() {
+        let delta = (smile(*place) / size * STEPS).round();
+        if delta.abs().max_element() >= 4.0 {
+            indices.extend((index as u16).to_le_bytes());
+            values.extend(
+                delta.to_array().into_iter().chain([0.0]).flat_map(|step| (step as i16).to_le_bytes()),
+            );
+            (low, high, changed) = (low.min(delta), high.max(delta), changed + 1);
+        }
+    }
+    // The values of a sparse part lie close together: single precision has no gaps to fill.
+    let floats: Vec<u8> = values
+        .chunks(8)
+        .flat_map(|value| value[..6].chunks(2).map(|step| f32::from(i16::from_le_bytes([step[0], step[1]]))))
+        .flat_map(f32::to_le_bytes)
+        .collect();
+    let (indices, values) = (parts.view(&indices, 0), parts.view(&floats, 0));
+    let count = places.len();
+    parts.accessors.push(format!(
+        r#"{{"componentType":5126,"count":{count},"type":"VEC3","min":[{},{},{}],"max":[{},{},{}],"sparse":{{"count":{changed},"indices":{{"bufferView":{indices},"componentType":5123}},"values":{{"bufferView":{values}}}}}}}"#,
+        low.x, low.y, low.z, high.x, high.y, high.z
+    ));
+    parts.accessors.len() - 1
+}
+
+/// The joints, and the node of the skinned mesh.
+fn nodes() -> Vec<String> {
+    let joint = |(index, (name, above, place)): (usize, &(&str, Option<usize>, Vec3))| {
+        let from = above.map_or(Vec3::ZERO, |above| JOINTS[above].2);
+        let Vec3 { x, y, z } = *place - from;
+        let below: Vec<String> = (JOINTS.iter().enumerate())
+            .filter(|(_, joint)| joint.1 == Some(index))
+            .map(|(below, _)| below.to_string())
+            .collect();
+        let children =
+            if below.is_empty() { String::new() } else { format!(r#","children":[{}]"#, below.join(",")) };
+        format!(r#"{{"name":"{name}","translation":[{x},{y},{z}]{children}}}"#)
+    };
+    let mut nodes: Vec<String> = JOINTS.iter().enumerate().map(joint).collect();
+    nodes.push(r#"{"name":"bust","mesh":0,"skin":0}"#.to_owned());
+    nodes
+}
+
+/// A binary glTF.
+fn container(mut json: Vec<u8>, mut bytes: Vec<u8>) -> Vec<u8> {
+    json.resize(json.len().next_multiple_of(4), b' ');
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    let number = |number: usize| (number as u32).to_le_bytes();
+    let total = number(28 + json.len() + bytes.len());
+    [
+        b"glTF",
+        &number(2)[..],
+        &total,
+        &number(json.len()),
+        b"JSON",
+        &json,
+        &number(bytes.len()),
+        b"BIN\0",
+        &bytes,
+    ]
+    .concat()
+}
+
+fn main() -> std::io::Result<()> {
+    let path = std::env::args().nth(1).unwrap_or_else(|| "bust.glb".to_owned());
+    let bytes = bust();
+    std::fs::write(&path, &bytes)?;
+    println!("{path}: {} bytes", bytes.len());
+    Ok(())
+}

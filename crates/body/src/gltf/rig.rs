@@ -1,0 +1,316 @@
+//! A glTF mesh in motion: nodes, skins and morph targets at any time of a clip.
+
+use std::borrow::Cow;
+
+use ::gltf::mesh::Primitive;
+use ::gltf::scene::Transform;
+use ::gltf::{Node, Semantic};
+use glam::{DMat4, DQuat, DVec3, DVec4, Mat4, Vec3};
+use strandline_base::memory::Need;
+
+use super::buffers::Buffers;
+use super::nodes::Nodes;
+use super::track::{Property, Track, unit};
+use super::vertices::{Influences, default_weights, joints_of};
+use crate::parsing::Refusal;
+
+/// Share of one node from which on a vertex moves rigidly with it.
+const RIGID: f32 = 0.99;
+
+/// A mesh that a clip moves.
+#[derive(Debug)]
+pub(crate) struct Rig {
+    /// Names and transforms at rest of all nodes.
+    names: Vec<Option<String>>,
+    rest: Vec<Local>,
+    /// Nodes and the nodes above them, those above first.
+    order: Vec<(usize, Option<usize>)>,
+    /// Weights of morph targets at rest, by node.
+    weights: Vec<Vec<f64>>,
+    /// Joints with their inverse bind matrices, by skin; read where a part asks for them.
+    skins: Vec<Option<Vec<(usize, DMat4)>>>,
+    parts: Vec<Part>,
+    tracks: Vec<Track>,
+}
+
+/// Transform of a node in the space of the node above.
+#[derive(Clone, Copy, Debug)]
+enum Local {
+    Matrix(DMat4),
+    Parts { translation: DVec3, rotation: DQuat, scale: DVec3 },
+}
+
+/// Vertices of a primitive, in their order in the mesh.
+#[derive(Debug)]
+struct Part {
+    node: usize,
+    /// Positions before morphing, space of the mesh.
+    base: Vec<Vec3>,
+    /// Number of a morph target, and the vertices that it moves.
+    targets: Vec<(usize, Vec<(u32, Vec3)>)>,
+    /// Skin and joints of the vertices; none where the node carries them.
+    skin: Option<(usize, Influences)>,
+}
+
+/// Nodes at a time.
+struct Pose {
+    world_from_node: Vec<DMat4>,
+    weights: Vec<Vec<f64>>,
+}
+
+impl Rig {
+    /// The nodes of a file under the tracks of a clip; the parts of its mesh are added as they are read.
+    pub(super) fn new(nodes: &Nodes<'_>, tracks: Vec<Track>) -> Self {
+        let is_moved = |node: &Node<'_>| {
+            let of_node = |track: &Track| track.node == node.index() && track.property != Property::Weights;
+            tracks.iter().any(of_node)
+        };
+        let rest = nodes.all.iter().map(|node| Local::of(&node.transform(), is_moved(node))).collect();
+        let name = |node: &Node<'_>| node.name().map(str::to_owned);
+        let weights = |node: &Node<'_>| default_weights(node).iter().copied().map(f64::from).collect();
+        Self {
+            names: nodes.all.iter().map(name).collect(),
+            rest,
+            order: nodes.order.clone(),
+            weights: nodes.all.iter().map(weights).collect(),
+            skins: Vec::new(),
+            parts: Vec::new(),
+            tracks,
+        }
+    }
+
+    /// Time of the last key \[s\].
+    pub fn end(&self) -> f64 {
+        self.tracks.iter().filter_map(|track| track.times.last()).fold(0.0, |end, time| time.max(end))
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.parts.iter().map(|part| part.base.len()).sum()
+    }
+
+    /// Memory that the parts of the shown nodes take at most; parts of more than `limit` vertices are refused later.
+    pub(super) fn need(&self, shown: &[Node<'_>], limit: usize) -> Need {
+        let of_part = |node: &Node<'_>, part: &Primitive<'_>| {
+            let count =
+                part.get(&Semantic::Positions).map_or(0, |accessor| accessor.count().min(limit) as u64);
+            let sets = (0..).take_while(|set| part.get(&Semantic::Joints(*set)).is_some()).count() as u64;
+            let targets = (0..part.morph_targets().count()).filter(|target| self.uses(node.index(), *target));
+            // Deltas are read whole before those that are zero are dropped.
+            count.saturating_mul(12 + 32 * sets + 28 * targets.count() as u64)
+        };
+        let of_node = |node: &Node<'_>| {
+            let parts = node.mesh().into_iter().flat_map(|mesh| mesh.primitives().collect::<Vec<_>>());
+            parts.map(|part| of_part(node, &part)).fold(0, u64::saturating_add)
+        };
+        Need::new("the clip of the body", shown.iter().map(of_node).fold(0, u64::saturating_add), 1)
+    }
+
+    /// True where a morph target of a node's mesh moves vertices at some time.
+    fn uses(&self, node: usize, target: usize) -> bool {
+        let is_track = |track: &Track| track.node == node && track.property == Property::Weights;
+        self.weights[node].get(target).is_some_and(|weight| *weight != 0.0)
+            || self.tracks.iter().any(is_track)
+    }
+
+    /// Adds the vertices of a part of a node's mesh.
+    pub(super) fn add(
+        &mut self,
+        node: &Node<'_>,
+        part: &Primitive<'_>,
+        influences: Option<Influences>,
+        buffers: &Buffers,
+    ) -> Result<(), Refusal> {
+        let Some(accessor) = part.get(&Semantic::Positions) else { return Ok(()) };
+        let count = accessor.count();
+        let base = buffers.vectors(&accessor, count)?;
+        let mut targets = Vec::new();
+        for (index, target) in part.morph_targets().enumerate() {
+            let Some(deltas) = target.positions().filter(|_| self.uses(node.index(), index)) else {
+                continue;
+            };
+            let deltas = buffers.vectors(&deltas, count)?;
+            let moved = deltas.into_iter().enumerate().filter(|(_, delta)| *delta != Vec3::ZERO);
+            targets.push((index, moved.map(|(vertex, delta)| (vertex as u32, delta)).collect()));
+        }
+        let skin = match node.skin().zip(influences) {
+            Some((skin, influences)) => {
+                if self.skins.len() <= skin.index() {
+                    self.skins.resize(skin.index() + 1, None);
+                }
+                let slot = &mut self.skins[skin.index()];
+                if slot.is_none() {
+                    let joints = joints_of(&skin, buffers)?;
+                    *slot = Some(joints.into_iter().map(|(joint, own)| (joint, own.as_dmat4())).collect());
+                }
+                Some((skin.index(), influences))
+            }
+            None => None,
+        };
+        self.parts.push(Part { node: node.index(), base, targets, skin });
+        Ok(())
+    }
+
+    /// Positions of all vertices in the units of the file, in the order of the mesh, at a time of the clip \[s\], held
+    /// before its first key and after its last; without a time at rest.
+    pub fn positions(&self, time: Option<f64>) -> Vec<Vec3> {
+        let pose = self.pose(time);
+        let joints: Vec<Vec<Mat4>> = (self.skins.iter())
+            .map(|skin| {
+                let placed = |(joint, own): &(usize, DMat4)| (pose.world_from_node[*joint] * *own).as_mat4();
+                skin.iter().flatten().map(placed).collect()
+            })
+            .collect();
+        let mut positions = Vec::with_capacity(self.vertex_count());
+        for part in &self.parts {
+            let morphed = part.morphed(&pose.weights[part.node]);
+            match &part.skin {
+                Some((skin, influences)) => {
+                    let place = |(vertex, position): (usize, &Vec3)| {
+                        influences.transform(vertex, &joints[*skin]).0.transform_point3(*position)
+                    };
+                    positions.extend(morphed.iter().enumerate().map(place));
+                }
+                None => {
+                    let transform = pose.world_from_node[part.node].as_mat4();
+                    positions.extend(morphed.iter().map(|position| transform.transform_point3(*position)));
+                }
+            }
+        }
+        positions
+    }
+
+    /// Of some vertices those that move rigidly with the node that carries most of them, and that no morph target moves.
+    pub fn rigid(&self, vertices: &[u32]) -> Vec<u32> {
+        let mut carried = vec![0.0; self.rest.len()];
+        let mut shares = Vec::new();
+        for vertex in vertices {
+            self.carriers(*vertex as usize, &mut shares);
+            shares.iter().for_each(|(node, share)| carried[*node] += *share);
+        }
+        let most =
+            (0..carried.len()).fold(0, |best, node| if carried[node] > carried[best] { node } else { best });
+        let is_rigid = |vertex: &&u32| {
+            self.carriers(**vertex as usize, &mut shares);
+            let of_most = shares.iter().filter(|(node, _)| *node == most).map(|(_, share)| share);
+            of_most.sum::<f32>() > RIGID
+        };
+        vertices.iter().filter(is_rigid).copied().collect()
+    }
+
+    /// The nodes that carry a vertex with their shares; none where a morph target moves it.
+    fn carriers(&self, vertex: usize, shares: &mut Vec<(usize, f32)>) {
+        shares.clear();
+        let mut first = 0;
+        let within = |part: &&Part| {
+            let is_within = vertex < first + part.base.len();
+            first += if is_within { 0 } else { part.base.len() };
+            is_within
+        };
+        let Some(part) = self.parts.iter().find(within) else { return };
+        let own = vertex - first;
+        let is_moved = |(_, moved): &(usize, Vec<(u32, Vec3)>)| {
+            moved.binary_search_by_key(&(own as u32), |(vertex, _)| *vertex).is_ok()
+        };
+        if part.targets.iter().any(is_moved) {
+            return;
+        }
+        match &part.skin {
+            Some((skin, influences)) => {
+                let joints = self.skins[*skin].as_deref().unwrap_or_default();
+                shares.extend(influences.shares(own).map(|(joint, share)| (joints[joint].0, share)));
+            }
+            None => shares.push((part.node, 1.0)),
+        }
+    }
+
+    /// The number of the first node of a name.
+    pub fn node(&self, name: &str) -> Option<usize> {
+        self.names.iter().position(|own| own.as_deref() == Some(name))
+    }
+
+    /// The names of nodes.
+    pub fn node_names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().flatten().map(String::as_str)
+    }
+
+    /// Transform of a node into the world at a time of the clip \[s\].
+    pub fn world_from_node(&self, node: usize, time: f64) -> DMat4 {
+        self.pose(Some(time)).world_from_node[node]
+    }
+
+    fn pose(&self, time: Option<f64>) -> Pose {
+        let (mut locals, mut weights) = (self.rest.clone(), self.weights.clone());
+        let mut value = Vec::new();
+        for track in time.map_or(&[][..], |_| &self.tracks[..]) {
+            track.sample(time.unwrap_or_default(), &mut value);
+            match track.property {
+                Property::Weights => weights[track.node].clone_from(&value),
+                property => locals[track.node].set(property, &value),
+            }
+        }
+        let mut world_from_node = vec![DMat4::IDENTITY; locals.len()];
+        for (node, above) in &self.order {
+            let world_from_above = above.map_or(DMat4::IDENTITY, |above| world_from_node[above]);
+            world_from_node[*node] = world_from_above * locals[*node].matrix();
+        }
+        Pose { world_from_node, weights }
+    }
+}
+
+impl Local {
+    /// The transform of a node, in its parts where a clip moves one of them.
+    fn of(transform: &Transform, is_moved: bool) -> Self {
+        match transform {
+            Transform::Matrix { matrix } if !is_moved => {
+                Self::Matrix(Mat4::from_cols_array_2d(matrix).as_dmat4())
+            }
+            transform => {
+                let (translation, rotation, scale) = transform.clone().decomposed();
+                Self::Parts {
+                    translation: Vec3::from(translation).as_dvec3(),
+                    rotation: unit(DVec4::from_array(rotation.map(f64::from))),
+                    scale: Vec3::from(scale).as_dvec3(),
+                }
+            }
+        }
+    }
+
+    fn set(&mut self, property: Property, value: &[f64]) {
+        let (Self::Parts { translation, rotation, scale }, [x, y, z, rest @ ..]) = (self, value) else {
+            return;
+        };
+        match property {
+            Property::Translation => *translation = DVec3::new(*x, *y, *z),
+            Property::Scale => *scale = DVec3::new(*x, *y, *z),
+            Property::Rotation => {
+                *rotation = unit(DVec4::new(*x, *y, *z, rest.first().copied().unwrap_or_default()));
+            }
+            Property::Weights => {}
+        }
+    }
+
+    fn matrix(&self) -> DMat4 {
+        match *self {
+            Self::Matrix(matrix) => matrix,
+            Self::Parts { translation, rotation, scale } => {
+                DMat4::from_scale_rotation_translation(scale, rotation, translation)
+            }
+        }
+    }
+}
+
+impl Part {
+    /// Positions after morphing, space of the mesh.
+    fn morphed(&self, weights: &[f64]) -> Cow<'_, [Vec3]> {
+        let mut morphed = Cow::Borrowed(&self.base[..]);
+        for (target, moved) in &self.targets {
+            let weight = weights.get(*target).map_or(0.0, |weight| *weight as f32);
+            if weight != 0.0 {
+                let positions = morphed.to_mut();
+                moved.iter().for_each(|(vertex, delta)| positions[*vertex as usize] += weight * *delta);
+            }
+        }
+        morphed
+    }
+}

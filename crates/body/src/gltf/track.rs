@@ -1,0 +1,178 @@
+//! Values over time in a clip of a glTF file: samplers and their interpolation, in double precision.
+
+use glam::{DQuat, DVec4};
+use strandline_base::math;
+
+/// Property of a node that a track moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Property {
+    Translation,
+    Rotation,
+    Scale,
+    /// Weights of the morph targets of the node's mesh.
+    Weights,
+}
+
+/// The way from key to key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    Step,
+    Linear,
+    /// Hermite splines: an in-tangent, a value and an out-tangent for each key.
+    Cubic,
+}
+
+/// A property of a node over time.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    pub node: usize,
+    pub property: Property,
+    pub way: Way,
+    /// Times of the keys \[s\], not falling; at least one.
+    pub times: Vec<f64>,
+    /// Numbers of all keys, shape `[key][part][component]`; cubic tracks have three parts.
+    pub values: Vec<f32>,
+    /// Components of a value.
+    pub width: usize,
+}
+
+impl Track {
+    /// Parts of a key.
+    pub fn parts(way: Way) -> usize {
+        if way == Way::Cubic { 3 } else { 1 }
+    }
+
+    /// One of the parts of a key.
+    fn part(&self, key: usize, part: usize) -> &[f32] {
+        let start = (key * Self::parts(self.way) + part) * self.width;
+        &self.values[start..start + self.width]
+    }
+
+    /// The value itself of a key.
+    fn value(&self, key: usize) -> &[f32] {
+        self.part(key, usize::from(self.way == Way::Cubic))
+    }
+
+    /// Writes the value at a time \[s\]; the first and the last one are held outside. // glTF 2.0 appendix C
+    pub fn sample(&self, time: f64, into: &mut Vec<f64>) {
+        let next = self.times.partition_point(|key| *key <= time);
+        let key = next.saturating_sub(1);
+        into.clear();
+        if next == 0 || next == self.times.len() || self.way == Way::Step {
+            into.extend(self.value(key).iter().copied().map(f64::from));
+        } else {
+            let span = self.times[next] - self.times[key];
+            let share = (time - self.times[key]) / span;
+            match self.way {
+                Way::Linear if self.property == Property::Rotation => {
+                    let [from, to] = [key, next].map(|key| rotation(self.value(key)));
+                    into.extend(slerp(from, to, share).to_array());
+                }
+                Way::Linear | Way::Step => {
+                    let pairs = self.value(key).iter().zip(self.value(next));
+                    let between = |(from, to): (&f32, &f32)| {
+                        f64::from(*from) + (f64::from(*to) - f64::from(*from)) * share
+                    };
+                    into.extend(pairs.map(between));
+                }
+                Way::Cubic => {
+                    let parts = [(key, 1), (key, 2), (next, 1), (next, 0)];
+                    let [start, leave, end, arrive] = parts.map(|(key, part)| self.part(key, part));
+                    into.extend((0..self.width).map(|component| {
+                        let of = |part: &[f32]| f64::from(part[component]);
+                        hermite([of(start), span * of(leave), of(end), span * of(arrive)], share)
+                    }));
+                }
+            }
+        }
+    }
+}
+
+/// The cubic with given values and slopes (value, slope, value, slope) at 0 and 1.
+fn hermite([start, leave, end, arrive]: [f64; 4], share: f64) -> f64 {
+    let square = share * share;
+    let cube = square * share;
+    start * (2.0 * cube - 3.0 * square + 1.0)
+        + leave * (cube - 2.0 * square + share)
+        + end * (3.0 * square - 2.0 * cube)
+        + arrive * (cube - square)
+}
+
+/// A quaternion of four numbers.
+fn rotation(numbers: &[f32]) -> DQuat {
+    unit(DVec4::from_array(std::array::from_fn(|component| f64::from(numbers[component]))))
+}
+
+/// Four numbers as a rotation: of unit length, and the identity where they are none.
+pub(super) fn unit(numbers: DVec4) -> DQuat {
+    numbers.try_normalize().map_or(DQuat::IDENTITY, DQuat::from_vec4)
+}
+
+/// The rotation on the shorter path between two.
+fn slerp(from: DQuat, to: DQuat, share: f64) -> DQuat {
+    let (cosine, to) = match from.dot(to) {
+        cosine if cosine < 0.0 => (-cosine, -to),
+        cosine => (cosine, to),
+    };
+    // For small angles the sine is dominated by rounding.
+    if cosine > 1.0 - 1e-9 {
+        return (from * (1.0 - share) + to * share).normalize();
+    }
+    let angle = math::acos(cosine);
+    (from * math::sin((1.0 - share) * angle) + to * math::sin(share * angle)) * (1.0 / math::sin(angle))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sampled(track: &Track, time: f64) -> Vec<f64> {
+        let mut value = Vec::new();
+        track.sample(time, &mut value);
+        value
+    }
+
+    #[test]
+    fn values_are_held_outside_and_follow_their_way_between() {
+        let track = |way, values: &[f32]| Track {
+            node: 0,
+            property: Property::Weights,
+            way,
+            times: vec![1.0, 3.0],
+            values: values.to_vec(),
+            width: 1,
+        };
+        let linear = track(Way::Linear, &[2.0, 6.0]);
+        assert_eq!(
+            [0.0, 1.0, 1.5, 3.0, 9.0].map(|time| sampled(&linear, time)[0]),
+            [2.0, 2.0, 3.0, 6.0, 6.0]
+        );
+        let step = track(Way::Step, &[2.0, 6.0]);
+        assert_eq!([0.0, 2.9, 3.0].map(|time| sampled(&step, time)[0]), [2.0, 2.0, 6.0]);
+        // Tangents count by the second: a straight line at 2 per second.
+        let cubic = track(Way::Cubic, &[9.0, 2.0, 2.0, 2.0, 6.0, 9.0]);
+        for time in [1.0, 1.3, 2.0, 2.7, 3.0] {
+            assert!((sampled(&cubic, time)[0] - 2.0 * time).abs() < 1e-12, "{time}");
+        }
+    }
+
+    #[test]
+    fn rotations_take_the_short_way_evenly() {
+        let (half, turned) = (std::f32::consts::FRAC_1_SQRT_2, [0.0, 1.0, 0.0, 0.0]);
+        let mut track = Track {
+            node: 0,
+            property: Property::Rotation,
+            way: Way::Linear,
+            times: vec![0.0, 1.0],
+            values: [[0.0, 0.0, 0.0, 1.0], [0.0, -half, 0.0, -half]].concat(),
+            width: 4,
+        };
+        // A quarter turn given by its negative: a third of it is 30 degrees.
+        let third = sampled(&track, 1.0 / 3.0);
+        let angle = 2.0 * third[1].atan2(third[3]).to_degrees();
+        assert!((angle.abs() - 30.0).abs() < 1e-4, "{angle}");
+        track.values[4..].copy_from_slice(&turned);
+        let half_turn = sampled(&track, 0.5);
+        assert!((half_turn[1] - f64::from(half)).abs() < 1e-7, "{half_turn:?}");
+    }
+}

@@ -1,0 +1,291 @@
+//! The skin of a body through a step: the tree refitted to its end, and the search for the nearest place.
+
+use std::sync::Arc;
+
+use glam::{Mat3, Vec3, Vec3A};
+
+use crate::nearest_corner::{Feature, nearest_on};
+use crate::skin_solid::{NONE, SkinSolid};
+use crate::{BodyFrame, Carrier, Collider, Shape};
+
+/// Most waiting nodes: one for each halving of 2^32 triangles, and one more.
+const DEPTH: usize = 40;
+/// Distance \[m\] below which the way to the nearest place has no direction.
+const TOUCHING: f32 = 1e-5;
+/// Share of the distance that the quick search may be off, and the lower bound that it leaves.
+const QUICK: f32 = 0.64;
+const AT_LEAST: f32 = 0.8;
+
+/// A skin at the start and at the end of a step.
+#[derive(Clone, Debug)]
+pub struct PosedSkin {
+    solid: Arc<SkinSolid>,
+    /// Skins that it was made of.
+    made_of: [Option<Arc<[Vec3]>>; 2],
+    start: Vec<Vec3>,
+    end: Vec<Vec3>,
+    /// Corners of the box of each node at the end.
+    boxes: Vec<[Vec3A; 2]>,
+    most_shift: f32,
+}
+
+/// The nearest place of a skin.
+#[derive(Clone, Copy, Debug)]
+pub struct SkinPlace {
+    /// Signed distance \[m\].
+    pub distance: f32,
+    /// Its unit gradient.
+    pub normal: Vec3,
+    /// Index of the triangle: the next search begins there.
+    pub triangle: u32,
+}
+
+/// The rigid motion of a triangle and its neighbourhood through the step.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleMotion {
+    start: Vec3,
+    end: Vec3,
+    turn: Mat3,
+    /// Greatest distance \[m\] of a corner from where the motion has it.
+    pub error: f32,
+}
+
+impl TriangleMotion {
+    /// A place of the start carried to the end.
+    pub fn point(&self, point: Vec3) -> Vec3 {
+        self.end + self.turn * (point - self.start)
+    }
+
+    /// A direction of the start carried to the end.
+    pub fn direction(&self, direction: Vec3) -> Vec3 {
+        (self.turn * direction).normalize_or(direction)
+    }
+}
+
+impl PosedSkin {
+    /// A triangle for a first search.
+    pub const UNKNOWN: u32 = NONE;
+
+    /// A skin through a step; `None` where it rides the head from start to end. Skins of other meshes are ignored.
+    pub fn new(solid: &Arc<SkinSolid>, skins: [Option<&Arc<[Vec3]>>; 2]) -> Option<Self> {
+        let skins = skins.map(|skin| skin.filter(|skin| skin.len() == solid.vertex_count));
+        if skins.iter().all(Option::is_none) {
+            return None;
+        }
+        let [start, end] = skins.map(|skin| solid.positions(skin.map(|skin| &skin[..])));
+        let shifts = start.iter().zip(&end).map(|(start, end)| start.distance_squared(*end));
+        let most_shift = shifts.fold(0.0, f32::max).sqrt();
+        let boxes = refitted(solid, &end);
+        let made_of = skins.map(|skin| skin.cloned());
+        Some(Self { solid: Arc::clone(solid), made_of, start, end, boxes, most_shift })
+    }
+
+    /// The skin of a collider that the head carries, through a step between two frames of the body; `None` for other
+    /// colliders, and where the skin rides the head from start to end.
+    pub fn of(collider: &Collider, start: &BodyFrame, end: &BodyFrame) -> Option<Self> {
+        match &collider.shape {
+            Shape::Skin(solid) if collider.carrier == Carrier::HEAD => {
+                Self::new(solid, [start.skin(), end.skin()])
+            }
+            _ => None,
+        }
+    }
+
+    /// True for a skin made of the same lists in memory.
+    pub fn is_of(&self, collider: &Collider, start: &BodyFrame, end: &BodyFrame) -> bool {
+        let Shape::Skin(solid) = &collider.shape else { return false };
+        let skins = [start.skin(), end.skin()];
+        let same = |known: &Option<Arc<[Vec3]>>, skin: Option<&Arc<[Vec3]>>| match (known, skin) {
+            (Some(known), Some(skin)) => Arc::ptr_eq(known, skin),
+            (known, skin) => known.is_none() && skin.is_none(),
+        };
+        Arc::ptr_eq(&self.solid, solid)
+            && self.made_of.iter().zip(skins).all(|(known, skin)| same(known, skin))
+    }
+
+    /// Most way \[m\] of a vertex through the step, head space.
+    pub fn most_shift(&self) -> f32 {
+        self.most_shift
+    }
+
+    fn corners(&self, positions: &[Vec3], triangle: u32) -> [Vec3; 3] {
+        self.solid.triangles[triangle as usize].map(|corner| positions[corner as usize])
+    }
+
+    /// The place nearest to a point \[m\] at the end of the step, head space. The search begins at a triangle that was
+    /// nearest before.
+    pub fn nearest(&self, point: Vec3, before: u32) -> SkinPlace {
+        let (triangle, squared) = self.search(point, before, 1.0);
+        self.seen(point, triangle, squared.sqrt())
+    }
+
+    /// Signed distance \[m\] and unit gradient at a point \[m\] at the end of the step, head space.
+    pub fn distance_and_gradient(&self, point: Vec3) -> (f32, Vec3) {
+        let SkinPlace { distance, normal, .. } = self.nearest(point, Self::UNKNOWN);
+        (distance, normal)
+    }
+
+    /// Lower bound \[m\] of the distance of a point at the end, 0 where it may be inside.
+    pub fn at_least(&self, point: Vec3) -> f32 {
+        let (triangle, squared) = self.search(point, NONE, QUICK);
+        AT_LEAST * self.seen(point, triangle, squared.sqrt()).distance.max(0.0)
+    }
+
+    /// The nearest triangle, and its squared distance; nodes are left out whose squared distance is more than `slack`
+    /// times that of the best.
+    fn search(&self, point: Vec3, before: u32, slack: f32) -> (u32, f32) {
+        let nodes = &self.solid.nodes;
+        let wide = Vec3A::from(point);
+        let from_box = |index: u32| {
+            let [min, max] = self.boxes[index as usize];
+            wide.distance_squared(wide.max(min).min(max))
+        };
+        let from_triangle = |index: u32| {
+            let place = nearest_on(self.corners(&self.end, index), point).0;
+            point.distance_squared(place)
+        };
+        let first = if (before as usize) < self.solid.triangles.len() { before } else { 0 };
+        let mut best = (first, from_triangle(first));
+        let mut waiting = [(0.0_f32, 0_u32); DEPTH];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let (squared, index) = waiting[count];
+            if squared >= slack * best.1 {
+                continue;
+            }
+            let node = nodes[index as usize];
+            if node.right == 0 {
+                for triangle in node.range[0]..node.range[1] {
+                    let squared = from_triangle(triangle);
+                    if squared < best.1 {
+                        best = (triangle, squared);
+                    }
+                }
+                continue;
+            }
+            let children = [index + 1, node.right].map(|child| (from_box(child), child));
+            let [near, far] =
+                if children[0].0 <= children[1].0 { children } else { [children[1], children[0]] };
+            for child in [far, near] {
+                if child.0 < slack * best.1 {
+                    waiting[count] = child;
+                    count += 1;
+                }
+            }
+        }
+        best
+    }
+
+    /// Signed distance and gradient about a nearest triangle.
+    fn seen(&self, point: Vec3, triangle: u32, away: f32) -> SkinPlace {
+        let (place, feature) = nearest_on(self.corners(&self.end, triangle), point);
+        let outward = self.outward(triangle, feature) * self.solid.facing;
+        let side = if outward.dot(point - place) < 0.0 { -1.0 } else { 1.0 };
+        let is_face = matches!(feature, Feature::Face);
+        let normal = if is_face || away < TOUCHING { outward } else { (point - place) * (side / away) };
+        SkinPlace { distance: side * away, normal: normal.normalize_or(Vec3::Y), triangle }
+    }
+
+    /// Direction that leads out of the skin at a part of a triangle \[Baerentzen2005\].
+    fn outward(&self, triangle: u32, feature: Feature) -> Vec3 {
+        let normal = |index: u32| {
+            let [a, b, c] = self.corners(&self.end, index);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        match feature {
+            Feature::Face => normal(triangle),
+            Feature::Edge(edge) => match self.solid.across[triangle as usize][edge] {
+                NONE => normal(triangle),
+                other => normal(triangle) + normal(other),
+            },
+            Feature::Corner(corner) => {
+                let vertex = self.solid.triangles[triangle as usize][corner];
+                let first = self.solid.welded[vertex as usize];
+                let part = |index: &u32| {
+                    let at = self.solid.triangles[*index as usize];
+                    let own = at.iter().position(|corner| self.solid.welded[*corner as usize] == first);
+                    let corners = self.corners(&self.end, *index);
+                    let own = own.unwrap_or(0);
+                    let [here, next, last] =
+                        [own, (own + 1) % 3, (own + 2) % 3].map(|corner| corners[corner]);
+                    let angle = (next - here).angle_between(last - here);
+                    if angle.is_finite() { normal(*index) * angle } else { Vec3::ZERO }
+                };
+                self.solid.around(vertex).iter().map(part).sum()
+            }
+        }
+    }
+
+    /// Way \[m\] through the step of the material of a triangle that ends nearest to a point \[m\].
+    pub fn shift(&self, triangle: u32, point: Vec3) -> Vec3 {
+        if triangle as usize >= self.solid.triangles.len() {
+            return Vec3::ZERO;
+        }
+        let corners = self.corners(&self.end, triangle);
+        let place = nearest_on(corners, point).0;
+        let before = at_shares(self.corners(&self.start, triangle), shares(corners, place));
+        at_shares(corners, shares(corners, place)) - before
+    }
+
+    /// Mean way \[m\] of the corners of a triangle through the step; none of an unknown one.
+    pub fn drift(&self, triangle: u32) -> Vec3 {
+        let Some(corners) = self.solid.triangles.get(triangle as usize) else { return Vec3::ZERO };
+        let way = |corner: &u32| self.end[*corner as usize] - self.start[*corner as usize];
+        corners.iter().map(way).sum::<Vec3>() / 3.0
+    }
+
+    /// Motion of a triangle about its place nearest to a point of the start \[m\]; `None` where it has no area.
+    pub fn motion(&self, triangle: u32, point: Vec3) -> Option<TriangleMotion> {
+        if triangle as usize >= self.solid.triangles.len() {
+            return None;
+        }
+        let [start, end] = [&self.start, &self.end].map(|positions| self.corners(positions, triangle));
+        let turn = axes(end)? * axes(start)?.transpose();
+        let shares = shares(start, nearest_on(start, point).0);
+        let motion =
+            TriangleMotion { start: at_shares(start, shares), end: at_shares(end, shares), turn, error: 0.0 };
+        let errors = start.iter().zip(end).map(|(start, end)| motion.point(*start).distance(end));
+        Some(TriangleMotion { error: errors.fold(0.0, f32::max), ..motion })
+    }
+}
+
+/// Boxes of all nodes about positions, the children before their parents.
+fn refitted(solid: &SkinSolid, positions: &[Vec3]) -> Vec<[Vec3A; 2]> {
+    let mut boxes = vec![[Vec3A::ZERO; 2]; solid.nodes.len()];
+    for (index, node) in solid.nodes.iter().enumerate().rev() {
+        boxes[index] = if node.right == 0 {
+            let corners = solid.triangles[node.range[0] as usize..node.range[1] as usize].iter().flatten();
+            corners
+                .map(|corner| Vec3A::from(positions[*corner as usize]))
+                .fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
+                    [min.min(corner), max.max(corner)]
+                })
+        } else {
+            let [left, right] = [boxes[index + 1], boxes[node.right as usize]];
+            [left[0].min(right[0]), left[1].max(right[1])]
+        };
+    }
+    boxes
+}
+
+/// First edge, normal and the direction across both; `None` without an area.
+fn axes([a, b, c]: [Vec3; 3]) -> Option<Mat3> {
+    let normal = (b - a).cross(c - a).try_normalize()?;
+    let along = (b - a).try_normalize()?;
+    Some(Mat3::from_cols(along, normal, along.cross(normal)))
+}
+
+/// Shares of the corners in a place of a triangle.
+fn shares([a, b, c]: [Vec3; 3], place: Vec3) -> Vec3 {
+    let normal = (b - a).cross(c - a);
+    let area = normal.length_squared();
+    let part = |start: Vec3, end: Vec3| ((end - start).cross(place - start).dot(normal) / area).max(0.0);
+    let shares = Vec3::new(part(b, c), part(c, a), part(a, b));
+    let sum = shares.element_sum();
+    if sum.is_finite() && sum > 0.0 { shares / sum } else { Vec3::X }
+}
+
+fn at_shares([a, b, c]: [Vec3; 3], shares: Vec3) -> Vec3 {
+    a * shares.x + b * shares.y + c * shares.z
+}

@@ -1,0 +1,134 @@
+//! The motion of a head alone, from a joint of a .bvh or a node of a glTF.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
+use strandline_base::math;
+
+use crate::bvh::{self, JointMotion};
+use crate::gltf::{self, Fault, Rig};
+use crate::parsing::read_file;
+use crate::{BodyError, Pose};
+
+/// Rigid motion of a joint, as a file has it.
+#[derive(Clone, Debug)]
+pub struct RecordedMotion {
+    source: Source,
+    /// Metres of a unit of the file.
+    scale: f64,
+}
+
+#[derive(Clone, Debug)]
+enum Source {
+    Joint(Arc<JointMotion>),
+    Node(Arc<Rig>, usize),
+}
+
+impl RecordedMotion {
+    /// Loads the motion of a joint of a .bvh, or of a node of a glTF in a clip, without a name of a clip in the first.
+    ///
+    /// # Errors
+    /// See [`BodyError`]: another format, no joint or clip of that name, with the names that there are.
+    pub fn load(path: &Path, joint: &str, clip: Option<&str>, scale: f64) -> Result<Self, BodyError> {
+        let refused = |(found, expected)| {
+            let mend = "export the motion again as .bvh or glTF 2.0";
+            BodyError::Mesh { path: path.into(), found, expected, mend }
+        };
+        let bytes = read_file(path)?;
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("bvh")) {
+            let motion = bvh::parse(&bytes, joint).map_err(refused)?;
+            return Ok(Self { source: Source::Joint(Arc::new(motion)), scale });
+        }
+        let names = gltf::clip_names(&bytes).map_err(refused)?;
+        let clip = clip.or(names.first().map(String::as_str)).unwrap_or_default();
+        let read = gltf::parse_nodes(&bytes, path.parent(), clip, &mut Vec::new());
+        let rig = read.map_err(|fault| match fault {
+            Fault::Memory(error) => error.into(),
+            Fault::Refused(refusal) => refused(refusal),
+        })?;
+        let Some(node) = rig.node(joint) else {
+            let names: Vec<_> = rig.node_names().take(60).map(|name| format!("`{name}`")).collect();
+            let found = format!("no node `{joint}` among {}", names.join(", "));
+            return Err(refused((found, "the name of a node")));
+        };
+        Ok(Self { source: Source::Node(Arc::new(rig), node), scale })
+    }
+
+    /// The head's pose (`world_from_head`) at a time \[s\]: it turns about the pivot \[m\], head space, and moves it, as the
+    /// joint turns and moves from its first moment on. Times before and after the motion are held.
+    pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
+        let [(first, start), (now, place)] = [0.0, time].map(|time| self.joint(time));
+        let rotation = (now * first.conjugate()).normalize().as_quat();
+        let mut pose = Pose::rotation_about(pivot, rotation);
+        let by = (self.scale * (place - start)).as_vec3();
+        pose.translation += if by.is_finite() { by } else { Vec3::ZERO };
+        pose
+    }
+
+    /// Rotation and place of the joint in the world, units of the file.
+    fn joint(&self, time: f64) -> (DQuat, DVec3) {
+        match &self.source {
+            Source::Node(rig, node) => rigid(&rig.world_from_node(*node, time)),
+            Source::Joint(motion) => {
+                let last = motion.poses.len() - 1;
+                let at = (time / motion.frame_time).clamp(0.0, last as f64);
+                // Times that are none are held at the first frame.
+                let before = if at.is_finite() { at as usize } else { 0 };
+                let share = if at.is_finite() { at - before as f64 } else { 0.0 };
+                let [(from, start), (to, end)] = [before, (before + 1).min(last)].map(|at| motion.poses[at]);
+                let rotation = math::slerp(from.as_quat(), to.as_quat(), share as f32);
+                (rotation.as_dquat().normalize(), start.lerp(end, share))
+            }
+        }
+    }
+}
+
+/// Rotation and place of a transform, without its scale.
+fn rigid(transform: &DMat4) -> (DQuat, DVec3) {
+    let [x, y, z, place] = [transform.x_axis, transform.y_axis, transform.z_axis, transform.w_axis];
+    let x = x.truncate().normalize_or(DVec3::X);
+    let y = y.truncate().reject_from_normalized(x).normalize_or(x.any_orthonormal_vector());
+    let mirrored = x.cross(y).dot(z.truncate()) < 0.0;
+    // A mirror image has its first axis turned over.
+    let x = if mirrored { -x } else { x };
+    (DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y))), place.truncate())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pose_is_that_of_the_joint_since_its_beginning() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("turn.bvh");
+        let text = "HIERARCHY ROOT Head { OFFSET 0 0 0 CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation \
+                    Zrotation } MOTION Frames: 3 Frame Time: 0.5 100 160 0 10 0 0 100 160 0 50 0 0 110 160 0 50 0 0";
+        std::fs::write(&path, text).unwrap();
+        let motion = RecordedMotion::load(&path, "Head", None, 0.01).unwrap();
+        let pivot = Vec3::new(0.0, -0.06, -0.02);
+        assert_eq!(motion.pose(-1.0, pivot), motion.pose(0.0, pivot));
+        for (time, degrees, by) in
+            [(0.0, 0.0_f32, 0.0), (0.25, 20.0, 0.0), (0.5, 40.0, 0.0), (0.75, 40.0, 0.05), (9.0, 40.0, 0.1)]
+        {
+            let pose = motion.pose(time, pivot);
+            assert!(pose.point(pivot).distance(pivot + Vec3::X * by) < 1e-6, "{time}");
+            let face = pose.direction(Vec3::Z);
+            assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-3, "{face} at {time}");
+        }
+        let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
+        assert!(absent.contains("no joint `Hips` among `Head`"), "{absent}");
+    }
+
+    #[test]
+    fn a_node_of_a_clip_is_a_joint() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/body/clips/rig.glb");
+        let motion = RecordedMotion::load(&path, "head", Some("spline"), 1.0).unwrap();
+        assert_eq!(motion.pose(0.0, Vec3::Y), Pose::IDENTITY);
+        let pose = motion.pose(1.0, Vec3::Y);
+        assert!(pose.rotation.is_normalized() && pose.rotation.angle_between(glam::Quat::IDENTITY) > 0.1);
+        let absent = RecordedMotion::load(&path, "tail", None, 1.0).unwrap_err().to_string();
+        assert!(absent.contains("no node `tail` among `root`, `hips`"), "{absent}");
+    }
+}

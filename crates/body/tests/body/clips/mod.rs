@@ -1,0 +1,154 @@
+//! Clips of glTF files: vertices at any time, held to an evaluation in double precision that is not ours, and files that
+//! are damaged.
+
+use std::path::PathBuf;
+
+use glam::Vec3;
+use strandline_base::Random;
+use strandline_body::{BodyError, Mesh, VertexMotion};
+
+use crate::files::{cube_bin, cube_json, glb, scratch};
+
+fn rig() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/body/clips/rig.glb")
+}
+
+fn play(path: &std::path::Path, clip: &str) -> Result<(Mesh, VertexMotion, Vec<String>), BodyError> {
+    Mesh::load_moving(path, clip)
+}
+
+#[test]
+fn vertices_are_where_an_independent_evaluation_has_them() {
+    let expected = include_str!("expected.txt");
+    let mut blocks = 0;
+    for block in expected.split("clip ").map(str::trim).filter(|block| !block.is_empty()) {
+        // The name of a clip without one begins with the same word.
+        let (name, rest) = block.split_once('@').map_or((block, ""), |(name, rest)| (name, rest));
+        let name = if name == "3" { "clip 3" } else { name };
+        if rest.is_empty() {
+            continue;
+        }
+        let mut lines = rest.lines();
+        let time: f64 = lines.next().unwrap().parse().unwrap();
+        let (mesh, motion, _) = play(&rig(), name).unwrap();
+        let found = motion.positions(time);
+        assert_eq!(found.len(), mesh.positions.len());
+        assert_eq!(lines.clone().count(), found.len());
+        for (vertex, (line, found)) in lines.zip(&found).enumerate() {
+            let numbers: Vec<f32> = line.split(' ').map(|number| number.parse().unwrap()).collect();
+            let apart = found.distance(Vec3::from_slice(&numbers));
+            assert!(apart < 1e-5, "vertex {vertex} of {name} at {time} s is {apart} m away");
+        }
+        blocks += 1;
+    }
+    assert_eq!(blocks, 36);
+}
+
+#[test]
+fn clips_have_names_and_an_unknown_one_lists_them() {
+    assert_eq!(Mesh::clip_names(&rig()).unwrap(), ["step", "linear", "spline", "clip 3"]);
+    let error = play(&rig(), "walk").unwrap_err().to_string();
+    assert!(error.contains("no clip `walk` among `step`, `linear`, `spline`, `clip 3`"), "{error}");
+    assert!(play(&rig(), "LINEAR").is_ok());
+    let (_folder, path) = scratch("cube.glb", &glb(&cube_json("{}", None), &cube_bin()));
+    assert!(play(&path, "walk").unwrap_err().to_string().contains("no clip, and none named `walk`"));
+    let (_folder, path) = scratch("cube.obj", crate::files::CUBE_OBJ.as_bytes());
+    assert!(play(&path, "walk").unwrap_err().to_string().contains("without clips"));
+    let (_, _, notes) = play(&rig(), "clip 3").unwrap();
+    assert!(notes.iter().any(|note| note.contains("1 channels of KHR_animation_pointer")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("1 of 24 vertices have no weights")), "{notes:?}");
+}
+
+#[test]
+fn the_mesh_of_a_clip_is_that_of_the_file() {
+    let (mesh, motion, _) = play(&rig(), "linear").unwrap();
+    let alone = Mesh::load(&rig(), 1.0).unwrap();
+    assert_eq!((&mesh.positions, &mesh.triangles), (&alone.positions, &alone.triangles));
+    assert_eq!((motion.vertex_count(), motion.end()), (24, 2.0));
+}
+
+/// The document of the rig and its bytes.
+fn parts() -> (String, Vec<u8>) {
+    let bytes = std::fs::read(rig()).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    (String::from_utf8(bytes[20..20 + length].to_vec()).unwrap(), bytes[28 + length..].to_vec())
+}
+
+/// A whole number below another.
+fn below(random: &mut Random, count: usize) -> usize {
+    (random.bits() as usize) % count
+}
+
+/// A number of the document replaced by another, or a word left out.
+fn mutated(json: &str, random: &mut Random) -> String {
+    let digits: Vec<usize> =
+        json.match_indices(|letter: char| letter.is_ascii_digit()).map(|(at, _)| at).collect();
+    let at = digits[below(random, digits.len())];
+    let end = at + json[at..].find(|letter: char| !letter.is_ascii_digit()).unwrap();
+    let numbers =
+        ["0", "1", "2", "3", "7", "65535", "4294967295", "18446744073709551615", "-1", "1e39", "null", "[]"];
+    let number = numbers[below(random, numbers.len())];
+    let words = [
+        ("\"LINEAR\"", "\"CUBIC\""),
+        ("\"STEP\"", "\"CUBICSPLINE\""),
+        ("\"CUBICSPLINE\"", "\"LINEAR\""),
+        ("\"rotation\"", "\"weights\""),
+        ("\"translation\"", "\"rotation\""),
+        ("\"VEC3\"", "\"VEC4\""),
+        ("\"SCALAR\"", "\"MAT4\""),
+        ("\"node\"", "\"mode\""),
+        ("\"sampler\"", "\"simpler\""),
+        ("\"joints\"", "\"points\""),
+        ("\"normalized\":true", "\"normalized\":false"),
+        ("\"weights\"", "\"waits\""),
+        ("\"byteStride\"", "\"byteStrides\""),
+        ("\"input\"", "\"output\""),
+        ("\"targets\"", "\"target\""),
+    ];
+    if below(random, 4) == 0 {
+        let (from, to) = words[below(random, words.len())];
+        let places: Vec<usize> = json.match_indices(from).map(|(at, _)| at).collect();
+        if !places.is_empty() {
+            let at = places[below(random, places.len())];
+            return format!("{}{to}{}", &json[..at], &json[at + from.len()..]);
+        }
+    }
+    format!("{}{number}{}", &json[..at], &json[end..])
+}
+
+/// A thousand damaged rigs: each is refused, or all its vertices are somewhere.
+#[test]
+fn damaged_clips_are_refused_or_drawn() {
+    let (json, bin) = parts();
+    let mut random = Random::new(35, 1);
+    let (mut refused, mut drawn) = (0, 0);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("damaged.glb");
+    for _ in 0..1000 {
+        let mut document = mutated(&json, &mut random);
+        if below(&mut random, 3) == 0 {
+            document = mutated(&document, &mut random);
+        }
+        let mut bytes = bin.clone();
+        for _ in 0..below(&mut random, 20) {
+            let at = below(&mut random, bytes.len());
+            bytes[at] = below(&mut random, 256) as u8;
+        }
+        std::fs::write(&path, glb(&document, &bytes)).unwrap();
+        for clip in ["step", "linear", "spline", "clip 3"] {
+            match play(&path, clip) {
+                Err(error) => {
+                    assert!(error.to_string().contains("expected"), "{error}");
+                    refused += 1;
+                }
+                Ok((mesh, motion, _)) => {
+                    for time in [-1.0, 0.4, 0.5, 1.9, f64::NAN, 1e300] {
+                        assert_eq!(motion.positions(time).len(), mesh.positions.len());
+                    }
+                    drawn += 1;
+                }
+            }
+        }
+    }
+    assert!(refused > 300 && drawn > 300, "{refused} refused, {drawn} drawn");
+}

@@ -1,0 +1,142 @@
+//! Distances to a skin that moves, against an exhaustive search and winding numbers of the deformed mesh.
+
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+use glam::{DVec3, Quat, Vec3, vec3};
+use strandline_body::{DistanceGrid, Mannequin, Mesh, PosedSkin, SkinSolid};
+
+/// Winding number of a closed mesh around a point, by solid angles \[Jacobson2013\].
+fn winding(mesh: &Mesh, point: Vec3) -> f64 {
+    let angle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| (mesh.positions[corner as usize] - point).as_dvec3());
+        let [x, y, z]: [f64; 3] = [a, b, c].map(DVec3::length);
+        let volume = a.dot(b.cross(c));
+        2.0 * volume.atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
+    };
+    mesh.triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
+}
+
+/// A tube along y, open at its lower end, 40 cm long and 10 cm wide.
+fn tube() -> Mesh {
+    let (rings, around) = (41_u32, 32_u32);
+    let at = |ring: u32, side: u32| {
+        let angle = 2.0 * PI * side as f32 / around as f32;
+        vec3(0.05 * angle.cos(), 0.01 * ring as f32, 0.05 * angle.sin())
+    };
+    let mut positions: Vec<Vec3> =
+        (0..rings).flat_map(|ring| (0..around).map(move |side| at(ring, side))).collect();
+    let top = positions.len() as u32;
+    positions.push(vec3(0.0, 0.4, 0.0));
+    let mut triangles = Vec::new();
+    for side in 0..around {
+        let next = (side + 1) % around;
+        for ring in 0..rings - 1 {
+            let [a, b, c, d] = [(ring, side), (ring, next), (ring + 1, side), (ring + 1, next)]
+                .map(|(ring, side)| ring * around + side);
+            triangles.extend([[a, c, b], [b, c, d]]);
+        }
+        triangles.push([top, (rings - 1) * around + next, (rings - 1) * around + side]);
+    }
+    Mesh::new(positions, triangles).unwrap()
+}
+
+/// The tube bent about x by an angle at its upper end.
+fn bent(mesh: &Mesh, angle: f32) -> Arc<[Vec3]> {
+    let radius = 0.4 / angle;
+    let place = |place: &Vec3| {
+        let around = Quat::from_rotation_x(place.y / radius) * vec3(place.x, 0.0, place.z - radius);
+        around + Vec3::Z * radius
+    };
+    mesh.positions.iter().map(place).collect()
+}
+
+fn solid(mesh: &Mesh, spacing: f32) -> Arc<SkinSolid> {
+    let grid = DistanceGrid::of_mesh(mesh, spacing, 0.02).unwrap();
+    Arc::new(SkinSolid::new(mesh, Arc::new(grid)).unwrap())
+}
+
+/// Compares distances at many places about a skin with those of the deformed mesh.
+fn compare(mesh: &Mesh, solid: &Arc<SkinSolid>, skin: &Arc<[Vec3]>, count: usize) {
+    let posed = PosedSkin::new(solid, [None, Some(skin)]).unwrap();
+    let deformed = Mesh::new(skin.to_vec(), mesh.triangles.clone()).unwrap().closed();
+    let bounds = deformed.bounds().unwrap();
+    let (middle, size) = (0.5 * (bounds.min + bounds.max), 0.6 * (bounds.max - bounds.min));
+    let share = |index: usize, step: f32| 2.0 * (step * index as f32).fract() - 1.0;
+    let points: Vec<Vec3> = (0..count)
+        .map(|index| {
+            middle + size * vec3(share(index, 0.618_034), share(index, 0.754_878), share(index, 0.569_84))
+        })
+        .collect();
+    let mut before = PosedSkin::UNKNOWN;
+    let (mut inside, mut wrong) = (0, 0);
+    for (point, place) in points.iter().zip(deformed.nearest_places(&points)) {
+        let exact = point.distance(place);
+        let found = posed.nearest(*point, before);
+        before = found.triangle;
+        assert!((found.distance.abs() - exact).abs() < 2e-6, "{point}: {} for {exact}", found.distance);
+        assert!((found.normal.length() - 1.0).abs() < 1e-5);
+        let is_inside = winding(&deformed, *point) > 0.5;
+        inside += usize::from(is_inside);
+        wrong += usize::from(exact > 1e-5 && is_inside != (found.distance < 0.0));
+        let least = posed.at_least(*point);
+        assert!(least <= found.distance.max(0.0) + 1e-6, "{point}: {least} at least, for {exact}");
+        assert!(found.distance < 0.0 || least > 0.6 * exact, "{point}: {least} at least, for {exact}");
+    }
+    assert!(inside > count / 50, "{inside} of {count} inside");
+    assert_eq!(wrong, 0, "{wrong} of {count} on the wrong side");
+}
+
+#[test]
+fn a_bent_tube_has_exact_distances_and_its_hole_bends_too() {
+    let mesh = tube();
+    let solid = solid(&mesh, 0.01);
+    for angle in [0.3, 1.5, 3.0] {
+        compare(&mesh, &solid, &bent(&mesh, angle), 2000);
+    }
+}
+
+#[test]
+fn a_bust_that_shrugs_has_exact_distances() {
+    let mesh = Mannequin::new().mesh();
+    let solid = solid(&mesh, 0.01);
+    let smooth = |from: f32, to: f32, value: f32| {
+        let share = ((value - from) / (to - from)).clamp(0.0, 1.0);
+        share * share * (3.0 - 2.0 * share)
+    };
+    let raised = |place: &Vec3| {
+        *place + Vec3::Y * 0.05 * smooth(0.04, 0.14, place.x.abs()) * smooth(-0.1, -0.18, place.y)
+    };
+    compare(&mesh, &solid, &mesh.positions.iter().map(raised).collect(), 400);
+}
+
+#[test]
+fn a_skin_that_rides_the_head_needs_no_tree() {
+    let mesh = tube();
+    let solid = solid(&mesh, 0.02);
+    assert!(PosedSkin::new(&solid, [None, None]).is_none());
+    let other: Arc<[Vec3]> = Arc::from([Vec3::ZERO; 3]);
+    assert!(PosedSkin::new(&solid, [Some(&other), None]).is_none());
+    let still = PosedSkin::new(&solid, [None, Some(&mesh.positions.clone().into())]).unwrap();
+    assert_eq!(still.most_shift(), 0.0);
+}
+
+#[test]
+fn triangles_carry_what_lies_near_them() {
+    let mesh = tube();
+    let solid = solid(&mesh, 0.02);
+    let turn = Quat::from_rotation_z(0.4);
+    let turned: Arc<[Vec3]> = mesh.positions.iter().map(|place| turn * *place + Vec3::X).collect();
+    let posed = PosedSkin::new(&solid, [None, Some(&turned)]).unwrap();
+    let start = PosedSkin::new(&solid, [None, Some(&mesh.positions.clone().into())]).unwrap();
+    let point = vec3(0.06, 0.2, 0.01);
+    let triangle = start.nearest(point, PosedSkin::UNKNOWN).triangle;
+    let motion = posed.motion(triangle, point).unwrap();
+    let end = turn * point + Vec3::X;
+    assert!(motion.point(point).distance(end) < 1e-5 && motion.error < 1e-5);
+    assert!(motion.direction(Vec3::X).distance(turn * Vec3::X) < 1e-5);
+    let shift = posed.shift(triangle, end);
+    let place = point + vec3(-0.01, 0.0, 0.0);
+    assert!(shift.distance(turn * place + Vec3::X - place) < 2e-3, "{shift}");
+    assert!(posed.motion(PosedSkin::UNKNOWN, point).is_none());
+}

@@ -1,0 +1,112 @@
+//! Planes that points remember of the solids, in the space of what carries these.
+
+use glam::Vec3;
+use strandline_body::{Carrier, Collider, PosedSkin, Shape};
+use strandline_groom::{LANES, Lanes, Vec3Lanes};
+
+/// The planes of all points, shape `[block]`.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    pub blocks: Vec<Vec<Plane>>,
+}
+
+/// Contact planes kept by the points of one index in a block, in the space of their carrier.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    pub(super) anchor: Vec3Lanes,
+    pub(super) normal: Vec3Lanes,
+    pub(super) distance: Lanes,
+    pub(super) friction: Lanes,
+}
+
+impl Plane {
+    /// An unknown plane: its point may be anywhere, inside or outside.
+    const UNKNOWN: Self = Self {
+        anchor: Vec3Lanes { x: [1e9; LANES], y: [1e9; LANES], z: [1e9; LANES] },
+        normal: Vec3Lanes { x: [0.0; LANES], y: [1.0; LANES], z: [0.0; LANES] },
+        distance: Lanes([f32::NEG_INFINITY; LANES]),
+        friction: Lanes([0.0; LANES]),
+    };
+    /// Numbers for each strand.
+    const NUMBERS: usize = 8;
+
+    /// A rider without a triangle.
+    const ON_FOOT: Self = Self {
+        anchor: Vec3Lanes { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES] },
+        distance: Lanes([0.0; LANES]),
+        friction: Lanes([f32::from_bits(PosedSkin::UNKNOWN); LANES]),
+        ..Self::UNKNOWN
+    };
+
+    /// Makes the plane of a lane unknown.
+    pub(super) fn forget(&mut self, lane: usize) {
+        self.anchor.set(lane, Vec3::splat(1e9));
+        self.distance.0[lane] = f32::NEG_INFINITY;
+    }
+
+    fn numbers(&self) -> [[f32; LANES]; Self::NUMBERS] {
+        let Self { anchor, normal, distance, friction } = self;
+        [anchor.x, anchor.y, anchor.z, normal.x, normal.y, normal.z, distance.0, friction.0]
+    }
+
+    fn of_numbers(numbers: &[f32]) -> Self {
+        let part = |index: usize| std::array::from_fn(|lane| numbers[index * LANES + lane]);
+        let vector = |first: usize| Vec3Lanes { x: part(first), y: part(first + 1), z: part(first + 2) };
+        Self { anchor: vector(0), normal: vector(3), distance: Lanes(part(6)), friction: Lanes(part(7)) }
+    }
+}
+
+impl Contacts {
+    /// Unknown planes for a number of blocks; the order of a block is `[carrier][point]`, and behind them a rider for each
+    /// point where a collider is a skin.
+    pub fn new(colliders: &[Collider], block_count: usize, points: usize) -> Self {
+        let mut block = vec![Plane::UNKNOWN; carriers(colliders).len() * points];
+        if colliders.iter().any(|collider| matches!(collider.shape, Shape::Skin(_))) {
+            block.resize(block.len() + points, Plane::ON_FOOT);
+        }
+        Self { blocks: vec![block; block_count] }
+    }
+
+    /// Numbers of a plane for each strand.
+    pub fn numbers_per_plane(&self) -> usize {
+        Plane::NUMBERS
+    }
+
+    /// The numbers of all planes, shape `[block][plane][number]` of lanes.
+    pub fn numbers(&self) -> Vec<f32> {
+        self.blocks.iter().flatten().flat_map(Plane::numbers).flatten().collect()
+    }
+
+    /// Takes over the numbers of all planes, of that shape.
+    pub fn set_numbers(&mut self, numbers: &[f32]) {
+        let planes = self.blocks.iter_mut().flatten();
+        for (plane, numbers) in planes.zip(numbers.chunks_exact(Plane::NUMBERS * LANES)) {
+            *plane = Plane::of_numbers(numbers);
+        }
+    }
+}
+
+/// The carriers of colliders, each once: pieces of the body in their order, then the world.
+pub(crate) fn carriers(colliders: &[Collider]) -> Vec<Carrier> {
+    let mut carriers: Vec<Carrier> = colliders.iter().map(|collider| collider.carrier).collect();
+    carriers.sort_unstable();
+    carriers.dedup();
+    carriers
+}
+
+/// The rider of a plane, which is stored as a plane.
+pub(super) struct Rider<'a>(pub &'a mut Plane);
+
+impl Rider<'_> {
+    /// Triangle of a lane.
+    pub fn triangle(&self, lane: usize) -> u32 {
+        self.0.friction.0[lane].to_bits()
+    }
+
+    /// Sets the triangle of a lane and the way \[m\] of its material through the step, carrier space.
+    pub fn set(&mut self, lane: usize, triangle: u32, moved: Vec3) {
+        self.0.friction.0[lane] = f32::from_bits(triangle);
+        self.0.distance.0[lane] = 0.0;
+        self.0.anchor.set(lane, moved);
+    }
+}

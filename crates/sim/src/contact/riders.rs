@@ -1,0 +1,105 @@
+//! Planes on a skin that moves by itself: they ride its triangles from step to step.
+//!
+//! A plane near the skin moves with its triangle, so that hair which rests there asks for no distance. The distance of a
+//! point far from it stays a lower bound when the most that a vertex moves is taken off. What a plane needs for this, its
+//! rider, lies in a further plane for each point, behind those of all carriers.
+
+use std::cell::Cell;
+
+use glam::Vec3;
+use strandline_base::par::prelude::*;
+use strandline_base::vec3x8::{Vec3x8, load, splat};
+use strandline_body::PosedSkin;
+use strandline_groom::{LANES, Vec3Lanes};
+
+use super::contacts::{Group, Solids};
+use super::planes::{Contacts, Plane, Rider};
+
+/// Distance \[m\] from the skin within which a plane rides a triangle.
+const CLOSE: f32 = 0.02;
+/// Sum \[m\] of what riding may have moved a plane off its place before it is looked up again, and the parts of the error
+/// of a triangle's motion and of the most that a vertex moves, for which another part of the skin may have come near.
+const MOST_OFF: f32 = 5e-4;
+const OF_ERROR: f32 = 2.0;
+const OF_SHIFT: f32 = 0.02;
+
+impl Group<'_> {
+    /// Way \[m\] of the material under points of one index through the step beside that of the carrier, world space.
+    pub(super) fn along(&self, rider: Option<&Plane>) -> Option<Vec3x8> {
+        rider.map(|rider| self.world_from_carrier.directions(Vec3x8::load(&rider.anchor)))
+    }
+
+    /// Depth \[m\] of points of one index inside a group with a skin; their planes tell which are outside for certain.
+    pub(super) fn depth_on(
+        &self,
+        position: Vec3x8,
+        plane: &Plane,
+        rider: Option<&Plane>,
+        counted: impl Fn(usize) -> bool,
+    ) -> f32 {
+        let local = self.carrier_from_world.points(position);
+        let moved = (local - Vec3x8::load(&plane.anchor)).length();
+        let is_near = (load(&plane.distance) - moved).simd_le(splat(0.0)).to_bitmask();
+        let mut here = Vec3Lanes::default();
+        local.store(&mut here);
+        let lanes = (0..LANES).filter(|lane| is_near & (1 << lane) != 0 && counted(*lane));
+        let depths = lanes.map(|lane| {
+            let triangle = rider.map_or(PosedSkin::UNKNOWN, |rider| rider.friction.0[lane].to_bits());
+            -self.nearest(here.get(lane), &Cell::new(triangle)).distance
+        });
+        depths.fold(0.0, f32::max)
+    }
+}
+
+impl Contacts {
+    /// Carries the planes on skins from the start of a step to its end.
+    pub fn ride(&mut self, solids: &Solids) {
+        let points = solids.points();
+        let skins: Vec<(usize, &PosedSkin)> = solids.skins().collect();
+        if skins.is_empty() {
+            return;
+        }
+        let carriers = solids.carrier_count();
+        self.blocks.par_iter_mut().for_each(|planes| {
+            let (planes, riders) = planes.split_at_mut(carriers * points);
+            for (group, skin) in &skins {
+                let planes = &mut planes[group * points..(group + 1) * points];
+                planes.iter_mut().zip(riders.iter_mut()).for_each(|(plane, rider)| ride(plane, rider, skin));
+            }
+        });
+    }
+}
+
+fn ride(plane: &mut Plane, rider: &mut Plane, skin: &PosedSkin) {
+    let shift = skin.most_shift();
+    for lane in 0..LANES {
+        if !plane.distance.0[lane].is_finite() {
+            continue;
+        }
+        let triangle = Rider(rider).triangle(lane);
+        let anchor = plane.anchor.get(lane);
+        if shift == 0.0 {
+            rider.anchor.set(lane, Vec3::ZERO);
+            continue;
+        }
+        if plane.distance.0[lane] > CLOSE {
+            plane.distance.0[lane] -= shift;
+            rider.anchor.set(lane, skin.drift(triangle));
+            continue;
+        }
+        let Some(motion) = skin.motion(triangle, anchor) else {
+            plane.forget(lane);
+            rider.anchor.set(lane, Vec3::ZERO);
+            continue;
+        };
+        let carried = motion.point(anchor);
+        rider.anchor.set(lane, carried - anchor);
+        rider.distance.0[lane] += OF_ERROR * motion.error + OF_SHIFT * shift;
+        if rider.distance.0[lane] > MOST_OFF {
+            plane.forget(lane);
+            continue;
+        }
+        plane.anchor.set(lane, carried);
+        plane.normal.set(lane, motion.direction(plane.normal.get(lane)));
+    }
+}

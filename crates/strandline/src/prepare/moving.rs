@@ -1,0 +1,56 @@
+//! The motion of a body that moves by itself, in head space.
+
+use glam::{Quat, Vec3};
+use strandline_base::math;
+
+use super::placing::Placing;
+use crate::{
+    Error, Scene,
+    body::{Mesh, Playback, SkinMotion, VertexMotion},
+    groom::Guides,
+};
+
+/// Roots whose places on the body are looked up, and the vertices below which the whole body stands for its head.
+const ROOTS: usize = 256;
+const LEAST: usize = 8;
+
+/// Metres of a unit of the body's file, and its rotation into head space.
+pub(super) fn placing(scene: &Scene, placing: Placing) -> (f32, Quat) {
+    (placing.scale, math::pitch_yaw_roll(scene.body.rotation) * placing.turn)
+}
+
+/// The motion of the drawn body, which is in head space; its head is where the roots of the hair are.
+pub(super) fn skin(
+    scene: &Scene,
+    motion: VertexMotion,
+    mesh: &Mesh,
+    placing: (f32, Quat),
+    guides: &Guides,
+) -> Result<SkinMotion, Error> {
+    let body = &scene.body;
+    let playback = Playback { start: body.start, speed: body.speed, is_loop: body.r#loop };
+    let every = guides.strand_count().div_ceil(ROOTS).max(1);
+    let roots: Vec<Vec3> =
+        (0..guides.strand_count()).step_by(every).map(|strand| guides.position(strand, 0)).collect();
+    let head = about(mesh, motion.vertex_count(), &roots);
+    Ok(SkinMotion::new(motion, playback, &mesh.positions, placing, &head)?)
+}
+
+/// The vertices among the first `count` nearest to places of the surface, and those that share a triangle with them, in
+/// rising order; none where these are few.
+fn about(mesh: &Mesh, count: usize, places: &[Vec3]) -> Vec<u32> {
+    let mut is_near = vec![false; mesh.positions.len()];
+    for place in places {
+        let distance = |index: &usize| mesh.positions[*index].distance_squared(*place);
+        let nearest = (0..count).min_by(|one, other| distance(one).total_cmp(&distance(other)));
+        nearest.into_iter().for_each(|index| is_near[index] = true);
+    }
+    let mut is_about = is_near.clone();
+    for corners in &mesh.triangles {
+        if corners.iter().any(|corner| is_near[*corner as usize]) {
+            corners.iter().for_each(|corner| is_about[*corner as usize] = true);
+        }
+    }
+    let about: Vec<u32> = (0..count as u32).filter(|index| is_about[*index as usize]).collect();
+    if about.len() < LEAST { Vec::new() } else { about }
+}

@@ -1,0 +1,160 @@
+//! Bodies that move by themselves: clips, vertices in memory and files of vertices.
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+
+use std::path::{Path, PathBuf};
+
+use glam::{Quat, Vec3};
+use strandline::{
+    Backend, Event, Mesh, Picture, Player, Pose, Prepared, Scene, Sources, Style,
+    low_level::body::{BodyFrame, VertexMotion},
+    scene::MotionName,
+};
+
+fn bust() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/bust.glb")
+}
+
+/// A few strands of a bob on the sample bust, which nothing but a clip moves.
+fn scene(clip: &str) -> Scene {
+    let mut scene = Scene::demo();
+    scene.set_style(Style::Bob);
+    (scene.style.strand_count, scene.body.spacing) = (40, 0.01);
+    (scene.body.file, scene.body.clip) = (Some(bust()), Some(clip.to_owned()));
+    scene.motion.name = MotionName::Still;
+    (scene.devices.simulation, scene.devices.pictures) = (Backend::Cpu, Backend::Cpu);
+    (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    (scene.picture.width, scene.picture.height) = (64, 48);
+    (scene.film.frames, scene.film.settle) = (4, 0.0);
+    scene
+}
+
+/// The skin in the world.
+fn in_world(frame: &BodyFrame) -> Vec<Vec3> {
+    let pose = frame.world_from_head();
+    frame.skin().unwrap().iter().map(|place| pose.point(*place)).collect()
+}
+
+#[test]
+fn the_head_carries_the_skin_of_a_clip() {
+    let prepared = Prepared::new(&scene("look")).unwrap();
+    let mesh = prepared.mesh.as_ref().unwrap();
+    let (_, motion, _) = Mesh::load_moving(&bust(), "look").unwrap();
+    let rest = prepared.head.frame(0.0);
+    assert_eq!(rest.world_from_head(), Pose::IDENTITY);
+    assert_eq!(rest.skin().unwrap()[..], mesh.positions[..], "the clip begins at rest, to the bit");
+    for time in [0.2, 0.7, 1.0, 1.9, 9.0] {
+        let frame = prepared.head.frame(time);
+        let expected = motion.positions(time);
+        for ((found, expected), rest) in in_world(&frame).iter().zip(&expected).zip(&mesh.positions) {
+            assert!(found.distance(*expected) < 1e-5, "{found} {expected}");
+            if rest.y < -0.25 {
+                assert!(found.distance(*rest) < 1e-5, "the chest stays: {rest}");
+            }
+        }
+        // The scalp stays in head space.
+        let skin = frame.skin().unwrap();
+        let scalp = mesh.positions.iter().zip(skin.iter()).filter(|(rest, _)| rest.y > 0.03);
+        let worst = scalp.map(|(rest, now)| rest.distance(*now)).fold(0.0, f32::max);
+        assert!(worst < 1e-5, "{worst}");
+    }
+    let turned = prepared.head.pose(1.0).direction(Vec3::Z);
+    assert!(turned.x > 0.85, "the face looks over the left shoulder: {turned}");
+}
+
+#[test]
+fn a_body_that_is_placed_moves_where_it_is_placed() {
+    let mut placed = scene("nod");
+    (placed.body.rotation, placed.body.translation) = (Vec3::new(0.0, 90.0, 0.0), Vec3::new(0.3, 0.0, 0.1));
+    placed.body.scale = strandline::format::Scale::Factor(2.0);
+    (placed.body.start, placed.body.speed, placed.body.r#loop) = (0.5, 2.0, true);
+    let prepared = Prepared::new(&placed).unwrap();
+    let (_, motion, _) = Mesh::load_moving(&bust(), "nod").unwrap();
+    let turn = Quat::from_rotation_y(90.0_f32.to_radians());
+    // The clip of 2 s goes round after 0.75 s of the scene.
+    for (time, of_clip) in [(0.0, 0.5), (0.25, 1.0), (1.0, 0.5)] {
+        let expected = motion.positions(of_clip);
+        for (found, expected) in in_world(&prepared.head.frame(time)).iter().zip(expected) {
+            let expected = turn * (2.0 * expected) + placed.body.translation;
+            assert!(found.distance(expected) < 1e-5, "{found} {expected} at {time}");
+        }
+    }
+}
+
+#[test]
+fn the_motion_of_the_head_carries_a_body_that_moves() {
+    let mut turning = scene("smile");
+    turning.motion.name = MotionName::Turn;
+    let (turns, smiles) = (Prepared::new(&turning).unwrap(), Prepared::new(&scene("smile")).unwrap());
+    let (both, alone) = (turns.head.frame(0.8), smiles.head.frame(0.8));
+    assert_eq!(alone.world_from_head(), Pose::IDENTITY, "a smile does not move the scalp");
+    assert_eq!(both.skin(), alone.skin());
+    assert!(both.world_from_head().direction(Vec3::Z).x > 0.8);
+    let corner = smiles
+        .mesh
+        .unwrap()
+        .positions
+        .iter()
+        .zip(alone.skin().unwrap().iter())
+        .map(|(rest, now)| rest.distance(*now))
+        .fold(0.0, f32::max);
+    assert!((0.005..0.015).contains(&corner), "the corners of the mouth: {corner} m");
+}
+
+fn last_picture(scene: &Scene) -> Picture {
+    let player = Player::new(scene, scene.devices, true).unwrap();
+    let pictures = player.filter_map(|event| match event.unwrap() {
+        Event::Drawn { picture, .. } => Some(picture),
+        _ => None,
+    });
+    pictures.last().unwrap()
+}
+
+#[test]
+fn a_film_shows_the_clip() {
+    let mut rests = scene("shrug");
+    rests.film.frames_per_second = 8.0;
+    let shrugs = last_picture(&rests);
+    rests.body.clip = None;
+    let still = last_picture(&rests);
+    let changed =
+        shrugs.pixels.iter().zip(&still.pixels).filter(|(one, other)| one.abs_diff(**other) > 8).count();
+    assert!(changed > 60, "{changed} values of the picture changed");
+}
+
+#[test]
+fn an_unknown_clip_is_refused_with_those_that_there_are() {
+    let error = Prepared::new(&scene("walk")).err().unwrap().to_string();
+    assert!(error.contains("no clip `walk` among `nod`, `look`, `shrug`, `smile`"), "{error}");
+    let mut bare = scene("nod");
+    bare.body.file = None;
+    let error = bare.check().unwrap_err().to_string();
+    assert!(error.contains("body.clip is a clip of a body without a file"), "{error}");
+}
+
+#[test]
+fn a_motion_in_memory_moves_a_mesh_in_memory() {
+    let mesh = Mesh::load(&bust(), 1.0).unwrap();
+    let mut memory = scene("nod");
+    (memory.body.file, memory.body.clip) = (Some("bust".into()), None);
+    let raised: Vec<Vec3> = mesh.positions.iter().map(|place| *place + Vec3::Y * 0.5).collect();
+    let motion = VertexMotion::sampled(vec![0.0, 1.0], vec![mesh.positions.clone(), raised]).unwrap();
+    let sources = Sources::default().with_mesh("bust", mesh.clone()).with_motion("bust", motion.clone());
+    let prepared = Prepared::from_sources(&memory, &sources).unwrap();
+    let frame = prepared.head.frame(0.5);
+    assert!(frame.world_from_head().translation.distance(Vec3::Y * 0.25) < 1e-5, "{frame:?}");
+    let other = sources.with_motion("bost", motion);
+    let error = Prepared::from_sources(&memory, &other).err().unwrap().to_string();
+    assert!(error.contains("`bost`"), "{error}");
+    memory.body.clip = Some("nod".into());
+    let error = Prepared::from_sources(&memory, &Sources::default().with_mesh("bust", mesh)).err().unwrap();
+    assert!(error.to_string().contains("a clip of a body in memory"), "{error}");
+}
+
+#[test]
+fn a_word_of_the_language_is_a_key_like_others() {
+    let mut scene = Scene::demo();
+    scene.set("body.loop", "true").unwrap();
+    assert!(scene.body.r#loop && scene.to_toml().contains("\nloop = true"));
+    assert!(Scene::parse("[body]\nloop = true\nspeed = 0.5", "here").unwrap().body.r#loop);
+    assert!(scene.explain("body.loop").unwrap().starts_with("body.loop: Begins the motion again"));
+}
