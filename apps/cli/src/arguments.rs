@@ -112,7 +112,7 @@ pub struct Inputs {
     /// built-in scalp, brought onto the skull].
     #[arg(long, value_name = "NAME", requires = "body", conflicts_with = "groom")]
     pub scalp: Option<String>,
-    /// Move the body by this clip of its glTF file.
+    /// Move the body by this clip of its glTF file, and by nothing else unless --motion says so.
     #[arg(long, value_name = "NAME")]
     pub clip: Option<String>,
     /// The axis of the groom's files that points up: auto, x, y, z, -x, -y or -z [default: the scene's, auto].

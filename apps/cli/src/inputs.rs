@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use strandline::{
     Cache, Scene,
-    scene::{BodyPart, CameraSection, GroomPart},
+    scene::{BodyPart, CameraSection, GroomPart, MotionName},
     settings::{StrandMethod, Value},
 };
 
@@ -48,6 +48,8 @@ impl Inputs {
         }
         if let Some(name) = &self.clip {
             scene.body.clip = Some(name.clone());
+            // A built-in motion of the scene would turn the whole body on top of it.
+            scene.motion.name = MotionName::Still;
         }
         if let Some(hair) = self.hair {
             if scene.simulation.strands.method == StrandMethod::Constrain {
@@ -186,6 +188,20 @@ mod tests {
             assert_eq!((groom.rotation, groom.up), (Vec3::Y * -90.0, Up::MinusY), "{command}");
             assert_eq!(groom.scale, Scale::Factor(0.01), "{command}");
         }
+    }
+
+    #[test]
+    fn a_clip_moves_the_body_alone_unless_a_motion_is_named() {
+        let motion = |words: &[&str]| {
+            let words = [&["strandline", "render", "--body", "bust.glb"], words].concat();
+            match Arguments::try_parse_from(words).unwrap().command {
+                Some(Command::Render(options)) => options.inputs.scene().unwrap().motion.name,
+                other => panic!("{other:?}"),
+            }
+        };
+        assert_eq!(motion(&[]), Scene::demo().motion.name);
+        assert_eq!(motion(&["--clip", "nod"]), MotionName::Still);
+        assert_eq!(motion(&["--clip", "nod", "--motion", "turn"]), MotionName::Turn);
     }
 
     #[test]
