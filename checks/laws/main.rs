@@ -28,7 +28,6 @@ mod rods;
 mod shake;
 mod sintel;
 mod skin_contact;
-mod small_motion;
 mod spans;
 mod springs;
 mod strands;

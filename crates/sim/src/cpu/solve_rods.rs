@@ -14,7 +14,7 @@ use crate::contact::Obstacles;
 use crate::contact::contacts::Solids;
 use crate::contact::planes::Plane;
 use crate::grab::Pinned;
-use crate::strands::rods::hairs::{Traits, lone};
+use crate::strands::rods::hairs::Traits;
 use crate::strands::rods::real::{Real, Vector};
 use crate::strands::rods::rod::{Node, Solved, StepSettings};
 use crate::strands::rods::settings::RodSettings;
@@ -33,10 +33,6 @@ const STILL_FREE: f64 = 2e-3;
 /// Most that its way differs from the one before, over the square of the part \[m/s^2\]: a strand at rest is not
 /// one that turns back.
 const STEADY: f64 = 2e-4;
-/// Most of a slow lone strand's speed that rubbing takes \[1/s\]: the hairs of a wisp give way before they slip.
-const RUBBING_RATE: f64 = 4.0;
-/// Share of rubbing that holds a lone strand at rest where no solid presses: within a thousandth of its length.
-const HELD: f64 = 0.05;
 /// Arm \[m\] at which the turn of a section counts as way, the radius of a hair: what only twists moves too.
 const ARM: f64 = 4e-5;
 /// Turn \[rad\] that is rounding.
@@ -85,7 +81,6 @@ pub fn solve_rods(
                     clearance: &model.rest_clearance[range.clone()],
                     rest_sections: &rods.sections[range],
                     viscous: parts.viscous(&rods.traits[block * LANES..]),
-                    alone: lone(&rods.traits[block * LANES..]),
                     driven: parts.driven(model, block),
                     block,
                     live: model.live_lanes(block),
@@ -191,8 +186,6 @@ pub(super) struct Strands<'a> {
     rest_sections: &'a [Vec3Lanes],
     /// Relaxation time of bends and twists over the length of a part.
     viscous: f32x8,
-    /// 1 for strands without others beside them.
-    alone: f32x8,
     /// Mask of the strands whose root frames move.
     driven: f32x8,
     block: usize,
@@ -219,8 +212,6 @@ impl Strands<'_> {
     fn want(&self, space: &mut Workspace, Ride { world_from_root, moved }: &Ride) {
         let step = f32x8::of(self.parts.time_step);
         let rubbing = step * step * f32x8::splat(self.parts.settings.rubbing);
-        let most_rubbed =
-            self.alone.choose(f32x8::of((RUBBING_RATE * self.parts.time_step).min(1.0)), f32x8::of(1.0));
         let last = self.nodes.len() - 1;
         for point in 0..=last {
             let free = self.nodes[point].free;
@@ -232,8 +223,8 @@ impl Strands<'_> {
             let fallen = self.parts.fall.weighted(space.velocities[point], tangent);
             let coast = here + space.velocities[point] * step - space.carried[point];
             space.coast[point] = coast;
-            // Hairs that rub take a speed off what moves on, not more than there is, of a lone strand that is slow a share.
-            let rubbed = (rubbing / coast.length()).or_less(most_rubbed);
+            // Hairs that rub take a speed off what moves on, not more than there is.
+            let rubbed = (rubbing / coast.length()).or_less(f32x8::of(1.0));
             let wanted = here + fallen * step - space.carried[point] - coast * rubbed;
             space.wanted[point] = wanted;
             let [x, y, z] = wanted.array();
@@ -332,7 +323,10 @@ impl Strands<'_> {
         // 1 where the strand moves.
         let square = self.parts.time_step * self.parts.time_step;
         let rounding = size.root() * f32x8::of(ROUNDING);
-        let (still, steady) = self.rest_within(solved.pressed, square);
+        let rubbing = f64::from(self.parts.settings.rubbing);
+        let loose = f32x8::of((STILL_FREE * square).min(STILL_LOOSE).max(rubbing * square));
+        let still = solved.pressed.choose(f32x8::of(STILL * square), loose);
+        let steady = f32x8::of(STEADY.max(rubbing) * square);
         let turned = |way: f32x8| (way * f32x8::of(1.0 / ARM)).fast_max(f32x8::of(TURN_ROUNDING));
         let (most, most_change) = (turned(still), turned(steady));
         let turns = turn.simd_gt(most * most) | turn_change.simd_gt(most_change * most_change);
@@ -359,18 +353,6 @@ impl Strands<'_> {
             space.spins[point] = space.bad.bitselect(f32x8::ZERO, space.spins[point]);
         }
         self.count(space, solved, moves);
-    }
-
-    /// Most way \[m\] of a strand at rest in a part of a step of a square \[s^2\], and most change of it.
-    fn rest_within(&self, pressed: f32x8, square: f64) -> (f32x8, f32x8) {
-        let held_by = |rubbing: f64| {
-            let loose = f32x8::of((STILL_FREE * square).min(STILL_LOOSE).max(rubbing * square));
-            (loose, f32x8::of(STEADY.max(rubbing) * square))
-        };
-        let rubbing = f64::from(self.parts.settings.rubbing);
-        let (among, lone) = (held_by(rubbing), held_by(HELD * rubbing));
-        let still = pressed.choose(f32x8::of(STILL * square), self.alone.choose(lone.0, among.0));
-        (still, pressed.choose(among.1, self.alone.choose(lone.1, among.1)))
     }
 
     fn count(&self, space: &mut Workspace, solved: &Solved<f32x8>, moves: f32x8) {

@@ -165,9 +165,8 @@ impl Buffers {
         }
         buffers.nodes.write(&numbers)?;
         let traits = model.rods.iter().flat_map(|rods| &rods.traits);
-        let traits: Vec<f32> = traits
-            .flat_map(|one| [one.bend_ratio, one.twist_ratio, one.damping, f32::from(one.alone)])
-            .collect();
+        let traits: Vec<f32> =
+            traits.flat_map(|one| [one.bend_ratio, one.twist_ratio, one.damping, 0.0]).collect();
         // The grips lie before them.
         Ok(buffers.nodes.write_at(numbers.len() + 4 * self.lane_count, &traits)?)
     }

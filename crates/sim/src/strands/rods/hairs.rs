@@ -1,13 +1,10 @@
 //! Materials of the strands of a model: those of the settings, or of their group.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use strandline_base::SettingError;
-use strandline_groom::{Guides, LANES};
-use wide::f32x8;
+use strandline_groom::Guides;
 
-use super::alone::alone;
 use super::material::Section;
 use super::settings::{GroupSettings, RodSettings};
 use crate::SimError;
@@ -20,13 +17,6 @@ pub(crate) struct Traits {
     pub twist_ratio: f32,
     /// Relaxation time of bends and twists \[s\].
     pub damping: f32,
-    /// True for a strand that has no others beside it at rest.
-    pub alone: bool,
-}
-
-/// 1 for the strands of a block that have no others beside them.
-pub(crate) fn lone(strands: &[Traits]) -> f32x8 {
-    f32x8::from(std::array::from_fn::<f32, LANES, _>(|lane| f32::from(strands[lane].alone)))
 }
 
 /// Material of a strand.
@@ -49,8 +39,6 @@ pub(crate) struct Hairs {
     groups: Vec<u32>,
     names: BTreeMap<u32, String>,
     hair: Hair,
-    /// True for each strand that has no others beside it at rest.
-    alone: Arc<[bool]>,
     /// Materials of groups that have their own.
     own: BTreeMap<u32, Hair>,
 }
@@ -65,7 +53,6 @@ impl Hairs {
             groups: guides.groups().map_or_else(Vec::new, <[u32]>::to_vec),
             names: guides.group_names().clone(),
             hair: Hair::new(rods),
-            alone: alone(guides).into(),
             own: BTreeMap::new(),
         };
         strands.changed(rods, groups)
@@ -102,7 +89,6 @@ impl Hairs {
             bend_ratio: (section.bend[1] / section.bend[0]) as f32,
             twist_ratio: (section.twist / section.bend[0]) as f32,
             damping,
-            alone: self.alone[strand],
         }
     }
 

@@ -4,7 +4,6 @@
 // Rows and columns of small matrices are numbers, several of them in one loop.
 #![allow(clippy::needless_range_loop)]
 
-mod alone;
 mod assemble;
 #[cfg(target_arch = "x86_64")]
 mod avx;
