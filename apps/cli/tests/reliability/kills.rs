@@ -142,8 +142,10 @@ fn a_cache_is_gone_on_from_whatever_ended_its_run() {
             let words = format!("the {} frames so far are whole", cache.len());
             assert!(error(&output).contains(&words), "{name}: {}", error(&output));
         }
+        // A run that ends between its last frame and its exit has nothing left to resume.
+        let is_short = was_ended && cache.len() < 360;
         drop(cache);
-        if was_ended {
+        if is_short {
             short += 1;
             works(folder.path(), &["sim", "--resume", "part.npz", "--out", "rest.npz"]);
             assert!(std::fs::read(at("rest.npz")).unwrap() == whole, "after {name}, {frames:?}");
