@@ -180,7 +180,7 @@ class Style(TypedDict, total=False):
 
 
 class BodyParts(TypedDict, total=False):
-    """A further mesh of the body: eyes, teeth, a collar."""
+    """A further mesh of the body: eyes, teeth, a collar, a hat."""
 
     file: str
     """An .obj, .gltf, .glb, .vrm, .ply or .stl file. Allowed: the path of a file."""
@@ -203,6 +203,10 @@ class BodyParts(TypedDict, total=False):
     solid: bool
     """Makes it solid; without this a closed mesh is solid, and one with an open rim, such as lashes, is not. Allowed:
     true or false."""
+
+    covers: bool
+    """Presses hair that starts under it beneath it; without this a part does that covers as many roots as a hat.
+    Allowed: true or false."""
 
 
 class Body(TypedDict, total=False):
