@@ -86,6 +86,26 @@ class Cache:
         return f"Cache({len(self)} frames of {len(self.starts) - 1} {self.what}, {self.path})"
 
 
+def by_part(path: str | os.PathLike[str], make: Callable[[str], bool], *, for_: str) -> Written | None:
+    """Writes moving hair by a moving cache beside the file: ``make`` writes that and says whether it did. Frames are kept
+    where anything ends this early: what is raised names their cache, which ``Cache(part).save(path)`` writes."""
+    path = os.fspath(path)
+    write = writer(os.path.splitext(path)[1].lower())
+    part = f"{path}.part.npz"
+    if os.path.exists(part):
+        os.remove(part)
+    try:
+        if not make(part):
+            return None
+        written = write(Cache(part), path, for_=for_)
+    except Exception as error:
+        if not os.path.exists(part):
+            raise
+        raise Error(f"{error}; the frames so far are kept: {part}", getattr(error, "kind", "file")) from error
+    os.remove(part)
+    return written
+
+
 def writer(suffix: str) -> Callable[..., Written]:
     """The function that writes moving hair to files of a suffix."""
     if suffix in (".usdc", ".usd"):

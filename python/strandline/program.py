@@ -24,29 +24,34 @@ def main(words: list[str] | None = None) -> int:
         return 130
 
 
+def _value(words: list[str], flag: str) -> str | None:
+    """The value of a flag, as the next word or behind ``=``; the last one counts. It is taken out of the words."""
+    found = None
+    for at in reversed(range(len(words))):
+        name, joined, value = words[at].partition("=")
+        if name == flag and (joined or at + 1 < len(words)):
+            found = found or (value if joined else words[at + 1])
+            del words[at : at + (1 if joined else 2)]
+    return found
+
+
 def _run(words: list[str]) -> int:
-    place = next((at + 1 for at, word in enumerate(words[:-1]) if word == "--out"), None)
-    suffix = "" if place is None else os.path.splitext(words[place])[1].lower()
-    if place is None or not words[:1] == ["sim"] or suffix not in _EXTRA:
+    rest = list(words)
+    path = _value(rest, "--out")
+    if words[:1] != ["sim"] or path is None or os.path.splitext(path)[1].lower() not in _EXTRA:
         return _native.program(["strandline", *words])
-    path = words[place]
-    target = "any"
-    if "--for" in words[:-1]:
-        at = words.index("--for")
-        target = words[at + 1]
-        words = words[:at] + words[at + 2 :]
-        place -= 2 if at < place else 0
-    writer = cache.writer(suffix)
-    part = f"{path}.part.npz"
-    try:
-        code = _native.program(["strandline", *words[:place], part, *words[place + 1 :]])
-        if code == 0 or os.path.exists(part):
-            written = writer(cache.Cache(part), path, for_=target)
-            print(f"wrote {written.frames} frames to {written.path}")
-        return code
-    finally:
-        if os.path.exists(part):
-            os.remove(part)
+    target = _value(rest, "--for") or "any"
+    code = 0
+
+    def simulate(part: str) -> bool:
+        nonlocal code
+        code = _native.program(["strandline", *rest, "--out", part])
+        return code == 0 or os.path.exists(part)
+
+    written = cache.by_part(path, simulate, for_=target)
+    if written is not None:
+        print(f"wrote {written.frames} frames to {written.path}")
+    return code
 
 
 if __name__ == "__main__":

@@ -305,7 +305,7 @@ class Simulation:
         ``"unreal"`` or ``"blender"``."""
         suffix = os.path.splitext(os.fspath(path))[1].lower()
         if suffix in (".usdc", ".usd", ".abc"):
-            return self._record_by_extra(path, suffix, frames, what, for_, every, progress)
+            return self._record_by_extra(path, frames, what, for_, every, progress)
         frames = int(self._fitted["film"]["frames"]) - self._frame if frames is None else int(frames)
         self._native.set_frames(max(self._frame + frames, 1))
         self._native.begin_file(os.fspath(path), what, for_, every)
@@ -318,15 +318,14 @@ class Simulation:
         place, written, size, left_out, notes = ended
         return Written(os.fspath(place), written, size, [*(f"left out: {part}" for part in left_out), *notes])
 
-    def _record_by_extra(self, path: Path, suffix: str, frames: int | None, what: str, for_: str, every: int, progress: bool | None) -> Written:
-        writer = cache.writer(suffix)
-        part = f"{os.fspath(path)}.part.npz"
-        try:
+    def _record_by_extra(self, path: Path, frames: int | None, what: str, for_: str, every: int, progress: bool | None) -> Written:
+        def simulate(part: str) -> bool:
             self.record(part, frames, what=what, every=every, progress=progress)
-            return writer(cache.Cache(part), path, for_=for_)
-        finally:
-            if os.path.exists(part):
-                os.remove(part)
+            return True
+
+        written = cache.by_part(path, simulate, for_=for_)
+        assert written is not None
+        return written
 
     def save_pose(self, path: Path) -> None:
         """Saves positions and motion of the hair, for ``groom.pose`` of a scene."""

@@ -77,10 +77,25 @@ def test_the_program_writes_what_extras_write(tmp_path):
     (tmp_path / "a.toml").write_text('[style]\nstyle = "pixie"\nstrand_count = 20\n[film]\nframes = 3\n[devices]\nsimulation = "cpu"\n')
     for suffix in ("usdc", "abc"):
         path = tmp_path / f"a.{suffix}"
-        words = [sys.executable, "-m", "strandline", "sim", "--scene", str(tmp_path / "a.toml"), "--out", str(path), "--for", "blender"]
+        words = [sys.executable, "-m", "strandline", "sim", "--scene", str(tmp_path / "a.toml"), f"--out={path}", "--for", "blender"]
         done = subprocess.run(words, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         assert "wrote 3 frames" in done.stdout and len(strandline.load(path)) == 20
+
+
+def test_frames_are_kept_where_their_file_cannot_be_written(tmp_path, groom, monkeypatch):
+    from strandline import usd
+
+    def full(*words, **more):
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(usd, "save_cache", full)
+    part = tmp_path / "a.usdc.part.npz"
+    with shake(groom) as simulation, pytest.raises(Error, match="No space left on device; the frames so far are kept"):
+        simulation.record(tmp_path / "a.usdc", frames=3)
+    assert len(strandline.Cache(part)) == 3
+    monkeypatch.undo()
+    assert strandline.Cache(part).save(tmp_path / "a.usdc").frames == 3
 
 
 def test_a_mesh_over_time_is_a_moving_body(tmp_path):

@@ -48,8 +48,8 @@ pub(super) fn press(groom: &mut Groom, covers: &[Cover], skull: Option<&Skull>) 
             groom.points[range].iter_mut().for_each(|point| *point = inner.pressed(*point));
         }
         notes.push(format!(
-            "{} covers the roots of {} strands, which are pressed under it; `covers = false` of its part of [body] leaves \
-             them as they are",
+            "{} covers the roots of {} strands, which start under it; in motion and between them hair may come through. \
+             `covers = false` of its part of [body] leaves them as they are",
             cover.name,
             under.len()
         ));

@@ -209,6 +209,10 @@ impl Scene {
                 return Err(SettingError::new(key, found, format!("`{whole}` too")).into());
             }
         }
+        if self.body.clip.is_some() && self.body.vertices.is_some() {
+            let found = "a second motion of the body";
+            return Err(SettingError::new("body.clip", found, "either `body.clip` or `body.vertices`").into());
+        }
         self.picture.validate()?;
         self.motion.motion()?;
         self.wind.curve()?;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::{Quat, Vec3};
 use strandline::{
-    Backend, Event, Mesh, Picture, Player, Pose, Prepared, Scene, Sources, Style,
+    Backend, Event, Hair, Mesh, Picture, Player, Pose, Prepared, Scene, Sources, Style,
     low_level::body::BodyFrame,
     mesh::VertexMotion,
     scene::{BodyPart, MotionName},
@@ -130,6 +130,38 @@ fn an_unknown_clip_is_refused_with_those_that_there_are() {
     bare.body.file = None;
     let error = bare.check().unwrap_err().to_string();
     assert!(error.contains("body.clip is a clip of a body without a file"), "{error}");
+    let mut twice = scene("nod");
+    twice.body.vertices = Some("nod.npz".into());
+    let error = twice.check().unwrap_err().to_string();
+    assert!(error.contains("body.clip is a second motion") && error.contains("`body.vertices`"), "{error}");
+}
+
+#[test]
+fn a_gpu_leaves_hair_on_a_moving_skin_to_the_cpu_or_says_that_it_hits_the_body_at_rest() {
+    let played = |backend: Backend, falls_back: bool| {
+        let mut moving = scene("shrug");
+        moving.devices.simulation = backend;
+        let mut hair = Hair::open(&moving)?;
+        hair.set_fall_back(falls_back);
+        for frame in 0..3 {
+            hair.play(frame)?;
+        }
+        let points = hair.points()?.to_vec();
+        Ok::<_, strandline::Error>((points, hair.take_notes().join("\n")))
+    };
+    let (expected, _) = played(Backend::Cpu, false).unwrap();
+    let (points, notes) = match played(Backend::Gpu(None), true) {
+        Ok(played) => played,
+        Err(error) => {
+            assert!(std::env::var_os("STRANDLINE_REQUIRE_GPU").is_none(), "{error}");
+            #[allow(clippy::print_stderr)] // it tells what is not tested
+            return eprintln!("not tested on a GPU: {error}");
+        }
+    };
+    assert!(points == expected, "the CPU has gone on from where hair began");
+    assert!(notes.contains("simulating on the CPU: only it knows a skin"), "{notes}");
+    let (_, notes) = played(Backend::Gpu(None), false).unwrap();
+    assert!(notes.contains("hair hits the body at rest"), "{notes}");
 }
 
 #[test]
