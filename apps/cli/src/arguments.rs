@@ -105,7 +105,8 @@ pub struct Inputs {
     /// Points of each strand, for groom files that do not give strands.
     #[arg(long, value_name = "N", requires = "groom", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub per_strand: Option<u32>,
-    /// Load the body from this .obj, .gltf, .glb, .vrm, .ply or .stl file; given again: further meshes of the same body.
+    /// Load the body from this .obj, .gltf, .glb, .vrm, .ply or .stl file, or a body in motion from an .npz of vertices and
+    /// faces, or from .obj files: `walk%04d.obj` or a folder; given again: further meshes of the same body.
     #[arg(long, value_name = "FILE")]
     pub body: Vec<PathBuf>,
     /// Grow the style on the part of this name in the body's files: a group, an object or a material [default: the

@@ -133,14 +133,16 @@ impl Inputs {
 impl Set {
     /// Sets the values in a scene, in their order.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), Usage> {
-        self.values
-            .iter()
-            .try_for_each(|text| set(scene, text).map_err(|words| Usage(format!("--set {words}"))))
+        let usage = |words: String| Usage(format!("--set {words}"));
+        let pairs: Vec<(&str, String)> =
+            self.values.iter().map(|text| pair(scene, text)).collect::<Result<_, _>>().map_err(usage)?;
+        let set = scene.set_all(pairs.iter().map(|(key, value)| (*key, value.as_str())));
+        set.map_err(|error| usage(error.to_string()))
     }
 }
 
-/// Sets one `KEY=VALUE`. Paths are relative to the current folder, not to the scene's.
-fn set(scene: &mut Scene, text: &str) -> Result<(), String> {
+/// Key and value of one `KEY=VALUE`. Paths are relative to the current folder, not to the scene's.
+fn pair<'a>(scene: &Scene, text: &'a str) -> Result<(&'a str, String), String> {
     let words = |error: strandline::Error| error.to_string();
     let Some((key, value)) = text.split_once('=') else {
         return Err(format!("needs KEY=VALUE: {}", scene.explain(text).map_err(words)?));
@@ -148,9 +150,9 @@ fn set(scene: &mut Scene, text: &str) -> Result<(), String> {
     let (key, value) = (key.trim(), value.trim());
     if Scene::row(key).map_err(words)?.kind == <PathBuf as Value>::KIND {
         let path = std::path::absolute(value.trim_matches('"')).map_err(|error| error.to_string())?;
-        return scene.set(key, &path.to_string_lossy()).map_err(words);
+        return Ok((key, path.to_string_lossy().into_owned()));
     }
-    scene.set(key, value).map_err(words)
+    Ok((key, value.to_owned()))
 }
 
 /// Further files; their paths are relative to the current folder, not to the scene's.
@@ -209,6 +211,10 @@ mod tests {
         let scene = applied(&["film.frames=3", "film.frames = 7", "groom.file=a b.hair"]).unwrap();
         assert_eq!(scene.film.frames, 7);
         assert_eq!(scene.groom.file, std::path::absolute("a b.hair").ok());
+        // Settings that need each other stand in any order.
+        let scene = applied(&["motion.name=file", "motion.file=walk.bvh"]).unwrap();
+        assert_eq!(scene.motion.file, std::path::absolute("walk.bvh").ok());
+        assert!(applied(&["motion.name=file"]).unwrap_err().contains("motion.file"));
         let error = applied(&["film.frame=3"]).unwrap_err();
         assert!(
             error.starts_with("--set film.frame is no setting") && error.contains("`film.frames`"),

@@ -103,7 +103,7 @@ impl Mesh {
         }
         let files = sequence(path)?;
         let Some((_, first)) = files.first() else {
-            return Err(refused(path, ("no such .obj file".into(), "files of a mesh in motion")));
+            return Err(out_of_sequence(path, ("no such .obj file".into(), "files of a mesh in motion")));
         };
         let mesh = Self::load(first, 1.0)?;
         let (count, each) = (files.len() as u64, 12 * mesh.positions.len() as u64);
@@ -111,7 +111,7 @@ impl Mesh {
         let read = |(_, file): &(u64, PathBuf)| {
             let frame = Self::load(file, 1.0)?;
             if frame.triangles != mesh.triangles || frame.positions.len() != mesh.positions.len() {
-                return Err(refused(
+                return Err(out_of_sequence(
                     file,
                     ("other faces than the first file".into(), "meshes of one topology"),
                 ));
@@ -139,6 +139,11 @@ fn of_arrays(path: &Path, rate: f64) -> Result<(Mesh, VertexMotion), BodyError> 
 
 fn refused(path: &Path, (found, expected): Refusal) -> BodyError {
     BodyError::Mesh { path: path.into(), found, expected, mend: "write it again, as `numpy.savez` does" }
+}
+
+fn out_of_sequence(path: &Path, (found, expected): Refusal) -> BodyError {
+    let mend = "export the frames of one mesh, with their numbers as walk0001.obj and so on";
+    BodyError::Mesh { path: path.into(), found, expected, mend }
 }
 
 /// The words before and behind the number in the name of files; none for a file that is there.
@@ -173,7 +178,7 @@ fn sequence(path: &Path) -> Result<Vec<(u64, PathBuf)>, BodyError> {
         };
         files.extend(number.map(|number: u64| (number, file)));
         if files.len() > MOST_FILES {
-            return Err(refused(path, (format!("more than {MOST_FILES} files"), "a shorter motion")));
+            return Err(out_of_sequence(path, (format!("more than {MOST_FILES} files"), "a shorter motion")));
         }
     }
     files.sort();

@@ -25,11 +25,22 @@ impl Scene {
     /// A key that no setting has, with the nearest one; a value of another kind or outside its range. The scene then
     /// stays as it is.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), Error> {
-        let (steps, row) = resolve(key)?;
-        let value = parsed(row, value)
-            .ok_or_else(|| SettingError::new(key, format!("`{}`", printable(value)), expected(row)))?;
+        self.set_all([(key, value)])
+    }
+
+    /// Sets some settings in their order, keys and values as [`Scene::set`] takes them. Settings that need each other
+    /// may stand in any order: the scene is checked behind the last one.
+    ///
+    /// # Errors
+    /// As [`Scene::set`]; the scene then stays as it is.
+    pub fn set_all<'a>(&mut self, values: impl IntoIterator<Item = (&'a str, &'a str)>) -> Result<(), Error> {
         let mut changed = self.clone();
-        changed.take_one(key, &steps, row, value)?;
+        for (key, value) in values {
+            let (steps, row) = resolve(key)?;
+            let value = parsed(row, value)
+                .ok_or_else(|| SettingError::new(key, format!("`{}`", printable(value)), expected(row)))?;
+            changed.take_one(key, &steps, row, value)?;
+        }
         changed.check()?;
         *self = changed;
         Ok(())
