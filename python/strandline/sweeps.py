@@ -10,6 +10,7 @@ import socket
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import product
 from multiprocessing import get_context
@@ -197,7 +198,11 @@ def _run(jobs: list[tuple[Any, ...]], workers: int | None, threads: int) -> Iter
         while waiting:
             finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
             for future in finished:
-                yield future.result()
+                try:
+                    row = future.result()
+                except BrokenProcessPool:
+                    raise Error("a process of the sweep was ended from outside; the same call goes on with the samples that are left", "other") from None
+                yield row
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
         if before is None:
@@ -219,7 +224,7 @@ def _job(scene: Scene, sample: dict[str, Any], folder: str, name: str, keep: tup
             digest.update(array.encode() + np.ascontiguousarray(arrays[array]).tobytes())
         os.replace(part, path)
         row |= quality | {"state": "done", "file": os.path.basename(path), "hash": digest.hexdigest()}
-    except Error as error:
+    except (Error, OSError, MemoryError) as error:
         row |= {"state": "failed", "error": str(error)}
     row["seconds"] = round(time.monotonic() - begun, 3)
     part = os.path.join(folder, f".{name}.{os.getpid()}.json")

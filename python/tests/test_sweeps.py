@@ -1,6 +1,11 @@
 """Sweeps: samples, keys, resuming, failures."""
 
 import json
+import multiprocessing
+import os
+import signal
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -46,6 +51,22 @@ def test_other_processes_and_threads_make_the_same_hashes(tmp_path):
     here = sweep(SCENE, samples, tmp_path / "here", workers=0)
     there = sweep(SCENE, samples, tmp_path / "there", workers=2, threads=1)
     assert [row["hash"] for row in here.rows] == [row["hash"] for row in there.rows]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_a_process_that_is_ended_is_said_and_the_rest_goes_on(tmp_path):
+    def end_one():
+        while not (children := multiprocessing.active_children()):
+            time.sleep(0.01)
+        os.kill(children[0].pid, signal.SIGKILL)
+
+    samples = sweeps.grid({"style.seed": [1, 2]})
+    ending = threading.Thread(target=end_one)
+    ending.start()
+    with pytest.raises(Error, match="the same call goes on"):
+        sweep(SCENE, samples, tmp_path, workers=2)
+    ending.join()
+    assert [row["state"] for row in sweep(SCENE, samples, tmp_path, workers=0).rows] == ["done", "done"]
 
 
 def test_draped_hair_is_one_moment(tmp_path):
