@@ -42,6 +42,10 @@ def _run(words: list[str]) -> int:
         # Else the program begins the process anew, to keep a driver's lines off the terminal.
         os.environ.setdefault("NODEVICE_SELECT", "1")
     command = words[0] if words else ""
+    if command == "sweep":
+        from . import farm
+
+        return farm.main(words[1:])
     with _extras.Files() as files:
         if command in _SCENES:
             return _scene(command, _scene_inputs(words, files))

@@ -8,6 +8,7 @@ import hashlib
 import io
 import json
 import os
+import socket
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -164,6 +165,7 @@ def _on_ray(todo: list[Job], folder: str, threads: int, cluster: str | None, gpu
         raise missing("ray", "sweep") from None
     joined = not ray.is_initialized()
     if joined:
+        _reach(cluster)
         try:
             ray.init(address=cluster, include_dashboard=False if cluster == "local" else None, log_to_driver=False)
         except (ConnectionError, ValueError, RuntimeError) as error:
@@ -191,6 +193,17 @@ def _on_ray(todo: list[Job], folder: str, threads: int, cluster: str | None, gpu
             os.remove(marker)
         if joined:
             ray.shutdown()
+
+
+def _reach(cluster: str | None) -> None:
+    """Refuses an address where nobody answers: Ray would try for minutes."""
+    host, _, port = (cluster or "").removeprefix("ray://").rpartition(":")
+    if not host or not port.isdecimal():
+        return
+    try:
+        socket.create_connection((host, int(port)), timeout=10).close()
+    except OSError as error:
+        raise Error(f"cluster is `{cluster}`, where nobody answers ({error}), expected \"local\", \"auto\" or the address of one that runs", "value") from None
 
 
 def _gpus(scene: Scene) -> float:
