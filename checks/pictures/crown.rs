@@ -5,9 +5,8 @@
 //! that of linear light, before exposure and tone map, of the covered part of a pixel.
 //!
 //! A lighting artist asks for 0.5 of the front-lit crown in the rim of brown hair, 1 in that of blonde hair, and a 99th
-//! percentile of 6 medians in a soft box. A light behind makes a rim of 3.3 times the front-lit crown in brown hair
-//! and 2.2 in blonde. The ring in a soft box depends on the style and on the side: 6.2 here, 7.7 from between the front
-//! and the side; a bob with its side parting, whose crown faces the box, has 3.2.
+//! percentile of 6 medians in a soft box. A light behind makes a rim of 5.2 times the front-lit crown in brown hair
+//! and 3.0 in blonde. The ring in a soft box depends on the style and on the side; here it is 9.7.
 
 use std::sync::Arc;
 
@@ -160,8 +159,9 @@ fn shown(on: &On, preset: Preset) -> [f32; 2] {
 law! {
     fn brown_hair_glows_from_behind_and_has_a_ring_in_a_soft_box(on) {
         let [glow, ring] = shown(on, Preset::Brown);
-        // 0.5 is asked for; 1.3 is left where light does not go through fibres.
-        assert!(glow >= 2.0, "{glow}");
+        // 0.5 is asked for; 1.8 is left where light does not go through fibres.
+        assert!(glow >= 3.0, "{glow}");
+        // 3.8 is left where the surfaces of fibres are dull.
         assert!(ring >= 6.0, "{ring}");
     }
 }
@@ -169,7 +169,7 @@ law! {
 law! {
     fn blonde_hair_is_brighter_from_behind_than_from_the_front(on) {
         let [glow, _] = shown(on, Preset::Blonde);
-        // 1 is asked for; 1.2 is left where light does not go through fibres.
-        assert!(glow >= 1.6, "{glow}");
+        // 1 is asked for; 1.4 is left where light does not go through fibres.
+        assert!(glow >= 2.0, "{glow}");
     }
 }
