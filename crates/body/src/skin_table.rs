@@ -3,7 +3,6 @@
 use glam::{Vec3, Vec3A};
 
 use crate::skin_solid::SkinSolid;
-use crate::solid_table::{GRID, SKIN};
 use crate::{BodyFrame, Collider, PosedSkin};
 
 /// Most waiting nodes of a search: a table of the greatest size that a device binds has a tree of 20 levels.
@@ -27,17 +26,26 @@ pub type Written = (usize, Vec<[u32; 4]>);
 #[derive(Debug)]
 struct Listed {
     collider: Collider,
-    /// Row of the solid's header, that row where the skin rides the head, and the row of the first node.
+    /// Row of the solid's header, that row while the skin rides the head and while it moves, and the row of the first node.
     header: usize,
     at_rest: [u32; 4],
+    moving: [u32; 4],
     first: usize,
     posed: Option<PosedSkin>,
 }
 
 impl SkinTable {
-    /// Adds the skin of a collider: row of the solid's header and what it holds, row of the first node.
-    pub(crate) fn add(&mut self, collider: &Collider, (header, at_rest): (usize, [u32; 4]), first: usize) {
-        self.skins.push(Listed { collider: collider.clone(), header, at_rest, first, posed: None });
+    /// Adds the skin of a collider: the row of its solid's header, what that holds while it rides the head and while it
+    /// moves, and the row of its first node.
+    pub(crate) fn add(
+        &mut self,
+        collider: &Collider,
+        header: usize,
+        [at_rest, moving]: [[u32; 4]; 2],
+        first: usize,
+    ) {
+        let collider = collider.clone();
+        self.skins.push(Listed { collider, header, at_rest, moving, first, posed: None });
     }
 
     /// The rows that bring a table to a step between two frames of the body; none where it is there.
@@ -51,9 +59,8 @@ impl SkinTable {
             }
             let posed = PosedSkin::of(&listed.collider, start, end);
             if posed.is_some() != listed.posed.is_some() {
-                let [_, carrier, node, friction] = listed.at_rest;
-                let kind = if posed.is_some() { SKIN } else { GRID };
-                written.push((listed.header, vec![[kind, carrier, node, friction]]));
+                let row = if posed.is_some() { listed.moving } else { listed.at_rest };
+                written.push((listed.header, vec![row]));
             }
             written.extend(posed.as_ref().map(|posed| (listed.first, posed.moving_rows())));
             listed.posed = posed;
@@ -67,7 +74,7 @@ impl SkinTable {
     }
 }
 
-/// Where the rows of a skin begin: its nodes, vertices, triangles, and the triangles around vertices.
+/// First rows of the parts of a skin: its nodes, vertices, triangles, and the triangles around vertices.
 pub(crate) fn places(skin: &SkinSolid, first: usize) -> [u32; 4] {
     let vertices = first + ROWS * skin.nodes.len();
     let triangles = vertices + ROWS * skin.rest.len();

@@ -13,9 +13,9 @@ const MANNEQUIN_PADDING: f32 = 0.02;
 /// Kinds of solids.
 const SPHERE: u32 = 0;
 const CAPSULE: u32 = 1;
-pub(crate) const GRID: u32 = 2;
+const GRID: u32 = 2;
 /// A skin that moves by itself: a grid in every other moment.
-pub(crate) const SKIN: u32 = 3;
+const SKIN: u32 = 3;
 /// Carriers: the world, then the pieces of the body, the head first.
 const WORLD: u32 = 0;
 const HEAD: u32 = 1;
@@ -79,7 +79,9 @@ pub fn solid_rows<'a>(
         };
         let header = numbers.rows(solid, kept);
         if let Shape::Skin(_) = &solid.shape {
-            skins.add(solid, (before + rows.len(), header[0]), numbers.skin[0] as usize);
+            let [_, carrier, node, friction] = header[0];
+            let kinds = [GRID, SKIN].map(|kind| [kind, carrier, node, friction]);
+            skins.add(solid, before + rows.len(), kinds, numbers.skin[0] as usize);
         }
         rows.extend(header);
     }

@@ -3,7 +3,6 @@
 use strandline_body::{BodyFrame, Collider, SkinTable, solid_rows};
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
-use super::buffers::Buffers;
 use super::inputs::Step;
 use super::motion::{Piece, part_count, piece_count};
 use crate::{Model, SimError};
@@ -35,18 +34,18 @@ pub(super) fn write_pieces(
 /// # Errors
 /// The device was lost.
 pub(super) fn write_skins(
-    buffers: &mut Buffers,
+    (buffer, skins): (&Buffer<Step>, &mut SkinTable),
     colliders: &[Collider],
     [start, end]: [&BodyFrame; 2],
 ) -> Result<u32, GpuError> {
-    let written = buffers.skins.between(start, end);
+    let written = skins.between(start, end);
     if !written.is_empty() {
-        let (all, [base, _]) = rows(&buffers.step, colliders);
+        let (all, [base, _]) = rows(buffer, colliders);
         for (first, rows) in written {
             all.write_at(base + first, &rows)?;
         }
     }
-    Ok(buffers.skins.moving().map_or(0, |header| header as u32 + 1))
+    Ok(skins.moving().map_or(0, |header| header as u32 + 1))
 }
 
 /// Room for the settings of a step, and behind it the pieces behind the head, then the rows of all colliders; the skins
