@@ -118,14 +118,19 @@ fn winding(mesh: &Mesh, point: Vec3) -> f64 {
     mesh.triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
-/// Moves the bust for a number of steps and looks at every 24th at the depths of free points: those inside, all, and the
-/// deepest \[m\].
-fn looks(bust: &Bust, steps: usize, mut step: impl FnMut(&Drive) -> State) -> (usize, usize, f32) {
+/// Moves the bust for a number of steps of a length \[s\] and looks every 0.2 s at the depths of free points: those inside,
+/// all, and the deepest \[m\].
+fn looks(
+    bust: &Bust,
+    (steps, length): (usize, f32),
+    mut step: impl FnMut(&Drive) -> State,
+) -> (usize, usize, f32) {
+    let every = (0.2 / length).round() as usize;
     let (mut inside, mut all, mut deepest) = (0, 0, 0.0_f32);
     for index in 1..=steps {
-        let body = bust.frame(index as f32 * STEP);
+        let body = bust.frame(index as f32 * length);
         let state = step(&Drive::of(body.clone()));
-        if index % 24 == 0 {
+        if index % every == 0 {
             let depths = bust.depths(&state, &body);
             all += depths.len();
             inside += depths.iter().filter(|depth| **depth > 1e-5).count();
@@ -141,7 +146,7 @@ fn hair_stays_outside_a_bust_that_turns_and_shrugs() {
     let model = bust.model(bust.skin.clone());
     let mut state = model.rest_state(BodyFrame::REST);
     let mut runner = CpuRunner::from(model);
-    let (inside, all, deepest) = looks(&bust, 240, |drive| {
+    let (inside, all, deepest) = looks(&bust, (240, STEP), |drive| {
         assert_eq!(runner.step(&mut state, drive).non_finite, 0);
         state.clone()
     });
@@ -157,10 +162,10 @@ fn hair_on_a_gpu_stays_outside_a_bust_that_turns_and_shrugs() {
     let run = |shape: Shape, method: StrandMethod| {
         let mut model = bust.model(shape);
         let mut settings = model.settings().clone();
-        settings.strands.method = method;
+        (settings.strands.method, settings.time_step) = (method, 2.0 * STEP);
         model.set_settings(&settings).unwrap();
         let mut runner = GpuRunner::new(&gpu, model).unwrap();
-        looks(&bust, 96, |drive| {
+        looks(&bust, (48, 2.0 * STEP), |drive| {
             runner.step(drive).unwrap();
             runner.state().unwrap()
         })
