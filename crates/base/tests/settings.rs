@@ -87,7 +87,7 @@ fn what_no_file_may_say_is_refused() {
         ("place = [0, 0, 0]\nplaice = 1", "unknown field `plaice`"),
         ("place = [0, 0, 0]\nfolder = \"a\"", "unknown field `folder`"),
         ("place = [0, 0, 0]\nold = 3", "`old` is now `elsewhere.old`"),
-        ("place = [0, 0, 0]\nway = \"other\"", "unknown variant `other`, expected `this` or `that`"),
+        ("place = [0, 0, 0]\nway = \"third\"", "unknown variant `third`, expected `this` or `that`"),
         ("place = [0, 0, 0]\nfirst = 3", "expected a section of settings"),
     ];
     for (text, message) in wrong {

@@ -26,6 +26,8 @@ const ARM: f64 = 4e-5;
 const TURN_ROUNDING: f64 = 1e-6;
 /// Rounding of an edge in single precision, over its length.
 const ROUNDING: f64 = 1.2e-7;
+/// Edges whose rounding makes the end of a stiff strand tremble.
+const TREMBLING: f64 = 8.0;
 
 impl Strands<'_> {
     /// Masks of the strands that a part of a step moves, and of those that hold what is no number. `pressed` is above 0
@@ -44,7 +46,9 @@ impl Strands<'_> {
         let turned = |way: f32x8| (way * f32x8::of(1.0 / ARM)).fast_max(f32x8::of(TURN_ROUNDING));
         let (most, most_change) = (turned(still), turned(steady));
         let turns = motion.turn.simd_gt(most * most) | motion.turn_change.simd_gt(most_change * most_change);
-        let (still, steady) = (still.fast_max(rounding), steady.fast_max(rounding));
+        let trembling =
+            (motion.longest * f32x8::of(TREMBLING * ROUNDING)).fast_min(f32x8::of(STILL_FREE * square));
+        let (still, steady) = (still.fast_max(rounding), steady.fast_max(rounding.fast_max(trembling)));
         let (largest, change) = (motion.largest, motion.change);
         let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | turns | bad;
         (moving, bad)

@@ -195,6 +195,7 @@ impl Strands<'_> {
             let own = self.parts.has_roots().then(|| self.parts.ride(self.model, self.block, part));
             self.want(space, own.as_ref().unwrap_or(&self.parts.head[part as usize]));
             self.find_pulls(space, planes, pinned, part);
+            self.guess(space);
             self.solve_part(space, planes);
         }
     }
@@ -232,7 +233,6 @@ impl Strands<'_> {
             space.sections[point] =
                 Vector::choose(turns * sound(space.sections[point]), space.sections[point], section);
         }
-        self.guess(space, step);
     }
 
     /// Share of a motion that hairs which rub take, from their speed \[m\] over that of the motion: beside others all of
@@ -244,8 +244,13 @@ impl Strands<'_> {
         (rubs * self.crowding + yields).or_less(f32x8::of(1.0))
     }
 
-    /// Newton's method begins with hair that keeps its velocity beside its root.
-    fn guess(&self, space: &mut Workspace, step: f32x8) {
+    /// Newton's method begins with hair that keeps its velocity beside its root; where there are solids, at the shape
+    /// carried along: the first Newton step judges contacts and friction by the place where it begins.
+    fn guess(&self, space: &mut Workspace) {
+        if !self.parts.solids.is_empty() {
+            return;
+        }
+        let step = f32x8::of(self.parts.time_step);
         let (first, second) = (self.nodes[0].free, self.nodes[1].free);
         let held = Vector::choose(second, space.coast[0], space.coast[1]);
         let root = Vector::choose(first, self.pushed_back(space), held);
@@ -255,12 +260,8 @@ impl Strands<'_> {
         }
     }
 
-    /// Way of a free strand that forces take from it on the whole \[m\], which Newton's method would find to a hundredth;
-    /// none where a solid may hold it.
+    /// Way of a free strand that forces take from it on the whole \[m\], which Newton's method would find to a hundredth.
     fn pushed_back(&self, space: &Workspace) -> Vector<f32x8> {
-        if !self.parts.solids.is_empty() {
-            return Vector::zero();
-        }
         let (mut pushed, mut mass) = (Vector::zero(), f32x8::ZERO);
         for (point, node) in self.nodes.iter().enumerate() {
             let free = node.mass * node.free;
