@@ -154,7 +154,7 @@ impl Hair {
         Ok(self.session.pick(ray, radius)?.map(|picked| picked.point))
     }
 
-    /// Moves the hand to a place \[m\], world space, evenly over the next [`Hair::step`].
+    /// Moves the hand to a place \[m\], world space, at constant velocity during the next [`Hair::step`].
     pub fn move_hand(&mut self, hand: Vec3) {
         self.session.simulation_mut().move_hand(hand);
     }
@@ -280,7 +280,7 @@ impl Hair {
         self.session.change(Change::LevelOfDetail(level))
     }
 
-    /// Draws the hair as it is now.
+    /// Draws the current state.
     ///
     /// # Errors
     /// A setting outside its range; the GPU failed and [`Hair::set_fall_back`] was not asked for.
@@ -288,7 +288,7 @@ impl Hair {
         Ok(self.picture_with_report(camera, look)?.0)
     }
 
-    /// Draws the hair as it is now, and reports the work of the picture.
+    /// Draws the current state and reports the work of the picture.
     ///
     /// # Errors
     /// As [`Hair::picture`].
