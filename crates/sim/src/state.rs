@@ -53,8 +53,8 @@ pub struct State {
     /// Velocities \[m/s\], world space, shape `[block][point]` of lanes.
     pub velocities: Vec<Vec3Lanes>,
     /// Additions of the next prediction to the velocities \[m/s\], world space, shape `[block][point]` of
-    /// lanes: the length pass returns them for its corrections \[Mueller2012 eq. 9\]. They are no motion of
-    /// the hair: volume, air and springs ignore them.
+    /// lanes: the length pass returns them for its corrections \[Mueller2012 eq. 9\], rods for what rounding left
+    /// out of the positions. They are no motion of the hair: volume, air and springs ignore them.
     pub corrections: Vec<Vec3Lanes>,
     /// Positions \[m\] one step ago, world space, shape `[block][point]` of lanes.
     pub previous_positions: Vec<Vec3Lanes>,
