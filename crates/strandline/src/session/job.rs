@@ -118,6 +118,8 @@ pub(crate) struct Done {
     pub notes: Vec<String>,
     /// Time that passed \[s\].
     pub seconds: f64,
+    /// Time by which the moment lies behind the end of the last run \[s\].
+    pub delay: f64,
     /// Strands in the hand.
     pub grabbed: usize,
     pub is_frame: bool,
@@ -153,8 +155,8 @@ impl Work for Simulation {
         let simulated_on = device_name(self.engine.gpu());
         let (seconds, grabbed) = (self.passed - before, self.engine.grabbed());
         let notes = self.engine.take_notes();
-        let stiffening = self.stiffening();
-        Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on, stiffening }
+        let (stiffening, delay) = (self.stiffening(), self.delay());
+        Done { moment, reports, notes, seconds, delay, grabbed, is_frame, commands, simulated_on, stiffening }
     }
 }
 

@@ -12,6 +12,7 @@ use crate::{
     prepare,
     render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
     scene::FilmSection,
+    scene::camera_motion::CameraMotion,
     scene::devices::{Opened, Pair, device_name},
     session::painter::Painter,
     session::skin_carrier::SkinCarrier,
@@ -65,6 +66,8 @@ impl Session<Inline> {
             direction: Direction::default(),
             settings: PictureSettings::default(),
             draft: None,
+            camera_motion: None,
+            follows_camera: false,
             simulated_on,
             stiffening,
             grabbed: 0,
@@ -107,6 +110,7 @@ impl Session<Inline> {
             None => {}
         }
         session.direction = Direction::new(&scene, head);
+        session.camera_motion = CameraMotion::new(&scene.camera.keyframes, camera)?;
         (session.scene, session.tags) = (scene, tags);
         session.show()?;
         Ok(session)
@@ -127,6 +131,8 @@ impl Session<Inline> {
             direction: self.direction,
             settings: self.settings,
             draft: self.draft,
+            camera_motion: self.camera_motion,
+            follows_camera: self.follows_camera,
             simulated_on: self.simulated_on,
             stiffening: self.stiffening,
             grabbed: self.grabbed,

@@ -4,6 +4,7 @@ mod backends;
 mod bound;
 mod cache;
 mod corpora;
+mod crossed;
 mod export_time;
 mod live;
 mod moving;
