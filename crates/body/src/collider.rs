@@ -215,6 +215,22 @@ impl Collider {
         }
         Ok(Self { shape, carrier, friction })
     }
+
+    /// The collider in a world whose origin lies at `origin` \[m\]; none for a grid or a mannequin that stays in the world,
+    /// whose samples lie where they are.
+    pub fn seen_from(&self, origin: Vec3) -> Option<Self> {
+        let shape = match (&self.shape, self.carrier) {
+            (shape, Carrier::Piece(_)) => shape.clone(),
+            (Shape::Sphere { center, radius }, Carrier::World) => {
+                Shape::Sphere { center: *center - origin, radius: *radius }
+            }
+            (Shape::Capsule { start, end, radius }, Carrier::World) => {
+                Shape::Capsule { start: *start - origin, end: *end - origin, radius: *radius }
+            }
+            (Shape::Mannequin(_) | Shape::Grid(_) | Shape::Skin(_), Carrier::World) => return None,
+        };
+        Some(Self { shape, ..self.clone() })
+    }
 }
 
 #[cfg(test)]

@@ -58,11 +58,17 @@ impl RecordedMotion {
     /// The head's pose (`world_from_head`) at a time \[s\]: it turns about the pivot \[m\], head space, and moves it, as the
     /// joint turns and moves from its first moment on. Times before and after the motion are held.
     pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
+        self.pose_from(time, pivot, Vec3::ZERO)
+    }
+
+    /// The head's pose as [`RecordedMotion::pose`], in a world whose origin lies at `origin` \[m\].
+    pub fn pose_from(&self, time: f64, pivot: Vec3, origin: Vec3) -> Pose {
         let [(first, start), (now, place)] = [0.0, time].map(|time| self.joint(time));
         let rotation = (now * first.conjugate()).normalize().as_quat();
         let mut pose = Pose::rotation_about(pivot, rotation);
-        let by = (self.scale * (place - start)).as_vec3();
-        pose.translation += if by.is_finite() { by } else { Vec3::ZERO };
+        let by = self.scale * (place - start);
+        let by = if by.as_vec3().is_finite() { by } else { DVec3::ZERO };
+        pose.translation += (by - origin.as_dvec3()).as_vec3();
         pose
     }
 

@@ -4,7 +4,7 @@ use strandline_base::math;
 use crate::{
     Error,
     body::{BodyFrame, Motion, Pose, RecordedMotion, SkinMotion},
-    scene::{MotionName, MotionSection},
+    scene::{MotionName, MotionSection, origin},
 };
 
 /// Pose of a head at every time: a motion about a pivot, and a turn added to it. A body that moves by itself is carried
@@ -14,6 +14,8 @@ pub struct HeadMotion {
     motion: Motion,
     pivot: Vec3,
     turn: Quat,
+    /// The world's origin \[m\] from which poses are given.
+    origin: Vec3,
     body: Option<SkinMotion>,
     /// Motion from a file, in the place of `motion` where the section asks for it.
     recorded: Option<RecordedMotion>,
@@ -28,7 +30,15 @@ impl HeadMotion {
     pub fn new(section: &MotionSection, pivot: Vec3) -> Result<Self, Error> {
         let turn = math::pitch_yaw_roll(section.rotation);
         let is_recorded = section.name == MotionName::File;
-        Ok(Self { motion: section.motion()?, pivot, turn, body: None, recorded: None, is_recorded })
+        Ok(Self {
+            motion: section.motion()?,
+            pivot,
+            turn,
+            body: None,
+            recorded: None,
+            is_recorded,
+            origin: Vec3::ZERO,
+        })
     }
 
     /// The same motion, which carries a body that moves by itself.
@@ -60,6 +70,7 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded: false,
+            origin: Vec3::ZERO,
         }
     }
 
@@ -82,11 +93,26 @@ impl HeadMotion {
     /// Transform of everything by the motion about the pivot.
     fn carrying(&self, time: f64) -> Pose {
         let pose = match self.recorded.as_ref().filter(|_| self.is_recorded) {
-            Some(recorded) => recorded.pose(time, self.pivot),
-            None => self.motion.pose(time, self.pivot),
+            Some(recorded) => recorded.pose_from(time, self.pivot, self.origin),
+            None => self.motion.pose_from(time, self.pivot, self.origin),
         };
         let rotation = pose.rotation * self.turn;
         Pose { rotation, translation: pose.point(self.pivot) - rotation * self.pivot }
+    }
+
+    /// The same motion in a world whose origin lies at `origin` \[m\].
+    pub(crate) fn seen_from(&self, origin: Vec3) -> Self {
+        Self { origin, ..self.clone() }
+    }
+
+    /// The world's origin from which its poses are given \[m\].
+    pub(crate) fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// An origin \[m\], in whole metres, beside the head at a time \[s\]; the world's where the head is near that.
+    pub(crate) fn origin_at(&self, time: f64) -> Vec3 {
+        origin::beside(self.seen_from(Vec3::ZERO).pose(time).point(self.pivot))
     }
 
     /// Point about which the head turns \[m\], head space.

@@ -11,6 +11,7 @@ mod groom;
 pub(crate) mod head;
 mod keys;
 mod motion;
+pub(crate) mod origin;
 mod surroundings;
 
 use std::path::{Path, PathBuf};

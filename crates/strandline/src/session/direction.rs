@@ -18,7 +18,9 @@ pub(crate) const MOST_STEPS: f64 = 16.0;
 pub(crate) struct Direction {
     pub wind: WindSection,
     motion: MotionSection,
+    /// The motion of the head, seen from the origin of the simulation, and in the world.
     pub head: HeadMotion,
+    pub world_head: HeadMotion,
     /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was taken.
     begun: f64,
     time: f64,
@@ -29,11 +31,12 @@ pub(crate) struct Direction {
 }
 
 impl Direction {
-    /// That of a scene whose head moves so.
+    /// That of a scene whose head moves so, seen from the origin of the simulation.
     pub fn new(scene: &Scene, head: HeadMotion) -> Self {
         let start = scene.film.start;
         let (wind, motion) = (scene.wind.clone(), scene.motion.clone());
-        Self { wind, motion, head, begun: start, time: start, counts: true, hand: None }
+        let world_head = head.seen_from(Vec3::ZERO);
+        Self { wind, motion, head, world_head, begun: start, time: start, counts: true, hand: None }
     }
 
     /// Drive of the next frame.
@@ -68,7 +71,8 @@ impl Direction {
         motion.check_as("motion")?;
         let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
         let head = HeadMotion::new(&motion, self.head.pivot())?;
-        self.head = head.with_body(body).with_recorded(recorded);
+        self.world_head = head.with_body(body).with_recorded(recorded);
+        self.head = self.world_head.seen_from(self.head.origin());
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             (self.begun, self.time, self.counts) = (0.0, 0.0, false);
         }
@@ -81,7 +85,8 @@ impl Default for Direction {
     /// A head and air that rest.
     fn default() -> Self {
         let motion = MotionSection { name: MotionName::Still, ..MotionSection::default() };
-        let head = HeadMotion::still();
-        Self { wind: WindSection::default(), motion, head, begun: 0.0, time: 0.0, counts: true, hand: None }
+        let wind = WindSection::default();
+        let [head, world_head] = [HeadMotion::still(), HeadMotion::still()];
+        Self { wind, motion, head, world_head, begun: 0.0, time: 0.0, counts: true, hand: None }
     }
 }

@@ -60,16 +60,14 @@ impl Task {
                 return timing.run(simulation, frame);
             }
             Self::Live(live) => return live.run(simulation),
-            Self::Cached { body, positions } => {
-                simulation.show_cached(body, |places| places.copy_from_slice(&positions))
-            }
+            Self::Cached { body, positions } => simulation.show_cached(&body, &positions),
             Self::Settings(settings) => simulation.set_settings(&settings),
             Self::Lengths(scales) => simulation.engine.set_length_scale(&scales),
             Self::Reset { body, settle, wind } => {
                 simulation.reset(body).and_then(|()| simulation.settle(settle, wind))
             }
             Self::Grab { index, lane, radius } => {
-                let now = simulation.engine.state()?.positions[index].get(lane);
+                let now = simulation.engine.state()?.positions[index].get(lane) + simulation.origin;
                 simulation.grab(now, radius).map(drop)
             }
             Self::Release => simulation.release(),

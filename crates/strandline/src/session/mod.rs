@@ -6,6 +6,8 @@ mod direction;
 mod draft;
 pub(crate) mod engine;
 mod event;
+#[cfg(test)]
+mod far_tests;
 mod files;
 pub(crate) mod film_timing;
 mod following;
@@ -89,8 +91,13 @@ impl<E: Executor> Session<E> {
         &self.scene
     }
 
-    /// The motion of the head.
+    /// The motion of the head, in the world.
     pub fn head(&self) -> &HeadMotion {
+        &self.direction.world_head
+    }
+
+    /// The motion of the head, seen from the origin of the simulation.
+    pub fn head_from_origin(&self) -> &HeadMotion {
         &self.direction.head
     }
 

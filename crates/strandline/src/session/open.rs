@@ -2,6 +2,7 @@
 
 use std::{collections::VecDeque, sync::Arc};
 
+use glam::Vec3;
 use strandline_base::{Group, par::Pool};
 
 use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
@@ -14,6 +15,7 @@ use crate::{
     scene::FilmSection,
     scene::camera_motion::CameraMotion,
     scene::devices::{Opened, Pair, device_name},
+    scene::origin::about,
     session::painter::Painter,
     session::skin_carrier::SkinCarrier,
     session::worker::Worker,
@@ -90,6 +92,10 @@ impl Session<Inline> {
         let picture = prepared.scene.picture;
         let camera = prepared.camera(picture.width as f32 / picture.height as f32);
         let Prepared { guides, bound, mesh, colliders, head, pose, scene, tags, .. } = prepared;
+        let (origin, colliders) = about(head.origin_at(scene.film.start), colliders);
+        let bound =
+            bound.map(|bound| if origin == Vec3::ZERO { bound } else { bound.among(colliders.clone()) });
+        let head = head.seen_from(origin);
         let pair = devices.open()?;
         let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
         let view = &mut session.view;
@@ -99,6 +105,7 @@ impl Session<Inline> {
         session.set_picture(picture)?;
         let scales = vec![scene.groom.length; session.view.guides.strand_count()];
         let simulation = session.executor.simulation_mut();
+        simulation.origin = origin;
         if scene.groom.length != 1.0 {
             simulation.set_length_scale(&scales)?;
         }
@@ -219,8 +226,6 @@ fn lights(scene: &Scene, view: &View) -> Vec<Light> {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::{Backend, groom::Groom};
 

@@ -141,7 +141,10 @@ impl<E: Executor> Session<E> {
         let View { guides, painter, .. } = view;
         let body = painter.mesh().map(|mesh| (mesh, &shown.body));
         let shape = [guides.strand_count(), guides.points_per_strand()];
-        Ok(ray.hair(shown.positions(), shape, radius, body))
+        let origin = shown.origin;
+        let ray = Ray { origin: ray.origin - origin, ..*ray };
+        let picked = ray.hair(shown.positions(), shape, radius, body);
+        Ok(picked.map(|picked| Picked { point: picked.point + origin, ..picked }))
     }
 
     /// Points of the shown moment \[m\], world space, shape `[strand][point]`. A GPU is waited for.
@@ -165,12 +168,12 @@ impl<E: Executor> Session<E> {
     pub fn points_into(&mut self, points: &mut [Vec3]) -> Result<(), Error> {
         let Self { executor, shown, view, .. } = self;
         executor.with(|simulation| simulation.bring_home(shown))?;
-        let each = view.guides.points_per_strand();
+        let (each, origin) = (view.guides.points_per_strand(), shown.origin);
         assert_eq!(points.len(), view.guides.strand_count() * each, "room for every point");
         let blocks = points.par_chunks_mut(LANES * each).zip(shown.positions().par_chunks(each));
         blocks.for_each(|(strands, block)| {
             for (lane, strand) in strands.chunks_mut(each).enumerate() {
-                strand.iter_mut().zip(block).for_each(|(point, lanes)| *point = lanes.get(lane));
+                strand.iter_mut().zip(block).for_each(|(point, lanes)| *point = lanes.get(lane) + origin);
             }
         });
         Ok(())

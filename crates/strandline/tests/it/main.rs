@@ -6,6 +6,7 @@ mod cache;
 mod corpora;
 mod crossed;
 mod export_time;
+mod far;
 mod live;
 mod moving;
 mod outside;
