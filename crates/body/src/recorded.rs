@@ -8,7 +8,7 @@ use strandline_base::math;
 
 use crate::bvh::{self, JointMotion};
 use crate::gltf::{self, Fault, Rig};
-use crate::parsing::read_file;
+use crate::parsing::{A_NAME, read_file, remedy};
 use crate::{BodyError, Pose};
 
 /// Rigid motion of a joint, as a file has it.
@@ -32,7 +32,7 @@ impl RecordedMotion {
     /// See [`BodyError`]: another format, no joint or clip of that name, with the names that there are.
     pub fn load(path: &Path, joint: &str, clip: Option<&str>, scale: f64) -> Result<Self, BodyError> {
         let refused = |(found, expected)| {
-            let mend = "export the motion again as .bvh or glTF 2.0";
+            let mend = remedy(expected, "export the motion again as .bvh or glTF 2.0");
             BodyError::Mesh { path: path.into(), found, expected, mend }
         };
         let bytes = read_file(path)?;
@@ -50,7 +50,7 @@ impl RecordedMotion {
         let Some(node) = rig.node(joint) else {
             let names: Vec<_> = rig.node_names().take(60).map(|name| format!("`{name}`")).collect();
             let found = format!("no node `{joint}` among {}", names.join(", "));
-            return Err(refused((found, "the name of a node")));
+            return Err(refused((found, A_NAME)));
         };
         Ok(Self { source: Source::Node(Arc::new(rig), node), scale })
     }
@@ -124,7 +124,7 @@ mod tests {
             assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-3, "{face} at {time}");
         }
         let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
-        assert!(absent.contains("no joint `Hips` among `Head`"), "{absent}");
+        assert!(absent.contains("no joint `Hips` among `Head`") && !absent.contains("export"), "{absent}");
     }
 
     #[test]
@@ -135,6 +135,6 @@ mod tests {
         let pose = motion.pose(1.0, Vec3::Y);
         assert!(pose.rotation.is_normalized() && pose.rotation.angle_between(glam::Quat::IDENTITY) > 0.1);
         let absent = RecordedMotion::load(&path, "tail", None, 1.0).unwrap_err().to_string();
-        assert!(absent.contains("no node `tail` among `root`, `hips`"), "{absent}");
+        assert!(absent.contains("no node `tail` among `root`, `hips`") && !absent.contains("export"), "{absent}");
     }
 }

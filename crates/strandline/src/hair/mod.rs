@@ -119,7 +119,7 @@ impl Hair {
     pub fn step(&mut self, seconds: f64, body: impl Into<BodyFrame>) -> Result<Vec<StepReport>, Error> {
         let simulation = self.session.simulation();
         let (start, end): (BodyFrame, BodyFrame) = (simulation.end().clone(), body.into());
-        let end = end.moved(-simulation.origin);
+        let end = self.seen(end, seconds);
         self.run_along(seconds, &|share| start.toward(&end, share))
     }
 
@@ -132,8 +132,23 @@ impl Hair {
         seconds: f64,
         body: impl Fn(f32) -> B,
     ) -> Result<Vec<StepReport>, Error> {
-        let origin = self.session.simulation().origin;
-        self.run_along(seconds, &|share| Into::<BodyFrame>::into(body(share)).moved(-origin))
+        let (head, begin) = (self.session.head_from_origin().clone(), self.time());
+        let seen = |share: f32, body: BodyFrame| {
+            head.beside_solids(body.moved(-head.origin()), begin + seconds * f64::from(share))
+        };
+        self.run_along(seconds, &|share| seen(share, body(share).into()))
+    }
+
+    /// Time of the motion \[s\] at the end of the last step.
+    fn time(&self) -> f64 {
+        self.session.scene().film.start + self.session.simulation().passed
+    }
+
+    /// A body after `seconds` from now, seen from the origin of the simulation, with the solids beside it that have
+    /// keyframes.
+    fn seen(&self, body: BodyFrame, seconds: f64) -> BodyFrame {
+        let head = self.session.head_from_origin();
+        head.beside_solids(body.moved(-head.origin()), self.time() + seconds)
     }
 
     /// Lets time pass under a body that is seen from the origin of the simulation.

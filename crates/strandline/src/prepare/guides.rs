@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{
     Error, Scene,
-    body::{Carrier, Collider, Mesh, Pose, Shape, SkinMotion, Solids},
+    body::{BodyFrame, Carrier, Collider, Mesh, Pose, Shape, SkinMotion, Solids},
     groom::{Groom, Guides, Outside},
     scene::origin::about,
     strands::attributes,
@@ -50,7 +50,7 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
     };
     let (mesh, skin) = (loading.mesh.as_ref(), loading.skin.as_ref());
     let start = start(scene, loading.pivot, &all, mesh, skin, &loading.colliders)?;
-    notes.extend(move_outside(&mut guides, start, &loading.colliders, |_| 0.0));
+    notes.extend(move_outside(&mut guides, &start, &loading.colliders, |_| 0.0));
     loading.start = start;
     (loading.strands, loading.chosen, loading.guides) = (Some(all), chosen, Some(guides));
     Ok(())
@@ -90,11 +90,11 @@ fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<u
 }
 
 /// The head when the hair begins to move.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Default)]
 pub(super) struct Start {
-    /// An origin \[m\] of the world beside the head, and the pose of the head seen from there.
+    /// An origin \[m\] of the world beside the head, and the body seen from there.
     origin: Vec3,
-    head: Pose,
+    body: BodyFrame,
 }
 
 /// The head when the hair begins to move. Hair with a pose of its own rests as it did where its run began.
@@ -110,25 +110,26 @@ fn start(
     let head = head.with_body(skin.cloned());
     let time = if scene.groom.pose.is_some() { 0.0 } else { scene.film.start };
     let (origin, _) = about(head.origin_at(time), colliders.to_vec());
-    Ok(Start { origin, head: head.seen_from(origin).pose(time) })
+    Ok(Start { origin, body: head.seen_from(origin).frame(time) })
 }
 
 /// Moves points that rest inside solids to their surface: inside those of the body, and inside those of the world with
-/// the head as it begins. Returns a note where there were some.
+/// the body as it begins. Returns a note where there were some.
 pub(super) fn move_outside(
     guides: &mut Guides,
-    Start { origin, head }: Start,
+    Start { origin, body }: &Start,
     colliders: &[Collider],
     clearance: impl Fn(&Shape) -> f32,
 ) -> Option<String> {
-    let (_, colliders) = about(origin, colliders.to_vec());
+    let (_, colliders) = about(*origin, colliders.to_vec());
+    let head = body.world_from_head();
     let solids = |is_wanted: fn(&Carrier) -> bool| {
         let wanted = colliders.iter().filter(|solid| is_wanted(&solid.carrier));
         Solids::new(wanted.map(|solid| (solid.clone(), clearance(&solid.shape))))
     };
     let of_body = solids(|carrier| matches!(carrier, Carrier::Piece(_)));
-    let of_world = solids(|carrier| *carrier == Carrier::World);
-    let (at_rest, in_world, back) = (of_body.placed(Pose::IDENTITY), of_world.placed(head), head.inverse());
+    let of_world = solids(|carrier| !matches!(carrier, Carrier::Piece(_)));
+    let (at_rest, in_world, back) = (of_body.placed(Pose::IDENTITY), of_world.placed(body), head.inverse());
     let found = guides.move_outside(|point| {
         let nearest = at_rest.at(point);
         if in_world.is_empty() {

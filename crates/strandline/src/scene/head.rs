@@ -1,10 +1,12 @@
+use std::sync::Arc;
+
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
 use crate::{
     Error,
     body::{BodyFrame, Motion, Pose, RecordedMotion, SkinMotion},
-    scene::{MotionName, MotionSection, origin},
+    scene::{MotionName, MotionSection, origin, solid_motion::SolidMotion},
 };
 
 /// Pose of a head at every time: a motion about a pivot, and a turn added to it. A body that moves by itself is carried
@@ -14,6 +16,8 @@ pub struct HeadMotion {
     motion: Motion,
     pivot: Vec3,
     turn: Quat,
+    /// Motions of solids, the pieces after the head.
+    solids: Arc<[SolidMotion]>,
     /// The world's origin \[m\] from which poses are given.
     origin: Vec3,
     body: Option<SkinMotion>,
@@ -37,6 +41,7 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded,
+            solids: Arc::default(),
             origin: Vec3::ZERO,
         })
     }
@@ -44,6 +49,16 @@ impl HeadMotion {
     /// The same motion, which carries a body that moves by itself.
     pub(crate) fn with_body(self, body: Option<SkinMotion>) -> Self {
         Self { body, ..self }
+    }
+
+    /// The same motion beside solids that move by themselves.
+    pub(crate) fn with_solids(self, solids: impl Into<Arc<[SolidMotion]>>) -> Self {
+        Self { solids: solids.into(), ..self }
+    }
+
+    /// Motions of solids.
+    pub(crate) fn solids(&self) -> &Arc<[SolidMotion]> {
+        &self.solids
     }
 
     /// The same motion, with that of a file for a section that asks for it.
@@ -70,6 +85,7 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded: false,
+            solids: Arc::default(),
             origin: Vec3::ZERO,
         }
     }
@@ -84,10 +100,20 @@ impl HeadMotion {
 
     /// The body at a time \[s\]: the pose of the head, and the skin where it moves by itself.
     pub fn frame(&self, time: f64) -> BodyFrame {
-        match &self.body {
+        let frame = match &self.body {
             Some(body) => body.frame(time).carried_by(&self.carrying(time)),
             None => self.carrying(time).into(),
+        };
+        self.beside_solids(frame, time)
+    }
+
+    /// A body with the solids that move by themselves at a time \[s\], where it has no pieces of its own.
+    pub(crate) fn beside_solids(&self, body: BodyFrame, time: f64) -> BodyFrame {
+        if self.solids.is_empty() || body.piece_count() > 1 {
+            return body;
         }
+        let head = body.world_from_head();
+        body.with_pieces(self.solids.iter().map(|solid| solid.pose(time, &head, self.origin)).collect::<Vec<_>>())
     }
 
     /// Transform of everything by the motion about the pivot.

@@ -71,7 +71,8 @@ impl Direction {
         motion.check_as("motion")?;
         let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
         let head = HeadMotion::new(&motion, self.head.pivot())?;
-        self.world_head = head.with_body(body).with_recorded(recorded);
+        let solids = self.head.solids().clone();
+        self.world_head = head.with_body(body).with_recorded(recorded).with_solids(solids);
         self.head = self.world_head.seen_from(self.head.origin());
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             (self.begun, self.time, self.counts) = (0.0, 0.0, false);

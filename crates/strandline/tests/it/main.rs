@@ -7,6 +7,7 @@ mod corpora;
 mod crossed;
 mod export_time;
 mod far;
+mod keyed_solids;
 mod live;
 mod moving;
 mod outside;
