@@ -107,7 +107,7 @@ choices! {
     pub enum CarrierName as "carrier" {
         /// The head: the shape is given in head space.
         Head = "head",
-        /// Nothing: the shape is given in world space and stays.
+        /// Nothing: the shape is given in world space and stays but for its keyframes.
         World = "world",
     }
     default Head
@@ -131,10 +131,10 @@ settings! {
         radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
         /// Carrier that it moves with.
         carrier: CarrierName = CarrierName::default();
-        shared BodySection { friction: f32 }
         /// Displacements and turns about the middle of the solid, in the order of their times; it rests before the first and
         /// after the last.
         keyframes: Vec<KeyframeSection> = Vec::new(), in [0, 100_000];
+        shared BodySection { friction: f32 }
     }
 }
 
