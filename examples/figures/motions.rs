@@ -1,7 +1,7 @@
 //! Sheets of hair in motion: strands of constraints above, rods below.
 
 use glam::Vec3;
-use strandline::{Camera, Look, Picture, Pose, Scene, Style, scene::MotionName, settings::StrandMethod};
+use strandline::{Look, Pose, Style, scene::MotionName, settings::StrandMethod};
 
 use crate::setup::{FRAME, Figure, Moving, Setup, THREE_QUARTER, bust};
 use crate::strip::{joined, stacked};
@@ -46,34 +46,36 @@ fn row(setup: &Setup, style: Style, drive: Drive, method: StrandMethod) -> Figur
     scene.simulation.strands.method = method;
     let mut moving = setup.settled(&scene, SIZE, SIZE)?;
     let camera = bust(THREE_QUARTER);
-    let mut pictures = Vec::new();
-    for time in TIMES {
-        moved(&mut moving, drive, time)?;
-        pictures.push(picture(&mut moving, &scene, &camera)?);
+    let mut look = Look { follow_strands: scene.look.follow_strands.min(8), ..scene.look.clone() };
+    if setup.quick {
+        // Most of the time of a small picture goes into its shadow maps.
+        look.shadow.map_size = 128;
+    }
+    let (rest, mut pictures) = (setup.lasting(REST), Vec::new());
+    // The first and the last.
+    let every = if setup.quick { TIMES.len() - 1 } else { 1 };
+    for time in TIMES.into_iter().step_by(every) {
+        moved(&mut moving, drive, setup.lasting(time), rest)?;
+        pictures.push(moving.hair.picture(&camera, &look)?);
     }
     Ok(joined(&pictures))
 }
 
-fn picture(moving: &mut Moving, scene: &Scene, camera: &Camera) -> Result<Picture, strandline::Error> {
-    let look = Look { follow_strands: scene.look.follow_strands.min(8), ..scene.look.clone() };
-    moving.hair.picture(camera, &look)
-}
-
-/// Lets hair move on to a time \[s\].
-fn moved(moving: &mut Moving, drive: Drive, time: f64) -> Result<(), Box<dyn std::error::Error>> {
+/// Lets hair move on to a time \[s\]; at `rest` \[s\] the head comes to rest, and the hand lets go.
+fn moved(moving: &mut Moving, drive: Drive, time: f64, rest: f64) -> Result<(), Box<dyn std::error::Error>> {
     match drive {
-        Drive::Head(_) => moving.play_to_and_rest(time, REST)?,
+        Drive::Head(_) => moving.play_to_and_rest(time, rest)?,
         Drive::Wind => {
             moving.hair.wind = if time > 0.0 { Vec3::new(4.0, 0.0, 0.0) } else { Vec3::ZERO };
             moving.play_to(time)?;
         }
-        Drive::Hand => pulled(moving, time)?,
+        Drive::Hand => pulled(moving, time, rest)?,
     }
     Ok(())
 }
 
-/// The hand takes a lock at once, pulls it evenly and lets go when it is there.
-fn pulled(moving: &mut Moving, time: f64) -> Result<(), strandline::Error> {
+/// The hand takes a lock at once, pulls it evenly and lets go when it is there, at `rest` \[s\].
+fn pulled(moving: &mut Moving, time: f64, rest: f64) -> Result<(), strandline::Error> {
     if time == 0.0 {
         let guides = moving.hair.guides();
         let last = guides.points_per_strand() - 1;
@@ -86,7 +88,7 @@ fn pulled(moving: &mut Moving, time: f64) -> Result<(), strandline::Error> {
     }
     while moving.time < time - 0.5 * FRAME {
         if let Some(taken) = moving.held {
-            let share = ((moving.time + FRAME) / REST).min(1.0) as f32;
+            let share = ((moving.time + FRAME) / rest).min(1.0) as f32;
             moving.hair.move_hand(taken + PULL * share);
             if share == 1.0 {
                 moving.hair.release()?;

@@ -17,7 +17,7 @@ pub const FRAME: f64 = 1.0 / 60.0;
 pub struct Setup {
     /// Backend of simulation and pictures.
     pub backend: Backend,
-    /// True for small pictures of few strands.
+    /// True for small pictures of few strands, a coarse body and short motions.
     pub quick: bool,
 }
 
@@ -36,7 +36,7 @@ impl Setup {
         let mut scene = scene.clone();
         (scene.picture.width, scene.picture.height) = self.size(width, height);
         if self.quick {
-            scene.style.strand_count = 50;
+            (scene.style.strand_count, scene.body.spacing) = (50, 0.02);
         }
         let mut hair = Hair::from_prepared(Prepared::new(&scene)?, self.backend)?;
         let head = hair.head().clone();
@@ -49,6 +49,11 @@ impl Setup {
     /// A style that rests on the head, with pictures of a size \[pixel\].
     pub fn resting(&self, style: Style, width: u32, height: u32) -> Result<Hair, strandline::Error> {
         Ok(self.settled(&self.scene(style, MotionName::Still), width, height)?.hair)
+    }
+
+    /// Duration \[s\] of a motion that takes a number of seconds in the figures.
+    pub fn lasting(&self, seconds: f64) -> f64 {
+        if self.quick { 0.1 * seconds } else { seconds }
     }
 
     /// The size \[pixel\] at which a picture is drawn.

@@ -34,7 +34,7 @@ impl Camera {
         Self::around_bust(Vec3::Z)
     }
 
-    /// The built-in bust from between the front and its left side, slightly from above.
+    /// A view of the built-in bust from its front left, slightly from above.
     pub fn three_quarter() -> Self {
         Self::around_bust(Vec3::new(0.62, 0.16, 0.77))
     }
@@ -73,7 +73,7 @@ impl Camera {
         camera
     }
 
-    /// The distance \[m\] from its target at which it sees all of some places, without turning.
+    /// The distance \[m\] from the target at which the camera sees all places \[m\], world space, without turning.
     pub fn distance_to_see(&self, places: &[Vec3], aspect: f32) -> f32 {
         let direction = (self.position - self.target).normalize_or(Vec3::Z);
         let world_from_view = self.view_from_world().inverse();

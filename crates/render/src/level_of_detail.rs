@@ -90,8 +90,8 @@ impl LevelOfDetail {
         self.level_from(distance, distance, follow_strands)
     }
 
-    /// The level for hair whose middle is at a view distance \[m\] from the camera, and whose box at rest comes as
-    /// near as `nearest`.
+    /// The level for hair whose middle is at a view distance \[m\] from the camera. `nearest` \[m\] is the view distance
+    /// of the nearest point of its box at rest.
     pub fn level_from(&self, distance: f32, nearest: f32, follow_strands: u32) -> DetailLevel {
         let share = self.full_distance / distance.max(self.full_distance);
         let nearness = CLOSE * self.full_distance / nearest.max(f32::MIN_POSITIVE);
@@ -176,7 +176,7 @@ impl EveryFew {
 }
 
 impl DetailLevel {
-    /// Everything: whole numbers of segments on each span and of follow strands.
+    /// Full detail: all segments of each span and all follow strands.
     pub fn full(segments_per_span: u32, follow_strands: u32) -> Self {
         Self {
             segments_per_span: segments_per_span as f32,

@@ -78,8 +78,9 @@ impl Clock {
         Ticks { first, count, share: if self.is_at_step() { 1.0 } else { share.clamp(0.0, 1.0) as f32 } }
     }
 
-    /// A clock at a time \[s\] of a run that made so many steps: with [`Clock::reach`] where the last of them reaches
-    /// beyond that time, else with [`Clock::advance`]. Returns the place of the moment between the last two states.
+    /// Sets a clock to a time \[s\] of a run that made a number of steps: with [`Clock::reach`] if the last step ends
+    /// beyond that time, else with [`Clock::advance`]. Returns the clock and the share of the way between the last two
+    /// states, 0 to 1.
     pub fn resumed(time_step: f32, time: f64, steps: u64) -> (Self, f32) {
         let mut clock = Self::new(time_step);
         let reached = clock.reach(time);

@@ -16,7 +16,7 @@ use crate::{CpuRunner, Drive, Model, Settings, SimError, State, StepReport};
 pub(crate) struct Journal {
     past: Vec<Span>,
     last: Span,
-    /// A state on its way from the device, and the number of entries of `last` before it.
+    /// A pending read of the device's state, and the number of entries of `last` before it.
     coming: Option<(ComingState, usize)>,
 }
 
@@ -178,7 +178,7 @@ impl Journal {
         self.last.entries.push(Entry::Lengths(lengths.scale));
     }
 
-    /// Begins anew with a state that was changed or replaced.
+    /// Starts a new span after the last checkpoint was changed or replaced.
     pub fn restart(&mut self) {
         (self.last.step, self.last.settings) = (self.last.end(), self.last.settings_at_end().clone());
         self.last.entries.clear();
@@ -186,25 +186,26 @@ impl Journal {
         self.coming = None;
     }
 
-    /// Records that a read of the device's present state has begun.
+    /// Records a pending read of the device's current state.
     pub fn send(&mut self, coming: ComingState) {
         self.coming = Some((coming, self.last.entries.len()));
     }
 
-    /// Forgets the state that is on its way.
+    /// Drops the pending read.
     pub fn recall(&mut self) {
         self.coming = None;
     }
 
-    /// True if the next read of the state is due: none is on its way, and `checkpoint_every` steps were made since the last
+    /// True if the next read of the state is due: none is pending, and `checkpoint_every` steps were made since the last
     /// checkpoint.
     pub fn is_due(&self) -> bool {
         let every = self.last.settings_at_end().checkpoint_every;
         self.coming.is_none() && self.last.end() - self.last.step >= u64::from(every)
     }
 
-    /// Takes the state that is on its way as a checkpoint if it has arrived and the steps before it, which will not be
-    /// computed again, have their reports: those of `reported` steps are there. A failure shows again in the next run.
+    /// Makes the pending state a checkpoint once it has arrived and all steps before it have reports; `reported` counts
+    /// the steps with a report. Steps before a checkpoint are not computed again. A read that fails is dropped: the next
+    /// run fails with the same error.
     pub fn receive(&mut self, reported: u64, model: &Model) {
         let Some((coming, count)) = self.coming.take() else { return };
         if self.last.step + steps(&self.last.entries[..count]) > reported {
@@ -218,7 +219,7 @@ impl Journal {
         }
     }
 
-    /// Waits for the state of the device as it is now and takes it as a checkpoint.
+    /// Waits for the current state of the device and makes it a checkpoint.
     ///
     /// # Errors
     /// The device was lost; nothing changes.
@@ -226,7 +227,7 @@ impl Journal {
         self.renew(coming, self.last.entries.len(), model)
     }
 
-    /// Takes the state after `count` entries as a checkpoint, in place of the one before the last.
+    /// Makes the state after `count` entries the last checkpoint. The one before the last is dropped.
     fn renew(&mut self, coming: ComingState, count: usize, model: &Model) -> Result<(), SimError> {
         let mut spare = self.past.pop().unwrap_or_else(|| self.last.begin());
         if let Err(failure) = coming.write(&mut spare.state) {
@@ -243,8 +244,8 @@ impl Journal {
         Ok(())
     }
 
-    /// Computes what happened since the last checkpoint again on the CPU, which continues from there. Returns the reports
-    /// of these steps too.
+    /// Recomputes on the CPU all steps since the last checkpoint. Returns the runner that continues from there, and the
+    /// reports of these steps.
     pub fn fall_back(&mut self, model: Model) -> (CpuRunner, Vec<StepReport>) {
         let (runner, state, reports) = self.last.replay(model, u64::MAX);
         let next = self.last.next(state, Vec::new());
@@ -254,8 +255,8 @@ impl Journal {
         (runner, reports)
     }
 
-    /// The state after a step, computed again on the CPU where it is no checkpoint; the last checkpoint where the step
-    /// lies too far back.
+    /// The state after a step, recomputed on the CPU unless it is a checkpoint. For a step before the oldest checkpoint,
+    /// the last checkpoint.
     pub fn state_after(&self, step: u64, model: &Model) -> Cow<'_, State> {
         let spans = || self.past.iter().rev().chain([&self.last]);
         if let Some(span) = spans().find(|span| span.step == step) {

@@ -12,7 +12,7 @@ use crate::{Drive, Model, Settings, SimError, State, StepReport};
 #[derive(Debug)]
 pub enum GpuRunner {}
 
-/// A state on its way to the host.
+/// A pending copy of a state to the host.
 #[derive(Debug)]
 pub enum ComingState {}
 

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::fibre::FibreModel;
 use crate::frame::samples::Samples;
-use crate::frame::{Stage, bounds, middle};
+use crate::frame::{Stage, bounds};
 use crate::scatter::source::OwnColors;
 use crate::shadow::Shadows;
 use crate::strands::{Strands, roots::RootTurns, scalp::root_densities};
@@ -107,9 +107,9 @@ impl Frame<'_> {
         }
     }
 
-    /// Middle of the hair at rest \[m\], world space.
+    /// Middle of the hair \[m\], world space.
     fn middle(&self) -> Vec3 {
-        self.input.body.world_from_head().point(middle(self.scratch.bounds))
+        self.input.middle(self.scratch.bounds)
     }
 
     fn opacity_depth(&mut self) {

@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use strandline_body::{Aabb, BodyFrame};
 use strandline_groom::{Guides, Vec3Lanes};
 
@@ -47,10 +47,23 @@ impl FrameInput<'_> {
         Ok(self.body.check(None, vertices)?)
     }
 
-    /// Detail of guides that lie in a box at rest \[m\], head space, in a picture of a number of rows.
+    /// Middle of the hair \[m\], world space, for guides that lie in a box at rest, head space: the mean of the places to
+    /// which the root frames carry the box's middle, or the head's place without root frames.
+    pub(crate) fn middle(&self, bounds: Aabb) -> Vec3 {
+        let middle = middle(bounds);
+        let Some(roots) = self.body.roots().filter(|roots| !roots.is_empty()) else {
+            return self.body.world_from_head().point(middle);
+        };
+        let sum = roots.iter().fold(DVec3::ZERO, |sum, root| sum + root.point(middle).as_dvec3());
+        (sum / roots.len() as f64).as_vec3()
+    }
+
+    /// Detail of guides that lie in a box at rest \[m\], head space, in a picture of a number of rows. Root frames move
+    /// the box by the way of its middle.
     pub(crate) fn level(&self, bounds: Aabb, rows: u32, guides: &Guides) -> DetailLevel {
-        let (detail, eye) =
-            (self.level_of_detail, self.body.world_from_head().inverse().point(self.camera.position));
+        let (detail, head) = (self.level_of_detail, self.body.world_from_head());
+        let moved = self.middle(bounds) - head.point(middle(bounds));
+        let eye = head.inverse().point(self.camera.position - moved);
         let outside = (bounds.min - eye).max(eye - bounds.max).max(Vec3::ZERO).length();
         let distances = [eye.distance(middle(bounds)), outside];
         let scale = detail.view_scale(self.camera, rows);

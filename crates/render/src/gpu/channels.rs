@@ -15,7 +15,6 @@ use crate::frame::samples::Samples;
 use crate::frame::{
     Stage,
     channels::{BLACK, Known},
-    middle,
 };
 use crate::{FrameInput, Layers, PictureSettings, RenderError};
 
@@ -42,7 +41,7 @@ impl GpuRenderer {
         let bodies = body_depths(&found, scale);
         let strands = nearest_strands(&self.strands()?, input.camera, &found, scale);
         let mut covered = self.with_numbers(input, COVERAGE_AND_DEPTH, &mut found)?;
-        let middle = input.body.world_from_head().point(middle(self.bounds));
+        let middle = input.middle(self.bounds);
         let depth = -input.camera.view_from_world().transform_point3(middle).z;
         covered.iter_mut().for_each(|hair| hair.y += depth * hair.x);
         let directions = self.with_numbers(input, TANGENT, &mut found)?;

@@ -18,7 +18,7 @@ use super::stages::{Kernels, Stages};
 use super::strands::bound_solids::DeviceSolids;
 use super::strands::{device_points::DevicePoints, points::GuidePoints, tessellate};
 use super::{MAX_LIGHTS, MAX_SHADOWS, draw};
-use crate::frame::{bounds, middle};
+use crate::frame::bounds;
 use crate::lights::at_samples;
 use crate::scatter::source::{OwnColors, Source};
 use crate::{FrameInput, FrameReport, Light, Picture, PictureSettings, RenderError, Shadow};
@@ -298,7 +298,7 @@ impl GpuRenderer {
         settings: &'a PictureSettings,
         share: f32,
     ) -> Scene<'a> {
-        let middle = input.body.world_from_head().point(middle(self.bounds));
+        let middle = input.middle(self.bounds);
         Scene {
             input,
             settings,

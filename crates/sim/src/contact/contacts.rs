@@ -143,7 +143,7 @@ impl<'a> Solids<'a> {
         self.groups.iter().enumerate().filter_map(|(index, group)| Some((index, group.skin?)))
     }
 
-    /// Solid near the points of one index; `None` if no free lane is near one.
+    /// The solid nearest to the points of one index; `None` if no free lane is near a solid.
     pub fn touch(&self, planes: &mut [Plane], point: usize, query: Query) -> Option<Touch> {
         let Query { position, start, margin, free, care, part } = query;
         let mut touch: Option<Touch> = None;

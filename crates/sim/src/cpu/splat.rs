@@ -145,7 +145,7 @@ struct Layers<'a> {
 }
 
 impl Layers<'_> {
-    /// Sums what the points bring in so many tasks, as far as there are layers.
+    /// Sums momentum and mass of the points in a number of tasks, at most one for each layer.
     fn sum(self, tasks: usize) {
         let layer = self.strides[2];
         let middle = self.carried.get(self.carried.len() * (tasks / 2) / tasks.max(1));

@@ -37,7 +37,7 @@ impl GpuRunner {
         self.begin_read()?.write(state)
     }
 
-    /// Sends the state as it is now on its way to the host: see [`ComingState`].
+    /// Begins to copy the current state to the host. [`ComingState`] receives it.
     ///
     /// # Errors
     /// The device was lost.
@@ -87,7 +87,7 @@ impl GpuRunner {
     }
 }
 
-/// A state on its way to the host.
+/// A pending copy of a state to the host.
 #[derive(Debug)]
 pub struct ComingState {
     transfer: Transfer,

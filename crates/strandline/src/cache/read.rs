@@ -353,7 +353,7 @@ impl<R: Read + Seek> Frames<R> {
     }
 }
 
-/// Most numbers that a part of a state has for a point: the planes of so many carriers as a body may have.
+/// Most numbers that a part of a state has for a point: the planes of all carriers that a body may have.
 const NUMBERS_PER_POINT: u64 = 8 * 64;
 
 /// Lists of the bodies of all frames, with the numbers of one frame.

@@ -141,8 +141,8 @@ impl Film {
         Ok(self.into_files(frames, video_failed))
     }
 
-    /// Closes a film that was stopped early: no contact sheet, and a moving picture of the frames so far unless it would
-    /// replace one of an earlier film.
+    /// Closes a film that was stopped early. It has no contact sheet. Its moving picture shows the frames so far, and is
+    /// left out if it would replace that of an earlier film.
     ///
     /// # Errors
     /// As [`Film::finish`].

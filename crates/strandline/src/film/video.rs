@@ -41,7 +41,7 @@ pub(super) struct Video {
 }
 
 impl Video {
-    /// Starts ffmpeg for pictures of this size; the inner error is that it cannot be started.
+    /// Starts ffmpeg for pictures of this size. The inner error: ffmpeg cannot be started.
     pub fn begin(
         program: &Path,
         picture: &Picture,

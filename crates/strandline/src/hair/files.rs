@@ -14,10 +14,9 @@ impl Hair {
         Ok(out)
     }
 
-    /// Adds the hair as it is now as the next frame, at the time that has passed, or after [`Hair::play`] at the time of its
-    /// frame. Where the runs of [`Hair::step`] are not
-    /// whole steps, hair and body are those of one step earlier, as pictures show them. The file gets the reports of the
-    /// steps since the last frame of any file.
+    /// Adds the current hair as the next frame, at the time that has passed, or after [`Hair::play`] at the time of its
+    /// frame. If [`Hair::step`] stopped between two steps, hair and body are one step older, as in pictures. The file
+    /// receives the reports of the steps since the last frame of any file.
     ///
     /// # Errors
     /// The file has all frames of the film, no time has passed since the last one, or the file cannot be written; the GPU

@@ -6,9 +6,9 @@ use super::Hair;
 use crate::{Error, body::BodyFrame, session::film_timing::FilmTiming, sim::StepReport};
 
 impl Hair {
-    /// Moves to the end of a frame of the scene's film, with the motion and the wind of the scene: frames in order, from
-    /// 0, are those of [`Player`](crate::Player) to the bit. Before the first one hair settles as the scene has it.
-    /// Returns the reports as [`Hair::step`] does.
+    /// Advances to the end of a frame of the scene's film, with the motion and the wind of the scene. Frame 0 begins with
+    /// the settling time of the scene. Frames in order, from 0, equal those of [`Player`](crate::Player) to the bit.
+    /// Returns reports as [`Hair::step`] does.
     ///
     /// # Errors
     /// As [`Hair::step`].
@@ -20,10 +20,10 @@ impl Hair {
         Ok(reports)
     }
 
-    /// Changes the number of frames of the scene's film, which is the most that a file takes.
+    /// Changes the number of frames of the scene's film, the most that a file may hold.
     ///
     /// # Errors
-    /// A number outside its range; it then stays.
+    /// A number outside its range; the old one stays.
     pub fn set_frames(&mut self, frames: u32) -> Result<(), Error> {
         self.session.set_frames(frames)
     }

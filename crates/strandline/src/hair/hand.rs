@@ -25,7 +25,7 @@ impl Hair {
         Ok(self.session.pick(ray, radius)?.map(|picked| picked.point))
     }
 
-    /// Moves the hand to a place \[m\], world space, evenly over the next [`Hair::step`].
+    /// Moves the hand to a place \[m\], world space, at constant velocity during the next [`Hair::step`].
     pub fn move_hand(&mut self, hand: Vec3) {
         self.session.simulation_mut().move_hand(hand);
     }

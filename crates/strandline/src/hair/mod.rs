@@ -274,7 +274,7 @@ impl Hair {
         self.session.change(Change::LevelOfDetail(level))
     }
 
-    /// Draws the hair as it is now.
+    /// Draws the current state.
     ///
     /// # Errors
     /// A setting outside its range; the GPU failed and [`Hair::set_fall_back`] was not asked for.
@@ -282,7 +282,7 @@ impl Hair {
         Ok(self.picture_with_report(camera, look)?.0)
     }
 
-    /// Draws the hair as it is now, and reports the work of the picture.
+    /// Draws the current state and reports the work of the picture.
     ///
     /// # Errors
     /// As [`Hair::picture`].

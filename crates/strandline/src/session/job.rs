@@ -37,7 +37,7 @@ pub(crate) enum Task {
 
 /// A stretch of time that a person directs.
 pub(crate) struct Live {
-    /// When it begins \[s\], in the time of motion and wind, and how long it is; no more than so many steps.
+    /// Begin \[s\] in the time of motion and wind, duration \[s\], and the most steps.
     pub begin: f64,
     pub seconds: f64,
     pub most_steps: f64,

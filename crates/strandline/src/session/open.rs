@@ -177,7 +177,7 @@ impl Session<Inline> {
         Ok(())
     }
 
-    /// Takes the hair as it is now for the next picture.
+    /// Takes the current hair for the next picture.
     ///
     /// # Errors
     /// The GPU failed, and falling back to the CPU is not allowed.

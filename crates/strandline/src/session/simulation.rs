@@ -154,7 +154,7 @@ impl Simulation {
         Ok(Snapshot { frame, time: self.clock.time(), state, bodies, origin })
     }
 
-    /// Goes back to where a run stood after so many steps: what follows is what followed there.
+    /// Restores the state of a run after a number of steps. The run continues with the same bits.
     pub fn restore(&mut self, from: &Snapshot, steps: u64) -> Result<(), SimError> {
         self.engine.restore(&from.state)?;
         let [before, now, end] = from.bodies.clone().map(|body| self.skin.recognized(body));

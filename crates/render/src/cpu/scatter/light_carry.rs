@@ -18,7 +18,7 @@ const BLOCK: usize = 64;
 /// No slot.
 const NONE: u32 = u32::MAX;
 
-/// Light of so many slots, shape `[direction][slot]`.
+/// Light of [`BLOCK`] slots, shape `[direction][slot]`.
 type Block = [[Vec4; BLOCK]; DIRECTIONS];
 
 /// Light carried through cells. Those that hold something have a slot.

@@ -43,7 +43,7 @@ struct Ray {
 }
 
 impl Ray {
-    /// One of the rays of a place, which is one of so many.
+    /// A ray of a place, given as the place's number and the number of places.
     #[inline]
     fn new(ray: usize, [place, count]: [usize; 2]) -> Self {
         let part = |number: f32| number - number.floor();
@@ -109,8 +109,8 @@ impl LightView {
 }
 
 impl ShadowMap {
-    /// Share of a place of a light that hair and body let through to a point \[m\] of skin with a unit normal, world
-    /// space: it is the place of this number among so many.
+    /// Share of a light's place that hair and body let through to a point \[m\] of skin with a unit normal, world space.
+    /// `places` are the place's number and the number of places.
     pub(crate) fn on_skin(&self, point: Vec3, normal: Vec3, places: [usize; 2]) -> f32 {
         if self.view.part == [Vec2::ZERO; 2] {
             return self.transmittance(point);

@@ -70,7 +70,7 @@ pub(crate) const MOST_CELLS: u32 = 39;
 pub const WHITE: f32 = 0.008;
 
 impl Chiang {
-    /// Reflectances at root and tip of a mass of hair with so many times the melanin.
+    /// Reflectances of a mass of hair at root and tip, for a multiple of the melanin.
     pub fn reflectances(&self, multiple: f32) -> [Vec3; 2] {
         let melanin = Self { pigment: Pigment::Melanin, ..*self };
         let sigma = melanin.absorption(Vec3::ONE);

@@ -119,7 +119,7 @@ impl Met {
 }
 
 impl Table {
-    /// The tables of a fibre; absorption per fibre radius at the root.
+    /// Computes the tables of a fibre. `absorption` is that at the root, per fibre radius.
     pub fn new(lobes: &Lobes, absorption: [f64; 3]) -> Self {
         let mut entries = Vec::with_capacity(ENTRIES);
         // Wide lobes depend on little, and need no evening out.

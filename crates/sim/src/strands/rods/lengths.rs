@@ -14,7 +14,7 @@ pub struct Lengths<R> {
 }
 
 impl<R: Real> Lengths<R> {
-    /// For strands of so many points.
+    /// Room for strands of a number of points.
     pub fn new(points: usize) -> Self {
         Self {
             tangents: vec![Vector::zero(); points],

@@ -4,7 +4,7 @@ use super::hair_kind::HairKind;
 use super::settings::RodSettings;
 
 impl RodSettings {
-    /// Takes over the material of a kind of hair; profile, rest shape and solver settings stay.
+    /// Sets the material of a kind of hair; profile, rest shape and solver settings stay.
     pub fn set_hair(&mut self, hair: HairKind) {
         let medium = Self { hair, ..Self::default() };
         let of = match hair {

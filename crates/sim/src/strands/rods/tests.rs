@@ -149,7 +149,7 @@ fn section(gamma: f64, length: f64) -> Section {
     }
 }
 
-/// A straight rod of so many free segments after the held one.
+/// A straight rod of a held segment and a number of free ones.
 fn straight(direction: Point, length: f64, count: usize) -> Vec<Point> {
     (0..count + 2).map(|k| direction * ((k as f64 - 1.0) * length / count as f64)).collect()
 }
