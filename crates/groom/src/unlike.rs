@@ -82,7 +82,10 @@ fn unlike(groom: &Groom) -> Vec<Option<Unlike>> {
             return Some(Unlike::Longer);
         }
         let mean = beside.iter().map(|(_, other)| way(*other)).sum::<Vec3>() / BESIDE as f32;
-        let is_against = mean.length() > ONE_WAY && way(strand).dot(mean.normalize_or_zero()) < AGAINST;
+        let own = way(strand);
+        let is_against = mean.length() > ONE_WAY
+            && own.dot(mean.normalize_or_zero()) < AGAINST
+            && beside.iter().all(|(_, other)| own.dot(way(*other)) < 0.0);
         is_against.then_some(Unlike::Against)
     };
     (0..groom.strand_count()).into_par_iter().map(kind).collect()
