@@ -135,6 +135,9 @@ mod tests {
         let pose = motion.pose(1.0, Vec3::Y);
         assert!(pose.rotation.is_normalized() && pose.rotation.angle_between(glam::Quat::IDENTITY) > 0.1);
         let absent = RecordedMotion::load(&path, "tail", None, 1.0).unwrap_err().to_string();
-        assert!(absent.contains("no node `tail` among `root`, `hips`") && !absent.contains("export"), "{absent}");
+        assert!(
+            absent.contains("no node `tail` among `root`, `hips`") && !absent.contains("export"),
+            "{absent}"
+        );
     }
 }

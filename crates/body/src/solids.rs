@@ -78,7 +78,9 @@ impl PlacedSolids<'_> {
             if distance - away < best.0 { (distance - away, gradient, solid.carrier) } else { best }
         });
         let turned = match carrier {
-            Carrier::Piece(piece) | Carrier::Moved(piece) => self.pieces[usize::from(piece)][0].direction(gradient),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                self.pieces[usize::from(piece)][0].direction(gradient)
+            }
             Carrier::World => gradient,
         };
         (distance, turned)

@@ -88,7 +88,9 @@ impl<'a> Obstacles<'a> {
     fn local(&self, collider: &Collider, point: Vec3) -> Vec3 {
         match collider.carrier {
             Carrier::World => point,
-            Carrier::Piece(piece) | Carrier::Moved(piece) => self.pieces[usize::from(piece)].piece_from_world.point(point),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                self.pieces[usize::from(piece)].piece_from_world.point(point)
+            }
         }
     }
 
@@ -103,7 +105,9 @@ impl<'a> Obstacles<'a> {
             };
             let gradient = match collider.carrier {
                 Carrier::World => gradient,
-                Carrier::Piece(piece) | Carrier::Moved(piece) => self.pieces[usize::from(piece)].end.direction(gradient),
+                Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                    self.pieces[usize::from(piece)].end.direction(gradient)
+                }
             };
             (distance, gradient, index)
         };

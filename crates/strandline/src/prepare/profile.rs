@@ -79,9 +79,8 @@ impl Profile {
     /// Mean difference of the directions that are most alike from those of the built-in head.
     pub fn unlike(&self) -> f32 {
         let pairs = self.reach.iter().flatten().zip(PERSON.iter().flatten());
-        let mut apart: Vec<f32> = pairs
-            .map(|(own, person)| own.map_or(NOTHING, |own| (own - person).abs().min(MOST)))
-            .collect();
+        let mut apart: Vec<f32> =
+            pairs.map(|(own, person)| own.map_or(NOTHING, |own| (own - person).abs().min(MOST))).collect();
         apart.sort_by(f32::total_cmp);
         let count = (ALIKE * apart.len() as f32) as usize;
         apart[..count].iter().sum::<f32>() / count.max(1) as f32

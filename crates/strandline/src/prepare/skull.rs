@@ -39,8 +39,11 @@ pub(super) struct Skull {
 
 impl Skull {
     /// That of the built-in head, which takes a fifth of a second to make.
-    pub const BUILT_IN: Self =
-        Self { top: 0.10466226, size: Vec2::new(0.15351063, 0.19609678), middle: Vec2::new(0.0, 0.0009142235) };
+    pub const BUILT_IN: Self = Self {
+        top: 0.10466226,
+        size: Vec2::new(0.15351063, 0.19609678),
+        middle: Vec2::new(0.0, 0.0009142235),
+    };
 
     /// The middle of the head \[m\].
     pub fn center(&self) -> Vec3 {

@@ -113,7 +113,9 @@ impl HeadMotion {
             return body;
         }
         let head = body.world_from_head();
-        body.with_pieces(self.solids.iter().map(|solid| solid.pose(time, &head, self.origin)).collect::<Vec<_>>())
+        body.with_pieces(
+            self.solids.iter().map(|solid| solid.pose(time, &head, self.origin)).collect::<Vec<_>>(),
+        )
     }
 
     /// Transform of everything by the motion about the pivot.

@@ -18,9 +18,9 @@ pub(crate) const MOST_STEPS: f64 = 16.0;
 pub(crate) struct Direction {
     pub wind: WindSection,
     motion: MotionSection,
-    /// The motion of the head, seen from the origin of the simulation, and in the world.
+    /// The motion of the head, in the world and seen from the origin of the simulation.
     pub head: HeadMotion,
-    pub world_head: HeadMotion,
+    pub head_from_origin: HeadMotion,
     /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was taken.
     begun: f64,
     time: f64,
@@ -32,17 +32,17 @@ pub(crate) struct Direction {
 
 impl Direction {
     /// That of a scene whose head moves so, seen from the origin of the simulation.
-    pub fn new(scene: &Scene, head: HeadMotion) -> Self {
+    pub fn new(scene: &Scene, head_from_origin: HeadMotion) -> Self {
         let start = scene.film.start;
         let (wind, motion) = (scene.wind.clone(), scene.motion.clone());
-        let world_head = head.seen_from(Vec3::ZERO);
-        Self { wind, motion, head, world_head, begun: start, time: start, counts: true, hand: None }
+        let head = head_from_origin.seen_from(Vec3::ZERO);
+        Self { wind, motion, head, head_from_origin, begun: start, time: start, counts: true, hand: None }
     }
 
     /// Drive of the next frame.
     pub fn next(&mut self) -> Live {
         self.counts = true;
-        let (head, wind) = (self.head.clone(), self.wind.clone());
+        let (head, wind) = (self.head_from_origin.clone(), self.wind.clone());
         Live { begin: self.time, seconds: FRAME, most_steps: MOST_STEPS, head, wind, hand: self.hand }
     }
 
@@ -72,8 +72,8 @@ impl Direction {
         let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
         let head = HeadMotion::new(&motion, self.head.pivot())?;
         let solids = self.head.solids().clone();
-        self.world_head = head.with_body(body).with_recorded(recorded).with_solids(solids);
-        self.head = self.world_head.seen_from(self.head.origin());
+        self.head = head.with_body(body).with_recorded(recorded).with_solids(solids);
+        self.head_from_origin = self.head.seen_from(self.head_from_origin.origin());
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             (self.begun, self.time, self.counts) = (0.0, 0.0, false);
         }
@@ -87,7 +87,7 @@ impl Default for Direction {
     fn default() -> Self {
         let motion = MotionSection { name: MotionName::Still, ..MotionSection::default() };
         let wind = WindSection::default();
-        let [head, world_head] = [HeadMotion::still(), HeadMotion::still()];
-        Self { wind, motion, head, world_head, begun: 0.0, time: 0.0, counts: true, hand: None }
+        let [head, head_from_origin] = [HeadMotion::still(), HeadMotion::still()];
+        Self { wind, motion, head, head_from_origin, begun: 0.0, time: 0.0, counts: true, hand: None }
     }
 }

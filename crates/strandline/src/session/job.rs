@@ -22,7 +22,7 @@ pub(crate) enum Task {
     /// A frame of a cache: guide points \[m\], world space, shape `[block][point]` of lanes.
     Cached { body: BodyFrame, positions: Vec<Vec3Lanes> },
     /// A stretch of time that a person directs.
-    Live(Live),
+    Live(Box<Live>),
     /// Other settings.
     Settings(Box<Settings>),
     /// Another length of each strand, over that of the groom.

@@ -93,12 +93,12 @@ impl<E: Executor> Session<E> {
 
     /// The motion of the head, in the world.
     pub fn head(&self) -> &HeadMotion {
-        &self.direction.world_head
+        &self.direction.head
     }
 
     /// The motion of the head, seen from the origin of the simulation.
     pub fn head_from_origin(&self) -> &HeadMotion {
-        &self.direction.head
+        &self.direction.head_from_origin
     }
 
     /// The renderer, with the view, the look and the lights of its pictures.
@@ -161,7 +161,7 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// As [`Session::start`].
     pub fn start_frame(&mut self, commands: u64) -> Result<(), Error> {
-        let task = Task::Live(self.direction.next());
+        let task = Task::Live(Box::new(self.direction.next()));
         self.start(task, false, commands)
     }
 
@@ -275,7 +275,8 @@ impl<E: Executor> Session<E> {
             }
             Change::Reset => {
                 self.direction.reset();
-                let (body, settle) = (self.direction.head.frame(0.0), f64::from(self.scene.film.settle));
+                let body = self.direction.head_from_origin.frame(0.0);
+                let settle = f64::from(self.scene.film.settle);
                 let wind = self.direction.wind.at(0.0);
                 self.follow_camera();
                 self.start(Task::Reset { body, settle, wind }, false, 0)?;

@@ -25,7 +25,8 @@ fn scene(carrier: CarrierName, keyed: bool) -> Scene {
     let own = if carrier == CarrierName::World { ASIDE } else { Vec3::ZERO };
     let key = |time: f64, translation: Vec3| KeyframeSection { time, translation, ..Default::default() };
     let keyframes = if keyed { vec![key(0.0, Vec3::ZERO), key(0.5, WAY[1] - WAY[0])] } else { Vec::new() };
-    let ball = SphereSection { center: own + WAY[0], radius: RADIUS, carrier, keyframes, ..Default::default() };
+    let ball =
+        SphereSection { center: own + WAY[0], radius: RADIUS, carrier, keyframes, ..Default::default() };
     scene.colliders = vec![ColliderSection::Sphere(ball)];
     (scene.film.settle, scene.film.frames) = (0.0, 30);
     scene
