@@ -158,17 +158,23 @@ impl Hair {
         self.act(py, |playing| Ok(playing.scene.to_toml()))
     }
 
-    /// Draws the moment: an array, shape (row, column, 3), or 4 with opacity.
+    /// Draws the moment: an array, shape (row, column, 3), or 4 with opacity; and the channels by name, shape (row, column),
+    /// where `picture.layers` keeps them.
     #[pyo3(signature = (camera = None))]
-    fn picture<'py>(&self, py: Python<'py>, camera: Option<CameraParts>) -> PyResult<Bound<'py, PyAny>> {
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        camera: Option<CameraParts>,
+    ) -> PyResult<(Bound<'py, PyAny>, Option<Bound<'py, PyDict>>)> {
         let camera = camera.map(pictures::camera);
-        let picture = self.act(py, |playing| {
+        let (picture, report) = self.act(py, |playing| {
             playing.camera = camera.or(playing.camera);
             let camera = playing.camera.unwrap_or(*playing.hair.camera());
             let look = playing.scene.look.clone();
-            playing.hair.picture(&camera, &look)
+            playing.hair.picture_with_report(&camera, &look)
         })?;
-        pictures::array(py, picture)
+        let channels = report.layers.map(|layers| pictures::channels(py, &layers)).transpose()?;
+        Ok((pictures::array(py, picture)?, channels))
     }
 
     /// The camera of the last picture; before the first that of the scene.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
-use strandline::{Camera, Error, Picture, scene::View};
+use pyo3::types::{PyBytes, PyDict};
+use strandline::{Camera, Error, Picture, low_level::render::Layers, scene::View};
 
 use crate::{arrays, errors, scenes};
 
@@ -33,6 +33,16 @@ pub fn array<'py>(py: Python<'py>, picture: Picture) -> PyResult<Bound<'py, PyAn
         Some(_) => (picture.interleaved(), 4),
     };
     Ok(PyArray1::from_vec(py, pixels).reshape([size[0], size[1], channels])?.into_any())
+}
+
+/// Channels of a picture by name, shape (row, column).
+pub fn channels<'py>(py: Python<'py>, layers: &Layers) -> PyResult<Bound<'py, PyDict>> {
+    let shape = [layers.height as usize, layers.width as usize];
+    let of = PyDict::new(py);
+    for (name, values) in &layers.channels {
+        of.set_item(name, PyArray1::from_slice(py, values).reshape(shape)?)?;
+    }
+    Ok(of)
 }
 
 /// A picture of an array.

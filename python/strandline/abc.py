@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import os
+import subprocess
+import sys
+import tempfile
+import threading
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +16,7 @@ from numpy.typing import NDArray
 from .body import Body
 from .errors import Error, missing
 from .groom import Groom
-from .usd import cache_attributes, placed, point_widths, target
+from .usd import cache_attributes, left_out, moments, nearest_guides, placed, point_widths, target
 
 if TYPE_CHECKING:
     from .cache import Cache
@@ -52,27 +57,49 @@ def _whole(numbers: Any) -> Any:
 
 
 class _File:
-    """An archive with one object of curves that is being written."""
+    """An archive of curves that is being written."""
 
     def __init__(self, path: str, frames_per_second: float, for_: str) -> None:
         package = required()
         target(for_)
-        self._for, self._package = for_, package
+        self.for_ = for_
         try:
             self._archive = package.Abc.OArchive(path)
         except Exception:
             raise Error(f"cannot write the archive: no such folder, or no permission: {path}", "file") from None
         sampling = package.AbcCoreAbstract.TimeSampling(1.0 / frames_per_second, 0.0)
         self._index = self._archive.addTimeSampling(sampling)
-        top = self._archive.getTop()
-        self._curves = package.AbcGeom.OCurves(top, "hair", package.Abc.Argument(self._index))
-        self._schema = self._curves.getSchema()
+        self._strands: list[_Strands] = []
+
+    def strands(self, name: str, moves: bool = True) -> _Strands:
+        """New curves by a name."""
+        package = required()
+        index = self._index if moves else 0
+        curves = package.AbcGeom.OCurves(self._archive.getTop(), name, package.Abc.Argument(index))
+        self._strands.append(_Strands(curves, self.for_))
+        return self._strands[-1]
+
+    def close(self) -> None:
+        """Ends the file, which is complete when nothing refers to it."""
+        while self._strands:
+            self._strands.pop().forget()
+        del self._archive
+
+
+class _Strands:
+    """Curves that are being written."""
+
+    def __init__(self, curves: Any, for_: str) -> None:
+        self._for, self._curves = for_, curves
+        self._schema = curves.getSchema()
         self._counts: Any = None
         self._widths: Any = None
 
-    def describe(self, starts: NDArray[np.uint32], widths: NDArray[np.float32], more: dict[str, Any]) -> None:
-        """Writes what stays: counts, widths, and Unreal's attributes, each of which is not indexed."""
-        geometry = self._package.AbcGeom
+    def describe(self, starts: NDArray[np.uint32], widths: NDArray[np.float32], more: dict[str, Any], first: int = 0) -> None:
+        """Writes what stays: counts, widths, and Unreal's attributes, each of which is not indexed. Numbers of strands begin
+        with ``first``."""
+        package = required()
+        geometry = package.AbcGeom
         counts = np.diff(starts.astype(np.int64)).astype(np.int32)
         unit, _ = target(self._for)
         vertex = geometry.GeometryScope.kVertexScope
@@ -87,7 +114,7 @@ class _File:
             param.set(getattr(geometry, f"O{kind}GeomParamSample")(value, scope))
 
         put("Float", "groom_width", thick, vertex)
-        put("Int32", "groom_id", _whole(np.arange(len(counts))), uniform)
+        put("Int32", "groom_id", _whole(np.arange(first, first + len(counts))), uniform)
         if "colors" in more:
             put("V3f", "groom_color", _vectors(more["colors"]), vertex)
         if "root_uvs" in more:
@@ -99,14 +126,20 @@ class _File:
             put("Int32", "groom_group_id", _whole(more["groups"]), uniform)
         if "guide_flags" in more:
             put("Int32", "groom_guide", _whole(more["guide_flags"]), uniform)
+        if "guide_indices" in more and self._for == "unreal":
+            import imath
+
+            guides, weights = nearest_guides(more["guide_indices"], more["guide_weights"])
+            put("V3i", "groom_closest_guides", imath.V3iArrayFromBuffer(guides), uniform)
+            put("V3f", "groom_guide_weights", _vectors(weights), uniform)
         own = self._schema.getUserProperties()
         for name, number in (("groom_version_major", _MAJOR), ("groom_version_minor", _MINOR)):
-            self._package.Abc.OInt16Property(own, name).setValue(number)
-        self._package.Abc.OStringProperty(own, "groom_tool").setValue(_TOOL)
+            package.Abc.OInt16Property(own, name).setValue(number)
+        package.Abc.OStringProperty(own, "groom_tool").setValue(_TOOL)
 
-    def add(self, points: NDArray[np.float32]) -> None:
-        """Writes the points of a frame [m], y up."""
-        geometry = self._package.AbcGeom
+    def add(self, points: NDArray[np.float32], velocities: NDArray[np.float32] | None = None) -> None:
+        """Writes the points of a frame [m] and their velocities [m/s], y up."""
+        geometry = required().AbcGeom
         # Counts, type, wrap and basis come with every sample: the default basis is no linear one.
         sample = geometry.OCurvesSchemaSample(
             _vectors(placed(points, self._for)),
@@ -116,11 +149,13 @@ class _File:
         )
         sample.setBasis(geometry.BasisType.kNoBasis)
         sample.setWidths(self._widths)
+        if velocities is not None:
+            sample.setVelocities(_vectors(placed(velocities, self._for)))
         self._schema.set(sample)
 
-    def close(self) -> None:
-        """Ends the file, which is complete when nothing refers to it."""
-        del self._schema, self._curves, self._archive
+    def forget(self) -> None:
+        """Drops all that refers to the archive."""
+        del self._schema, self._curves
 
 
 def save_groom(groom: Groom, path: str | os.PathLike[str], *, for_: str = "any") -> list[str]:
@@ -129,30 +164,39 @@ def save_groom(groom: Groom, path: str | os.PathLike[str], *, for_: str = "any")
     part = f"{path}.part"
     file = _File(part, 24.0, for_)
     try:
-        file.describe(groom.starts, point_widths(groom), groom.attributes)
-        file.add(groom.points)
+        strands = file.strands("hair")
+        strands.describe(groom.starts, point_widths(groom), groom.attributes)
+        strands.add(groom.points)
+        del strands
         file.close()
         os.replace(part, path)
     finally:
         if os.path.exists(part):
             os.remove(part)
-    held = ("colors", "root_uvs", "groups", "guide_flags")
-    return [f"{os.path.basename(path)} has no {name}" for name in groom.attributes if name not in held]
+    return left_out(groom, path, for_)
 
 
-def save_cache(cache: Cache, path: str | os.PathLike[str], *, for_: str = "any") -> Written:
-    """Writes the frames of a cache as samples, one after the other."""
+def save_cache(cache: Cache, path: str | os.PathLike[str], *, for_: str = "any", velocities: bool = False) -> Written:
+    """Writes the frames of a cache as samples, one after the other; for Unreal the strands that follow them too, with
+    their guides and weights."""
     from .simulation import Written
 
     path = os.fspath(path)
     if len(cache) == 0:
         raise Error(f"it holds no frames, expected one or more: {cache.path}", "file")
     part = f"{path}.part"
+    more, bound = cache_attributes(cache, for_)
     file = _File(part, cache.frames_per_second, for_)
     try:
-        file.describe(cache.starts, cache.widths(), cache_attributes(cache))
-        for points in cache:
-            file.add(points)
+        strands = file.strands("hair" if bound is None else "guides")
+        strands.describe(cache.starts, cache.widths(), more)
+        for points, moved in moments(cache, velocities):
+            strands.add(points, moved)
+        if bound is not None:
+            strands = file.strands("hair", moves=False)
+            strands.describe(bound.starts, bound.widths, bound.attributes, len(cache.starts) - 1)
+            strands.add(bound.points)
+        del strands
         file.close()
         os.replace(part, path)
     finally:
@@ -161,8 +205,8 @@ def save_cache(cache: Cache, path: str | os.PathLike[str], *, for_: str = "any")
     return Written(path, len(cache), os.path.getsize(path), [])
 
 
-def _opened(path: str) -> Any:
-    package = required()
+def _checked(path: str) -> None:
+    """Refuses what is no whole archive."""
     try:
         with open(path, "rb") as file:
             head = file.read(6)
@@ -172,6 +216,10 @@ def _opened(path: str) -> Any:
         raise Error(f"not an Alembic archive: it starts with {head[:5]!r}, expected b'Ogawa': {path}", "file")
     if head[5:6] != b"\xff":
         raise Error(f"the archive is not complete: whoever wrote it was stopped: {path}", "file")
+
+
+def _opened(path: str) -> Any:
+    package = required()
     try:
         archive = package.Abc.IArchive(path)
         return archive, archive.getTop()
@@ -220,7 +268,89 @@ def _array(of: Any, columns: int = 3) -> NDArray[Any]:
 def load_groom(path: str | os.PathLike[str], *, frame: int | None = None, scale: float = 1.0) -> Groom:
     """All curves of an archive as one groom, y up; ``scale`` is metres for each unit. ``frame`` is the number of a
     sample, without it the first is taken."""
-    path = os.fspath(path)
+    arrays = _apart("groom", os.fspath(path), {"frame": frame, "scale": scale})
+    return Groom(arrays.pop("points"), arrays.pop("starts"), widths=arrays.pop("widths"), **arrays)
+
+
+def load_body(path: str | os.PathLike[str], *, scale: float = 1.0) -> Body:
+    """The first mesh of an archive as a Body, y up, with its motion; ``scale`` is metres for each unit."""
+    arrays = _apart("body", os.fspath(path), {"scale": scale})
+    return Body(arrays["vertices"], arrays["faces"], motion=arrays.get("motion"), frames_per_second=float(arrays["rate"]))
+
+
+def _apart(what: str, path: str, options: dict[str, Any]) -> dict[str, Any]:
+    """The arrays of an archive, which a process of its own reads: the library ends its process on some damaged files."""
+    required()
+    _checked(path)
+    with tempfile.TemporaryDirectory(prefix="strandline-") as folder:
+        out = os.path.join(folder, "read.npz")
+        answer = _reader.ask({"what": what, "file": os.path.abspath(path), "out": out, "options": options})
+        if answer == ["done"]:
+            with np.load(out) as arrays:
+                return {name: arrays[name] for name in arrays.files}
+    text, kind = answer or (f"cannot read the archive: its reader broke off, the file is damaged: {path}", "file")
+    raise Error(text.replace(os.path.abspath(path), path), kind)
+
+
+class _Reader:
+    """A process that reads archives one after the other; it ends with this one, and begins anew where a file ends it."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[str] | None = None
+        self._owner = 0
+
+    def ask(self, task: dict[str, Any]) -> list[str]:
+        """The answer to a task; none where the file ended the process."""
+        with self._lock:
+            process = self._running()
+            assert process.stdin is not None and process.stdout is not None
+            try:
+                print(json.dumps(task), file=process.stdin, flush=True)
+                return list(json.loads(process.stdout.readline()))
+            except (OSError, ValueError):
+                process.kill()
+                process.wait()
+                return []
+
+    def _running(self) -> subprocess.Popen[str]:
+        # A forked process has a reader of its own.
+        if self._process is None or self._owner != os.getpid() or self._process.poll() is not None:
+            code = f"import sys; sys.path[:] = {sys.path!r}; import strandline.abc as own; own._serve()"
+            pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL}
+            self._process = subprocess.Popen([sys.executable, "-c", code], text=True, start_new_session=True, **pipes)
+            self._owner = os.getpid()
+        return self._process
+
+
+_reader = _Reader()
+
+
+def _serve() -> None:
+    """Reads the archives that lines of standard input ask for."""
+    for line in sys.stdin:
+        print(json.dumps(_answer(json.loads(line))), flush=True)
+
+
+def _answer(task: dict[str, Any]) -> list[str]:
+    arrays: dict[str, Any]
+    try:
+        if task["what"] == "groom":
+            groom = _read_groom(task["file"], **task["options"])
+            arrays = {"points": groom.points, "starts": groom.starts, "widths": np.asarray(groom.widths), **groom.attributes}
+        else:
+            body = _read_body(task["file"], **task["options"])
+            arrays = {"vertices": body.vertices, "faces": body.faces, "rate": np.asarray(body.frames_per_second)}
+            arrays |= {} if body.motion is None else {"motion": body.motion}
+        np.savez(task["out"], **arrays)
+    except Error as error:
+        return [str(error), error.kind]
+    except Exception as error:
+        return [f"cannot read the archive: {_first_line(error)}: {task['file']}", "file"]
+    return ["done"]
+
+
+def _read_groom(path: str, frame: int | None, scale: float) -> Groom:
     archive, top = _opened(path)
     geometry = required().AbcGeom
     parts: list[dict[str, Any]] = []
@@ -293,9 +423,7 @@ def _attributes(schema: Any, strands: int, points: int) -> dict[str, Any]:
     return found
 
 
-def load_body(path: str | os.PathLike[str], *, scale: float = 1.0) -> Body:
-    """The first mesh of an archive as a Body, y up, with its motion; ``scale`` is metres for each unit."""
-    path = os.fspath(path)
+def _read_body(path: str, scale: float) -> Body:
     archive, top = _opened(path)
     package = required()
     mesh = next((of for of in _below(top) if package.AbcGeom.IPolyMesh.matches(of.getHeader())), None)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native
+from . import _extras, _native
 from .errors import Error
 
 
@@ -54,13 +54,11 @@ class Body:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], scale: float = 1.0) -> Body:
-        """Reads a mesh of an .obj, .gltf, .glb, .vrm, .ply or .stl, or with the extra [usd] of a .usd; ``scale`` is metres
-        for each unit of the file."""
+        """Reads a mesh of an .obj, .gltf, .glb, .vrm, .ply or .stl, or with its motion by the extras [usd] and [abc] of a
+        .usd or .abc; ``scale`` is metres for each unit of the file, which a .usd says itself."""
         path = os.fspath(path)
-        if os.path.splitext(path)[1].lower() in (".usd", ".usdc", ".usda", ".usdz"):
-            from . import usd
-
-            return usd.load_body(path)
+        if _extras.suffix(path) in _extras.BODIES:
+            return _extras.body(path, scale)
         vertices, faces, notes = _native.load_mesh(path, scale)
         return cls(vertices, faces, notes=notes)
 

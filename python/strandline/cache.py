@@ -60,8 +60,8 @@ class Cache:
 
     def attributes(self) -> dict[str, Any]:
         """Attributes of the strands that the file has: widths and colors per point, root_uv and groups per strand,
-        guide_indices and guide_weights of strands that are bound."""
-        names = ("widths", "colors", "root_uv", "groups", "guide_indices", "guide_weights", "bound_points", "bound_starts")
+        guide_indices and guide_weights of strands that are bound, guide_flags where guides are among the strands."""
+        names = ("widths", "colors", "root_uv", "groups", "guide_flags", "guide_indices", "guide_weights", "bound_points", "bound_starts")
         with np.load(self.path) as arrays:
             return {name: arrays[name] for name in names if name in arrays.files}
 
@@ -78,15 +78,16 @@ class Cache:
             return 30.0 if scene is None else float(scene["film.frames_per_second"])
         return float(round((len(self.times) - 1) / (self.times[-1] - self.times[0]), 6))
 
-    def save(self, path: str | os.PathLike[str], *, for_: str = "any") -> Written:
-        """Writes the frames as .usdc, .usd or .abc, with the extra that the suffix needs."""
-        return writer(os.path.splitext(os.fspath(path))[1].lower())(self, path, for_=for_)
+    def save(self, path: str | os.PathLike[str], *, for_: str = "any", velocities: bool = False) -> Written:
+        """Writes the frames as .usdc, .usd or .abc, with the extra that the suffix needs. ``velocities`` writes those of each
+        point too, for motion blur: by the frames before and after."""
+        return writer(os.path.splitext(os.fspath(path))[1].lower())(self, path, for_=for_, velocities=velocities)
 
     def __repr__(self) -> str:
         return f"Cache({len(self)} frames of {len(self.starts) - 1} {self.what}, {self.path})"
 
 
-def by_part(path: str | os.PathLike[str], make: Callable[[str], bool], *, for_: str) -> Written | None:
+def by_part(path: str | os.PathLike[str], make: Callable[[str], bool], *, for_: str, velocities: bool = False) -> Written | None:
     """Writes moving hair by a moving cache beside the file: ``make`` writes that and says whether it did. Frames are kept
     where anything ends this early: what is raised names their cache, which ``Cache(part).save(path)`` writes."""
     path = os.fspath(path)
@@ -97,7 +98,7 @@ def by_part(path: str | os.PathLike[str], make: Callable[[str], bool], *, for_: 
     try:
         if not make(part):
             return None
-        written = write(Cache(part), path, for_=for_)
+        written = write(Cache(part), path, for_=for_, velocities=velocities)
     except Exception as error:
         if not os.path.exists(part):
             raise

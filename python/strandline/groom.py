@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native, _toml, research
+from . import _extras, _native, _toml, research
 from .errors import Error
 from .scene import Scene
 
@@ -176,20 +176,21 @@ class Groom:
             widths = widths[chosen if len(widths) == self.strand_count else index]
         return Groom(self.points[index], starts, widths=widths, group_names=self.group_names, **kept)
 
-    def save(self, path: str | os.PathLike[str], layout: str | None = None) -> list[str]:
+    def save(self, path: str | os.PathLike[str], layout: str | None = None, *, for_: str = "any") -> list[str]:
         """Writes a file of the format that its suffix names, or of a research ``layout`` by name; returns notes on what the
-        format cannot hold or what was changed to fit it."""
+        format cannot hold or what was changed to fit it. ``for_`` is the receiver of USD and Alembic: ``"any"``,
+        ``"unreal"`` or ``"blender"``."""
         if layout is not None:
             return research.save(self, path, layout)
         suffix = os.path.splitext(os.fspath(path))[1].lower()
         if suffix in (".usdc", ".usda", ".usd"):
             from . import usd
 
-            return usd.save_groom(self, path)
+            return usd.save_groom(self, path, for_=for_)
         if suffix == ".abc":
             from . import abc
 
-            return abc.save_groom(self, path)
+            return abc.save_groom(self, path, for_=for_)
         left_out, notes = _native.save(self._dictionary(), os.fspath(path))
         return [*(f"{os.path.basename(os.fspath(path))} cannot hold {part}" for part in left_out), *notes]
 
@@ -241,18 +242,19 @@ def load(
         scale = research.LAYOUTS[layout].scale if scale == "auto" else scale
         points_per_strand = points_per_strand or research.LAYOUTS[layout].points_per_strand
         up = research.LAYOUTS[layout].up if up == "y" else up
-    if suffix in (".usdc", ".usd", ".usdz"):
-        from . import usd
-
-        return usd.load_groom(path, frame=frame)
-    if suffix == ".abc":
-        from . import abc
-
-        return abc.load_groom(path, frame=frame)
     if isinstance(scale, str) and scale != "auto":
         raise Error(f"scale is `{scale}`, expected \"auto\" or a number above 0", "value")
     if not isinstance(scale, str) and not scale > 0:
         raise Error(f"scale is {scale}, expected \"auto\" or a number above 0", "value")
+    if suffix in _extras.GROOMS:
+        with _extras.Files() as files:
+            copy = files.groom(path, frame)
+            # A stage says its units, an archive does not.
+            scale = 1.0 if scale == "auto" and suffix != ".abc" else scale
+            try:
+                return load(copy, scale=scale, up=up, turn=turn, root_end=root_end, strict=strict, clean=clean, root_uvs=root_uvs)
+            except Error as error:
+                raise files.error(error) from None
     of, notes = _native.load(
         path,
         scale=None if isinstance(scale, str) else float(scale),

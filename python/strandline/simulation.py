@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, NamedTuple
@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native, _toml, cache
+from . import _extras, _native, _toml, cache
 from .body import Body
 from .errors import Error
-from .groom import Groom
+from .groom import Groom, load
 from .picture import Camera, Picture
 from .progress import Progress
 from .scene import Look, Motion, Scene, Settings
@@ -85,6 +85,8 @@ class Simulation:
         **sections: Any,
     ) -> None:
         scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene) if scene is not None else Scene()
+        groom = _by_extra(scene, "groom.file", groom, _extras.GROOMS, load)
+        body = _by_extra(scene, "body.file", body, _extras.BODIES, Body.load)
         self._body = body if isinstance(body, Body) else None
         moving = self._body is not None and self._body.motion is not None
         if motion is None and moving:
@@ -273,13 +275,14 @@ class Simulation:
 
     def picture(self, camera: Camera | str | None = None, look: Look | None = None, **settings: Any) -> Picture:
         """Draws the moment. ``camera`` is a Camera or a side: front, three_quarter, side or back. Keywords are the settings
-        of the section ``picture``: ``simulation.picture(width=800, height=600, transparent=True)``; they stay."""
+        of the section ``picture``: ``simulation.picture(width=800, height=600, transparent=True)``; they stay.
+        ``layers=True`` keeps what is known of each pixel: ``picture.depth``, ``picture.direction`` and more."""
         self.set({**({} if look is None else {"look": look.given}), **({"picture": settings} if settings else {})})
         if isinstance(camera, str):
             picture = tomllib.loads(self._native.scene())["picture"]
             camera = Camera.framing(self._seen(), camera, picture["width"] / picture["height"])
-        pixels = self._native.picture(None if camera is None else camera._parts)
-        return Picture(pixels, Camera(*self._native.camera()))
+        pixels, channels = self._native.picture(None if camera is None else camera._parts)
+        return Picture(pixels, Camera(*self._native.camera()), channels)
 
     def _seen(self) -> NDArray[np.float32]:
         places = self.points.reshape(-1, 3)
@@ -298,14 +301,17 @@ class Simulation:
         what: str = "guides",
         for_: str = "any",
         every: int = 1,
+        velocities: bool = False,
         progress: bool | None = None,
     ) -> Written:
         """Plays frames and writes them as they are made: .npz (a moving cache), .usda, ``hair.%04d.hair`` (a file a frame),
         and with extras .usdc, .usd and .abc. ``what`` is ``"guides"`` or ``"strands"``, ``for_`` ``"any"``,
-        ``"unreal"`` or ``"blender"``."""
+        ``"unreal"`` or ``"blender"``. ``velocities`` adds those of each point to .usdc, .usd and .abc, for motion blur."""
         suffix = os.path.splitext(os.fspath(path))[1].lower()
         if suffix in (".usdc", ".usd", ".abc"):
-            return self._record_by_extra(path, frames, what, for_, every, progress)
+            return self._record_by_extra(path, frames, what, for_, every, velocities, progress)
+        if velocities:
+            raise Error(f"velocities are asked for in a {suffix or 'file'}, expected .usdc, .usd or .abc", "value")
         frames = int(self._fitted["film"]["frames"]) - self._frame if frames is None else int(frames)
         self._native.set_frames(max(self._frame + frames, 1))
         self._native.begin_file(os.fspath(path), what, for_, every)
@@ -318,12 +324,14 @@ class Simulation:
         place, written, size, left_out, notes = ended
         return Written(os.fspath(place), written, size, [*(f"left out: {part}" for part in left_out), *notes])
 
-    def _record_by_extra(self, path: Path, frames: int | None, what: str, for_: str, every: int, progress: bool | None) -> Written:
+    def _record_by_extra(
+        self, path: Path, frames: int | None, what: str, for_: str, every: int, velocities: bool, progress: bool | None
+    ) -> Written:
         def simulate(part: str) -> bool:
             self.record(part, frames, what=what, every=every, progress=progress)
             return True
 
-        written = cache.by_part(path, simulate, for_=for_)
+        written = cache.by_part(path, simulate, for_=for_, velocities=velocities)
         assert written is not None
         return written
 
@@ -349,3 +357,13 @@ class Simulation:
 
     def __repr__(self) -> str:
         return f"Simulation({self.strand_count} strands x {self.points_per_strand} points, {self._time:.3f} s, on {self.simulated_on})"
+
+
+def _by_extra(scene: Scene, key: str, given: Any, suffixes: tuple[str, ...], read: Callable[[str], Any]) -> Any:
+    """What is given for a file of a scene, or what an extra reads of that file."""
+    path = scene[key] if given is None else given
+    if not isinstance(path, str | os.PathLike):
+        return given
+    # Paths in a scene are relative to its folder.
+    path = os.path.join(scene.folder, path) if given is None else os.fspath(path)
+    return read(path) if _extras.suffix(path) in suffixes else given

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .body import Body
 from .errors import Error, missing
-from .groom import Groom
+from .groom import HAIR_WIDTH, Groom
 
 if TYPE_CHECKING:
     from .cache import Cache
@@ -19,7 +20,8 @@ if TYPE_CHECKING:
 #: Metres for each unit, up axis, and turn of y-up points, by receiver.
 TARGETS: dict[str, tuple[float, str]] = {"any": (1.0, "Y"), "unreal": (0.01, "Z"), "blender": (1.0, "Z")}
 
-_HAIR = "/Groom/Hair"
+#: Bytes of samples that a stage holds before they go to its file.
+_HELD = 128 << 20
 
 
 def required() -> Any:
@@ -96,8 +98,30 @@ def _time(stage: Any, frame: int | None) -> Any:
 def load_groom(path: str | os.PathLike[str], *, frame: int | None = None) -> Groom:
     """All linear BasisCurves of a stage as one groom, in metres with y up, with widths, colours, root uv and groups where
     all curves have them. ``frame`` is a time code; without it the first is taken."""
+    return _told(_read_groom, os.fspath(path), frame)  # type: ignore[no-any-return]
+
+
+def load_body(path: str | os.PathLike[str]) -> Body:
+    """The first mesh of a stage as a Body, in metres with y up: with its motion, by time samples of its points or its
+    transforms, or by UsdSkel."""
+    return _told(_read_body, os.fspath(path))  # type: ignore[no-any-return]
+
+
+def _told(read: Any, path: str, *more: Any) -> Any:
+    """What a function reads of a stage; what the library finds wrong names the file."""
+    try:
+        return read(path, *more)
+    except Error:
+        raise
+    except MemoryError:
+        raise Error(f"cannot read the stage: it needs more memory than there is: {path}", "file") from None
+    except Exception as error:
+        raise Error(f"cannot read the stage: {_first_line(error)}: {path}", "file") from None
+
+
+def _read_groom(path: str, frame: int | None) -> Groom:
     stage = _opened(path)
-    pxr, path = required(), os.fspath(path)
+    pxr = required()
     time, here = _time(stage, frame), _to_here(stage)
     parts: list[dict[str, Any]] = []
     for prim in stage.Traverse():
@@ -166,11 +190,9 @@ def _attributes(curves: Any, counts: NDArray[np.int64], scale: float, time: Any)
     return {name: numbers for name, numbers in found.items() if numbers is not None}
 
 
-def load_body(path: str | os.PathLike[str]) -> Body:
-    """The first mesh of a stage as a Body, in metres with y up: with its motion, by time samples of its points or its
-    transforms, or by UsdSkel."""
+def _read_body(path: str) -> Body:
     stage = _opened(path)
-    pxr, path = required(), os.fspath(path)
+    pxr = required()
     mesh = next((prim for prim in stage.Traverse() if prim.IsA(pxr.UsdGeom.Mesh)), None)
     if mesh is None:
         raise Error(f"it holds no Mesh, expected a body: {path}", "file")
@@ -256,7 +278,7 @@ def _skinned(stage: Any, mesh: Any) -> Any:
 
 
 def _stage(path: str, for_: str, frames_per_second: float, frames: int) -> Any:
-    """A new stage with one BasisCurves for linear strands."""
+    """A new stage with a root for strands."""
     pxr = required()
     unit, up = target(for_)
     folder = os.path.dirname(path) or "."
@@ -273,14 +295,19 @@ def _stage(path: str, for_: str, frames_per_second: float, frames: int) -> Any:
     root = pxr.UsdGeom.Xform.Define(stage, "/Groom")
     root.GetPrim().AddAppliedSchema("GroomAPI")
     stage.SetDefaultPrim(root.GetPrim())
-    curves = pxr.UsdGeom.BasisCurves.Define(stage, _HAIR)
-    curves.CreateTypeAttr("linear")
-    curves.CreateWrapAttr("nonperiodic")
     return stage
 
 
-def _describe(curves: Any, starts: NDArray[np.uint32], widths: NDArray[np.float32], more: dict[str, Any], for_: str) -> None:
-    """Writes counts, widths and attributes of strands."""
+def _strands(stage: Any, name: str) -> Any:
+    """New linear curves."""
+    curves = required().UsdGeom.BasisCurves.Define(stage, f"/Groom/{name}")
+    curves.CreateTypeAttr("linear")
+    curves.CreateWrapAttr("nonperiodic")
+    return curves
+
+
+def _describe(curves: Any, starts: NDArray[np.uint32], widths: NDArray[np.float32], more: dict[str, Any], for_: str, first: int = 0) -> None:
+    """Writes counts, widths and attributes of strands, whose numbers begin with ``first``."""
     pxr = required()
     unit, _ = target(for_)
     counts = np.diff(starts.astype(np.int64)).astype(np.int32)
@@ -310,7 +337,11 @@ def _describe(curves: Any, starts: NDArray[np.uint32], widths: NDArray[np.float3
         put("groom_guide", kinds.IntArray, "uniform", whole(more["guide_flags"]))
     if unreal:
         put("groom_width", kinds.FloatArray, "vertex", vt.FloatArray.FromNumpy(floats(widths / np.float32(unit))))
-        put("groom_id", kinds.IntArray, "uniform", whole(np.arange(len(counts))))
+        put("groom_id", kinds.IntArray, "uniform", whole(np.arange(first, first + len(counts))))
+        if "guide_indices" in more:
+            guides, weights = nearest_guides(more["guide_indices"], more["guide_weights"])
+            put("groom_closest_guides", kinds.Int3Array, "uniform", vt.Vec3iArray.FromNumpy(guides))
+            put("groom_guide_weights", kinds.Float3Array, "uniform", vt.Vec3fArray.FromNumpy(weights))
 
 
 def _extent(points: NDArray[np.float32], widths: NDArray[np.float32], unit: float) -> Any:
@@ -340,7 +371,7 @@ def save_groom(groom: Groom, path: str | os.PathLike[str], *, for_: str = "any")
     part = _part(path)
     try:
         stage = _stage(part, for_, 24.0, 1)
-        curves = pxr.UsdGeom.BasisCurves(stage.GetPrimAtPath(_HAIR))
+        curves = _strands(stage, "Hair")
         widths = point_widths(groom)
         _describe(curves, groom.starts, widths, groom.attributes, for_)
         points = placed(groom.points, for_)
@@ -350,8 +381,28 @@ def save_groom(groom: Groom, path: str | os.PathLike[str], *, for_: str = "any")
     finally:
         if os.path.exists(part):
             os.remove(part)
-    held = ("colors", "root_uvs", "groups", "guide_flags")
+    return left_out(groom, path, for_)
+
+
+def left_out(groom: Groom, path: str, for_: str) -> list[str]:
+    """Notes on attributes that a file of a receiver has not."""
+    weights = ("guide_indices", "guide_weights") if for_ == "unreal" else ()
+    held = ("colors", "root_uvs", "groups", "guide_flags", *weights)
     return [f"{os.path.basename(path)} has no {name}" for name in groom.attributes if name not in held]
+
+
+def nearest_guides(indices: NDArray[Any], weights: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    """The three guides of each strand with the largest weights, and these as shares of 1."""
+    order = np.argsort(-weights, axis=1, kind="stable")[:, :3]
+    guides = np.take_along_axis(indices, order, axis=1).astype(np.int32)
+    shares = np.take_along_axis(weights, order, axis=1).astype(np.float32)
+    if order.shape[1] < 3:
+        lacking = 3 - order.shape[1]
+        guides = np.concatenate([guides, np.repeat(guides[:, :1], lacking, axis=1)], axis=1)
+        shares = np.concatenate([shares, np.zeros((len(shares), lacking), dtype=np.float32)], axis=1)
+    sums = shares.sum(axis=1, keepdims=True)
+    shares = np.where(sums > 0, shares / np.where(sums > 0, sums, 1), np.array([1, 0, 0], dtype=np.float32))
+    return np.ascontiguousarray(guides), np.ascontiguousarray(shares, dtype=np.float32)
 
 
 def point_widths(groom: Groom) -> NDArray[np.float32]:
@@ -365,15 +416,52 @@ def point_widths(groom: Groom) -> NDArray[np.float32]:
     return np.repeat(widths, counts)
 
 
-def cache_attributes(cache: Cache) -> dict[str, Any]:
-    """Attributes of a cache by the names of a groom's."""
+def cache_attributes(cache: Cache, for_: str) -> tuple[dict[str, Any], Bound | None]:
+    """Attributes of a cache's strands by the names of a groom's, and for Unreal the strands that are bound to them."""
     found = cache.attributes()
-    named = {"colors": "colors", "root_uv": "root_uvs", "groups": "groups"}
-    return {own: found[name] for name, own in named.items() if name in found}
+    named = {"colors": "colors", "root_uv": "root_uvs", "groups": "groups", "guide_flags": "guide_flags"}
+    more = {own: found[name] for name, own in named.items() if name in found}
+    if for_ != "unreal" or "guide_indices" not in found:
+        return more, None
+    binding = {name: found[name] for name in ("guide_indices", "guide_weights")}
+    if "bound_points" not in found:
+        return {**more, **binding}, None
+    more["guide_flags"] = np.ones(len(cache.starts) - 1, dtype=np.uint8)
+    _, head = cache.read(0)
+    points = np.asarray(found["bound_points"] @ head[:3, :3].T + head[:3, 3], dtype=np.float32)
+    width = float(np.mean(found["widths"])) if "widths" in found else HAIR_WIDTH
+    flags = np.zeros(len(found["bound_starts"]) - 1, dtype=np.uint8)
+    return more, Bound(points, found["bound_starts"], np.full(len(points), width, dtype=np.float32), {**binding, "guide_flags": flags})
 
 
-def save_cache(cache: Cache, path: str | os.PathLike[str], *, for_: str = "any") -> Written:
-    """Writes the frames of a cache as time samples, one after the other."""
+class Bound(NamedTuple):
+    """Strands that follow guides: points [m] where the head is at the first frame, first points, widths and attributes."""
+
+    points: NDArray[np.float32]
+    starts: NDArray[np.uint32]
+    widths: NDArray[np.float32]
+    attributes: dict[str, Any]
+
+
+def moments(cache: Cache, velocities: bool) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32] | None]]:
+    """Points of each frame [m], and velocities [m/s] by the frames before and after it. At most three frames are held."""
+    rate = np.float32(cache.frames_per_second)
+    before, now = None, cache[0]
+    for frame in range(len(cache)):
+        after = cache[frame + 1] if frame + 1 < len(cache) else None
+        moved = None
+        if velocities:
+            first, last = now if before is None else before, now if after is None else after
+            span = max((before is not None) + (after is not None), 1)
+            moved = (last - first) * (rate / np.float32(span))
+        yield now, moved
+        if after is not None:
+            before, now = now if velocities else None, after
+
+
+def save_cache(cache: Cache, path: str | os.PathLike[str], *, for_: str = "any", velocities: bool = False) -> Written:
+    """Writes the frames of a cache as time samples, one after the other; for Unreal the strands that follow them too, with
+    their guides and weights."""
     from .simulation import Written
 
     pxr, path = required(), os.fspath(path)
@@ -382,17 +470,30 @@ def save_cache(cache: Cache, path: str | os.PathLike[str], *, for_: str = "any")
     part, unit = _part(path), target(for_)[0]
     try:
         stage = _stage(part, for_, cache.frames_per_second, len(cache))
-        curves = pxr.UsdGeom.BasisCurves(stage.GetPrimAtPath(_HAIR))
+        more, bound = cache_attributes(cache, for_)
+        curves = _strands(stage, "Hair" if bound is None else "Guides")
         widths = cache.widths()
-        _describe(curves, cache.starts, widths, cache_attributes(cache), for_)
+        _describe(curves, cache.starts, widths, more, for_)
+        if bound is not None:
+            strands = _strands(stage, "Hair")
+            _describe(strands, bound.starts, bound.widths, bound.attributes, for_, len(cache.starts) - 1)
+            points = placed(bound.points, for_)
+            strands.CreatePointsAttr(pxr.Vt.Vec3fArray.FromNumpy(points))
+            strands.CreateExtentAttr(_extent(points, bound.widths, unit))
         points_attribute, extent = curves.CreatePointsAttr(), curves.CreateExtentAttr()
-        for frame in range(len(cache)):
-            points = placed(cache[frame], for_)
+        moved_attribute = curves.CreateVelocitiesAttr() if velocities else None
+        held = 0
+        for frame, (points, moved) in enumerate(moments(cache, velocities)):
+            points = placed(points, for_)
             points_attribute.Set(pxr.Vt.Vec3fArray.FromNumpy(points), frame)
             extent.Set(_extent(points, widths, unit), frame)
+            if moved_attribute is not None and moved is not None:
+                moved_attribute.Set(pxr.Vt.Vec3fArray.FromNumpy(placed(moved, for_)), frame)
             # Samples leave memory for the file now and then.
-            if frame % 16 == 15:
+            held += points.nbytes * (1 if moved is None else 2)
+            if held > _HELD:
                 stage.GetRootLayer().Save()
+                held = 0
         _is_written(stage, part, path)
     finally:
         if os.path.exists(part):

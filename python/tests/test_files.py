@@ -159,7 +159,7 @@ def test_changed_bytes_are_refused_or_read_and_never_crash(tmp_path, rich, suffi
     rich.save(tmp_path / f"a.{suffix}")
     whole = (tmp_path / f"a.{suffix}").read_bytes()
     generator = np.random.default_rng(7)
-    for at in range(60):
+    for at in range(200):
         mutant = bytearray(whole)
         for place in generator.integers(0, len(mutant), 1 + at % 8):
             mutant[place] = generator.integers(0, 256)
@@ -168,7 +168,7 @@ def test_changed_bytes_are_refused_or_read_and_never_crash(tmp_path, rich, suffi
         (tmp_path / f"{at}.{suffix}").write_bytes(mutant)
     code = (
         "import sys, strandline\n"
-        "for at in range(60):\n"
+        "for at in range(200):\n"
         "    try:\n"
         f"        strandline.load(sys.argv[1] + f'/{{at}}.{suffix}')\n"
         "    except strandline.Error as error:\n"
@@ -185,3 +185,93 @@ def test_a_missing_extra_is_named(tmp_path, rich, monkeypatch):
         with pytest.raises(Error, match=rf"pip install 'strandline\[{extra}\]'") as caught:
             rich.save(tmp_path / f"a.{suffix}")
         assert caught.value.kind == "extra"
+
+
+def test_units_and_axes_of_stages_and_archives(tmp_path, points):
+    for suffix in ("usdc", "abc"):
+        Groom(points).save(tmp_path / f"a.{suffix}", for_="unreal")
+    assert np.allclose(strandline.load(tmp_path / "a.usdc").array, points, atol=1e-6), "a stage says its units and axes"
+    assert np.allclose(strandline.load(tmp_path / "a.abc", up="z").array, points, atol=1e-6), "centimetres are found"
+    assert np.allclose(strandline.load(tmp_path / "a.abc", up="z", scale=1).array, 100 * points, atol=1e-4)
+
+
+@pytest.fixture
+def bound(tmp_path):
+    """A moving cache of guides with strands that follow them."""
+    film = {"frames": 4}
+    with strandline.Simulation(groom=strandline.grow("bob", strand_count=120), backend="cpu", film=film, **{"groom.guides": 20}) as simulation:
+        simulation.record(tmp_path / "bound.npz")
+    return strandline.Cache(tmp_path / "bound.npz")
+
+
+def test_unreal_gets_guides_and_the_strands_that_follow_them(tmp_path, bound):
+    import alembic3d.Abc as core
+    import alembic3d.AbcGeom as geometry
+    from pxr import Usd, UsdGeom
+
+    guides, strands = len(bound.starts) - 1, len(bound.attributes()["bound_starts"]) - 1
+    assert guides == 20 and strands == 100
+    bound.save(tmp_path / "a.usdc", for_="unreal")
+    stage = Usd.Stage.Open(str(tmp_path / "a.usdc"))
+    moving, still = (UsdGeom.BasisCurves(stage.GetPrimAtPath(f"/Groom/{name}")) for name in ("Guides", "Hair"))
+    assert len(moving.GetPointsAttr().GetTimeSamples()) == 4 and not still.GetPointsAttr().GetTimeSamples()
+    read = lambda curves, name: np.asarray(UsdGeom.PrimvarsAPI(curves).GetPrimvar(name).Get())  # noqa: E731
+    assert read(moving, "groom_guide").all() and not read(still, "groom_guide").any()
+    assert np.array_equal(np.concatenate([read(moving, "groom_id"), read(still, "groom_id")]), np.arange(120))
+    check_weights(read(still, "groom_closest_guides"), read(still, "groom_guide_weights"), bound)
+    unit = np.asarray(still.GetPointsAttr().Get()) * 0.01
+    roots = unit[bound.attributes()["bound_starts"][:-1]]
+    near = bound[0][bound.starts[:-1]][read(still, "groom_closest_guides")[:, 0]]
+    assert np.median(np.linalg.norm(roots[:, [0, 2, 1]] * [1, 1, -1] - near, axis=1)) < 0.05, "where the guides are"
+
+    bound.save(tmp_path / "a.abc", for_="unreal")
+    archive = core.IArchive(str(tmp_path / "a.abc"))
+    top = archive.getTop()
+    curves = {of.getName(): geometry.ICurves(of, core.WrapExistingFlag.kWrapExisting).getSchema() for of in (top.getChild(at) for at in range(2))}
+    assert curves["guides"].getNumSamples() == 4 and curves["hair"].getNumSamples() == 1
+    arbitrary = curves["hair"].getArbGeomParams()
+    closest = np.array(geometry.IV3iGeomParam(arbitrary, "groom_closest_guides").getExpandedValue().getVals()).reshape(-1, 3)
+    weights = np.array(geometry.IV3fGeomParam(arbitrary, "groom_guide_weights").getExpandedValue().getVals()).reshape(-1, 3)
+    check_weights(closest, weights, bound)
+    bound.save(tmp_path / "b.usdc")
+    assert not Usd.Stage.Open(str(tmp_path / "b.usdc")).GetPrimAtPath("/Groom/Guides"), "for Unreal alone"
+
+
+def check_weights(closest, weights, bound):
+    found = bound.attributes()
+    assert closest.shape == weights.shape == (100, 3)
+    assert np.allclose(weights.sum(axis=1), 1, atol=1e-6) and (np.diff(weights, axis=1) <= 0).all()
+    heaviest = found["guide_weights"].argmax(axis=1)
+    assert np.array_equal(closest[:, 0], np.take_along_axis(found["guide_indices"], heaviest[:, None], axis=1)[:, 0])
+
+
+def test_guides_of_a_groom_are_weighted_for_unreal(tmp_path, points):
+    from pxr import Usd, UsdGeom
+
+    groom = Groom(points, guide_indices=np.arange(64)[:, None] % [8, 7], guide_weights=np.full((64, 2), [0.2, 0.6]))
+    assert not groom.save(tmp_path / "a.usdc", for_="unreal"), "nothing is left out"
+    assert groom.save(tmp_path / "a.abc") == ["a.abc has no guide_indices", "a.abc has no guide_weights"]
+    stage = Usd.Stage.Open(str(tmp_path / "a.usdc"))
+    curves = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/Groom/Hair"))
+    assert np.allclose(np.asarray(curves.GetPrimvar("groom_guide_weights").Get())[5], [0.75, 0.25, 0])
+    assert np.array_equal(np.asarray(curves.GetPrimvar("groom_closest_guides").Get())[9], [2, 1, 2])
+
+
+def test_velocities_are_those_of_the_frames(tmp_path, bound):
+    import alembic3d.Abc as core
+    import alembic3d.AbcGeom as geometry
+    from pxr import Usd, UsdGeom
+
+    wanted = np.gradient(np.stack(list(bound)), axis=0) * 30
+    bound.save(tmp_path / "a.usdc", velocities=True)
+    stage = Usd.Stage.Open(str(tmp_path / "a.usdc"))
+    curves = UsdGeom.BasisCurves(stage.GetPrimAtPath("/Groom/Hair"))
+    bound.save(tmp_path / "a.abc", velocities=True)
+    archive = core.IArchive(str(tmp_path / "a.abc"))
+    schema = geometry.ICurves(archive.getTop().getChild(0), core.WrapExistingFlag.kWrapExisting).getSchema()
+    for frame in range(4):
+        assert np.allclose(np.asarray(curves.GetVelocitiesAttr().Get(frame)), wanted[frame], atol=1e-4)
+        sample = schema.getValue(core.ISampleSelector(frame / 30))
+        assert np.allclose(np.array(sample.getVelocities()).reshape(-1, 3), wanted[frame], atol=1e-4)
+    with strandline.Simulation(style={"strand_count": 8}, backend="cpu") as simulation, pytest.raises(Error, match="velocities"):
+        simulation.record(tmp_path / "a.npz", velocities=True)

@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use crate::cargo::{cargo_command, root};
-use crate::{adapter, bare};
+use crate::{adapter, bare, python};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
 const TESTS: [((&str, &str), [&str; 2]); 2] = [
@@ -40,7 +40,9 @@ pub fn run() -> bool {
         passed &= command.args(test).envs(required).status().is_ok_and(|status| status.success());
         checks.push(format!("{name}={value} {}", test.join(" ")));
     }
-    passed && record(checks)
+    let (sweep, swept) = python::long();
+    checks.push(sweep);
+    passed && swept && record(checks)
 }
 
 fn record(checks: Vec<String>) -> bool {

@@ -1,7 +1,7 @@
 //! A Python with numpy and usd-core, which read files of the program, and with what tests its package.
 
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use anyhow::{Context, Result};
 
@@ -12,12 +12,16 @@ use crate::programs::Tally;
 pub const NAMED: &str = "STRANDLINE_PYTHON";
 
 /// Summary of the tests that need Python.
-pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, pytest and mypy: nobody else read moving caches and USD, and \
-                        the Python package was not tested (STRANDLINE_PYTHON names one; with \
+pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, ray, pyarrow, pytest and mypy: nobody else read moving caches \
+                        and USD, and the Python package was not tested (STRANDLINE_PYTHON names one; with \
                         STRANDLINE_REQUIRE_PYTHON the tests fail without it)";
 
 /// Packages that the tests need.
-const PACKAGES: [&str; 5] = ["numpy", "usd-core", "alembic3d>=1.8.12,<2", "pytest>=8", "mypy>=1.15"];
+const PACKAGES: [&str; 7] =
+    ["numpy", "usd-core", "alembic3d>=1.8.12,<2", "ray>=2.60,<3", "pyarrow>=15", "pytest>=8", "mypy>=1.15"];
+
+/// Variable with the number of jobs that tests of sweeps run on two machines of a cluster, one of which is lost.
+const JOBS: (&str, &str) = ("STRANDLINE_JOBS", "64");
 
 /// The Python of the tests, if it has their packages. `setup` makes one in `target` if there is none, and
 /// packages can be had.
@@ -36,14 +40,7 @@ pub fn prepare(setup: bool) -> Option<String> {
 
 /// Builds the Python package in the target folder and runs its tests, which count as others do.
 pub fn test_package(python: &str, tally: &mut Tally) -> bool {
-    let tested = installed().and_then(|site| {
-        println!("\n== pytest python/tests");
-        let words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "python/tests"];
-        let mut command = Command::new(python);
-        command.args(words).current_dir(root()).env("PYTHONPATH", site).env("PYTHONDONTWRITEBYTECODE", "1");
-        command.output().context(python.to_owned())
-    });
-    match tested {
+    match pytest(python, "python/tests", &[]) {
         Ok(output) => {
             let text = String::from_utf8_lossy(&output.stdout);
             println!("{text}{}", String::from_utf8_lossy(&output.stderr));
@@ -57,6 +54,33 @@ pub fn test_package(python: &str, tally: &mut Tally) -> bool {
             false
         }
     }
+}
+
+/// Runs the long form of the package's tests. Returns its name, and true where it passed.
+pub fn long() -> (String, bool) {
+    const TESTS: &str = "python/tests/test_cluster.py";
+    let tested = prepare(true).context(NONE).and_then(|python| pytest(&python, TESTS, &[JOBS]));
+    let passed = match tested {
+        Ok(output) => {
+            print!("{}", String::from_utf8_lossy(&output.stdout));
+            output.status.success()
+        }
+        Err(error) => {
+            println!("the sweep of a cluster is not tested: {error:#}");
+            false
+        }
+    };
+    (format!("{}={} {TESTS}", JOBS.0, JOBS.1), passed)
+}
+
+/// Builds the package and runs some of its tests.
+fn pytest(python: &str, tests: &str, environment: &[(&str, &str)]) -> Result<Output> {
+    let site = installed()?;
+    println!("\n== pytest {tests}");
+    let mut command = Command::new(python);
+    command.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", tests]).current_dir(root());
+    command.env("PYTHONPATH", site).env("PYTHONDONTWRITEBYTECODE", "1").envs(environment.iter().copied());
+    command.output().context(python.to_owned())
 }
 
 /// The number before a word in the last line of pytest.
@@ -95,7 +119,7 @@ fn folder() -> PathBuf {
 }
 
 fn is_whole(python: &str) -> bool {
-    run(python, &["-c", "import numpy, pxr, alembic3d, pytest, mypy"])
+    run(python, &["-c", "import numpy, pxr, alembic3d, ray, pyarrow, pytest, mypy"])
 }
 
 fn run(program: &str, arguments: &[&str]) -> bool {

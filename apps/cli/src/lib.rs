@@ -38,6 +38,13 @@ use arguments::{Arguments, Command};
 /// Runs the program with the words of a command line, the first of which is its name. Returns its exit code. The process
 /// is the program's: it handles signals, and may end or begin anew at once.
 pub fn run_program(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    if words.get(1).is_some_and(|word| word == "sweep") {
+        output::complain(
+            "`sweep` is a command of the `strandline` that `pip install 'strandline[sweep]'` installs",
+        );
+        return exit::USAGE as u8;
+    }
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => return help(&error),

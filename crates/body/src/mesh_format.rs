@@ -44,7 +44,15 @@ impl MeshFormat {
             expected: "obj, gltf, glb, vrm, ply or stl",
             mend: match ending.as_str() {
                 "blend" => "in Blender, choose File > Export > glTF 2.0",
-                "fbx" | "abc" | "usd" | "usda" | "usdc" | "usdz" | "dae" | "3ds" | "max" | "ma" | "mb" => {
+                "usd" | "usda" | "usdc" | "usdz" => {
+                    "the `strandline` of `pip install 'strandline[usd]'` reads it; or open it in Blender and choose File > \
+                     Export > glTF 2.0"
+                }
+                "abc" => {
+                    "the `strandline` of `pip install 'strandline[abc]'` reads it; or open it in Blender and choose File > \
+                     Export > glTF 2.0"
+                }
+                "fbx" | "dae" | "3ds" | "max" | "ma" | "mb" => {
                     "open it in Blender and choose File > Export > glTF 2.0"
                 }
                 _ => "export the body as glTF 2.0 or OBJ",

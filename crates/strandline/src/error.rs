@@ -63,7 +63,7 @@ pub enum Error {
     /// The name of a file of moving hair belongs to no format.
     #[error(
         "`{found}` names no format of moving hair, expected .npz, .usda, or a name with a number in it for a file \
-         a frame, such as hair.%04d.hair: {}", path.display()
+         a frame, such as hair.%04d.hair{}: {}", by_extra(found), path.display()
     )]
     OutName {
         /// The ending.
@@ -244,6 +244,15 @@ impl Error {
     pub(crate) fn write(what: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self + use<> {
         let path = path.to_owned();
         move |source| Self::Write { what, path, source }
+    }
+}
+
+/// The program that writes moving hair of an ending which this one cannot write.
+fn by_extra(ending: &str) -> &'static str {
+    match ending {
+        "usd" | "usdc" => "; the `strandline` of `pip install 'strandline[usd]'` writes it",
+        "abc" => "; the `strandline` of `pip install 'strandline[abc]'` writes it",
+        _ => "",
     }
 }
 

@@ -155,8 +155,11 @@ pub const FORMATS: [Format; 10] = [
 /// The way in for files of other programs.
 fn way_in(ending: &str) -> &'static str {
     match ending {
-        "abc" | "usdc" | "usdz" => {
-            "import it in Blender and export the curves as USD with the ending .usda (a binary USD: `usdcat -o hair.usda FILE`)"
+        "abc" => {
+            "the `strandline` of `pip install 'strandline[abc]'` reads it; or import it in Blender and export the curves as USD with the ending .usda"
+        }
+        "usdc" | "usdz" => {
+            "the `strandline` of `pip install 'strandline[usd]'` reads it; or write it as text: `usdcat -o hair.usda FILE`"
         }
         "fbx" | "blend" | "ma" | "mb" | "hip" | "max" | "c4d" => {
             "open it in its program, or in Blender, make the hair curves, and export them as USD with the ending .usda"

@@ -231,7 +231,7 @@ fn several_prims_of_usd_are_groups_and_mistakes_are_named() {
     assert!(refused("[2, 3]", "[2, 1e300]").contains("a curve of"));
     assert!(refused("BasisCurves", "Mesh").contains("no BasisCurves"));
     assert!(refused("#usda", "usda").contains("starts with `usda"));
-    assert!(refused("#usda 1.0", "PXR-USDC").contains("usdcat -o"));
+    assert!(refused("#usda 1.0", "PXR-USDC").contains("pip install 'strandline[usd]'"));
     assert!(refused("    }\n}\n", "").contains("at byte"));
     let deep =
         format!("#usda 1.0\ndef Xform \"a\" {{ int[] x = {}1{} }}", "[".repeat(100_000), "]".repeat(100_000));
@@ -245,9 +245,11 @@ fn files_of_other_programs_are_told_the_way_in() {
     let folder = tempfile::tempdir().unwrap();
     let told = |name: &str| Groom::load(folder.path().join(name)).unwrap_err().to_string();
     for (name, way) in [
+        ("a.abc", "pip install 'strandline[abc]'"),
         ("a.abc", "import it in Blender"),
+        ("a.usdc", "pip install 'strandline[usd]'"),
         ("a.usdc", "usdcat -o hair.usda"),
-        ("a.usdz", "ending .usda"),
+        ("a.usdz", "pip install 'strandline[usd]'"),
         ("a.fbx", "open it in its program"),
         ("a.blend", "export them as USD"),
         ("a.vrm", "a mesh is a body"),

@@ -105,7 +105,7 @@ fn errors_say_what_to_do() {
         at,
         &["sim", "--out", "a.abc"],
         1,
-        &["`abc` names no format of moving hair", ".usda", "%04d", "a.abc"],
+        &["`abc` names no format of moving hair", ".usda", "%04d", "pip install 'strandline[abc]'", "a.abc"],
     );
     fails(at, &["sim", "--scene", "small.toml", "--out", "f/%02d.abc"], 1, &["`abc`", "f/00.abc"]);
     fails(at, &["sim", "--what", "hair", "--out", "a.npz"], 2, &["guides, strands"]);

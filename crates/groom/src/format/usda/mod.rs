@@ -31,7 +31,8 @@ pub fn read_at(bytes: &[u8], frame: Option<u32>) -> Result<Parsed, GroomError> {
             format: ".usda",
             found: "a binary USD".to_owned(),
             expected: "a text USD".to_owned(),
-            mend: "write it as text: `usdcat -o hair.usda FILE`, or export `.usda` from Blender or Houdini",
+            mend: "the `strandline` of `pip install 'strandline[usd]'` reads it; or write it as text: `usdcat -o \
+                   hair.usda FILE`, or export `.usda` from Blender or Houdini",
         });
     }
     let text = utf8_text(bytes);
