@@ -18,7 +18,8 @@ pub fn head_motion(scene: &Scene, pivot: Option<Vec3>, bounds: Aabb) -> Result<H
         RecordedMotion::load(&scene.path(file), &section.joint, clip, f64::from(section.scale))
     };
     let recorded = section.file.as_ref().map(|file| load(file)).transpose()?;
-    Ok(HeadMotion::new(section, pivot)?.with_recorded(recorded).with_solids(solid_motions(scene)?))
+    let solids = solid_motions(&scene.colliders, section.interpolation)?;
+    Ok(HeadMotion::new(section, pivot)?.with_recorded(recorded).with_solids(solids))
 }
 
 /// The box around strands and body \[m\].

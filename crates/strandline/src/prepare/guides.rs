@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::{
     Error, Scene,
-    body::{BodyFrame, Carrier, Collider, Mesh, Pose, Shape, SkinMotion, Solids},
+    body::{Carrier, Collider, Mesh, Pose, Shape, SkinMotion, Solids},
     groom::{Groom, Guides, Outside},
     scene::origin::about,
     strands::attributes,
@@ -14,6 +14,7 @@ use super::{
     framing::{bounds, head_motion},
     loading::Loading,
     looks, memory, moving,
+    start::Start,
 };
 
 /// Depth \[m\] up to which no note is made: less than the error of a sampled body.
@@ -87,14 +88,6 @@ fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<u
     let bound = count - guides.len();
     notes.push(format!("{} strands are simulated ({how}), {bound} are bound to them", guides.len()));
     Some(guides)
-}
-
-/// The head when the hair begins to move.
-#[derive(Clone, Default)]
-pub(super) struct Start {
-    /// An origin \[m\] of the world beside the head, and the body seen from there.
-    origin: Vec3,
-    body: BodyFrame,
 }
 
 /// The head when the hair begins to move. Hair with a pose of its own rests as it did where its run began.

@@ -4,11 +4,11 @@ use glam::Vec3;
 
 use super::Sources;
 use super::cover::Cover;
-use super::guides::Start;
 use super::memory;
 use super::placing::{Defined, Placings};
 use super::shown::Shown;
 use super::skull::Skull;
+use super::start::Start;
 use crate::{
     Error, Scene,
     body::{Collider, Mesh, Shape, SkinMotion, VertexMotion},

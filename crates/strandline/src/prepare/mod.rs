@@ -28,6 +28,7 @@ mod shown;
 mod skull;
 mod solids;
 mod sources;
+mod start;
 mod units;
 mod wrap;
 

@@ -30,7 +30,7 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
         loading.colliders.push(Collider::new(shape, Carrier::HEAD, scene.body.friction)?);
     }
-    let beside = solid_motion::colliders(scene)?;
+    let beside = solid_motion::colliders(&scene.colliders)?;
     loading.colliders.extend(beside);
     Ok(())
 }

@@ -219,7 +219,7 @@ impl Scene {
         self.motion.motion()?;
         self.wind.curve()?;
         camera_motion::curve(&self.camera.keyframes)?;
-        solid_motion::solid_motions(self)?;
+        solid_motion::solid_motions(&self.colliders, self.motion.interpolation)?;
         if matches!(self.devices.simulation, Backend::Gpu(_)) {
             self.simulation.check_on_gpu()?;
         }

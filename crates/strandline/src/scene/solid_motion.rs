@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use super::{CarrierName, ColliderSection, KeyframeSection, Scene};
+use super::{CarrierName, ColliderSection, KeyframeSection};
 use crate::{
     Error,
-    body::{Carrier, Collider, Motion, Pose, Shape},
+    body::{Carrier, Collider, Interpolation, Motion, Pose, Shape},
 };
 
 /// A solid that moves through keyframes, about its middle.
@@ -17,24 +17,28 @@ pub(crate) struct SolidMotion {
     carrier: CarrierName,
 }
 
-/// The motions of the solids of a scene that have keyframes, in their order.
+/// The motions of the solids that have keyframes, in their order, given the way from key to key where a key does not name
+/// its own.
 ///
 /// # Errors
 /// Keyframes that are not in the order of their times.
-pub(crate) fn solid_motions(scene: &Scene) -> Result<Vec<SolidMotion>, Error> {
+pub(crate) fn solid_motions(
+    solids: &[ColliderSection],
+    interpolation: Interpolation,
+) -> Result<Vec<SolidMotion>, Error> {
     let motion = |solid: &ColliderSection| {
-        let keys = solid.keyframes().iter().map(|key| key.keyframe(scene.motion.interpolation));
+        let keys = solid.keyframes().iter().map(|key| key.keyframe(interpolation));
         let motion = Motion::keyframes(&keys.collect::<Vec<_>>())?;
         Ok(SolidMotion { motion, middle: solid.middle(), carrier: solid.carrier() })
     };
-    scene.colliders.iter().filter(|solid| !solid.keyframes().is_empty()).map(motion).collect()
+    solids.iter().filter(|solid| !solid.keyframes().is_empty()).map(motion).collect()
 }
 
-/// The solids of a scene: those with keyframes, in their order, are the pieces 1, 2 and so on, about their middles.
+/// The solids beside a body: those with keyframes, in their order, are the pieces 1, 2 and so on, about their middles.
 ///
 /// # Errors
-/// As [`ColliderSection::collider`]; more solids with keyframes than pieces can be counted.
-pub(crate) fn colliders(scene: &Scene) -> Result<Vec<Collider>, Error> {
+/// As [`ColliderSection::collider`].
+pub(crate) fn colliders(solids: &[ColliderSection]) -> Result<Vec<Collider>, Error> {
     let mut moved = 0;
     let solid = |section: &ColliderSection| {
         let collider = section.collider()?;
@@ -52,7 +56,7 @@ pub(crate) fn colliders(scene: &Scene) -> Result<Vec<Collider>, Error> {
         };
         Ok(Collider { shape, carrier: Carrier::Moved(moved), ..collider })
     };
-    scene.colliders.iter().map(solid).collect()
+    solids.iter().map(solid).collect()
 }
 
 impl SolidMotion {
