@@ -5,9 +5,8 @@
 //! that of linear light, before exposure and tone map, of the covered part of a pixel.
 //!
 //! A lighting artist asks for 0.5 of the front-lit crown in the rim of brown hair, 1 in that of blonde hair, and a 99th
-//! percentile of 6 medians in a soft box. A light behind makes a rim of 3.3 times the front-lit crown in brown hair
-//! and 2.2 in blonde. The ring in a soft box depends on the style and on the side: 6.2 here, 7.7 from between the front
-//! and the side; a bob with its side parting, whose crown faces the box, has 3.2.
+//! percentile of 6 medians in a soft box. A light behind makes a rim of 5.2 times the front-lit crown in brown hair
+//! and 3.0 in blonde. The ring in a soft box depends on the style and on the side; here it is 9.7.
 
 use std::sync::Arc;
 
@@ -22,8 +21,8 @@ use strandline_render::{
 
 use crate::linear::{Linear, channel};
 
-/// Width and height \[pixel\].
-const SIZE: usize = 384;
+/// Width and height of pictures of the crown \[pixel\]: the rim has 175 pixels.
+const SIZE: usize = 192;
 /// Distance of the crown's lower edge from the top of the head \[m\].
 const CROWN: f32 = 0.08;
 /// Breadth of the rim \[m\].
@@ -34,20 +33,23 @@ pub(crate) struct Head {
     guides: Guides,
     mesh: Mesh,
     camera: Camera,
+    /// Width and height of its pictures \[pixel\].
+    size: usize,
 }
 
 impl Head {
     fn new() -> Self {
-        Self::of(2_000)
+        Self::of(2_000, SIZE)
     }
 
-    /// A head with a number of guides.
-    pub(crate) fn of(strand_count: usize) -> Self {
+    /// A head with a number of guides, in pictures of a width and height \[pixel\].
+    pub(crate) fn of(strand_count: usize, size: usize) -> Self {
         let groom = StyleSettings { strand_count, ..StyleSettings::new(Style::Long) }.grow().unwrap();
         Self {
             guides: Guides::resample(&groom, 16).unwrap(),
             mesh: Mannequin::new().mesh(),
             camera: Camera::front(),
+            size,
         }
     }
 
@@ -61,7 +63,7 @@ impl Head {
         let settings = PictureSettings {
             transparent: true,
             layers: true,
-            ..PictureSettings::sized(SIZE as u32, SIZE as u32)
+            ..PictureSettings::sized(self.size as u32, self.size as u32)
         };
         let input = FrameInput {
             positions: self.guides.positions(),
@@ -87,32 +89,34 @@ impl Head {
         let top = self.mesh.positions.iter().map(|point| point.y).fold(f32::MIN, f32::max);
         let [mask, depth] = ["mask.hair", "depth.Z"].map(|name| channel(layers, name));
         let world_from_view = self.camera.view_from_world().inverse();
-        let slope = 2.0 / (SIZE as f32 * self.camera.focal());
-        let middle = |at: usize| at as f32 + 0.5 - 0.5 * SIZE as f32;
+        let size = self.size;
+        let slope = 2.0 / (size as f32 * self.camera.focal());
+        let middle = |at: usize| at as f32 + 0.5 - 0.5 * size as f32;
         let height = |at: usize| {
-            let (x, y) = (slope * middle(at % SIZE), -slope * middle(at / SIZE));
+            let (x, y) = (slope * middle(at % size), -slope * middle(at / size));
             world_from_view.transform_point3(depth[at] * Vec3::new(x, y, -1.0)).y
         };
-        (0..SIZE * SIZE).map(|at| mask[at] >= 0.5 && height(at) > top - CROWN).collect()
+        (0..size * size).map(|at| mask[at] >= 0.5 && height(at) > top - CROWN).collect()
     }
 
     /// The pixels of its rim.
     fn rim(&self, layers: &Layers, crown: &[bool]) -> Vec<bool> {
         let distance = self.camera.position.distance(self.camera.target);
-        let reach = (RIM * 0.5 * SIZE as f32 * self.camera.focal() / distance).round() as i32;
+        let size = self.size;
+        let reach = (RIM * 0.5 * size as f32 * self.camera.focal() / distance).round() as i32;
         let alpha = channel(layers, "A");
         let empty = |x: i32, y: i32| {
-            let inside = (0..SIZE as i32).contains(&x) && (0..SIZE as i32).contains(&y);
-            inside && alpha[y as usize * SIZE + x as usize] < 0.01
+            let inside = (0..size as i32).contains(&x) && (0..size as i32).contains(&y);
+            inside && alpha[y as usize * size + x as usize] < 0.01
         };
         let offsets = || (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y)));
         let near = |at: usize| {
-            let (x, y) = ((at % SIZE) as i32, (at / SIZE) as i32);
+            let (x, y) = ((at % size) as i32, (at / size) as i32);
             offsets().any(|(right, down)| {
                 right * right + down * down <= reach * reach && empty(x + right, y + down)
             })
         };
-        (0..SIZE * SIZE).map(|at| crown[at] && near(at)).collect()
+        (0..size * size).map(|at| crown[at] && near(at)).collect()
     }
 }
 
@@ -123,7 +127,7 @@ fn luminances(layers: &Layers, mask: &[bool]) -> Vec<f32> {
     let pixels = Linear::of(layers).pixels;
     let mut found: Vec<f32> = pixels.iter().enumerate().filter(|(at, _)| mask[*at]).map(of).collect();
     found.sort_by(f32::total_cmp);
-    assert!(found.len() > 500, "{} pixels", found.len());
+    assert!(found.len() > 150, "{} pixels", found.len());
     found
 }
 
@@ -155,8 +159,9 @@ fn shown(on: &On, preset: Preset) -> [f32; 2] {
 law! {
     fn brown_hair_glows_from_behind_and_has_a_ring_in_a_soft_box(on) {
         let [glow, ring] = shown(on, Preset::Brown);
-        // 0.5 is asked for; 1.3 is left where light does not go through fibres.
-        assert!(glow >= 2.0, "{glow}");
+        // 0.5 is asked for; 1.8 is left where light does not go through fibres.
+        assert!(glow >= 3.0, "{glow}");
+        // 3.8 is left where the surfaces of fibres are dull.
         assert!(ring >= 6.0, "{ring}");
     }
 }
@@ -164,7 +169,7 @@ law! {
 law! {
     fn blonde_hair_is_brighter_from_behind_than_from_the_front(on) {
         let [glow, _] = shown(on, Preset::Blonde);
-        // 1 is asked for; 1.2 is left where light does not go through fibres.
-        assert!(glow >= 1.6, "{glow}");
+        // 1 is asked for; 1.4 is left where light does not go through fibres.
+        assert!(glow >= 2.0, "{glow}");
     }
 }

@@ -18,7 +18,7 @@ law! {
     fn light_is_scattered_as_much_by_some_of_many_strands_as_by_all_of_few(on) {
         let lights = Light::studio(Camera::front().target).map(|light| Light { samples: 1, ..light });
         let light = |guides| {
-            let head = Head::of(guides);
+            let head = Head::of(guides, 384);
             let layers = head.lit_by(on, Preset::Blonde, &lights);
             mean(&layers, &head.crown(&layers))
         };
