@@ -8,8 +8,10 @@ use strandline_body::{
     BodyFrame, Carrier, Collider, DistanceGrid, Mannequin, Mesh, Pose, Shape, SignedDistance, SkinRoots,
     SkinSolid,
 };
+use strandline_checks::gpu;
 use strandline_groom::{Groom, Guides, LANES};
-use strandline_sim::{CpuRunner, Drive, Model, Settings, State};
+use strandline_sim::gpu::GpuRunner;
+use strandline_sim::{CpuRunner, Drive, Model, Settings, State, StrandMethod};
 
 const POINTS: usize = 16;
 /// Length of a step \[s\].
@@ -116,27 +118,68 @@ fn winding(mesh: &Mesh, point: Vec3) -> f64 {
     mesh.triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
-#[test]
-fn hair_stays_outside_a_bust_that_turns_and_shrugs() {
-    let bust = Bust::new(240);
-    let model = bust.model(bust.skin.clone());
-    let mut state = model.rest_state(BodyFrame::REST);
-    let mut runner = CpuRunner::from(model);
+/// Moves the bust for a number of steps of a length \[s\] and looks every 0.2 s at the depths of free points: those inside,
+/// all, and the deepest \[m\].
+fn looks(
+    bust: &Bust,
+    (steps, length): (usize, f32),
+    mut step: impl FnMut(&Drive) -> State,
+) -> (usize, usize, f32) {
+    let every = (0.2 / length).round() as usize;
     let (mut inside, mut all, mut deepest) = (0, 0, 0.0_f32);
-    for step in 1..=240 {
-        let body = bust.frame(step as f32 * STEP);
-        let report = runner.step(&mut state, &Drive::of(body.clone()));
-        assert_eq!(report.non_finite, 0);
-        if step % 24 == 0 {
+    for index in 1..=steps {
+        let body = bust.frame(index as f32 * length);
+        let state = step(&Drive::of(body.clone()));
+        if index % every == 0 {
             let depths = bust.depths(&state, &body);
             all += depths.len();
             inside += depths.iter().filter(|depth| **depth > 1e-5).count();
             deepest = depths.into_iter().fold(deepest, f32::max);
         }
     }
+    (inside, all, deepest)
+}
+
+#[test]
+fn hair_stays_outside_a_bust_that_turns_and_shrugs() {
+    let bust = Bust::new(240);
+    let model = bust.model(bust.skin.clone());
+    let mut state = model.rest_state(BodyFrame::REST);
+    let mut runner = CpuRunner::from(model);
+    let (inside, all, deepest) = looks(&bust, (240, STEP), |drive| {
+        assert_eq!(runner.step(&mut state, drive).non_finite, 0);
+        state.clone()
+    });
     assert!(inside * 1000 <= all, "{inside} of {all} points inside");
     assert!(deepest < 2e-3, "{deepest} m deep");
 }
+
+/// The same on a device, with rods and with springs; against the skin at rest hair lies inside.
+#[test]
+fn hair_on_a_gpu_stays_outside_a_bust_that_turns_and_shrugs() {
+    let Some(gpu) = gpu() else { return };
+    let bust = Bust::new(48);
+    let run = |shape: Shape, method: StrandMethod| {
+        let mut model = bust.model(shape);
+        let mut settings = model.settings().clone();
+        (settings.strands.method, settings.time_step) = (method, 2.0 * STEP);
+        model.set_settings(&settings).unwrap();
+        let mut runner = GpuRunner::new(&gpu, model).unwrap();
+        looks(&bust, (48, 2.0 * STEP), |drive| {
+            runner.step(drive).unwrap();
+            runner.state().unwrap()
+        })
+    };
+    for method in [StrandMethod::Rods, StrandMethod::Constrain] {
+        let (inside, all, deepest) = run(bust.skin.clone(), method);
+        assert!(inside * 1000 <= all, "{method:?}: {inside} of {all} points inside");
+        assert!(deepest < 2e-3, "{method:?}: {deepest} m deep");
+    }
+    let Shape::Skin(skin) = &bust.skin else { unreachable!() };
+    let (inside, all, _) = run(Shape::Grid(Arc::clone(skin.grid())), StrandMethod::Rods);
+    assert!(inside * 1000 > 3 * all, "{inside} of {all}: the law can fail");
+}
+
 /// A closed tube along y of 40 cm, and guides that stand on it around its middle.
 fn tube() -> (Mesh, Guides) {
     let (rings, around) = (41_u32, 24_u32);

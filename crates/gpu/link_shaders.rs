@@ -10,9 +10,12 @@ mod threads;
 /// The module that the shaders of every crate import as `package::kit`.
 const KIT: &str = include_str!("kit/kit.wesl");
 
-/// The module of signed distances that simulation and pictures import as `package::solid_table`, with a module
-/// `solid_rows` of their own.
-const SOLID_TABLE: &str = include_str!("../body/src/solid_table.wesl");
+/// The modules of signed distances that simulation and pictures import, with a module `solid_rows` of their own.
+const SOLIDS: [(&str, &str); 3] = [
+    ("solid_table", include_str!("../body/src/solid_table.wesl")),
+    ("skin_table", include_str!("../body/src/skin_table.wesl")),
+    ("triangle_place", include_str!("../body/src/triangle_place.wesl")),
+];
 
 /// Marks of an entry point.
 const ENTRIES: [&str; 3] = ["@compute", "@vertex", "@fragment"];
@@ -54,7 +57,7 @@ fn shaders(folder: &Path) -> BTreeMap<String, String> {
                 let text = std::fs::read_to_string(&path).expect("a shader is text");
                 let other = found.insert(name.to_owned(), text);
                 assert!(
-                    other.is_none() && !["kit", "solid_table"].contains(&name),
+                    other.is_none() && name != "kit" && SOLIDS.iter().all(|(known, _)| *known != name),
                     "two modules are called {name}: {}",
                     path.display()
                 );
@@ -79,8 +82,10 @@ fn beside_kit(shaders: &BTreeMap<String, String>) -> PathBuf {
     let sizes = format!("const THREADS = {threads}u;\nconst MANY = {many}u;\n");
     let kit = format!("{KIT}\n// Threads of a workgroup: threads.rs.\n{sizes}");
     std::fs::write(package.join("kit.wesl"), kit).expect("cargo made the folder");
-    let table = with_constants(SOLID_TABLE);
-    std::fs::write(package.join("solid_table.wesl"), table).expect("cargo made the folder");
+    for (name, text) in SOLIDS {
+        let text = with_constants(text);
+        std::fs::write(package.join(format!("{name}.wesl")), text).expect("cargo made the folder");
+    }
     package
 }
 

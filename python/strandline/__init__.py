@@ -17,11 +17,13 @@ from . import _native
 from .body import Body
 from .cache import Cache
 from .errors import Error
+from .film import Film
 from .groom import Groom, grow, load
 from .picture import Camera, Picture
 from .scene import Look, Motion, Scene, Settings
 from .simulation import Frame, Simulation, StepReport, Written
 from .sweeps import sweep
+from .window import view
 
 __version__: str = _native.__version__
 
@@ -30,6 +32,7 @@ __all__ = [
     "Cache",
     "Camera",
     "Error",
+    "Film",
     "Frame",
     "Gpu",
     "Groom",
@@ -45,6 +48,7 @@ __all__ = [
     "grow",
     "load",
     "sweep",
+    "view",
 ]
 
 

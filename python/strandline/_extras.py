@@ -49,6 +49,13 @@ def body(path: str, scale: float = 1.0) -> Body:
     return usd.load_body(path)
 
 
+def write_obj(of: Body, path: str) -> None:
+    """Writes a body at rest as an .obj, to the bit."""
+    with open(path, "w", encoding="utf-8") as file:
+        np.savetxt(file, of.vertices, fmt="v %.9g %.9g %.9g")
+        np.savetxt(file, of.faces.astype(np.int64) + 1, fmt="f %d %d %d")
+
+
 class Files:
     """Copies of such files in a folder of their own, for as long as they are needed."""
 
@@ -94,9 +101,7 @@ class Files:
             np.savez(copy, vertices=own.motion, faces=own.faces, fps=own.frames_per_second)
             return copy
         copy = self.place(path, ".obj")
-        with open(copy, "w", encoding="utf-8") as file:
-            np.savetxt(file, own.vertices, fmt="v %.9g %.9g %.9g")
-            np.savetxt(file, own.faces.astype(np.int64) + 1, fmt="f %d %d %d")
+        write_obj(own, copy)
         return copy
 
     def named(self, text: str) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _extras, _native
+from . import _arrays, _extras, _native
 from .errors import Error
 
 
@@ -32,10 +32,10 @@ class Body:
         frames_per_second: float = 24.0,
         notes: Sequence[str] = (),
     ) -> None:
-        self.vertices = np.ascontiguousarray(vertices, dtype=np.float32)
+        self.vertices = np.ascontiguousarray(_arrays.host(vertices, "vertices"), dtype=np.float32)
         if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
             raise Error(f"vertices has the shape {self.vertices.shape}, expected (n, 3)", "value")
-        corners = np.asarray(faces)
+        corners = np.asarray(_arrays.host(faces, "faces"))
         if corners.size and corners.min() < 0:
             raise Error(f"faces has the index {corners.min()}, expected 0 or more", "value")
         self.faces = np.ascontiguousarray(corners, dtype=np.uint32)
@@ -43,7 +43,7 @@ class Body:
             raise Error(f"faces has the shape {self.faces.shape}, expected (n, 3): triangles", "value")
         self.motion: NDArray[np.float32] | None = None
         if motion is not None:
-            moving = np.ascontiguousarray(motion, dtype=np.float32)
+            moving = np.ascontiguousarray(_arrays.host(motion, "motion"), dtype=np.float32)
             if moving.ndim != 3 or moving.shape[1:] != self.vertices.shape:
                 raise Error(f"motion has the shape {moving.shape}, expected (frame, {len(self.vertices)}, 3)", "value")
             self.motion = moving

@@ -83,6 +83,9 @@ class Cache:
         point too, for motion blur: by the frames before and after."""
         return writer(os.path.splitext(os.fspath(path))[1].lower())(self, path, for_=for_, velocities=velocities)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Cache, (self.path,)
+
     def __repr__(self) -> str:
         return f"Cache({len(self)} frames of {len(self.starts) - 1} {self.what}, {self.path})"
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _extras, _native, _toml, research
+from . import _arrays, _extras, _native, _toml, research
 from .errors import Error
 from .scene import Scene
 
@@ -59,7 +59,7 @@ class Groom:
         group_names: dict[int, str] | None = None,
         **attributes: ArrayLike | None,
     ) -> None:
-        array = np.ascontiguousarray(points, dtype=np.float32)
+        array = np.ascontiguousarray(_arrays.host(points, "points"), dtype=np.float32)
         if starts is None:
             if array.ndim != 3 or array.shape[2] != 3:
                 text = f"points has the shape {array.shape}, expected (strand, point, 3), or (point, 3) with starts"
@@ -140,7 +140,7 @@ class Groom:
         if name not in ATTRIBUTES:
             raise Error(_unknown(name), "value")
         kind, columns, _ = ATTRIBUTES[name]
-        array = np.ascontiguousarray(numbers, dtype=kind)
+        array = np.ascontiguousarray(_arrays.host(numbers, name), dtype=kind)
         if array.ndim != (1 if columns == 0 else 2) or (columns > 0 and array.shape[1] != columns):
             wanted = "(n,)" if columns == 0 else f"(n, {columns if columns > 0 else 'guides'})"
             raise Error(f"{name} has the shape {array.shape}, expected {wanted}", "value")
@@ -197,6 +197,13 @@ class Groom:
     def copy(self) -> Groom:
         """A groom with arrays of its own."""
         return Groom(self.points.copy(), self.starts.copy(), widths=np.copy(self.widths), group_names=self.group_names, **{name: numbers.copy() for name, numbers in self.attributes.items()})
+
+    def __dlpack__(self, **options: Any) -> Any:
+        """The points for another library, shape (strand, point, 3), without a copy."""
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[Any, Any]:
+        return self.points.__dlpack_device__()
 
     def __len__(self) -> int:
         return self.strand_count

@@ -178,6 +178,13 @@ class Picture:
     def _repr_png_(self) -> bytes:
         return self.png()
 
+    def __dlpack__(self, **options: Any) -> Any:
+        """The pixels for another library, without a copy."""
+        return self.pixels.__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[Any, Any]:
+        return self.pixels.__dlpack_device__()
+
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
         return np.array(self.pixels, dtype=dtype, copy=bool(copy))
 

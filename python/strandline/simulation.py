@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _extras, _native, _toml, cache
+from . import _arrays, _extras, _native, _toml, cache
 from .body import Body
 from .errors import Error
+from .film import Film
 from .groom import Groom, load
 from .picture import Camera, Picture
 from .progress import Progress
@@ -91,6 +92,7 @@ class Simulation:
         moving = self._body is not None and self._body.motion is not None
         if motion is None and moving:
             motion = Motion.still()
+        held: Groom | None = None
         changes: dict[str, Any] = dict(sections)
         grooms: list[Any] = []
         meshes: list[Any] = []
@@ -100,6 +102,7 @@ class Simulation:
         elif groom is not None:
             own = groom if isinstance(groom, Groom) else Groom(groom)
             own.check()
+            held = own
             changes.update({"groom.file": "groom", "groom.scale": 1.0, "groom.up": "y", "groom.root_end": "first"})
             grooms.append(("groom", own._dictionary()))
         if isinstance(body, str | os.PathLike):
@@ -124,6 +127,7 @@ class Simulation:
         self._frame = 0
         self._time = 0.0
         self._scene = scene
+        self._sources = (held, self._body)
         fitted = tomllib.loads(self._native.scene())
         self._fitted = fitted
         self.simulated_on, self.drawn_on, self.notes = self._native.about()
@@ -145,12 +149,12 @@ class Simulation:
         given stays. Steps have a fixed length (``simulation.time_step``), so zero or more happen; each has a report, on
         a GPU with a later call.
         """
-        rows = None if head is None else np.asarray(head, dtype=np.float32)
+        rows = None if head is None else np.asarray(_arrays.host(head, "head"), dtype=np.float32)
         if rows is not None and rows.shape != (4, 4):
             raise Error(f"head has the shape {rows.shape}, expected (4, 4)", "value")
         skin = None
         if vertices is not None:
-            skin = np.ascontiguousarray(vertices, dtype=np.float32)
+            skin = np.ascontiguousarray(_arrays.host(vertices, "vertices"), dtype=np.float32)
             if self._body is None:
                 raise Error("vertices are given for a body from a file or the built-in one, expected Simulation(body=Body(vertices, faces))", "value")
             if skin.shape != self._body.vertices.shape:
@@ -288,8 +292,43 @@ class Simulation:
         places = self.points.reshape(-1, 3)
         return places if self._body is None else np.concatenate([places, self._body.vertices])
 
+    def film(
+        self,
+        frames: int | None = None,
+        camera: Camera | str | None = None,
+        *,
+        width: int = 320,
+        height: int = 240,
+        every: int = 2,
+        progress: bool | None = None,
+    ) -> Film:
+        """Plays frames and draws every so many of them as a small moving picture, which notebooks show. A side as the camera
+        frames the first of them."""
+        if every < 1:
+            raise Error(f"every is {every}, expected 1 or more", "value")
+        pictures: list[Picture] = []
+        for frame in self.frames(frames, progress=progress):
+            if frame.index % every == 0 or not pictures:
+                chosen = pictures[0].camera if pictures else camera
+                pictures.append(self.picture(chosen, width=width, height=height))
+        return Film(pictures, float(self._fitted["film"]["frames_per_second"]) / every)
+
     def _repr_png_(self) -> bytes:
         return self.picture().png()
+
+    def __dlpack__(self, **options: Any) -> Any:
+        """The points of the moment for another library, shape (strand, point, 3): without a copy where it takes arrays that
+        are read-only."""
+        try:
+            return self.points.__dlpack__(**options)
+        except BufferError:
+            return self.points.copy().__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[Any, Any]:
+        return self._view.__dlpack_device__()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise Error("a simulation is not pickled, expected its scene, groom and body, from which another one is made", "value")
 
     # Files
 

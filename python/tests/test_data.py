@@ -17,13 +17,13 @@ def refused(kind, *words):
 
 def test_import_is_quick_and_loads_no_gpu_or_window_library():
     code = (
-        "import time; import numpy; begun = time.perf_counter(); import strandline; "
-        "spent = time.perf_counter() - begun; maps = open('/proc/self/maps').read(); "
+        "import time; import numpy; begun = time.process_time(); import strandline; "
+        "spent = time.process_time() - begun; maps = open('/proc/self/maps').read(); "
         "print(spent, [name for name in ('libvulkan', 'libX11', 'libwayland', 'libGL') if name in maps])"
     )
     spent, _, found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.partition(" ")
     assert found.strip() == "[]"
-    assert float(spent) < 0.15 * 4, "a busy machine is given four times the bound"
+    assert float(spent) < 0.15, "CPU time, which other processes do not change"
 
 
 def test_a_groom_of_an_array_is_a_view_of_shape_strand_point(points):

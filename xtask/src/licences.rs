@@ -1,7 +1,7 @@
 //! Allowed licences of dependencies, and the page that lists them.
 //!
-//! docs/licences.md is written from what cargo says of every package; that it names the packages of Cargo.lock
-//! and no others is checked with every test, without cargo and without a network.
+//! docs/licences.md is written from what cargo says of every package, those of the Python package too; that it names the
+//! packages of both Cargo.lock and no others is checked with every test, without cargo and without a network.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fmt::Write;
@@ -15,6 +15,9 @@ use crate::cargo::{cargo_command, root};
 
 /// The packages that are distributed: the program contains their dependencies.
 const PROGRAM: &str = "strandline-cli";
+/// Manifests of the workspaces whose packages the page lists, and their locks.
+const MANIFESTS: [&str; 2] = ["Cargo.toml", "python/Cargo.toml"];
+const LOCKS: [&str; 2] = ["Cargo.lock", "python/Cargo.lock"];
 /// Names of files with a licence, or with a notice that it requires.
 const TEXTS: [&str; 5] = ["license", "licence", "copying", "notice", "copyright"];
 
@@ -110,18 +113,7 @@ fn cargo(arguments: &[&str]) -> bool {
 
 /// Writes docs/licences.md; the texts too, into a file, when there is a name for it.
 pub fn write(texts: Option<&str>) -> bool {
-    let written = metadata().and_then(|metadata| {
-        std::fs::write(page(), table(&metadata)).context("docs/licences.md")?;
-        println!(
-            "docs/licences.md: {} packages",
-            metadata.packages.iter().filter(|p| p.source.is_some()).count()
-        );
-        match texts {
-            Some(path) => std::fs::write(path, all_texts(&metadata)?).with_context(|| path.to_owned()),
-            None => Ok(()),
-        }
-    });
-    match written {
+    match written(texts) {
         Ok(()) => true,
         Err(error) => {
             eprintln!("{error:#}");
@@ -130,17 +122,34 @@ pub fn write(texts: Option<&str>) -> bool {
     }
 }
 
-/// Checks that the page names the packages of Cargo.lock.
+fn written(texts: Option<&str>) -> Result<()> {
+    let [program, python] = MANIFESTS.map(metadata);
+    let (program, python) = (program?, python?);
+    let page_of_all = table(&program, &python);
+    println!("docs/licences.md: {} packages", listed(&page_of_all).len());
+    std::fs::write(page(), page_of_all).context("docs/licences.md")?;
+    match texts {
+        Some(path) => std::fs::write(path, all_texts(&program, &python)?).with_context(|| path.to_owned()),
+        None => Ok(()),
+    }
+}
+
+/// The packages of the locks and those of the page.
+fn both() -> Result<(BTreeSet<String>, BTreeSet<String>)> {
+    let mut all = BTreeSet::new();
+    for lock in LOCKS {
+        all.append(&mut locked(&std::fs::read_to_string(root().join(lock)).context(lock)?)?);
+    }
+    Ok((all, listed(&std::fs::read_to_string(page()).context("docs/licences.md")?)))
+}
+
+/// Checks that the page names the packages of the locks.
 pub fn check() -> bool {
-    let compared =
-        std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock").and_then(|lock| {
-            Ok((locked(&lock)?, listed(&std::fs::read_to_string(page()).context("docs/licences.md")?)))
-        });
-    match compared {
+    match both() {
         Ok((locked, listed)) if locked == listed => true,
         Ok((locked, listed)) => {
             for name in locked.symmetric_difference(&listed) {
-                println!("docs/licences.md and Cargo.lock differ in {name}");
+                println!("docs/licences.md and {} differ in {name}", LOCKS.join(", "));
             }
             println!("`cargo xtask licences` writes the page again");
             false
@@ -169,11 +178,12 @@ fn listed(page: &str) -> BTreeSet<String> {
     page.lines().filter(|line| !line.starts_with("| package ")).filter_map(row).collect()
 }
 
-fn metadata() -> Result<Metadata> {
-    let output = cargo_command(&["metadata", "--format-version", "1", "--locked"])
-        .stderr(Stdio::inherit())
-        .output()
-        .context("cargo metadata")?;
+fn metadata(manifest: &str) -> Result<Metadata> {
+    let output =
+        cargo_command(&["metadata", "--format-version", "1", "--locked", "--manifest-path", manifest])
+            .stderr(Stdio::inherit())
+            .output()
+            .context("cargo metadata")?;
     if !output.status.success() {
         bail!("cargo metadata failed");
     }
@@ -198,16 +208,25 @@ fn in_program(metadata: &Metadata) -> HashSet<&str> {
     found
 }
 
+/// Others' packages of the Python package that the program's workspace has not.
+fn python_alone<'a>(program: &Metadata, python: &'a Metadata) -> impl Iterator<Item = &'a Package> {
+    let named = |package: &Package| format!("{} {}", package.name, package.version);
+    let known: HashSet<String> = program.packages.iter().map(named).collect();
+    let others = python.packages.iter().filter(|package| package.source.is_some());
+    others.filter(move |package| !known.contains(&named(package)))
+}
+
 /// The page.
-fn table(metadata: &Metadata) -> String {
-    let in_program = in_program(metadata);
-    let mut rows = [Vec::new(), Vec::new()];
+fn table(program: &Metadata, python: &Metadata) -> String {
+    let in_program = in_program(program);
+    let mut rows = [Vec::new(), Vec::new(), Vec::new()];
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for package in metadata.packages.iter().filter(|package| package.source.is_some()) {
+    let own = program.packages.iter().filter(|package| package.source.is_some());
+    let placed = own.map(|package| (if in_program.contains(package.id.as_str()) { 0 } else { 2 }, package));
+    for (place, package) in placed.chain(python_alone(program, python).map(|package| (1, package))) {
         let licence = package.license.as_deref().unwrap_or("in a file of its own");
         *counts.entry(licence).or_default() += 1;
-        let row = format!("| {} | {} | {licence} |", package.name, package.version);
-        rows[usize::from(!in_program.contains(package.id.as_str()))].push(row);
+        rows[place].push(format!("| {} | {} | {licence} |", package.name, package.version));
     }
     let mut page = "# Licences of others' code\n\nWritten by `cargo xtask licences` from what each package says \
                     of itself, for all systems; do not edit. `cargo xtask licences FILE` also collects the texts, \
@@ -217,9 +236,12 @@ fn table(metadata: &Metadata) -> String {
     for (licence, count) in &counts {
         writeln!(page, "| {count} | {licence} |").expect("into memory");
     }
-    for (title, rows) in
-        ["In the program, on some system", "For building and tests alone"].iter().zip(&mut rows)
-    {
+    let titles = [
+        "In the program, on some system",
+        "In the extension of the Python package beside these, or for building it",
+        "For building and tests alone",
+    ];
+    for (title, rows) in titles.iter().zip(&mut rows) {
         rows.sort();
         write!(page, "\n## {title}\n\n| package | version | licence |\n|---|---|---|\n{}\n", rows.join("\n"))
             .expect("into memory");
@@ -227,11 +249,12 @@ fn table(metadata: &Metadata) -> String {
     page
 }
 
-/// The texts that the packages in the program have, each text once.
-fn all_texts(metadata: &Metadata) -> Result<String> {
-    let in_program = in_program(metadata);
+/// The texts that the packages in the program and in the Python package have, each text once.
+fn all_texts(program: &Metadata, python: &Metadata) -> Result<String> {
+    let in_program = in_program(program);
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for package in metadata.packages.iter().filter(|package| in_program.contains(package.id.as_str())) {
+    let own = program.packages.iter().filter(|package| in_program.contains(package.id.as_str()));
+    for package in own.chain(python_alone(program, python)) {
         let folder = Path::new(&package.manifest_path).parent().context("a manifest lies in a folder")?;
         for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
             let entry = entry?;
@@ -277,11 +300,15 @@ mod tests {
 
     #[test]
     fn the_page_tells_what_is_in_the_program() {
-        let page = table(&sample());
-        let (program, tests) = page.split_once("For building").unwrap();
+        let mut python = sample();
+        python.packages[1].name = "d".to_owned();
+        let page = table(&sample(), &python);
+        let (program, rest) = page.split_once("In the extension").unwrap();
+        let (extension, tests) = rest.split_once("For building and tests").unwrap();
         assert!(program.contains("| b | 2.0.0 | MIT |") && tests.contains("| c | 2.0.0 | MIT |"));
+        assert!(extension.contains("| d | 2.0.0 | MIT |") && !extension.contains("| c |"));
         assert!(!page.contains("strandline-cli"));
-        assert_eq!(listed(&page), ["b 2.0.0", "c 2.0.0"].map(str::to_owned).into());
+        assert_eq!(listed(&page), ["b 2.0.0", "c 2.0.0", "d 2.0.0"].map(str::to_owned).into());
     }
 
     #[test]

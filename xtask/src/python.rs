@@ -20,8 +20,11 @@ pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, ray, pyarrow,
 const PACKAGES: [&str; 7] =
     ["numpy", "usd-core", "alembic3d>=1.8.12,<2", "ray>=2.60,<3", "pyarrow>=15", "pytest>=8", "mypy>=1.15"];
 
-/// Variable with the number of jobs that tests of sweeps run on two machines of a cluster, one of which is lost.
+/// Variable with the number of jobs that tests of sweeps run on two machines of a cluster, one of which is lost. With it
+/// every page of the guide is run, else the short ones.
 const JOBS: (&str, &str) = ("STRANDLINE_JOBS", "64");
+/// Tests that have a long form.
+const LONG: [&str; 2] = ["python/tests/test_cluster.py", "python/tests/test_guide.py"];
 
 /// The Python of the tests, if it has their packages. `setup` makes one in `target` if there is none, and
 /// packages can be had.
@@ -40,7 +43,7 @@ pub fn prepare(setup: bool) -> Option<String> {
 
 /// Builds the Python package in the target folder and runs its tests, which count as others do.
 pub fn test_package(python: &str, tally: &mut Tally) -> bool {
-    match pytest(python, "python/tests", &[]) {
+    match pytest(python, &["python/tests"], &[]) {
         Ok(output) => {
             let text = String::from_utf8_lossy(&output.stdout);
             println!("{text}{}", String::from_utf8_lossy(&output.stderr));
@@ -58,27 +61,26 @@ pub fn test_package(python: &str, tally: &mut Tally) -> bool {
 
 /// Runs the long form of the package's tests. Returns its name, and true where it passed.
 pub fn long() -> (String, bool) {
-    const TESTS: &str = "python/tests/test_cluster.py";
-    let tested = prepare(true).context(NONE).and_then(|python| pytest(&python, TESTS, &[JOBS]));
+    let tested = prepare(true).context(NONE).and_then(|python| pytest(&python, &LONG, &[JOBS]));
     let passed = match tested {
         Ok(output) => {
             print!("{}", String::from_utf8_lossy(&output.stdout));
             output.status.success()
         }
         Err(error) => {
-            println!("the sweep of a cluster is not tested: {error:#}");
+            println!("the long tests of the Python package did not run: {error:#}");
             false
         }
     };
-    (format!("{}={} {TESTS}", JOBS.0, JOBS.1), passed)
+    (format!("{}={} {}", JOBS.0, JOBS.1, LONG.join(" ")), passed)
 }
 
 /// Builds the package and runs some of its tests.
-fn pytest(python: &str, tests: &str, environment: &[(&str, &str)]) -> Result<Output> {
+fn pytest(python: &str, tests: &[&str], environment: &[(&str, &str)]) -> Result<Output> {
     let site = installed()?;
-    println!("\n== pytest {tests}");
+    println!("\n== pytest {}", tests.join(" "));
     let mut command = Command::new(python);
-    command.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", tests]).current_dir(root());
+    command.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).args(tests).current_dir(root());
     command.env("PYTHONPATH", site).env("PYTHONDONTWRITEBYTECODE", "1").envs(environment.iter().copied());
     command.output().context(python.to_owned())
 }

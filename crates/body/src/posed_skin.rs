@@ -21,13 +21,13 @@ const FAR: f32 = 0.03;
 /// A skin at the start and at the end of a step.
 #[derive(Clone, Debug)]
 pub struct PosedSkin {
-    solid: Arc<SkinSolid>,
+    pub(crate) solid: Arc<SkinSolid>,
     /// Skins that it was made of.
     made_of: [Option<Arc<[Vec3]>>; 2],
-    start: Vec<Vec3>,
-    end: Vec<Vec3>,
+    pub(crate) start: Vec<Vec3>,
+    pub(crate) end: Vec<Vec3>,
     /// Corners of the box of each node at the end.
-    boxes: Vec<[Vec3A; 2]>,
+    pub(crate) boxes: Vec<[Vec3A; 2]>,
     most_shift: f32,
 }
 
@@ -77,7 +77,7 @@ impl PosedSkin {
         let [start, end] = skins.map(|skin| solid.positions(skin.map(|skin| &skin[..])));
         let shifts = start.iter().zip(&end).map(|(start, end)| start.distance_squared(*end));
         let most_shift = shifts.fold(0.0, f32::max).sqrt();
-        let boxes = refitted(solid, &end);
+        let boxes = solid.boxes_about(&end);
         let made_of = skins.map(|skin| skin.cloned());
         Some(Self { solid: Arc::clone(solid), made_of, start, end, boxes, most_shift })
     }
@@ -268,25 +268,6 @@ impl PosedSkin {
         let errors = start.iter().zip(end).map(|(start, end)| motion.point(*start).distance(end));
         Some(TriangleMotion { error: errors.fold(0.0, f32::max), ..motion })
     }
-}
-
-/// Boxes of all nodes about positions, the children before their parents.
-fn refitted(solid: &SkinSolid, positions: &[Vec3]) -> Vec<[Vec3A; 2]> {
-    let mut boxes = vec![[Vec3A::ZERO; 2]; solid.nodes.len()];
-    for (index, node) in solid.nodes.iter().enumerate().rev() {
-        boxes[index] = if node.right == 0 {
-            let corners = solid.triangles[node.range[0] as usize..node.range[1] as usize].iter().flatten();
-            corners
-                .map(|corner| Vec3A::from(positions[*corner as usize]))
-                .fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
-                    [min.min(corner), max.max(corner)]
-                })
-        } else {
-            let [left, right] = [boxes[index + 1], boxes[node.right as usize]];
-            [left[0].min(right[0]), left[1].max(right[1])]
-        };
-    }
-    boxes
 }
 
 /// First edge, normal and the direction across both; `None` without an area.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::mesh_distance::skin_triangles;
 use crate::welding::welded_vertices;
@@ -107,8 +107,40 @@ impl SkinSolid {
 
     /// Triangles around a vertex and those at its place.
     pub(crate) fn around(&self, vertex: u32) -> &[u32] {
+        let [first, behind] = self.range_around(vertex);
+        &self.around[first as usize..behind as usize]
+    }
+
+    /// The triangles around all vertices, and which of them lie around one and those at its place: the first, and that
+    /// behind the last.
+    pub(crate) fn all_around(&self) -> &[u32] {
+        &self.around
+    }
+
+    pub(crate) fn range_around(&self, vertex: u32) -> [u32; 2] {
         let first = self.welded[vertex as usize] as usize;
-        &self.around[self.first_around[first] as usize..self.first_around[first + 1] as usize]
+        [self.first_around[first], self.first_around[first + 1]]
+    }
+
+    /// Boxes of all nodes about positions \[m\]: their least and greatest corners.
+    pub(crate) fn boxes_about(&self, positions: &[Vec3]) -> Vec<[Vec3A; 2]> {
+        let mut boxes = vec![[Vec3A::ZERO; 2]; self.nodes.len()];
+        // Children lie behind their parents.
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            boxes[index] = if node.right == 0 {
+                let triangles = &self.triangles[node.range[0] as usize..node.range[1] as usize];
+                let corners = triangles.iter().flatten();
+                corners
+                    .map(|corner| Vec3A::from(positions[*corner as usize]))
+                    .fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[min, max], corner| {
+                        [min.min(corner), max.max(corner)]
+                    })
+            } else {
+                let [left, right] = [boxes[index + 1], boxes[node.right as usize]];
+                [left[0].min(right[0]), left[1].max(right[1])]
+            };
+        }
+        boxes
     }
 
     /// Positions of all vertices \[m\]: those of the skin, of a mesh at rest without any, and the middles of rims.

@@ -2,6 +2,7 @@
 
 use strandline_base::SettingError;
 
+use crate::skin_table::{SkinTable, places, rows};
 use crate::{Carrier, Collider, DistanceGrid, Shape};
 
 /// Spacing at which the exact mannequin is sampled \[m\], and the air around it that samples cover \[m\]: shaders know
@@ -13,6 +14,8 @@ const MANNEQUIN_PADDING: f32 = 0.02;
 const SPHERE: u32 = 0;
 const CAPSULE: u32 = 1;
 const GRID: u32 = 2;
+/// A skin that moves by itself: a grid in every other moment.
+const SKIN: u32 = 3;
 /// Carriers: the world, then the pieces of the body, the head first.
 const WORLD: u32 = 0;
 const HEAD: u32 = 1;
@@ -23,15 +26,17 @@ const HEADER: usize = 4;
 /// buffer.
 ///
 /// Four rows per solid: kind, carrier, first node, friction; centre, start or origin \[m\] and radius or spacing \[m\]; end
-/// \[m\] and the distance that is kept; nodes along x, y and z. Behind all of them the nodes of the grids: gradient and
-/// distance \[m\]. Numbers are given by their bits.
+/// \[m\] and the distance that is kept; nodes along x, y and z. Behind all of them the nodes of the grids, gradient and
+/// distance \[m\], and the trees of skins, which ride the head until the table of skins says otherwise. Numbers are given
+/// by their bits.
 ///
 /// # Errors
 /// A mannequin that cannot be sampled.
 pub fn solid_rows<'a>(
     solids: impl ExactSizeIterator<Item = (&'a Collider, f32)>,
     before: usize,
-) -> Result<Vec<[u32; 4]>, SettingError> {
+) -> Result<(Vec<[u32; 4]>, SkinTable), SettingError> {
+    let mut skins = SkinTable::default();
     let first_node = before + HEADER * solids.len();
     let (mut rows, mut nodes) = (Vec::with_capacity(HEADER * solids.len()), Vec::new());
     for (solid, kept) in solids {
@@ -65,12 +70,23 @@ pub fn solid_rows<'a>(
                 })?)
             }
             Shape::Grid(grid) => add_grid(grid),
-            Shape::Skin(skin) => add_grid(skin.grid()),
+            Shape::Skin(skin) => {
+                let numbers = add_grid(skin.grid());
+                let first = first_node + nodes.len();
+                nodes.extend(self::rows(skin));
+                Numbers { skin: places(skin, first), ..numbers }
+            }
         };
-        rows.extend(numbers.rows(solid, kept));
+        let header = numbers.rows(solid, kept);
+        if let Shape::Skin(_) = &solid.shape {
+            let [_, carrier, node, friction] = header[0];
+            let kinds = [GRID, SKIN].map(|kind| [kind, carrier, node, friction]);
+            skins.add(solid, before + rows.len(), kinds, numbers.skin[0] as usize);
+        }
+        rows.extend(header);
     }
     rows.append(&mut nodes);
-    Ok(rows)
+    Ok((rows, skins))
 }
 
 /// Numbers of a shape.
@@ -82,6 +98,8 @@ struct Numbers {
     size: f32,
     end: [f32; 3],
     node_counts: [u32; 3],
+    /// Rows where the parts of a skin begin.
+    skin: [u32; 4],
 }
 
 impl Numbers {
@@ -92,11 +110,16 @@ impl Numbers {
         };
         let vector = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last].map(f32::to_bits);
         let [x, y, z] = self.node_counts;
+        let [node, vertex, triangle, around] = self.skin;
+        let end = match solid.shape {
+            Shape::Skin(_) => [node, vertex, triangle, kept.to_bits()],
+            _ => vector(self.end, kept),
+        };
         [
             [self.kind, carrier, self.first_node, solid.friction.to_bits()],
             vector(self.start, self.size),
-            vector(self.end, kept),
-            [x, y, z, 0],
+            end,
+            [x, y, z, around],
         ]
     }
 }
@@ -119,7 +142,7 @@ mod tests {
             .zip([Carrier::HEAD, Carrier::World, Carrier::Piece(2)])
             .map(|(shape, carrier)| Collider::new(shape, carrier, 0.5).unwrap())
             .collect();
-        let rows = solid_rows(solids.iter().map(|solid| (solid, 0.01)), 7).unwrap();
+        let (rows, _) = solid_rows(solids.iter().map(|solid| (solid, 0.01)), 7).unwrap();
         let number = |bits: u32| f32::from_bits(bits);
         assert_eq!(rows[0][..2], [GRID, HEAD]);
         assert_eq!(rows[4][..2], [SPHERE, WORLD]);

@@ -16,14 +16,10 @@ use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
 use super::obstacles::Obstacles;
-use super::planes::{Plane, Rider, carriers};
+use super::planes::{MOST_DEPTH, Plane, Rider, carriers};
 use super::touch::Touch;
 use super::way::{Seen, met};
 use strandline_base::vec3x8::{Rigid, Vec3x8, load, splat};
-
-/// Depth \[m\] in a skin that moves by itself out of which a look brings a point at most: the way of a longer path is
-/// followed, so that only a part of the skin that passes through another has points deeper, which it must not throw.
-const MOST_DEPTH: f32 = 5e-3;
 
 /// Precision of a look-up of the solids.
 #[derive(Clone, Copy)]

@@ -142,26 +142,26 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without
-    /// solids. Solids with one carrier need no search for the nearest.
-    pub fn nearest_velocity(&self, point: Vec3) -> Option<Vec3> {
+    /// solids. Solids with one carrier need no search for the nearest. `before` is as in [`Self::at_least`].
+    pub fn nearest_velocity(&self, point: Vec3, before: &mut u32) -> Option<Vec3> {
         let first = self.colliders.first()?;
         let together = self.colliders.iter().all(|collider| collider.carrier == first.carrier);
         let nearest = if together { 0 } else { self.nearest(point)?.2 };
-        Some(self.velocity(nearest, point))
+        Some(self.velocity(nearest, point, before))
     }
 
     /// Mean velocity \[m/s\] over the step of the material of a collider that ends at `point`.
-    pub fn velocity(&self, collider: usize, point: Vec3) -> Vec3 {
+    fn velocity(&self, collider: usize, point: Vec3, before: &mut u32) -> Vec3 {
         match self.colliders[collider].carrier {
             Carrier::World => Vec3::ZERO,
             Carrier::Piece(piece) | Carrier::Moved(piece) => {
                 let Placed { start, piece_from_world, .. } = self.pieces[usize::from(piece)];
                 let local = piece_from_world.point(point);
-                let shift = |skin: &Arc<PosedSkin>| {
-                    skin.shift(skin.nearest(local, PosedSkin::UNKNOWN).triangle, local)
-                };
-                let before = self.skins[collider].as_ref().map_or(local, |skin| local - shift(skin));
-                (point - start.point(before)) / self.time_step
+                let shift = self.skins[collider].as_ref().map_or(Vec3::ZERO, |skin| {
+                    *before = skin.nearest(local, *before).triangle;
+                    skin.shift(*before, local)
+                });
+                (point - start.point(local - shift)) / self.time_step
             }
         }
     }

@@ -1,8 +1,14 @@
 //! Planes that points remember of the solids, in the space of what carries these.
 
 use glam::Vec3;
-use strandline_body::{Carrier, Collider, PosedSkin, Shape};
+use strandline_body::{Carrier, Collider, Pose, PosedSkin, Shape};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
+
+use super::obstacles::Obstacles;
+
+/// Depth \[m\] in a skin that moves by itself out of which a look brings a point at most: the way of a longer path is
+/// followed, so that only a part of the skin that passes through another has points deeper, which it must not throw.
+pub(super) const MOST_DEPTH: f32 = 5e-3;
 
 /// The planes of all points, shape `[block]`.
 #[derive(Clone, Debug)]
@@ -83,6 +89,38 @@ impl Contacts {
         for (plane, numbers) in planes.zip(numbers.chunks_exact(Plane::NUMBERS * LANES)) {
             *plane = Plane::of_numbers(numbers);
         }
+    }
+}
+
+/// Heights of points above all solids, as their planes tell at the end of a step.
+pub struct Heights<'a> {
+    contacts: &'a Contacts,
+    points: usize,
+    carrier_from_world: Vec<Pose>,
+}
+
+impl<'a> Heights<'a> {
+    /// Planes of strands of a number of points.
+    pub fn new(contacts: &'a Contacts, obstacles: &Obstacles, points: usize) -> Self {
+        let inverse = |carrier| match carrier {
+            Carrier::Piece(piece) => obstacles.end.piece(piece.into()).inverse(),
+            Carrier::World => Pose::IDENTITY,
+        };
+        let carrier_from_world = carriers(obstacles.colliders).into_iter().map(inverse).collect();
+        Self { contacts, points, carrier_from_world }
+    }
+
+    /// Lower bound \[m\] of the distance of all solids from the point of a slot `[block][point]` and a lane, which lies at
+    /// `position` \[m\]; negative infinity where a plane is unknown, or of a point deeper than a look says.
+    pub fn at_least(&self, slot: usize, lane: usize, position: Vec3) -> f32 {
+        let (block, point) = (&self.contacts.blocks[slot / self.points], slot % self.points);
+        let heights = self.carrier_from_world.iter().enumerate().map(|(carrier, from_world)| {
+            let plane = &block[carrier * self.points + point];
+            let distance = plane.distance.0[lane];
+            let known = if distance > -MOST_DEPTH { distance } else { f32::NEG_INFINITY };
+            known - plane.anchor.get(lane).distance(from_world.point(position))
+        });
+        heights.fold(f32::INFINITY, f32::min)
     }
 }
 

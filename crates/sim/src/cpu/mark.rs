@@ -3,11 +3,18 @@
 use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_body::PosedSkin;
+use strandline_groom::{LANES, Vec3Lanes};
 
 use super::volume::Volume;
 use crate::cells::Grid;
 use crate::cells::Kind;
 use crate::contact::Obstacles;
+use crate::contact::planes::{Contacts, Heights};
+
+/// Points of a cell whose planes are asked.
+const ASKED: usize = 4;
+/// Rounding \[m\] of a distance a metre from the origin of the head.
+const ROUNDED: f32 = 1e-6;
 
 /// Marks the cells, and gives the faces of solid cells the velocity of the solid
 /// [Chen2011 fig. 21, McAdams2009, Bridson2008].
@@ -15,8 +22,9 @@ use crate::contact::Obstacles;
 /// A cell that holds points is fluid unless its middle lies deeper in a solid than one cell: hair
 /// lies on the skin, so the cells of its roots straddle the surface; as solid cells they would tear
 /// that hair from the volume. Of the other cells only neighbours of fluid ones matter; they are
-/// solid where their middle is inside. Signed distances are looked up for these alone.
-pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
+/// solid where their middle is inside. Signed distances are looked up for these alone; under a skin that moves by itself the
+/// planes of the points, where they are given with the positions \[m\], tell most of them.
+pub fn mark(volume: &mut Volume, obstacles: &Obstacles, planes: Option<(&[Vec3Lanes], &Contacts)>) {
     for &cell in &volume.marked {
         volume.kinds[cell as usize] = Kind::Air;
     }
@@ -28,17 +36,52 @@ pub fn mark(volume: &mut Volume, obstacles: &Obstacles) {
     }
     spare_set.copy_from(touched_set);
     spare_set.list_into(marked);
-    classify(volume, obstacles);
+    let planes = planes.filter(|_| obstacles.has_moving_skin());
+    let known = planes.map(|planes| known_by_points(volume, obstacles, planes));
+    classify(volume, obstacles, known);
     volume.fluid.clear();
     let cells = volume.sort.cells().iter();
     volume.fluid.extend(cells.filter(|&&cell| volume.kinds[cell as usize] == Kind::Fluid));
     carry_walls(volume, obstacles);
 }
 
-fn classify(volume: &mut Volume, obstacles: &Obstacles) {
+/// Lower bounds \[m\] of the distances of the middles of occupied cells, by the planes of their points.
+fn known_by_points(
+    volume: &Volume,
+    obstacles: &Obstacles,
+    (positions, contacts): (&[Vec3Lanes], &Contacts),
+) -> Vec<f32> {
+    let heights = Heights::new(contacts, obstacles, volume.points_per_strand);
+    let known = |(index, cell): (usize, &u32)| {
+        let middle = volume.grid.center(*cell as usize);
+        let points = volume.sort.points_of(index).iter().take(ASKED);
+        let bounds = points.map(|point| {
+            let (slot, lane) = (*point as usize / LANES, *point as usize % LANES);
+            let position = positions[slot].get(lane);
+            heights.at_least(slot, lane, position) - position.distance(middle)
+        });
+        bounds.fold(f32::NEG_INFINITY, f32::max) - ROUNDED
+    };
+    volume.sort.cells().par_iter().enumerate().with_min_len(256).map(known).collect()
+}
+
+fn classify(volume: &mut Volume, obstacles: &Obstacles, known: Option<Vec<f32>>) {
     let depth = volume.grid.spacing();
     let cells = volume.sort.cells();
-    let occupied = distances(&volume.grid, obstacles, cells);
+    let occupied = match known {
+        Some(mut known) => {
+            let is_unknown = |index: &usize| known[*index] <= -depth;
+            let unknown: Vec<usize> = (0..cells.len()).filter(is_unknown).collect();
+            let asked: Vec<u32> = unknown.iter().map(|index| cells[*index]).collect();
+            for (index, distance) in
+                unknown.into_iter().zip(distances(&volume.grid, obstacles, &asked, depth))
+            {
+                known[index] = distance;
+            }
+            known
+        }
+        None => distances(&volume.grid, obstacles, cells, depth),
+    };
     for (&cell, &distance) in cells.iter().zip(&occupied) {
         volume.kinds[cell as usize] = if distance < -depth { Kind::Solid } else { Kind::Fluid };
         volume.distances[cell as usize] = distance;
@@ -54,14 +97,14 @@ fn classify(volume: &mut Volume, obstacles: &Obstacles) {
     };
     let asked: Vec<u32> =
         volume.marked.par_iter().with_min_len(256).filter(is_asked).map(|cell| *cell).collect();
-    let beside = distances(&volume.grid, obstacles, &asked);
+    let beside = distances(&volume.grid, obstacles, &asked, 0.0);
     for (&cell, _) in asked.iter().zip(&beside).filter(|(_, distance)| **distance < 0.0) {
         volume.kinds[cell as usize] = Kind::Solid;
     }
 }
 
-/// Signed distances \[m\] at the middles of cells; beyond one cell a lower bound.
-fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
+/// Signed distances \[m\] at the middles of cells, or lower bounds that are more than `enough` \[m\].
+fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32], enough: f32) -> Vec<f32> {
     /// Cells whose first look-ups run together.
     const TOGETHER: usize = 64;
     let center = |cell: &u32| grid.center(*cell as usize);
@@ -74,14 +117,13 @@ fn distances(grid: &Grid, obstacles: &Obstacles, cells: &[u32]) -> Vec<f32> {
         for (distance, cell) in distances.iter_mut().zip(cells) {
             let place = center(cell);
             *distance = last.1 - place.distance(last.0);
-            if !is_moving || *distance <= grid.spacing() {
+            if !is_moving || *distance <= enough {
                 *distance = obstacles.at_least(place, &mut near);
                 last = (place, *distance);
             }
         }
         // A loop of its own: in one loop the processor would wait for each first look-up to decide on a second.
-        for (distance, cell) in distances.iter_mut().zip(cells).filter(|(least, _)| **least <= grid.spacing())
-        {
+        for (distance, cell) in distances.iter_mut().zip(cells).filter(|(least, _)| **least <= enough) {
             *distance = obstacles.distance(center(cell), &mut near);
         }
     });
@@ -95,16 +137,17 @@ fn carry_walls(volume: &mut Volume, obstacles: &Obstacles) {
         strides.into_iter().enumerate().flat_map(|(axis, stride)| [(axis, stride, 0), (axis, stride, 1)]);
     let sides: Vec<(usize, usize, usize)> = sides.collect();
     let (grid, kinds) = (&volume.grid, &volume.kinds);
-    let wall = |cell: usize, (axis, stride, behind): (usize, usize, usize)| {
+    let wall = |cell: usize, (axis, stride, behind): (usize, usize, usize), near: &mut u32| {
         let neighbour = if behind == 1 { cell + stride } else { cell - stride };
         (kinds[neighbour] == Kind::Solid).then(|| {
             let center = grid.face_center(axis, cell + behind * stride);
-            obstacles.nearest_velocity(center).map_or(0.0, |velocity| velocity[axis])
+            obstacles.nearest_velocity(center, near).map_or(0.0, |velocity| velocity[axis])
         })
     };
     let around = |&cell: &u32| -> Option<(usize, [Option<f32>; 6])> {
         let cell = cell as usize;
-        let walls = std::array::from_fn(|side| wall(cell, sides[side]));
+        let mut near = PosedSkin::UNKNOWN;
+        let walls = std::array::from_fn(|side| wall(cell, sides[side], &mut near));
         walls.iter().any(Option::is_some).then_some((cell, walls))
     };
     let beside: Vec<_> = volume.fluid.par_iter().with_min_len(256).filter_map(around).collect();

@@ -112,7 +112,10 @@ impl Step<'_> {
                     splat(volume, &scratch.predicted, &state.velocities, &scratch.masses.mass);
                 });
             }
-            Stage::Mark => scratch.volume.iter_mut().for_each(|volume| mark(volume, obstacles)),
+            Stage::Mark => {
+                let planes = Some((&scratch.predicted[..], &state.contacts));
+                scratch.volume.iter_mut().for_each(|volume| mark(volume, obstacles, planes));
+            }
             Stage::SolvePressure => {
                 self.report.pressure = scratch.volume.as_mut().map(solve_pressure).unwrap_or_default();
             }

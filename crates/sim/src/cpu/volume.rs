@@ -34,7 +34,7 @@ pub struct Volume {
     /// Kind of each cell; cells that are not listed in `marked` are air.
     pub(super) kinds: Vec<Kind>,
     pub(super) marked: Vec<u32>,
-    /// Signed distance \[m\] at the middle of every fluid cell; of other cells an old one.
+    /// Signed distance \[m\] at the middle of every fluid cell, or a lower bound of it; of other cells an old one.
     pub(super) distances: Vec<f32>,
     /// Cells whose pressure is unknown, ascending.
     pub(super) fluid: Vec<u32>,

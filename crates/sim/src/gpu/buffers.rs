@@ -1,7 +1,7 @@
 //! Buffers on the device.
 
 use strandline_base::par::prelude::*;
-use strandline_body::BodyFrame;
+use strandline_body::{BodyFrame, SkinTable};
 use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
@@ -20,6 +20,8 @@ use crate::{Model, SimError, State};
 pub(super) const REPORTS: usize = 64;
 /// Numbers of a point in the buffer of rest shapes.
 const REST: usize = 6;
+/// Numbers of a contact plane.
+const PLANE: usize = 6;
 /// Numbers of a root frame there.
 const ROOT: usize = size_of::<Root>() / size_of::<f32>();
 
@@ -32,6 +34,8 @@ pub(super) struct Buffers {
     pub points: usize,
     /// With the colliders behind it: see solids.wesl.
     pub step: Buffer<Step>,
+    /// The skins among them.
+    pub skins: SkinTable,
     /// Head space \[m\].
     pub rest_positions: Buffer<f32>,
     /// Six numbers: rest direction (with rods the first axis of the section), rest length \[m\], inverse mass
@@ -48,7 +52,7 @@ pub(super) struct Buffers {
     /// Velocities of all points \[m/s\], and behind them what the next prediction adds to them; with rods
     /// what solve_rods.wesl says.
     pub velocities: Buffer<f32>,
-    /// Five numbers: see strand.wesl.
+    /// Six numbers: see strand.wesl.
     pub planes: Buffer<f32>,
     /// Per workgroup of strands.
     pub boxes: Buffer<PointBox>,
@@ -70,12 +74,14 @@ impl Buffers {
         let lane_count = model.lane_count();
         let count = lane_count * points;
         let workgroups = lane_count.div_ceil(THREADS);
+        let (step, skins) = solids::behind_step(gpu, &model.colliders)?;
         let vectors = |name, lanes: &[Vec3Lanes]| Buffer::from_slice(gpu, name, floats(lanes));
         let buffers = Self {
             strand_count: model.strand_count,
             lane_count,
             points,
-            step: solids::behind_step(gpu, &model.colliders)?,
+            step,
+            skins,
             rest_positions: vectors("rest positions", &model.positions)?,
             rest: Buffer::new(gpu, "rest shape", (REST * points + 4) * lane_count)?,
             springs: Buffer::new(gpu, "springs", 2 * count)?,
@@ -85,7 +91,7 @@ impl Buffers {
                 vectors("predicted positions", &state.previous_positions)?,
             ],
             velocities: Buffer::from_slice(gpu, "velocities", &speeds(state))?,
-            planes: Buffer::new(gpu, "contact planes", 5 * count)?,
+            planes: Buffer::new(gpu, "contact planes", PLANE * count)?,
             boxes: Buffer::new(gpu, "boxes", model.strand_count.div_ceil(THREADS))?,
             outcomes: Buffer::new(gpu, "outcomes", workgroups)?,
             reports: Buffer::new(gpu, "reports", REPORTS)?,
@@ -111,7 +117,7 @@ impl Buffers {
     pub fn bytes_of_step(&self) -> u64 {
         // Numbers of four bytes per point: pose_roots touches two points of each strand only.
         const INTEGRATE: u64 = 3 + 3 + 3 + 2 + 2 + 3;
-        const CONSTRAIN: u64 = 3 + 3 + 6 + 5 + 3 + 3 + 3;
+        const CONSTRAIN: u64 = 3 + 3 + 6 + PLANE as u64 + 3 + 3 + 3;
         const ADVANCE: u64 = 3 + 3 + 2;
         // Bounds, cells, order, sums of faces, gather.
         const VOLUME: u64 = 4 + (4 + 2) + (2 + 3 + 3 + 1 + 8) + 8 + (1 + 3 + 3 + 3);

@@ -86,7 +86,8 @@ mirror! {
         pub holds: u32,
         /// 1 where strands have root frames of their own: see roots.wesl.
         pub has_roots: u32,
-        pub unused_a: u32,
+        /// One more than the row of the header of a skin that moves by itself, 0 without one.
+        pub skin: u32,
         pub unused_b: u32,
         pub unused_c: u32,
         pub rods: RodStep,

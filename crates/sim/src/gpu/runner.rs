@@ -243,9 +243,14 @@ impl GpuRunner {
         }
         self.prepare()?;
         self.grab.hand = drive.hand.unwrap_or(self.grab.hand);
-        let uniform = Step::new(&self.model, &self.body, &drive, &self.grab, self.pending.count);
-        self.buffers.step.write(&[uniform])?;
         let bodies = [&self.body, &drive.body];
+        let skin = solids::write_skins(
+            (&self.buffers.step, &mut self.buffers.skins),
+            &self.model.colliders,
+            bodies,
+        )?;
+        let uniform = Step::new(&self.model, &self.body, &drive, &self.grab, self.pending.count);
+        self.buffers.step.write(&[Step { skin, ..uniform }])?;
         solids::write_pieces(&self.buffers.step, &self.model, bodies)?;
         self.buffers.write_roots(&self.model, bodies)?;
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };

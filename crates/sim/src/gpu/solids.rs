@@ -1,6 +1,6 @@
 //! The colliders as the kernels read them.
 
-use strandline_body::{BodyFrame, Collider, solid_rows};
+use strandline_body::{BodyFrame, Collider, SkinTable, solid_rows};
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use super::inputs::Step;
@@ -28,16 +28,38 @@ pub(super) fn write_pieces(
     buffer.write_tail(&(1..count).map(piece).collect::<Vec<_>>())
 }
 
-/// Room for the settings of a step, and behind it the pieces behind the head, then the rows of all colliders.
-pub(super) fn behind_step(gpu: &Gpu, colliders: &[Collider]) -> Result<Buffer<Step>, SimError> {
+/// Brings the skins to a step between two frames of the body. Returns one more than the row of the header of one that
+/// moves by itself, 0 without one.
+///
+/// # Errors
+/// The device was lost.
+pub(super) fn write_skins(
+    (buffer, skins): (&Buffer<Step>, &mut SkinTable),
+    colliders: &[Collider],
+    [start, end]: [&BodyFrame; 2],
+) -> Result<u32, GpuError> {
+    let written = skins.between(start, end);
+    if !written.is_empty() {
+        let (all, [base, _]) = rows(buffer, colliders);
+        for (first, rows) in written {
+            all.write_at(base + first, &rows)?;
+        }
+    }
+    Ok(skins.moving().map_or(0, |header| header as u32 + 1))
+}
+
+/// Room for the settings of a step, and behind it the pieces behind the head, then the rows of all colliders; the skins
+/// among these.
+pub(super) fn behind_step(gpu: &Gpu, colliders: &[Collider]) -> Result<(Buffer<Step>, SkinTable), SimError> {
     let before = PIECE * (piece_count(colliders) - 1);
     let mut all = vec![[0; 4]; before];
     // Pictures on the same device read the clearance.
     let solids = colliders.iter().map(|collider| (collider, collider.shape.clearance()));
-    all.append(&mut solid_rows(solids, before)?);
+    let (mut rows, skins) = solid_rows(solids, before)?;
+    all.append(&mut rows);
     let buffer = Buffer::with_tail::<[u32; 4]>(gpu, "step and solids", 1, all.len())?;
     buffer.write_tail(&all)?;
-    Ok(buffer)
+    Ok((buffer, skins))
 }
 
 /// The rows of the colliders where they lie: the buffer, the first row to which they count, and the first collider's row

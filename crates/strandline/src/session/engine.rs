@@ -6,7 +6,7 @@ use glam::Vec3;
 use strandline_gpu::{Buffer, Gpu};
 
 use crate::{
-    body::{BodyFrame, Collider, Shape},
+    body::BodyFrame,
     groom::Vec3Lanes,
     render::gpu::DeviceSolids,
     sim::{Checkpoint, Drift, Drive, Model, Settings, SimError, Simulator, State, StepReport},
@@ -20,8 +20,6 @@ pub(crate) struct Engine {
     pub fall_back: bool,
     /// Notes, human-readable.
     pub notes: Vec<String>,
-    /// True once a skin has moved by itself under a simulation on a GPU.
-    has_met_skin: bool,
 }
 
 impl Engine {
@@ -39,7 +37,7 @@ impl Engine {
             }
             (Err(error), None) => return Err(error),
         };
-        Ok(Self { simulator, fall_back, notes, has_met_skin: false })
+        Ok(Self { simulator, fall_back, notes })
     }
 
     pub fn model(&self) -> &Model {
@@ -106,25 +104,6 @@ impl Engine {
     /// Runs steps. When the GPU fails they run on the CPU, or not at all.
     pub fn run(&mut self, drives: &[Drive]) -> Result<Vec<StepReport>, SimError> {
         self.guarded(|simulator| simulator.run(drives))
-    }
-
-    /// Leaves a GPU, which knows the skin of a body at rest alone, before the first step on a skin that moves by itself; a
-    /// run that may not fall back stays and hits the skin at rest.
-    pub fn meet_moving_skin(&mut self) -> Result<(), SimError> {
-        let is_skin = |collider: &Collider| matches!(collider.shape, Shape::Skin(_));
-        if self.has_met_skin || self.gpu().is_none() || !self.model().colliders().iter().any(is_skin) {
-            return Ok(());
-        }
-        self.has_met_skin = true;
-        if !self.fall_back {
-            self.notes
-                .push("hair hits the body at rest: only the CPU knows a skin that moves by itself".into());
-            return Ok(());
-        }
-        self.state()?;
-        self.simulator.fall_back();
-        self.notes.push("simulating on the CPU: only it knows a skin that moves by itself".into());
-        Ok(())
     }
 
     /// Changes the settings between two steps.

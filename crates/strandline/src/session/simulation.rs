@@ -291,9 +291,6 @@ impl Simulation {
         drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
     ) -> Result<Vec<StepReport>, SimError> {
         let outcome = self.drives(ticks, &span, drive).and_then(|mut drives| {
-            if drives.iter().any(|drive| drive.body.skin().is_some()) {
-                self.engine.meet_moving_skin()?;
-            }
             self.carry_over_jumps(&mut drives, span.end - span.start)?;
             let reports = self.engine.run(&drives)?;
             Ok((drives, reports))

@@ -141,20 +141,19 @@ fn an_unknown_clip_is_refused_with_those_that_there_are() {
 }
 
 #[test]
-fn a_gpu_leaves_hair_on_a_moving_skin_to_the_cpu_or_says_that_it_hits_the_body_at_rest() {
-    let played = |backend: Backend, falls_back: bool| {
+fn hair_on_a_moving_skin_stays_on_its_gpu_and_moves_as_on_the_cpu() {
+    let played = |backend: Backend| {
         let mut moving = scene("shrug");
         moving.devices.simulation = backend;
         let mut hair = Hair::open(&moving)?;
-        hair.set_fall_back(falls_back);
-        for frame in 0..3 {
+        for frame in 0..12 {
             hair.play(frame)?;
         }
         let points = hair.points()?.to_vec();
         Ok::<_, strandline::Error>((points, hair.take_notes().join("\n")))
     };
-    let (expected, _) = played(Backend::Cpu, false).unwrap();
-    let (points, notes) = match played(Backend::Gpu(None), true) {
+    let (expected, _) = played(Backend::Cpu).unwrap();
+    let (points, notes) = match played(Backend::Gpu(None)) {
         Ok(played) => played,
         Err(error) => {
             assert!(std::env::var_os("STRANDLINE_REQUIRE_GPU").is_none(), "{error}");
@@ -162,10 +161,13 @@ fn a_gpu_leaves_hair_on_a_moving_skin_to_the_cpu_or_says_that_it_hits_the_body_a
             return eprintln!("not tested on a GPU: {error}");
         }
     };
-    assert!(points == expected, "the CPU has gone on from where hair began");
-    assert!(notes.contains("simulating on the CPU: only it knows a skin"), "{notes}");
-    let (_, notes) = played(Backend::Gpu(None), false).unwrap();
-    assert!(notes.contains("hair hits the body at rest"), "{notes}");
+    assert!(!notes.contains("on the CPU") || notes.contains("for tests"), "{notes}");
+    let mut apart: Vec<f32> = points.iter().zip(&expected).map(|(one, other)| one.distance(*other)).collect();
+    apart.sort_by(f32::total_cmp);
+    // Planes of the CPU ride the skin between looks, those of a GPU are looked up anew.
+    let [middle, most] = [apart[apart.len() / 2], apart[apart.len() * 99 / 100]];
+    println!("half within {middle} m, 99 of 100 within {most} m");
+    assert!(middle < 2e-4 && most < 2e-3, "{middle} {most}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Solids that bound strands stay out of and the body that carries them, as the kernels read them.
 
-use strandline_body::{BodyFrame, Carrier, Solids, solid_rows};
+use strandline_body::{BodyFrame, Carrier, SkinTable, Solids, solid_rows};
 use strandline_gpu::{Buffer, Gpu, GpuError, Rigid};
 
 use crate::RenderError;
@@ -23,6 +23,8 @@ pub struct DeviceSolids {
 pub(crate) struct BoundSolids {
     body: Buffer<[u32; 4]>,
     solids: DeviceSolids,
+    /// The skins among solids of its own: those of a simulation are where its last step ended.
+    skins: SkinTable,
     guide_count: usize,
     solid_count: usize,
     /// Pieces up to the last that carries a solid; the head always counts.
@@ -48,17 +50,18 @@ impl BoundSolids {
             Carrier::World => 0,
         });
         let piece_count = 1 + last.max().unwrap_or(0);
-        let solids = match on_device {
-            Some(solids) => solids,
+        let (solids, skins) = match on_device {
+            Some(solids) => (solids, SkinTable::default()),
             None => {
-                let rows = solid_rows(all.iter().map(|(solid, kept)| (solid, *kept)), 0)?;
+                let (rows, skins) = solid_rows(all.iter().map(|(solid, kept)| (solid, *kept)), 0)?;
                 let rows = Buffer::from_slice(gpu, "solids of bound strands", &rows)?;
-                DeviceSolids { rows, base: 0, first: 0 }
+                (DeviceSolids { rows, base: 0, first: 0 }, skins)
             }
         };
         let rows = COUNTS + PIECE * (piece_count - 1) + guide_count;
         let body = Buffer::new(gpu, "the body of bound strands", rows)?;
-        let made = Self { body, solids, guide_count, solid_count: all.len(), piece_count, rooted: false };
+        let made =
+            Self { body, solids, skins, guide_count, solid_count: all.len(), piece_count, rooted: false };
         made.body.write(&made.rows_of(&BodyFrame::REST))?;
         Ok(made)
     }
@@ -73,11 +76,14 @@ impl BoundSolids {
         &self.solids.rows
     }
 
-    /// Takes the pieces and root frames of a moment. A rigid head is in the settings of the frame.
+    /// Takes the pieces, root frames and skins of a moment. A rigid head is in the settings of the frame.
     ///
     /// # Errors
     /// The device was lost.
     pub fn take(&mut self, body: &BodyFrame) -> Result<(), GpuError> {
+        for (first, rows) in self.skins.between(body, body) {
+            self.solids.rows.write_at(first, &rows)?;
+        }
         let rooted = body.roots().is_some();
         if self.piece_count == 1 && !rooted && !self.rooted {
             return Ok(());

@@ -1,0 +1,41 @@
+"""The pages of the guide: each is a script that makes its picture."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PAGES = Path(__file__).parents[2] / "docs/python"
+
+#: Pages that a short run leaves out; `cargo xtask long` has all.
+SLOW = () if os.environ.get("STRANDLINE_JOBS") else ("research", "blender", "batch")
+
+#: With this variable the pictures of the pages are written.
+WRITE = os.environ.get("STRANDLINE_WRITE_GUIDE")
+
+
+def test_every_page_is_tested():
+    assert {path.stem for path in PAGES.glob("*.md")} == {"research", "unreal", "blender", "batch", "game_loop"}
+
+
+@pytest.mark.parametrize("page", ["research", "unreal", "blender", "batch", "game_loop"])
+def test_a_page_makes_its_picture(tmp_path, page):
+    if page in SLOW and not WRITE:
+        pytest.skip("a long test: STRANDLINE_JOBS=64 and cargo xtask long")
+    if page in ("unreal", "blender"):
+        pytest.importorskip("pxr")
+        pytest.importorskip("alembic3d")
+    text = (PAGES / f"{page}.md").read_text(encoding="utf-8")
+    script = "\n".join(part.split("```")[0] for part in text.split("```python\n")[1:])
+    (tmp_path / "page.py").write_text(script, encoding="utf-8")
+    done = subprocess.run([sys.executable, "page.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    name = f"guide_{page}.png"
+    assert f"](../gallery/{name})" in text
+    assert (tmp_path / name).stat().st_size > 3000
+    if WRITE:
+        shutil.copy(tmp_path / name, PAGES.parent / "gallery" / name)
+    assert (PAGES.parent / "gallery" / name).exists()
