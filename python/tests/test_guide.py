@@ -10,21 +10,20 @@ import pytest
 
 PAGES = Path(__file__).parents[2] / "docs/python"
 
-#: Pages that a short run leaves out; `cargo xtask long` has all.
-SLOW = () if os.environ.get("STRANDLINE_JOBS") else ("research", "blender", "batch")
-
 #: With this variable the pictures of the pages are written.
 WRITE = os.environ.get("STRANDLINE_WRITE_GUIDE")
 
+#: All pages, and those of a short run; `cargo xtask long` has all.
+ALL = ("research", "unreal", "blender", "batch", "game_loop")
+RUN = ALL if WRITE or os.environ.get("STRANDLINE_JOBS") else ("unreal", "game_loop")
+
 
 def test_every_page_is_tested():
-    assert {path.stem for path in PAGES.glob("*.md")} == {"research", "unreal", "blender", "batch", "game_loop"}
+    assert {path.stem for path in PAGES.glob("*.md")} == set(ALL)
 
 
-@pytest.mark.parametrize("page", ["research", "unreal", "blender", "batch", "game_loop"])
+@pytest.mark.parametrize("page", RUN)
 def test_a_page_makes_its_picture(tmp_path, page):
-    if page in SLOW and not WRITE:
-        pytest.skip("a long test: STRANDLINE_JOBS=64 and cargo xtask long")
     if page in ("unreal", "blender"):
         pytest.importorskip("pxr")
         pytest.importorskip("alembic3d")
