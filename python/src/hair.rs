@@ -114,7 +114,7 @@ impl Hair {
         self.act(py, move |playing| {
             let hair = &mut playing.hair;
             hair.wind = wind.map_or(hair.wind, Vec3::from_array);
-            let mut body = hair.body().clone();
+            let mut body = hair.body();
             if let Some(head) = head {
                 body = body.carried_by(&body.world_from_head().motion_to(&head));
             }

@@ -373,6 +373,27 @@ class Wind(TypedDict, total=False):
     """Mean velocities in the order of their times, in the place of `velocity`. Allowed: 0 to 100,000."""
 
 
+class CollidersKeyframes(TypedDict, total=False):
+    """A pose at a time, as a person writes it."""
+
+    time: float
+    """Time; each later than the one before. Allowed: -1,000,000 to 1,000,000 s."""
+
+    rotation: Sequence[float]
+    """Angles about the pivot: pitch (about x), yaw (about y), roll (about z), applied in the order roll, pitch, yaw;
+    each angle is a curve of its own, so 720 degrees are two turns. Allowed: 3 numbers of -36,000 to 36,000
+    degrees."""
+
+    translation: Sequence[float]
+    """Displacement of the pivot. Allowed: 3 numbers of -10,000 to 10,000 m."""
+
+    interpolation: str
+    """The way to the next pose; without it that of `motion.interpolation`. Allowed: one of smooth, linear, hold."""
+
+    cut: bool
+    """A jump: the pose before is held until this one. Allowed: true or false."""
+
+
 class Colliders(TypedDict, total=False):
     """Solids beside the body."""
 
@@ -397,6 +418,10 @@ class Colliders(TypedDict, total=False):
     friction: float
     """Coulomb friction coefficient of hair on the solid. It acts once a step, by how deep gravity and motion alone
     would take a point: neither the number of rounds nor the pull of the strand changes it. Allowed: 0 to 10."""
+
+    keyframes: Sequence[CollidersKeyframes]
+    """Displacements and turns about the middle of the solid, in the order of their times; it rests before the first
+    and after the last. Allowed: 0 to 100,000."""
 
 
 class SimulationDrag(TypedDict, total=False):
@@ -1063,7 +1088,8 @@ class Camera(TypedDict, total=False):
     """Vertical field of view; without it that of the framing. Allowed: 1 to 170 degrees."""
 
     keyframes: Sequence[CameraKeyframes]
-    """Views of a film, in the order of their times; a window has its own. Allowed: 0 to 100,000."""
+    """Views of a film, in the order of their times; a window follows them until its view is moved. Allowed: 0 to
+    100,000."""
 
 
 class Lights(TypedDict, total=False):

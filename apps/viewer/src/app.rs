@@ -24,6 +24,9 @@ pub struct App {
     /// The scene as it was loaded: the defaults of the controls.
     pub(crate) base: Scene,
     pub(crate) camera: Camera,
+    /// True while the view follows the keyframes of the camera, and the number of the last command that moved it by hand.
+    pub(crate) follows: bool,
+    pub(crate) looked: u64,
     /// The view of the scene.
     pub(crate) home: Camera,
     /// Middle of hair and body at rest \[m\].
@@ -108,6 +111,8 @@ impl App {
             base: scene.clone(),
             scene: scene.clone(),
             camera: Camera::front(),
+            follows: false,
+            looked: 0,
             home: Camera::front(),
             center: Vec3::ZERO,
             playing: true,
@@ -268,9 +273,11 @@ impl App {
     /// The scene with the current view.
     pub fn seen(&self) -> Scene {
         let mut scene = self.own_scene();
-        scene.camera.position = Some(self.camera.position);
-        scene.camera.target = Some(self.camera.target);
-        scene.camera.field_of_view = Some(self.camera.field_of_view);
+        if !self.follows {
+            scene.camera.position = Some(self.camera.position);
+            scene.camera.target = Some(self.camera.target);
+            scene.camera.field_of_view = Some(self.camera.field_of_view);
+        }
         // It may be saved elsewhere.
         for file in scene.paths_mut() {
             let path = self.scene.folder.join(&file);

@@ -66,7 +66,10 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
     // Hair grows while the system makes the window.
     let app = App::new(scene).map_err(ViewError::NotStarted)?;
     let kept = app.kept.clone();
-    let make = |_: &eframe::CreationContext| Ok(Box::new(app) as Box<dyn eframe::App>);
+    let make = |context: &eframe::CreationContext| {
+        bound_size(context);
+        Ok(Box::new(app) as Box<dyn eframe::App>)
+    };
     let outcome = rescue::run(&kept, || eframe::run_native("strandline", options, Box::new(make)));
     let error = match outcome {
         Ok(Ok(())) => return Ok(()),
@@ -77,6 +80,15 @@ pub fn open(scene: Scene) -> Result<(), ViewError> {
     let has_display = std::env::var_os("DISPLAY").is_some_and(|display| !display.is_empty());
     // A library that cannot be loaded is reported in many ways, none of them clear.
     Err(libraries::missing().filter(|_| has_display).map_or(error, ViewError::Missing))
+}
+
+/// Keeps the window within the largest texture that its device draws into, which it may not be larger than.
+fn bound_size(context: &eframe::CreationContext) {
+    if let Some(state) = &context.wgpu_render_state {
+        let side = state.device.limits().max_texture_dimension_2d;
+        let largest = egui::Vec2::splat(side as f32 / context.egui_ctx.pixels_per_point());
+        context.egui_ctx.send_viewport_cmd(egui::ViewportCommand::MaxInnerSize(largest));
+    }
 }
 
 /// Device requirements of the window: textures as large as the adapter allows, since a window is drawn into

@@ -78,8 +78,8 @@ fn plain_keys(app: &mut App, pressed: impl Fn(Key) -> bool) {
 }
 
 fn look(app: &mut App, camera: Camera) {
-    app.camera = camera;
-    app.live.send(Change::Camera(camera));
+    (app.camera, app.follows) = (camera, false);
+    app.looked = app.live.send(Change::Camera(camera));
 }
 
 /// The camera moved across, in half heights of the picture.

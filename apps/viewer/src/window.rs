@@ -76,6 +76,10 @@ impl App {
                 self.texture = Some(context.load_texture("picture", image, egui::TextureOptions::LINEAR));
             }
         }
+        self.follows = shown.follows_camera && shown.drawn_after_command >= self.looked;
+        if let Some(camera) = shown.camera.filter(|_| self.follows) {
+            self.camera = camera;
+        }
         let now = Instant::now();
         if let Some(last) = self.last.replace(now) {
             let rate = 1.0 / (now - last).as_secs_f32().max(1e-3);

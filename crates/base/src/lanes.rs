@@ -109,6 +109,13 @@ impl Vec3Lanes {
         Self { x: [vector.x; LANES], y: [vector.y; LANES], z: [vector.z; LANES] }
     }
 
+    /// All vectors with another one added.
+    #[must_use]
+    pub fn moved(&self, by: Vec3) -> Self {
+        let add = |lanes: [f32; LANES], by: f32| lanes.map(|lane| lane + by);
+        Self { x: add(self.x, by.x), y: add(self.y, by.y), z: add(self.z, by.z) }
+    }
+
     /// The vector of one strand.
     #[inline]
     pub fn get(&self, lane: usize) -> Vec3 {

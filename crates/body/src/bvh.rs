@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use strandline_base::{math, utf8_text};
 
-use crate::parsing::Refusal;
+use crate::parsing::{A_NAME, Refusal};
 
 /// Most joints, and most channels of all of them.
 const JOINTS_LIMIT: usize = 4096;
@@ -49,7 +49,7 @@ pub(crate) fn parse(bytes: &[u8], name: &str) -> Result<JointMotion, Refusal> {
     let wanted = wanted.or_else(|| joints.iter().position(|joint| joint.name.eq_ignore_ascii_case(name)));
     let Some(wanted) = wanted else {
         let names: Vec<_> = joints.iter().take(60).map(|joint| format!("`{}`", joint.name)).collect();
-        return Err((format!("no joint `{name}` among {}", names.join(", ")), "the name of a joint"));
+        return Err((format!("no joint `{name}` among {}", names.join(", ")), A_NAME));
     };
     let refused = |found: &str| (found.to_owned(), EXPECTED);
     let mut named = |name: &str| match words.next() {

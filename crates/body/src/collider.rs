@@ -11,6 +11,9 @@ pub enum Carrier {
     Piece(u16),
     /// Nothing: the shape is given in world space and stays.
     World,
+    /// A piece, by its number, that moves by itself: the shape is given in the space of the piece, and the body at rest has
+    /// no place for it.
+    Moved(u16),
 }
 
 impl Carrier {
@@ -214,6 +217,22 @@ impl Collider {
             });
         }
         Ok(Self { shape, carrier, friction })
+    }
+
+    /// The collider in a world whose origin lies at `origin` \[m\]; none for a grid or a mannequin that stays in the world,
+    /// whose samples lie where they are.
+    pub fn seen_from(&self, origin: Vec3) -> Option<Self> {
+        let shape = match (&self.shape, self.carrier) {
+            (shape, Carrier::Piece(_) | Carrier::Moved(_)) => shape.clone(),
+            (Shape::Sphere { center, radius }, Carrier::World) => {
+                Shape::Sphere { center: *center - origin, radius: *radius }
+            }
+            (Shape::Capsule { start, end, radius }, Carrier::World) => {
+                Shape::Capsule { start: *start - origin, end: *end - origin, radius: *radius }
+            }
+            (Shape::Mannequin(_) | Shape::Grid(_) | Shape::Skin(_), Carrier::World) => return None,
+        };
+        Some(Self { shape, ..self.clone() })
     }
 }
 

@@ -129,6 +129,21 @@ impl BodyFrame {
         }
     }
 
+    /// The frame after everything in world space moved by a way \[m\].
+    pub fn moved(&self, by: Vec3) -> Self {
+        if by == Vec3::ZERO {
+            return self.clone();
+        }
+        let moved = |pose: &Pose| Pose { translation: pose.translation + by, ..*pose };
+        let all = |poses: &Arc<[Pose]>| poses.iter().map(moved).collect();
+        Self {
+            world_from_head: moved(&self.world_from_head),
+            others: self.others.as_ref().map(all),
+            roots: self.roots.as_ref().map(all),
+            ..self.clone()
+        }
+    }
+
     /// Transform of the head.
     #[inline]
     pub fn world_from_head(&self) -> Pose {

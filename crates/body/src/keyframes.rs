@@ -45,13 +45,13 @@ impl Keyframes {
         Curve::new(keys.iter().map(key).collect()).map(Self)
     }
 
-    /// The pose at a time \[s\], turned about a pivot \[m\].
-    pub(crate) fn pose(&self, time: f64, pivot: Vec3) -> Pose {
+    /// The pose at a time \[s\], turned about a pivot \[m\], in a world whose origin lies at `origin` \[m\].
+    pub(crate) fn pose(&self, time: f64, pivot: Vec3, origin: Vec3) -> Pose {
         let [pitch, yaw, roll, x, y, z] = self.0.at(time);
         // Whole turns go before single precision does.
         let degrees = [pitch, yaw, roll].map(|angle| (angle % 360.0) as f32);
         let mut pose = Pose::rotation_about(pivot, math::pitch_yaw_roll(degrees.into()));
-        pose.translation += glam::DVec3::new(x, y, z).as_vec3();
+        pose.translation += (glam::DVec3::new(x, y, z) - origin.as_dvec3()).as_vec3();
         pose
     }
 

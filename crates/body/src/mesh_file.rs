@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::gltf::{self, Fault};
 use crate::mesh::vertex_normals;
 use crate::mesh_format::MeshFormat;
-use crate::parsing::{Refusal, read_file};
+use crate::parsing::{Refusal, read_file, remedy};
 use crate::part_names::Names;
 use crate::{BodyError, Mesh, VertexMotion};
 
@@ -75,7 +75,8 @@ impl Mesh {
         let (mesh, rig) = read.map_err(|fault| match fault {
             Fault::Memory(error) => BodyError::Memory(error),
             Fault::Refused((found, expected)) => {
-                BodyError::Mesh { path: path.into(), found, expected, mend: format.mend() }
+                let mend = remedy(expected, format.mend());
+                BodyError::Mesh { path: path.into(), found, expected, mend }
             }
         })?;
         Ok((mesh.complete(path)?, VertexMotion::of_clip(rig), notes))

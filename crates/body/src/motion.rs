@@ -66,16 +66,23 @@ impl Motion {
     /// `pivot` \[m\], head space, is the point about which the head rotates, near the top of the
     /// neck. The built-in motions keep it where it is. Keyframes turn the head about it and displace it.
     pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
+        self.pose_from(time, pivot, Vec3::ZERO)
+    }
+
+    /// The head's pose as [`Motion::pose`], in a world whose origin lies at `origin` \[m\]: exact to single precision there,
+    /// however far the head is from the origin of its keyframes.
+    pub fn pose_from(&self, time: f64, pivot: Vec3, origin: Vec3) -> Pose {
         // [Chen2011 fig. 34] shows the head shake and gives no angle; these are a quick "no".
         let (axis, degrees) = match self {
-            Self::Still => return Pose::IDENTITY,
-            Self::Keyframes(keys) => return keys.pose(time, pivot),
+            Self::Still => return Pose { translation: Vec3::ZERO - origin, ..Pose::IDENTITY },
+            Self::Keyframes(keys) => return keys.pose(time, pivot, origin),
             Self::Shake => (DVec3::Y, SHAKE_DEGREES * swing(time, SHAKE_FREQUENCY)),
             Self::Nod => (DVec3::X, NOD_DEGREES * swing(time, NOD_FREQUENCY)),
             Self::Turn => (DVec3::Y, TURN_DEGREES * look(time)),
         };
         let rotation = math::rotation(axis.as_vec3(), degrees.to_radians() as f32);
-        Pose::rotation_about(pivot, rotation)
+        let pose = Pose::rotation_about(pivot, rotation);
+        Pose { translation: pose.translation - origin, ..pose }
     }
 }
 

@@ -14,6 +14,14 @@ const TAKEN: u64 = 30;
 /// Refusal of a file: the content found and expected.
 pub(crate) type Refusal = (String, &'static str);
 
+/// The expectation where a file has parts with names, and none of a name: the file is not to be mended.
+pub(crate) const A_NAME: &str = "a name that is in the file";
+
+/// The way to mend what was refused, given that of another file.
+pub(crate) fn remedy(expected: &str, of_file: &'static str) -> &'static str {
+    if expected == A_NAME { "give one of these names" } else { of_file }
+}
+
 /// The bytes of a plain file, unless it is too large or would take more memory than may be taken.
 pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, BodyError> {
     memory::check_file("the body", path, FILE_LIMIT, TAKEN)?;

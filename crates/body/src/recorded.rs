@@ -8,7 +8,7 @@ use strandline_base::math;
 
 use crate::bvh::{self, JointMotion};
 use crate::gltf::{self, Fault, Rig};
-use crate::parsing::read_file;
+use crate::parsing::{A_NAME, read_file, remedy};
 use crate::{BodyError, Pose};
 
 /// Rigid motion of a joint, as a file has it.
@@ -32,7 +32,7 @@ impl RecordedMotion {
     /// See [`BodyError`]: another format, no joint or clip of that name, with the names that there are.
     pub fn load(path: &Path, joint: &str, clip: Option<&str>, scale: f64) -> Result<Self, BodyError> {
         let refused = |(found, expected)| {
-            let mend = "export the motion again as .bvh or glTF 2.0";
+            let mend = remedy(expected, "export the motion again as .bvh or glTF 2.0");
             BodyError::Mesh { path: path.into(), found, expected, mend }
         };
         let bytes = read_file(path)?;
@@ -50,7 +50,7 @@ impl RecordedMotion {
         let Some(node) = rig.node(joint) else {
             let names: Vec<_> = rig.node_names().take(60).map(|name| format!("`{name}`")).collect();
             let found = format!("no node `{joint}` among {}", names.join(", "));
-            return Err(refused((found, "the name of a node")));
+            return Err(refused((found, A_NAME)));
         };
         Ok(Self { source: Source::Node(Arc::new(rig), node), scale })
     }
@@ -58,11 +58,17 @@ impl RecordedMotion {
     /// The head's pose (`world_from_head`) at a time \[s\]: it turns about the pivot \[m\], head space, and moves it, as the
     /// joint turns and moves from its first moment on. Times before and after the motion are held.
     pub fn pose(&self, time: f64, pivot: Vec3) -> Pose {
+        self.pose_from(time, pivot, Vec3::ZERO)
+    }
+
+    /// The head's pose as [`RecordedMotion::pose`], in a world whose origin lies at `origin` \[m\].
+    pub fn pose_from(&self, time: f64, pivot: Vec3, origin: Vec3) -> Pose {
         let [(first, start), (now, place)] = [0.0, time].map(|time| self.joint(time));
         let rotation = (now * first.conjugate()).normalize().as_quat();
         let mut pose = Pose::rotation_about(pivot, rotation);
-        let by = (self.scale * (place - start)).as_vec3();
-        pose.translation += if by.is_finite() { by } else { Vec3::ZERO };
+        let by = self.scale * (place - start);
+        let by = if by.as_vec3().is_finite() { by } else { DVec3::ZERO };
+        pose.translation += (by - origin.as_dvec3()).as_vec3();
         pose
     }
 
@@ -118,7 +124,7 @@ mod tests {
             assert!((face.x.atan2(face.z).to_degrees() - degrees).abs() < 1e-3, "{face} at {time}");
         }
         let absent = RecordedMotion::load(&path, "Hips", None, 1.0).unwrap_err().to_string();
-        assert!(absent.contains("no joint `Hips` among `Head`"), "{absent}");
+        assert!(absent.contains("no joint `Hips` among `Head`") && !absent.contains("export"), "{absent}");
     }
 
     #[test]
@@ -129,6 +135,9 @@ mod tests {
         let pose = motion.pose(1.0, Vec3::Y);
         assert!(pose.rotation.is_normalized() && pose.rotation.angle_between(glam::Quat::IDENTITY) > 0.1);
         let absent = RecordedMotion::load(&path, "tail", None, 1.0).unwrap_err().to_string();
-        assert!(absent.contains("no node `tail` among `root`, `hips`"), "{absent}");
+        assert!(
+            absent.contains("no node `tail` among `root`, `hips`") && !absent.contains("export"),
+            "{absent}"
+        );
     }
 }

@@ -106,7 +106,7 @@ impl Numbers {
     fn rows(&self, solid: &Collider, kept: f32) -> [[u32; 4]; HEADER] {
         let carrier = match solid.carrier {
             Carrier::World => WORLD,
-            Carrier::Piece(piece) => HEAD + u32::from(piece),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => HEAD + u32::from(piece),
         };
         let vector = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last].map(f32::to_bits);
         let [x, y, z] = self.node_counts;

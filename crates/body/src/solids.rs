@@ -35,7 +35,7 @@ impl Solids {
     pub fn placed(&self, body: impl Into<BodyFrame>) -> PlacedSolids<'_> {
         let body = body.into();
         let piece = |(solid, _): &(Collider, f32)| match solid.carrier {
-            Carrier::Piece(piece) => usize::from(piece) + 1,
+            Carrier::Piece(piece) | Carrier::Moved(piece) => usize::from(piece) + 1,
             Carrier::World => 0,
         };
         let count = self.0.iter().map(piece).max().unwrap_or(0);
@@ -78,7 +78,9 @@ impl PlacedSolids<'_> {
             if distance - away < best.0 { (distance - away, gradient, solid.carrier) } else { best }
         });
         let turned = match carrier {
-            Carrier::Piece(piece) => self.pieces[usize::from(piece)][0].direction(gradient),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                self.pieces[usize::from(piece)][0].direction(gradient)
+            }
             Carrier::World => gradient,
         };
         (distance, turned)
@@ -87,7 +89,7 @@ impl PlacedSolids<'_> {
     /// A point \[m\] in the space of a carrier.
     fn local(&self, carrier: Carrier, point: Vec3) -> Vec3 {
         match carrier {
-            Carrier::Piece(piece) => self.pieces[usize::from(piece)][1].point(point),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => self.pieces[usize::from(piece)][1].point(point),
             Carrier::World => point,
         }
     }

@@ -17,6 +17,7 @@ mod resampled;
 mod rest;
 mod selected;
 mod style;
+mod unlike;
 
 pub mod format;
 

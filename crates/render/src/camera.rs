@@ -24,6 +24,11 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// The camera in a world whose origin lies at `origin` \[m\].
+    pub fn seen_from(&self, origin: Vec3) -> Self {
+        Self { position: self.position - origin, target: self.target - origin, ..*self }
+    }
+
     /// The built-in bust from the front.
     pub fn front() -> Self {
         Self::around_bust(Vec3::Z)

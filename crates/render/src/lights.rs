@@ -64,6 +64,11 @@ pub struct Illumination {
 }
 
 impl Light {
+    /// The light in a world whose origin lies at `origin` \[m\].
+    pub fn seen_from(&self, origin: Vec3) -> Self {
+        Self { position: self.position - origin, target: self.target - origin, ..*self }
+    }
+
     /// A soft box before and above a head at `target` \[m\] that faces +z, a cool strip behind it and a large, weak fill
     /// on the far side of the soft box: the lights of a photographer's studio.
     pub fn studio(target: Vec3) -> [Self; 3] {

@@ -96,7 +96,7 @@ pub(crate) fn velocities(guides: &Guides, rooted: impl Fn(usize, usize) -> bool)
 pub(crate) fn clearance(colliders: &[Collider], point: Vec3) -> f32 {
     colliders
         .iter()
-        .filter(|collider| collider.carrier != Carrier::World)
+        .filter(|collider| matches!(collider.carrier, Carrier::Piece(_)))
         .map(|collider| collider.shape.distance(point))
         .fold(f32::INFINITY, f32::min)
         .max(0.0)

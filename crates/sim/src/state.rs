@@ -102,6 +102,20 @@ impl State {
         between([&self.previous_positions, &self.positions], share, positions);
     }
 
+    /// The state after everything in the world moved by a way \[m\], to be read: nothing goes on from it.
+    pub fn moved(&self, by: Vec3) -> Self {
+        if by == Vec3::ZERO {
+            return self.clone();
+        }
+        let move_all = |lanes: &[Vec3Lanes]| lanes.iter().map(|lanes| lanes.moved(by)).collect();
+        Self {
+            positions: move_all(&self.positions),
+            previous_positions: move_all(&self.previous_positions),
+            body: self.body.moved(by),
+            ..self.clone()
+        }
+    }
+
     /// Number of points of a strand.
     pub fn points_per_strand(&self) -> usize {
         self.positions.len() / self.length_scale.len().max(1)

@@ -1,7 +1,7 @@
 //! Hair carried over a jump of the body.
 
 use strandline_base::par::prelude::*;
-use strandline_body::{BodyFrame, Pose};
+use strandline_body::{BodyFrame, Carrier, Pose};
 use strandline_groom::{LANES, Vec3Lanes};
 
 use crate::contact::planes::Contacts;
@@ -46,9 +46,9 @@ impl State {
 }
 
 impl Model {
-    /// True with a solid that nothing carries.
+    /// True with a solid that the body does not carry.
     fn is_beside_world(&self) -> bool {
-        self.colliders.iter().any(|collider| collider.carrier == strandline_body::Carrier::World)
+        self.colliders.iter().any(|collider| !matches!(collider.carrier, Carrier::Piece(_)))
     }
 }
 

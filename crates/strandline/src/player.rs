@@ -93,7 +93,7 @@ impl Player {
         let mut session = Session::open(prepared, devices.into())?;
         notes.extend(session.take_notes());
         let here = session.simulation().end().world_from_head();
-        let timing = FilmTiming::new(session.scene(), session.head().clone(), here);
+        let timing = FilmTiming::new(session.scene(), session.head_from_origin().clone(), here);
         let frames = session.scene().film.frames;
         let camera = CameraMotion::new(&session.scene().camera.keyframes, *session.view().camera())?;
         Ok(Self {
@@ -126,7 +126,10 @@ impl Player {
             let found = format!("frame {} is not in a film of {} frames", settings.first, self.frames);
             return Err(Error::cache(&settings.path, found));
         }
-        self.out = Some(self.session.begin_file(settings, &self.timing.body(0.0))?);
+        self.out = Some({
+            let body = self.timing.body(0.0).moved(self.session.head_from_origin().origin());
+            self.session.begin_file(settings, &body)?
+        });
         Ok(())
     }
 
@@ -196,7 +199,10 @@ impl Player {
     /// # Errors
     /// The GPU failed, and falling back to the CPU is not allowed.
     pub fn state(&self) -> Result<State, Error> {
-        Ok(self.session.peek(|simulation| simulation.state().cloned())?)
+        Ok(self.session.peek(|simulation| {
+            let origin = simulation.origin;
+            simulation.state().map(|state| state.moved(origin))
+        })?)
     }
 
     /// Distance of the hair from the groom as loaded, which the head carries.

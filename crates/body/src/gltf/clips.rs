@@ -6,7 +6,7 @@ use ::gltf::json::Value;
 
 use super::buffers::Buffers;
 use super::track::{Property, Track, Way};
-use crate::parsing::Refusal;
+use crate::parsing::{A_NAME, Refusal};
 
 /// Most names of clips that a refusal lists.
 const LISTED: usize = 20;
@@ -49,7 +49,7 @@ impl Clips {
         let equal = names.iter().position(|own| own == name);
         let found = equal.or_else(|| names.iter().position(|own| own.eq_ignore_ascii_case(name)));
         let Some(clip) = found.map(|index| &self.0[index]) else {
-            return Err((absent(name, &names), "the name of a clip in the file"));
+            return Err(absent(name, &names));
         };
         let samplers = clip.get("samplers").and_then(Value::as_array).map_or(&[][..], |all| &all[..]);
         let mut tracks = Vec::new();
@@ -85,13 +85,13 @@ impl Clips {
 }
 
 /// Says that a clip is not there.
-fn absent(name: &str, names: &[String]) -> String {
+fn absent(name: &str, names: &[String]) -> Refusal {
     if names.is_empty() {
-        return format!("no clip, and none named `{name}`");
+        return (format!("no clip, and none named `{name}`"), "a file with clips");
     }
     let more = if names.len() > LISTED { " and more" } else { "" };
     let listed: Vec<_> = names.iter().take(LISTED).map(|name| format!("`{name}`")).collect();
-    format!("no clip `{name}` among {}{more}", listed.join(", "))
+    (format!("no clip `{name}` among {}{more}", listed.join(", ")), A_NAME)
 }
 
 fn refused(what: &str) -> Refusal {

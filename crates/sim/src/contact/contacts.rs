@@ -63,7 +63,7 @@ pub struct Query {
 /// Transform of a carrier, `world_from_carrier`.
 fn pose(frame: &BodyFrame, carrier: Carrier) -> Pose {
     match carrier {
-        Carrier::Piece(piece) => frame.piece(piece.into()),
+        Carrier::Piece(piece) | Carrier::Moved(piece) => frame.piece(piece.into()),
         Carrier::World => Pose::IDENTITY,
     }
 }

@@ -56,7 +56,7 @@ impl<'a> Obstacles<'a> {
         };
         let skins = colliders.iter().enumerate().map(skin).collect();
         let piece = |collider: &Collider| match collider.carrier {
-            Carrier::Piece(piece) => usize::from(piece) + 1,
+            Carrier::Piece(piece) | Carrier::Moved(piece) => usize::from(piece) + 1,
             Carrier::World => 0,
         };
         let count = colliders.iter().map(piece).max().unwrap_or(0);
@@ -88,7 +88,9 @@ impl<'a> Obstacles<'a> {
     fn local(&self, collider: &Collider, point: Vec3) -> Vec3 {
         match collider.carrier {
             Carrier::World => point,
-            Carrier::Piece(piece) => self.pieces[usize::from(piece)].piece_from_world.point(point),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                self.pieces[usize::from(piece)].piece_from_world.point(point)
+            }
         }
     }
 
@@ -103,7 +105,9 @@ impl<'a> Obstacles<'a> {
             };
             let gradient = match collider.carrier {
                 Carrier::World => gradient,
-                Carrier::Piece(piece) => self.pieces[usize::from(piece)].end.direction(gradient),
+                Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                    self.pieces[usize::from(piece)].end.direction(gradient)
+                }
             };
             (distance, gradient, index)
         };
@@ -150,7 +154,7 @@ impl<'a> Obstacles<'a> {
     fn velocity(&self, collider: usize, point: Vec3, before: &mut u32) -> Vec3 {
         match self.colliders[collider].carrier {
             Carrier::World => Vec3::ZERO,
-            Carrier::Piece(piece) => {
+            Carrier::Piece(piece) | Carrier::Moved(piece) => {
                 let Placed { start, piece_from_world, .. } = self.pieces[usize::from(piece)];
                 let local = piece_from_world.point(point);
                 let shift = self.skins[collider].as_ref().map_or(Vec3::ZERO, |skin| {

@@ -103,7 +103,7 @@ impl<'a> Heights<'a> {
     /// Planes of strands of a number of points.
     pub fn new(contacts: &'a Contacts, obstacles: &Obstacles, points: usize) -> Self {
         let inverse = |carrier| match carrier {
-            Carrier::Piece(piece) => obstacles.end.piece(piece.into()).inverse(),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => obstacles.end.piece(piece.into()).inverse(),
             Carrier::World => Pose::IDENTITY,
         };
         let carrier_from_world = carriers(obstacles.colliders).into_iter().map(inverse).collect();

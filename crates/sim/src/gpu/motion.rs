@@ -86,7 +86,7 @@ pub(super) fn has_roots(start: &BodyFrame, end: &BodyFrame) -> bool {
 /// Number of the body's pieces up to the last that carries a collider; the head always counts.
 pub(super) fn piece_count(colliders: &[Collider]) -> usize {
     let last = |collider: &Collider| match collider.carrier {
-        Carrier::Piece(piece) => usize::from(piece),
+        Carrier::Piece(piece) | Carrier::Moved(piece) => usize::from(piece),
         Carrier::World => 0,
     };
     1 + colliders.iter().map(last).max().unwrap_or(0)

@@ -183,13 +183,13 @@ impl Out {
         }
     }
 
-    /// Adds a frame of the film, where it is one of those that are written: guide points \[m\], world space, shape
-    /// `[block][point]` of lanes, and the body.
+    /// Adds a frame of the film, where it is one of those that are written: guide points \[m\], shape `[block][point]` of
+    /// lanes, and the body, both seen from an origin \[m\] of the world. The file has them in the world.
     pub(crate) fn add(
         &mut self,
         number: u32,
         time: f64,
-        (positions, body): (&[Vec3Lanes], &BodyFrame),
+        (positions, body, origin): (&[Vec3Lanes], &BodyFrame, Vec3),
         steps: &[StepReport],
         state: Option<&Snapshot>,
     ) -> Result<(), Error> {
@@ -202,8 +202,11 @@ impl Out {
         }
         let watch = Stopwatch::start();
         self.shape.place(positions, body, &mut self.points);
-        let points = std::mem::take(&mut self.points);
-        let frame = Frame { number, time, points: &points, body };
+        let mut points = std::mem::take(&mut self.points);
+        if origin != Vec3::ZERO {
+            points.iter_mut().for_each(|point| *point += origin);
+        }
+        let frame = Frame { number, time, points: &points, body: &body.moved(origin) };
         let added = self.write(&frame, state);
         self.points = points;
         self.time += watch.elapsed();

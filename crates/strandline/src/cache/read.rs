@@ -342,7 +342,14 @@ impl<R: Read + Seek> Frames<R> {
             let numbers = f32s(&self.npz.all(&mut rows).map_err(text)?).collect();
             parts.push(Part { name: part, shape, numbers });
         }
-        Snapshot::new(&clock, &poses, &lists, parts).map(Some)
+        let snapshot = Snapshot::new(&clock, &poses, &lists, parts)?;
+        if self.npz.open(snapshot::ORIGIN).map_err(text)?.is_none() {
+            return Ok(Some(snapshot));
+        }
+        let origin = numbers(&mut self.npz, snapshot::ORIGIN, Kind::F32, &[Some(3)], |bytes| {
+            f32s(bytes).collect::<Vec<_>>()
+        })?;
+        Ok(Some(Snapshot { origin: Vec3::from_slice(&origin), ..snapshot }))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Snapshots of a run: the numbers from which it resumes to the same bits.
 
+use glam::Vec3;
 use strandline_base::npz::Array;
 
 use crate::{
@@ -17,7 +18,12 @@ pub(crate) struct Snapshot {
     pub state: Checkpoint,
     /// Body at the last two steps, and at the end of the last run.
     pub bodies: [BodyFrame; 3],
+    /// Origin of all places in it \[m\], world space.
+    pub origin: Vec3,
 }
+
+/// Name of the array of the origin, which a run near that of the world does not have.
+pub(super) const ORIGIN: &str = "state_origin";
 
 /// Bodies of a snapshot: those of [`Snapshot::bodies`], then the state's.
 const BODIES: usize = 4;
@@ -43,6 +49,9 @@ impl Snapshot {
             let numbers = bodies.iter().flat_map(|body| lists.numbers(list, body));
             Array::f32s(OF_STATE[list], &[BODIES, length, width], numbers)
         }));
+        if self.origin != Vec3::ZERO {
+            arrays.push(Array::f32s(ORIGIN, &[3], self.origin.to_array()));
+        }
         arrays.extend(self.state.parts.iter().filter_map(|part| {
             let (name, _) = names.iter().find(|(_, own)| *own == part.name)?;
             Some(Array::f32s(name, &part.shape, part.numbers.iter().copied()))
@@ -81,6 +90,6 @@ impl Snapshot {
         };
         let bodies = [body(0)?, body(1)?, body(2)?];
         let state = Checkpoint { parts, body: body(3)?, time: *state_time };
-        Ok(Self { frame: *frame as u32, time: *time, state, bodies })
+        Ok(Self { frame: *frame as u32, time: *time, state, bodies, origin: Vec3::ZERO })
     }
 }

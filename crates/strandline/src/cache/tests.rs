@@ -52,13 +52,14 @@ fn write(settings: &OutSettings, guides: &Guides, frames: u32) -> (u64, f64, f64
         time: 0.0,
         state: crate::sim::Checkpoint { parts: Vec::new(), body: BodyFrame::REST, time: 0.0 },
         bodies: [BodyFrame::REST, BodyFrame::REST, BodyFrame::REST],
+        origin: Vec3::ZERO,
     };
     let (begin, ran) = (Instant::now(), processor());
     for frame in 0..frames {
         for lanes in &mut positions {
             lanes.x.iter_mut().for_each(|x| *x += 1e-4 * (0.3 * frame as f32).sin());
         }
-        out.add(frame, f64::from(frame) / 30.0, (&positions, &REST), &[], Some(&state)).unwrap();
+        out.add(frame, f64::from(frame) / 30.0, (&positions, &REST, Vec3::ZERO), &[], Some(&state)).unwrap();
     }
     out.close(true, Some(&state)).unwrap();
     let bytes = u64::from(frames) * 12 * (guides.strand_count() * guides.points_per_strand()) as u64;

@@ -9,7 +9,7 @@ impl Hair {
     /// # Errors
     /// A name that no format has; a file or folder that cannot be written; more points than a file may have.
     pub fn begin_file(&mut self, settings: &OutSettings) -> Result<Out, Error> {
-        let out = self.session.begin_file(settings, self.session.simulation().end())?;
+        let out = self.session.begin_file(settings, &self.body())?;
         self.unwritten.get_or_insert_default();
         Ok(out)
     }

@@ -38,7 +38,7 @@ impl Hair {
         let session = &self.session;
         self.timing.get_or_insert_with(|| {
             let here = session.simulation().end().world_from_head();
-            FilmTiming::new(session.scene(), session.head().clone(), here)
+            FilmTiming::new(session.scene(), session.head_from_origin().clone(), here)
         })
     }
 
@@ -52,9 +52,10 @@ impl Hair {
         Ok(self.session.simulation_mut().settle(seconds, wind)?)
     }
 
-    /// The body at the end of the last step.
-    pub fn body(&self) -> &BodyFrame {
-        self.session.simulation().end()
+    /// The body at the end of the last step, in the world.
+    pub fn body(&self) -> BodyFrame {
+        let simulation = self.session.simulation();
+        simulation.end().moved(simulation.origin)
     }
 
     /// Puts the points of [`Hair::points`] into memory of the caller, shape `[strand][point]`.

@@ -1,12 +1,13 @@
 mod files;
 mod film;
+mod hand;
 
 use std::path::Path;
 
 use glam::Vec3;
 
 use crate::{
-    Devices, Error, HeadMotion, Prepared, Ray, Scene, Sources,
+    Devices, Error, HeadMotion, Prepared, Scene, Sources,
     body::{Aabb, BodyFrame, Collider, Mesh},
     gpu::Gpu,
     groom::{Groom, Guides},
@@ -23,6 +24,8 @@ pub struct Hair {
     session: Session<Inline>,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
+    /// The state as it was last read, in the world, of hair that is simulated from another origin.
+    moved_state: Option<State>,
     /// Reports of steps since the last frame that was written, from the first file on.
     unwritten: Option<Vec<StepReport>>,
     /// Timing of the scene's film, from its first frame on.
@@ -101,7 +104,7 @@ impl Hair {
     }
 
     fn of(session: Session<Inline>) -> Self {
-        Self { session, wind: Vec3::ZERO, unwritten: None, timing: None, played: None }
+        Self { session, wind: Vec3::ZERO, moved_state: None, unwritten: None, timing: None, played: None }
     }
 
     /// Lets `seconds` pass while the body moves evenly to `body`: a [`BodyFrame`], or the pose of a rigid head. Steps
@@ -114,8 +117,10 @@ impl Hair {
     /// More than a million steps at once; or the GPU failed and [`Hair::set_fall_back`] was not asked for. The
     /// hair keeps its last state.
     pub fn step(&mut self, seconds: f64, body: impl Into<BodyFrame>) -> Result<Vec<StepReport>, Error> {
-        let (start, end) = (self.session.simulation().end().clone(), body.into());
-        self.step_along(seconds, |share| start.toward(&end, share))
+        let simulation = self.session.simulation();
+        let (start, end): (BodyFrame, BodyFrame) = (simulation.end().clone(), body.into());
+        let end = self.seen(end, seconds);
+        self.run_along(seconds, &|share| start.toward(&end, share))
     }
 
     /// As [`Hair::step`], with the body for each share (0 to 1) of the time that passes.
@@ -127,44 +132,33 @@ impl Hair {
         seconds: f64,
         body: impl Fn(f32) -> B,
     ) -> Result<Vec<StepReport>, Error> {
+        let (head, begin) = (self.session.head_from_origin().clone(), self.time());
+        let seen = |share: f32, body: BodyFrame| {
+            head.beside_solids(body.moved(-head.origin()), begin + seconds * f64::from(share))
+        };
+        self.run_along(seconds, &|share| seen(share, body(share).into()))
+    }
+
+    /// Time of the motion \[s\] at the end of the last step.
+    fn time(&self) -> f64 {
+        self.session.scene().film.start + self.session.simulation().passed
+    }
+
+    /// A body after `seconds` from now, seen from the origin of the simulation, with the solids beside it that have
+    /// keyframes.
+    fn seen(&self, body: BodyFrame, seconds: f64) -> BodyFrame {
+        let head = self.session.head_from_origin();
+        head.beside_solids(body.moved(-head.origin()), self.time() + seconds)
+    }
+
+    /// Lets time pass under a body that is seen from the origin of the simulation.
+    fn run_along(&mut self, seconds: f64, body: &dyn Fn(f32) -> BodyFrame) -> Result<Vec<StepReport>, Error> {
         let wind = self.wind;
         self.played = None;
         let simulation = self.session.simulation_mut();
-        let reports = simulation.step_along(seconds, &|share| (body(share).into(), wind))?;
+        let reports = simulation.step_along(seconds, &|share| (body(share), wind))?;
         self.note_reports(&reports);
         Ok(reports)
-    }
-
-    /// Takes hair into a hand in place of the hair that it held: the strands within `radius` \[m\] of `hand` \[m\], world
-    /// space, each at its nearest point. Returns the number of strands.
-    ///
-    /// # Errors
-    /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
-    pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, Error> {
-        Ok(self.session.simulation_mut().grab(hand, radius)?)
-    }
-
-    /// The first hair within `radius` \[m\] of a line of sight, before the body: its place \[m\], world space, for
-    /// [`Hair::grab`]. [`Ray::new`] takes the present picture.
-    ///
-    /// # Errors
-    /// As [`Hair::grab`].
-    pub fn pick(&mut self, ray: &Ray, radius: f32) -> Result<Option<Vec3>, Error> {
-        self.session.show()?;
-        Ok(self.session.pick(ray, radius)?.map(|picked| picked.point))
-    }
-
-    /// Moves the hand to a place \[m\], world space, at constant velocity during the next [`Hair::step`].
-    pub fn move_hand(&mut self, hand: Vec3) {
-        self.session.simulation_mut().move_hand(hand);
-    }
-
-    /// Lets go of the hair in the hand.
-    ///
-    /// # Errors
-    /// As [`Hair::grab`].
-    pub fn release(&mut self) -> Result<(), Error> {
-        Ok(self.session.simulation_mut().release()?)
     }
 
     /// Allows or forbids falling back to the CPU from the last state when the GPU fails; it is allowed for
@@ -356,7 +350,12 @@ impl Hair {
     /// # Errors
     /// The GPU failed and [`Hair::set_fall_back`] was not asked for.
     pub fn state(&mut self) -> Result<&State, Error> {
-        Ok(self.session.simulation_mut().state()?)
+        let origin = self.session.simulation().origin;
+        let state = self.session.simulation_mut().state()?;
+        if origin == Vec3::ZERO {
+            return Ok(state);
+        }
+        Ok(self.moved_state.insert(state.moved(origin)))
     }
 
     /// Saves positions and motion of the hair, for `groom.pose` of a scene. Four tensors of the safetensors format, 32-bit

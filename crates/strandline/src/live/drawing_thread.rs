@@ -335,6 +335,8 @@ impl DrawingThread {
             simulated_after_command: session.simulated_after(),
             draft: playing.draft,
             recorded: playing.recorder.as_ref().map(|recorder| recorder.frames),
+            camera: Some(*session.view().camera()),
+            follows_camera: session.follows_camera(),
             drawing,
             step: playing.step.take(),
             grabbed: session.grabbed(),

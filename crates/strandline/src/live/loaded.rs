@@ -25,6 +25,7 @@ impl Loaded {
         let mut session = Session::open(prepared, scene.devices)?;
         session.settle()?;
         notes.extend(session.take_notes());
+        session.follow_camera();
         Ok(Self { session: session.beside()?, notes })
     }
 

@@ -59,6 +59,10 @@ pub struct Shown {
     pub draft: bool,
     /// Frames that the video has so far, while one is recorded.
     pub recorded: Option<u32>,
+    /// The view of the picture.
+    pub camera: Option<Camera>,
+    /// True where the view follows the keyframes of the camera.
+    pub follows_camera: bool,
     /// Cost of the picture.
     pub drawing: FrameReport,
     /// The last step that was not reported before.

@@ -6,6 +6,7 @@ use crate::{
     Error, HeadMotion, Scene,
     body::{Aabb, Mesh, RecordedMotion},
     groom::Guides,
+    scene::solid_motion::solid_motions,
 };
 
 /// Motion of the head: about the scene's pivot, the body's, or a low point in the box around hair and body.
@@ -17,7 +18,8 @@ pub fn head_motion(scene: &Scene, pivot: Option<Vec3>, bounds: Aabb) -> Result<H
         RecordedMotion::load(&scene.path(file), &section.joint, clip, f64::from(section.scale))
     };
     let recorded = section.file.as_ref().map(|file| load(file)).transpose()?;
-    Ok(HeadMotion::new(section, pivot)?.with_recorded(recorded))
+    let solids = solid_motions(&scene.colliders, section.interpolation)?;
+    Ok(HeadMotion::new(section, pivot)?.with_recorded(recorded).with_solids(solids))
 }
 
 /// The box around strands and body \[m\].

@@ -6,6 +6,7 @@ use crate::{
     Error, Scene,
     body::{Carrier, Collider, Mesh, Pose, Shape, SkinMotion, Solids},
     groom::{Groom, Guides, Outside},
+    scene::origin::about,
     strands::attributes,
 };
 
@@ -13,6 +14,7 @@ use super::{
     framing::{bounds, head_motion},
     loading::Loading,
     looks, memory, moving,
+    start::Start,
 };
 
 /// Depth \[m\] up to which no note is made: less than the error of a sampled body.
@@ -47,8 +49,9 @@ pub(super) fn guides(loading: &mut Loading) -> Result<(), Error> {
         }
         _ => None,
     };
-    let start = start(scene, loading.pivot, &all, loading.mesh.as_ref(), loading.skin.as_ref())?;
-    notes.extend(move_outside(&mut guides, start, &loading.colliders, |_| 0.0));
+    let (mesh, skin) = (loading.mesh.as_ref(), loading.skin.as_ref());
+    let start = start(scene, loading.pivot, &all, mesh, skin, &loading.colliders)?;
+    notes.extend(move_outside(&mut guides, &start, &loading.colliders, |_| 0.0));
     loading.start = start;
     (loading.strands, loading.chosen, loading.guides) = (Some(all), chosen, Some(guides));
     Ok(())
@@ -87,40 +90,45 @@ fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<u
     Some(guides)
 }
 
-/// Pose of the head when the hair begins to move. Hair with a pose of its own rests as it did where its run began.
+/// The head when the hair begins to move. Hair with a pose of its own rests as it did where its run began.
 fn start(
     scene: &Scene,
     pivot: Option<Vec3>,
     strands: &Guides,
     mesh: Option<&Mesh>,
     skin: Option<&SkinMotion>,
-) -> Result<Pose, Error> {
+    colliders: &[Collider],
+) -> Result<Start, Error> {
     let head = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
     let head = head.with_body(skin.cloned());
-    Ok(head.pose(if scene.groom.pose.is_some() { 0.0 } else { scene.film.start }))
+    let time = if scene.groom.pose.is_some() { 0.0 } else { scene.film.start };
+    let (origin, _) = about(head.origin_at(time), colliders.to_vec());
+    Ok(Start { origin, body: head.seen_from(origin).frame(time) })
 }
 
 /// Moves points that rest inside solids to their surface: inside those of the body, and inside those of the world with
-/// the head at its pose `start`. Returns a note where there were some.
+/// the body as it begins. Returns a note where there were some.
 pub(super) fn move_outside(
     guides: &mut Guides,
-    start: Pose,
+    Start { origin, body }: &Start,
     colliders: &[Collider],
     clearance: impl Fn(&Shape) -> f32,
 ) -> Option<String> {
+    let (_, colliders) = about(*origin, colliders.to_vec());
+    let head = body.world_from_head();
     let solids = |is_wanted: fn(&Carrier) -> bool| {
         let wanted = colliders.iter().filter(|solid| is_wanted(&solid.carrier));
         Solids::new(wanted.map(|solid| (solid.clone(), clearance(&solid.shape))))
     };
     let of_body = solids(|carrier| matches!(carrier, Carrier::Piece(_)));
-    let of_world = solids(|carrier| *carrier == Carrier::World);
-    let (at_rest, in_world, back) = (of_body.placed(Pose::IDENTITY), of_world.placed(start), start.inverse());
+    let of_world = solids(|carrier| !matches!(carrier, Carrier::Piece(_)));
+    let (at_rest, in_world, back) = (of_body.placed(Pose::IDENTITY), of_world.placed(body), head.inverse());
     let found = guides.move_outside(|point| {
         let nearest = at_rest.at(point);
         if in_world.is_empty() {
             return nearest;
         }
-        let (distance, gradient) = in_world.at(start.point(point));
+        let (distance, gradient) = in_world.at(head.point(point));
         if distance < nearest.0 { (distance, back.direction(gradient)) } else { nearest }
     });
     let Outside { point_count, strand_count, depth, depth_left } = found;

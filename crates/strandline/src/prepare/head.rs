@@ -7,7 +7,7 @@ use strandline_base::math;
 
 use super::profile::Profile;
 use super::sample::surface;
-use crate::body::{Mannequin, Mesh};
+use crate::body::Mesh;
 use crate::groom::format::Up;
 
 /// Places of a body's surface that are looked at.
@@ -58,10 +58,7 @@ pub(super) fn turns() -> impl Iterator<Item = Quat> {
 /// The pose that a body shows, given the axes that may point up: those of its file where it shows none.
 pub(super) fn pose(mesh: &Mesh, ups: &[Up]) -> Pose {
     let places = surface(mesh, PLACES);
-    let Some(person) = Profile::of(&surface(&Mannequin::new().mesh(), PLACES)) else {
-        unreachable!("the built-in head is a head")
-    };
-    let seen: Vec<Seen> = ups.iter().map(|up| Seen::new(&places, &person, *up)).collect();
+    let seen: Vec<Seen> = ups.iter().map(|up| Seen::new(&places, *up)).collect();
     let Some((first, others)) = seen.split_first() else { unreachable!("an axis that may point up") };
     let best = others.iter().fold(first, |best, one| {
         let limit = if std::ptr::eq(best, first) { SURER * best.strange } else { best.strange };
@@ -86,13 +83,13 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(places: &[Vec3], person: &Profile, up: Up) -> Self {
+    fn new(places: &[Vec3], up: Up) -> Self {
         let mut strange = f32::INFINITY;
         let fronts = turns_of(up).map(|turn| {
             let turned: Vec<Vec3> = places.iter().map(|place| turn * *place).collect();
             let Some(profile) = Profile::of(&turned) else { return (f32::INFINITY, [0.0; 2]) };
-            strange = strange.min(profile.strange(person));
-            (profile.unlike(person), profile.noses)
+            strange = strange.min(profile.strange());
+            (profile.unlike(), profile.noses)
         });
         Self { up, strange, fronts }
     }

@@ -8,9 +8,10 @@ use super::memory;
 use super::placing::{Defined, Placings};
 use super::shown::Shown;
 use super::skull::Skull;
+use super::start::Start;
 use crate::{
     Error, Scene,
-    body::{Collider, Mesh, Pose, Shape, SkinMotion, VertexMotion},
+    body::{Collider, Mesh, Shape, SkinMotion, VertexMotion},
     groom::{Groom, Guides},
 };
 
@@ -58,8 +59,8 @@ pub(super) struct Loading<'a> {
     pub chosen: Option<Vec<usize>>,
     /// The simulated strands at rest, from `guides`.
     pub guides: Option<Guides>,
-    /// Pose of the head when the hair begins to move, from `guides`.
-    pub start: Pose,
+    /// The head when the hair begins to move, from `guides`.
+    pub start: Start,
 }
 
 impl<'a> Loading<'a> {
@@ -96,7 +97,7 @@ impl<'a> Loading<'a> {
             strands: None,
             chosen: None,
             guides: None,
-            start: Pose::IDENTITY,
+            start: Start::default(),
         })
     }
 

@@ -28,6 +28,7 @@ mod shown;
 mod skull;
 mod solids;
 mod sources;
+mod start;
 mod units;
 mod wrap;
 
@@ -119,7 +120,7 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         None => None,
         Some(chosen) => {
             // The note about the guides stands for these too, which are near them.
-            guides::move_outside(&mut all, start, &colliders, Shape::clearance);
+            guides::move_outside(&mut all, &start, &colliders, Shape::clearance);
             let binding = Binding::new(&groom, &chosen, all, guides.clone())?;
             Some(BoundStrands::new(binding, colliders.clone()))
         }

@@ -65,6 +65,7 @@ fn place_hair(loading: &mut Loading) -> Result<(), Error> {
     let place = |groom: &mut Groom, placing, turn, by| place_groom(groom, placing, scene, turn, by);
     notes.extend(join::add_grooms(scene, groom, further, placings.groom, mesh.as_ref(), place)?);
     notes.extend(groom.mend());
+    notes.extend(groom.unlike_beside());
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use super::placing::place_mesh;
 use crate::{
     Error,
     body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape, SkinSolid},
-    scene::Model,
+    scene::{Model, solid_motion},
 };
 
 /// Air around a loaded body that its signed distance covers \[m\].
@@ -30,9 +30,8 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
         loading.colliders.push(Collider::new(shape, Carrier::HEAD, scene.body.friction)?);
     }
-    for section in &scene.colliders {
-        loading.colliders.push(section.collider()?);
-    }
+    let beside = solid_motion::colliders(&scene.colliders)?;
+    loading.colliders.extend(beside);
     Ok(())
 }
 

@@ -137,6 +137,11 @@ impl Sources {
         let (body, path) = (&scene.body, scene.path(name));
         let Some(clip) = &body.clip else {
             if !self.meshes.contains_key(name) && Mesh::is_sequence(&path) {
+                if body.vertices.is_some() {
+                    let found = "a second motion of the body";
+                    let expected = "either the frames of `body.file` or `body.vertices`";
+                    return Err(SettingError::new("body.vertices", found, expected).into());
+                }
                 let (mesh, motion) = Mesh::load_sequence(&path, body.frames_per_second)?;
                 return Ok((mesh, Some(motion), Vec::new()));
             }

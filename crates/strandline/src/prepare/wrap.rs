@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{marked, skull::Skull};
 use crate::{
     Error,
-    body::{Mannequin, Mesh, Shape},
+    body::{Mesh, Shape},
     groom::Groom,
 };
 
@@ -24,8 +24,7 @@ pub(super) fn onto(
     marked: Option<&Mesh>,
     shape: Option<&Shape>,
 ) -> Result<Option<String>, Error> {
-    let built_in = Skull::of(&Mannequin::new().mesh().positions);
-    let Some((from, to)) = built_in.zip(Skull::of_body(mesh)) else { return Ok(None) };
+    let (from, Some(to)) = (Skull::BUILT_IN, Skull::of_body(mesh)) else { return Ok(None) };
     let ratio = to.size / from.size;
     let scale = Vec3::new(ratio.x, ratio.x, ratio.y);
     let place = |point: Vec3| {

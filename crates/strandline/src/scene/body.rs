@@ -4,6 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use strandline_base::{Group, Key, Kind, Row, SettingError, Table, Value, Word, choices, settings};
 
+use super::KeyframeSection;
 use crate::{
     Error,
     body::{Carrier, Collider, Shape},
@@ -106,7 +107,7 @@ choices! {
     pub enum CarrierName as "carrier" {
         /// The head: the shape is given in head space.
         Head = "head",
-        /// Nothing: the shape is given in world space and stays.
+        /// Nothing: the shape is given in world space and stays but for its keyframes.
         World = "world",
     }
     default Head
@@ -123,30 +124,33 @@ impl From<CarrierName> for Carrier {
 
 settings! {
     /// A ball.
-    pub struct SphereSection: Copy {
+    pub struct SphereSection {
         /// Centre of a sphere.
         center: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
         /// Radius.
         radius: f32 = 0.05, required true, in [1e-6, 1000.0] "m", slider [0.005, 0.3], more "a larger solid";
         /// Carrier that it moves with.
         carrier: CarrierName = CarrierName::default();
+        /// Displacements and turns about the middle of the solid, in the order of their times; it rests before the first and
+        /// after the last.
+        keyframes: Vec<KeyframeSection> = Vec::new(), in [0, 100_000];
         shared BodySection { friction: f32 }
     }
 }
 
 settings! {
     /// A segment with a radius.
-    pub struct CapsuleSection: Copy {
+    pub struct CapsuleSection {
         /// One end of a capsule.
         start: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
         /// The other end of a capsule.
         end: Vec3 = Vec3::ZERO, required true, in [-1e4, 1e4] "m";
-        shared SphereSection { radius: f32, carrier: CarrierName, friction: f32 }
+        shared SphereSection { radius: f32, carrier: CarrierName, friction: f32, keyframes: Vec<KeyframeSection> }
     }
 }
 
 /// `[[colliders]]`: a solid beside the body.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "shape", rename_all = "lowercase")]
 pub enum ColliderSection {
     /// A ball.
@@ -156,16 +160,16 @@ pub enum ColliderSection {
 }
 
 impl ColliderSection {
-    /// The solid itself.
+    /// The solid itself, without keyframes.
     ///
     /// # Errors
     /// A radius that is not positive, a negative friction, a number that is not finite.
     pub fn collider(&self) -> Result<Collider, Error> {
         let (shape, carrier, friction) = match *self {
-            Self::Sphere(SphereSection { center, radius, carrier, friction }) => {
+            Self::Sphere(SphereSection { center, radius, carrier, friction, .. }) => {
                 (Shape::Sphere { center, radius }, carrier, friction)
             }
-            Self::Capsule(CapsuleSection { start, end, radius, carrier, friction }) => {
+            Self::Capsule(CapsuleSection { start, end, radius, carrier, friction, .. }) => {
                 (Shape::Capsule { start, end, radius }, carrier, friction)
             }
         };
@@ -211,6 +215,7 @@ impl Group for ColliderSection {
             SphereSection::ROWS.radius,
             SphereSection::ROWS.carrier,
             SphereSection::ROWS.friction,
+            SphereSection::ROWS.keyframes,
         ],
     };
 }

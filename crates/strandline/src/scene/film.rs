@@ -64,7 +64,7 @@ settings! {
         target: Option<Vec3> = None, in [-1e4, 1e4] "m";
         /// Vertical field of view; without it that of the framing.
         field_of_view: Option<f32> = None, in [1.0, 170.0] "degrees", more "a wider view";
-        /// Views of a film, in the order of their times; a window has its own.
+        /// Views of a film, in the order of their times; a window follows them until its view is moved.
         keyframes: Vec<CameraKeyframe> = Vec::new(), in [0, 100_000];
     }
     also CameraSection::apart;

@@ -1,10 +1,12 @@
+use std::sync::Arc;
+
 use glam::{Quat, Vec3};
 use strandline_base::math;
 
 use crate::{
     Error,
     body::{BodyFrame, Motion, Pose, RecordedMotion, SkinMotion},
-    scene::{MotionName, MotionSection},
+    scene::{MotionName, MotionSection, origin, solid_motion::SolidMotion},
 };
 
 /// Pose of a head at every time: a motion about a pivot, and a turn added to it. A body that moves by itself is carried
@@ -14,6 +16,10 @@ pub struct HeadMotion {
     motion: Motion,
     pivot: Vec3,
     turn: Quat,
+    /// Motions of solids, the pieces after the head.
+    solids: Arc<[SolidMotion]>,
+    /// The world's origin \[m\] from which poses are given.
+    origin: Vec3,
     body: Option<SkinMotion>,
     /// Motion from a file, in the place of `motion` where the section asks for it.
     recorded: Option<RecordedMotion>,
@@ -28,12 +34,31 @@ impl HeadMotion {
     pub fn new(section: &MotionSection, pivot: Vec3) -> Result<Self, Error> {
         let turn = math::pitch_yaw_roll(section.rotation);
         let is_recorded = section.name == MotionName::File;
-        Ok(Self { motion: section.motion()?, pivot, turn, body: None, recorded: None, is_recorded })
+        Ok(Self {
+            motion: section.motion()?,
+            pivot,
+            turn,
+            body: None,
+            recorded: None,
+            is_recorded,
+            solids: Arc::default(),
+            origin: Vec3::ZERO,
+        })
     }
 
     /// The same motion, which carries a body that moves by itself.
     pub(crate) fn with_body(self, body: Option<SkinMotion>) -> Self {
         Self { body, ..self }
+    }
+
+    /// The same motion beside solids that move by themselves.
+    pub(crate) fn with_solids(self, solids: impl Into<Arc<[SolidMotion]>>) -> Self {
+        Self { solids: solids.into(), ..self }
+    }
+
+    /// Motions of solids.
+    pub(crate) fn solids(&self) -> &Arc<[SolidMotion]> {
+        &self.solids
     }
 
     /// The same motion, with that of a file for a section that asks for it.
@@ -60,6 +85,8 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded: false,
+            solids: Arc::default(),
+            origin: Vec3::ZERO,
         }
     }
 
@@ -73,20 +100,47 @@ impl HeadMotion {
 
     /// The body at a time \[s\]: the pose of the head, and the skin where it moves by itself.
     pub fn frame(&self, time: f64) -> BodyFrame {
-        match &self.body {
+        let frame = match &self.body {
             Some(body) => body.frame(time).carried_by(&self.carrying(time)),
             None => self.carrying(time).into(),
+        };
+        self.beside_solids(frame, time)
+    }
+
+    /// A body with the solids that move by themselves at a time \[s\], where it has no pieces of its own.
+    pub(crate) fn beside_solids(&self, body: BodyFrame, time: f64) -> BodyFrame {
+        if self.solids.is_empty() || body.piece_count() > 1 {
+            return body;
         }
+        let head = body.world_from_head();
+        body.with_pieces(
+            self.solids.iter().map(|solid| solid.pose(time, &head, self.origin)).collect::<Vec<_>>(),
+        )
     }
 
     /// Transform of everything by the motion about the pivot.
     fn carrying(&self, time: f64) -> Pose {
         let pose = match self.recorded.as_ref().filter(|_| self.is_recorded) {
-            Some(recorded) => recorded.pose(time, self.pivot),
-            None => self.motion.pose(time, self.pivot),
+            Some(recorded) => recorded.pose_from(time, self.pivot, self.origin),
+            None => self.motion.pose_from(time, self.pivot, self.origin),
         };
         let rotation = pose.rotation * self.turn;
         Pose { rotation, translation: pose.point(self.pivot) - rotation * self.pivot }
+    }
+
+    /// The same motion in a world whose origin lies at `origin` \[m\].
+    pub(crate) fn seen_from(&self, origin: Vec3) -> Self {
+        Self { origin, ..self.clone() }
+    }
+
+    /// The world's origin from which its poses are given \[m\].
+    pub(crate) fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// An origin \[m\], in whole metres, beside the head at a time \[s\]; the world's where the head is near that.
+    pub(crate) fn origin_at(&self, time: f64) -> Vec3 {
+        origin::beside(self.seen_from(Vec3::ZERO).pose(time).point(self.pivot))
     }
 
     /// Point about which the head turns \[m\], head space.

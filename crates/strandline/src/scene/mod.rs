@@ -11,6 +11,8 @@ mod groom;
 pub(crate) mod head;
 mod keys;
 mod motion;
+pub(crate) mod origin;
+pub(crate) mod solid_motion;
 mod surroundings;
 
 use std::path::{Path, PathBuf};
@@ -217,6 +219,7 @@ impl Scene {
         self.motion.motion()?;
         self.wind.curve()?;
         camera_motion::curve(&self.camera.keyframes)?;
+        solid_motion::solid_motions(&self.colliders, self.motion.interpolation)?;
         if matches!(self.devices.simulation, Backend::Gpu(_)) {
             self.simulation.check_on_gpu()?;
         }

@@ -93,7 +93,7 @@ impl MotionSection {
 }
 
 impl KeyframeSection {
-    fn keyframe(&self, interpolation: Interpolation) -> Keyframe {
+    pub(super) fn keyframe(&self, interpolation: Interpolation) -> Keyframe {
         Keyframe {
             time: self.time,
             rotation: self.rotation,

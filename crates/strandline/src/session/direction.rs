@@ -18,7 +18,9 @@ pub(crate) const MOST_STEPS: f64 = 16.0;
 pub(crate) struct Direction {
     pub wind: WindSection,
     motion: MotionSection,
+    /// The motion of the head, in the world and seen from the origin of the simulation.
     pub head: HeadMotion,
+    pub head_from_origin: HeadMotion,
     /// Time of motion and wind \[s\], at their beginning and at the end of the last frame that was taken.
     begun: f64,
     time: f64,
@@ -29,17 +31,18 @@ pub(crate) struct Direction {
 }
 
 impl Direction {
-    /// That of a scene whose head moves so.
-    pub fn new(scene: &Scene, head: HeadMotion) -> Self {
+    /// That of a scene whose head moves so, seen from the origin of the simulation.
+    pub fn new(scene: &Scene, head_from_origin: HeadMotion) -> Self {
         let start = scene.film.start;
         let (wind, motion) = (scene.wind.clone(), scene.motion.clone());
-        Self { wind, motion, head, begun: start, time: start, counts: true, hand: None }
+        let head = head_from_origin.seen_from(Vec3::ZERO);
+        Self { wind, motion, head, head_from_origin, begun: start, time: start, counts: true, hand: None }
     }
 
     /// Drive of the next frame.
     pub fn next(&mut self) -> Live {
         self.counts = true;
-        let (head, wind) = (self.head.clone(), self.wind.clone());
+        let (head, wind) = (self.head_from_origin.clone(), self.wind.clone());
         Live { begin: self.time, seconds: FRAME, most_steps: MOST_STEPS, head, wind, hand: self.hand }
     }
 
@@ -68,7 +71,9 @@ impl Direction {
         motion.check_as("motion")?;
         let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
         let head = HeadMotion::new(&motion, self.head.pivot())?;
-        self.head = head.with_body(body).with_recorded(recorded);
+        let solids = self.head.solids().clone();
+        self.head = head.with_body(body).with_recorded(recorded).with_solids(solids);
+        self.head_from_origin = self.head.seen_from(self.head_from_origin.origin());
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             (self.begun, self.time, self.counts) = (0.0, 0.0, false);
         }
@@ -81,7 +86,8 @@ impl Default for Direction {
     /// A head and air that rest.
     fn default() -> Self {
         let motion = MotionSection { name: MotionName::Still, ..MotionSection::default() };
-        let head = HeadMotion::still();
-        Self { wind: WindSection::default(), motion, head, begun: 0.0, time: 0.0, counts: true, hand: None }
+        let wind = WindSection::default();
+        let [head, head_from_origin] = [HeadMotion::still(), HeadMotion::still()];
+        Self { wind, motion, head, head_from_origin, begun: 0.0, time: 0.0, counts: true, hand: None }
     }
 }

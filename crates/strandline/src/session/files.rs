@@ -32,7 +32,8 @@ impl<E: Executor> Session<E> {
         reports: &[StepReport],
         state: Option<&Snapshot>,
     ) -> Result<(), Error> {
-        out.add(frame, time, (self.shown.positions(), &self.shown.body), reports, state)
+        let shown = &self.shown;
+        out.add(frame, time, (shown.positions(), &shown.body, shown.origin), reports, state)
     }
 
     /// The simulation after a frame.
@@ -67,6 +68,10 @@ impl<E: Executor> Session<E> {
             return Err(Error::cache(cache.path(), found));
         }
         let steps = cache.steps();
+        if state.origin != self.with(|simulation| simulation.origin) {
+            let found = "its run has positions about another place: begin another run";
+            return Err(Error::cache(cache.path(), found));
+        }
         self.with(|simulation| simulation.restore(&state, steps))?;
         self.drawn = made;
         self.view.painter.notes.extend(differences);

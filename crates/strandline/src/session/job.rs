@@ -22,7 +22,7 @@ pub(crate) enum Task {
     /// A frame of a cache: guide points \[m\], world space, shape `[block][point]` of lanes.
     Cached { body: BodyFrame, positions: Vec<Vec3Lanes> },
     /// A stretch of time that a person directs.
-    Live(Live),
+    Live(Box<Live>),
     /// Other settings.
     Settings(Box<Settings>),
     /// Another length of each strand, over that of the groom.
@@ -60,16 +60,14 @@ impl Task {
                 return timing.run(simulation, frame);
             }
             Self::Live(live) => return live.run(simulation),
-            Self::Cached { body, positions } => {
-                simulation.show_cached(body, |places| places.copy_from_slice(&positions))
-            }
+            Self::Cached { body, positions } => simulation.show_cached(&body, &positions),
             Self::Settings(settings) => simulation.set_settings(&settings),
             Self::Lengths(scales) => simulation.engine.set_length_scale(&scales),
             Self::Reset { body, settle, wind } => {
                 simulation.reset(body).and_then(|()| simulation.settle(settle, wind))
             }
             Self::Grab { index, lane, radius } => {
-                let now = simulation.engine.state()?.positions[index].get(lane);
+                let now = simulation.engine.state()?.positions[index].get(lane) + simulation.origin;
                 simulation.grab(now, radius).map(drop)
             }
             Self::Release => simulation.release(),
@@ -118,6 +116,8 @@ pub(crate) struct Done {
     pub notes: Vec<String>,
     /// Time that passed \[s\].
     pub seconds: f64,
+    /// Time by which the moment lies behind the end of the last run \[s\].
+    pub delay: f64,
     /// Strands in the hand.
     pub grabbed: usize,
     pub is_frame: bool,
@@ -153,8 +153,8 @@ impl Work for Simulation {
         let simulated_on = device_name(self.engine.gpu());
         let (seconds, grabbed) = (self.passed - before, self.engine.grabbed());
         let notes = self.engine.take_notes();
-        let stiffening = self.stiffening();
-        Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on, stiffening }
+        let (stiffening, delay) = (self.stiffening(), self.delay());
+        Done { moment, reports, notes, seconds, delay, grabbed, is_frame, commands, simulated_on, stiffening }
     }
 }
 

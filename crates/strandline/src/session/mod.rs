@@ -8,6 +8,7 @@ pub(crate) mod engine;
 mod event;
 mod files;
 pub(crate) mod film_timing;
+mod following;
 mod job;
 mod jump;
 pub(crate) mod moment;
@@ -37,12 +38,12 @@ pub(crate) use view::View;
 use std::collections::VecDeque;
 
 use glam::Vec3;
-use strandline_base::{Group, par::prelude::*};
+use strandline_base::Group;
 
 use crate::{
     Error, HeadMotion, Scene,
-    groom::LANES,
     render::{Camera, FrameReport, Look, Picture, PictureSettings, RenderError, memory::check_lights},
+    scene::camera_motion::CameraMotion,
     sim::{StepReport, Stiffening},
     strands::tags::Tags,
 };
@@ -50,7 +51,6 @@ use direction::Direction;
 use draft::simplified;
 use job::{Done, Job};
 use moment::Moment;
-use pick::Picked;
 
 /// A simulation, its renderer, and the commands between them.
 pub(crate) struct Session<E> {
@@ -63,6 +63,9 @@ pub(crate) struct Session<E> {
     /// Size and finish of full pictures, and the simpler pictures that are drawn in their place.
     settings: PictureSettings,
     draft: Option<Draft>,
+    /// The keyframes of the camera, and whether the view follows them.
+    camera_motion: Option<CameraMotion>,
+    follows_camera: bool,
     /// Device on which the hair of the last result was simulated: cpu, or the adapter.
     simulated_on: String,
     stiffening: Stiffening,
@@ -86,9 +89,14 @@ impl<E: Executor> Session<E> {
         &self.scene
     }
 
-    /// The motion of the head.
+    /// The motion of the head, in the world.
     pub fn head(&self) -> &HeadMotion {
         &self.direction.head
+    }
+
+    /// The motion of the head, seen from the origin of the simulation.
+    pub fn head_from_origin(&self) -> &HeadMotion {
+        &self.direction.head_from_origin
     }
 
     /// The renderer, with the view, the look and the lights of its pictures.
@@ -151,7 +159,7 @@ impl<E: Executor> Session<E> {
     /// # Errors
     /// As [`Session::start`].
     pub fn start_frame(&mut self, commands: u64) -> Result<(), Error> {
-        let task = Task::Live(self.direction.next());
+        let task = Task::Live(Box::new(self.direction.next()));
         self.start(task, false, commands)
     }
 
@@ -161,10 +169,11 @@ impl<E: Executor> Session<E> {
     /// The error of the task; the simulation's thread has ended.
     pub fn take(&mut self) -> Result<bool, Error> {
         let done = self.executor.finish().map_err(|_| Error::WorkerGone)?;
-        let Done { moment, reports, notes, seconds, grabbed, is_frame, commands, simulated_on, stiffening } =
-            done;
+        let Done { moment, reports, notes, seconds, delay, grabbed, .. } = done;
+        let Done { is_frame, commands, simulated_on, stiffening, .. } = done;
         if is_frame {
             self.direction.pass(seconds);
+            self.look_along(delay);
         }
         (self.simulated_on, self.grabbed, self.stiffening) = (simulated_on, grabbed, stiffening);
         self.simulated_after = self.simulated_after.max(commands);
@@ -237,7 +246,10 @@ impl<E: Executor> Session<E> {
     pub fn change(&mut self, change: Change) -> Result<(), Error> {
         let view = &mut self.view;
         match change {
-            Change::Camera(camera) => camera.validate().map(|()| view.camera = camera)?,
+            Change::Camera(camera) => {
+                camera.validate().map(|()| view.camera = camera)?;
+                self.follows_camera = false;
+            }
             Change::Look(look) => look.validate().map(|()| view.look = *look)?,
             Change::BodyLook(look) => look.validate().map(|()| view.body_look = look)?,
             Change::Lights(lights) => {
@@ -261,8 +273,10 @@ impl<E: Executor> Session<E> {
             }
             Change::Reset => {
                 self.direction.reset();
-                let (body, settle) = (self.direction.head.frame(0.0), f64::from(self.scene.film.settle));
+                let body = self.direction.head_from_origin.frame(0.0);
+                let settle = f64::from(self.scene.film.settle);
                 let wind = self.direction.wind.at(0.0);
+                self.follow_camera();
                 self.start(Task::Reset { body, settle, wind }, false, 0)?;
             }
         }
@@ -292,65 +306,6 @@ impl<E: Executor> Session<E> {
     /// Size and finish of full pictures.
     pub fn settings(&self) -> PictureSettings {
         self.settings
-    }
-
-    /// Takes the hair that a line of sight meets in the shown moment into the hand.
-    fn grab(&mut self, ray: &Ray, radius: f32) -> Result<(), Error> {
-        let Some(Picked { point, index, lane }) = self.pick(ray, radius)? else { return self.release() };
-        self.direction.hand = Some(point);
-        self.start(Task::Grab { index, lane, radius }, false, 0)
-    }
-
-    fn release(&mut self) -> Result<(), Error> {
-        match self.direction.hand.take() {
-            Some(_) => self.start(Task::Release, false, 0),
-            None => Ok(()),
-        }
-    }
-
-    /// The hair that a line of sight meets first in the shown moment, before the body, within a radius \[m\] of it.
-    ///
-    /// # Errors
-    /// The GPU that had its points failed, and falling back to the CPU is not allowed.
-    pub fn pick(&mut self, ray: &Ray, radius: f32) -> Result<Option<Picked>, Error> {
-        let Self { executor, shown, view, .. } = self;
-        executor.with(|simulation| simulation.bring_home(shown))?;
-        let View { guides, painter, .. } = view;
-        let body = painter.mesh().map(|mesh| (mesh, &shown.body));
-        let shape = [guides.strand_count(), guides.points_per_strand()];
-        Ok(ray.hair(shown.positions(), shape, radius, body))
-    }
-
-    /// Points of the shown moment \[m\], world space, shape `[strand][point]`. A GPU is waited for.
-    ///
-    /// # Errors
-    /// As [`Session::pick`].
-    pub fn points(&mut self) -> Result<&[Vec3], Error> {
-        let guides = &self.view.guides;
-        let mut points = std::mem::take(&mut self.points);
-        points.resize(guides.strand_count() * guides.points_per_strand(), Vec3::ZERO);
-        let filled = self.points_into(&mut points);
-        self.points = points;
-        filled?;
-        Ok(&self.points)
-    }
-
-    /// Puts the points of [`Session::points`] into memory of the caller, as many as there are.
-    ///
-    /// # Errors
-    /// As [`Session::pick`].
-    pub fn points_into(&mut self, points: &mut [Vec3]) -> Result<(), Error> {
-        let Self { executor, shown, view, .. } = self;
-        executor.with(|simulation| simulation.bring_home(shown))?;
-        let each = view.guides.points_per_strand();
-        assert_eq!(points.len(), view.guides.strand_count() * each, "room for every point");
-        let blocks = points.par_chunks_mut(LANES * each).zip(shown.positions().par_chunks(each));
-        blocks.for_each(|(strands, block)| {
-            for (lane, strand) in strands.chunks_mut(each).enumerate() {
-                strand.iter_mut().zip(block).for_each(|(point, lanes)| *point = lanes.get(lane));
-            }
-        });
-        Ok(())
     }
 
     /// Notes on the devices, human-readable.

@@ -1,5 +1,6 @@
 //! Source of the points of a picture.
 
+use glam::Vec3;
 use strandline_base::par::prelude::*;
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
@@ -13,11 +14,14 @@ use crate::{
 /// The points of the guides between two states, where the picture needs them: on its device, or on the host.
 #[derive(Default)]
 pub(crate) struct Moment {
-    /// Guide points \[m\], world space, shape `[block][point]` of lanes; old ones while `device` alone has them.
+    /// Guide points \[m\], seen from the origin, shape `[block][point]` of lanes; old ones while `device` alone has them.
     positions: Vec<Vec3Lanes>,
     on_host: bool,
     device: Option<OnDevice>,
+    /// Body, seen from the origin.
     pub body: BodyFrame,
+    /// Origin of its places \[m\], world space.
+    pub origin: Vec3,
     pub at: When,
     /// Bodies of the two states around it, where the points follow the way of the body between them, and not straight
     /// lines; such a moment is on the host.

@@ -2,6 +2,7 @@
 
 use std::{collections::VecDeque, sync::Arc};
 
+use glam::Vec3;
 use strandline_base::{Group, par::Pool};
 
 use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
@@ -12,7 +13,9 @@ use crate::{
     prepare,
     render::{BodyLook, Camera, LevelOfDetail, Light, Look, PictureSettings},
     scene::FilmSection,
+    scene::camera_motion::CameraMotion,
     scene::devices::{Opened, Pair, device_name},
+    scene::origin::about,
     session::painter::Painter,
     session::skin_carrier::SkinCarrier,
     session::worker::Worker,
@@ -65,6 +68,8 @@ impl Session<Inline> {
             direction: Direction::default(),
             settings: PictureSettings::default(),
             draft: None,
+            camera_motion: None,
+            follows_camera: false,
             simulated_on,
             stiffening,
             grabbed: 0,
@@ -87,6 +92,10 @@ impl Session<Inline> {
         let picture = prepared.scene.picture;
         let camera = prepared.camera(picture.width as f32 / picture.height as f32);
         let Prepared { guides, bound, mesh, colliders, head, pose, scene, tags, .. } = prepared;
+        let (origin, colliders) = about(head.origin_at(scene.film.start), colliders);
+        let bound =
+            bound.map(|bound| if origin == Vec3::ZERO { bound } else { bound.among(colliders.clone()) });
+        let head = head.seen_from(origin);
         let pair = devices.open()?;
         let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
         let view = &mut session.view;
@@ -96,6 +105,7 @@ impl Session<Inline> {
         session.set_picture(picture)?;
         let scales = vec![scene.groom.length; session.view.guides.strand_count()];
         let simulation = session.executor.simulation_mut();
+        simulation.origin = origin;
         if scene.groom.length != 1.0 {
             simulation.set_length_scale(&scales)?;
         }
@@ -107,6 +117,7 @@ impl Session<Inline> {
             None => {}
         }
         session.direction = Direction::new(&scene, head);
+        session.camera_motion = CameraMotion::new(&scene.camera.keyframes, camera)?;
         (session.scene, session.tags) = (scene, tags);
         session.show()?;
         Ok(session)
@@ -127,6 +138,8 @@ impl Session<Inline> {
             direction: self.direction,
             settings: self.settings,
             draft: self.draft,
+            camera_motion: self.camera_motion,
+            follows_camera: self.follows_camera,
             simulated_on: self.simulated_on,
             stiffening: self.stiffening,
             grabbed: self.grabbed,
@@ -213,8 +226,6 @@ fn lights(scene: &Scene, view: &View) -> Vec<Light> {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
     use crate::{Backend, groom::Groom};
 

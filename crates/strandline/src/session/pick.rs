@@ -1,8 +1,11 @@
-//! The hair under a point of the picture.
+//! The hair of the shown moment: under a point of the picture, and all its points.
 
 use glam::{Vec2, Vec3};
+use strandline_base::par::prelude::*;
 
+use super::{Executor, Session, Task, View};
 use crate::{
+    Error,
     body::{BodyFrame, Mesh},
     groom::{LANES, Vec3Lanes},
     render::Camera,
@@ -111,6 +114,70 @@ pub(crate) struct Picked {
     /// Its place in `[block][point]`, and its lane.
     pub index: usize,
     pub lane: usize,
+}
+
+impl<E: Executor> Session<E> {
+    /// Takes the hair that a line of sight meets in the shown moment into the hand.
+    pub(super) fn grab(&mut self, ray: &Ray, radius: f32) -> Result<(), Error> {
+        let Some(Picked { point, index, lane }) = self.pick(ray, radius)? else { return self.release() };
+        self.direction.hand = Some(point);
+        self.start(Task::Grab { index, lane, radius }, false, 0)
+    }
+
+    pub(super) fn release(&mut self) -> Result<(), Error> {
+        match self.direction.hand.take() {
+            Some(_) => self.start(Task::Release, false, 0),
+            None => Ok(()),
+        }
+    }
+
+    /// The hair that a line of sight meets first in the shown moment, before the body, within a radius \[m\] of it.
+    ///
+    /// # Errors
+    /// The GPU that had its points failed, and falling back to the CPU is not allowed.
+    pub fn pick(&mut self, ray: &Ray, radius: f32) -> Result<Option<Picked>, Error> {
+        let Self { executor, shown, view, .. } = self;
+        executor.with(|simulation| simulation.bring_home(shown))?;
+        let View { guides, painter, .. } = view;
+        let body = painter.mesh().map(|mesh| (mesh, &shown.body));
+        let shape = [guides.strand_count(), guides.points_per_strand()];
+        let origin = shown.origin;
+        let ray = Ray { origin: ray.origin - origin, ..*ray };
+        let picked = ray.hair(shown.positions(), shape, radius, body);
+        Ok(picked.map(|picked| Picked { point: picked.point + origin, ..picked }))
+    }
+
+    /// Points of the shown moment \[m\], world space, shape `[strand][point]`. A GPU is waited for.
+    ///
+    /// # Errors
+    /// As [`Session::pick`].
+    pub fn points(&mut self) -> Result<&[Vec3], Error> {
+        let guides = &self.view.guides;
+        let mut points = std::mem::take(&mut self.points);
+        points.resize(guides.strand_count() * guides.points_per_strand(), Vec3::ZERO);
+        let filled = self.points_into(&mut points);
+        self.points = points;
+        filled?;
+        Ok(&self.points)
+    }
+
+    /// Puts the points of [`Session::points`] into memory of the caller, as many as there are.
+    ///
+    /// # Errors
+    /// As [`Session::pick`].
+    pub fn points_into(&mut self, points: &mut [Vec3]) -> Result<(), Error> {
+        let Self { executor, shown, view, .. } = self;
+        executor.with(|simulation| simulation.bring_home(shown))?;
+        let (each, origin) = (view.guides.points_per_strand(), shown.origin);
+        assert_eq!(points.len(), view.guides.strand_count() * each, "room for every point");
+        let blocks = points.par_chunks_mut(LANES * each).zip(shown.positions().par_chunks(each));
+        blocks.for_each(|(strands, block)| {
+            for (lane, strand) in strands.chunks_mut(each).enumerate() {
+                strand.iter_mut().zip(block).for_each(|(point, lanes)| *point = lanes.get(lane) + origin);
+            }
+        });
+        Ok(())
+    }
 }
 
 #[cfg(test)]

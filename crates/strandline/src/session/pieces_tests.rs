@@ -66,7 +66,7 @@ fn a_run_on_several_pieces_resumes_from_its_cache_to_the_same_bits() {
         let leaving = Leaving { guides: &guides, bound: None, tags: &Tags::default(), body: &shown };
         let mut out = Out::new(&OutSettings::new(&path), &scene, leaving).unwrap();
         let positions = state(&mut whole).positions;
-        out.add(0, FRAME, (&positions, &shown), &[], Some(&snapshot)).unwrap();
+        out.add(0, FRAME, (&positions, &shown, Vec3::ZERO), &[], Some(&snapshot)).unwrap();
         out.close(true, Some(&snapshot)).unwrap();
         let mut cache = Cache::open(&path).unwrap();
         assert_eq!(cache.read(0, &mut Vec::new()).unwrap(), shown);

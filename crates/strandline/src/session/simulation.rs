@@ -20,6 +20,13 @@ use crate::{
     strands::hair_pose::HairPose,
 };
 
+/// Moves points by a way \[m\].
+fn move_lanes(points: &mut [Vec3Lanes], by: Vec3) {
+    if by != Vec3::ZERO {
+        points.iter_mut().for_each(|lanes| *lanes = lanes.moved(by));
+    }
+}
+
 /// Steps that settling hair makes in one run.
 const AT_ONCE: usize = 1024;
 /// Steps that may be due at once, ten seconds of the shortest ones.
@@ -38,6 +45,9 @@ pub(crate) struct Simulation {
     end: BodyFrame,
     /// Time \[s\] of all runs that went well.
     pub passed: f64,
+    /// Origin of all places here \[m\], world space, in whole metres: single precision is exact beside it. Places in the
+    /// world become those here as they enter, and the other way round as they leave.
+    pub origin: Vec3,
     /// Position of the hand that holds hair, and its target in the next run \[m\]; `None` without one.
     hand: Option<[Vec3; 2]>,
     /// Roots that the skin carries.
@@ -56,6 +66,7 @@ impl Simulation {
             bodies: [BodyFrame::REST, BodyFrame::REST],
             end: BodyFrame::REST,
             passed: 0.0,
+            origin: Vec3::ZERO,
             hand: None,
             skin: SkinCarrier::default(),
             threads: None,
@@ -82,7 +93,7 @@ impl Simulation {
         self.engine.gpu()
     }
 
-    /// The state. A GPU is waited for.
+    /// The state, seen from the origin. A GPU is waited for.
     pub fn state(&mut self) -> Result<&State, SimError> {
         self.engine.state()
     }
@@ -117,7 +128,7 @@ impl Simulation {
         self.engine.set_length_scale(scales)
     }
 
-    /// Goes back to rest on a body: the same steps follow as the first time.
+    /// Goes back to rest on a body that is seen from the origin: the same steps follow as the first time.
     pub fn reset(&mut self, body: BodyFrame) -> Result<(), SimError> {
         let body = self.skin.placed(body, &BodyFrame::REST);
         self.engine.reset(body.clone())?;
@@ -125,9 +136,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// Puts hair and body where a pose has them.
+    /// Puts hair and body where a pose has them in the world.
     pub fn place(&mut self, hair: &HairPose) -> Result<(), SimError> {
-        let hair = hair.clone().on(self.skin.placed(hair.body().clone(), &BodyFrame::REST));
+        let hair = hair.moved(-self.origin);
+        let body = self.skin.placed(hair.body().clone(), &BodyFrame::REST);
+        let hair = hair.on(body);
         self.engine.place(&hair)?;
         self.begin_at(hair.body().clone());
         Ok(())
@@ -137,7 +150,8 @@ impl Simulation {
     pub fn snapshot(&mut self, frame: u32) -> Result<Snapshot, SimError> {
         let [before, now] = self.bodies.clone();
         let state = self.engine.state()?.checkpoint();
-        Ok(Snapshot { frame, time: self.clock.time(), state, bodies: [before, now, self.end.clone()] })
+        let (bodies, origin) = ([before, now, self.end.clone()], self.origin);
+        Ok(Snapshot { frame, time: self.clock.time(), state, bodies, origin })
     }
 
     /// Restores the state of a run after a number of steps. The run continues with the same bits.
@@ -151,10 +165,14 @@ impl Simulation {
         Ok(())
     }
 
-    /// Shows a frame of a cache: no time passes.
-    pub fn show_cached(&mut self, body: BodyFrame, place: impl Fn(&mut [Vec3Lanes])) -> Result<(), SimError> {
-        self.engine.show(place)?;
-        self.begin_at(self.skin.recognized(body));
+    /// Shows a frame of a cache, in the world: no time passes.
+    pub fn show_cached(&mut self, body: &BodyFrame, positions: &[Vec3Lanes]) -> Result<(), SimError> {
+        let origin = self.origin;
+        self.engine.show(|places| {
+            places.copy_from_slice(positions);
+            move_lanes(places, -origin);
+        })?;
+        self.begin_at(self.skin.recognized(body.moved(-origin)));
         Ok(())
     }
 
@@ -165,26 +183,27 @@ impl Simulation {
         self.hand = None;
     }
 
-    /// Positions and motion of the hair in the shown moment.
+    /// Positions and motion of the hair in the shown moment, in the world.
     pub fn hair_pose(&mut self) -> Result<HairPose, SimError> {
         let mut moment = Moment::default();
         self.show(None, &mut moment)?;
         let model = self.engine.model();
         let shape = [model.strand_count(), model.points_per_strand()];
-        Ok(HairPose::new(shape, moment.positions(), self.engine.state()?, &moment.body))
+        Ok(HairPose::new(shape, moment.positions(), self.engine.state()?, &moment.body).moved(self.origin))
     }
 
-    /// Takes the hair within `radius` \[m\] of a place \[m\] into a hand; the number of strands.
+    /// Takes the hair within `radius` \[m\] of a place \[m\] of the world into a hand; the number of strands.
     pub fn grab(&mut self, hand: Vec3, radius: f32) -> Result<usize, SimError> {
+        let hand = hand - self.origin;
         let count = self.engine.grab(hand, radius)?;
         self.hand = (count > 0).then_some([hand; 2]);
         Ok(count)
     }
 
-    /// Moves the hand to a place \[m\], evenly over the next run.
+    /// Moves the hand to a place \[m\] of the world, evenly over the next run.
     pub fn move_hand(&mut self, hand: Vec3) {
         if let Some([_, to]) = &mut self.hand {
-            *to = hand;
+            *to = hand - self.origin;
         }
     }
 
@@ -194,7 +213,7 @@ impl Simulation {
         self.engine.release()
     }
 
-    /// Body at the end of the last run.
+    /// Body at the end of the last run, seen from the origin.
     pub fn end(&self) -> &BodyFrame {
         &self.end
     }
@@ -335,6 +354,7 @@ impl Simulation {
     pub fn show(&mut self, gpu: Option<&Gpu>, moment: &mut Moment) -> Result<(), SimError> {
         let share = self.share;
         let [before, after] = &self.bodies;
+        moment.origin = self.origin;
         let between = || self.skin.placed(before.toward(after, share), after);
         moment.body = self.exact.clone().unwrap_or_else(between);
         moment.at = When { step: self.engine.steps(), share };

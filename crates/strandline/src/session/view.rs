@@ -75,13 +75,16 @@ impl View {
 
     /// Draws a moment from its points on their device, or on the host where `at_home`.
     pub fn draw(&mut self, moment: &Moment, at_home: bool) -> Result<(Picture, FrameReport), RenderError> {
+        let origin = moment.origin;
+        let camera = self.camera.seen_from(origin);
+        let lights: Vec<Light> = self.lights.iter().map(|light| light.seen_from(origin)).collect();
         let input = FrameInput {
             positions: moment.positions(),
             body: &moment.body,
-            camera: &self.camera,
+            camera: &camera,
             look: &self.look,
             body_look: &self.body_look,
-            lights: &self.lights,
+            lights: &lights,
             level_of_detail: &self.level_of_detail,
         };
         self.painter.draw(&input, moment.device_points().filter(|_| !at_home))

@@ -17,11 +17,22 @@ pub struct BoundStrands {
 impl BoundStrands {
     /// Strands and solids; solids that the head carries are in head space.
     pub fn new(binding: Binding, solids: Vec<Collider>) -> Self {
+        Self { binding: Arc::new(binding), solids: Self::kept(solids) }
+    }
+
+    /// Solids with the distance that strands keep from each.
+    fn kept(solids: Vec<Collider>) -> Solids {
         let away = |solid: Collider| {
             let clearance = solid.shape.clearance();
             (solid, clearance)
         };
-        Self { binding: Arc::new(binding), solids: Solids::new(solids.into_iter().map(away)) }
+        Solids::new(solids.into_iter().map(away))
+    }
+
+    /// The same strands among these solids.
+    pub(crate) fn among(&self, solids: Vec<Collider>) -> Self {
+        let kept = Self::kept(solids);
+        Self { binding: self.binding.clone(), solids: kept }
     }
 
     /// All strands at rest, head space.

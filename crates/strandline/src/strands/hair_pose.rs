@@ -85,6 +85,15 @@ impl HairPose {
         Self { body, ..self }
     }
 
+    /// The pose after everything in the world moved by a way \[m\].
+    pub fn moved(&self, by: Vec3) -> Self {
+        if by == Vec3::ZERO {
+            return self.clone();
+        }
+        let positions = self.positions.iter().map(|position| *position + by).collect();
+        Self { positions, body: self.body.moved(by), ..self.clone() }
+    }
+
     /// Puts the hair of a state there, now and one step ago.
     pub fn place(&self, state: &mut State) {
         let [strands, points] = self.shape;

@@ -134,6 +134,10 @@ fn an_unknown_clip_is_refused_with_those_that_there_are() {
     twice.body.vertices = Some("nod.npz".into());
     let error = twice.check().unwrap_err().to_string();
     assert!(error.contains("body.clip is a second motion") && error.contains("`body.vertices`"), "{error}");
+    let mut frames = twice.clone();
+    (frames.body.clip, frames.body.file) = (None, Some("walk%04d.obj".into()));
+    let error = Prepared::new(&frames).err().unwrap().to_string();
+    assert!(error.contains("body.vertices is a second motion") && error.contains("`body.file`"), "{error}");
 }
 
 #[test]

@@ -49,6 +49,7 @@ fn clips_have_names_and_an_unknown_one_lists_them() {
     assert_eq!(Mesh::clip_names(&rig()).unwrap(), ["step", "linear", "spline", "clip 3"]);
     let error = play(&rig(), "walk").unwrap_err().to_string();
     assert!(error.contains("no clip `walk` among `step`, `linear`, `spline`, `clip 3`"), "{error}");
+    assert!(error.contains("give one of these names") && !error.contains("export"), "{error}");
     assert!(play(&rig(), "LINEAR").is_ok());
     let (_folder, path) = scratch("cube.glb", &glb(&cube_json("{}", None), &cube_bin()));
     assert!(play(&path, "walk").unwrap_err().to_string().contains("no clip, and none named `walk`"));

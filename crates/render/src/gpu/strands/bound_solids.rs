@@ -46,7 +46,7 @@ impl BoundSolids {
     ) -> Result<Self, RenderError> {
         let all = solids.all();
         let last = all.iter().map(|(solid, _)| match solid.carrier {
-            Carrier::Piece(piece) => usize::from(piece),
+            Carrier::Piece(piece) | Carrier::Moved(piece) => usize::from(piece),
             Carrier::World => 0,
         });
         let piece_count = 1 + last.max().unwrap_or(0);

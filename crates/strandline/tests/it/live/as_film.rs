@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use strandline::{
-    Change, Event, Live, Player, Scene,
+    Camera, Change, Event, Live, Player, Scene,
     live::Command,
-    scene::{Interpolation, KeyframeSection, MotionName},
+    scene::{CameraKeyframe, Interpolation, KeyframeSection, MotionName},
     settings::StrandMethod,
 };
 
@@ -21,6 +21,8 @@ fn film(time_step: f32) -> Scene {
     let key =
         |time: f64, yaw: f32| KeyframeSection { time, rotation: Vec3::Y * yaw, ..KeyframeSection::default() };
     scene.motion.keyframes = vec![key(0.0, 0.0), key(0.06, 60.0), key(0.1, 0.0)];
+    let view = |time: f64, turn: f32| CameraKeyframe { time, turn, ..CameraKeyframe::default() };
+    scene.camera.keyframes = vec![view(0.0, 0.0), view(0.1, 70.0)];
     scene
 }
 
@@ -49,4 +51,24 @@ fn a_window_plays_what_a_film_shows() {
         // Times of a window are sums, so that last bits of the head differ.
         assert!(apart < 0.2, "{apart} of 255 apart with steps of {time_step} s");
     }
+}
+
+#[test]
+fn a_view_that_is_moved_by_hand_leaves_the_keyframes_until_the_beginning() {
+    let live = Live::new(film(1.0 / 60.0), waking()).unwrap();
+    live.send(Command::Play(false));
+    let step = |live: &Live| {
+        live.send(Command::Step);
+        live.send(Command::Step);
+        settled(live)
+    };
+    let (first, second) = (step(&live), step(&live));
+    assert!(first.follows_camera && second.camera != first.camera);
+    let own = Camera::back();
+    live.send(Change::Camera(own));
+    let moved = step(&live);
+    assert!(!moved.follows_camera && moved.camera == Some(own));
+    live.send(Change::Reset);
+    let again = settled(&live);
+    assert!(again.follows_camera && again.camera != Some(own));
 }

@@ -108,7 +108,7 @@ fn item(list: &str) -> toml::Table {
     let defaults = match list {
         "groom.parts" => toml::Table::try_from(GroomPart::default()),
         "body.parts" => toml::Table::try_from(BodyPart::default()),
-        "motion.keyframes" => toml::Table::try_from(KeyframeSection::default()),
+        "motion.keyframes" | "colliders.keyframes" => toml::Table::try_from(KeyframeSection::default()),
         "wind.keyframes" => toml::Table::try_from(strandline::scene::WindKeyframe::default()),
         "camera.keyframes" => toml::Table::try_from(strandline::scene::CameraKeyframe::default()),
         "colliders" => {

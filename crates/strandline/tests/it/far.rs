@@ -1,0 +1,127 @@
+//! Hair far from the origin of the world is as exact as beside it.
+
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+
+use std::path::Path;
+
+use glam::Vec3;
+use strandline::{
+    Backend, Cache, Devices, Event, OutSettings, Player, Scene,
+    device::Gpu,
+    scene::{ColliderSection, KeyframeSection, MotionName, SphereSection},
+};
+
+/// The origin, and places 2 and 10 km from it at which all keyframes below are exact in single precision.
+const PLACES: [Vec3; 3] = [Vec3::ZERO, Vec3::new(1000.0, 0.0, -2000.0), Vec3::new(-7000.0, 512.0, 7071.0)];
+
+/// Hair on a head that moves and turns beside a ball, all about a place.
+fn scene(place: Vec3) -> Scene {
+    let mut scene = Scene::demo();
+    (scene.style.strand_count, scene.body.spacing) = (24, 0.02);
+    scene.simulation.volume.cells = [12; 3];
+    scene.motion.name = MotionName::Keyframes;
+    scene.motion.pivot = Some(Vec3::ZERO);
+    let key = |time: f64, x: f32, degrees: f32| KeyframeSection {
+        time,
+        translation: place + Vec3::X * x,
+        rotation: Vec3::Y * degrees,
+        ..KeyframeSection::default()
+    };
+    scene.motion.keyframes = vec![key(0.0, 0.0, 0.0), key(0.25, 0.125, 40.0)];
+    let ball = SphereSection {
+        center: place + Vec3::new(0.25, -0.125, 0.0),
+        radius: 0.125,
+        ..SphereSection::default()
+    };
+    let ball = SphereSection { carrier: strandline::scene::CarrierName::World, ..ball };
+    scene.colliders = vec![ColliderSection::Sphere(ball)];
+    (scene.film.frames, scene.film.settle) = (5, 0.0);
+    (scene.picture.width, scene.picture.height) = (64, 48);
+    (scene.look.follow_strands, scene.look.hair_count, scene.look.width_scale) = (1, 0, 10.0);
+    scene.camera.position = Some(place + Vec3::new(0.0, 0.0, 0.75));
+    scene.camera.target = Some(place);
+    scene.lights = strandline::Look::brown().lights(Vec3::ZERO);
+    scene.lights.truncate(1);
+    scene.lights.iter_mut().for_each(|light| {
+        (light.position, light.target) = (place + Vec3::new(0.5, 0.75, 1.0), place);
+    });
+    scene
+}
+
+/// The pictures of a film, and its cache.
+fn film(scene: &Scene, devices: Devices, path: &Path) -> Vec<Vec<u8>> {
+    let mut player = Player::new(scene, devices, true).unwrap();
+    player.set_out(&OutSettings::new(path)).unwrap();
+    let mut pictures = Vec::new();
+    for event in player.by_ref() {
+        if let Event::Drawn { picture, .. } = event.unwrap() {
+            pictures.push(picture.pixels);
+        }
+    }
+    player.close_out().unwrap();
+    pictures
+}
+
+fn check(devices: &Devices) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |index: usize| folder.path().join(format!("{index}.npz"));
+    let films = [0, 1, 2].map(|index| film(&scene(PLACES[index]), *devices, &path(index)));
+    assert!(films[0].len() == 5 && films[0][0] != films[0][4], "the head moves");
+    let mut near = Cache::open(&path(0)).unwrap();
+    for index in [1, 2] {
+        assert!(films[index] == films[0], "the same pictures at {}", PLACES[index]);
+        let mut far = Cache::open(&path(index)).unwrap();
+        let (mut own, mut other) = (Vec::new(), Vec::new());
+        for frame in 0..5 {
+            near.read(frame, &mut own).unwrap();
+            far.read(frame, &mut other).unwrap();
+            // A file holds places of the world in single precision: half of its last place at 7 km, in two directions.
+            let apart = own.iter().zip(&other).map(|(own, other)| (*other - PLACES[index]).distance(*own));
+            assert!(apart.clone().all(|apart| apart < 5e-4), "{:?}", apart.fold(0.0, f32::max));
+        }
+    }
+}
+
+#[test]
+fn a_film_far_from_the_origin_is_the_film_beside_it() {
+    check(&Backend::Cpu.into());
+}
+
+#[test]
+#[allow(clippy::print_stderr)] // it tells what is not tested
+fn so_it_is_on_a_gpu() {
+    match Gpu::any() {
+        Ok(_) => check(&Backend::Gpu(None).into()),
+        Err(error) => {
+            assert!(std::env::var_os("STRANDLINE_REQUIRE_GPU").is_none_or(|value| value != "1"), "{error}");
+            eprintln!("not tested on a GPU: {error}");
+        }
+    }
+}
+
+#[test]
+fn a_far_film_is_resumed_to_the_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, part] = ["whole.npz", "part.npz"].map(|name| folder.path().join(name));
+    let far = scene(PLACES[2]);
+    film(&far, Backend::Cpu.into(), &whole);
+    let mut short = far.clone();
+    short.film.frames = 2;
+    film(&short, Backend::Cpu.into(), &part);
+    let rest = folder.path().join("rest.npz");
+    let mut player = Player::new(&far, Backend::Cpu, false).unwrap();
+    player.set_out(&OutSettings::new(&rest)).unwrap();
+    player.resume(&mut Cache::open(&part).unwrap()).unwrap();
+    player.by_ref().for_each(|event| drop(event.unwrap()));
+    player.close_out().unwrap();
+    let (mut one, mut two) = (Cache::open(&whole).unwrap(), Cache::open(&rest).unwrap());
+    let (mut own, mut other) = (Vec::new(), Vec::new());
+    for frame in 0..5 {
+        one.read(frame, &mut own).unwrap();
+        two.read(frame, &mut other).unwrap();
+        assert!(own == other, "frame {frame}");
+    }
+    // The same run about another place has other numbers in its state.
+    let mut beside = Player::new(&scene(PLACES[1]), Backend::Cpu, false).unwrap();
+    assert!(beside.resume(&mut Cache::open(&part).unwrap()).is_err());
+}
