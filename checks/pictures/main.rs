@@ -10,6 +10,7 @@ mod grooms;
 mod light;
 mod linear;
 mod mixture;
+mod motion;
 mod moved;
 mod opacity;
 mod penumbra;

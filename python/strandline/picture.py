@@ -52,8 +52,8 @@ class Picture:
     """A picture: ``pixels``, 8-bit sRGB, shape (row, column, 3), or 4 with opacity. Notebooks show it.
 
     A picture with ``layers=True`` has ``channels`` too, arrays of shape (row, column) by name, on a CPU and on a GPU
-    alike: ``R``, ``G``, ``B``, ``A``, ``depth.Z``, ``mask.hair``, ``tangent.X``, ``tangent.Y``, ``tangent.Z`` and
-    ``strand.id``. Its properties show them by their use.
+    alike: ``R``, ``G``, ``B``, ``A``, ``depth.Z``, ``mask.hair``, ``tangent.X``, ``tangent.Y``, ``tangent.Z``,
+    ``motion.X``, ``motion.Y`` and ``strand.id``. Its properties show them by their use.
     """
 
     pixels: NDArray[np.uint8]

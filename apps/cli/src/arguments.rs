@@ -173,7 +173,7 @@ pub struct RenderOptions {
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<(u32, u32)>,
     /// Folder of the pictures [default: out/ and the scene's name], or a .png file, or an .exr file for linear light,
-    /// depth, coverage, directions and strands. Several frames become numbered files.
+    /// depth, coverage, directions, motion and strands. Several frames become numbered files.
     #[arg(long, value_name = "DIR|FILE")]
     pub out: Option<PathBuf>,
     /// Turn the camera once around the hair in this number of frames, evenly; the head rests, unless --motion moves it.

@@ -16,7 +16,9 @@ use crate::picture::reason;
 /// `R`, `G`, `B`: radiance, linear, before exposure and tone map, times opacity; `A`: opacity. `depth.Z`: distance
 /// along the view \[m\] of the hair where it covers half of a pixel, else of the body, infinite where neither is;
 /// `mask.hair`: share of the pixel that hair covers; `tangent.X`, `.Y`, `.Z`: mean direction of that hair toward its tips, world
-/// space; `strand.id`: number of the nearest strand, from 1, 0 where none is.
+/// space; `motion.X`, `.Y`: displacement \[pixel\], to the right and down, since the picture drawn before, of the hair where
+/// depth is the hair's, else of the body as its head moves, 0 in the first picture and where neither is; `strand.id`: number of
+/// the nearest strand, from 1, 0 where none is.
 ///
 /// A GPU draws light and numbers as half floats: light to 5e-4 of itself and up to 65,000, depth of hair to some 0.1 mm.
 #[derive(Clone, Debug, Default, PartialEq)]

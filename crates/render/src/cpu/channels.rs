@@ -8,6 +8,7 @@ use super::{DrawInput, Radiances};
 use crate::frame::channels::{BLACK, Known};
 use crate::frame::filter::resolve_linear;
 use crate::frame::known::{body_depths, depths, nearest_strands};
+use crate::frame::motion::{Before, Motion};
 use crate::strands::Strands;
 use crate::{Environment, FrameInput, Layers, PictureSettings};
 
@@ -17,12 +18,19 @@ impl Renderer {
         let settings = self.settings;
         let scale = settings.supersampling as usize;
         let depths = depths(&self.scratch.strands, input.camera, &self.scratch.samples);
+        let bodies = body_depths(&self.scratch.samples, scale);
+        let motion = Motion::new(self.before.as_ref(), input, &settings);
+        let (motions, body_motions) =
+            (motion.of_points(&self.scratch.strands.positions), motion.of_body(&bodies));
+        self.before = Some(Before::new(input, self.scratch.strands.positions.clone()));
         let known = Known {
             light: resolve_linear(&self.scratch.samples, &settings),
             strands: nearest_strands(&self.scratch.strands, input.camera, &self.scratch.samples, scale),
-            bodies: body_depths(&self.scratch.samples, scale),
+            bodies,
+            body_motions,
             covered: self.with_numbers(input, |_, point| Vec3::new(1.0, depths[point], 0.0)),
             directions: self.with_numbers(input, |strands, point| strands.tangents[point]),
+            motions: self.with_numbers(input, |_, point| motions[point]),
         };
         known.layers(&settings)
     }

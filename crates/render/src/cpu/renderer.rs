@@ -8,6 +8,7 @@ use strandline_groom::{Binding, Guides};
 
 use super::frame::{Frame, Scratch};
 use super::strands::bind::Carried;
+use crate::frame::motion::Before;
 use crate::frame::samples::Samples;
 use crate::frame::{Drawn, Stage, stages};
 use crate::lights::{at_samples, first_sample};
@@ -20,6 +21,8 @@ pub struct Renderer {
     pub(super) scratch: Scratch,
     pub(super) settings: PictureSettings,
     layers_of: Option<usize>,
+    /// The last picture with channels.
+    pub(super) before: Option<Before>,
 }
 
 impl Renderer {
@@ -32,7 +35,8 @@ impl Renderer {
         body: Option<&Mesh>,
         settings: &PictureSettings,
     ) -> Result<Self, RenderError> {
-        let mut renderer = Self { scratch: Scratch::new(guides, body), settings: *settings, layers_of: None };
+        let mut renderer =
+            Self { scratch: Scratch::new(guides, body), settings: *settings, layers_of: None, before: None };
         renderer.set_picture(settings)?;
         Ok(renderer)
     }

@@ -1,6 +1,6 @@
-//! A picture as channels: linear light, depth, coverage, directions and strands.
+//! A picture as channels: linear light, depth, coverage, directions, motion and strands.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 
 use crate::{BodyLook, Layers, PictureSettings};
 
@@ -14,6 +14,10 @@ pub(crate) struct Known {
     pub directions: Vec<Vec4>,
     /// Depth along the view \[m\] of the body, 0 where there is none.
     pub bodies: Vec<f32>,
+    /// Displacement \[pixel\] of the hair since the picture before times the share that it covers.
+    pub motions: Vec<Vec4>,
+    /// That of the body, 0 where there is none.
+    pub body_motions: Vec<Vec2>,
     /// Number of the nearest strand, from 1, 0 where there is none.
     pub strands: Vec<f32>,
 }
@@ -25,12 +29,18 @@ pub(crate) const BLACK: BodyLook =
 impl Known {
     /// The channels of a picture.
     pub fn layers(self, settings: &PictureSettings) -> Layers {
-        let Self { light, covered, directions, bodies, strands } = self;
+        let Self { light, covered, directions, bodies, motions, body_motions, strands } = self;
+        let is_hair = |covered: f32, body: f32| covered >= 0.5 || (body == 0.0 && covered > 0.0);
         let depth = |(hair, body): (&Vec4, &f32)| match (hair.x, *body) {
-            (covered, body) if covered >= 0.5 || (body == 0.0 && covered > 0.0) => hair.y / covered,
+            (covered, body) if is_hair(covered, body) => hair.y / covered,
             (_, 0.0) => f32::INFINITY,
             (_, body) => body,
         };
+        let motion = |((hair, body), (own, of_body)): ((&Vec4, &f32), (&Vec4, &Vec2))| {
+            if is_hair(hair.x, *body) { own.truncate().truncate() / hair.x } else { *of_body }
+        };
+        let motions: Vec<Vec2> =
+            covered.iter().zip(&bodies).zip(motions.iter().zip(&body_motions)).map(motion).collect();
         let tangent = |(way, hair): (&Vec4, &Vec4)| way.truncate() / hair.x.max(1e-6);
         let tangents: Vec<Vec3> = directions.iter().zip(&covered).map(tangent).collect();
         let of_light = |pick: fn(&Vec4) -> f32| light.iter().map(pick).collect::<Vec<f32>>();
@@ -45,6 +55,8 @@ impl Known {
             ("tangent.X", of_tangents(|way| way.x)),
             ("tangent.Y", of_tangents(|way| way.y)),
             ("tangent.Z", of_tangents(|way| way.z)),
+            ("motion.X", motions.iter().map(|motion| motion.x).collect()),
+            ("motion.Y", motions.iter().map(|motion| motion.y).collect()),
             ("strand.id", strands),
         ];
         Layers {

@@ -4,6 +4,7 @@ pub(crate) mod channels;
 pub(crate) mod filter;
 mod input;
 pub(crate) mod known;
+pub(crate) mod motion;
 pub(crate) mod projection;
 pub(crate) mod samples;
 

@@ -26,8 +26,12 @@ pub struct Projection {
 impl Projection {
     /// The projection of a camera onto the samples of a picture.
     pub fn new(camera: &Camera, samples: &Samples) -> Self {
+        Self::of_size(camera, [samples.width() as f32, samples.height() as f32])
+    }
+
+    /// The projection of a camera onto a picture of a width and a height \[sample\].
+    pub fn of_size(camera: &Camera, [width, height]: [f32; 2]) -> Self {
         let view_from_world = camera.view_from_world();
-        let (width, height) = (samples.width() as f32, samples.height() as f32);
         Self {
             view_from_world,
             focal: 0.5 * height * camera.focal(),

@@ -1,22 +1,32 @@
 //! A picture as channels: the twin of frame/channels.rs.
 
-use glam::Vec4;
-use strandline_gpu::{Download, Gpu, GpuError, Kernel, Recorder, Texture, wgpu};
+use glam::{Vec3, Vec4};
+use strandline_gpu::{Bound, Download, Gpu, GpuError, Kernel, Recorder, Texture, wgpu};
 
 use super::GpuRenderer;
 use super::codes;
 use super::frame::samples;
 use super::inputs::Frame;
-use super::probe::from_half;
+use super::probe::{from_half, to_half};
 use super::shade::Numbers;
 use crate::frame::filter::resolve_linear;
 use crate::frame::known::{body_depths, nearest_strands};
+use crate::frame::motion::{Before, Motion};
 use crate::frame::samples::Samples;
 use crate::frame::{
     Stage,
     channels::{BLACK, Known},
 };
 use crate::{FrameInput, Layers, PictureSettings, RenderError};
+
+/// State of channels, once they are requested.
+#[derive(Default)]
+pub(super) struct Channels {
+    /// Kernels that replace light by values.
+    numbers: Option<[Kernel<Numbers<'static>>; 2]>,
+    /// The last picture with channels.
+    before: Option<Before>,
+}
 
 /// Kinds of numbers.
 const COVERAGE_AND_DEPTH: usize = 0;
@@ -39,13 +49,19 @@ impl GpuRenderer {
         let light = resolve_linear(&found, &settings);
         self.read_depths(input.camera.near, &mut found)?;
         let bodies = body_depths(&found, scale);
-        let strands = nearest_strands(&self.strands()?, input.camera, &found, scale);
+        let drawn = self.strands()?;
+        let strands = nearest_strands(&drawn, input.camera, &found, scale);
         let mut covered = self.with_numbers(input, COVERAGE_AND_DEPTH, &mut found)?;
         let middle = input.middle(self.bounds);
         let depth = -input.camera.view_from_world().transform_point3(middle).z;
         covered.iter_mut().for_each(|hair| hair.y += depth * hair.x);
         let directions = self.with_numbers(input, TANGENT, &mut found)?;
-        Ok(Known { light, covered, directions, bodies, strands }.layers(&settings))
+        let motion = Motion::new(self.channels.before.as_ref(), input, &settings);
+        let (of_points, body_motions) = (motion.of_points(&drawn.positions), motion.of_body(&bodies));
+        self.channels.before = Some(Before::new(input, drawn.positions));
+        let motions = self.with_motions(input, &of_points, &mut found)?;
+        let known = Known { light, covered, directions, bodies, motions, body_motions, strands };
+        Ok(known.layers(&settings))
     }
 
     /// Hair drawn over nothing, with numbers in the place of its light, before a black body.
@@ -55,27 +71,54 @@ impl GpuRenderer {
         kind: usize,
         found: &mut Samples,
     ) -> Result<Vec<Vec4>, RenderError> {
-        if self.numbers.is_none() {
+        if self.channels.numbers.is_none() {
             let compiled = |kind: usize| Kernel::new(&self.gpu, &[("NUMBERS", kind as f64)]);
-            self.numbers = Some([compiled(COVERAGE_AND_DEPTH)?, compiled(TANGENT)?]);
+            self.channels.numbers = Some([compiled(COVERAGE_AND_DEPTH)?, compiled(TANGENT)?]);
         }
-        let (Some(kernels), Some(strands), Some(stages)) = (&self.numbers, &self.strands, &self.stages)
-        else {
+        let (Some(kernels), Some(strands)) = (&self.channels.numbers, &self.strands) else {
             unreachable!("drawn before");
         };
+        let buffers =
+            Numbers { frame: &self.groom.frame, points: &strands.points, radiances: &strands.radiances };
+        let numbers = kernels[kind].bind(&self.gpu, &buffers)?;
+        self.drawn_flat(input, Some(numbers), found)
+    }
+
+    /// Hair drawn so with its displacement.
+    fn with_motions(
+        &self,
+        input: &FrameInput,
+        motions: &[Vec3],
+        found: &mut Samples,
+    ) -> Result<Vec<Vec4>, RenderError> {
+        let Some(strands) = &self.strands else { unreachable!("drawn before") };
+        let halves: Vec<[u32; 2]> =
+            motions.iter().map(|motion| [to_half(motion.x) | to_half(motion.y) << 16, 0]).collect();
+        strands.radiances.write(&halves)?;
+        self.drawn_flat(input, None, found)
+    }
+
+    /// Hair drawn over nothing as flat ribbons, before a black body, in the light that its points have or that a
+    /// kernel gives them.
+    fn drawn_flat(
+        &self,
+        input: &FrameInput,
+        numbers: Option<Bound>,
+        found: &mut Samples,
+    ) -> Result<Vec<Vec4>, RenderError> {
+        let Some(stages) = &self.stages else { unreachable!("drawn before") };
         let settings = PictureSettings { transparent: true, ..self.settings };
         let input = FrameInput { body_look: &BLACK, lights: &[], ..*input };
         let scene = self.scene(&input, &settings, 1.0);
-        let frame = &self.groom.frame;
         let mut flat = Frame::new(&scene);
         flat.kinds |= codes::FLAT;
-        frame.write(&[flat])?;
-        let buffers = Numbers { frame, points: &strands.points, radiances: &strands.radiances };
-        let numbers = kernels[kind].bind(&self.gpu, &buffers)?;
+        self.groom.frame.write(&[flat])?;
         let points = scene.strand_count() * scene.curve_points();
         self.gpu.ask("channels", || {
             let mut recorder = Recorder::new(&self.gpu, None);
-            recorder.stage(Stage::Shade.name(), &[numbers.over(points)]);
+            if let Some(numbers) = numbers {
+                recorder.stage(Stage::Shade.name(), &[numbers.over(points)]);
+            }
             samples(&mut recorder, &scene, &self.held(stages));
             self.gpu.queue().submit([recorder.finish(|_| ())]);
         })?;

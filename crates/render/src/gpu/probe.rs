@@ -24,6 +24,14 @@ pub(super) fn from_half(bits: u32) -> f32 {
     if sign == 1 { -value } else { value }
 }
 
+/// Half floats nearest to numbers, as they are stored: beyond their range the greatest.
+pub(super) fn to_half(value: f32) -> u32 {
+    const GREATEST: f32 = 65_504.0;
+    // 2^-112: exponents then begin where those of half floats do.
+    let bits = (value.abs().min(GREATEST) * f32::from_bits(15 << 23)).to_bits();
+    (bits + 0xfff + (bits >> 13 & 1)) >> 13 | u32::from(value.is_sign_negative()) << 15
+}
+
 fn vectors(values: &[[f32; 4]]) -> Vec<Vec3> {
     values.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z)).collect()
 }

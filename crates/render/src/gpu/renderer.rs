@@ -3,16 +3,17 @@ use std::sync::Arc;
 use glam::Vec3;
 use strandline_base::SettingError;
 use strandline_body::{Aabb, Mesh, Solids};
-use strandline_gpu::{Buffer, Gpu, Kernel, Recorder, Timer, wgpu};
+use strandline_gpu::{Buffer, Gpu, Recorder, Timer, wgpu};
 use strandline_groom::{Binding, Guides};
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
+use super::channels::Channels;
 use super::codes;
 use super::frame::{Bounds, Held, record};
 use super::resolve::{Own, PICTURE, ToFormat};
 use super::scatter::light_grid::LightGrid;
 use super::scene::Scene;
-use super::shade::{LayerColoring, Numbers};
+use super::shade::LayerColoring;
 use super::skin::Skin;
 use super::stages::{Kernels, Stages};
 use super::strands::bound_solids::DeviceSolids;
@@ -46,8 +47,7 @@ pub struct GpuRenderer {
     points: GuidePoints,
     timer: Option<Timer>,
     layer_coloring: LayerColoring,
-    /// Kernels that replace light by values, once channels are requested.
-    pub(super) numbers: Option<[Kernel<Numbers<'static>>; 2]>,
+    pub(super) channels: Channels,
     pub(super) drawn: Drawn,
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
     pub(super) lit: (Vec<Light>, Shadow, Vec3),
@@ -95,7 +95,7 @@ impl GpuRenderer {
             points: GuidePoints::default(),
             timer: Timer::new(gpu)?,
             layer_coloring: LayerColoring::default(),
-            numbers: None,
+            channels: Channels::default(),
             drawn: Drawn::default(),
             lit: (Vec::new(), Shadow::default(), Vec3::ZERO),
             own_colors: OwnColors::of(guides),
