@@ -489,7 +489,6 @@ class SimulationStrandsRods(TypedDict, total=False):
     be off by what this much gravity bends it; of a strand without others beside it by a twentieth of that, and while
     slow it loses 4 of its speed in a second at most. Allowed: 0 to 100 m/s^2."""
 
-
     rest: str
     """Meaning of the groom's shape. Allowed: one of sag_free, unstressed."""
 
