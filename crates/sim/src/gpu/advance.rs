@@ -5,7 +5,9 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, M
 use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::{Outcome, PressureState, Report};
+use super::solids::skins;
 use super::stage::{StageKernels, Target};
+use crate::Model;
 
 kernel! {
     /// One thread is one strand.
@@ -40,8 +42,8 @@ impl StageKernels for Stage {
         vec![Advance::declaration(), Gathered::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
-        Ok(Self { advance: Kernel::new(gpu, &[])?, report: Kernel::new(gpu, &[])? })
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        Ok(Self { advance: Kernel::new(gpu, &[skins(model)])?, report: Kernel::new(gpu, &[])? })
     }
 
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {

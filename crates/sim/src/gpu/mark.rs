@@ -3,8 +3,10 @@
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
+use super::solids::skins;
 use super::stage::{StageKernels, Target};
 use super::volume::GridState;
+use crate::Model;
 
 kernel! {
     /// One thread is one cell.
@@ -37,8 +39,9 @@ impl StageKernels for Stage {
         vec![Mark::declaration(), CarryWalls::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
-        Ok(Self { mark: Kernel::new(gpu, &[])?, carry_walls: Kernel::new(gpu, &[])? })
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        let skins = [skins(model)];
+        Ok(Self { mark: Kernel::new(gpu, &skins)?, carry_walls: Kernel::new(gpu, &skins)? })
     }
 
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {

@@ -3,7 +3,9 @@
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
+use super::solids::skins;
 use super::stage::{StageKernels, Target};
+use crate::Model;
 
 kernel! {
     /// One thread is one strand after another.
@@ -25,8 +27,8 @@ impl StageKernels for Stage {
         vec![SolveRods::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
-        Kernel::new(gpu, &[]).map(Self)
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        Kernel::new(gpu, &[skins(model)]).map(Self)
     }
 
     /// Nothing without rods.
