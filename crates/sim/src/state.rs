@@ -96,6 +96,11 @@ pub(crate) fn between([before, after]: [&[Vec3Lanes]; 2], share: f32, positions:
 }
 
 impl State {
+    /// Planes that points remember of the solids, as `cpu::mark` asks for them.
+    pub fn contacts(&self) -> &Contacts {
+        &self.contacts
+    }
+
     /// Positions \[m\] between the last two steps, world space, shape `[block][point]` of lanes:
     /// `share` is 0 one step ago and 1 now. `positions` is made as long as needed.
     pub fn interpolated(&self, share: f32, positions: &mut Vec<Vec3Lanes>) {

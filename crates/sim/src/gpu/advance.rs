@@ -1,11 +1,11 @@
 //! Measures the step: stretch, penetration, non-finite points.
 
+use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::{Outcome, PressureState, Report};
-use super::solids::skins;
 use super::stage::{StageKernels, Target};
 use crate::Model;
 
@@ -43,7 +43,10 @@ impl StageKernels for Stage {
     }
 
     fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
-        Ok(Self { advance: Kernel::new(gpu, &[skins(model)])?, report: Kernel::new(gpu, &[])? })
+        Ok(Self {
+            advance: Kernel::new(gpu, &[skins_constant(&model.colliders)])?,
+            report: Kernel::new(gpu, &[])?,
+        })
     }
 
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {

@@ -1,9 +1,9 @@
 //! Every cell near hair is fluid, solid or air.
 
+use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
-use super::solids::skins;
 use super::stage::{StageKernels, Target};
 use super::volume::GridState;
 use crate::Model;
@@ -40,7 +40,7 @@ impl StageKernels for Stage {
     }
 
     fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
-        let skins = [skins(model)];
+        let skins = [skins_constant(&model.colliders)];
         Ok(Self { mark: Kernel::new(gpu, &skins)?, carry_walls: Kernel::new(gpu, &skins)? })
     }
 

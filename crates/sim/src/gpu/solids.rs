@@ -1,6 +1,6 @@
 //! The colliders as the kernels read them.
 
-use strandline_body::{BodyFrame, Collider, Shape, SkinTable, solid_rows};
+use strandline_body::{BodyFrame, Collider, SkinTable, solid_rows};
 use strandline_gpu::{Buffer, Gpu, GpuError};
 
 use super::inputs::Step;
@@ -9,12 +9,6 @@ use crate::{Model, SimError};
 
 /// Vectors of a piece behind the head, which lie before the headers.
 const PIECE: usize = size_of::<Piece>() / size_of::<[f32; 4]>();
-
-/// The constant SKINS of skin_table.wesl for the solids of a model.
-pub(super) fn skins(model: &Model) -> (&'static str, f64) {
-    let is_skin = |collider: &Collider| matches!(collider.shape, Shape::Skin(_));
-    ("2", if model.colliders.iter().any(is_skin) { 1.0 } else { 0.0 })
-}
 
 /// Writes the pieces behind the head for a step between two frames of the body.
 ///

@@ -1,9 +1,9 @@
 //! Rods: a strand bends and twists in one thread, in all parts of a step.
 
+use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
-use super::solids::skins;
 use super::stage::{StageKernels, Target};
 use crate::Model;
 
@@ -28,7 +28,7 @@ impl StageKernels for Stage {
     }
 
     fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
-        Kernel::new(gpu, &[skins(model)]).map(Self)
+        Kernel::new(gpu, &[skins_constant(&model.colliders)]).map(Self)
     }
 
     /// Nothing without rods.
