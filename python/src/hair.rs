@@ -275,7 +275,7 @@ impl Playing {
             "simulation" => hair.set_settings(&scene.simulation)?,
             "picture" => hair.set_picture(&scene.picture)?,
             "lights" => hair.set_lights(scene.lights.clone())?,
-            "body_look" => hair.set_body_look(scene.body_look.clone())?,
+            "body_look" => hair.set_body_look(scene.body_look)?,
             "level_of_detail" => hair.set_level_of_detail(scene.level_of_detail)?,
             "look" => {}
             section => {

@@ -1,7 +1,7 @@
 //! Allowed licences of dependencies, and the page that lists them.
 //!
-//! docs/licences.md is written from what cargo says of every package, those of the Python package too; that it names the
-//! packages of both Cargo.lock and no others is checked with every test, without cargo and without a network.
+//! docs/licences.md is written from what cargo says of every package. Each test run checks, without cargo and without a
+//! network, that it names the packages of Cargo.lock and no others.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::fmt::Write;
@@ -13,11 +13,8 @@ use serde::Deserialize;
 
 use crate::cargo::{cargo_command, root};
 
-/// The packages that are distributed: the program contains their dependencies.
-const PROGRAM: &str = "strandline-cli";
-/// Manifests of the workspaces whose packages the page lists, and their locks.
-const MANIFESTS: [&str; 2] = ["Cargo.toml", "python/Cargo.toml"];
-const LOCKS: [&str; 2] = ["Cargo.lock", "python/Cargo.lock"];
+/// Packages that are distributed with their dependencies: the program, and the extension of the Python package.
+const DISTRIBUTED: [&str; 2] = ["strandline-cli", "strandline-python"];
 /// Names of files with a licence, or with a notice that it requires.
 const TEXTS: [&str; 5] = ["license", "licence", "copying", "notice", "copyright"];
 
@@ -123,33 +120,29 @@ pub fn write(texts: Option<&str>) -> bool {
 }
 
 fn written(texts: Option<&str>) -> Result<()> {
-    let [program, python] = MANIFESTS.map(metadata);
-    let (program, python) = (program?, python?);
-    let page_of_all = table(&program, &python);
+    let metadata = metadata()?;
+    let page_of_all = table(&metadata);
     println!("docs/licences.md: {} packages", listed(&page_of_all).len());
     std::fs::write(page(), page_of_all).context("docs/licences.md")?;
     match texts {
-        Some(path) => std::fs::write(path, all_texts(&program, &python)?).with_context(|| path.to_owned()),
+        Some(path) => std::fs::write(path, all_texts(&metadata)?).with_context(|| path.to_owned()),
         None => Ok(()),
     }
 }
 
-/// The packages of the locks and those of the page.
+/// The packages of the lock and those of the page.
 fn both() -> Result<(BTreeSet<String>, BTreeSet<String>)> {
-    let mut all = BTreeSet::new();
-    for lock in LOCKS {
-        all.append(&mut locked(&std::fs::read_to_string(root().join(lock)).context(lock)?)?);
-    }
-    Ok((all, listed(&std::fs::read_to_string(page()).context("docs/licences.md")?)))
+    let lock = std::fs::read_to_string(root().join("Cargo.lock")).context("Cargo.lock")?;
+    Ok((locked(&lock)?, listed(&std::fs::read_to_string(page()).context("docs/licences.md")?)))
 }
 
-/// Checks that the page names the packages of the locks.
+/// Checks that the page names the packages of the lock.
 pub fn check() -> bool {
     match both() {
         Ok((locked, listed)) if locked == listed => true,
         Ok((locked, listed)) => {
             for name in locked.symmetric_difference(&listed) {
-                println!("docs/licences.md and {} differ in {name}", LOCKS.join(", "));
+                println!("docs/licences.md and Cargo.lock differ in {name}");
             }
             println!("`cargo xtask licences` writes the page again");
             false
@@ -178,23 +171,22 @@ fn listed(page: &str) -> BTreeSet<String> {
     page.lines().filter(|line| !line.starts_with("| package ")).filter_map(row).collect()
 }
 
-fn metadata(manifest: &str) -> Result<Metadata> {
-    let output =
-        cargo_command(&["metadata", "--format-version", "1", "--locked", "--manifest-path", manifest])
-            .stderr(Stdio::inherit())
-            .output()
-            .context("cargo metadata")?;
+fn metadata() -> Result<Metadata> {
+    let output = cargo_command(&["metadata", "--format-version", "1", "--locked"])
+        .stderr(Stdio::inherit())
+        .output()
+        .context("cargo metadata")?;
     if !output.status.success() {
         bail!("cargo metadata failed");
     }
     serde_json::from_slice(&output.stdout).context("what cargo metadata says")
 }
 
-/// The packages that are in the program, on any system.
-fn in_program(metadata: &Metadata) -> HashSet<&str> {
+/// The packages that a distributed package contains, on any system.
+fn contained<'a>(metadata: &'a Metadata, name: &str) -> HashSet<&'a str> {
     let nodes: HashMap<&str, &Node> =
         metadata.resolve.nodes.iter().map(|node| (node.id.as_str(), node)).collect();
-    let first = metadata.packages.iter().find(|package| package.name == PROGRAM);
+    let first = metadata.packages.iter().find(|package| package.name == name);
     let mut waiting: Vec<&str> = first.map(|package| package.id.as_str()).into_iter().collect();
     let mut found = HashSet::new();
     while let Some(id) = waiting.pop() {
@@ -208,22 +200,18 @@ fn in_program(metadata: &Metadata) -> HashSet<&str> {
     found
 }
 
-/// Others' packages of the Python package that the program's workspace has not.
-fn python_alone<'a>(program: &Metadata, python: &'a Metadata) -> impl Iterator<Item = &'a Package> {
-    let named = |package: &Package| format!("{} {}", package.name, package.version);
-    let known: HashSet<String> = program.packages.iter().map(named).collect();
-    let others = python.packages.iter().filter(|package| package.source.is_some());
-    others.filter(move |package| !known.contains(&named(package)))
+/// Packages of others.
+fn others(metadata: &Metadata) -> impl Iterator<Item = &Package> {
+    metadata.packages.iter().filter(|package| package.source.is_some())
 }
 
 /// The page.
-fn table(program: &Metadata, python: &Metadata) -> String {
-    let in_program = in_program(program);
+fn table(metadata: &Metadata) -> String {
+    let sets = DISTRIBUTED.map(|name| contained(metadata, name));
     let mut rows = [Vec::new(), Vec::new(), Vec::new()];
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    let own = program.packages.iter().filter(|package| package.source.is_some());
-    let placed = own.map(|package| (if in_program.contains(package.id.as_str()) { 0 } else { 2 }, package));
-    for (place, package) in placed.chain(python_alone(program, python).map(|package| (1, package))) {
+    for package in others(metadata) {
+        let place = sets.iter().position(|set| set.contains(package.id.as_str())).unwrap_or(sets.len());
         let licence = package.license.as_deref().unwrap_or("in a file of its own");
         *counts.entry(licence).or_default() += 1;
         rows[place].push(format!("| {} | {} | {licence} |", package.name, package.version));
@@ -238,7 +226,7 @@ fn table(program: &Metadata, python: &Metadata) -> String {
     }
     let titles = [
         "In the program, on some system",
-        "In the extension of the Python package beside these, or for building it",
+        "In the extension of the Python package beside these",
         "For building and tests alone",
     ];
     for (title, rows) in titles.iter().zip(&mut rows) {
@@ -249,12 +237,12 @@ fn table(program: &Metadata, python: &Metadata) -> String {
     page
 }
 
-/// The texts that the packages in the program and in the Python package have, each text once.
-fn all_texts(program: &Metadata, python: &Metadata) -> Result<String> {
-    let in_program = in_program(program);
+/// The texts of the packages in the program and in the extension of the Python package, each text once.
+fn all_texts(metadata: &Metadata) -> Result<String> {
+    let sets = DISTRIBUTED.map(|name| contained(metadata, name));
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    let own = program.packages.iter().filter(|package| in_program.contains(package.id.as_str()));
-    for package in own.chain(python_alone(program, python)) {
+    let is_distributed = |package: &&Package| sets.iter().any(|set| set.contains(package.id.as_str()));
+    for package in others(metadata).filter(is_distributed) {
         let folder = Path::new(&package.manifest_path).parent().context("a manifest lies in a folder")?;
         for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
             let entry = entry?;
@@ -280,35 +268,36 @@ mod tests {
     const LOCK: &str = "[[package]]\nname = \"own\"\nversion = \"0.1.0\"\n\n[[package]]\nname = \"b\"\n\
                         version = \"2.0.0\"\nsource = \"registry\"\n";
 
+    /// The program needs b, and c for tests; the extension needs the program and d, and e to be built.
     fn sample() -> Metadata {
-        let package = |name: &str, source: Option<&str>| {
+        let package = |name: &str| {
+            let source = if name.len() == 1 { "\"registry\"" } else { "null" };
             format!(
                 "{{\"id\":\"{name}\",\"name\":\"{name}\",\"version\":\"2.0.0\",\"license\":\"MIT\",\
-                 \"source\":{},\"manifest_path\":\"/nowhere/Cargo.toml\"}}",
-                source.map_or("null".to_owned(), |source| format!("\"{source}\""))
+                 \"source\":{source},\"manifest_path\":\"/nowhere/Cargo.toml\"}}"
             )
         };
-        let json = format!(
-            "{{\"packages\":[{},{},{}],\"resolve\":{{\"nodes\":[{{\"id\":\"strandline-cli\",\"deps\":[\
-             {{\"pkg\":\"b\",\"dep_kinds\":[{{\"kind\":null}}]}},{{\"pkg\":\"c\",\"dep_kinds\":[{{\"kind\":\"dev\"}}]}}]}}]}}}}",
-            package("strandline-cli", None),
-            package("b", Some("registry")),
-            package("c", Some("registry"))
-        );
+        let dep =
+            |name: &str, kind: &str| format!("{{\"pkg\":\"{name}\",\"dep_kinds\":[{{\"kind\":{kind}}}]}}");
+        let node =
+            |name: &str, deps: [String; 2]| format!("{{\"id\":\"{name}\",\"deps\":[{}]}}", deps.join(","));
+        let program = node(DISTRIBUTED[0], [dep("b", "null"), dep("c", "\"dev\"")]);
+        let build = node("d", [dep("e", "\"build\""), dep("b", "null")]);
+        let extension = node(DISTRIBUTED[1], [dep(DISTRIBUTED[0], "null"), dep("d", "null")]);
+        let packages = ["b", "c", "d", "e", DISTRIBUTED[0], DISTRIBUTED[1]].map(package).join(",");
+        let nodes = [program, extension, build].join(",");
+        let json = format!("{{\"packages\":[{packages}],\"resolve\":{{\"nodes\":[{nodes}]}}}}");
         serde_json::from_str(&json).unwrap()
     }
 
     #[test]
-    fn the_page_tells_what_is_in_the_program() {
-        let mut python = sample();
-        python.packages[1].name = "d".to_owned();
-        let page = table(&sample(), &python);
-        let (program, rest) = page.split_once("In the extension").unwrap();
-        let (extension, tests) = rest.split_once("For building and tests").unwrap();
-        assert!(program.contains("| b | 2.0.0 | MIT |") && tests.contains("| c | 2.0.0 | MIT |"));
-        assert!(extension.contains("| d | 2.0.0 | MIT |") && !extension.contains("| c |"));
-        assert!(!page.contains("strandline-cli"));
-        assert_eq!(listed(&page), ["b 2.0.0", "c 2.0.0", "d 2.0.0"].map(str::to_owned).into());
+    fn the_page_tells_what_is_distributed() {
+        let page = table(&sample());
+        let (program, rest) = page.split_once("## In the extension").unwrap();
+        let (extension, tests) = rest.split_once("## For building and tests").unwrap();
+        let names = |part: &str| listed(part).into_iter().map(|row| row[..1].to_owned()).collect::<String>();
+        assert_eq!([program, extension, tests].map(names), ["b", "d", "ce"]);
+        assert!(DISTRIBUTED.iter().all(|own| !page.contains(own)));
     }
 
     #[test]

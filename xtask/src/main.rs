@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | bless | docs | names | house | faults | bare | long | deny | licences`.
+//! Project chores: `cargo xtask test | ci | python | bless | docs | names | house | faults | bare | long | deny | licences`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
@@ -29,8 +29,11 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            STRANDLINE_REQUIRE_GPU=1 and STRANDLINE_REQUIRE_DISPLAY=1. It also puts numpy and
            usd-core into target/python if python3 has none, and prints a note if it cannot
   ci       test --setup
+  python   build the extension with the workspace and run the tests of the Python package; makes
+           target/python if no Python has what they need
   bless    record the golden pictures again; look at each before you commit it
-  docs     write docs/scene.md from the settings table and docs/cli.md from the arguments
+  docs     write docs/scene.md and python/strandline/sections.py from the settings table, and
+           docs/cli.md from the arguments
   names    check that every stage has one name everywhere, and that comments name their subject first
   house    check the plan of the house: arrows between crates, circles of files, sizes
   faults   plant the faults of checks/faults in a copy of the tree, one after the other, and run
@@ -49,6 +52,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Chore {
     Test { setup: bool },
+    Python,
     Bless,
     Docs,
     Names,
@@ -66,6 +70,7 @@ fn main() -> ExitCode {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let passed = match chore(&words) {
         Some(Chore::Test { setup }) => run::test(setup),
+        Some(Chore::Python) => python::test(),
         Some(Chore::Bless) => run::bless(),
         Some(Chore::Docs) => run::docs(),
         Some(Chore::Names) => names::check(),
@@ -95,6 +100,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
     match words {
         ["test"] => Some(Chore::Test { setup: false }),
         ["test", "--setup"] | ["ci"] => Some(Chore::Test { setup: true }),
+        ["python"] => Some(Chore::Python),
         ["bless"] => Some(Chore::Bless),
         ["docs"] => Some(Chore::Docs),
         ["names"] => Some(Chore::Names),

@@ -59,6 +59,15 @@ pub fn test_package(python: &str, tally: &mut Tally) -> bool {
     }
 }
 
+/// Builds the package and runs its tests alone; false if one fails, or without a Python that has what they need.
+pub fn test() -> bool {
+    let Some(python) = prepare(true) else {
+        println!("{NONE}");
+        return false;
+    };
+    test_package(&python, &mut Tally::default())
+}
+
 /// Runs the long form of the package's tests. Returns its name, and true where it passed.
 pub fn long() -> (String, bool) {
     let tested = prepare(true).context(NONE).and_then(|python| pytest(&python, &LONG, &[JOBS]));
@@ -85,6 +94,27 @@ fn pytest(python: &str, tests: &[&str], environment: &[(&str, &str)]) -> Result<
     command.output().context(python.to_owned())
 }
 
+/// Writes the sections of a scene of the Python package from the settings table; false if that fails, true without a
+/// Python that has what the package needs.
+pub fn write_sections() -> bool {
+    let Some(python) = prepare(false) else {
+        println!("python/strandline/sections.py is not written: {NONE}");
+        return true;
+    };
+    let written = installed().and_then(|site| {
+        let mut command = Command::new(&python);
+        command.args(["-P", "python/write_sections.py"]).current_dir(root()).env("PYTHONPATH", site);
+        command.status().with_context(|| python.clone())
+    });
+    match written {
+        Ok(status) => status.success(),
+        Err(error) => {
+            println!("python/strandline/sections.py is not written: {error:#}");
+            false
+        }
+    }
+}
+
 /// The number before a word in the last line of pytest.
 fn counted(line: &str, word: &str) -> u64 {
     let words: Vec<&str> = line.split([' ', ',']).filter(|word| !word.is_empty()).collect();
@@ -94,9 +124,8 @@ fn counted(line: &str, word: &str) -> u64 {
 
 /// The folder that has the package as it would be installed: its files, and the extension beside them.
 fn installed() -> Result<PathBuf> {
-    // The tests use no GPU, whose crates would be compiled once more.
-    let place = ["--manifest-path", "python/Cargo.toml", "--target-dir", "target"];
-    let words = [&["build", "--quiet", "--no-default-features"], &place[..]].concat();
+    // With a test, so that dependencies have the features that they are built with for tests.
+    let words = ["build", "--quiet", "--workspace", "--lib", "--test", "it"];
     anyhow::ensure!(cargo_command(&words).status()?.success(), "its extension is not built");
     let site = root().join("target/python-package");
     let package = site.join("strandline");

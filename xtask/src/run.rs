@@ -173,14 +173,15 @@ pub fn bless() -> bool {
     cargo(&pictures, &[("STRANDLINE_BLESS", "1")], &mut tally)
 }
 
-/// Writes docs/scene.md from the settings table, and docs/cli.md from the arguments of the program.
+/// Writes docs/scene.md and the sections of the Python package from the settings table, and docs/cli.md from the arguments
+/// of the program.
 pub fn docs() -> bool {
     let pages = [["--test", "it", "scene_reference::the_page"], ["--lib", "--quiet", "documents::the_page"]];
     let write = |page: &[&str; 3]| {
         let arguments: Vec<&str> = ["test", "--workspace"].iter().chain(page).copied().collect();
         cargo(&arguments, &[("STRANDLINE_BLESS", "1")], &mut Tally::default())
     };
-    pages.iter().all(write)
+    pages.iter().all(write) && python::write_sections()
 }
 
 /// The examples, by the name of their file or folder, in order.
