@@ -28,6 +28,7 @@ mod rods;
 mod shake;
 mod sintel;
 mod skin_contact;
+mod small_motion;
 mod spans;
 mod springs;
 mod strands;

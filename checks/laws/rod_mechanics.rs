@@ -331,15 +331,16 @@ law! {
             // precision loses up to a hundredth.
             let speed = rig.state().velocities[3].get(0);
             assert!(speed.distance(Vec3::X * 0.15) < 2.5e-3, "1/{rate} s: {speed}");
-            let report = rig.steps(&second[second.len() / 2..]).pop().unwrap();
+            let report = (0..4).map(|_| rig.steps(&second).pop().unwrap()).last().unwrap();
             assert_eq!(report.rods.unwrap().resting, 1, "1/{rate} s");
             // Rest is rest, to the bit.
             let still = rig.state().positions.clone();
             rig.steps(&second[..20]);
             assert_eq!(rig.state().positions, still, "1/{rate} s");
-            // 0.4^2 / (2 * 0.5) m; steps are not the integral.
+            // Slower than 0.5 / 4 m/s it loses a share of its speed, 4 of it in a second: (0.4^2 - 0.125^2) / (2 * 0.5) m and
+            // 0.125 / 4 m. Steps are not the integral.
             let way = rig.state().positions[3].get(0).x;
-            assert!((way - 0.16).abs() < 0.004, "1/{rate} s: {way} m");
+            assert!((way - 0.1756).abs() < 0.004, "1/{rate} s: {way} m");
         }
     }
 }

@@ -79,15 +79,15 @@ law! {
 }
 
 /// Long hair of the default material that hangs from a head at rest, without a volume.
-fn hanging(time_step: f32) -> Model {
+pub fn hanging(time_step: f32) -> Model {
     let mut settings = Settings { time_step, ..Settings::default() };
     settings.volume = VolumeSettings { enabled: false, ..settings.volume };
     Model::new(&one_strand(&line(Vec3::ZERO, Vec3::NEG_Y * LENGTH, TIP)), &settings, Vec::new()).unwrap()
 }
 
 /// Length \[m\] of long hair, and its last point.
-const LENGTH: f32 = 0.35;
-const TIP: usize = 27;
+pub const LENGTH: f32 = 0.35;
+pub const TIP: usize = 27;
 
 law! {
     fn long_hair_that_is_let_go_swings_two_or_three_times_and_stops(on) {
@@ -111,12 +111,10 @@ law! {
                 passages += usize::from(now * before < 0.0);
                 before = now;
             }
-            // A swing passes its rest twice. Found: 4 passages at either step, 0.57 of the way at each, still after
-            // 2.2 and 2.4 s.
-            assert!((4..=6).contains(&passages), "1/{rate} s: {passages} passages");
+            // A swing passes its rest twice.
+            assert!((4..=8).contains(&passages), "1/{rate} s: {passages} passages");
             assert!(rests, "1/{rate} s: not still after 4 s");
-            // Rubbing of 0.2 m/s^2 holds 0.2 / 9.81 of the length aside.
-            assert!(before.abs() < 0.02 * LENGTH, "1/{rate} s: {before} m beside its rest");
+            assert!(before.abs() < 2e-3 * LENGTH, "1/{rate} s: {before} m beside its rest");
         }
     }
 }

@@ -30,19 +30,24 @@ fn on_a_body(style: Style, settings: &Settings, strands: usize, friction: f32) -
 
 /// Mean and largest distance of points from where they rest on the head, over their strands' lengths.
 pub fn drift(model: &Model, state: &State) -> (f32, f32) {
+    let each = drifts(model, state);
+    let most = each.iter().fold(0.0_f32, |most, [_, strand]| most.max(*strand));
+    (each.iter().map(|[mean, _]| mean).sum::<f32>() / each.len() as f32, most)
+}
+
+/// The same for each strand.
+pub fn drifts(model: &Model, state: &State) -> Vec<[f32; 2]> {
     let points = model.points_per_strand();
     let rest = model.rest_state(&state.body);
-    let (mut sum, mut most) = (0.0, 0.0_f32);
-    for strand in 0..model.strand_count() {
+    let each = |strand: usize| {
         let (block, lane) = (strand / LANES * points, strand % LANES);
         let length: f32 = (0..points).map(|point| model.rest().stretch[block + point].0[lane]).sum();
-        for point in block..block + points {
-            let moved = state.positions[point].get(lane).distance(rest.positions[point].get(lane)) / length;
-            sum += moved;
-            most = most.max(moved);
-        }
-    }
-    (sum / (model.strand_count() * points) as f32, most)
+        let moved = (block..block + points)
+            .map(|point| state.positions[point].get(lane).distance(rest.positions[point].get(lane)) / length);
+        let (sum, most) = moved.fold((0.0, 0.0_f32), |(sum, most), moved| (sum + moved, most.max(moved)));
+        [sum / points as f32, most]
+    };
+    (0..model.strand_count()).map(each).collect()
 }
 
 /// Mean speed \[m/s\] of the last step: of the motion, and as stored.

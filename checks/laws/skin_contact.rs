@@ -9,9 +9,12 @@ use strandline_body::{
     SkinSolid,
 };
 use strandline_checks::gpu;
-use strandline_groom::{Groom, Guides, LANES};
+use strandline_groom::{Groom, Guides, LANES, Lanes};
+use strandline_sim::cells::Kind;
+use strandline_sim::contact::Obstacles;
+use strandline_sim::cpu::{Volume, mark::mark, splat::splat};
 use strandline_sim::gpu::GpuRunner;
-use strandline_sim::{CpuRunner, Drive, Model, Settings, State, StrandMethod};
+use strandline_sim::{CpuRunner, Drive, Model, Settings, State, StrandMethod, VolumeSettings};
 
 const POINTS: usize = 16;
 /// Length of a step \[s\].
@@ -178,6 +181,31 @@ fn hair_on_a_gpu_stays_outside_a_bust_that_turns_and_shrugs() {
     let Shape::Skin(skin) = &bust.skin else { unreachable!() };
     let (inside, all, _) = run(Shape::Grid(Arc::clone(skin.grid())), StrandMethod::Rods);
     assert!(inside * 1000 > 3 * all, "{inside} of {all}: the law can fail");
+}
+
+/// Cells are what they are without the planes of points: these save looks, and tell no cell otherwise.
+#[test]
+fn planes_of_points_tell_the_same_cells() {
+    let bust = Bust::new(240);
+    let model = bust.model(bust.skin.clone());
+    let mut state = model.rest_state(BodyFrame::REST);
+    let mut runner = CpuRunner::from(model.clone());
+    for step in 1..=12 {
+        runner.step(&mut state, &Drive::of(bust.frame(step as f32 * STEP)));
+    }
+    let (start, end) = (bust.frame(11.0 * STEP), bust.frame(12.0 * STEP));
+    let obstacles = Obstacles::new(model.colliders(), start, end, STEP);
+    let mass = vec![Lanes([1e-6; LANES]); state.positions.len()];
+    let kinds = |with_planes: bool| {
+        let mut volume = Volume::new(&VolumeSettings::default(), bust.guides.strand_count(), POINTS);
+        splat(&mut volume, &state.positions, &state.velocities, &mass);
+        mark(&mut volume, &obstacles, with_planes.then_some((&state.positions[..], state.contacts())));
+        (0..volume.grid.cell_count()).map(|cell| volume.kind(cell)).collect::<Vec<_>>()
+    };
+    let expected = kinds(false);
+    let count = |kind| expected.iter().filter(|found| **found == kind).count();
+    assert!(count(Kind::Solid) > 20 && count(Kind::Fluid) > 20, "{} solid cells", count(Kind::Solid));
+    assert_eq!(kinds(true), expected);
 }
 
 /// A closed tube along y of 40 cm, and guides that stand on it around its middle.

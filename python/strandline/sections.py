@@ -485,8 +485,9 @@ class SimulationStrandsRods(TypedDict, total=False):
     numbers of 0.01 to 100."""
 
     rubbing: float
-    """Deceleration of slow hair by hairs that rub against each other, relative to the head. A shape at rest may be
-    off by what this much gravity bends it. Allowed: 0 to 100 m/s^2."""
+    """Deceleration by hairs that rub against each other, relative to the head. A shape at rest among other hair may
+    be off by what this much gravity bends it; of a strand without others beside it by a twentieth of that, and while
+    slow it loses 4 of its speed in a second at most. Allowed: 0 to 100 m/s^2."""
 
     rest: str
     """Meaning of the groom's shape. Allowed: one of sag_free, unstressed."""

@@ -77,7 +77,7 @@ pub use skin_motion::{Playback, SkinMotion, VertexMotion};
 pub use skin_roots::SkinRoots;
 pub use skin_solid::SkinSolid;
 pub use skin_table::{SkinTable, Written};
-pub use solid_table::solid_rows;
+pub use solid_table::{skins_constant, solid_rows};
 pub use solids::{PlacedSolids, Solids};
 pub use strandline_base::{Pose, Random};
 pub use turn_out::turned_out;

@@ -22,6 +22,12 @@ const HEAD: u32 = 1;
 /// Rows of a solid.
 const HEADER: usize = 4;
 
+/// The pipeline constant SKINS (skins.wesl), by its number, for kernels that read a table of these solids.
+pub fn skins_constant<'a>(solids: impl IntoIterator<Item = &'a Collider>) -> (&'static str, f64) {
+    let has_skin = solids.into_iter().any(|solid| matches!(solid.shape, Shape::Skin(_)));
+    ("2", if has_skin { 1.0 } else { 0.0 })
+}
+
 /// Rows of solids, each with the distance \[m\] that drawn strands keep from it; `before` rows lie before these in their
 /// buffer.
 ///

@@ -218,9 +218,13 @@ mod tests {
 
     #[test]
     fn a_restored_state_makes_the_same_bits_and_none_of_its_parts_is_idle() {
-        // Rods alone have sections and spins, and need no corrections of lengths.
+        // Rods alone have sections and spins.
         needs(StrandMethod::Constrain, 7, &[VELOCITIES, CORRECTIONS, CONTACTS, VOLUME, LENGTH_SCALE]);
-        needs(StrandMethod::Rods, 9, &[VELOCITIES, SECTIONS, SPINS, CONTACTS, VOLUME, LENGTH_SCALE]);
+        needs(
+            StrandMethod::Rods,
+            9,
+            &[VELOCITIES, CORRECTIONS, SECTIONS, SPINS, CONTACTS, VOLUME, LENGTH_SCALE],
+        );
     }
 
     /// Saves hair in its swing, with so many parts, and resumes from what was saved, whole and with each of these

@@ -9,7 +9,7 @@ use crate::Settings;
 const POINT_BYTES: u64 = 296;
 /// Further bytes of a point of a rod: its node, its section and spin, and the copies of them that a change of settings
 /// or a device holds.
-const ROD_BYTES: u64 = 192;
+const ROD_BYTES: u64 = 204;
 /// Bytes of a cell: velocities and their changes on three faces, points, kind, distance and unknown.
 const CELL_BYTES: u64 = 44;
 

@@ -84,6 +84,8 @@ impl Model {
         if state.sections.len() != count {
             state.sections = self.sections(&state.body);
             state.spins = vec![Lanes::default(); count];
+            // Those of the other method, of another size.
+            state.corrections.fill(Vec3Lanes::default());
         }
     }
 

@@ -53,8 +53,8 @@ pub struct State {
     /// Velocities \[m/s\], world space, shape `[block][point]` of lanes.
     pub velocities: Vec<Vec3Lanes>,
     /// Additions of the next prediction to the velocities \[m/s\], world space, shape `[block][point]` of
-    /// lanes: the length pass returns them for its corrections \[Mueller2012 eq. 9\]. They are no motion of
-    /// the hair: volume, air and springs ignore them.
+    /// lanes: the length pass returns them for its corrections \[Mueller2012 eq. 9\], rods for what rounding left
+    /// out of the positions. They are no motion of the hair: volume, air and springs ignore them.
     pub corrections: Vec<Vec3Lanes>,
     /// Positions \[m\] one step ago, world space, shape `[block][point]` of lanes.
     pub previous_positions: Vec<Vec3Lanes>,
@@ -96,6 +96,11 @@ pub(crate) fn between([before, after]: [&[Vec3Lanes]; 2], share: f32, positions:
 }
 
 impl State {
+    /// Planes that points remember of the solids, as `cpu::mark` asks for them.
+    pub fn contacts(&self) -> &Contacts {
+        &self.contacts
+    }
+
     /// Positions \[m\] between the last two steps, world space, shape `[block][point]` of lanes:
     /// `share` is 0 one step ago and 1 now. `positions` is made as long as needed.
     pub fn interpolated(&self, share: f32, positions: &mut Vec<Vec3Lanes>) {

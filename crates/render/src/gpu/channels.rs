@@ -6,8 +6,8 @@ use strandline_gpu::{Bound, Download, Gpu, GpuError, Kernel, Recorder, Texture, 
 use super::GpuRenderer;
 use super::codes;
 use super::frame::samples;
+use super::half::{from_half, to_half};
 use super::inputs::Frame;
-use super::probe::{from_half, to_half};
 use super::shade::Numbers;
 use crate::frame::filter::resolve_linear;
 use crate::frame::known::{body_depths, nearest_strands};
@@ -18,15 +18,6 @@ use crate::frame::{
     channels::{BLACK, Known},
 };
 use crate::{FrameInput, Layers, PictureSettings, RenderError};
-
-/// State of channels, once they are requested.
-#[derive(Default)]
-pub(super) struct Channels {
-    /// Kernels that replace light by values.
-    numbers: Option<[Kernel<Numbers<'static>>; 2]>,
-    /// The last picture with channels.
-    before: Option<Before>,
-}
 
 /// Kinds of numbers.
 const COVERAGE_AND_DEPTH: usize = 0;

@@ -5,10 +5,12 @@
 //! lie on the device already, and the picture may stay there.
 
 mod buffers;
+mod channel_state;
 mod channels;
 mod codes;
 mod draw;
 mod frame;
+mod half;
 mod inputs;
 mod linked;
 mod probe;

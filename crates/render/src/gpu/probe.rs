@@ -6,31 +6,13 @@ use strandline_groom::Vec3Lanes;
 
 use super::GpuRenderer;
 use super::frame::{opacity_depth, opacity_layers};
+use super::half::from_half;
 use super::records::Curve;
 use super::renderer::Drawn;
 use super::scene::Scene;
 use crate::shadow::{LightView, ShadowMap, Shadows, Window};
 use crate::strands::Strands;
 use crate::{DetailLevel, FrameInput, Light, Picture, RenderError, Shadow};
-
-/// Half floats as they are stored.
-pub(super) fn from_half(bits: u32) -> f32 {
-    let (sign, exponent, fraction) = (bits >> 15 & 1, bits >> 10 & 31, bits & 1023);
-    let value = match exponent {
-        0 => fraction as f32 * 2.0_f32.powi(-24),
-        31 => f32::INFINITY,
-        _ => (1.0 + fraction as f32 / 1024.0) * 2.0_f32.powi(exponent as i32 - 15),
-    };
-    if sign == 1 { -value } else { value }
-}
-
-/// Half floats nearest to numbers, as they are stored: beyond their range the greatest.
-pub(super) fn to_half(value: f32) -> u32 {
-    const GREATEST: f32 = 65_504.0;
-    // 2^-112: exponents then begin where those of half floats do.
-    let bits = (value.abs().min(GREATEST) * f32::from_bits(15 << 23)).to_bits();
-    (bits + 0xfff + (bits >> 13 & 1)) >> 13 | u32::from(value.is_sign_negative()) << 15
-}
 
 fn vectors(values: &[[f32; 4]]) -> Vec<Vec3> {
     values.iter().map(|&[x, y, z, _]| Vec3::new(x, y, z)).collect()

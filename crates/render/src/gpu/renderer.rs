@@ -7,7 +7,7 @@ use strandline_gpu::{Buffer, Gpu, Recorder, Timer, wgpu};
 use strandline_groom::{Binding, Guides};
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
-use super::channels::Channels;
+use super::channel_state::Channels;
 use super::codes;
 use super::frame::{Bounds, Held, record};
 use super::resolve::{Own, PICTURE, ToFormat};

@@ -12,6 +12,8 @@ use strandline_base::vec3x8::{Vec3x8, load, splat};
 
 /// Times that a point is placed again at most when the solid under it curves: enough for an ear.
 const PLACINGS: usize = 8;
+/// Share of a length that rounding makes of it: of strands whose segments are moved no more is taken out.
+const SAME_LENGTH: f32 = 2.5e-7;
 /// Depth \[m\] inside its margin that a point may keep.
 const TOLERATED: f32 = 2e-4;
 
@@ -50,6 +52,26 @@ impl Follow<'_> {
 }
 
 impl Follow<'_> {
+    /// Moves each point to its length from the one before. A point lies at its `start` and `moved` from there \[m\],
+    /// which alone changes: a small motion is not rounded as a position is.
+    pub fn place_moved(&self, start: &[Vec3x8], moved: &mut [Vec3x8], planes: &mut [Plane]) {
+        for point in 1..start.len() {
+            let free = splat(point as f32).simd_gt(self.last_rooted);
+            let length = load(&self.lengths[point - 1]);
+            let across = start[point] - start[point - 1] + (moved[point] - moved[point - 1]);
+            let missing = length / across.length() - splat(1.0);
+            let wrong = missing.abs().simd_gt(splat(SAME_LENGTH));
+            let mut there = moved[point] + across * (missing & wrong);
+            if !self.solids.is_empty() && free.any() {
+                let before = start[point - 1] + moved[point - 1];
+                let placed = start[point] + there;
+                let out = self.out_of_solids(point, before, placed, planes);
+                there += out - placed;
+            }
+            moved[point] = there.or(free, moved[point]);
+        }
+    }
+
     /// Position of a point at its length from `before` and outside the solids.
     fn out_of_solids(&self, point: usize, before: Vec3x8, first: Vec3x8, planes: &mut [Plane]) -> Vec3x8 {
         let (margin, length) = (self.margins[point], load(&self.lengths[point - 1]));

@@ -19,6 +19,9 @@ const STIFF: f64 = 1e3;
 /// A point that is no higher \[m\] above a solid touches it: as near as two looks at one place of a skull may find it.
 pub(crate) const TOUCHES: f64 = 2e-4;
 
+/// A point that is no deeper \[m\] inside a solid lies on it: more than its position is rounded by.
+const AT: f64 = 1e-7;
+
 impl Strands<'_> {
     /// Planes near the points and what a hand holds, as stiff springs.
     pub(super) fn find_pulls(
@@ -47,7 +50,7 @@ impl Strands<'_> {
                     let near = height.simd_lt(f32x8::splat(1.0));
                     // A touching point rests in place.
                     let touches = height.simd_lt(f32x8::of(TOUCHES));
-                    let height = touches.bitselect(height.fast_min(f32x8::ZERO), height);
+                    let height = touches.bitselect((height + f32x8::of(AT)).fast_min(f32x8::ZERO), height);
                     space.pulls.push(Pull {
                         node: point,
                         normal: touch.normal,

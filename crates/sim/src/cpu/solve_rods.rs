@@ -23,22 +23,9 @@ use crate::{MOST_SPIN, Model, RodReport, State};
 
 /// Rounds of the projection onto lengths.
 const LENGTH_ROUNDS: u32 = 2;
-/// Most that a point of a strand at rest moves in a part of a step, over its square \[m/s^2\]: two thousandths of
-/// gravity. What friction holds creeps by half as much.
-const STILL: f64 = 0.02;
-/// Most of it \[m\] for what neither a solid nor other hair holds, and over the square of the part \[m/s^2\]: air that
-/// slows a soft thread holds it up by as little.
-const STILL_LOOSE: f64 = 1e-7;
-const STILL_FREE: f64 = 2e-3;
-/// Most that its way differs from the one before, over the square of the part \[m/s^2\]: a strand at rest is not
-/// one that turns back.
-const STEADY: f64 = 2e-4;
-/// Arm \[m\] at which the turn of a section counts as way, the radius of a hair: what only twists moves too.
-const ARM: f64 = 4e-5;
-/// Turn \[rad\] that is rounding.
-const TURN_ROUNDING: f64 = 1e-6;
-/// Rounding of a number in single precision, over its size.
-const ROUNDING: f64 = 1.2e-7;
+/// Most of its speed that slow hair loses to hairs that rub \[1/s\]: contacts of hairs give way before they slip, so
+/// that a small swing is damped and not held.
+const RUBBING_RATE: f64 = 4.0;
 
 /// Forces, elasticity, lengths and solids: writes the predicted positions, the sections and the
 /// velocities. Returns the points that were not finite, whose strands are back at rest, and how the
@@ -71,6 +58,7 @@ pub fn solve_rods(
             |work, (block, ((((((predicted, velocities), start), planes), sections), spins), corrections))| {
                 let range = block * points..(block + 1) * points;
                 work.load(start, velocities, sections, spins);
+                work.load_remainders(corrections, model.settings.time_step);
                 let strands = Strands {
                     model,
                     parts: &parts,
@@ -81,6 +69,7 @@ pub fn solve_rods(
                     clearance: &model.rest_clearance[range.clone()],
                     rest_sections: &rods.sections[range],
                     viscous: parts.viscous(&rods.traits[block * LANES..]),
+                    crowding: crowding(&rods.traits[block * LANES..]),
                     driven: parts.driven(model, block),
                     block,
                     live: model.live_lanes(block),
@@ -89,7 +78,7 @@ pub fn solve_rods(
                     grab.pinned(block, predicted, strands.lengths, strands.inverse_mass).collect();
                 strands.solve(work, planes, &pinned);
                 work.store(predicted, velocities, sections, spins);
-                corrections.fill(Vec3Lanes::default());
+                work.store_remainders(corrections, model.settings.time_step);
                 let hair = Block { positions: predicted, previous: start, velocities, corrections };
                 (recover(model, &obstacles.end, block, hair), work.report)
             },
@@ -99,7 +88,7 @@ pub fn solve_rods(
 
 /// Inputs of a step that all strands share.
 pub(super) struct Parts<'a> {
-    settings: &'a RodSettings,
+    pub(super) settings: &'a RodSettings,
     pub(super) count: u32,
     pub(super) time_step: f64,
     fall: Fall,
@@ -186,6 +175,8 @@ pub(super) struct Strands<'a> {
     rest_sections: &'a [Vec3Lanes],
     /// Relaxation time of bends and twists over the length of a part.
     viscous: f32x8,
+    /// Share of each strand beside which others pass.
+    pub(super) crowding: f32x8,
     /// Mask of the strands whose root frames move.
     driven: f32x8,
     block: usize,
@@ -204,6 +195,7 @@ impl Strands<'_> {
             let own = self.parts.has_roots().then(|| self.parts.ride(self.model, self.block, part));
             self.want(space, own.as_ref().unwrap_or(&self.parts.head[part as usize]));
             self.find_pulls(space, planes, pinned, part);
+            self.guess(space);
             self.solve_part(space, planes);
         }
     }
@@ -218,14 +210,18 @@ impl Strands<'_> {
             let held = world_from_root.point(Vector::load(&self.rest[point]));
             let here = space.points[point];
             let rides = moved.as_ref().map_or(here, |moved| moved.point(here));
-            space.carried[point] = Vector::choose(free, rides, held);
+            let carried = Vector::choose(free, rides, held);
+            // Numbers that differ little: not a bit is lost where nothing moves.
+            let back = here - carried;
+            space.carried[point] = carried;
+            let remainder = space.remainders[point];
+            let remainder = moved.as_ref().map_or(remainder, |moved| moved.direction(remainder));
+            space.remainders[point] = remainder * free;
             let tangent = space.points[last.min(point + 1)] - space.points[point.saturating_sub(1)];
             let fallen = self.parts.fall.weighted(space.velocities[point], tangent);
-            let coast = here + space.velocities[point] * step - space.carried[point];
+            let coast = space.velocities[point] * step + back;
             space.coast[point] = coast;
-            // Hairs that rub take a speed off what moves on, not more than there is.
-            let rubbed = (rubbing / coast.length()).or_less(f32x8::of(1.0));
-            let wanted = here + fallen * step - space.carried[point] - coast * rubbed;
+            let wanted = fallen * step + back - coast * self.rubbed(rubbing / coast.length());
             space.wanted[point] = wanted;
             let [x, y, z] = wanted.array();
             space.work.want(point, [x, y, z, space.spins[point] * step]);
@@ -237,23 +233,49 @@ impl Strands<'_> {
             space.sections[point] =
                 Vector::choose(turns * sound(space.sections[point]), space.sections[point], section);
         }
-        self.guess(space, step);
     }
 
-    /// Newton's method begins with hair that keeps its velocity beside its root.
-    fn guess(&self, space: &mut Workspace, step: f32x8) {
+    /// Share of a motion that hairs which rub take, from their speed \[m\] over that of the motion: beside others all of
+    /// what is slow, else a share.
+    #[inline(always)]
+    fn rubbed(&self, rubs: f32x8) -> f32x8 {
+        let alone = f32x8::of(1.0) - self.crowding;
+        let yields = (rubs * alone).or_less(f32x8::of(RUBBING_RATE * self.parts.time_step));
+        (rubs * self.crowding + yields).or_less(f32x8::of(1.0))
+    }
+
+    /// Newton's method begins with hair that keeps its velocity beside its root; where there are solids, at the shape
+    /// carried along: the first Newton step judges contacts and friction by the place where it begins.
+    fn guess(&self, space: &mut Workspace) {
+        if !self.parts.solids.is_empty() {
+            return;
+        }
+        let step = f32x8::of(self.parts.time_step);
         let (first, second) = (self.nodes[0].free, self.nodes[1].free);
         let held = Vector::choose(second, space.coast[0], space.coast[1]);
-        let root = Vector::choose(first, Vector::zero(), held);
+        let root = Vector::choose(first, self.pushed_back(space), held);
         for (point, node) in self.nodes.iter().enumerate() {
             let [x, y, z] = ((space.coast[point] - root) * node.free).array();
             space.work.guess(point, [x, y, z, space.spins[point] * step * node.free_angle]);
         }
     }
 
+    /// Way of a free strand that forces take from it on the whole \[m\], which Newton's method would find to a hundredth.
+    fn pushed_back(&self, space: &Workspace) -> Vector<f32x8> {
+        let (mut pushed, mut mass) = (Vector::zero(), f32x8::ZERO);
+        for (point, node) in self.nodes.iter().enumerate() {
+            let free = node.mass * node.free;
+            pushed += (space.coast[point] - space.wanted[point]) * free;
+            mass += free;
+        }
+        pushed * (f32x8::of(1.0) / mass)
+    }
+
     fn solve_part(&self, space: &mut Workspace, planes: &mut [Plane]) {
-        let Workspace { carried, sections, work, .. } = space;
-        work.begin(|index| carried[index + 1] - carried[index], |index| sections[index]);
+        let Workspace { carried, remainders, sections, work, .. } = space;
+        let edge =
+            |index: usize| carried[index + 1] - carried[index] + (remainders[index + 1] - remainders[index]);
+        work.begin(edge, |index| sections[index]);
         let settings = StepSettings {
             time_step: self.parts.time_step,
             newton_steps: self.parts.settings.newton_steps,
@@ -261,20 +283,18 @@ impl Strands<'_> {
             viscous: self.viscous,
         };
         let solved = space.solve(self.nodes, &settings);
-        for (point, carried) in space.carried.iter_mut().enumerate() {
+        for (point, moved) in space.moved.iter_mut().enumerate() {
             let [x, y, z, _] = space.work.moved[point];
-            *carried += Vector::new(x, y, z);
+            *moved = space.remainders[point] + Vector::new(x, y, z);
         }
-        space.project.project(&mut space.carried, &space.inverse_mass, &space.length, LENGTH_ROUNDS);
+        let Workspace { carried, moved, inverse_mass, length, .. } = space;
+        space.project.project(carried, moved, inverse_mass, length, LENGTH_ROUNDS);
         self.place(space, planes);
         self.take(space, &solved);
     }
 
     /// Lengths to the last bit, from root to tip, outside the solids.
     fn place(&self, space: &mut Workspace, planes: &mut [Plane]) {
-        for (placed, point) in space.placed.iter_mut().zip(&space.carried) {
-            point.store(placed);
-        }
         let mut last_rooted = [-1.0_f32; LANES];
         for (point, inverse_mass) in self.inverse_mass.iter().enumerate() {
             for (last, _) in
@@ -289,58 +309,28 @@ impl Strands<'_> {
             last_rooted: f32x8::from(last_rooted),
             solids: &self.parts.solids,
         };
-        follow.place(&mut space.placed, planes, &mut space.corrections);
-        for (placed, point) in space.placed.iter().zip(&mut space.carried) {
-            *point = Vector::load(placed);
-        }
+        follow.place_moved(&space.carried, &mut space.moved, planes);
     }
 
     /// The new state: velocities are what takes the points there; strands at rest stay.
     fn take(&self, space: &mut Workspace, solved: &Solved<f32x8>) {
         let last = self.nodes.len() - 1;
         let per_step = f32x8::of(1.0 / self.parts.time_step);
-        let step = f32x8::of(self.parts.time_step);
         let most_spin = f32x8::splat(MOST_SPIN);
-        let (mut largest, mut change, mut nothing) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
-        let (mut size, mut turn, mut turn_change) = (f32x8::ZERO, f32x8::ZERO, f32x8::ZERO);
-        for point in 0..=last {
-            let [.., angle] = space.work.moved[point];
-            let other = angle - space.spins[point] * step;
-            turn = turn.fast_max(angle * angle);
-            turn_change = turn_change.fast_max(other * other);
-            let moved = space.carried[point] - space.points[point];
-            let square = moved.dot(moved);
-            let other = moved - space.velocities[point] * step;
-            largest = largest.fast_max(square);
-            change = change.fast_max(other.dot(other));
-            size = size.fast_max(space.points[point].dot(space.points[point]));
-            // 0 for finite numbers, else not a number.
-            let speed = space.velocities[point].dot(space.velocities[point]);
-            nothing += (square + speed + angle) * f32x8::ZERO;
-        }
-        let bad = nothing.is_nan();
+        let (moving, bad) = self.moving(space, solved.pressed);
         space.bad |= bad;
         // 1 where the strand moves.
-        let square = self.parts.time_step * self.parts.time_step;
-        let rounding = size.root() * f32x8::of(ROUNDING);
-        let rubbing = f64::from(self.parts.settings.rubbing);
-        let loose = f32x8::of((STILL_FREE * square).min(STILL_LOOSE).max(rubbing * square));
-        let still = solved.pressed.choose(f32x8::of(STILL * square), loose);
-        let steady = f32x8::of(STEADY.max(rubbing) * square);
-        let turned = |way: f32x8| (way * f32x8::of(1.0 / ARM)).fast_max(f32x8::of(TURN_ROUNDING));
-        let (most, most_change) = (turned(still), turned(steady));
-        let turns = turn.simd_gt(most * most) | turn_change.simd_gt(most_change * most_change);
-        let (still, steady) = (still.fast_max(rounding), steady.fast_max(rounding));
-        let moving = largest.simd_gt(still * still) | change.simd_gt(steady * steady) | turns | bad;
         let moves = moving.bitselect(f32x8::of(1.0), f32x8::ZERO);
         let none = bad.bitselect(f32x8::splat(f32::NAN), f32x8::ZERO);
         let moves = self.driven.bitselect(f32x8::of(1.0), moves);
         for point in 0..=last {
-            let moved = space.carried[point] - space.points[point];
+            let moved = space.way(point);
             let velocity = Vector::choose(moves, moved * per_step, Vector::zero());
             // Of a strand that began with what is no number nothing is kept: it goes back to rest, and is counted.
             space.velocities[point] = velocity + Vector::new(none, none, none);
-            space.points[point] = Vector::choose(moves, space.carried[point], space.points[point]);
+            let (place, remainder) = sum_and_remainder(space.carried[point], space.moved[point]);
+            space.points[point] = Vector::choose(moves, place, space.points[point]);
+            space.remainders[point] = Vector::choose(moves, remainder, space.remainders[point]);
             let [.., angle] = space.work.moved[point];
             let spin = (angle * per_step).fast_min(most_spin).fast_max(-most_spin);
             space.spins[point] = moves.choose(spin, f32x8::ZERO);
@@ -364,6 +354,19 @@ impl Strands<'_> {
         report.unsolved = report.unsolved.max(count(solved.unsolved.simd_gt(f32x8::ZERO)));
         report.resting = count(moves.simd_eq(f32x8::ZERO));
     }
+}
+
+/// The sum of a vector and a smaller one in single precision, and what rounding leaves out of it.
+#[inline(always)]
+fn sum_and_remainder(large: Vector<f32x8>, small: Vector<f32x8>) -> (Vector<f32x8>, Vector<f32x8>) {
+    let sum = large + small;
+    let taken = sum - large;
+    (sum, (large - (sum - taken)) + (small - taken))
+}
+
+/// Share of a block's strands beside which others pass.
+fn crowding(strands: &[Traits]) -> f32x8 {
+    f32x8::from(std::array::from_fn::<f32, LANES, _>(|lane| strands[lane].crowding))
 }
 
 /// A vector, zero in the lanes of a mask.

@@ -1,11 +1,13 @@
 //! Measures the step: stretch, penetration, non-finite points.
 
+use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, MANY, kernel};
 
 use super::buffers::Buffers;
 use super::inputs::Step;
 use super::records::{Outcome, PressureState, Report};
 use super::stage::{StageKernels, Target};
+use crate::Model;
 
 kernel! {
     /// One thread is one strand.
@@ -40,8 +42,11 @@ impl StageKernels for Stage {
         vec![Advance::declaration(), Gathered::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
-        Ok(Self { advance: Kernel::new(gpu, &[])?, report: Kernel::new(gpu, &[])? })
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        Ok(Self {
+            advance: Kernel::new(gpu, &[skins_constant(&model.colliders)])?,
+            report: Kernel::new(gpu, &[])?,
+        })
     }
 
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {

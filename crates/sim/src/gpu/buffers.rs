@@ -172,7 +172,7 @@ impl Buffers {
         buffers.nodes.write(&numbers)?;
         let traits = model.rods.iter().flat_map(|rods| &rods.traits);
         let traits: Vec<f32> =
-            traits.flat_map(|one| [one.bend_ratio, one.twist_ratio, one.damping, 0.0]).collect();
+            traits.flat_map(|one| [one.bend_ratio, one.twist_ratio, one.damping, one.crowding]).collect();
         // The grips lie before them.
         Ok(buffers.nodes.write_at(numbers.len() + 4 * self.lane_count, &traits)?)
     }
@@ -237,7 +237,7 @@ fn grip(grip: &Grip, lane: usize) -> [f32; 4] {
 }
 
 /// Velocities and what the next prediction adds to them, as the device has them; of rods sections and their
-/// speeds, and room for how strands were solved.
+/// speeds, room for how strands were solved, and last what the next prediction adds.
 pub(super) fn speeds(state: &State) -> Vec<f32> {
     if state.sections.is_empty() {
         return [floats(&state.velocities), floats(&state.corrections)].concat();
@@ -245,7 +245,8 @@ pub(super) fn speeds(state: &State) -> Vec<f32> {
     let blocks = state.length_scale.len();
     let outcomes = vec![0.0; 2 * LANES * blocks];
     let spins: &[f32] = bytemuck::cast_slice(&state.spins);
-    [floats(&state.velocities), floats(&state.sections), spins, &outcomes].concat()
+    let corrections = floats(&state.corrections);
+    [floats(&state.velocities), floats(&state.sections), spins, &outcomes, corrections].concat()
 }
 
 /// Vectors as the numbers that they are.

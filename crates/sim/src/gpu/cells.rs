@@ -8,6 +8,7 @@ use super::cell_buffers::{Cells, LatticeState};
 use super::inputs::Step;
 use super::splat::{ListPoints, RankPoints};
 use super::stage::{StageKernels, Target};
+use crate::Model;
 
 kernel! {
     /// The histogram; one thread is one point.
@@ -49,7 +50,7 @@ impl StageKernels for Stage {
         vec![FindBuckets::declaration()]
     }
 
-    fn new(_: &Gpu, _: usize) -> Result<Self, GpuError> {
+    fn new(_: &Gpu, _: &Model) -> Result<Self, GpuError> {
         Ok(Self::default())
     }
 

@@ -1,9 +1,11 @@
 //! Lengths, bends and solids: all rounds of a strand in one thread.
 
+use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, THREADS, groups, kernel};
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
+use crate::Model;
 
 kernel! {
     /// One thread is one strand.
@@ -27,10 +29,11 @@ impl StageKernels for Stage {
         vec![Constrain::declaration()]
     }
 
-    fn new(gpu: &Gpu, points: usize) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        let points = model.points_per_strand;
         let strands = strands_per_workgroup(points);
         // POINTS and STRANDS of strand.wesl.
-        let constants = [("0", points as f64), ("1", strands as f64)];
+        let constants = [("0", points as f64), ("1", strands as f64), skins_constant(&model.colliders)];
         Ok(Self { kernel: Kernel::new(gpu, &constants)?, strands_per_workgroup: strands })
     }
 

@@ -5,6 +5,7 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, k
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
 use super::volume::GridState;
+use crate::Model;
 
 kernel! {
     /// One thread is one point.
@@ -25,7 +26,7 @@ impl StageKernels for Stage {
         vec![Gather::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, _: &Model) -> Result<Self, GpuError> {
         Kernel::new(gpu, &[]).map(Self)
     }
 

@@ -8,8 +8,8 @@ use super::{
     advance, cells, constrain, gather, integrate, lengths_alone, mark, pose_roots, slide, solve_pressure,
     solve_rods, splat,
 };
-use crate::Preconditioner;
 use crate::step::Stage;
+use crate::{Model, Preconditioner};
 
 /// Names the module of each stage, once.
 macro_rules! kernels {
@@ -21,11 +21,11 @@ macro_rules! kernels {
         }
 
         impl Kernels {
-            pub fn new(gpu: &Gpu, points_per_strand: usize) -> Result<Self, GpuError> {
+            pub fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
                 Ok(Self {
                     scan: Scan::new(gpu)?,
                     slide: slide::Slide::new(gpu)?,
-                    $($module: $module::Stage::new(gpu, points_per_strand)?,)*
+                    $($module: $module::Stage::new(gpu, model)?,)*
                 })
             }
 

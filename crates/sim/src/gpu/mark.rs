@@ -1,10 +1,12 @@
 //! Every cell near hair is fluid, solid or air.
 
+use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
 use super::volume::GridState;
+use crate::Model;
 
 kernel! {
     /// One thread is one cell.
@@ -37,8 +39,9 @@ impl StageKernels for Stage {
         vec![Mark::declaration(), CarryWalls::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
-        Ok(Self { mark: Kernel::new(gpu, &[])?, carry_walls: Kernel::new(gpu, &[])? })
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        let skins = [skins_constant(&model.colliders)];
+        Ok(Self { mark: Kernel::new(gpu, &skins)?, carry_walls: Kernel::new(gpu, &skins)? })
     }
 
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {

@@ -4,6 +4,7 @@ use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, k
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
+use crate::Model;
 
 kernel! {
     /// One thread is one strand.
@@ -24,7 +25,7 @@ impl StageKernels for Stage {
         vec![PoseRoots::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, _: &Model) -> Result<Self, GpuError> {
         Kernel::new(gpu, &[]).map(Self)
     }
 

@@ -71,7 +71,7 @@ impl GpuRunner {
     /// device refuses.
     pub fn new(gpu: &Gpu, model: Model) -> Result<Self, SimError> {
         model.settings.check_on_gpu()?;
-        let kernels = Kernels::new(gpu, model.points_per_strand)?;
+        let kernels = Kernels::new(gpu, &model)?;
         let state = model.rest_state(BodyFrame::REST);
         Self::with_kernels(gpu, model, Arc::new(kernels), &state)
     }

@@ -6,6 +6,7 @@ use super::pcg::Pcg;
 use super::records::{Gradient, PressureState};
 use super::stage::{StageKernels, Target};
 use super::volume::{GridState, Volume};
+use crate::Model;
 
 kernel! {
     /// Rows of the system; one thread is one cell.
@@ -59,7 +60,7 @@ impl StageKernels for Stage {
         all
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, _: &Model) -> Result<Self, GpuError> {
         let gradient = |axes: f64| Kernel::new(gpu, &[("AXES", axes)]);
         Ok(Self {
             assemble: Kernel::new(gpu, &[])?,

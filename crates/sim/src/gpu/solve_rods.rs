@@ -1,9 +1,11 @@
 //! Rods: a strand bends and twists in one thread, in all parts of a step.
 
+use strandline_body::skins_constant;
 use strandline_gpu::{Bindings, Declaration, Dispatches, Gpu, GpuError, Kernel, kernel};
 
 use super::inputs::Step;
 use super::stage::{StageKernels, Target};
+use crate::Model;
 
 kernel! {
     /// One thread is one strand after another.
@@ -25,8 +27,8 @@ impl StageKernels for Stage {
         vec![SolveRods::declaration()]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
-        Kernel::new(gpu, &[]).map(Self)
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError> {
+        Kernel::new(gpu, &[skins_constant(&model.colliders)]).map(Self)
     }
 
     /// Nothing without rods.

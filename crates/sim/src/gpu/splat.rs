@@ -7,6 +7,7 @@ use super::inputs::Step;
 use super::records::PointBox;
 use super::stage::{StageKernels, Target};
 use super::volume::{GridState, SortedPoint};
+use crate::Model;
 
 kernel! {
     /// Boxes around the points of strands; one thread is one strand.
@@ -106,7 +107,7 @@ impl StageKernels for Stage {
         ]
     }
 
-    fn new(gpu: &Gpu, _: usize) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, _: &Model) -> Result<Self, GpuError> {
         Ok(Self {
             bounds: Kernel::new(gpu, &[])?,
             follow: Kernel::new(gpu, &[])?,

@@ -3,7 +3,7 @@
 use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 
 use super::buffers::Buffers;
-use crate::Preconditioner;
+use crate::{Model, Preconditioner};
 
 /// Targets of a stage's kernels.
 #[derive(Clone, Copy)]
@@ -21,8 +21,8 @@ pub(super) trait StageKernels: Sized {
     /// Their declarations, to be compared with their shaders.
     fn declarations() -> Vec<Declaration>;
 
-    /// Compiles the kernels for strands of a number of points.
-    fn new(gpu: &Gpu, points_per_strand: usize) -> Result<Self, GpuError>;
+    /// Compiles the kernels for strands and solids like those of a model.
+    fn new(gpu: &Gpu, model: &Model) -> Result<Self, GpuError>;
 
     /// Dispatches of a step, in order; empty for a stage without work.
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError>;

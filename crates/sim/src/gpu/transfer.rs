@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::Vec3;
 use strandline_body::BodyFrame;
 use strandline_gpu::{Copied, Readback, Slot, Transfer};
-use strandline_groom::Vec3Lanes;
 
 use super::buffers::{floats, floats_mut, speeds};
 use super::runner::GpuRunner;
@@ -135,7 +134,7 @@ impl Content {
         let (velocities, others) = velocities.split_at(3 * count);
         floats_mut(&mut state.velocities).copy_from_slice(velocities);
         if self.has_rods {
-            state.corrections.fill(Vec3Lanes::default());
+            floats_mut(&mut state.corrections).copy_from_slice(&others[others.len() - 3 * count..]);
             floats_mut(&mut state.sections).copy_from_slice(&others[..3 * count]);
             bytemuck::cast_slice_mut(&mut state.spins).copy_from_slice(&others[3 * count..4 * count]);
         } else {

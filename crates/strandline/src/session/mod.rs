@@ -6,6 +6,8 @@ mod direction;
 mod draft;
 pub(crate) mod engine;
 mod event;
+#[cfg(test)]
+mod far_tests;
 mod files;
 pub(crate) mod film_timing;
 mod following;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::Vec3;
 use strandline::{
-    Backend, Cache, Devices, Event, OutSettings, Player, Scene,
+    Backend, Cache, Devices, Event, Hair, OutSettings, Player, Pose, Ray, Scene,
     device::Gpu,
     scene::{ColliderSection, KeyframeSection, MotionName, SphereSection},
 };
@@ -124,4 +124,45 @@ fn a_far_film_is_resumed_to_the_byte() {
     // The same run about another place has other numbers in its state.
     let mut beside = Player::new(&scene(PLACES[1]), Backend::Cpu, false).unwrap();
     assert!(beside.resume(&mut Cache::open(&part).unwrap()).is_err());
+}
+
+#[test]
+fn points_state_pose_and_hand_are_those_of_the_world() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.safetensors");
+    let place = PLACES[1];
+    let [mut near, mut far] = [Vec3::ZERO, place].map(|place| {
+        Hair::from_prepared(strandline::Prepared::new(&scene(place)).unwrap(), Backend::Cpu).unwrap()
+    });
+    // Poses and the hand lie in steps of the single precision there.
+    let pose = |place: Vec3, aside: f32| Pose {
+        rotation: glam::Quat::from_rotation_y(4.0 * aside),
+        translation: place + Vec3::X * aside,
+    };
+    let mut tip = None;
+    for (hair, place) in [(&mut near, Vec3::ZERO), (&mut far, place)] {
+        hair.step(0.1, pose(place, 0.0625)).unwrap();
+        let points = hair.points().unwrap().to_vec();
+        assert!(points.iter().all(|point| point.distance(place) < 1.0));
+        let first = hair.state().unwrap().positions[0].get(0);
+        assert!(first.distance(points[0]) < 1e-3, "{first} {}", points[0]);
+        // A hand is in the world, and so is a line of sight.
+        let tip = place + *tip.get_or_insert_with(|| (points[15] * 1024.0).round() / 1024.0);
+        assert!(hair.grab(tip, 0.01).unwrap() > 0);
+        hair.move_hand(tip + Vec3::X * 0.0625);
+        hair.step(0.1, pose(place, 0.125)).unwrap();
+        hair.release().unwrap();
+        let ray = Ray { origin: place + Vec3::Z, direction: Vec3::NEG_Z };
+        assert!(hair.pick(&ray, 1.0).unwrap().is_some_and(|point| point.distance(place) < 1.0));
+    }
+    let (one, two) = (near.points().unwrap().to_vec(), far.points().unwrap());
+    // Points of the world at 2 km are rounded by 0.06 mm, in two directions.
+    let apart = one.iter().zip(two).map(|(one, two)| (*two - place).distance(*one)).fold(0.0, f32::max);
+    assert!(apart < 1e-4, "{apart}");
+    far.save_pose(&path).unwrap();
+    let mut posed = scene(place);
+    posed.groom.pose = Some(path);
+    let mut posed = Hair::from_prepared(strandline::Prepared::new(&posed).unwrap(), Backend::Cpu).unwrap();
+    let saved = far.points().unwrap().to_vec();
+    assert!(posed.points().unwrap().iter().zip(&saved).all(|(one, two)| one.distance(*two) < 3e-4));
 }

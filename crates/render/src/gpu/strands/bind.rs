@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use strandline_body::{BodyFrame, Solids};
+use strandline_body::{BodyFrame, Solids, skins_constant};
 use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, kernel, wgpu};
 use strandline_groom::Binding;
 
@@ -95,9 +95,10 @@ impl BoundStrands {
             .map(|one| [one.guide, one.weight.to_bits(), one.pace.to_bits(), 0])
             .collect();
         let influences = Buffer::from_slice(gpu, "influences of guides", &influences)?;
+        let skins = skins_constant(solids.all().iter().map(|(solid, _)| solid));
         let solids = BoundSolids::new(gpu, guides.strand_count(), solids, on_device)?;
         let frames = Buffer::new(gpu, "frames of guides", 3 * points + guides.strand_count())?;
-        let place = Kernel::<PlaceBound<'static>>::new(gpu, &[])?;
+        let place = Kernel::<PlaceBound<'static>>::new(gpu, &[skins])?;
         let place = place.bind(
             gpu,
             &PlaceBound {
@@ -120,7 +121,7 @@ impl BoundStrands {
             solids,
             frames,
             place,
-            keep_outside: Kernel::new(gpu, &[])?,
+            keep_outside: Kernel::new(gpu, &[skins])?,
             kept: None,
             follows: Vec::new(),
         })

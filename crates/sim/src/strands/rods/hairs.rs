@@ -1,10 +1,12 @@
 //! Materials of the strands of a model: those of the settings, or of their group.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use strandline_base::SettingError;
 use strandline_groom::Guides;
 
+use super::crowding::crowding;
 use super::material::Section;
 use super::settings::{GroupSettings, RodSettings};
 use crate::SimError;
@@ -17,6 +19,8 @@ pub(crate) struct Traits {
     pub twist_ratio: f32,
     /// Relaxation time of bends and twists \[s\].
     pub damping: f32,
+    /// Share of the strand beside which others pass at rest.
+    pub crowding: f32,
 }
 
 /// Material of a strand.
@@ -39,6 +43,8 @@ pub(crate) struct Hairs {
     groups: Vec<u32>,
     names: BTreeMap<u32, String>,
     hair: Hair,
+    /// Crowding of each strand at rest, 0 to 1.
+    crowding: Arc<[f32]>,
     /// Materials of groups that have their own.
     own: BTreeMap<u32, Hair>,
 }
@@ -53,6 +59,7 @@ impl Hairs {
             groups: guides.groups().map_or_else(Vec::new, <[u32]>::to_vec),
             names: guides.group_names().clone(),
             hair: Hair::new(rods),
+            crowding: crowding(guides).into(),
             own: BTreeMap::new(),
         };
         strands.changed(rods, groups)
@@ -89,6 +96,7 @@ impl Hairs {
             bend_ratio: (section.bend[1] / section.bend[0]) as f32,
             twist_ratio: (section.twist / section.bend[0]) as f32,
             damping,
+            crowding: self.crowding[strand],
         }
     }
 

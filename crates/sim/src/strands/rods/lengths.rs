@@ -23,15 +23,22 @@ impl<R: Real> Lengths<R> {
         }
     }
 
-    /// Moves the points \[m\], each by its inverse mass \[1/kg\], so that every segment has its length
-    /// \[m\]: at most `rounds` Newton steps on all lengths of the strand at once, none for lengths that are right.
-    /// Held points have inverse mass 0.
-    pub fn project(&mut self, points: &mut [Vector<R>], inverse_mass: &[R], length: &[R], rounds: u32) {
-        let last = points.len() - 1;
+    /// Moves the points, each by its inverse mass \[1/kg\], so that every segment has its length \[m\]: at most
+    /// `rounds` Newton steps on all lengths of the strand at once, none for lengths that are right. A point lies at
+    /// its `start` and `moved` from there \[m\], which alone changes. Held points have inverse mass 0.
+    pub fn project(
+        &mut self,
+        start: &[Vector<R>],
+        moved: &mut [Vector<R>],
+        inverse_mass: &[R],
+        length: &[R],
+        rounds: u32,
+    ) {
+        let last = start.len() - 1;
         for _ in 0..rounds {
             let mut wrong = R::of(0.0);
             for index in 0..last {
-                let edge = points[index + 1] - points[index];
+                let edge = start[index + 1] - start[index] + (moved[index + 1] - moved[index]);
                 let found = edge.length();
                 let excess = found - length[index];
                 self.tangents[index] = edge * (R::of(1.0) / found);
@@ -44,7 +51,7 @@ impl<R: Real> Lengths<R> {
             // A strand whose lengths are right stays, whatever those beside it need.
             let moves = wrong.choose(R::of(1.0), R::of(0.0));
             // Thomas's elimination; a segment between two held points keeps its length.
-            let mut before = R::of(0.0);
+            let (mut before, mut tension) = (R::of(0.0), R::of(0.0));
             for index in 0..last {
                 let sum = inverse_mass[index] + inverse_mass[index + 1];
                 let coupled = if index > 0 {
@@ -63,20 +70,17 @@ impl<R: Real> Lengths<R> {
                 }
             }
             self.upper[last - 1] = R::of(0.0);
-            let mut tension = R::of(0.0);
             for index in (0..last).rev() {
                 tension = self.tension[index] - self.upper[index] * tension;
                 self.tension[index] = tension;
             }
             for index in 0..=last {
-                let mut pull = Vector::zero();
-                if index < last {
-                    pull = self.tangents[index] * self.tension[index];
-                }
+                let mut pull =
+                    if index < last { self.tangents[index] * self.tension[index] } else { Vector::zero() };
                 if index > 0 {
                     pull -= self.tangents[index - 1] * self.tension[index - 1];
                 }
-                points[index] += pull * (inverse_mass[index] * moves);
+                moved[index] += pull * (inverse_mass[index] * moves);
             }
         }
     }
@@ -90,13 +94,14 @@ mod tests {
     /// Points of eight strands along x, each with its own spacing; lengths are 0.01 m.
     fn projected(spacing: [f32; 8]) -> Vec<Vector<f32x8>> {
         let at = |index: usize| f32x8::from(spacing.map(|spacing| spacing * index as f32));
-        let mut points: Vec<Vector<f32x8>> = (0..5)
+        let points: Vec<Vector<f32x8>> = (0..5)
             .map(|index| Vector::new(at(index), at(index * index) * f32x8::splat(0.1), f32x8::ZERO))
             .collect();
         let inverse_mass: Vec<f32x8> =
             (0..5).map(|index| f32x8::splat(if index == 0 { 0.0 } else { 1e6 })).collect();
-        Lengths::new(5).project(&mut points, &inverse_mass, &[f32x8::splat(0.01); 5], 2);
-        points
+        let mut moved = vec![Vector::zero(); 5];
+        Lengths::new(5).project(&points, &mut moved, &inverse_mass, &[f32x8::splat(0.01); 5], 2);
+        points.iter().zip(moved).map(|(point, moved)| *point + moved).collect()
     }
 
     #[test]

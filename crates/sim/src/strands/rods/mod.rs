@@ -10,6 +10,7 @@ mod avx;
 #[cfg(not(target_arch = "x86_64"))]
 #[path = "no_avx.rs"]
 mod avx;
+mod crowding;
 pub mod front;
 pub mod hair_kind;
 pub(crate) mod hairs;

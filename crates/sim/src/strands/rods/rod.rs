@@ -145,7 +145,6 @@ impl<R: Real> Work<R> {
             self.segments[index] = Segment { length, tangent, across };
         }
         self.moved.fill([R::of(0.0); UNKNOWNS]);
-        self.step.fill([R::of(0.0); UNKNOWNS]);
     }
 
     /// Sets the inertial target of each node, its place without elastic forces: displacement \[m\] and angle \[rad\].
@@ -154,7 +153,8 @@ impl<R: Real> Work<R> {
         self.wanted[node] = unknowns;
     }
 
-    /// Sets where Newton's method begins: displacement \[m\] and angle \[rad\] of a node, 0 for what is held.
+    /// Sets where Newton's method begins: displacement \[m\] and angle \[rad\] of a node, 0 for what is held. Without,
+    /// it begins at the shape.
     #[inline(always)]
     pub fn guess(&mut self, node: usize, unknowns: [R; UNKNOWNS]) {
         self.step[node] = unknowns;
@@ -196,6 +196,7 @@ impl<R: Real> Work<R> {
             unsolved = unsolved.choose(open, R::of(0.0));
             steps += 1;
         }
+        self.step.fill([R::of(0.0); UNKNOWNS]);
         Solved { steps, unsolved, residual, pressed: touched }
     }
 

@@ -47,8 +47,9 @@ settings! {
         /// Stiffness at the root, in the middle and at the tip over that of the material, evenly between.
         profile: [f32; 3] = [1.0; 3], in [0.01, 100.0], slider [0.1, 10.0],
             more "hair that bends less there", invalidates rest_shape;
-        /// Deceleration of slow hair by hairs that rub against each other, relative to the head. A shape at rest may be
-        /// off by what this much gravity bends it.
+        /// Deceleration by hairs that rub against each other, relative to the head. A shape at rest among other hair may be
+        /// off by what this much gravity bends it; of a strand without others beside it by a twentieth of that, and while
+        /// slow it loses 4 of its speed in a second at most.
         rubbing: f32 = 0.2, in [0.0, 100.0] "m/s^2", slider [0.0, 1.0],
             more "hair that comes to rest sooner after its last small swings";
         /// Meaning of the groom's shape.

@@ -98,22 +98,18 @@ impl<R: Seen> Strand<R> {
             &[],
             &StepSettings { time_step, newton_steps, tolerance: 1e-5, viscous: R::of(0.0) },
         );
-        let mut moved: Vec<Vector<R>> = (0..self.points.len())
-            .map(|point| {
-                let [x, y, z, _] = self.work.moved[point];
-                self.points[point] + Vector::new(x, y, z)
-            })
-            .collect();
-        self.lengths.project(&mut moved, &self.inverse_mass, &self.length, 1);
+        let mut moved: Vec<Vector<R>> =
+            self.work.moved.iter().map(|[x, y, z, _]| Vector::new(*x, *y, *z)).collect();
+        self.lengths.project(&self.points, &mut moved, &self.inverse_mass, &self.length, 1);
         let rate = R::of(1.0 / time_step);
         for point in 0..moved.len() {
-            self.velocities[point] = (moved[point] - self.points[point]) * rate;
+            self.velocities[point] = moved[point] * rate;
+            self.points[point] += moved[point];
             self.spins[point] = self.work.moved[point][3] * rate;
             if point + 1 < moved.len() {
                 self.sections[point] = self.work.segments[point].across;
             }
         }
-        self.points = moved;
     }
 
     /// Lets time \[s\] pass in air that takes `drag` \[1/s\] of the velocity: the equilibrium is the same.

@@ -55,8 +55,10 @@ pub(crate) struct Workspace {
     pub coast: Vec<Vector<f32x8>>,
     pub pulls: Vec<Pull<f32x8>>,
     pub margins: Vec<f32x8>,
-    pub placed: Vec<Vec3Lanes>,
-    pub corrections: Vec<Vector<f32x8>>,
+    /// Parts of the positions that rounding left out \[m\].
+    pub remainders: Vec<Vector<f32x8>>,
+    /// Displacement of the points from there \[m\], with the remainders.
+    pub moved: Vec<Vector<f32x8>>,
     pub inverse_mass: Vec<f32x8>,
     pub length: Vec<f32x8>,
     /// Lanes of which a number is not finite.
@@ -80,8 +82,8 @@ impl Workspace {
             coast: vec![zero; points],
             pulls: Vec::with_capacity(4 * points),
             margins: vec![none; points],
-            placed: vec![Vec3Lanes::default(); points],
-            corrections: vec![zero; points + 1],
+            remainders: vec![zero; points],
+            moved: vec![zero; points],
             inverse_mass: vec![none; points],
             length: vec![none; points],
             bad: none,
@@ -113,6 +115,26 @@ impl Workspace {
             self.sections[point] = Vector::load(&sections[point]);
             self.spins[point] = f32x8::new(spins[point].0);
         }
+    }
+
+    /// Reads the remainders from the additions of the next prediction to the velocities \[m/s\].
+    pub fn load_remainders(&mut self, corrections: &[Vec3Lanes], time_step: f32) {
+        for (remainder, correction) in self.remainders.iter_mut().zip(corrections) {
+            *remainder = Vector::load(correction) * f32x8::splat(time_step);
+        }
+    }
+
+    /// Writes the remainders likewise.
+    pub fn store_remainders(&self, corrections: &mut [Vec3Lanes], time_step: f32) {
+        for (remainder, correction) in self.remainders.iter().zip(corrections) {
+            (*remainder * f32x8::splat(1.0 / time_step)).store(correction);
+        }
+    }
+
+    /// Motion of a point since the part began \[m\].
+    #[inline(always)]
+    pub fn way(&self, point: usize) -> Vector<f32x8> {
+        self.moved[point] - self.remainders[point] + (self.carried[point] - self.points[point])
     }
 
     pub fn store(

@@ -45,7 +45,9 @@ fn scene(key: &str, before: &str, value: &str) -> String {
     };
     let rest: String =
         rest.lines().filter(|line| !line.starts_with(name)).map(|line| format!("{line}\n")).collect();
-    if before.is_empty() {
+    if key.starts_with("colliders[0].keyframes[0].") {
+        format!("[[colliders]]\n{rest}[[colliders.keyframes]]\n{name} = {value}\n")
+    } else if before.is_empty() {
         format!("{key} = {value}\n")
     } else {
         format!("{whole}{before}{rest}{name} = {value}\n")
