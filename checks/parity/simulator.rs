@@ -322,10 +322,10 @@ fn a_change_of_settings_waits_for_nothing_and_uploads_what_it_changes() {
     }
 }
 
-/// Most difference \[m\] after three steps. A cell sums its points in the order in which a device counted them, so that
-/// two runs on hardware part by rounding; the bits of a software adapter are the same. Gravity of before alone
-/// would move hair by millimetres.
-const SUMMED_ASIDE: f32 = 1e-5;
+/// Most difference \[m\] after three steps on hardware. A software adapter gives the same bits. On an H200 the two part by
+/// less than this, though a run that is repeated there gives its own bits again; the cause is not known. Gravity of before
+/// alone would move hair by millimetres.
+const ON_HARDWARE: f32 = 1e-5;
 
 /// Settings that change between steps give the same hair as settings from the start, whatever a change uploads.
 #[test]
@@ -359,7 +359,7 @@ fn a_runner_whose_settings_changed_steps_like_one_that_was_made_with_them() {
         let [found, expected] =
             [&mut simulator, &mut expected].map(|one| one.state().unwrap().positions.clone());
         let most = apart(&found, &expected, &head.guides);
-        assert!(most <= if gpu.adapter().software { 0.0 } else { SUMMED_ASIDE }, "{most} m");
+        assert!(most <= if gpu.adapter().software { 0.0 } else { ON_HARDWARE }, "{most} m");
     }
 }
 
