@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use strandline_body::Motion;
-use strandline_checks::law;
+use strandline_checks::{On, law};
 use strandline_groom::{LANES, Style};
 use strandline_sim::{Model, State, StrandMethod};
 
@@ -30,7 +30,8 @@ fn apart(model: &Model, one: &[Vec3], other: &[Vec3]) -> f32 {
 }
 
 /// Standard errors that a mean of 24 strands on a GPU may be off: a strand that comes to rest on another side of an ear
-/// alone adds 2 % to it. On the CPU fewer do, and the mean itself is held.
+/// alone adds 2 % to it (an H200: a ponytail in steps of 1/480 s has a mean of 3.2 %, of which 1.0 is that error). On the
+/// CPU fewer do, and the mean itself is held.
 const SAMPLED: f32 = 2.0;
 
 /// Drift of the strands over their lengths: mean, standard error of the mean, and that of the strand in the middle.
@@ -56,6 +57,7 @@ law! {
     fn shaken_hair_comes_to_rest_where_it_was(on) {
         let styles = [Style::Wavy, Style::Long, Style::Bob, Style::Curly, Style::Pixie, Style::Ponytail];
         let shake = |time: f64| Motion::Shake.pose(time.min(1.0), Vec3::new(0.0, -0.1, 0.0));
+        let on_cpu = matches!(on, On::Cpu);
         for name in styles.into_iter().take(on.either(6, 3)) {
             // A software adapter has a volume with the first alone, in one step, and looks after four seconds.
             let first = name == Style::Wavy;
@@ -70,13 +72,14 @@ law! {
                 let (moved, stored) = speeds(&model, &state);
                 assert!(moved < speed && stored < speed, "{name:?}, 1/{rate} s: {moved} m/s, stored {stored} m/s");
                 let (mean, error, middle) = drift_of_all(&model, &state);
-                let sampled = on.either(0.0, SAMPLED * error);
+                let sampled = if on_cpu { 0.0 } else { SAMPLED * error };
                 assert!(mean - sampled < 3e-2, "{name:?}, 1/{rate} s: {mean} from where it was, within {error}");
                 assert!(middle < 2e-2, "{name:?}, 1/{rate} s: that in the middle {middle} from where it was");
                 let end = tips(&model, &state);
                 for (other, before) in rates.iter().zip(&ends) {
                     let apart = apart(&model, before, &end);
-                    assert!(apart < on.either(APART, APART_ON_GPU), "{name:?}: tips of 1/{other} and 1/{rate} s are {apart} apart");
+                    let bound = if on_cpu { APART } else { APART_ON_GPU };
+                    assert!(apart < bound, "{name:?}: tips of 1/{other} and 1/{rate} s are {apart} apart");
                 }
                 ends.push(end);
             }

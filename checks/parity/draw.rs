@@ -19,8 +19,9 @@ fn pictures(both: &Both, body: bool) -> Option<[Picture; 2]> {
 }
 
 /// Allowed difference of the two backends: skin is lit once per pixel on the CPU and once per sample on a
-/// GPU, and blending rounds to half floats.
-const MEAN: f32 = 0.01;
+/// GPU, and blending rounds to half floats. Long hair on a head: a mean of 0.0074 found on a software adapter, of 0.0105
+/// on an H200.
+pub const MEAN: f32 = 0.012;
 const ONE_IN_A_HUNDRED: f32 = 0.1;
 
 fn check_pictures(name: &str, both: &Both, body: bool) {

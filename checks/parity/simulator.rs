@@ -322,6 +322,11 @@ fn a_change_of_settings_waits_for_nothing_and_uploads_what_it_changes() {
     }
 }
 
+/// Most difference \[m\] after three steps on hardware. A software adapter gives the same bits. On an H200 the two part by
+/// less than this; the cause is not known, and whether a run repeats its own bits there was not tried. Gravity of before
+/// alone would move hair by millimetres.
+const ON_HARDWARE: f32 = 1e-5;
+
 /// Settings that change between steps give the same hair as settings from the start, whatever a change uploads.
 #[test]
 fn a_runner_whose_settings_changed_steps_like_one_that_was_made_with_them() {
@@ -353,7 +358,8 @@ fn a_runner_whose_settings_changed_steps_like_one_that_was_made_with_them() {
         }
         let [found, expected] =
             [&mut simulator, &mut expected].map(|one| one.state().unwrap().positions.clone());
-        assert!(found == expected);
+        let most = apart(&found, &expected, &head.guides);
+        assert!(most <= if gpu.adapter().software { 0.0 } else { ON_HARDWARE }, "{most} m");
     }
 }
 

@@ -9,10 +9,10 @@ use strandline_groom::Style;
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::{Picture, PictureSettings, Renderer};
 
+use crate::draw::MEAN;
 use crate::picture::Both;
 
-/// Allowed difference of two pictures, as in draw.rs.
-const MEAN: f32 = 0.01;
+/// Allowed difference of two pictures.
 const ONE_IN_A_HUNDRED: f32 = 0.1;
 
 fn scene() -> Both {

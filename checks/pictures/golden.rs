@@ -92,7 +92,8 @@ impl Sitting {
     /// Checks the bounds on the pictures of two backends.
     fn check_on_gpu(self, gpu: &Gpu) {
         let sitting = self.of_thesis();
-        compare(&sitting.on_gpu(gpu, &sized()), &sitting.on_cpu(&sized()), 0.01, 0.1).unwrap();
+        // A mean of 0.0071 found on a software adapter, of 0.0100 on an H200.
+        compare(&sitting.on_gpu(gpu, &sized()), &sitting.on_cpu(&sized()), 0.012, 0.1).unwrap();
     }
 }
 

@@ -8,7 +8,7 @@ use strandline_body::{BodyFrame, Mesh};
 use strandline_checks::{On, law};
 use strandline_gpu::Gpu;
 use strandline_groom::{Groom, Guides};
-use strandline_render::fibre::{Chiang, Fibre, FibreModel, Pigment};
+use strandline_render::fibre::{Chiang, Fibre, FibreModel};
 use strandline_render::gpu::GpuRenderer;
 use strandline_render::resolve_linear;
 use strandline_render::{
@@ -82,18 +82,18 @@ fn ball() -> Mesh {
 }
 
 /// A scene that a reference was drawn from.
-struct Scene {
-    guides: Guides,
+pub struct Scene {
+    pub guides: Guides,
     body: Mesh,
     camera: Camera,
-    look: Look,
-    body_look: BodyLook,
+    pub look: Look,
+    pub body_look: BodyLook,
     lights: Vec<Light>,
     settings: PictureSettings,
 }
 
 impl Scene {
-    fn drawn(&self) -> Linear {
+    pub fn drawn(&self) -> Linear {
         let mut renderer = Renderer::new(&self.guides, Some(&self.body), &self.settings).unwrap();
         renderer.draw_samples(&self.input()).unwrap();
         let pixels = resolve_linear(renderer.samples(), &self.settings);
@@ -142,7 +142,7 @@ const FULL: LevelOfDetail = LevelOfDetail {
 };
 
 /// The groom on a ball.
-fn sphere(light: Option<Light>, around: f32) -> Scene {
+pub fn sphere(light: Option<Light>, around: f32) -> Scene {
     let groom = Groom::load(folder().join("shadow_groom.hair")).unwrap();
     let even = Vec3::splat(around);
     let chiang = Chiang { eumelanin: 0.6, pheomelanin: 0.2, ..Chiang::default() };
@@ -173,7 +173,7 @@ fn sphere(light: Option<Light>, around: f32) -> Scene {
     }
 }
 
-fn sun() -> Light {
+pub fn sun() -> Light {
     Light {
         kind: LightKind::Directional,
         position: Vec3::new(0.4, 0.7, 0.6),
@@ -351,49 +351,4 @@ law! {
         let Some(found) = on_head(on, "brown_back", vec![light], map_size) else { return };
         assert!(found.sound(0.15, 0.15), "{found:?}");
     }
-}
-
-/// Mean light of a picture of the groom on a black ball in the sun, with colours on its strands and a look's pigment.
-fn mean_in_the_sun(color: Option<Vec3>, change: impl FnOnce(&mut Look)) -> Vec3 {
-    let groom = Groom::load(folder().join("shadow_groom.hair")).unwrap();
-    let mut scene = sphere(Some(sun()), 0.0);
-    let mut lines = Groom::empty(4e-4);
-    (0..groom.strand_count()).for_each(|strand| lines.push(spline(groom.strand(strand))));
-    lines.colors = color.map(|color| vec![color.to_array(); lines.points.len()]);
-    scene.guides = Guides::resample(&lines, 48).unwrap();
-    scene.body_look.color = Vec3::ZERO;
-    change(&mut scene.look);
-    let drawn = scene.drawn();
-    drawn.pixels.iter().sum::<Vec3>() / drawn.pixels.len() as f32
-}
-
-#[test]
-fn colours_of_strands_colour_the_hair() {
-    let (color, turned) = (Vec3::new(0.5, 0.1, 0.02), Vec3::new(0.02, 0.1, 0.5));
-    let [one, other] = [color, turned].map(|color| mean_in_the_sun(Some(color), |_| ()));
-    // Channels are independent.
-    assert!((one - Vec3::new(other.z, other.y, other.x)).abs().max_element() < 1e-4 * one.x, "{one} {other}");
-    assert!(one.x > 3.0 * one.z, "{one}");
-    // The same colours as the look's.
-    let of_look = mean_in_the_sun(None, |look| {
-        look.fibre.chiang.pigment = Pigment::Color;
-        (look.root_color, look.tip_color) = (color, color);
-    });
-    assert!((of_look - one).abs().max_element() < 1e-4 * one.x, "{of_look} {one}");
-    let brown = mean_in_the_sun(None, |_| ());
-    assert!((brown - one).abs().max_element() > 0.1 * one.x, "colours must be seen: {brown} {one}");
-}
-
-#[test]
-fn a_colour_is_as_much_pigment_as_makes_it() {
-    let chiang = Chiang { eumelanin: 0.6, pheomelanin: 0.2, ..Chiang::default() };
-    // [Chiang2016 §4.2] the other way round.
-    let scale = 0.5_f64.ln() / chiang.absorption_of_color(Vec3::splat(0.5))[0].sqrt();
-    let color = Vec3::from(chiang.absorption(Vec3::ZERO).map(|sigma| (scale * sigma.sqrt()).exp() as f32));
-    let of_pigment = mean_in_the_sun(None, |_| ());
-    let of_color = mean_in_the_sun(Some(color), |_| ());
-    let ratio = of_color / of_pigment;
-    // Nodes of the pigment lie a factor of two apart, with straight lines between them: what falls in the middle of two
-    // lets through up to 5.5 % more, in the tables of colours and in those of pigment at other places.
-    assert!((ratio - Vec3::ONE).abs().max_element() < 0.06, "{ratio}");
 }

@@ -1,6 +1,7 @@
 //! Pictures: shape, light, and whole images.
 
 mod clump;
+mod colors;
 mod coverage;
 mod crown;
 mod drawn;

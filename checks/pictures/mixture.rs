@@ -67,7 +67,7 @@ law! {
     fn hair_of_each_place_scatters_its_own_colour(on) {
         // So far apart that they hardly light each other.
         let places = [Vec3::ZERO, Vec3::X * 0.25, Vec3::X * 0.5];
-        let colors = [Vec3::new(0.012, 0.01, 0.008), Vec3::new(0.5, 0.2, 0.06), Vec3::new(0.9, 0.85, 0.8)];
+        let colors = [Vec3::new(0.11, 0.1, 0.09), Vec3::new(0.71, 0.45, 0.24), Vec3::new(0.95, 0.92, 0.89)];
         let strands = drawn(tufts(&places, |tuft, _| colors[tuft]), |_| ()).strands(on);
         for (tuft, color) in colors.into_iter().enumerate() {
             let alone = drawn(tufts(&places, |_, _| color), |_| ()).strands(on);
@@ -85,7 +85,7 @@ law! {
 fn probed(on: &On, colors: [Vec3; 2], scatterings: u32) -> Vec3 {
     let probe = |strand: usize| (strand % (SIDE * SIDE)).is_multiple_of(PROBES);
     let color = |_: usize, strand: usize| {
-        if probe(strand) { Vec3::splat(0.4) } else { colors[(strand % SIDE + strand / SIDE) % 2] }
+        if probe(strand) { Vec3::splat(0.63) } else { colors[(strand % SIDE + strand / SIDE) % 2] }
     };
     let drawn = drawn(tufts(&[Vec3::ZERO], color), |look| look.fibre.chiang.scatterings = scatterings);
     mean(&drawn.strands(on), probe)
@@ -93,7 +93,7 @@ fn probed(on: &On, colors: [Vec3; 2], scatterings: u32) -> Vec3 {
 
 law! {
     fn hair_of_two_colours_scatters_the_mean_of_what_each_does(on) {
-        let (black, white) = (Vec3::new(0.012, 0.01, 0.008), Vec3::new(0.9, 0.85, 0.8));
+        let (black, white) = (Vec3::new(0.11, 0.1, 0.09), Vec3::new(0.95, 0.92, 0.89));
         // Light that is scattered once is the sum over all hairs.
         let expected = 0.5 * (probed(on, [black; 2], 0) + probed(on, [white; 2], 0));
         let found = probed(on, [black, white], 0);
@@ -103,8 +103,8 @@ law! {
 
 law! {
     fn white_strands_of_a_look_scatter_as_strands_of_their_colour(on) {
-        let color = Vec3::new(0.2, 0.1, 0.05);
-        // Next to no pigment, whose root the logarithm of the colour goes with [Chiang2016 §4.2].
+        let color = Vec3::new(0.45, 0.32, 0.22);
+        // Next to no pigment, whose root the logarithm of the colour goes with.
         let white = color.map(|channel| channel.powf(0.008_f32.sqrt()));
         let own = tufts(&[Vec3::ZERO], |_, strand| if (strand * 7919) % 401 < 200 { white } else { color });
         let plain = {

@@ -21,6 +21,14 @@ impl On {
             _ => full,
         }
     }
+
+    /// One bound for the CPU and software adapters, and one for hardware, whose arithmetic is not known to the bit.
+    pub fn exact_or<T>(&self, exact: T, hardware: T) -> T {
+        match self {
+            Self::Gpu(gpu) if !gpu.adapter().software => hardware,
+            _ => exact,
+        }
+    }
 }
 
 /// A simulator on a backend that never fails.

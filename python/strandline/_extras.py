@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import Error
+from .errors import Error, missing
 
 if TYPE_CHECKING:
     from .body import Body
@@ -20,6 +20,28 @@ if TYPE_CHECKING:
 GROOMS = (".usdc", ".usd", ".usdz", ".abc")
 BODIES = (".usda", *GROOMS)
 MOVING = (".usdc", ".usd", ".abc")
+
+
+def pxr_package() -> Any:
+    """The package pxr, or the error that names the extra."""
+    try:
+        import pxr
+        from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt  # noqa: F401
+    except ImportError:
+        raise missing("usd-core", "usd") from None
+    return pxr
+
+
+def alembic_package() -> Any:
+    """The package alembic3d, or the error that names the extra."""
+    try:
+        import alembic3d
+        import alembic3d.Abc
+        import alembic3d.AbcCoreAbstract
+        import alembic3d.AbcGeom
+    except ImportError:
+        raise missing("alembic3d", "abc") from None
+    return alembic3d
 
 
 def suffix(path: str | os.PathLike[str]) -> str:

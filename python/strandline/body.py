@@ -32,24 +32,21 @@ class Body:
         frames_per_second: float = 24.0,
         notes: Sequence[str] = (),
     ) -> None:
-        self.vertices = np.ascontiguousarray(_arrays.host(vertices, "vertices"), dtype=np.float32)
+        self.vertices = _arrays.numbers(vertices, "vertices", "(n, 3)")
         if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
             raise Error(f"vertices has the shape {self.vertices.shape}, expected (n, 3)", "value")
-        corners = np.asarray(_arrays.host(faces, "faces"))
-        if corners.size and corners.min() < 0:
-            raise Error(f"faces has the index {corners.min()}, expected 0 or more", "value")
-        self.faces = np.ascontiguousarray(corners, dtype=np.uint32)
+        self.faces = _arrays.numbers(faces, "faces", "(n, 3)", np.uint32)
         if self.faces.ndim != 2 or self.faces.shape[1] != 3:
             raise Error(f"faces has the shape {self.faces.shape}, expected (n, 3): triangles", "value")
+        if self.faces.size and self.faces.max() >= len(self.vertices):
+            raise Error(f"faces has the index {self.faces.max()}, expected 0 to {len(self.vertices) - 1}, one of the vertices", "value")
         self.motion: NDArray[np.float32] | None = None
         if motion is not None:
-            moving = np.ascontiguousarray(_arrays.host(motion, "motion"), dtype=np.float32)
-            if moving.ndim != 3 or moving.shape[1:] != self.vertices.shape:
+            moving = _arrays.numbers(motion, "motion", f"(frame, {len(self.vertices)}, 3)")
+            if moving.ndim != 3 or len(moving) == 0 or moving.shape[1:] != self.vertices.shape:
                 raise Error(f"motion has the shape {moving.shape}, expected (frame, {len(self.vertices)}, 3)", "value")
             self.motion = moving
-        if not frames_per_second > 0:
-            raise Error(f"frames_per_second is {frames_per_second}, expected a number above 0", "value")
-        self.frames_per_second = float(frames_per_second)
+        self.frames_per_second = _arrays.number(frames_per_second, "frames_per_second", "a number above 0", 1e-9, 1e9)
         self.notes = list(notes)
 
     @classmethod
@@ -57,6 +54,7 @@ class Body:
         """Reads a mesh of an .obj, .gltf, .glb, .vrm, .ply or .stl, or with its motion by the extras [usd] and [abc] of a
         .usd or .abc; ``scale`` is metres for each unit of the file, which a .usd says itself."""
         path = os.fspath(path)
+        scale = _arrays.number(scale, "scale", "a number above 0 [m]", 1e-9, 1e9)
         if _extras.suffix(path) in _extras.BODIES:
             return _extras.body(path, scale)
         vertices, faces, notes = _native.load_mesh(path, scale)
@@ -72,6 +70,7 @@ class Body:
         """Vertices at a time [s], between frames on straight lines; those at rest without a motion."""
         if self.motion is None:
             return self.vertices
+        time = _arrays.number(time, "time", "a number [s]")
         place = float(np.clip(time * self.frames_per_second, 0, len(self.motion) - 1))
         low = min(int(place), len(self.motion) - 1)
         high = min(low + 1, len(self.motion) - 1)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
+from . import _extras, _native, _receivers
 from .errors import Error
 from .groom import HAIR_WIDTH
 from .scene import Scene
@@ -95,6 +95,7 @@ def by_part(path: str | os.PathLike[str], make: Callable[[str], bool], *, for_: 
     where anything ends this early: what is raised names their cache, which ``Cache(part).save(path)`` writes."""
     path = os.fspath(path)
     write = writer(os.path.splitext(path)[1].lower())
+    _receivers.target(for_)
     part = f"{path}.part.npz"
     if os.path.exists(part):
         os.remove(part)
@@ -115,11 +116,11 @@ def writer(suffix: str) -> Callable[..., Written]:
     if suffix in (".usdc", ".usd"):
         from . import usd
 
-        usd.required()
+        _extras.pxr_package()
         return usd.save_cache
     if suffix == ".abc":
         from . import abc
 
-        abc.required()
+        _extras.alembic_package()
         return abc.save_cache
     raise Error(f"`{suffix}` names no format of moving hair, expected .usdc, .usd or .abc", "value")

@@ -42,6 +42,7 @@ def main(words: list[str]) -> int:
             cluster=chosen.cluster,
         )
         return _told(done)
+    sweeps.check(keep, chosen.threads)
     count = _plan(scene, samples, os.path.abspath(chosen.out), keep, chosen.drape)
     for path, text in ((chosen.openjd, _openjd), (chosen.commands, _commands)):
         if path is not None:
@@ -110,7 +111,6 @@ def _range(flag: str, text: str) -> tuple[str, tuple[Any, Any]]:
 
 def _plan(scene: Scene, samples: list[dict[str, Any]], folder: str, keep: tuple[str, ...], drape: bool) -> int:
     """Writes a file for each job that is left, numbered from 1, and the plan; returns the number of jobs."""
-    sweeps.check(keep, 1)
     os.makedirs(os.path.join(folder, _JOBS), exist_ok=True)
     todo, rows, order = sweeps.plan(scene, samples, folder, keep, drape)
     for number, job in enumerate(todo, 1):
@@ -166,23 +166,26 @@ def _commands(folder: str, count: int, threads: int) -> str:
 
 
 def _openjd(folder: str, count: int, threads: int) -> str:
-    """A template of Open Job Description: a task for each job, and at the end the manifest."""
+    """A template of Open Job Description: a task for each job, and at the end the manifest, which is all where no job is
+    left."""
     strandline = {"command": "strandline"}
     run = {**strandline, "args": ["sweep", "--job", f"{{{{Param.Folder}}}}/{_JOBS}/{{{{Task.Param.Job}}}}.json"]}
     collect = {**strandline, "args": ["sweep", "--collect", "{{Param.Folder}}"]}
     samples = {
         "name": "Samples",
-        "parameterSpace": {"taskParameterDefinitions": [{"name": "Job", "type": "INT", "range": f"1-{max(count, 1)}"}]},
+        "parameterSpace": {"taskParameterDefinitions": [{"name": "Job", "type": "INT", "range": f"1-{count}"}]},
         "hostRequirements": {"amounts": [{"name": "amount.worker.vcpu", "min": threads}]},
         "stepEnvironments": [{"name": "Threads", "variables": {"RAYON_NUM_THREADS": str(threads)}}],
         "script": {"actions": {"onRun": run}},
     }
-    manifest = {"name": "Manifest", "dependencies": [{"dependsOn": "Samples"}], "script": {"actions": {"onRun": collect}}}
+    manifest: dict[str, Any] = {"name": "Manifest", "script": {"actions": {"onRun": collect}}}
+    if count > 0:
+        manifest["dependencies"] = [{"dependsOn": "Samples"}]
     parameter = {"name": "Folder", "type": "PATH", "objectType": "DIRECTORY", "dataFlow": "INOUT", "default": folder}
     template = {
         "specificationVersion": "jobtemplate-2023-09",
         "name": "strandline sweep",
         "parameterDefinitions": [parameter],
-        "steps": [samples, manifest],
+        "steps": [samples, manifest] if count > 0 else [manifest],
     }
     return json.dumps(template, indent=2) + "\n"

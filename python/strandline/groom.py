@@ -59,7 +59,7 @@ class Groom:
         group_names: dict[int, str] | None = None,
         **attributes: ArrayLike | None,
     ) -> None:
-        array = np.ascontiguousarray(_arrays.host(points, "points"), dtype=np.float32)
+        array = _arrays.numbers(points, "points", "(strand, point, 3)" if starts is None else "(point, 3)")
         if starts is None:
             if array.ndim != 3 or array.shape[2] != 3:
                 text = f"points has the shape {array.shape}, expected (strand, point, 3), or (point, 3) with starts"
@@ -69,9 +69,12 @@ class Groom:
         else:
             if array.ndim != 2 or array.shape[1] != 3:
                 raise Error(f"points has the shape {array.shape}, expected (point, 3) beside starts", "value")
-            self.starts = np.ascontiguousarray(starts, dtype=np.uint32).reshape(-1)
+            self.starts = _arrays.numbers(starts, "starts", "(strand + 1,)", np.uint32).reshape(-1)
         self.points = array.reshape(-1, 3)
-        self.widths = float(widths) if np.ndim(widths) == 0 else np.ascontiguousarray(widths, dtype=np.float32).reshape(-1)  # type: ignore[arg-type]
+        thick = _arrays.numbers(widths, "widths", "() or (n,)")
+        if thick.size and not (np.all(np.isfinite(thick)) and thick.min() >= 0):
+            raise Error("widths has numbers that are negative or not finite, expected diameters of 0 or more [m]", "value")
+        self.widths = float(thick) if thick.ndim == 0 else thick.reshape(-1)
         self.group_names = dict(group_names or {})
         self.attributes = {}
         self.notes = []
@@ -107,8 +110,17 @@ class Groom:
             _, _, place = ATTRIBUTES[name]
             if len(numbers) != counts[place]:
                 raise Error(f"{name} has {len(numbers)} rows, expected {counts[place]}, one for each {place}", "value")
+        self._check_guides()
         if np.ndim(self.widths) and len(self.widths) not in counts.values():  # type: ignore[arg-type]
             raise Error(f"widths has {len(self.widths)} numbers, expected one, or one for each of {self.strand_count} strands or {len(self.points)} points", "value")  # type: ignore[arg-type]
+
+    def _check_guides(self) -> None:
+        guides, weights = self.attributes.get("guide_indices"), self.attributes.get("guide_weights")
+        shapes = [None if part is None else part.shape for part in (guides, weights)]
+        if shapes[0] != shapes[1]:
+            raise Error(f"guide_indices has the shape {shapes[0]} and guide_weights {shapes[1]}, expected both, of the same shape", "value")
+        if guides is not None and guides.size and guides.max() >= self.strand_count:
+            raise Error(f"guide_indices has the strand {guides.max()}, expected 0 to {self.strand_count - 1}", "value")
 
     @property
     def strand_count(self) -> int:
@@ -139,10 +151,10 @@ class Groom:
     def __setitem__(self, name: str, numbers: ArrayLike) -> None:
         if name not in ATTRIBUTES:
             raise Error(_unknown(name), "value")
-        kind, columns, _ = ATTRIBUTES[name]
-        array = np.ascontiguousarray(_arrays.host(numbers, name), dtype=kind)
+        kind, columns, place = ATTRIBUTES[name]
+        wanted = f"({place},)" if columns == 0 else f"({place}, {columns if columns > 0 else 'guides'})"
+        array = _arrays.numbers(numbers, name, wanted, kind)
         if array.ndim != (1 if columns == 0 else 2) or (columns > 0 and array.shape[1] != columns):
-            wanted = "(n,)" if columns == 0 else f"(n, {columns if columns > 0 else 'guides'})"
             raise Error(f"{name} has the shape {array.shape}, expected {wanted}", "value")
         self.attributes[name] = array
 
@@ -156,11 +168,14 @@ class Groom:
 
     def resampled(self, points_per_strand: int) -> Groom:
         """The groom with so many points on each strand, evenly along it."""
-        return Groom._of(_native.resample(self._dictionary(), points_per_strand))
+        return Groom._of(_native.resample(self._dictionary(), _arrays.count(points_per_strand, "points_per_strand", 2)))
 
     def selected(self, strands: ArrayLike) -> Groom:
         """A groom of some of the strands, by index or by a mask. Guides of strands are left out."""
-        chosen = np.arange(self.strand_count)[np.asarray(strands)]
+        try:
+            chosen = np.arange(self.strand_count)[np.asarray(strands)].reshape(-1)
+        except (IndexError, ValueError) as error:
+            raise Error(f"strands is no index or mask of {self.strand_count} strands: {error}", "value") from None
         counts = np.diff(self.starts.astype(np.int64))[chosen]
         starts = np.concatenate([[0], np.cumsum(counts)])
         first = self.starts.astype(np.int64)[chosen]
@@ -180,9 +195,11 @@ class Groom:
         """Writes a file of the format that its suffix names, or of a research ``layout`` by name; returns notes on what the
         format cannot hold or what was changed to fit it. ``for_`` is the receiver of USD and Alembic: ``"any"``,
         ``"unreal"`` or ``"blender"``."""
+        suffix = os.path.splitext(os.fspath(path))[1].lower()
+        if for_ != "any" and (layout is not None or suffix not in (".usdc", ".usda", ".usd", ".abc")):
+            raise Error(f"for_ is `{for_}` beside {layout or suffix or 'no suffix'}, expected it for .usdc, .usda, .usd and .abc alone", "value")
         if layout is not None:
             return research.save(self, path, layout)
-        suffix = os.path.splitext(os.fspath(path))[1].lower()
         if suffix in (".usdc", ".usda", ".usd"):
             from . import usd
 
@@ -213,10 +230,10 @@ class Groom:
         return f"Groom({self.strand_count} strands, {len(self.points)} points{has})"
 
 
-def _unknown(name: str) -> str:
+def _unknown(name: Any) -> str:
     import difflib
 
-    near = difflib.get_close_matches(name, ATTRIBUTES, 1)
+    near = difflib.get_close_matches(str(name), ATTRIBUTES, 1)
     nearest = f"`{near[0]}` or another of " if near else "one of "
     return f"`{name}` is no attribute of a groom, expected {nearest}{', '.join(ATTRIBUTES)}"
 
@@ -249,10 +266,13 @@ def load(
         scale = research.LAYOUTS[layout].scale if scale == "auto" else scale
         points_per_strand = points_per_strand or research.LAYOUTS[layout].points_per_strand
         up = research.LAYOUTS[layout].up if up == "y" else up
-    if isinstance(scale, str) and scale != "auto":
-        raise Error(f"scale is `{scale}`, expected \"auto\" or a number above 0", "value")
-    if not isinstance(scale, str) and not scale > 0:
-        raise Error(f"scale is {scale}, expected \"auto\" or a number above 0", "value")
+    if scale != "auto":
+        scale = _arrays.number(scale, "scale", "\"auto\" or a number above 0 [m]", 1e-9, 1e9)
+    angles = _arrays.numbers(turn, "turn", "(3,)")
+    if angles.shape != (3,):
+        raise Error(f"turn has the shape {angles.shape}, expected (3,): pitch, yaw and roll [degrees]", "value")
+    frame = None if frame is None else _arrays.count(frame, "frame")
+    points_per_strand = None if points_per_strand is None else _arrays.count(points_per_strand, "points_per_strand", 1)
     if suffix in _extras.GROOMS:
         with _extras.Files() as files:
             copy = files.groom(path, frame)
@@ -264,9 +284,9 @@ def load(
                 raise files.error(error) from None
     of, notes = _native.load(
         path,
-        scale=None if isinstance(scale, str) else float(scale),
+        scale=None if isinstance(scale, str) else scale,
         up=up,
-        turn=[float(angle) for angle in turn],
+        turn=angles.tolist(),
         points_per_strand=points_per_strand,
         frame=frame,
         root_end=root_end,

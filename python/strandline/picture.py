@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native
+from . import _arrays, _native
 from .errors import Error
 
 Vector = Sequence[float]
@@ -29,13 +29,21 @@ class Camera:
     @classmethod
     def framing(cls, points: ArrayLike, view: str = "three_quarter", aspect: float = 1.0) -> Camera:
         """A camera that sees all of some points [m] from a side: front, three_quarter, side or back."""
-        places = np.ascontiguousarray(points, dtype=np.float32).reshape(-1, 3)
-        return cls(*_native.view(view, places, aspect))
+        places = _arrays.numbers(points, "points", "(..., 3)")
+        if places.ndim < 2 or places.shape[-1] != 3 or places.size == 0 or not np.all(np.isfinite(places)):
+            raise Error(f"points has the shape {places.shape}, expected (..., 3), one point or more, all finite", "value")
+        return cls(*_native.view(view, places.reshape(-1, 3), _aspect(aspect)))
 
     @property
     def _parts(self) -> tuple[Any, ...]:
-        vectors = ([float(part) for part in vector] for vector in (self.position, self.target, self.up))
-        return (*vectors, float(self.field_of_view), float(self.near))
+        vectors = []
+        for name in ("position", "target", "up"):
+            vector = _arrays.numbers(getattr(self, name), f"camera.{name}", "(3,)")
+            if vector.shape != (3,):
+                raise Error(f"camera.{name} has the shape {vector.shape}, expected (3,)", "value")
+            vectors.append(vector.tolist())
+        lens = (_arrays.number(getattr(self, name), f"camera.{name}", "a number") for name in ("field_of_view", "near"))
+        return (*vectors, *lens)
 
     @property
     def view_from_world(self) -> NDArray[np.float32]:
@@ -44,7 +52,11 @@ class Camera:
 
     def clip_from_view(self, aspect: float) -> NDArray[np.float32]:
         """The 4 x 4 matrix from view space to clip space for a width over height; depth is 1 near and 0 at infinity."""
-        return np.asarray(_native.camera_matrices(self._parts, aspect)[1], dtype=np.float32)
+        return np.asarray(_native.camera_matrices(self._parts, _aspect(aspect))[1], dtype=np.float32)
+
+
+def _aspect(of: float) -> float:
+    return _arrays.number(of, "aspect", "a width over a height above 0", 1e-6, 1e6)
 
 
 @dataclass(frozen=True)
@@ -169,11 +181,17 @@ class Picture:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a .png, which is whole or not there."""
-        _native.save_png(np.ascontiguousarray(self.pixels), os.fspath(path))
+        _native.save_png(self._bytes(), os.fspath(path))
 
     def png(self) -> bytes:
         """The bytes of a .png."""
-        return _native.png(np.ascontiguousarray(self.pixels))
+        return _native.png(self._bytes())
+
+    def _bytes(self) -> NDArray[np.uint8]:
+        pixels = _arrays.numbers(self.pixels, "pixels", "(row, column, 3), or 4 with opacity", np.uint8)
+        if pixels.ndim != 3 or pixels.shape[2] not in (3, 4) or pixels.size == 0:
+            raise Error(f"pixels has the shape {pixels.shape}, expected (row, column, 3), or 4 with opacity", "value")
+        return pixels
 
     def _repr_png_(self) -> bytes:
         return self.png()
@@ -186,7 +204,7 @@ class Picture:
         return self.pixels.__dlpack_device__()
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
-        return np.array(self.pixels, dtype=dtype, copy=bool(copy))
+        return np.array(self.pixels, dtype=dtype, copy=copy)
 
     def __repr__(self) -> str:
         return f"Picture({self.width} x {self.height})"

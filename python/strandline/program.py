@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import sys
 import tempfile
 import tomllib
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any
 
 from . import _extras, _native, cache
@@ -156,17 +159,29 @@ def _scene(command: str, words: list[str]) -> int:
     target = _value(rest, "--for") or "any"
     velocities = "--velocities" in rest
     rest = [word for word in rest if word != "--velocities"]
-    code = 0
+    code, said = 0, ""
 
     def simulate(part: str) -> bool:
-        nonlocal code
-        code = _program([*rest, "--out", part])
+        nonlocal code, said
+        code, (said,) = _captured(lambda: _program([*rest, "--out", part]), (1,))
         return code == 0 or os.path.exists(part)
 
-    written = cache.by_part(path, simulate, for_=target, velocities=velocities)
-    if written is not None:
-        print(f"wrote {written.frames} frames to {written.path}")
+    try:
+        written = cache.by_part(path, simulate, for_=target, velocities=velocities)
+        said = said if written is None else _written(said, written.path, written.bytes)
+    finally:
+        print(said, end="")
     return code
+
+
+def _written(said: str, path: str, size: int) -> str:
+    """The report of ``sim`` with a file and its size [byte] in place of those of the cache that it is made from."""
+    if said.startswith("{"):
+        report = json.loads(said)
+        report["out"] |= {"path": path, "bytes": size}
+        return json.dumps(report) + "\n"
+    counts = re.compile(r"^(wrote \d+ frames of \d+ strands, \d+ points, ).*$", re.MULTILINE)
+    return counts.sub(lambda found: f"{found[1]}{1e-6 * size:.1f} MB to {path}", said)
 
 
 def _groom(command: str, words: list[str], files: _extras.Files) -> int:
@@ -231,22 +246,30 @@ def _inputs(words: list[str], places: list[int], files: _extras.Files) -> None:
 
 def _named(act: Callable[[], int], files: _extras.Files) -> int:
     """Does something whose lines on standard output and error are printed with the names of the files."""
+    code, said = _captured(act, (1, 2))
+    for text, stream in zip(said, (sys.stdout, sys.stderr), strict=True):
+        print(files.named(text), end="", file=stream)
+    return code
+
+
+def _captured(act: Callable[[], int], streams: tuple[int, ...]) -> tuple[int, list[str]]:
+    """Does something, and returns its code and what it wrote to standard output (1) and error (2)."""
     sys.stdout.flush()
     sys.stderr.flush()
-    kept = [os.dup(1), os.dup(2)]
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+    kept = [os.dup(number) for number in streams]
+    with ExitStack() as stack:
+        taken = [stack.enter_context(tempfile.TemporaryFile()) for _ in streams]
         try:
-            os.dup2(out.fileno(), 1)
-            os.dup2(err.fileno(), 2)
+            for file, number in zip(taken, streams, strict=True):
+                os.dup2(file.fileno(), number)
             code = act()
         finally:
-            for own, number in zip(kept, (1, 2), strict=True):
+            for own, number in zip(kept, streams, strict=True):
                 os.dup2(own, number)
                 os.close(own)
-        for taken, stream in ((out, sys.stdout), (err, sys.stderr)):
-            taken.seek(0)
-            print(files.named(taken.read().decode(errors="replace")), end="", file=stream)
-    return code
+        for file in taken:
+            file.seek(0)
+        return code, [file.read().decode(errors="replace") for file in taken]
 
 
 if __name__ == "__main__":

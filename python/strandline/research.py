@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import struct
 from typing import TYPE_CHECKING, Any, NamedTuple
+from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,7 @@ def root_uvs(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     """Coordinates of roots on the scalp from a .npy, or from the array `uv_coords` (or the only one) of a .npz."""
     try:
         loaded: Any = np.load(path)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, EOFError, BadZipFile) as error:
         raise Error(f"cannot read root coordinates: {error}: {os.fspath(path)}", "file") from None
     if not isinstance(loaded, np.ndarray):
         names = loaded.files

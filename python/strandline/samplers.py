@@ -2,30 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from typing import Any
 
 import numpy as np
 
+from . import _arrays
 from .errors import Error
 
 
 def grid(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
     """Every combination of values: ``grid({"wind.velocity": [(0, 0, 0), (0, 0, 2)], "style.seed": [1, 2]})``."""
+    for key, listed in values.items():
+        if isinstance(listed, str) or not isinstance(listed, Iterable):
+            raise Error(f"{key} has the values {listed!r}, expected a list of them", "value")
     return [dict(zip(values, chosen, strict=True)) for chosen in product(*values.values())]
 
 
 def random(ranges: Mapping[str, Any], count: int, *, seed: int = 0) -> list[dict[str, Any]]:
     """Samples of ranges (least, most) or lists of words, at random by a seed: ``random({"wind.gust": (0.0, 1.0)}, 8)``."""
-    generator = np.random.default_rng(seed)
+    _check(ranges)
+    count, generator = _arrays.count(count, "count"), np.random.default_rng(_arrays.count(seed, "seed"))
     return [_sample(ranges, generator.random(len(ranges))) for _ in range(count)]
 
 
 def sobol(ranges: Mapping[str, Any], count: int, *, seed: int = 0) -> list[dict[str, Any]]:
     """Samples of ranges as :func:`random`, spread evenly: the first points of a Sobol sequence with a random shift."""
-    shift = np.random.default_rng(seed).random(len(ranges))
-    return [_sample(ranges, (row + shift) % 1.0) for row in _sobol(count, len(ranges))]
+    _check(ranges)
+    shift = np.random.default_rng(_arrays.count(seed, "seed")).random(len(ranges))
+    return [_sample(ranges, (row + shift) % 1.0) for row in _sobol(_arrays.count(count, "count"), len(ranges))]
+
+
+def _check(ranges: Mapping[str, Any]) -> None:
+    for key, span in ranges.items():
+        if isinstance(span, str) or not isinstance(span, Sequence) or not span:
+            raise Error(f"{key} has the range {span!r}, expected (least, most) or a list of words", "value")
 
 
 #: Degrees, coefficients and first direction numbers of Sobol sequences [Joe & Kuo 2008], from the second dimension on.

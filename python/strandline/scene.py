@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from . import _native, _toml
+import numpy as np
+
+from . import _arrays, _native, _toml
 from .errors import Error
 
 if TYPE_CHECKING:
@@ -79,8 +81,11 @@ class Scene:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the settings that were given as a .toml file."""
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(_toml.document(self._given))
+        try:
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(_toml.document(self._given))
+        except OSError as error:
+            raise Error(f"cannot write the scene: {error.strerror}: {os.fspath(path)}", "file") from None
 
     def explain(self, key: str) -> str:
         """The sentence, the range and the value of a setting, or a line for each setting of a section."""
@@ -235,18 +240,16 @@ class Motion(_Section):
     def matrices(self, times: Any, pivot: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Any:
         """4 x 4 matrices ``world_from_head`` at times [s], shape (time, 4, 4). A head without a pivot of its own turns
         about ``pivot`` [m]."""
-        import numpy as np
-
         scene = _toml.document({"motion": self.given})
-        times = [float(time) for time in times]
-        return np.asarray(_native.head(scene, times, pivot), dtype=np.float32).reshape(-1, 4, 4)
+        moments, place = _arrays.numbers(times, "times", "(n,)", np.float64), _arrays.numbers(pivot, "pivot", "(3,)")
+        if place.shape != (3,):
+            raise Error(f"pivot has the shape {place.shape}, expected (3,) [m]", "value")
+        return np.asarray(_native.head(scene, moments.reshape(-1).tolist(), place.tolist()), dtype=np.float32).reshape(-1, 4, 4)
 
 
 def _keyframe(key: Any) -> dict[str, Any]:
     if isinstance(key, Mapping):
         return dict(key)
-    time, rotation, *rest = key
-    named = {"time": float(time), "rotation": [float(angle) for angle in rotation]}
-    if rest:
-        named["translation"] = [float(part) for part in rest[0]]
-    return named
+    if not isinstance(key, Sequence) or len(key) not in (2, 3):
+        raise Error(f"a keyframe is {key!r}, expected (time, angles), (time, angles, translation) or a dictionary", "value")
+    return dict(zip(("time", "rotation", "translation"), _toml.plain(key), strict=False))

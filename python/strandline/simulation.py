@@ -65,8 +65,9 @@ class Written:
 class Simulation:
     """A simulation of hair on a body.
 
-    ``groom`` is a Groom, the path of a file or a style's name is in the scene; ``body`` a Body or a path. Grooms and bodies in
-    memory are in metres with y up and stay where they are. ``settings``, ``look`` and ``motion`` are sections of the scene,
+    ``groom`` is a Groom, an array of its points or the path of a file, ``body`` a Body or a path; without them the scene names
+    a file or a style, and a file or the built-in bust. Grooms and bodies in memory are in metres with y up and stay where they
+    are. ``settings``, ``look`` and ``motion`` are sections of the scene,
     other sections are keywords: ``Simulation(groom=groom, film={"frames": 48}, backend="cpu")``.
 
     ``backend`` is ``"auto"``, ``"cpu"``, ``"gpu"`` or ``"gpu:1"``. A simulation is closed by ``with`` or ``close()``.
@@ -88,6 +89,8 @@ class Simulation:
         scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene) if scene is not None else Scene()
         groom = _by_extra(scene, "groom.file", groom, _extras.GROOMS, load)
         body = _by_extra(scene, "body.file", body, _extras.BODIES, Body.load)
+        if not isinstance(body, Body | str | os.PathLike | None):
+            raise Error(f"body is a {type(body).__name__}, expected a Body or a path: Body(vertices, faces)", "value")
         self._body = body if isinstance(body, Body) else None
         moving = self._body is not None and self._body.motion is not None
         if motion is None and moving:
@@ -126,6 +129,8 @@ class Simulation:
         self._fresh = False
         self._frame = 0
         self._time = 0.0
+        # Vertices that the body was last told to have.
+        self._shape: NDArray[np.float32] | None = None
         self._scene = scene
         self._sources = (held, self._body)
         fitted = tomllib.loads(self._native.scene())
@@ -149,22 +154,24 @@ class Simulation:
         given stays. Steps have a fixed length (``simulation.time_step``), so zero or more happen; each has a report, on
         a GPU with a later call.
         """
-        rows = None if head is None else np.asarray(_arrays.host(head, "head"), dtype=np.float32)
+        rows = None if head is None else _arrays.numbers(head, "head", "(4, 4)")
         if rows is not None and rows.shape != (4, 4):
             raise Error(f"head has the shape {rows.shape}, expected (4, 4)", "value")
         skin = None
         if vertices is not None:
-            skin = np.ascontiguousarray(_arrays.host(vertices, "vertices"), dtype=np.float32)
+            skin = _arrays.numbers(vertices, "vertices", "(n, 3)")
             if self._body is None:
                 raise Error("vertices are given for a body from a file or the built-in one, expected Simulation(body=Body(vertices, faces))", "value")
             if skin.shape != self._body.vertices.shape:
                 raise Error(f"vertices has the shape {skin.shape}, expected {self._body.vertices.shape}, that of the body", "value")
-        air = None if wind is None else [float(part) for part in wind]
-        if air is not None and len(air) != 3:
-            raise Error(f"wind has {len(air)} numbers, expected 3 [m/s]", "value")
+        air = None if wind is None else _arrays.numbers(wind, "wind", "(3,)")
+        if air is not None and air.shape != (3,):
+            raise Error(f"wind has {air.size} numbers, expected 3 [m/s]", "value")
+        seconds = _arrays.number(seconds, "seconds", "0 to 1,000,000 s", 0, 1e6)
         self._fresh = False
-        reports = self._native.step(float(seconds), None if rows is None else rows.tolist(), skin, air)
-        self._time += float(seconds)
+        reports = self._native.step(seconds, None if rows is None else rows.tolist(), skin, None if air is None else air.tolist())
+        self._time += seconds
+        self._shape = self._shape if skin is None else skin
         return [StepReport(*report) for report in reports]
 
     def frames(self, count: int | None = None, *, progress: bool | None = None) -> Iterator[Frame]:
@@ -173,9 +180,14 @@ class Simulation:
         Head and wind move as the scene has them, and a Body with a motion by that. The frames are those of
         ``strandline sim`` to the bit on the CPU. Ctrl-C stops between two frames.
         """
-        count = int(self._fitted["film"]["frames"]) - self._frame if count is None else int(count)
-        if count < 0:
-            raise Error(f"count is {count}, expected 0 or more", "value")
+        count = self._left(count, "count")
+        return self._played(count, progress)
+
+    def _left(self, count: int | None, name: str) -> int:
+        """A number of frames that is given, or those that the film still has."""
+        return max(int(self._fitted["film"]["frames"]) - self._frame, 0) if count is None else _arrays.count(count, name)
+
+    def _played(self, count: int, progress: bool | None) -> Iterator[Frame]:
         with Progress(count, "simulating", "frame", progress) as bar:
             for done in range(count):
                 yield self._next()
@@ -190,7 +202,7 @@ class Simulation:
 
     def settle(self, seconds: float) -> None:
         """Lets the hair hang on the resting body for a time [s]; no time of the film passes."""
-        left = float(seconds)
+        left = _arrays.number(seconds, "seconds", "0 to 1,000,000 s", 0, 1e6)
         while left > 0:
             self._native.settle(min(left, _LOOK))
             left -= _LOOK
@@ -199,6 +211,7 @@ class Simulation:
     def drape(self, seconds: float = 10.0) -> float:
         """Runs to rest on the resting body: until no point moves faster than 2 mm/s, or so many seconds are over.
         Returns the seconds that passed in the simulation."""
+        seconds = _arrays.number(seconds, "seconds", "0 to 1,000,000 s", 0, 1e6)
         before = self.points.copy()
         passed = 0.0
         while passed < seconds:
@@ -281,7 +294,9 @@ class Simulation:
         """Draws the moment. ``camera`` is a Camera or a side: front, three_quarter, side or back. Keywords are the settings
         of the section ``picture``: ``simulation.picture(width=800, height=600, transparent=True)``; they stay.
         ``layers=True`` keeps what is known of each pixel: ``picture.depth``, ``picture.direction`` and more."""
-        self.set({**({} if look is None else {"look": look.given}), **({"picture": settings} if settings else {})})
+        self.set({**({} if look is None else {"look": look}), **({"picture": settings} if settings else {})})
+        if not isinstance(camera, Camera | str | None):
+            raise Error(f"camera is a {type(camera).__name__}, expected a Camera or a side: front, three_quarter, side or back", "value")
         if isinstance(camera, str):
             picture = tomllib.loads(self._native.scene())["picture"]
             camera = Camera.framing(self._seen(), camera, picture["width"] / picture["height"])
@@ -289,8 +304,12 @@ class Simulation:
         return Picture(pixels, Camera(*self._native.camera()), channels)
 
     def _seen(self) -> NDArray[np.float32]:
+        """Points of the hair and of a body in memory where they are now, world space."""
         places = self.points.reshape(-1, 3)
-        return places if self._body is None else np.concatenate([places, self._body.vertices])
+        if self._body is None:
+            return places
+        shape, head = self._body.at(self._time) if self._shape is None else self._shape, self.head
+        return np.concatenate([places, shape @ head[:3, :3].T + head[:3, 3]])
 
     def film(
         self,
@@ -304,8 +323,7 @@ class Simulation:
     ) -> Film:
         """Plays frames and draws every so many of them as a small moving picture, which notebooks show. A side as the camera
         frames the first of them."""
-        if every < 1:
-            raise Error(f"every is {every}, expected 1 or more", "value")
+        every = _arrays.count(every, "every", 1)
         pictures: list[Picture] = []
         for frame in self.frames(frames, progress=progress):
             if frame.index % every == 0 or not pictures:
@@ -351,7 +369,11 @@ class Simulation:
             return self._record_by_extra(path, frames, what, for_, every, velocities, progress)
         if velocities:
             raise Error(f"velocities are asked for in a {suffix or 'file'}, expected .usdc, .usd or .abc", "value")
-        frames = int(self._fitted["film"]["frames"]) - self._frame if frames is None else int(frames)
+        left, every = self._left(frames, "frames"), _arrays.count(every, "every", 1)
+        if left == 0:
+            over = "the film is over" if frames is None else "frames is 0"
+            raise Error(f"{over}, expected frames=1 or more", "value")
+        frames = left
         self._native.set_frames(max(self._frame + frames, 1))
         self._native.begin_file(os.fspath(path), what, for_, every)
         try:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any
 
-from . import _native, _toml, jobs
+from . import _arrays, _native, _toml, jobs
 from .errors import Error, missing
 from .jobs import KEPT, Job
 from .progress import Progress
@@ -72,8 +72,11 @@ def sweep(
     joins one that runs. A job takes ``threads`` CPUs, and as many GPUs as ``gpus`` says: by default one where its scene
     names a GPU as a device. A cluster whose machines do not share the folder sends the files to this one.
     """
+    if not isinstance(scene, Scene):
+        raise Error(f"scene is a {type(scene).__name__}, expected a Scene: Scene.load(path) reads one", "value")
     folder = os.path.abspath(os.fspath(folder))
     check(keep, threads)
+    workers = None if workers is None else _arrays.count(workers, "workers")
     os.makedirs(folder, exist_ok=True)
     todo, rows, order = plan(scene, samples, folder, keep, drape)
     with Progress(len(order), "sweep", "job", progress) as bar:
@@ -88,11 +91,12 @@ def sweep(
 
 def check(keep: Sequence[str], threads: int) -> None:
     """Refuses what cannot be kept."""
+    if isinstance(keep, str):
+        raise Error(f"keep is `{keep}`, expected a list: ({keep!r},)", "value")
     for name in keep:
         if name not in KEPT:
             raise Error(f"keep has `{name}`, expected some of {', '.join(KEPT)}", "value")
-    if threads < 1:
-        raise Error(f"threads is {threads}, expected 1 or more", "value")
+    _arrays.count(threads, "threads", 1)
 
 
 def plan(

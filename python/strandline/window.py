@@ -37,6 +37,8 @@ def words_of(what: Simulation | Scene | Groom | str | os.PathLike[str] | None, f
     """The words of ``strandline view`` for something, with files in a folder for what is in memory."""
     if what is None:
         return []
+    if not isinstance(what, Simulation | Scene | Groom | str | os.PathLike):
+        raise Error(f"what is a {type(what).__name__}, expected a Simulation, a Scene, a Groom or a path", "value")
     if isinstance(what, str | os.PathLike):
         return [os.fspath(what)]
     if isinstance(what, Groom):

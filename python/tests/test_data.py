@@ -57,6 +57,58 @@ def test_attributes_go_in_and_come_out_by_name(points):
         Groom(points, groups=[0, 1, 2])
 
 
+RAGGED = [[[0, 0, 0]], [[0, 0, 0], [1, 1, 1]]]
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: Groom("strands"), r"points is a str, expected numbers of the shape \(strand, point, 3\)"),
+        (lambda: Groom(RAGGED), "points is a list with rows of different lengths"),
+        (lambda: Groom(np.zeros((2, 3)), starts=[0, -1]), "starts has the number -1, expected 0 to"),
+        (lambda: Groom(np.zeros((2, 3)), starts=[0, 1.5, 2]), "starts has numbers that are not whole"),
+        (lambda: Groom(np.zeros((2, 2, 3)), widths=-1.0), "widths has numbers that are negative"),
+        (lambda: Groom(np.zeros((2, 2, 3)), widths="thin"), "widths is a str"),
+        (lambda: Groom(np.zeros((2, 2, 3)), groups=[-1, 0]), "groups has the number -1"),
+        (lambda: Groom(np.zeros((2, 2, 3)), guide_indices=[[0], [1]]), r"guide_indices has the shape \(2, 1\) and guide_weights None"),
+        (lambda: Groom(np.zeros((2, 2, 3)), guide_indices=[[0], [2]], guide_weights=[[1], [1]]), "guide_indices has the strand 2, expected 0 to 1"),
+        (lambda: Groom(np.zeros((2, 2, 3)))[0], "`0` is no attribute of a groom"),
+        (lambda: Groom(np.zeros((2, 2, 3))).selected([5]), "strands is no index or mask of 2 strands"),
+        (lambda: Groom(np.zeros((2, 2, 3))).resampled(1), "points_per_strand is 1, expected 2 or more"),
+        (lambda: Groom(np.zeros((2, 2, 3))).resampled(2.5), "points_per_strand is 2.5, expected a whole number"),
+        (lambda: strandline.load("a.hair", scale="big"), "scale is 'big', expected \"auto\" or a number above 0"),
+        (lambda: strandline.load("a.hair", scale=-1), "scale is -1.0"),
+        (lambda: strandline.load("a.hair", turn=(1, 2)), r"turn has the shape \(2,\), expected \(3,\)"),
+        (lambda: strandline.load("a.hair", frame=-1), "frame is -1, expected 0 or more"),
+        (lambda: strandline.load("a.ply", points_per_strand=0), "points_per_strand is 0"),
+        (lambda: strandline.Body(np.zeros((3, 2)), [[0, 1, 2]]), r"vertices has the shape \(3, 2\), expected \(n, 3\)"),
+        (lambda: strandline.Body(np.zeros((3, 3)), [[0, 1, 3]]), "faces has the index 3, expected 0 to 2"),
+        (lambda: strandline.Body(np.zeros((3, 3)), [[0, 1, 0.5]]), "faces has numbers that are not whole"),
+        (lambda: strandline.Body(np.zeros((3, 3)), [[0, 1, 2]], motion=np.zeros((0, 3, 3))), r"motion has the shape \(0, 3, 3\)"),
+        (lambda: strandline.Body(np.zeros((3, 3)), [[0, 1, 2]], frames_per_second=float("nan")), "frames_per_second is nan"),
+        (lambda: strandline.Body.load("a.obj", scale=0), "scale is 0.0"),
+        (lambda: strandline.Camera.framing(np.zeros((0, 3))), r"points has the shape \(0, 3\)"),
+        (lambda: strandline.Camera().clip_from_view(0), "aspect is 0.0"),
+        (lambda: strandline.Picture(np.zeros((2, 2))).png(), r"pixels has the shape \(2, 2\)"),
+        (lambda: Motion.keyframes([3]), "a keyframe is 3, expected"),
+        (lambda: Motion("nod").matrices([0], pivot=(0, 0)), r"pivot has the shape \(2,\)"),
+        (lambda: Motion("nod").matrices("soon"), "times is a str"),
+        (lambda: Scene().save("none/a.toml"), "cannot write the scene: No such file or directory: none/a.toml"),
+        (lambda: strandline.sweeps.random({"a": (0, 1)}, -1), "count is -1"),
+        (lambda: strandline.sweeps.sobol({"a": 3}, 2), "a has the range 3"),
+        (lambda: strandline.sweeps.grid({"a": 3}), "a has the values 3"),
+        (lambda: strandline.sweep("scene.toml", [{}], "out"), "scene is a str, expected a Scene"),
+        (lambda: strandline.sweep(Scene(), [{}], "out", keep="guides"), "keep is `guides`, expected a list"),
+        (lambda: strandline.sweep(Scene(), [{}], "out", workers=-1), "workers is -1"),
+        (lambda: strandline.window.words_of(3, "."), "what is a int, expected a Simulation"),
+    ],
+)
+def test_wrong_arguments_are_errors_that_name_them(make, words):
+    with pytest.raises(Error, match=words) as caught:
+        make()
+    assert caught.value.kind in ("value", "file")
+
+
 @pytest.mark.parametrize("suffix", ["hair", "npz", "bin", "ply", "data", "tfx", "obj", "npy"])
 def test_every_format_of_the_engine_is_written_and_read(tmp_path, points, suffix):
     groom = Groom(points)

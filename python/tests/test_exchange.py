@@ -42,6 +42,12 @@ def test_arrays_of_other_libraries_come_in_and_go_out(points, ball):
             make(Tensor(points, device=2))
 
 
+def test_a_picture_is_an_array_of_any_kind():
+    picture = Picture(np.arange(24, dtype=np.uint8).reshape(2, 4, 3))
+    assert np.asarray(picture).dtype == np.uint8 and np.asarray(picture, dtype=float)[1, 3, 2] == 23
+    assert not np.shares_memory(np.array(picture), picture.pixels)
+
+
 def test_plain_results_are_pickled_and_simulations_are_not(tmp_path, groom):
     with shake(groom) as simulation:
         simulation.record(tmp_path / "a.npz", frames=2)

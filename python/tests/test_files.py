@@ -37,6 +37,36 @@ def test_grooms_come_back(tmp_path, rich, suffix):
         assert np.array_equal(back[name], rich[name]), name
 
 
+@pytest.mark.parametrize("suffix", ["usdc", "abc"])
+def test_velocities_of_a_groom_come_back(tmp_path, points, suffix):
+    groom = Groom(points, velocities=np.random.default_rng(3).normal(size=(512, 3)))
+    for for_, up in (("any", "y"), ("unreal", "y" if suffix == "usdc" else "z")):
+        assert groom.save(tmp_path / f"a.{suffix}", for_=for_) == []
+        assert np.allclose(strandline.load(tmp_path / f"a.{suffix}", up=up)["velocities"], groom["velocities"], atol=1e-5)
+
+
+def test_receivers_are_known_before_anything_is_simulated(tmp_path, groom):
+    with shake(groom) as simulation:
+        for suffix in ("usdc", "abc", "npz"):
+            with pytest.raises(Error, match="maya"):
+                simulation.record(tmp_path / f"a.{suffix}", for_="maya")
+        assert simulation.time == 0
+        with pytest.raises(Error, match="frames is 0"):
+            simulation.record(tmp_path / "a.npz", frames=0)
+        with pytest.raises(Error, match="frames is -1"):
+            simulation.record(tmp_path / "a.npz", frames=-1)
+    assert not list(tmp_path.iterdir()), "and nothing is left behind"
+    with pytest.raises(Error, match="for_ is `unreal` beside .hair"):
+        groom.save(tmp_path / "a.hair", for_="unreal")
+    for suffix in ("usdc", "abc"):
+        with pytest.raises(Error, match="no such folder, or no permission: .*none"):
+            groom.save(tmp_path / "none" / f"a.{suffix}")
+        (tmp_path / f"a.{suffix}").mkdir()
+        with pytest.raises(Error, match=f"cannot write the .*a.{suffix}"):
+            groom.save(tmp_path / f"a.{suffix}")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.abc", "a.usdc"]
+
+
 @pytest.mark.parametrize("for_", ["any", "unreal", "blender"])
 def test_a_stage_is_as_its_receiver_wants_it(tmp_path, rich, for_):
     from pxr import Usd, UsdGeom
@@ -80,7 +110,9 @@ def test_the_program_writes_what_extras_write(tmp_path):
         words = [sys.executable, "-m", "strandline", "sim", "--scene", str(tmp_path / "a.toml"), f"--out={path}", "--for", "blender"]
         done = subprocess.run(words, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-        assert "wrote 3 frames" in done.stdout and len(strandline.load(path)) == 20
+        lines = [line for line in done.stdout.splitlines() if line.startswith("wrote")]
+        assert len(lines) == 1 and lines[0].startswith("wrote 3 frames of 20 strands") and lines[0].endswith(f"0.0 MB to {path}"), lines
+        assert "part" not in done.stdout and len(strandline.load(path)) == 20
 
 
 def test_frames_are_kept_where_their_file_cannot_be_written(tmp_path, groom, monkeypatch):
@@ -193,6 +225,8 @@ def test_units_and_axes_of_stages_and_archives(tmp_path, points):
     assert np.allclose(strandline.load(tmp_path / "a.usdc").array, points, atol=1e-6), "a stage says its units and axes"
     assert np.allclose(strandline.load(tmp_path / "a.abc", up="z").array, points, atol=1e-6), "centimetres are found"
     assert np.allclose(strandline.load(tmp_path / "a.abc", up="z", scale=1).array, 100 * points, atol=1e-4)
+    Groom(points).save(tmp_path / "b.abc", for_="blender")
+    assert np.allclose(strandline.load(tmp_path / "b.abc").array, points, atol=1e-6), "Blender turns archives by itself"
 
 
 @pytest.fixture
@@ -237,6 +271,38 @@ def test_unreal_gets_guides_and_the_strands_that_follow_them(tmp_path, bound):
     assert not Usd.Stage.Open(str(tmp_path / "b.usdc")).GetPrimAtPath("/Groom/Guides"), "for Unreal alone"
 
 
+@pytest.mark.parametrize("suffix", ["usdc", "abc"])
+def test_guides_and_their_weights_come_back(tmp_path, bound, suffix):
+    bound.save(tmp_path / f"a.{suffix}", for_="unreal")
+    up = {} if suffix == "usdc" else {"up": "z"}
+    back = strandline.load(tmp_path / f"a.{suffix}", **up)
+    flags = back["guide_flags"]
+    assert flags.sum() == 20 and len(back) == 120
+    check_weights(back["guide_indices"][~flags], back["guide_weights"][~flags], bound)
+    assert not back["guide_weights"][flags].any(), "a guide follows none"
+    with strandline.Simulation(groom=back, backend="cpu", motion="still", film={"frames": 1}) as simulation:
+        assert simulation.strand_count == 20, "the guides of the file are those that move"
+
+
+def test_guides_are_found_by_their_numbers(tmp_path, points):
+    """Numbers of strands need not be in order, and a number that no strand has binds nothing."""
+    from pxr import Usd, UsdGeom, Vt
+
+    guides = np.arange(64)[:, None] % [8, 7, 6]
+    Groom(points, guide_indices=guides, guide_weights=np.full((64, 3), [0.5, 0.3, 0.2])).save(tmp_path / "a.usda", for_="unreal")
+    stage = Usd.Stage.Open(str(tmp_path / "a.usda"))
+    curves = UsdGeom.PrimvarsAPI(stage.GetPrimAtPath("/Groom/Hair"))
+    ids = 1000 - np.arange(64, dtype=np.int32)
+    curves.GetPrimvar("groom_id").Set(Vt.IntArray.FromNumpy(ids))
+    closest = ids[guides].astype(np.int32)
+    closest[0] = [5, 5, 1000]
+    curves.GetPrimvar("groom_closest_guides").Set(Vt.Vec3iArray.FromNumpy(closest))
+    stage.GetRootLayer().Export(str(tmp_path / "a.usdc"))
+    back = strandline.load(tmp_path / "a.usdc")
+    assert np.array_equal(back["guide_indices"][1:], guides[1:])
+    assert np.allclose(back["guide_weights"][0], [0, 0, 1]) and back["guide_indices"][0, 2] == 0
+
+
 def check_weights(closest, weights, bound):
     found = bound.attributes()
     assert closest.shape == weights.shape == (100, 3)
@@ -273,5 +339,7 @@ def test_velocities_are_those_of_the_frames(tmp_path, bound):
         assert np.allclose(np.asarray(curves.GetVelocitiesAttr().Get(frame)), wanted[frame], atol=1e-4)
         sample = schema.getValue(core.ISampleSelector(frame / 30))
         assert np.allclose(np.array(sample.getVelocities()).reshape(-1, 3), wanted[frame], atol=1e-4)
+        for suffix in ("usdc", "abc"):
+            assert np.allclose(strandline.load(tmp_path / f"a.{suffix}", frame=frame)["velocities"], wanted[frame], atol=1e-4)
     with strandline.Simulation(style={"strand_count": 8}, backend="cpu") as simulation, pytest.raises(Error, match="velocities"):
         simulation.record(tmp_path / "a.npz", velocities=True)

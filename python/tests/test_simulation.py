@@ -74,13 +74,31 @@ def test_wrong_arguments_of_a_step_are_refused_by_what_is_wrong(groom, ball):
     with shake(groom, body=ball) as simulation:
         for given, words in {
             "seconds": ({"seconds": -1.0}, "seconds is -1"),
-            "seconds more": ({"seconds": float("nan")}, "seconds is NaN"),
+            "seconds more": ({"seconds": float("nan")}, "seconds is nan"),
             "wind": ({"wind": (1.0, 2.0)}, "wind has 2 numbers"),
             "wind more": ({"wind": (float("inf"), 0, 0)}, "wind is not a finite"),
             "vertices": ({"vertices": np.zeros((3, 3))}, r"vertices has the shape \(3, 3\)"),
         }.values():
             with pytest.raises(Error, match=words):
                 simulation.step(**({"seconds": 0.01} | given))
+        for act, words in (
+            (lambda: simulation.step("a"), "seconds is 'a'"),
+            (lambda: simulation.step(0.01, wind="east"), "wind is a str"),
+            (lambda: simulation.step(0.01, head=[[1, 2], [3]]), r"head is a list .*\(4, 4\)"),
+            (lambda: simulation.settle(float("inf")), "seconds is inf, expected 0 to 1,000,000 s"),
+            (lambda: simulation.drape(float("nan")), "seconds is nan"),
+            (lambda: simulation.frames(-1), "count is -1"),
+            (lambda: simulation.frames(2.5), "count is 2.5, expected a whole number"),
+            (lambda: simulation.film(2, every=0), "every is 0"),
+            (lambda: simulation.picture(3), "camera is a int, expected a Camera or a side"),
+            (lambda: simulation.picture("top"), "top"),
+            (lambda: simulation.picture(Camera(position=(0, 1))), r"camera.position has the shape \(2,\)"),
+            (lambda: simulation.picture(Camera(near="a")), "camera.near is 'a'"),
+        ):
+            with pytest.raises(Error, match=words):
+                act()
+    with pytest.raises(Error, match="body is a int, expected a Body or a path"):
+        shake(groom, body=3)
     with shake(groom) as simulation, pytest.raises(Error, match="expected Simulation\\(body="):
         simulation.step(0.01, vertices=np.zeros((3, 3)))
 

@@ -30,7 +30,7 @@ settings! {
         tip_width: f32 = 0.3, in [0.0, 1.0], more "blunter tips";
         /// Diameter where a strand leaves the skin as a share of that 4 mm on; a file's widths are taken as they are.
         root_width: f32 = 0.4, in [0.0, 1.0], more "blunter roots";
-        /// Reflectance at the root, linear RGB; of a mass of hair with `fibre.chiang.pigment = "color"`.
+        /// Reflectance at the root, linear RGB; with `fibre.chiang.pigment = "color"`, what hair shows beside white hair.
         root_color: Vec3 = Vec3::new(0.115, 0.056, 0.027), in [0.0, 1.0];
         /// Reflectance at the tip, linear RGB, the same way.
         tip_color: Vec3 = Vec3::new(0.22, 0.115, 0.058), in [0.0, 1.0];

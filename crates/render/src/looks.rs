@@ -130,7 +130,7 @@ impl Look {
         if !self.fibre.model.scatters_many_times() {
             return Vec3::ONE;
         }
-        let color = own.unwrap_or_else(|| self.fibre.chiang.color(self.root_color));
+        let color = own.map_or_else(|| self.fibre.chiang.block_albedo(self.root_color), |own| own * own);
         // Light comes through few hairs there: paler than a mass of them.
         Vec3::ONE.lerp(color.max(Vec3::ZERO).map(f32::sqrt), share)
     }

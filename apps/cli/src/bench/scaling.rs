@@ -52,7 +52,7 @@ struct Aim {
 struct OnGpu {
     promised: Vec<Promised>,
     sweep: Vec<GpuRow>,
-    /// Error that ended the sweep of each grid, if there was one.
+    /// Errors of rows that the device refused; the first of a grid ends its sweep.
     refusals: Vec<String>,
 }
 
@@ -127,6 +127,8 @@ fn scene(strand_count: usize, points: usize, cells: u32, frames: u32) -> Scene {
     scene.groom.points_per_strand = points as u32;
     scene.simulation.volume.cells = [cells; 3];
     scene.film.frames = frames;
+    // Nothing is drawn: follow strands would take memory alone.
+    scene.look.follow_strands = 1;
     scene
 }
 
@@ -157,28 +159,23 @@ fn row(strand_count: usize, cells: u32, frames: u32) -> anyhow::Result<Row> {
 fn on_gpu(device: &Device, frames: u32, quick: bool) -> anyhow::Result<OnGpu> {
     print_line!("\non {}: aims for a data-centre GPU", device.adapter.name);
     gpu_heading();
-    let mut promised = Vec::new();
+    let (mut promised, mut sweep, mut refusals) = (Vec::new(), Vec::new(), Vec::new());
     let promises = if quick { &PROMISED[..1] } else { &PROMISED[..] };
     for (strands, points, cells, most_ms_per_step) in promises.iter().copied() {
-        let run = gpu_row(device, &promised_scene(strands, points, cells, frames))?;
-        print_line!("{:>44}at most {most_ms_per_step} ms", "");
-        promised.push(Promised { most_ms_per_step, run });
+        let scene = promised_scene(strands, points, cells, frames);
+        if let Some(run) = gpu_row(device, &scene, &mut refusals)? {
+            print_line!("{:>44}at most {most_ms_per_step} ms", "");
+            promised.push(Promised { most_ms_per_step, run });
+        }
     }
     print_line!("\nstrands of 32 points until the device refuses");
     gpu_heading();
-    let (mut sweep, mut refusals) = (Vec::new(), Vec::new());
     let grids = if quick { &GRIDS[..1] } else { &GRIDS[..] };
     for cells in grids {
         for doubling in 0..if quick { 1 } else { DOUBLINGS } {
-            match gpu_row(device, &scene(FIRST_ON_GPU << doubling, 32, *cells, frames)) {
-                Ok(row) => sweep.push(row),
-                Err(error) if is_refusal(&error) => {
-                    print_line!("{error}");
-                    refusals.push(error.to_string());
-                    break;
-                }
-                Err(error) => return Err(error),
-            }
+            let scene = scene(FIRST_ON_GPU << doubling, 32, *cells, frames);
+            let Some(row) = gpu_row(device, &scene, &mut refusals)? else { break };
+            sweep.push(row);
         }
     }
     Ok(OnGpu { promised, sweep, refusals })
@@ -215,9 +212,17 @@ fn gpu_heading() {
     );
 }
 
-fn gpu_row(device: &Device, scene: &Scene) -> anyhow::Result<GpuRow> {
+/// A row of the table; `None` where memory or a limit of the device refuses it, which joins `refusals`.
+fn gpu_row(device: &Device, scene: &Scene, refusals: &mut Vec<String>) -> anyhow::Result<Option<GpuRow>> {
     let cells = scene.simulation.volume.cells[0];
-    let run = device.measure(scene, "frames")?;
+    let run = match device.measure(scene, "frames") {
+        Err(error) if is_refusal(&error) => {
+            print_line!("{error}");
+            refusals.push(error.to_string());
+            return Ok(None);
+        }
+        measured => measured?,
+    };
     let (strands, points) = (run.steps.strands, run.steps.strands * run.steps.points_per_strand);
     print_line!(
         "{cells:>6}^3{strands:>10}{points:>10}{:>12.3}{:>12.3}{:>12.3}{:>12}{:>10.1}",
@@ -227,5 +232,5 @@ fn gpu_row(device: &Device, scene: &Scene) -> anyhow::Result<GpuRow> {
         run.dispatches,
         100.0 * run.share_of_copy_bandwidth
     );
-    Ok(GpuRow { cells, strands, points, run })
+    Ok(Some(GpuRow { cells, strands, points, run }))
 }

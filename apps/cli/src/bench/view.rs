@@ -33,8 +33,18 @@ const PROMISED: [(u32, f64, f64); 2] = [(16, 4.0, 200.0), (43, 10.0, 200.0)];
 #[derive(Debug, Serialize)]
 pub struct Results {
     backends: Vec<OnBackend>,
-    /// `None` if no GPU was measured.
+    /// Empty if no GPU was measured.
     promised: Vec<Promised>,
+    /// The demo in its own look, on each backend.
+    demo: Vec<InDemo>,
+}
+
+#[derive(Debug, Serialize)]
+struct InDemo {
+    backend: String,
+    segments: usize,
+    /// Sum of the stages.
+    ms_per_picture: Times,
 }
 
 #[derive(Debug, Serialize)]
@@ -69,26 +79,32 @@ struct Promised {
 pub fn run(device: Option<&Device>, quick: bool) -> anyhow::Result<Results> {
     let mut backends = vec![on_backend(None, quick)?];
     let mut promised = Vec::new();
+    let mut demo = vec![in_demo(None, quick)?];
     if let Some(device) = device {
+        demo.push(in_demo(Some(&device.gpu), quick)?);
         backends.push(on_backend(Some(&device.gpu), quick)?);
         for (follow_strands, most_ms, most_mb) in PROMISED {
             promised.push(promise(&device.gpu, follow_strands, most_ms, most_mb)?);
         }
     }
-    Ok(Results { backends, promised })
+    Ok(Results { backends, promised, demo })
 }
 
-/// The thesis's scene while it moves: a frame is simulated while the one before is drawn.
+/// A scene while it moves: a frame is simulated while the one before is drawn.
 struct View {
     player: Player,
     middle: Vec3,
 }
 
 impl View {
-    fn new(gpu: Option<&Gpu>, follow_strands: u32, level: LevelOfDetail) -> anyhow::Result<Self> {
+    fn of_thesis(gpu: Option<&Gpu>, follow_strands: u32, level: LevelOfDetail) -> anyhow::Result<Self> {
         let mut scene = Scene::thesis();
         scene.look.follow_strands = follow_strands;
         scene.level_of_detail = level;
+        Self::new(gpu, scene)
+    }
+
+    fn new(gpu: Option<&Gpu>, mut scene: Scene) -> anyhow::Result<Self> {
         // The most that a film may have: it is over when enough is seen.
         scene.film.frames = 1_000_000;
         scene.film.frames_per_second = 60.0;
@@ -114,6 +130,17 @@ impl View {
         }
     }
 
+    /// Segments, and cost of pictures.
+    fn measured(&mut self, pictures: usize) -> anyhow::Result<(usize, Times)> {
+        let (mut costs, mut segments) = (Collector::default(), 0);
+        for _ in 0..pictures {
+            let (_, report) = self.frame()?;
+            costs.add(&report.seconds);
+            segments = report.segments;
+        }
+        Ok((segments, costs.times()))
+    }
+
     /// Looks from between front and side, as far from the middle of the hair.
     fn look_from(&mut self, distance: f32) {
         let camera = Camera::three_quarter();
@@ -124,7 +151,7 @@ impl View {
 }
 
 fn on_backend(gpu: Option<&Gpu>, quick: bool) -> anyhow::Result<OnBackend> {
-    let mut view = View::new(gpu, 16, LevelOfDetail::thesis())?;
+    let mut view = View::of_thesis(gpu, 16, LevelOfDetail::thesis())?;
     let software = gpu.is_some_and(|gpu| gpu.adapter().software);
     let frames = FRAMES[if quick { 2 } else { usize::from(software) }];
     let backend = view.player.drawn_on();
@@ -189,26 +216,37 @@ fn row(name: &str, values: impl Iterator<Item = f64>) {
 
 /// A picture of 1280x968 with two shadow lights, by the device's own clock.
 fn promise(gpu: &Gpu, follow_strands: u32, most_ms: f64, most_mb: f64) -> anyhow::Result<Promised> {
-    let mut view = View::new(Some(gpu), follow_strands, LevelOfDetail::full())?;
+    let mut view = View::of_thesis(Some(gpu), follow_strands, LevelOfDetail::full())?;
     view.player.set_picture(&PictureSettings::sized(1280, 968))?;
     view.look_from(1.0);
     view.frame()?;
-    let (mut pictures, mut segments) = (Collector::default(), 0);
-    for _ in 0..if gpu.adapter().software { 2 } else { 20 } {
-        let (_, report) = view.frame()?;
-        pictures.add(&report.seconds);
-        segments = report.segments;
-    }
+    let (segments, ms_per_picture) = view.measured(if gpu.adapter().software { 2 } else { 20 })?;
     let device_mb = view.player.gpu().map_or(0.0, |gpu| gpu.memory_used() as f64 * 1e-6);
-    let ms_per_picture = pictures.times();
     print_line!("\n{segments} segments, two shadow lights, 1280x968, 2x2 samples, on {}", gpu.adapter());
     print_line!(
         "a picture {:>10.3} ms, at most {most_ms} ms promised of a current GPU",
         ms_per_picture.median
     );
-    for (name, time) in ms_per_picture.stages.iter() {
-        print_line!("  {name:<15}{time:>10.3} ms");
-    }
+    print_stages(&ms_per_picture);
     print_line!("on the device {device_mb:>6.0} MB, at most {most_mb} MB");
     Ok(Promised { segments, most_ms, most_mb, ms_per_picture, device_mb })
+}
+
+/// A picture of the demo in its own look and size.
+fn in_demo(gpu: Option<&Gpu>, quick: bool) -> anyhow::Result<InDemo> {
+    let mut view = View::new(gpu, Scene::demo())?;
+    view.frame()?;
+    let few = quick || gpu.is_some_and(|gpu| gpu.adapter().software);
+    let (segments, ms_per_picture) = view.measured(if few { 1 } else { 8 })?;
+    let backend = gpu.map_or("cpu".to_owned(), |gpu| gpu.adapter().to_string());
+    print_line!("\nthe demo in its own look, {segments} segments, on {backend}");
+    print_line!("a picture {:>10.3} ms", ms_per_picture.median);
+    print_stages(&ms_per_picture);
+    Ok(InDemo { backend, segments, ms_per_picture })
+}
+
+fn print_stages(times: &Times) {
+    for (name, time) in times.stages.iter() {
+        print_line!("  {name:<15}{time:>10.3} ms");
+    }
 }
