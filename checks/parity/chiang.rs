@@ -77,7 +77,8 @@ fn agree(mut both: Both, body: bool) {
     let found = renderer.strands().unwrap().radiances;
     let placed: Vec<Vec3> =
         both.mesh.positions.iter().map(|&point| both.body.world_from_head().point(point)).collect();
-    let shape = body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles });
+    let shape =
+        body.then_some(ShadowBody { positions: &placed, triangles: &both.mesh.triangles, cuts: None });
     let strands = both.scattered_on_cpu(&positions, shape);
     let all: f32 = strands.radiances.iter().map(|radiance| radiance.element_sum()).sum();
     let pairs = strands.radiances.iter().zip(&found);

@@ -7,6 +7,9 @@ mod chiang;
 mod draw;
 mod heads;
 mod host;
+mod painted;
+#[path = "../../crates/body/tests/body/painted_file.rs"]
+mod painted_file;
 mod picture;
 mod pieces;
 mod rods;

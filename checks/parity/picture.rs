@@ -84,7 +84,14 @@ impl Both {
             camera: &self.camera,
             look: &self.look,
             body_look: const {
-                &BodyLook { color: Vec3::splat(0.3), wrap: 0.2, specular: 0.03, roughness: 0.5, scalp: 0.7 }
+                &BodyLook {
+                    materials: true,
+                    color: Vec3::splat(0.3),
+                    wrap: 0.2,
+                    specular: 0.03,
+                    roughness: 0.5,
+                    scalp: 0.7,
+                }
             },
             lights: &self.lights,
             level_of_detail: &self.detail,
@@ -283,7 +290,7 @@ fn shade_agrees_in_the_shadow_of_the_body() {
     // Another size of the maps in the same renderer, and back.
     for map_size in [300, 128, 300] {
         both.look.shadow.map_size = map_size;
-        let body = ShadowBody { positions: &placed, triangles: &both.mesh.triangles };
+        let body = ShadowBody { positions: &placed, triangles: &both.mesh.triangles, cuts: None };
         let (_, strands, shadows) = both.shadowed_on_cpu(&positions, Some(body));
         renderer.draw(&both.input(&positions)).unwrap();
         let found = renderer.strands().unwrap().radiances;

@@ -297,6 +297,7 @@ fn head(folder: &Path, lights: Vec<Light>) -> Scene {
         },
         look: Look { environment: Environment { sky: around, ground: around }, ..look(chiang) },
         body_look: BodyLook {
+            materials: true,
             color: Vec3::new(0.45, 0.33, 0.27),
             wrap: 0.0,
             specular: 0.04,

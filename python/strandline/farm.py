@@ -44,11 +44,21 @@ def main(words: list[str]) -> int:
         return _told(done)
     sweeps.check(keep, chosen.threads)
     count = _plan(scene, samples, os.path.abspath(chosen.out), keep, chosen.drape)
+    out = os.path.abspath(chosen.out)
     for path, text in ((chosen.openjd, _openjd), (chosen.commands, _commands)):
         if path is not None:
-            jobs.write(os.path.abspath(path), text(os.path.abspath(chosen.out), count, chosen.threads).encode())
+            _write(os.path.abspath(path), text(out, count, chosen.threads, os.path.dirname(os.path.abspath(path))))
             print(f"wrote {count} jobs to {path}")
+            if path == chosen.openjd and _below(out, os.path.dirname(os.path.abspath(path))) is None:
+                print(f"its parameter Folder is {out}, which is not below the template and has to be given")
     return 0
+
+
+def _write(path: str, text: str) -> None:
+    try:
+        jobs.write(path, text.encode())
+    except OSError as error:
+        raise Error(f"cannot write the jobs: {error.strerror}: {path}", "file") from None
 
 
 def _arguments() -> argparse.ArgumentParser:
@@ -159,15 +169,21 @@ def _told(done: sweeps.Sweep) -> int:
     return 0 if states.count("done") == len(states) else 1
 
 
-def _commands(folder: str, count: int, threads: int) -> str:
+def _commands(folder: str, count: int, threads: int, beside: str) -> str:
     """A command a line; each can run on any machine that sees the folder."""
     line = "RAYON_NUM_THREADS={} strandline sweep --job {}\n"
     return "".join(line.format(threads, shlex.quote(os.path.join(folder, _JOBS, f"{number}.json"))) for number in range(1, count + 1))
 
 
-def _openjd(folder: str, count: int, threads: int) -> str:
-    """A template of Open Job Description: a task for each job, and at the end the manifest, which is all where no job is
-    left."""
+def _below(folder: str, beside: str) -> str | None:
+    """The way to a folder from one that it is below."""
+    inside = os.path.normcase(folder).startswith(os.path.join(os.path.normcase(beside), ""))
+    return os.path.relpath(folder, beside).replace(os.sep, "/") if inside else None
+
+
+def _openjd(folder: str, count: int, threads: int, beside: str) -> str:
+    """A template of Open Job Description in a folder: a task for each job, and at the end the manifest, which is all where
+    no job is left. Default paths of templates are relative to them and below."""
     strandline = {"command": "strandline"}
     run = {**strandline, "args": ["sweep", "--job", f"{{{{Param.Folder}}}}/{_JOBS}/{{{{Task.Param.Job}}}}.json"]}
     collect = {**strandline, "args": ["sweep", "--collect", "{{Param.Folder}}"]}
@@ -181,7 +197,9 @@ def _openjd(folder: str, count: int, threads: int) -> str:
     manifest: dict[str, Any] = {"name": "Manifest", "script": {"actions": {"onRun": collect}}}
     if count > 0:
         manifest["dependencies"] = [{"dependsOn": "Samples"}]
-    parameter = {"name": "Folder", "type": "PATH", "objectType": "DIRECTORY", "dataFlow": "INOUT", "default": folder}
+    parameter = {"name": "Folder", "type": "PATH", "objectType": "DIRECTORY", "dataFlow": "INOUT"}
+    if (path := _below(folder, beside)) is not None:
+        parameter["default"] = path
     template = {
         "specificationVersion": "jobtemplate-2023-09",
         "name": "strandline sweep",

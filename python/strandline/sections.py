@@ -998,8 +998,12 @@ class Look(TypedDict, total=False):
 class BodyLook(TypedDict, total=False):
     """Look of the body."""
 
+    materials: bool
+    """Draws the colours, textures and gloss that the body's file has; false where `color` is given. Cut-outs stay.
+    Allowed: true or false."""
+
     color: Sequence[float]
-    """Colour, linear RGB. Allowed: 3 numbers of 0 to 1."""
+    """Colour of all that has none of its own, linear RGB. Allowed: 3 numbers of 0 to 1."""
 
     wrap: float
     """Reach of light around the edge of shadow; 0 is none. Allowed: 0 to 1."""

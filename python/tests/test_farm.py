@@ -31,7 +31,8 @@ def test_jobs_of_a_farm_are_those_of_the_sweep(tmp_path, scene, capsys):
     assert template["specificationVersion"] == "jobtemplate-2023-09"
     samples, manifest = template["steps"]
     assert samples["parameterSpace"]["taskParameterDefinitions"] == [{"name": "Job", "type": "INT", "range": "1-2"}]
-    values = {"{{Param.Folder}}": template["parameterDefinitions"][0]["default"], "{{Task.Param.Job}}": "2"}
+    assert template["parameterDefinitions"][0]["default"] == "out"
+    values = {"{{Param.Folder}}": folder, "{{Task.Param.Job}}": "2"}
     for action in (samples, manifest):
         run = action["script"]["actions"]["onRun"]
         own = [replaced(word, values) for word in run["args"]]
@@ -42,6 +43,33 @@ def test_jobs_of_a_farm_are_those_of_the_sweep(tmp_path, scene, capsys):
     assert [row["hash"] for row in found] == [row["hash"] for row in here.rows]
     capsys.readouterr()
     assert program.main([*words, "--workers", "0"]) == 0 and "2 of 2 done" in capsys.readouterr().out, "nothing is left"
+
+
+def test_templates_are_jobs_of_open_job_description(tmp_path, scene, capsys):
+    """The library of Open Job Description makes a job of each: beside its folder, elsewhere, and with nothing left."""
+    model = pytest.importorskip("openjd.model")
+    folder = str(tmp_path / "out")
+    words = ["sweep", scene, "--out", folder, "--grid", "style.seed=1,2", "--threads", "3", "--openjd"]
+    (tmp_path / "elsewhere").mkdir()
+
+    def job(path, given):
+        assert program.main([*words, str(path)]) == 0
+        template = model.decode_job_template(template=json.loads(path.read_text()))
+        values = model.preprocess_job_parameters(job_template=template, job_parameter_values=given, job_template_dir=path.parent, current_working_dir=tmp_path)
+        assert values["Folder"].value == folder
+        return model.create_job(job_template=template, job_parameter_values=values)
+
+    steps = job(tmp_path / "job.json", {}).steps
+    assert [len(model.StepParameterSpaceIterator(space=step.parameterSpace)) for step in steps] == [2, 1]
+    assert steps[1].dependencies[0].dependsOn == steps[0].name
+    assert "has to be given" not in capsys.readouterr().out
+    assert len(job(tmp_path / "elsewhere/job.json", {"Folder": folder}).steps) == 2
+    assert f"its parameter Folder is {folder}" in capsys.readouterr().out
+    assert program.main(["sweep", scene, "--out", folder, "--grid", "style.seed=1,2", "--workers", "0"]) == 0
+    assert [step.name for step in job(tmp_path / "job.json", {}).steps] == ["Manifest"]
+    for wrong, text in ((["--threads", "0"], "threads is 0"), (["--openjd", str(tmp_path / "none/a.json")], "cannot write the jobs")):
+        assert program.main([*words, str(tmp_path / "b.json"), *wrong]) == 1
+        assert text in capsys.readouterr().err
 
 
 def replaced(word, values):

@@ -12,13 +12,21 @@ use crate::programs::Tally;
 pub const NAMED: &str = "STRANDLINE_PYTHON";
 
 /// Summary of the tests that need Python.
-pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, ray, pyarrow, pytest and mypy: nobody else read moving caches \
-                        and USD, and the Python package was not tested (STRANDLINE_PYTHON names one; with \
-                        STRANDLINE_REQUIRE_PYTHON the tests fail without it)";
+pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, ray, pyarrow, pytest, mypy and openjd-model: nobody else \
+                        read moving caches and USD, and the Python package was not tested (STRANDLINE_PYTHON names \
+                        one; with STRANDLINE_REQUIRE_PYTHON the tests fail without it)";
 
 /// Packages that the tests need.
-const PACKAGES: [&str; 7] =
-    ["numpy", "usd-core", "alembic3d>=1.8.12,<2", "ray>=2.60,<3", "pyarrow>=15", "pytest>=8", "mypy>=1.15"];
+const PACKAGES: [&str; 8] = [
+    "numpy",
+    "usd-core",
+    "alembic3d>=1.8.12,<2",
+    "ray>=2.60,<3",
+    "pyarrow>=15",
+    "pytest>=8",
+    "mypy>=1.15",
+    "openjd-model>=0.13,<1",
+];
 
 /// Variable with the number of jobs that tests of sweeps run on two machines of a cluster, one of which is lost. With it
 /// every page of the guide is run, else the short ones.
@@ -26,19 +34,43 @@ const JOBS: (&str, &str) = ("STRANDLINE_JOBS", "64");
 /// Tests that have a long form.
 const LONG: [&str; 2] = ["python/tests/test_cluster.py", "python/tests/test_guide.py"];
 
+/// Variable that names a Python with Blender's module to the tests, which else leave Blender out.
+const BLENDER: &str = "STRANDLINE_BLENDER";
+/// Blender as a package, 374 MB, for Python 3.11 alone.
+const BLENDER_PACKAGE: &str = "bpy==5.0.1";
+/// Tests that Blender reads what is written for it.
+const BLENDER_TESTS: &str = "python/tests/test_blender.py";
+
 /// The Python of the tests, if it has their packages. `setup` makes one in `target` if there is none, and
 /// packages can be had.
 pub fn prepare(setup: bool) -> Option<String> {
     let named = std::env::var(NAMED).unwrap_or_else(|_| "python3".to_owned());
-    let own = folder().join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
-    let own = own.to_string_lossy().into_owned();
+    let own = interpreter("python");
     if let Some(python) = [&named, &own].into_iter().find(|python| is_whole(python)) {
         return Some(python.clone());
     }
-    let made = setup
-        && run("python3", &["-m", "venv", &folder().to_string_lossy()])
-        && run(&own, &[&["-m", "pip", "install", "--quiet"], &PACKAGES[..]].concat());
-    (made && is_whole(&own)).then_some(own)
+    (setup && make("python", &PACKAGES) && is_whole(&own)).then_some(own)
+}
+
+/// The Python of an environment in the target folder.
+fn interpreter(environment: &str) -> String {
+    let own = if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" };
+    root().join("target").join(environment).join(own).to_string_lossy().into_owned()
+}
+
+/// Makes an environment in the target folder with packages.
+fn make(environment: &str, packages: &[&str]) -> bool {
+    let folder = root().join("target").join(environment);
+    run("python3", &["-m", "venv", &folder.to_string_lossy()])
+        && run(&interpreter(environment), &[&["-m", "pip", "install", "--quiet"], packages].concat())
+}
+
+/// A Python with Blender's module, which is named or in the target folder, or can be had.
+fn blender() -> Option<String> {
+    let has_it = |python: &String| run(python, &["-c", "import bpy"]);
+    let own = interpreter("blender");
+    let mut known = std::env::var(BLENDER).ok().into_iter().chain([own.clone()]);
+    known.find(has_it).or_else(|| (make("blender", &[BLENDER_PACKAGE]) && has_it(&own)).then_some(own))
 }
 
 /// Builds the Python package in the target folder and runs its tests, which count as others do.
@@ -59,9 +91,22 @@ pub fn test_package(python: &str, tally: &mut Tally) -> bool {
     }
 }
 
-/// Runs the long form of the package's tests. Returns its name, and true where it passed.
+/// Runs the long form of the package's tests, and with Blender where it can be had. Returns its name, and true where it
+/// passed.
 pub fn long() -> (String, bool) {
-    let tested = prepare(true).context(NONE).and_then(|python| pytest(&python, &LONG, &[JOBS]));
+    let blender = blender();
+    let (mut tests, mut environment) = (LONG.to_vec(), vec![JOBS]);
+    match &blender {
+        Some(python) => {
+            tests.push(BLENDER_TESTS);
+            environment.push((BLENDER, python));
+        }
+        None => println!(
+            "Blender read nothing of ours: `pip install {BLENDER_PACKAGE}` has it for Python 3.11 alone ({BLENDER} \
+             names a Python that has it)"
+        ),
+    }
+    let tested = prepare(true).context(NONE).and_then(|python| pytest(&python, &tests, &environment));
     let passed = match tested {
         Ok(output) => {
             print!("{}", String::from_utf8_lossy(&output.stdout));
@@ -72,7 +117,7 @@ pub fn long() -> (String, bool) {
             false
         }
     };
-    (format!("{}={} {}", JOBS.0, JOBS.1, LONG.join(" ")), passed)
+    (format!("{}={} {}", JOBS.0, JOBS.1, tests.join(" ")), passed)
 }
 
 /// Builds the package and runs some of its tests.
@@ -116,12 +161,8 @@ fn installed() -> Result<PathBuf> {
     Ok(site)
 }
 
-fn folder() -> PathBuf {
-    root().join("target/python")
-}
-
 fn is_whole(python: &str) -> bool {
-    run(python, &["-c", "import numpy, pxr, alembic3d, ray, pyarrow, pytest, mypy"])
+    run(python, &["-c", "import numpy, pxr, alembic3d, ray, pyarrow, pytest, mypy, openjd.model"])
 }
 
 fn run(program: &str, arguments: &[&str]) -> bool {

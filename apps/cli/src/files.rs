@@ -1,6 +1,7 @@
 //! `strandline groom`, `info` and `scene`: files without motion.
 
-use strandline::{Groom, Mesh, format, mesh::MeshFormat, settings::StyleSettings};
+use strandline::mesh::{Material, MeshFormat};
+use strandline::{Groom, Mesh, format, settings::StyleSettings};
 
 use crate::arguments::{GroomOptions, InfoOptions, SceneOptions};
 use crate::inputs;
@@ -75,25 +76,66 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints the contents of a glTF body: its size and its clips.
+/// Prints the contents of a glTF body: its size, its materials and its clips.
 fn body_info(options: &InfoOptions) -> anyhow::Result<()> {
-    let mesh = Mesh::load(&options.file, 1.0)?;
+    let (mesh, notes) = Mesh::load_noted(&options.file, 1.0)?;
     let clips = Mesh::clip_names(&options.file)?;
     let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+    let materials = mesh.materials.as_deref().cloned().unwrap_or_default();
+    let size = |material: &Material| {
+        let texture = material.texture.and_then(|texture| materials.textures.get(texture));
+        texture.map(|texture| [texture.width, texture.height])
+    };
     if options.json {
-        let file = options.file.display().to_string();
-        let object =
-            serde_json::json!({ "file": file, "vertices": vertices, "triangles": triangles, "clips": clips });
+        let material = |material: &Material| {
+            serde_json::json!({
+                "name": material.name,
+                "color": material.color.map(|color| color.to_array()),
+                "texture": size(material),
+                "cutoff": material.cutoff,
+                "roughness": material.roughness,
+                "metallic": material.metallic,
+            })
+        };
+        let object = serde_json::json!({
+            "file": options.file.display().to_string(),
+            "vertices": vertices,
+            "triangles": triangles,
+            "materials": materials.list.iter().map(material).collect::<Vec<_>>(),
+            "clips": clips,
+            "notes": notes,
+        });
         output::program(&format!("{object}\n"));
         return Ok(());
     }
     print_line!("{}: glTF", options.file.display());
     print_line!("vertices  {vertices}");
     print_line!("triangles {triangles}");
+    for material in &materials.list {
+        print_line!("material  {}", described(material, size(material)));
+    }
     for clip in clips {
         print_line!("clip      {clip}");
     }
+    for note in notes {
+        print_line!("note      {note}");
+    }
     Ok(())
+}
+
+/// A material with the size of its texture, human-readable.
+fn described(material: &Material, texture: Option<[u32; 2]>) -> String {
+    let name = material.name.as_deref().unwrap_or("without a name");
+    let color = match (material.color, texture) {
+        (_, Some([width, height])) => format!("texture of {width} x {height}"),
+        (Some(color), None) => format!("color {:.2} {:.2} {:.2}", color.x, color.y, color.z),
+        (None, None) => "no color of its own".to_owned(),
+    };
+    let roughness = material.roughness.map(|roughness| format!(", roughness {roughness:.2}"));
+    let metallic = (material.metallic > 0.0).then(|| format!(", metallic {:.2}", material.metallic));
+    let cutoff = material.cutoff.map(|cutoff| format!(", cut below alpha {cutoff:.2}"));
+    let more = [roughness, metallic, cutoff].into_iter().flatten();
+    format!("{name}: {color}{}", more.collect::<String>())
 }
 
 /// Prints a scene with every key.

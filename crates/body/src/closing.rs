@@ -39,7 +39,8 @@ impl Mesh {
         if triangles.len() == self.triangles.len() {
             return Cow::Borrowed(self);
         }
-        Cow::Owned(Self { positions: self.positions.clone(), normals: self.normals.clone(), triangles })
+        let (positions, normals) = (self.positions.clone(), self.normals.clone());
+        Cow::Owned(Self { positions, normals, triangles, materials: None })
     }
 
     /// The mesh with every hole closed by a fan of triangles from the middle of its rim.

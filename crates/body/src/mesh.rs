@@ -1,7 +1,9 @@
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use crate::welding::welded_vertices;
-use crate::{Aabb, BodyError};
+use crate::{Aabb, BodyError, Materials};
 
 /// Largest coordinate that is taken for a place \[m\].
 const COORDINATE_LIMIT: f32 = 1e7;
@@ -15,6 +17,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Corner indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Looks of its parts, where it has some.
+    pub materials: Option<Arc<Materials>>,
 }
 
 impl Mesh {
@@ -23,7 +27,7 @@ impl Mesh {
     /// # Errors
     /// There must be triangles, their indices in range, and all positions finite.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, BodyError> {
-        let mut mesh = Self { positions, normals: Vec::new(), triangles };
+        let mut mesh = Self { positions, triangles, ..Self::default() };
         mesh.check_usable()?;
         mesh.normals = vertex_normals(&mesh.positions, &mesh.triangles);
         Ok(mesh)
@@ -38,7 +42,8 @@ impl Mesh {
         if self.normals.len() == self.positions.len() {
             return Ok(self);
         }
-        Self::new(self.positions, self.triangles)
+        let computed = Self::new(self.positions, self.triangles)?;
+        Ok(Self { materials: self.materials, ..computed })
     }
 
     /// Adds the triangles of another mesh to these.
@@ -51,10 +56,24 @@ impl Mesh {
             let found = format!("{count} vertices with those of another");
             return Err(BodyError::BadMesh { found, expected: "4,294,967,295 at most" });
         };
+        self.append_materials(other);
         self.positions.extend_from_slice(&other.positions);
         self.normals.extend_from_slice(&other.normals);
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|corner| first + corner)));
         Ok(())
+    }
+
+    fn append_materials(&mut self, other: &Self) {
+        if self.materials.is_none() && other.materials.is_none() {
+            return;
+        }
+        let of = |mesh: &Self| match &mesh.materials {
+            Some(materials) => materials.clone(),
+            None => Arc::new(Materials::plain(mesh.triangles.len())),
+        };
+        let mut materials = Materials::clone(&of(self));
+        materials.append([self.positions.len(), other.positions.len()], &of(other));
+        self.materials = Some(Arc::new(materials));
     }
 
     /// Refuses a mesh that is empty, or has invalid indices or positions.
@@ -78,6 +97,9 @@ impl Mesh {
             let [a, b, c] = self.triangles[index];
             let found = format!("triangle {index} between the vertices {a}, {b}, {c} of {count}");
             return bad(found, "indices below the number of vertices");
+        }
+        if self.materials.as_ref().is_some_and(|materials| !materials.fit(count, self.triangles.len())) {
+            return bad("materials of another mesh".into(), "a material for each triangle");
         }
         Ok(())
     }

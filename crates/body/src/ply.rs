@@ -23,8 +23,8 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Refusal> {
     let positions: Vec<Vec3> = positions.into_iter().map(Vec3::from_array).collect();
     let normals = vertices.triples(["nx", "ny", "nz"]);
     let normals = normals.into_iter().flatten().map(|normal| unit_normal(Vec3::from_array(normal)));
-    let mut mesh =
-        Mesh { normals: normals.collect(), triangles: triangles(faces, positions.len())?, positions };
+    let triangles = triangles(faces, positions.len())?;
+    let mut mesh = Mesh { normals: normals.collect(), triangles, positions, ..Mesh::default() };
     if mesh.triangles.is_empty() {
         return Err((format!("{} points and no faces", mesh.positions.len()), EXPECTED));
     }

@@ -6,7 +6,9 @@ use crate::RenderError;
 settings! {
     /// Look of the body.
     pub struct BodyLook: Copy {
-        /// Colour, linear RGB.
+        /// Draws the colours, textures and gloss that the body's file has; false where `color` is given. Cut-outs stay.
+        materials: bool = true;
+        /// Colour of all that has none of its own, linear RGB.
         color: Vec3 = Vec3::new(0.30, 0.262, 0.236), in [0.0, 1.0];
         /// Reach of light around the edge of shadow; 0 is none.
         wrap: f32 = 0.2, in [0.0, 1.0], more "softer skin";

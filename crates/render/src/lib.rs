@@ -32,6 +32,7 @@ mod preset;
 mod scatter;
 mod shadow;
 mod strands;
+mod surfaces;
 pub mod surroundings;
 
 pub use body_look::BodyLook;

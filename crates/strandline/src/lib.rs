@@ -56,7 +56,9 @@ pub mod look {
 
 /// Meshes, their motion and the distance to them.
 pub mod mesh {
-    pub use crate::body::{Aabb, DistanceGrid, MeshFormat, SignedDistance, VertexMotion};
+    pub use crate::body::{
+        Aabb, DistanceGrid, Material, Materials, MeshFormat, SignedDistance, Texture, VertexMotion, Wrap,
+    };
     pub use crate::prepare::{Placement, mesh_unit};
 }
 

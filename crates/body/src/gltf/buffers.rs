@@ -147,12 +147,16 @@ impl Buffers {
         Ok(elements)
     }
 
+    /// All bytes of a view; `None` beyond its buffer.
+    pub fn bytes_of(&self, view: &View<'_>) -> Option<&[u8]> {
+        let end = view.offset().checked_add(view.length())?;
+        self.bytes.get(view.buffer().index())?.get(view.offset()..end)
+    }
+
     /// Elements of a view from an offset on, by count, size and stride \[byte\]; `None` beyond the buffer.
     fn part(&self, view: &View<'_>, offset: usize, [count, size, stride]: [usize; 3]) -> Option<Vec<u8>> {
         let stride = stride.max(size);
-        let bytes = self.bytes.get(view.buffer().index())?;
-        let end = view.offset().checked_add(view.length())?;
-        let part = bytes.get(view.offset()..end)?.get(offset..)?;
+        let part = self.bytes_of(view)?.get(offset..)?;
         let needed = match count.checked_sub(1) {
             Some(gaps) => gaps.checked_mul(stride)?.checked_add(size)?,
             None => 0,

@@ -1,4 +1,4 @@
-//! Shape of a glTF file: the document without looks, its clips apart, and the bytes behind it.
+//! Shape of a glTF file: the document without looks, these and its clips apart, and the bytes behind it.
 
 use ::gltf::Document;
 use ::gltf::json::{Root, Value, deserialize};
@@ -6,6 +6,7 @@ use ::gltf::json::{Root, Value, deserialize};
 use strandline_base::utf8_text;
 
 use super::clips::Clips;
+use super::materials::Looks;
 use crate::parsing::Refusal;
 
 /// A file in its parts.
@@ -13,6 +14,7 @@ pub(super) struct Parts {
     /// The document, validated.
     pub document: Document,
     pub clips: Clips,
+    pub looks: Looks,
     /// The binary part of the file, where it has one.
     pub blob: Option<Vec<u8>>,
 }
@@ -31,10 +33,11 @@ pub(super) fn document(bytes: &[u8]) -> Result<Parts, Refusal> {
     let mut value: Value = deserialize::from_slice(&text).map_err(unread)?;
     check_required(&value)?;
     let clips = Clips::new(value.get_mut("animations").map(Value::take));
+    let looks = Looks::take(&mut value);
     keep_shape(&mut value);
     let root: Root = deserialize::from_value(value).map_err(unread)?;
     check_positions(&root)?;
-    Ok(Parts { document: Document::from_json(root).map_err(refused)?, clips, blob })
+    Ok(Parts { document: Document::from_json(root).map_err(refused)?, clips, looks, blob })
 }
 
 /// A binary file says its own length, which the parser subtracts from without a look.

@@ -4,12 +4,15 @@ mod address;
 mod buffers;
 mod clips;
 mod document;
+mod materials;
 mod nodes;
+mod pictures;
 mod rig;
 mod track;
 mod vertices;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use ::gltf::mesh::{Mode, Primitive};
 use ::gltf::{Document, Node};
@@ -22,6 +25,7 @@ use crate::part_names::Names;
 use buffers::{Buffers, load_buffers};
 use clips::Clips;
 use document::Parts;
+use materials::{Looks, Painter, Part};
 use nodes::Nodes;
 pub(crate) use rig::Rig;
 use vertices::{Influences, Placement, Skins, Vertices, default_weights};
@@ -96,7 +100,10 @@ pub(crate) fn clip_names(bytes: &[u8]) -> Result<Vec<String>, Refusal> {
 struct File {
     document: Document,
     clips: Clips,
+    looks: Looks,
     buffers: Buffers,
+    /// Its folder, where files beside it are read.
+    folder: Option<PathBuf>,
 }
 
 /// Receives a part of a mesh with its node, and with the joints of its vertices where a skin carries it.
@@ -104,12 +111,12 @@ type Receiver<'a> = &'a mut dyn FnMut(&Node<'_>, &Primitive<'_>, Option<Influenc
 
 impl File {
     fn open(bytes: &[u8], folder: Option<&Path>) -> Result<Self, Refusal> {
-        let Parts { document, clips, blob } = document::document(bytes)?;
+        let Parts { document, clips, looks, blob } = document::document(bytes)?;
         let held = load_buffers(&document, blob, folder)?;
         // Nodes that repeat a mesh make much of a small file: beyond what it could hold itself it is refused.
         let size = bytes.len() + held.iter().map(Vec::len).sum::<usize>();
         let buffers = Buffers::new(held, size.clamp(LEAST_COUNT_LIMIT, COUNT_LIMIT));
-        Ok(Self { document, clips, buffers })
+        Ok(Self { document, clips, looks, buffers, folder: folder.map(Path::to_owned) })
     }
 
     /// The mesh at rest; hands over each part of it, in the order of its vertices.
@@ -123,6 +130,9 @@ impl File {
         let (buffers, mut mesh) = (&self.buffers, Mesh::default());
         let mut skins = Skins::new(&self.document);
         let mut weightless = 0;
+        // A part that is asked for by its name is not drawn.
+        let painter = || Painter::new(&self.looks, &self.document, buffers, self.folder.as_deref());
+        let mut painter = names.is_none().then(painter);
         for node in &nodes.shown {
             let Some(part) = node.mesh() else { continue };
             let joints = match node.skin() {
@@ -149,17 +159,25 @@ impl File {
                 let skinned = skinned.map(|(influences, joints)| {
                     Placement::skinned(influences, count, joints, &mut weightless)
                 });
+                let first = [mesh.positions.len(), mesh.triangles.len()];
                 append(&mut mesh, &primitive, &vertices, skinned.as_ref().unwrap_or(&whole), buffers)?;
+                let (of, material) = ([part.index(), primitive.index()], primitive.material().index());
+                painter.iter_mut().for_each(|painter| painter.add(&Part { of, material, first }, &mesh));
                 each(node, &primitive, influences)?;
             }
         }
-        if weightless > 0 {
-            notes.push(format!(
-                "{weightless} of {} vertices have no weights of joints: the first joint of their skin carries them",
-                mesh.positions.len()
-            ));
-        }
+        mesh.materials = painter.and_then(|painter| painter.finish(&mesh, notes)).map(Arc::new);
+        note_weightless(weightless, &mesh, notes);
         Ok(mesh)
+    }
+}
+
+fn note_weightless(weightless: usize, mesh: &Mesh, notes: &mut Vec<String>) {
+    if weightless > 0 {
+        let count = mesh.positions.len();
+        notes.push(format!(
+            "{weightless} of {count} vertices have no weights of joints: the first joint of their skin carries them"
+        ));
     }
 }
 

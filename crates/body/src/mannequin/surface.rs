@@ -40,7 +40,7 @@ fn mesh(mannequin: &Mannequin) -> Mesh {
         .map(|&cell| settle(mannequin, origin + Vec3::from_array(cell) * SPACING))
         .unzip();
     let triangles = buffer.indices.chunks_exact(3).map(|corner| [corner[0], corner[1], corner[2]]).collect();
-    Mesh { positions, normals, triangles }
+    Mesh { positions, normals, triangles, ..Mesh::default() }
 }
 
 /// Sides of the bricks \[cells\], the large ones first.

@@ -7,6 +7,8 @@ mod distance_grid;
 mod files;
 mod gltf_files;
 mod mesh_files;
+mod painted;
+mod painted_file;
 mod posed_skin;
 mod scans;
 mod shapes;

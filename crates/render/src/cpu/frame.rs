@@ -130,7 +130,11 @@ impl Frame<'_> {
         if let Some(map) = layers_of.and_then(|light| shadows.map(light)) {
             layer_colors(strands, map);
         }
-        let body = draw.shadow_body().map(|body| (body, body_look.color));
+        let reflected = match draw.surfaces().filter(|_| body_look.materials) {
+            Some(surfaces) => surfaces.mean_color(body_look.color),
+            None => body_look.color,
+        };
+        let body = draw.shadow_body().map(|body| (body, reflected));
         let lit = Lit { body, ..lit(self.input, shadows, own_colors.as_ref()) };
         match look.fibre.model {
             FibreModel::Scheuermann => occlusion.fill(strands, &look.shadow),

@@ -24,7 +24,7 @@ pub(crate) struct Known {
 
 /// The skin that is drawn to find them: black, with no light from anywhere.
 pub(crate) const BLACK: BodyLook =
-    BodyLook { color: Vec3::ZERO, wrap: 0.0, specular: 0.0, roughness: 0.5, scalp: 0.0 };
+    BodyLook { materials: false, color: Vec3::ZERO, wrap: 0.0, specular: 0.0, roughness: 0.5, scalp: 0.0 };
 
 impl Known {
     /// The channels of a picture.

@@ -5,7 +5,7 @@ use strandline_gpu::{Buffer, Gpu, GpuError, Scan, Texture, wgpu};
 use strandline_groom::Guides;
 
 use super::inputs::{Frame, LightSource, body_stride};
-use super::records::{Curve, Root, Tap, Vertex};
+use super::records::{Corner, Curve, Root, Tap, Vertex};
 use super::scene::Scene;
 use super::shadow::fit::BOX;
 use super::skin::Skin;
@@ -39,6 +39,11 @@ pub(super) struct Groom {
     pub clumps: Buffer<[f32; 4]>,
     pub triangles: Buffer<u32>,
     pub vertices: Buffer<Vertex>,
+    /// Corners of a body with materials, and these: see surfaces.wesl.
+    pub corners: Buffer<Corner>,
+    pub surfaces: Buffer<u32>,
+    /// True where the materials cut parts of the body away.
+    pub cuts: bool,
     /// Per place in the order of depth: see sort.wesl.
     pub starts: Buffer<u32>,
     pub start_totals: Buffer<u32>,
@@ -49,16 +54,20 @@ impl Groom {
         let own: Vec<[f32; 4]> = own(guides).collect();
         let clumps = Buffer::new(gpu, "clumps", guides.strand_count() + own.len())?;
         clumps.write_at(guides.strand_count(), &own)?;
+        let words = skin.surfaces().map_or(&[][..], |surfaces| &surfaces.words);
         Ok(Self {
             frame: Buffer::with_tail::<LightSource>(gpu, "frame and lights", 1, MAX_LIGHTS)?,
+            triangles: Buffer::from_slice(gpu, "triangles", skin.corners())?,
+            vertices: Buffer::from_slice(gpu, "vertices", &skin.vertices())?,
+            corners: Buffer::from_slice(gpu, "corners with materials", &skin.painted_corners())?,
+            surfaces: Buffer::from_slice(gpu, "materials and textures", words)?,
+            cuts: skin.surfaces().is_some_and(|surfaces| surfaces.cuts),
             bounds: Buffer::new(gpu, "bounds", BOUNDS)?,
             cubes: Buffer::new(gpu, "surroundings", 2 * CELLS)?,
             areas: Buffer::new(gpu, "areas", CELLS)?,
             places: Buffer::from_slice(gpu, "guide points", floats(guides.positions()))?,
             roots: Buffer::from_slice(gpu, "roots", &roots(guides, |_| Quat::IDENTITY))?,
             clumps,
-            triangles: Buffer::from_slice(gpu, "triangles", skin.corners())?,
-            vertices: Buffer::from_slice(gpu, "vertices", &skin.vertices())?,
             starts: Buffer::new(gpu, "starts", ORDER_STEPS)?,
             start_totals: Scan::totals(gpu, ORDER_STEPS)?,
         })

@@ -10,6 +10,9 @@ pub const SCATTERS: u32 = 4;
 pub const COLORED: u32 = 8;
 /// Numbers stand for the light of hair: its ribbons are flat.
 pub const FLAT: u32 = 16;
+/// The body's materials are drawn: their cut-outs, and their colours and gloss.
+pub const CUT: u32 = 32;
+pub const PAINTED: u32 = 64;
 
 /// Kinds of light; the last is a place on a rectangle or disc.
 pub const DIRECTIONAL: u32 = 0;

@@ -179,12 +179,13 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
         return;
     }
     let count = 3 * scene.triangle_count as u32;
+    let drawing = stages.cut_depth.as_ref().unwrap_or(&stages.body_depth);
     let row_bytes = 4 * body_stride(maps.size);
     for slot in 0..scene.shadow_count() {
         let depth = Some((maps.body_depth.view(), wgpu::LoadOp::Clear(1.0)));
         let amount = Amount::Vertices { count, instance: slot as u32 };
         let targets = Targets { color: None, depth };
-        recorder.draw(Stage::OpacityDepth.name(), &targets, &[(&stages.body_depth, amount)]);
+        recorder.draw(Stage::OpacityDepth.name(), &targets, &[(drawing, amount)]);
         let layout = wgpu::TexelCopyBufferLayout {
             offset: slot as u64 * u64::from(row_bytes) * u64::from(maps.size),
             bytes_per_row: Some(row_bytes),

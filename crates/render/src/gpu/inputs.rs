@@ -123,6 +123,9 @@ mirror! {
         /// Cells along the longest side of the hair.
         pub cells: u32,
         pub unused_last: u32,
+        /// Mean colour of the body.
+        pub reflected: [f32; 3],
+        pub unused_reflected: f32,
         pub fitted: Fitted,
         then lights: LightSource,
     }
@@ -283,7 +286,9 @@ impl Frame {
             shorter: look.clump.shorter,
             seed: look.seed,
             cells: look.fibre.grid_cells(),
+            reflected: scene.reflected.to_array(),
             kinds: scene.own
+                | scene.paint
                 | if look.fibre.model.scatters_many_times() { codes::SCATTERS } else { 0 }
                 | if look.fibre.chiang.pigment == Pigment::Color { codes::COLORED } else { 0 },
             ..bytemuck::Zeroable::zeroed()

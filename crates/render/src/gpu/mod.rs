@@ -10,6 +10,7 @@ mod channels;
 mod codes;
 mod draw;
 mod frame;
+mod framing;
 mod half;
 mod inputs;
 mod linked;

@@ -15,6 +15,17 @@ mirror! {
 }
 
 mirror! {
+    /// A corner of a triangle of a body with materials: see surfaces/mod.rs.
+    pub(super) struct Corner {
+        pub place: [f32; 2],
+        pub material: u32,
+        /// \[1/m\]
+        pub density: f32,
+        pub color: [f32; 4],
+    }
+}
+
+mirror! {
     /// Values of all curves at one of their points.
     pub(super) struct Tap {
         /// Weights of four control points.

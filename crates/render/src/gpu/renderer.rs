@@ -8,7 +8,6 @@ use strandline_groom::{Binding, Guides};
 
 use super::buffers::{Groom, MAX_POINTS, Maps, Strands, Targets, floats};
 use super::channel_state::Channels;
-use super::codes;
 use super::frame::{Bounds, Held, record};
 use super::resolve::{Own, PICTURE, ToFormat};
 use super::scatter::light_grid::LightGrid;
@@ -52,7 +51,7 @@ pub struct GpuRenderer {
     /// Lights, shadow settings and middle of the hair \[m\] in the last picture.
     pub(super) lit: (Vec<Light>, Shadow, Vec3),
     /// The guides' colours.
-    own_colors: Option<OwnColors>,
+    pub(super) own_colors: Option<OwnColors>,
 }
 
 /// Contents of the last frame.
@@ -77,12 +76,14 @@ impl GpuRenderer {
         settings: &PictureSettings,
     ) -> Result<Self, RenderError> {
         settings.validate()?;
-        let skin = Skin::new(body, guides);
+        let mut skin = Skin::new(body, guides);
+        let groom = Groom::new(gpu, guides, &skin)?;
+        skin.forget_surfaces();
         let made = Self {
             bounds: bounds(guides),
             settings: *settings,
             kernels: Kernels::new(gpu)?,
-            groom: Groom::new(gpu, guides, &skin)?,
+            groom,
             skin,
             strands: None,
             maps: None,
@@ -289,30 +290,6 @@ impl GpuRenderer {
             light_grid: self.light_grid.as_ref(),
             indices: &self.indices,
             samples: &self.targets,
-        }
-    }
-
-    pub(super) fn scene<'a>(
-        &self,
-        input: &'a FrameInput<'a>,
-        settings: &'a PictureSettings,
-        share: f32,
-    ) -> Scene<'a> {
-        let middle = input.middle(self.bounds);
-        Scene {
-            input,
-            settings,
-            level: input.level(self.bounds, settings.height, &self.guides),
-            share,
-            guide_count: self.guides.strand_count(),
-            guide_points: self.guides.points_per_strand(),
-            vertex_count: self.skin.vertex_count().unwrap_or(0),
-            triangle_count: self.skin.corners().len() / 3,
-            body_kind: self.skin.kind(),
-            body_ball: self.skin.ball(),
-            own: codes::own_kinds(&self.guides),
-            middle,
-            own_color: self.own_colors.map(|own| own.mean),
         }
     }
 

@@ -19,6 +19,10 @@ pub(super) struct Scene<'a> {
     pub body_ball: (Vec3, f32),
     /// Attributes of the groom that are drawn: see codes.rs.
     pub own: u32,
+    /// Drawn parts of the body's materials, in bits: see codes.rs.
+    pub paint: u32,
+    /// Mean colour of the body, linear RGB.
+    pub reflected: Vec3,
     /// Middle of the hair \[m\], world space.
     pub middle: Vec3,
     /// Mean of the guides' colours.

@@ -6,8 +6,10 @@ use strandline_gpu::{Buffer, GpuError};
 use strandline_groom::Guides;
 
 use super::codes;
-use super::records::Vertex;
+use super::records::{Corner, Vertex};
+use crate::BodyLook;
 use crate::strands::scalp::root_densities;
+use crate::surfaces::Surfaces;
 
 /// A mesh whose vertices are written anew where they moved.
 pub(super) struct Skin {
@@ -15,6 +17,8 @@ pub(super) struct Skin {
     moved: MovedSkin,
     /// Density of roots about each vertex, 0 to 1.
     densities: Vec<f32>,
+    /// Its materials, where it has some.
+    surfaces: Option<Surfaces>,
     /// A ball around it: middle \[m\], head space, and radius \[m\].
     ball: (Vec3, f32),
     /// See codes.rs.
@@ -26,13 +30,17 @@ impl Skin {
     /// The mesh of a body in head space, among the roots of guides.
     pub fn new(mesh: Option<&Mesh>, guides: &Guides) -> Self {
         let positions = mesh.map_or(&[][..], |mesh| &mesh.positions);
-        let closed = |mesh: &Mesh| if mesh.is_closed() { codes::CLOSED } else { codes::OPEN };
+        let surfaces = mesh.and_then(Surfaces::new);
+        // A body is open where parts of it are cut away.
+        let is_whole = !surfaces.as_ref().is_some_and(|surfaces| surfaces.cuts);
+        let closed = |mesh: &Mesh| if is_whole && mesh.is_closed() { codes::CLOSED } else { codes::OPEN };
         Self {
             mesh: mesh.cloned(),
             moved: MovedSkin::default(),
             densities: root_densities(positions, guides),
             ball: ball(positions),
             kind: mesh.map_or(codes::NO_BODY, closed),
+            surfaces,
             writes: 0,
         }
     }
@@ -66,6 +74,39 @@ impl Skin {
     /// Corners of all triangles.
     pub fn corners(&self) -> &[u32] {
         self.mesh.as_ref().map_or(&[], |mesh| mesh.triangles.as_flattened())
+    }
+
+    /// Corners of all triangles with their materials; empty without such.
+    pub fn painted_corners(&self) -> Vec<Corner> {
+        let corners = self.surfaces.iter().flat_map(|surfaces| &surfaces.corners);
+        corners
+            .map(|corner| Corner {
+                place: corner.place.to_array(),
+                material: corner.material,
+                density: corner.density,
+                color: corner.color.to_array(),
+            })
+            .collect()
+    }
+
+    /// Its materials, where it has some.
+    pub fn surfaces(&self) -> Option<&Surfaces> {
+        self.surfaces.as_ref()
+    }
+
+    /// Forgets materials and textures once they are on the device.
+    pub fn forget_surfaces(&mut self) {
+        self.surfaces.iter_mut().for_each(Surfaces::forget);
+    }
+
+    /// Drawn parts of the materials, in bits: see codes.rs. The mean colour of the body, linear RGB.
+    pub fn paint(&self, look: &BodyLook) -> (u32, Vec3) {
+        let Some(surfaces) = &self.surfaces else { return (0, look.color) };
+        let cut = if surfaces.cuts { codes::CUT } else { 0 };
+        match look.materials {
+            true => (cut | codes::PAINTED, surfaces.mean_color(look.color)),
+            false => (cut, look.color),
+        }
     }
 
     /// Number of vertices; `None` without a body.

@@ -42,6 +42,8 @@ macro_rules! stages {
         /// Every kernel but `tessellate`, bound to the buffers of the moment.
         pub(super) struct Stages {
             pub scan: Dispatches,
+            /// In place of `body_depth` where materials cut parts of the body away.
+            pub cut_depth: Option<BoundDrawing>,
             $(pub $kernel: Bound,)*
             $(pub $drawing: BoundDrawing,)*
         }
@@ -58,6 +60,7 @@ macro_rules! stages {
                 $($rooms)*
                 Ok(Self {
                     scan: kernels.scan.bind(gpu, &$groom.starts, &$groom.start_totals)?,
+                    cut_depth: if $groom.cuts { Some(cut_depth(gpu, $groom)?) } else { None },
                     $($kernel: kernels.$kernel.bind(gpu, &$kernel_in::$Kernel { $($kernel_buffers)* })?,)*
                     $($drawing: kernels.$drawing.bind(gpu, &$drawing_in::$Drawing { $($drawing_buffers)* })?,)*
                 })
@@ -77,7 +80,7 @@ macro_rules! stages {
 stages! {
     |groom, strands, maps| {
         let Groom { frame, bounds, cubes, areas, roots, clumps, .. } = groom;
-        let Groom { triangles, vertices, starts, .. } = groom;
+        let Groom { triangles, vertices, corners, surfaces, starts, .. } = groom;
         let Strands { tables, scales, curves, points, radiances, keys, order, .. } = strands;
         let Maps { texels, body: body_depths, .. } = maps;
         // Kernels that add to them see single numbers.
@@ -103,10 +106,18 @@ stages! {
         body_depth: opacity_depth::BodyDepth, body_depth_output { frame, triangles, vertices }
         hair: draw::Hair, hair_output { frame, points, radiances, starts, order }
         body: body::Body, body_output {
-            frame, maps: texels, body_depths, cubes, triangles, vertices
+            frame, maps: texels, body_depths, cubes, triangles, vertices, corners, surfaces
         }
         backdrop: background::Backdrop, background_output { frame }
     }
+}
+
+/// Draws depths of a body whose materials cut parts of it away.
+fn cut_depth(gpu: &Gpu, groom: &Groom) -> Result<BoundDrawing, GpuError> {
+    let Groom { frame, triangles, vertices, corners, surfaces, .. } = groom;
+    let buffers = opacity_depth::CutDepth { frame, triangles, vertices, corners, surfaces };
+    let drawing = Drawing::<opacity_depth::CutDepth<'static>>::new(gpu, &draw::body_depth_output(), &[])?;
+    drawing.bind(gpu, &buffers)
 }
 
 /// Every kernel's and drawing's declaration, to be held against its shader: those of every frame, and those that are
@@ -117,6 +128,7 @@ pub fn declarations() -> Vec<Declaration> {
     all.extend(light_grid::declarations());
     all.extend([
         tessellate::Tessellate::declaration(),
+        opacity_depth::CutDepth::declaration(),
         shade::LayerColors::declaration(),
         shade::Numbers::declaration(),
         resolve::Resolve::declaration(),

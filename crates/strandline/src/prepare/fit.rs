@@ -47,8 +47,9 @@ const CLOSER: f32 = 0.7;
 const DENSITY: f32 = 0.095;
 const ALL_HAIR: f32 = 0.5;
 
-/// Chooses settings that the scene leaves open, to fit a groom from a source.
+/// Chooses settings that the scene leaves open, to fit a body's materials and a groom from a source.
 pub(super) fn fit(loading: &mut Loading) {
+    loading.scene.choose_body_colors();
     if let Loading { scene, groom: Some(groom), mesh, notes, .. } = loading {
         notes.extend(choose(scene, groom, mesh.as_ref()));
     }

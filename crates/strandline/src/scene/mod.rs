@@ -115,7 +115,7 @@ impl Scene {
             self.dress_thesis();
         }
         let clump = look.and_then(|look| look.clump.as_ref());
-        let level = given.level_of_detail.as_ref();
+        let (level, body_look) = (given.level_of_detail.as_ref(), given.body_look.as_ref());
         let strands = given.simulation.as_ref().and_then(|simulation| simulation.strands.as_ref());
         if strands.and_then(|strands| strands.method) == Some(StrandMethod::Constrain) {
             self.film.settle = FilmSection::SETTLE;
@@ -131,6 +131,8 @@ impl Scene {
             segments_per_span: level.is_some_and(|level| level.segments_per_span.is_some()),
             full_distance: level.is_some_and(|level| level.full_distance.is_some()),
             spacing: given.body.as_ref().is_some_and(|body| body.spacing.is_some()),
+            body_color: body_look.is_some_and(|look| look.color.is_some()),
+            body_materials: body_look.is_some_and(|look| look.materials.is_some()),
         };
         let simulation = given.simulation.as_ref().and_then(|simulation| simulation.backend);
         let pictures = given.picture.as_ref().and_then(|picture| picture.backend);

@@ -1,19 +1,17 @@
 //! The body on the screen: which triangle each sample shows, and how far it is.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use strandline_base::par::prelude::*;
 use strandline_body::{BodyFrame, Mesh, MovedSkin};
 
+use super::occluders::{BLOCK, Occluders, TILE_BLOCKS};
 use super::tiles::{TileRect, Tiles};
 use crate::frame::projection::Projection;
 use crate::frame::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
+use crate::surfaces::Surfaces;
 
 /// Vertices or triangles handled together by one thread.
 const CHUNK: usize = 4096;
-/// Width and height of a block of samples with one occluder depth.
-const BLOCK: usize = 16;
-/// Blocks across a tile.
-const TILE_BLOCKS: usize = TILE / BLOCK;
 /// Hair this far under the surface still counts as lying on it \[m\], measured along the normal:
 /// a straight segment of 12 mm between two points on a skull of 90 mm radius dips 0.2 mm below it.
 const SKIN_DEPTH: f32 = 4e-4;
@@ -27,6 +25,8 @@ pub struct Body {
     pub mesh: Mesh,
     /// Every edge joins two triangles, so that back faces are never seen.
     closed: bool,
+    /// Its materials, where it has some.
+    pub surfaces: Option<Surfaces>,
     skin: MovedSkin,
     /// Vertex positions \[m\], world space.
     pub positions: Vec<Vec3>,
@@ -50,8 +50,10 @@ struct ScreenTriangle {
 impl Body {
     /// Takes over a mesh.
     pub fn new(mesh: Mesh) -> Self {
-        let closed = mesh.is_closed();
-        Self { mesh, closed, ..Self::default() }
+        let surfaces = Surfaces::new(&mesh);
+        // A body is open where parts of it are cut away.
+        let closed = mesh.is_closed() && !surfaces.as_ref().is_some_and(|surfaces| surfaces.cuts);
+        Self { mesh, closed, surfaces, ..Self::default() }
     }
 
     /// The corners of a triangle.
@@ -82,7 +84,20 @@ impl Body {
                 depths.fill(0.0);
                 triangles.fill(NO_TRIANGLE);
                 let origin = ((tile % columns * TILE) as f32, (tile / columns * TILE) as f32);
-                tiles.things(tile).for_each(|face| faces[face as usize].fill(origin, depths, triangles));
+                tiles.things(tile).for_each(|face| {
+                    let face = &faces[face as usize];
+                    match &body.surfaces {
+                        Some(surfaces) if surfaces.cuts => {
+                            let corner = Vec2::from(origin);
+                            let shown = |x, y| {
+                                let sight = body.sight(face.index, projection, corner + Vec2::new(x, y));
+                                !body.painted(surfaces, face.index, &sight, projection).is_cut()
+                            };
+                            face.fill(origin, depths, triangles, shown);
+                        }
+                        _ => face.fill(origin, depths, triangles, |_, _| true),
+                    }
+                });
                 match tiles.things(tile).next() {
                     Some(_) => body.occlude(projection, depths, triangles, blocks),
                     None => blocks.fill(0.0),
@@ -182,8 +197,14 @@ impl ScreenTriangle {
         TileRect::of_box(samples, [min.x, min.y], [max.x, max.y])
     }
 
-    /// Draws into one tile: the nearest triangle wins, of equals the first.
-    fn fill(&self, origin: (f32, f32), depths: &mut [f32], triangles: &mut [u32]) {
+    /// Draws into one tile where it is shown, from the tile's corner: the nearest triangle wins, of equals the first.
+    fn fill(
+        &self,
+        origin: (f32, f32),
+        depths: &mut [f32],
+        triangles: &mut [u32],
+        shown: impl Fn(f32, f32) -> bool,
+    ) {
         let shift = Vec3::new(origin.0, origin.1, 0.0);
         let [a, b, c] = self.corners.map(|corner| corner - shift);
         let (min, max) = (a.min(b).min(c), a.max(b).max(c));
@@ -202,7 +223,7 @@ impl ScreenTriangle {
                 // Within the corners' range, whatever rounding makes of a sliver's slope.
                 let depth = (a.z + slope_x * (x - a.x) + slope_y * (y - a.y)).clamp(min.z, max.z);
                 let sample = row * TILE + column;
-                if inside && depth > depths[sample] {
+                if inside && depth > depths[sample] && shown(x, y) {
                     depths[sample] = depth;
                     triangles[sample] = self.index;
                 }
@@ -240,54 +261,6 @@ fn cut(corners: [Vec3; 3], index: u32, projection: &Projection, found: &mut Vec<
     for last in 2..count {
         let corners = [polygon[0], polygon[last - 1], polygon[last]];
         found.push(ScreenTriangle { corners, index });
-    }
-}
-
-/// For each block of samples the depth beyond which everything is hidden.
-#[derive(Debug, Default)]
-pub struct Occluders {
-    columns: usize,
-    rows: usize,
-    /// One over view depth \[1/m\], shape `[tile][block row][block column]`.
-    blocks: Vec<f32>,
-}
-
-impl Occluders {
-    fn resize(&mut self, columns: usize, rows: usize) {
-        self.columns = columns;
-        self.rows = rows;
-        self.blocks.resize(columns * rows * TILE_BLOCKS * TILE_BLOCKS, 0.0);
-    }
-
-    /// Forgets every block: nothing is hidden.
-    pub fn clear(&mut self) {
-        self.resize(0, 0);
-    }
-
-    /// True if a ribbon between two screen points is hidden everywhere.
-    pub fn hide(&self, start: Vec4, end: Vec4) -> bool {
-        if self.blocks.is_empty() {
-            return false;
-        }
-        // A ribbon reaches half its drawn width to each side and is widened by half a sample.
-        let reach = start.w.max(end.w).max(1.0) + 1.0;
-        let block = |at: f32, count: usize| {
-            (at.max(0.0) as usize / BLOCK).min((count * TILE_BLOCKS).saturating_sub(1))
-        };
-        let (low, high) = (start.min(end) - reach, start.max(end) + reach);
-        let (x0, x1) = (block(low.x, self.columns), block(high.x, self.columns));
-        let (y0, y1) = (block(low.y, self.rows), block(high.y, self.rows));
-        // Long segments cross much: they are left to the test sample by sample.
-        if (x1 - x0 + 1) * (y1 - y0 + 1) > 64 {
-            return false;
-        }
-        let nearest = start.z.max(end.z);
-        (y0..=y1).all(|y| (x0..=x1).all(|x| nearest < self.block(x, y)))
-    }
-
-    fn block(&self, x: usize, y: usize) -> f32 {
-        let tile = y / TILE_BLOCKS * self.columns + x / TILE_BLOCKS;
-        self.blocks[(tile * TILE_BLOCKS + y % TILE_BLOCKS) * TILE_BLOCKS + x % TILE_BLOCKS]
     }
 }
 

@@ -2,7 +2,9 @@
 
 mod body;
 mod coverage;
+mod occluders;
 mod ribbons;
+mod sight;
 mod sort;
 mod tiles;
 
@@ -10,16 +12,19 @@ use glam::{Vec2, Vec3, Vec4};
 use strandline_base::par::prelude::*;
 use strandline_body::{BodyFrame, Mesh};
 
-use self::body::{Body, Occluders};
+use self::body::Body;
 use self::coverage::{End, Joint, OPAQUE, TileSamples};
+use self::occluders::Occluders;
 use self::ribbons::{Ribbons, Segment};
+use self::sight::Sight;
 use self::tiles::{TileRect, Tiles};
-use crate::cpu::ShadowBody;
 use crate::cpu::shade::radiances::Radiances;
 use crate::cpu::shade::skin::Skin;
+use crate::cpu::{Cuts, ShadowBody};
 use crate::frame::projection::Projection;
 use crate::frame::samples::{NO_TRIANGLE, Samples, TILE, TILE_SAMPLES};
 use crate::strands::Strands;
+use crate::surfaces::{Painted, Surfaces};
 use crate::{Background, Camera};
 
 /// Width and height of a block of samples that is left out once it is opaque.
@@ -83,7 +88,13 @@ impl Draw {
     /// The body in its place, to cast shadows.
     pub fn shadow_body(&self) -> Option<ShadowBody<'_>> {
         let body = self.body.as_ref()?;
-        Some(ShadowBody { positions: &body.positions, triangles: body.triangles() })
+        let cuts = body.surfaces.as_ref().filter(|surfaces| surfaces.cuts).map(Cuts::of);
+        Some(ShadowBody { positions: &body.positions, triangles: body.triangles(), cuts })
+    }
+
+    /// The body's materials, where it has some.
+    pub(crate) fn surfaces(&self) -> Option<&Surfaces> {
+        self.body.as_ref()?.surfaces.as_ref()
     }
 
     /// Fills the samples; returns the number of segments that were not left out as hidden.
@@ -248,11 +259,12 @@ impl Under<'_> {
                         continue;
                     }
                     let depth = self.depths[index];
-                    // Half a per cent of the distance apart: another surface.
-                    let known = lit.filter(|&(known, _)| (known - depth).abs() < 0.005 * depth);
+                    let known = lit.filter(|&(known, _)| is_near(known, depth));
                     let (_, radiance) = *lit.insert(known.unwrap_or_else(|| {
+                        let corner = [column, row];
                         let middle = Vec2::new(column as f32, row as f32) + 0.5 * pixel as f32;
-                        (depth, self.radiance(self.triangles[index], self.corner + middle))
+                        let painted = self.painted(corner, pixel, sample, depth);
+                        (depth, self.radiance(self.triangles[index], self.corner + middle, painted))
                     }));
                     colors[index] += radiance * (1.0 - colors[index].w);
                 }
@@ -260,30 +272,42 @@ impl Under<'_> {
         }
     }
 
+    /// The mean paint of the samples of a pixel, from one on, that show the surface at some depth; `None` without
+    /// materials. The pixel begins at a column and a row.
+    fn painted(&self, [column, row]: [usize; 2], pixel: usize, first: usize, depth: f32) -> Option<Painted> {
+        let surfaces = self.body.surfaces.as_ref().filter(|_| self.skin.look.materials)?;
+        let painted = |sample: usize| {
+            let (x, y) = (column + sample % pixel, row + sample / pixel);
+            let triangle = self.triangles[y * TILE + x];
+            if triangle == NO_TRIANGLE || !is_near(depth, self.depths[y * TILE + x]) {
+                return None;
+            }
+            let place = self.corner + Vec2::new(x as f32, y as f32) + 0.5;
+            let sight = self.body.sight(triangle, self.projection, place);
+            Some(self.body.painted(surfaces, triangle, &sight, self.projection))
+        };
+        Painted::mean((first..pixel * pixel).filter_map(painted))
+    }
+
     /// Radiance of a triangle where it is seen at a place on the screen, with an opacity of 1.
-    fn radiance(&self, triangle: u32, place: Vec2) -> Vec4 {
+    fn radiance(&self, triangle: u32, place: Vec2, painted: Option<Painted>) -> Vec4 {
         let corners = self.body.triangle(triangle);
-        let [a, b, c] = corners.map(|corner| self.body.positions[corner]);
-        let eye = self.projection.eye();
-        let sight = self.projection.world(place.x, place.y, 1.0) - eye;
-        let face = (b - a).cross(c - a);
-        let point = eye + sight * (face.dot(a - eye) / face.dot(sight));
-        // Shares of the corners, kept inside: beside an edge the plane runs off.
-        let area = face.length_squared();
-        let share_b = face.dot((point - a).cross(c - a)) / area;
-        let share_c = face.dot((b - a).cross(point - a)) / area;
-        let shares = Vec3::new(1.0 - share_b - share_c, share_b, share_c).clamp(Vec3::ZERO, Vec3::ONE);
-        let shares = shares / shares.element_sum();
+        let Sight { shares, way, face, .. } = self.body.sight(triangle, self.projection, place);
         let mix =
             |of: &[Vec3]| of[corners[0]] * shares.x + of[corners[1]] * shares.y + of[corners[2]] * shares.z;
         let (point, normal) = (mix(&self.body.positions), mix(&self.body.normals).normalize_or(Vec3::Y));
         // The inside of an open mesh is lit like its outside.
-        let normal = if normal.dot(sight) > 0.0 && face.dot(sight) > 0.0 { -normal } else { normal };
+        let normal = if normal.dot(way) > 0.0 && face.dot(way) > 0.0 { -normal } else { normal };
         let root = |corner: usize| self.body.roots.get(corner).copied().unwrap_or(0.0);
         let rooted = Vec3::from(corners.map(root)).dot(shares);
-        let radiance = self.skin.radiance(point, normal, rooted);
+        let radiance = self.skin.radiance(point, normal, rooted, painted.as_ref());
         if radiance.is_finite() { radiance.extend(1.0) } else { Vec4::W }
     }
+}
+
+/// True for two inverse depths \[1/m\] of one surface: less than half a per cent of the distance apart.
+fn is_near(known: f32, depth: f32) -> bool {
+    (known - depth).abs() < 0.005 * depth
 }
 
 impl Background {

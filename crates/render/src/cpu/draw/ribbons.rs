@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles};
 use strandline_base::par::prelude::*;
 
-use super::body::Occluders;
+use super::occluders::Occluders;
 use super::sort::{self, MAX_KEY};
 use crate::frame::projection::Projection;
 use crate::memory::MOST_POINTS;

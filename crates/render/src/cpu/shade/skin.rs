@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use crate::cpu::{LightGrid, Occlusion};
 use crate::shadow::Shadows;
+use crate::surfaces::Painted;
 use crate::{BodyLook, Environment, Light};
 
 /// Lights of the body.
@@ -31,22 +32,21 @@ pub struct Skin<'a> {
 
 impl Skin<'_> {
     /// Radiance toward the camera, linear RGB, of a point \[m\] with a unit normal, world space, where roots are so
-    /// dense, 0 to 1.
-    pub fn radiance(&self, point: Vec3, normal: Vec3, rooted: f32) -> Vec3 {
-        let color = self.look.color * Vec3::ONE.lerp(self.scalp, rooted);
-        let look = &BodyLook { color, ..*self.look };
+    /// dense, 0 to 1, and with the paint that it has.
+    pub(crate) fn radiance(&self, point: Vec3, normal: Vec3, rooted: f32, painted: Option<&Painted>) -> Vec3 {
+        let finish = &Finish::new(self.look, Vec3::ONE.lerp(self.scalp, rooted), painted);
         let to_eye = (self.eye - point).normalize_or(normal);
         let around = match self.grid {
             Some(grid) => grid.on_skin(point, normal),
             None => self.occlusion.ambient_on(point, normal, self.environment),
         };
-        let mut sum = look.color * around;
+        let mut sum = finish.color * around;
         let mut first = 0;
         while let Some(light) = self.lights.get(first) {
             let count = light.sample_count().min(self.lights.len() - first);
             for place in 0..count {
                 let lit = self.lights[first + place].at(point);
-                let reflected = reflectance(look, normal, to_eye, lit.to_light) * lit.radiance;
+                let reflected = reflectance(finish, normal, to_eye, lit.to_light) * lit.radiance;
                 if reflected != Vec3::ZERO {
                     let map = self.shadows.map(first + place);
                     let passed = map.map_or(1.0, |map| map.on_skin(point, normal, [place, count]));
@@ -59,30 +59,65 @@ impl Skin<'_> {
     }
 }
 
+/// The reflecting surface of a place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Finish {
+    /// Linear RGB, toward light from all around.
+    color: Vec3,
+    /// Linear RGB, toward lights.
+    diffuse: Vec3,
+    /// Reflectance at normal incidence, linear RGB.
+    specular: Vec3,
+    roughness: f32,
+    wrap: f32,
+}
+
+impl Finish {
+    /// That of a look with a factor of its colour, or of paint.
+    fn new(look: &BodyLook, tint: Vec3, painted: Option<&Painted>) -> Self {
+        let color = painted.and_then(Painted::own_color).unwrap_or(look.color) * tint;
+        let (metallic, own) = painted.map_or((0.0, -1.0), |painted| (painted.metallic, painted.roughness));
+        let roughness = if own < 0.0 { look.roughness } else { own.max(LEAST_ROUGHNESS) };
+        let specular = Vec3::splat(look.specular);
+        Self {
+            color,
+            // Metal mirrors with its colour, and what is around it stays diffuse.
+            diffuse: color * (1.0 - metallic),
+            specular: specular + (color - specular) * metallic,
+            roughness,
+            wrap: look.wrap,
+        }
+    }
+}
+
+/// Least roughness of a material: the highlight of a smoother one is smaller than a sample.
+pub(crate) const LEAST_ROUGHNESS: f32 = 0.2;
+
 /// Share of a light's irradiance (on a surface that faces it) that leaves toward the camera
 /// \[1/sr\], linear RGB. All directions are unit vectors away from the surface.
-pub fn reflectance(look: &BodyLook, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
+fn reflectance(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
     let facing = normal.dot(to_light);
     // Light wrapped around the edge of shadow, scaled so that no energy is gained.
-    let wrap = look.wrap;
+    let wrap = finish.wrap;
     let diffuse = ((facing + wrap) / (1.0 + wrap)).max(0.0) / (1.0 + wrap);
-    look.color * (diffuse / PI) + Vec3::splat(highlight(look, normal, to_eye, to_light))
+    finish.diffuse * (diffuse / PI) + highlight(finish, normal, to_eye, to_light)
 }
 
 /// Microfacets with the distribution and masking of \[Walter2007\] and the Fresnel term of
 /// \[Schlick1994\].
-fn highlight(look: &BodyLook, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> f32 {
+fn highlight(finish: &Finish, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
     let (light, eye) = (normal.dot(to_light), normal.dot(to_eye).max(1e-3));
     if light <= 0.0 {
-        return 0.0;
+        return Vec3::ZERO;
     }
     let half = (to_light + to_eye).normalize_or(normal);
-    let spread = look.roughness.powi(4);
+    let spread = finish.roughness.powi(4);
     let cosine = normal.dot(half).max(0.0);
     let lobe = cosine * cosine * (spread - 1.0) + 1.0;
     let distribution = spread / (PI * lobe * lobe); // [Walter2007 eq. 33]
     let masking = |cosine: f32| 2.0 * cosine / (cosine + (spread + (1.0 - spread) * cosine * cosine).sqrt());
-    let fresnel = look.specular + (1.0 - look.specular) * (1.0 - to_eye.dot(half).max(0.0)).powi(5);
+    let grazing = (1.0 - to_eye.dot(half).max(0.0)).powi(5);
+    let fresnel = finish.specular + (1.0 - finish.specular) * grazing;
     // The cosine of the irradiance cancels one in the denominator.
     distribution * fresnel * masking(light) * masking(eye) / (4.0 * eye)
 }
@@ -93,7 +128,8 @@ mod tests {
 
     #[test]
     fn no_more_light_leaves_than_arrives() {
-        let look = BodyLook { color: Vec3::ONE, wrap: 0.5, specular: 0.04, roughness: 0.5, scalp: 0.0 };
+        let look = BodyLook { color: Vec3::ONE, wrap: 0.5, specular: 0.04, ..BodyLook::default() };
+        let finish = Finish::new(&look, Vec3::ONE, None);
         let to_light = Vec3::new(0.6, 0.8, 0.0);
         let mut total = 0.0;
         let count = 200;
@@ -104,7 +140,7 @@ mod tests {
             for turn in 0..64 {
                 let angle = turn as f32 / 64.0 * 2.0 * PI;
                 let to_eye = Vec3::new(sine * angle.cos(), cosine, sine * angle.sin());
-                total += reflectance(&look, Vec3::Y, to_eye, to_light).x * PI / (count * 64) as f32;
+                total += reflectance(&finish, Vec3::Y, to_eye, to_light).x * PI / (count * 64) as f32;
             }
         }
         // Irradiance is 0.8 of the light; the wrap shifts some of it, the highlight adds at most 4 %
@@ -115,6 +151,7 @@ mod tests {
     #[test]
     fn light_from_behind_leaves_nothing() {
         let look = BodyLook { wrap: 0.0, ..BodyLook::default() };
-        assert_eq!(reflectance(&look, Vec3::Y, Vec3::Y, Vec3::new(0.1, -0.99, 0.0)), Vec3::ZERO);
+        let finish = Finish::new(&look, Vec3::ONE, None);
+        assert_eq!(reflectance(&finish, Vec3::Y, Vec3::Y, Vec3::new(0.1, -0.99, 0.0)), Vec3::ZERO);
     }
 }

@@ -4,6 +4,7 @@ use glam::{Vec2, Vec3};
 
 use crate::lanes::rounded_up;
 use crate::shadow::{LightView, Window};
+use crate::surfaces::Surfaces;
 
 /// Half a texel and more than rounding adds.
 const HALF: f32 = 0.501;
@@ -15,6 +16,23 @@ pub struct ShadowBody<'a> {
     pub positions: &'a [Vec3],
     /// Corner indices.
     pub triangles: &'a [[u32; 3]],
+    /// Parts of triangles that are cut away, where there are some.
+    pub cuts: Option<Cuts<'a>>,
+}
+
+/// Parts of triangles that materials cut away.
+#[derive(Clone, Copy, Debug)]
+pub struct Cuts<'a>(&'a Surfaces);
+
+impl<'a> Cuts<'a> {
+    /// Those of the materials of a body.
+    pub(crate) fn of(surfaces: &'a Surfaces) -> Self {
+        Self(surfaces)
+    }
+
+    fn cut(self, triangle: usize, shares: Vec3) -> bool {
+        self.0.at(triangle as u32, shares, 0.0).is_cut()
+    }
 }
 
 /// Draws the nearest depth \[m\] of a body into a square map that already holds depths.
@@ -31,13 +49,17 @@ pub(crate) fn draw_depth(
         None => Vec3::NAN,
     };
     let places: Vec<Vec3> = body.positions.iter().map(place).collect();
-    for corners in body.triangles {
-        fill(corners.map(|corner| places[corner as usize]), size, depths);
+    for (index, corners) in body.triangles.iter().enumerate() {
+        let corners = corners.map(|corner| places[corner as usize]);
+        match body.cuts {
+            Some(cuts) => fill(corners, size, depths, |shares| !cuts.cut(index, shares)),
+            None => fill(corners, size, depths, |_| true),
+        }
     }
 }
 
-/// Fills one triangle; corners are texel coordinates with depth.
-fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32]) {
+/// Fills one triangle where it is shown at shares of its corners, which are texel coordinates with depth.
+fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32], shown: impl Fn(Vec3) -> bool) {
     let [a, b, c] = corners;
     let area = (b - a).truncate().perp_dot((c - a).truncate());
     if area.abs() < 1e-12 || !area.is_finite() {
@@ -60,7 +82,8 @@ fn fill(corners: [Vec3; 3], size: usize, depths: &mut [f32]) {
             let first = from(b).perp_dot(from(c)) * inverse;
             let second = from(c).perp_dot(from(a)) * inverse;
             let third = 1.0 - first - second;
-            if first >= 0.0 && second >= 0.0 && third >= 0.0 {
+            let is_inside = first >= 0.0 && second >= 0.0 && third >= 0.0;
+            if is_inside && shown(Vec3::new(first, second, third)) {
                 let depth = &mut depths[row as usize * size + column as usize];
                 *depth = depth.min(first * a.z + second * b.z + third * c.z);
             }

@@ -7,4 +7,4 @@ pub mod opacity_depth;
 pub mod opacity_layers;
 mod penumbra;
 
-pub use body::ShadowBody;
+pub use body::{Cuts, ShadowBody};

@@ -3,7 +3,7 @@
 use strandline_gpu::drawing;
 
 use crate::gpu::inputs::Frame;
-use crate::gpu::records::Vertex;
+use crate::gpu::records::{Corner, Vertex};
 
 drawing! {
     /// Three vertices are one triangle.
@@ -14,5 +14,7 @@ drawing! {
         6 cubes: Read [f32; 4],
         7 triangles: Read u32,
         8 vertices: Read Vertex,
+        9 corners: Read Corner,
+        10 surfaces: Read u32,
     }
 }

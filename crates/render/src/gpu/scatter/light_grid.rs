@@ -225,7 +225,7 @@ impl LightGrid {
 
     /// Binds the kernels.
     fn bind(&self, gpu: &Gpu, groom: &Groom, strands: &Strands, maps: &Maps) -> Result<Bounds, GpuError> {
-        let Groom { frame, cubes: open, triangles, vertices, .. } = groom;
+        let Groom { frame, cubes: open, triangles, vertices, corners, surfaces, .. } = groom;
         let Strands { points, radiances, .. } = strands;
         let Maps { texels: maps, body: body_depths, .. } = maps;
         let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
@@ -243,9 +243,10 @@ impl LightGrid {
             shade: self
                 .shade
                 .bind(gpu, &ShadeChiang { frame, points, maps, body_depths, cubes: glow, radiances })?,
-            body: self
-                .body
-                .bind(gpu, &Body { frame, maps, body_depths, cubes: glow, triangles, vertices })?,
+            body: self.body.bind(
+                gpu,
+                &Body { frame, maps, body_depths, cubes: glow, triangles, vertices, corners, surfaces },
+            )?,
         })
     }
 }

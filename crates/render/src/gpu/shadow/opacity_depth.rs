@@ -3,7 +3,7 @@
 use strandline_gpu::{drawing, kernel};
 
 use crate::gpu::inputs::Frame;
-use crate::gpu::records::Vertex;
+use crate::gpu::records::{Corner, Vertex};
 
 kernel! {
     /// One thread is one texel.
@@ -29,5 +29,17 @@ drawing! {
         0 frame: Read Frame,
         7 triangles: Read u32,
         8 vertices: Read Vertex,
+    }
+}
+
+drawing! {
+    /// The same of a body whose materials cut parts of it away.
+    pub(crate) struct CutDepth in "opacity_depth" (crate::gpu::linked::OPACITY_DEPTH),
+    vertex "cut_depth_vertex", fragment Some("cut_depth"), {
+        0 frame: Read Frame,
+        7 triangles: Read u32,
+        8 vertices: Read Vertex,
+        9 corners: Read Corner,
+        10 surfaces: Read u32,
     }
 }
