@@ -12,7 +12,7 @@ from .errors import Error
 from .picture import Picture
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Film:
     """Pictures of the same size, one after the other. Notebooks show it moving: it is a .png with frames."""
 
@@ -56,6 +56,9 @@ class Film:
 
     def __len__(self) -> int:
         return len(self.pictures)
+
+    def __repr__(self) -> str:
+        return f"Film({len(self)} pictures, {self.frames_per_second:g} a second)"
 
 
 def _chunks(png: bytes) -> list[tuple[bytes, bytes]]:

@@ -892,8 +892,8 @@ class LookGroup(TypedDict, total=False):
     stand closer than those of most hair, where the radii are fitted too. Allowed: 0 to 10."""
 
     root_color: Sequence[float]
-    """Reflectance at the root, linear RGB; of a mass of hair with `fibre.chiang.pigment = "color"`. Allowed: 3
-    numbers of 0 to 1."""
+    """Reflectance at the root, linear RGB; with `fibre.chiang.pigment = "color"`, what hair shows beside white hair.
+    Allowed: 3 numbers of 0 to 1."""
 
     tip_color: Sequence[float]
     """Reflectance at the tip, linear RGB, the same way. Allowed: 3 numbers of 0 to 1."""
@@ -950,8 +950,8 @@ class Look(TypedDict, total=False):
     Allowed: 0 to 1."""
 
     root_color: Sequence[float]
-    """Reflectance at the root, linear RGB; of a mass of hair with `fibre.chiang.pigment = "color"`. Allowed: 3
-    numbers of 0 to 1."""
+    """Reflectance at the root, linear RGB; with `fibre.chiang.pigment = "color"`, what hair shows beside white hair.
+    Allowed: 3 numbers of 0 to 1."""
 
     tip_color: Sequence[float]
     """Reflectance at the tip, linear RGB, the same way. Allowed: 3 numbers of 0 to 1."""

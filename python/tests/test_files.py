@@ -1,5 +1,6 @@
 """USD and Alembic: what is written is read by the others' own libraries."""
 
+import json
 import subprocess
 import sys
 
@@ -113,6 +114,14 @@ def test_the_program_writes_what_extras_write(tmp_path):
         lines = [line for line in done.stdout.splitlines() if line.startswith("wrote")]
         assert len(lines) == 1 and lines[0].startswith("wrote 3 frames of 20 strands") and lines[0].endswith(f"0.0 MB to {path}"), lines
         assert "part" not in done.stdout and len(strandline.load(path)) == 20
+
+
+def test_a_report_as_json_names_the_file(tmp_path):
+    words = ["sim", "--style", "pixie", "--set", "style.strand_count=20", "--frames", "2", "--backend", "cpu", "--json", "--out", str(tmp_path / "a.usdc")]
+    done = subprocess.run([sys.executable, "-m", "strandline", *words], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    out = json.loads(done.stdout)["out"]
+    assert out["path"] == str(tmp_path / "a.usdc") and out["bytes"] == (tmp_path / "a.usdc").stat().st_size
 
 
 def test_frames_are_kept_where_their_file_cannot_be_written(tmp_path, groom, monkeypatch):

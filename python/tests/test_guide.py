@@ -1,5 +1,6 @@
-"""The pages of the guide: each is a script that makes its picture."""
+"""The pages of the guide: each is a script that makes its picture. The notebooks: each shows what its cells make."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -20,6 +21,30 @@ RUN = ALL if WRITE or os.environ.get("STRANDLINE_JOBS") else ("unreal", "game_lo
 
 def test_every_page_is_tested():
     assert {path.stem for path in PAGES.glob("*.md")} == set(ALL)
+
+
+NOTEBOOKS = Path(__file__).parents[2] / "examples/notebooks"
+NAMES = ("data_set", "exchange", "first_steps")
+
+
+def test_notebooks_are_small_and_have_run():
+    assert sorted(path.stem for path in NOTEBOOKS.glob("*")) == list(NAMES)
+    for name in NAMES:
+        path = NOTEBOOKS / f"{name}.ipynb"
+        cells = [cell for cell in json.loads(path.read_text(encoding="utf-8"))["cells"] if cell["cell_type"] == "code"]
+        assert path.stat().st_size < 300_000 and [cell["execution_count"] for cell in cells] == list(range(1, len(cells) + 1))
+        assert any("image/png" in output.get("data", {}) for cell in cells for output in cell["outputs"])
+
+
+if len(RUN) == len(ALL):
+
+    @pytest.mark.parametrize("name", NAMES)
+    def test_a_notebook_shows_what_its_cells_make(name):
+        pytest.importorskip("pxr")
+        pytest.importorskip("alembic3d")
+        writer = Path(__file__).parents[1] / "write_notebooks.py"
+        done = subprocess.run([sys.executable, "-P", writer, "check", name], capture_output=True, text=True)
+        assert done.returncode == 0, f"python -P python/write_notebooks.py\n{done.stdout}{done.stderr[-2000:]}"
 
 
 @pytest.mark.parametrize("page", RUN)

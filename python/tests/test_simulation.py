@@ -165,6 +165,18 @@ def test_pictures_are_arrays(groom, ball, tmp_path):
             picture.save(tmp_path / "none" / "a.png")
 
 
+def test_a_side_frames_the_body_where_it_is(groom, ball):
+    with shake(groom, body=ball, motion="still") as simulation:
+        there = np.eye(4)
+        there[0, 3] = 1.0
+        far = []
+        for _ in range(2):
+            camera = simulation.picture("front", width=16, height=16).camera
+            far.append(np.linalg.norm(np.subtract(camera.position, camera.target)))
+            simulation.step(1.0, head=there, vertices=ball.vertices)
+        assert far[1] < 1.3 * far[0], "and not where it was too"
+
+
 def test_python_and_the_program_make_the_same_bits(tmp_path):
     scene = Scene(style={"style": "bob", "strand_count": 40}, film={"frames": 4}, devices={"simulation": "cpu", "pictures": "cpu"}, picture={"width": 32, "height": 32})
     scene.save(tmp_path / "a.toml")

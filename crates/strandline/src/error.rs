@@ -28,6 +28,14 @@ pub enum Error {
     /// A value of the scene is outside its range.
     #[error(transparent)]
     Value(#[from] SettingError),
+    /// Groom and body could lie on each other in several ways, or in none, and a setting decides.
+    #[error("cannot place the hair: {problem}: {files}")]
+    Placement {
+        /// The files of groom and body.
+        files: String,
+        /// The problem, and the flag and the key that decide.
+        problem: String,
+    },
     /// The file with the pose of the hair could not be read, or is for other hair.
     #[error("cannot read the pose of the hair: {problem}: {}", path.display())]
     HairPose {
@@ -198,9 +206,10 @@ impl Error {
     /// The kind of an error that is no GPU's.
     fn kind_on_host(&self) -> ErrorKind {
         match self {
-            Self::Value(_) | Self::Sim(SimError::Setting(_)) | Self::Render(RenderError::Setting(_)) => {
-                ErrorKind::Value
-            }
+            Self::Value(_)
+            | Self::Placement { .. }
+            | Self::Sim(SimError::Setting(_))
+            | Self::Render(RenderError::Setting(_)) => ErrorKind::Value,
             Self::Memory(_)
             | Self::Sim(SimError::Memory(_))
             | Self::Render(RenderError::Memory { .. } | RenderError::TooMuch(_)) => ErrorKind::TooLarge,

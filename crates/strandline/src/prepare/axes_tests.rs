@@ -259,7 +259,7 @@ fn an_axis_that_a_scene_gives_is_kept_and_doubted() {
 }
 
 /// A ball, and strands that stand on the half of it whose middle lies along a way.
-fn dandelion(way: Vec3) -> (Groom, Mesh) {
+pub(super) fn dandelion(way: Vec3) -> (Groom, Mesh) {
     let mesh = balls(&[(Vec3::ZERO, Vec3::splat(0.1))]);
     let mut groom = Groom::empty(8e-5);
     for index in 0..800 {

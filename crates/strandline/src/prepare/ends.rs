@@ -34,6 +34,8 @@ const ROOTED: f32 = 0.8;
 /// where both do.
 const GATHERED: f32 = 0.8;
 const AMONG: f32 = 0.25;
+/// Confidence in hair of another head over that in the same hair turned with which it is stored from tip to root.
+const LIKELIER: f32 = 2.0;
 /// Least share of strands that surely are turned where some are: roots of a few may float.
 const SURE: f32 = 0.003;
 /// Share of strands that show their ends with which the others are like them.
@@ -91,6 +93,9 @@ fn on_skin(
         let mut turned = few.clone();
         turned.turn_strands(&vec![true; few.strand_count()]);
         let of_turned = guess::placings(scene, Strands { grooms: &[&turned], is_defined }, Some(body));
+        if of_turned.is_foreign && of_turned.confidence > LIKELIER * skin.placings.confidence {
+            return Some(vec![true; groom.strand_count()]);
+        }
         let body = skin.placings.body;
         for placings in [of_turned, Placings { groom: body, body, ..Placings::new(1.0) }] {
             let other = Skin { placings, ..skin };

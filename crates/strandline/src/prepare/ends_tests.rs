@@ -62,7 +62,10 @@ fn strands_from_the_tip_are_found_in_other_units_and_axes_and_where_a_scene_move
     }
     let mut moved = turned.clone();
     moved.transform(1.0, Quat::IDENTITY, Vec3::new(0.0, 0.0, -3.0));
-    assert_eq!(found(&moved, |_| ()), None, "hair of no head here");
+    assert_eq!(found(&moved, |_| ()), Some(vec![true; 400]), "hair that is fitted to this head");
+    moved.turn_strands(&[true; 400]);
+    assert_eq!(found(&moved, |_| ()), None);
+    moved.turn_strands(&[true; 400]);
     let found = found(&moved, |scene| scene.groom.translation.z = 3.0).unwrap_or_default();
     assert!(found.iter().filter(|turned| **turned).count() >= 396);
 }

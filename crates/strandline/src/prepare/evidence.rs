@@ -13,9 +13,11 @@ const STRANDS: usize = 150;
 const POINTS: usize = 8;
 const ROOTS: usize = 800;
 /// Directions that roots of a head of hair lie in, and the shares of them that are those of a full head of hair: more
-/// than a beard and less than fur.
+/// than a beard and less than fur. Around a ball through them the roots of a beard may cover as much as those of little
+/// hair.
 const DIRECTIONS: usize = 120;
 const FULL: std::ops::Range<f32> = 0.18..0.85;
+const SURELY_FULL: f32 = 0.3;
 /// Volume of roots over the cube of their size below which they lie in a plane.
 const FLAT: f64 = 1e-5;
 /// Depth below the crown over the width of a skull: of its middle, and of the brows.
@@ -98,7 +100,17 @@ impl Hair {
     /// True where roots lie around a middle as those of a full head of hair do; the middle is that of a ball through
     /// them where it is not known.
     pub fn is_full(&self, middle: Option<Vec3>) -> bool {
-        let Some(middle) = middle.or_else(|| Some(self.ball()?.0)) else { return false };
+        FULL.contains(&self.covered(middle))
+    }
+
+    /// True where roots lie around the middle of a ball through them as those of no beard do, in whatever axes.
+    pub fn is_surely_full(&self) -> bool {
+        (SURELY_FULL..FULL.end).contains(&self.covered(None))
+    }
+
+    /// Share of the directions from a middle in which roots lie; 0 where they lie in a plane.
+    fn covered(&self, middle: Option<Vec3>) -> f32 {
+        let Some(middle) = middle.or_else(|| Some(self.ball()?.0)) else { return 0.0 };
         let mut has = [false; DIRECTIONS];
         for root in &self.roots {
             let way = (*root - middle).normalize_or_zero();
@@ -107,8 +119,7 @@ impl Hair {
                 (1..DIRECTIONS).fold(0, |best, one| if alike(one) > alike(best) { one } else { best });
             has[nearest] = true;
         }
-        let found = has.iter().filter(|has| **has).count() as f32;
-        FULL.contains(&(found / DIRECTIONS as f32))
+        has.iter().filter(|has| **has).count() as f32 / DIRECTIONS as f32
     }
 
     /// Middle and radius of the ball that roots lie on; none where they lie in a plane.

@@ -33,7 +33,7 @@ const SAME_SIZE: f32 = 0.03;
 pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
     let (given, skull) = (&search.scene.groom, search.head.skull.as_ref()?);
     let is_open = given.scale == Scale::Auto && given.translation == Vec3::ZERO;
-    if !is_open || !search.hair.is_full(None) {
+    if !is_open || !search.hair.is_surely_full() {
         return None;
     }
     let tried: Vec<Quat> = match given.up {
@@ -41,14 +41,11 @@ pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
         Up::Auto => [Up::Y, Up::Z, Up::MinusY].map(upright).to_vec(),
         up => vec![upright(up)],
     };
-    let own = math::pitch_yaw_roll(given.rotation);
     let fitted = |turn: &Quat| {
-        let hair = search.hair.placed(|point| own * *turn * (unit * point));
-        let fitting = Fitting::new(hair.many_roots(), skull)?;
-        let scalp = skull.size.x / (fitting.scale.x / OF_SKULL.x);
-        let usual = unit_of_width(scalp / unit, unit);
+        let (hair, ratio) = fitted(search, &Placing { scale: unit, turn: *turn })?;
+        let usual = unit_of_width(skull.size.x / ratio / unit, unit);
         let placing = Placing { scale: if usual.1.is_none() { usual.0 } else { unit }, turn: *turn };
-        Some((placing, hair.placed(|point| fitting.place(point))))
+        Some((placing, hair))
     };
     let (places, hair): (Vec<Placing>, Vec<Hair>) = tried.iter().filter_map(fitted).unzip();
     let fits = fits(&search.head.surface, &hair);
@@ -63,6 +60,15 @@ pub(super) fn found(search: &Search, unit: f32) -> Option<Found> {
     let (evidence, placing, fit) = *found.first()?;
     let margin = found.get(1).map_or(MOST, |other| evidence - other.0);
     Some(Found { placing, fit, margin, next: found.get(1).map(|other| other.1), is_foreign: true })
+}
+
+/// Strands of another head fitted to that of the body, from a place in the axes and the unit of their file, and the size
+/// that they are then given: the width of the skull over that of their own.
+pub(super) fn fitted(search: &Search, from: &Placing) -> Option<(Hair, f32)> {
+    let own = math::pitch_yaw_roll(search.scene.groom.rotation);
+    let hair = search.hair.placed(|point| own * from.turn * (from.scale * point));
+    let fitting = Fitting::new(hair.many_roots(), search.head.skull.as_ref()?)?;
+    Some((hair.placed(|point| fitting.place(point)), fitting.scale.x / OF_SKULL.x))
 }
 
 /// Evidence against axes of a groom of another head.

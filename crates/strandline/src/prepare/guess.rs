@@ -4,6 +4,7 @@ use glam::{Quat, Vec3};
 use strandline_base::math;
 
 use super::{
+    doubts::{Doubt, doubts, note_of_size, refusal, refusal_of_body},
     evidence::Hair,
     foreign,
     noted::noted,
@@ -30,11 +31,17 @@ const HIGHER: f32 = 0.15;
 const SURER: f32 = 0.3;
 /// Evidence beyond that for the axes of a file with which others are taken for a groom without a body.
 const SURE_ALONE: f32 = 2.5;
-/// Distance of roots over their size at which nothing is left of the confidence in their place.
+/// Distance of roots over their size at which nothing is left of the confidence in their place, and for those that are
+/// fitted to another head than their own.
 const ASTRAY: f32 = 0.2;
-/// Confidence in hair that is fitted to another head than its own, and in hair away from the body.
+const ASTRAY_FOREIGN: f32 = 0.3;
+/// Confidence in hair that is fitted to another head than its own, in the axes of a patch that are not the body's, and in
+/// hair away from the body.
 const FOREIGN: f32 = 0.8;
+const PATCH: f32 = 0.55;
 const AWAY: f32 = 0.1;
+/// Distance of roots over their size from which on a patch floats above no skin.
+const FAR_OFF: f32 = 0.5;
 /// Evidence by which the best place is better than the next, below which that is named.
 const CLOSE: f32 = 0.7;
 /// Share of the confidence that a doubt leaves.
@@ -93,7 +100,8 @@ fn shown_alone(hair: &Hair) -> Option<Quat> {
 /// The place of a body that a style grows on.
 fn body_alone(scene: &Scene, shown: &Shown) -> Placings {
     let placings = Placings { body: shown.placing, ..Placings::new(shown.confidence) };
-    Placings { notes: noted(scene, &placings, true, shown.strange), ..placings }
+    let refusal = refusal_of_body(shown);
+    Placings { notes: noted(scene, &placings, true, shown.strange), refusal, ..placings }
 }
 
 /// The places of a groom and a body.
@@ -128,23 +136,46 @@ fn together(scene: &Scene, strands: Strands, Body { mesh, shown }: Body) -> Plac
     }
     placings.is_against = is_defined && !placings.is_foreign && placings.groom.differs(&search.same());
     let mut notes = noted(scene, &placings, true, strange);
-    if !placings.is_foreign && placings.body == body {
-        let doubts = search.doubts(&placings.groom);
-        placings.confidence *= math::powf(DOUBTED, doubts.len() as f32);
-        notes.extend(doubts);
+    let (found, size) = checked(&search, &placings, body);
+    placings.confidence *= math::powf(DOUBTED, found.len() as f32);
+    notes.extend(found.iter().map(Doubt::note));
+    if let Some(note) = note_of_size(is_defined, size) {
+        placings.confidence *= DOUBTED;
+        notes.push(note);
     }
-    Placings { notes, ..placings }
+    let refusal = refusal_of_body(shown).or_else(|| refusal(scene, &placings, &found));
+    Placings { notes, refusal, ..placings }
+}
+
+/// Properties of the placed groom that no hair of a head has, and its size over that of its file's units.
+fn checked(search: &Search, placings: &Placings, body: Placing) -> (Vec<Doubt>, f32) {
+    if placings.is_foreign {
+        let Some((hair, size)) = foreign::fitted(search, &placings.groom) else { return (Vec::new(), 1.0) };
+        return (doubts(&hair, search.head), size * placings.groom.scale);
+    }
+    if placings.body != body {
+        return (Vec::new(), 1.0);
+    }
+    (doubts(&search.placed(&placings.groom), search.head), 1.0)
 }
 
 /// Placements with the place of the groom that is found, given that of the body and the confidence in it.
 fn found(search: &Search, grooms: &[&Groom], of_body: Placings) -> Placings {
     let sure = of_body.confidence;
     let Some(found) = search.found().or_else(|| foreign::found(search, unit_alone(grooms))) else {
-        return Placings { groom: away(search, grooms), confidence: AWAY, ..of_body };
+        let groom = away(search, grooms);
+        let is_away = search.hair.is_surely_full() || search.fits(&[groom])[0] > FAR_OFF;
+        return Placings { groom, confidence: AWAY, is_away, ..of_body };
     };
     let Found { placing, fit, margin, next, is_foreign } = found;
-    let fitting = (1.0 - fit / ASTRAY).clamp(AWAY, 1.0) * (1.0 - 0.5 * math::exp(-margin));
-    let known = if is_foreign { FOREIGN } else { 1.0 };
+    let astray = if is_foreign { ASTRAY_FOREIGN } else { ASTRAY };
+    let fitting = (1.0 - fit / astray).clamp(AWAY, 1.0) * (1.0 - 0.5 * math::exp(-margin));
+    let is_turned_patch = !search.hair.is_surely_full() && placing.is_turned_from(&search.same());
+    let known = match (is_foreign, is_turned_patch) {
+        (true, _) => FOREIGN,
+        (_, true) => PATCH,
+        _ => 1.0,
+    };
     Placings {
         groom: placing,
         is_foreign,

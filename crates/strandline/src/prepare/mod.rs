@@ -1,6 +1,7 @@
 //! Loading of a scene: strands, body, solids and motion, a stage after the other.
 
 mod cover;
+mod doubts;
 mod ends;
 mod evidence;
 mod fit;

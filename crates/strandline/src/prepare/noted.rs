@@ -26,7 +26,7 @@ fn parts(turn: Quat) -> (Up, f32) {
 }
 
 /// The flags that give a groom one place and not another.
-fn flags(placing: &Placing, other: &Placing) -> String {
+pub(super) fn flags(placing: &Placing, other: &Placing) -> String {
     let (up, degrees) = parts(placing.turn);
     let mut flags = format!("--up {}", up.name());
     if degrees != 0.0 {
@@ -70,7 +70,8 @@ pub(super) fn noted(scene: &Scene, placings: &Placings, has_body: bool, width: O
     }
     let is_unsure = placings.confidence < UNSURE;
     let rival = placings.rival.filter(|_| is_unsure && has_groom);
-    if rival.is_some() && words.is_empty() {
+    let is_open = scene.groom.up == Up::Auto || scene.groom.scale == Scale::Auto;
+    if is_unsure && is_open && has_groom && has_body && words.is_empty() {
         words.push("axes and units are those of the files".to_owned());
     }
     if placings.is_against {

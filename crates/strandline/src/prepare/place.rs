@@ -4,7 +4,7 @@ use glam::Vec3;
 use strandline_base::math;
 
 use super::{
-    foreign,
+    doubts, foreign,
     guess::{self, Strands},
     join,
     loading::Loading,
@@ -22,13 +22,13 @@ use crate::{
 
 /// Guesses units, axes and front of grooms and meshes together, brings them into head space and joins them.
 pub(super) fn place(loading: &mut Loading) -> Result<(), Error> {
-    choose(loading);
+    choose(loading)?;
     place_body(loading)?;
     place_hair(loading)
 }
 
-/// Chooses the placements.
-fn choose(loading: &mut Loading) {
+/// Chooses the placements, or refuses them where they are not sure and a setting decides.
+fn choose(loading: &mut Loading) -> Result<(), Error> {
     loading.look_at_body();
     let Loading { sources, scene, groom, further_grooms: further, mesh, shown, .. } = loading;
     let grooms: Vec<&Groom> =
@@ -38,6 +38,14 @@ fn choose(loading: &mut Loading) {
     loading.placings = guess::placings(scene, strands, body);
     loading.is_foreign = loading.placings.is_foreign;
     loading.notes.append(&mut loading.placings.notes);
+    loading.placings.refusal.take().map_or(Ok(()), |problem| Err(refused(scene, problem)))
+}
+
+/// The error of a placement that is not sure.
+fn refused(scene: &Scene, problem: String) -> Error {
+    let files = [&scene.groom.file, &scene.body.file];
+    let files = files.into_iter().flatten().map(|file| scene.path(file).display().to_string());
+    Error::Placement { files: files.collect::<Vec<_>>().join(" on "), problem }
 }
 
 /// Brings the meshes into head space.
@@ -60,6 +68,13 @@ fn place_hair(loading: &mut Loading) -> Result<(), Error> {
     place_groom(groom, placings.groom, scene, scene.groom.rotation, scene.groom.translation);
     if let Some(mesh) = mesh.as_ref().filter(|_| loading.is_foreign) {
         notes.extend(foreign::fit(groom, mesh));
+    }
+    let apart = mesh.as_ref().filter(|_| placings.is_away).map(|mesh| guess::apart(groom, mesh));
+    let near = || "the roots do not lie on the skin".to_owned();
+    let placing = &placings.groom;
+    let refusal = |apart: Option<String>| doubts::refusal_away(scene, placing, &apart.unwrap_or_else(near));
+    if let Some(problem) = apart.and_then(refusal) {
+        return Err(refused(scene, problem));
     }
     let further = std::mem::take(&mut loading.further_grooms);
     let place = |groom: &mut Groom, placing, turn, by| place_groom(groom, placing, scene, turn, by);

@@ -22,7 +22,12 @@ impl Placing {
 
     /// True for a place at which hair looks otherwise: turned, or of another size.
     pub fn differs(&self, other: &Self) -> bool {
-        self.turn.angle_between(other.turn) > 0.01 || (self.scale / other.scale - 1.0).abs() > 0.1
+        self.is_turned_from(other) || (self.scale / other.scale - 1.0).abs() > 0.1
+    }
+
+    /// True for a place with other axes.
+    pub fn is_turned_from(&self, other: &Self) -> bool {
+        self.turn.angle_between(other.turn) > 0.01
     }
 }
 
@@ -59,6 +64,10 @@ pub(super) struct Placings {
     pub rival: Option<Placing>,
     /// True where the groom is placed otherwise than the format of its file defines.
     pub is_against: bool,
+    /// True where no axes and no unit bring the groom to the body.
+    pub is_away: bool,
+    /// The reason to refuse the placement, with the setting that decides.
+    pub refusal: Option<String>,
     /// Choices that were made, and what speaks against them.
     pub notes: Vec<String>,
 }
@@ -73,6 +82,8 @@ impl Placings {
             confidence,
             rival: None,
             is_against: false,
+            is_away: false,
+            refusal: None,
             notes: Vec::new(),
         }
     }

@@ -25,20 +25,15 @@ const FARTHER: f32 = 0.25;
 /// Distance of roots over their size that counts as one piece of evidence, and most pieces.
 pub(super) const PIECE: f32 = 0.02;
 pub(super) const MOST: f32 = 6.0;
-/// Evidence against axes: of a standard other than the body's own, turned round, and any others; and units.
+/// Evidence against axes: of a standard other than the body's own, for a full head of hair and for a patch, turned round,
+/// and any others; and units.
 const OTHER: f32 = 0.5;
+const OTHER_OF_PATCH: f32 = 1.0;
 const ROUND: f32 = 1.5;
 const STRANGE: f32 = 3.0;
 const ODD_UNIT: f32 = 1.0;
 /// Advantage of other axes over those of the body's file with which they are taken, where both fit.
 const CLEAR: f32 = 1.5;
-/// Share of the way from root to tip that leads down below which strands stand, height of roots over half of the width of
-/// the skull below which they are low, and share of them on the face that no hair has.
-const STANDS: f32 = -0.3;
-const LOW: f32 = 0.1;
-const ON_FACE: f32 = 0.25;
-/// Mean length of strands over the width of the skull that no hair has: two metres.
-const LONGEST: f32 = 13.0;
 /// Step between units that are tried, their number, the smallest size of roots over that of the skull, and how far how
 /// many of them may reach out of the body's box over its size.
 const STEP: f32 = 1.1;
@@ -112,9 +107,9 @@ impl Search<'_> {
             let better = tried.into_iter().zip(fits).filter(|(_, found)| *found < ON_SKIN.min(SURER * fit));
             self.best(better.collect())
         };
-        let is_open = is_full && self.scene.groom.scale == Scale::Auto;
+        let is_open = self.hair.is_surely_full() && self.scene.groom.scale == Scale::Auto;
         if let Some(found) = better(self.usual(is_full)) {
-            return Some(found);
+            return Some(if is_full { found } else { self.among_turns(found) });
         }
         // Roots may float a little.
         if fit <= FLOATING {
@@ -164,29 +159,6 @@ impl Search<'_> {
         }
     }
 
-    /// Properties of hair at a place that no hair of a head has, human-readable.
-    pub fn doubts(&self, placing: &Placing) -> Vec<String> {
-        let placed = self.placed(placing);
-        let Some(skull) = self.head.skull.as_ref() else { return Vec::new() };
-        let mut doubts = Vec::new();
-        let length = placed.length();
-        if self.head.pose.is_person && length > LONGEST * skull.size.x {
-            doubts.push(format!("the strands are {length:.1} m long in the mean"));
-        }
-        if !placed.is_full(Some(skull.center())) {
-            return told(&doubts);
-        }
-        let (hangs, high) = (placed.hangs(), placed.high(skull));
-        if self.head.pose.is_person && hangs < STANDS && high < LOW {
-            doubts.push("the strands lead up from roots below the middle of the head".to_owned());
-        }
-        let on_face = placed.on_face(skull);
-        if self.head.pose.is_person && self.head.pose.shows_front && on_face > ON_FACE {
-            doubts.push(format!("{:.0} % of the roots lie on the face", 100.0 * on_face));
-        }
-        told(&doubts)
-    }
-
     /// True where hair may show the front of groom and body: it is a full head of hair, and a scene turns neither.
     pub fn may_turn_both(&self) -> bool {
         let (groom, body) = (&self.scene.groom, &self.scene.body);
@@ -201,14 +173,14 @@ impl Search<'_> {
     }
 
     /// The strands at a place, turned and moved as the scene says.
-    fn placed(&self, placing: &Placing) -> Hair {
+    pub fn placed(&self, placing: &Placing) -> Hair {
         let groom = &self.scene.groom;
         let turn = math::pitch_yaw_roll(groom.rotation) * placing.turn;
         self.hair.placed(|point| turn * (placing.scale * point) + groom.translation)
     }
 
     /// Distances of roots from the skin over their size, for each of some places; infinite for those away from the body.
-    fn fits(&self, tried: &[Placing]) -> Vec<f32> {
+    pub fn fits(&self, tried: &[Placing]) -> Vec<f32> {
         let Some(bounds) = self.head.bounds else { return vec![f32::INFINITY; tried.len()] };
         let is_within: Vec<bool> = tried.iter().map(|placing| self.is_within(placing, bounds)).collect();
         let near = tried.iter().zip(&is_within).filter(|(_, is_within)| **is_within);
@@ -225,10 +197,13 @@ impl Search<'_> {
         let near = |one: Quat, two: Quat| one.angle_between(two) < 0.01;
         let standard = [Up::Y, Up::Z, Up::MinusY].map(upright);
         let body = self.own();
+        let placed = self.placed(placing);
+        let lies = self.head.skull.as_ref().filter(|skull| placed.is_full(Some(skull.center())));
+        let lies = lies.map(|skull| placed.on(skull, self.head.pose.shows_front));
         let against = if near(placing.turn, body.turn) {
             0.0
         } else if standard.iter().any(|turn| near(placing.turn, *turn)) {
-            OTHER
+            if lies.is_some() { OTHER } else { OTHER_OF_PATCH }
         } else if standard
             .iter()
             .any(|turn| near(placing.turn, math::rotation(Vec3::Y, std::f32::consts::PI) * *turn))
@@ -239,10 +214,7 @@ impl Search<'_> {
         };
         let is_usual = UNITS.contains(&placing.scale) || placing.scale == body.scale;
         let unit = if is_usual { 0.0 } else { ODD_UNIT };
-        let placed = self.placed(placing);
-        let lies = self.head.skull.as_ref().filter(|skull| placed.is_full(Some(skull.center())));
-        let lies = lies.map_or(0.0, |skull| placed.on(skull, self.head.pose.shows_front));
-        lies - (fit / PIECE).min(MOST) - against - unit
+        lies.unwrap_or(0.0) - (fit / PIECE).min(MOST) - against - unit
     }
 
     /// The place for which most speaks.
@@ -254,6 +226,26 @@ impl Search<'_> {
         let other = found.iter().find(|one| one.1.differs(&placing));
         let margin = other.map_or(MOST, |other| evidence - other.0);
         Some(Found { placing, fit, margin, next: other.map(|other| other.1), is_foreign: false })
+    }
+
+    /// The place of a patch, with the next one of all axes that bring it as near to the skin.
+    fn among_turns(&self, found: Found) -> Found {
+        if self.scene.groom.up != Up::Auto || !self.is_free() {
+            return found;
+        }
+        let tried: Vec<Placing> = turns().map(|turn| Placing { turn, ..found.placing }).collect();
+        let fits = self.fits(&tried);
+        let fitting = tried.into_iter().zip(fits).filter(|(_, fit)| *fit < ON_SKIN);
+        match self.best(fitting.collect()) {
+            Some(best) if best.placing == found.placing => {
+                let is_nearer = best.margin < found.margin;
+                let (margin, next) =
+                    if is_nearer { (best.margin, best.next) } else { (found.margin, found.next) };
+                Found { margin, next, ..found }
+            }
+            Some(best) => Found { margin: 0.0, next: Some(best.placing), ..found },
+            None => found,
+        }
     }
 
     /// Axes that are tried: all for a full head of hair, the usual ones otherwise; one that the scene gives.
@@ -314,12 +306,6 @@ impl Search<'_> {
         };
         self.hair.roots().filter(is_near).count() as f32 >= MOST_ROOTS * self.hair.strands.len() as f32
     }
-}
-
-/// Notes on properties that no hair of a head has.
-fn told(doubts: &[String]) -> Vec<String> {
-    let mend = "`scale`, `up`, `rotation` and `translation` of [groom], or --scale, --up and --turn, place it otherwise";
-    doubts.iter().map(|doubt| format!("{doubt}, unlike hair of a head: {mend}")).collect()
 }
 
 /// Distances of roots from a surface over their size, for each of some places of strands.

@@ -9,10 +9,16 @@ use super::{
     skull::Skull,
     units::{SCALPS, first_of, given_unit, unit_of_width},
 };
-use crate::{Scene, body::Mesh, groom::format::Up};
+use crate::{
+    Scene,
+    body::Mesh,
+    groom::format::{Scale, Up},
+};
 
 /// Diagonal of the box around a body \[m\]: a doll to a bear.
 const BODIES: std::ops::RangeInclusive<f32> = 0.15..=4.0;
+/// Width of a head \[m\] that a format which defines metres is believed: a figurine's to a giant's.
+const HEADS: std::ops::Range<f32> = 0.02..2.0;
 /// Confidence in a body that shows neither face nor feet, and in a person whose face does not show.
 pub(super) const SHAPELESS: f32 = 0.75;
 const FACELESS: f32 = 0.9;
@@ -32,6 +38,8 @@ pub(super) struct Shown {
     pub placing: Placing,
     /// Width \[m\] of a head that no usual unit makes that of a person.
     pub strange: Option<f32>,
+    /// Width of a person's head that is none in metres, in units of a file whose scale a scene leaves out.
+    pub odd_width: Option<f32>,
     /// Confidence in the placement, 0 to 1.
     pub confidence: f32,
     /// The body at its place.
@@ -44,7 +52,10 @@ impl Shown {
         let (placing, pose, strange) = of_body(scene, mesh, defined);
         let confidence = confidence_of(scene, defined, &pose);
         let head = Head::new(scene, mesh, placing, pose);
-        Self { defined, pose, placing, strange, confidence, head }
+        let is_open = scene.body.scale == Scale::Auto && pose.is_person;
+        let width = head.skull.as_ref().filter(|_| is_open).map(|skull| skull.size.x / placing.scale);
+        let odd_width = width.filter(|width| !HEADS.contains(width));
+        Self { defined, pose, placing, strange, odd_width, confidence, head }
     }
 }
 
