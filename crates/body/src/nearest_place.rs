@@ -30,7 +30,7 @@ impl NearestSurface {
     }
 
     /// The triangle that is nearest to each of the points, and the shares of its corners in the place there.
-    pub(crate) fn nearest_triangles(&self, points: &[Vec3]) -> Vec<(u32, Vec3)> {
+    pub fn nearest_triangles(&self, points: &[Vec3]) -> Vec<(u32, Vec3)> {
         self.nearest(points, |index, triangle, point| {
             let shares = |triangle: &Corners| shares_of(triangle, nearest_place(triangle, point)).as_vec3();
             (index, triangle.map_or(Vec3::X, shares))
@@ -60,7 +60,7 @@ impl Mesh {
     }
 
     /// The triangle that is nearest to each of the points, and the shares of its corners in the place there.
-    pub(crate) fn nearest_triangles(&self, points: &[Vec3]) -> Vec<(u32, Vec3)> {
+    pub fn nearest_triangles(&self, points: &[Vec3]) -> Vec<(u32, Vec3)> {
         NearestSurface::new(self).nearest_triangles(points)
     }
 }

@@ -54,3 +54,4 @@ pub use scatter::source::OwnColors;
 pub use shadow::{ShadowMap, Shadows};
 pub use strands::Strands;
 pub use strands::roots::{RootTurn, RootTurns};
+pub use surfaces::body_colors;

@@ -52,6 +52,8 @@ settings! {
         /// coordinates; the first is to the right, the second up). It replaces colours of the groom. A scene takes
         /// maps and groups in when it is loaded.
         color_map: Option<PathBuf> = None;
+        /// Colours strands as the body's materials are at their roots, where the groom has no colours: fur of an animal.
+        body_colors: bool = false;
         /// A .png with the width of each strand as a share of its own: white is all of it, black none.
         width_map: Option<PathBuf> = None;
         /// Groups of strands that look other than all, at most 256. A setting that a group does not give is that of all

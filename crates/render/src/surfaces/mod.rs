@@ -4,7 +4,7 @@ mod paint;
 
 use glam::{Vec2, Vec3, Vec4};
 use strandline_base::math;
-use strandline_body::{Material, Materials, Mesh, Srgb, Texture, Wrap};
+use strandline_body::{Material, Materials, Mesh, NearestSurface, Srgb, Texture, Wrap};
 
 pub(crate) use paint::Painted;
 
@@ -96,6 +96,13 @@ impl Surfaces {
         }
         if whole > 0.0 { (sum / whole, own / whole) } else { (Vec3::ZERO, 0.0) }
     }
+}
+
+/// Colours that a body's materials have at its places nearest to points \[m\], linear RGB; `None` where it has none.
+pub fn body_colors(mesh: &Mesh, points: &[Vec3]) -> Vec<Option<Vec3>> {
+    let Some(surfaces) = Surfaces::new(mesh) else { return vec![None; points.len()] };
+    let places = NearestSurface::new(mesh).nearest_triangles(points);
+    places.into_iter().map(|(triangle, shares)| surfaces.at(triangle, shares, 0.0).own_color()).collect()
 }
 
 /// Adds a texture and its copies of half the size each; returns the number of copies.

@@ -10,9 +10,9 @@ use strandline_base::{SettingError, math};
 use super::{Sources, loading::Loading, map::Map};
 use crate::{
     Error, Scene,
-    body::Random,
+    body::{Mesh, Random},
     groom::{Groom, Widths},
-    render::{GroupLook, Look, fibre::chiang::WHITE},
+    render::{GroupLook, Look, body_colors, fibre::chiang::WHITE},
 };
 
 /// Most pixels of all maps of a scene: four of the largest.
@@ -22,8 +22,34 @@ const MOST: f32 = 0.99;
 
 /// Gives strands the colours and widths that the scene's maps and groups have for them.
 pub(super) fn colors(loading: &mut Loading) -> Result<(), Error> {
-    let Loading { scene, sources, groom, .. } = loading;
-    groom.as_mut().map_or(Ok(()), |groom| dress(scene, sources, groom))
+    let Loading { scene, sources, groom: Some(groom), mesh, notes, .. } = loading else { return Ok(()) };
+    if scene.look.body_colors && groom.colors.is_none() {
+        groom.colors = of_body(&scene.look, groom, mesh.as_ref());
+        if groom.colors.is_none() {
+            notes.push("look.body_colors changes nothing: the body has no colours at the roots".to_owned());
+        }
+    }
+    dress(scene, sources, groom)
+}
+
+/// Colours that the materials of a body have at the roots, along strands; `None` where no root has one. Strands without
+/// one have that of the look.
+fn of_body(look: &Look, groom: &Groom, mesh: Option<&Mesh>) -> Option<Vec<[f32; 3]>> {
+    let root = |strand: usize| groom.points.get(groom.range(strand).start).copied().unwrap_or_default();
+    let roots: Vec<Vec3> = (0..groom.strand_count()).map(root).collect();
+    let found = body_colors(mesh?, &roots);
+    if found.iter().all(Option::is_none) {
+        return None;
+    }
+    let mut colors = vec![[0.0; 3]; groom.points.len()];
+    for (strand, color) in found.into_iter().enumerate() {
+        let ends = match color {
+            Some(color) => varied(look, strand, [color; 2]),
+            None => of_look(look, strand),
+        };
+        fill(&mut colors[groom.range(strand)], ends);
+    }
+    Some(colors)
 }
 
 /// Gives strands the colours and widths that the scene's maps and groups have for them.

@@ -1,3 +1,6 @@
+use glam::Vec4;
+
+use crate::body::{Material, Materials};
 use crate::render::fibre::chiang::Chiang;
 
 use super::*;
@@ -39,6 +42,28 @@ fn groups_have_colours_and_widths_of_their_own() {
     }
     assert_eq!(colors[6..9], [[0.99, 0.0, 0.0], [0.495, 0.495, 0.0], [0.0, 0.99, 0.0]]);
     assert_eq!(groom.widths, Widths::PerStrand(vec![2e-4, 2e-4, 1e-4, 1e-4]));
+}
+
+#[test]
+fn strands_have_the_colours_of_the_body_at_their_roots() {
+    let (mut look, groom) = (Look::brown(), groom());
+    look.variation = 0.0;
+    // A strip below the roots at x = 0 to 2: a red half, then one without a colour.
+    let corner = |at: usize| Vec3::new((at / 2) as f32 * 1.5 - 0.5, -0.1, (at % 2) as f32 - 0.5);
+    let triangles = vec![[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4]];
+    let mut mesh = Mesh::new((0..6).map(corner).collect(), triangles).unwrap();
+    assert_eq!(of_body(&look, &groom, Some(&mesh)), None);
+    let red = Material { color: Some(Vec4::new(0.8, 0.1, 0.05, 1.0)), ..Material::default() };
+    let materials = Materials {
+        list: vec![red, Material::default()],
+        of_triangles: vec![0, 0, 1, 1],
+        coordinates: vec![[Vec2::ZERO; 3]; 4],
+        ..Materials::default()
+    };
+    mesh.materials = Some(materials.into());
+    let colors = of_body(&look, &groom, Some(&mesh)).unwrap();
+    assert!(colors[..3].iter().all(|color| *color == [0.8, 0.1, 0.05]), "{colors:?}");
+    assert_eq!(colors[6..9], colors_along(&look, &groom.starts)[6..9], "the look's");
 }
 
 #[test]
