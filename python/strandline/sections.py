@@ -909,10 +909,6 @@ class LookGroup(TypedDict, total=False):
     the first is to the right, the second up). It replaces colours of the groom. A scene takes maps and groups in when
     it is loaded. Allowed: the path of a file."""
 
-    body_colors: bool
-    """Colours strands as the body's materials are at their roots, where the groom has no colours: fur of an animal.
-    Allowed: true or false."""
-
     width_map: str
     """A .png with the width of each strand as a share of its own: white is all of it, black none. Allowed: the path
     of a file."""
@@ -985,6 +981,10 @@ class Look(TypedDict, total=False):
     """A .png with the colour of each strand, sRGB, over where roots lie on the scalp (the groom's root coordinates;
     the first is to the right, the second up). It replaces colours of the groom. A scene takes maps and groups in when
     it is loaded. Allowed: the path of a file."""
+
+    body_colors: bool
+    """Colours strands as the body's materials are at their roots, where the groom has no colours: fur of an animal.
+    Allowed: true or false."""
 
     width_map: str
     """A .png with the width of each strand as a share of its own: white is all of it, black none. Allowed: the path
