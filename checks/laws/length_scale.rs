@@ -79,7 +79,7 @@ law! {
                 let method = settings.strands.method;
                 assert!((along.sum::<f32>() - 0.2 * scale).abs() < 1e-5, "{method:?}, {scale}: {points:?}");
                 // A strand that is thrown out to twice its length swings as far as rounding lets it: not at all where the
-                // numbers aside are zeros, 7 mm of 400 on an H200, whose products are fused with sums.
+                // numbers aside are zeros, 7 mm of 400 on an H200.
                 assert!((tip.y + 0.2 * scale).abs() < on.exact_or(1e-5, 2e-3), "{method:?}, {scale}: {tip}");
             }
         }

@@ -165,8 +165,8 @@ fn tessellate_agrees_in_place_tangent_and_frame() {
         let (curves, ..) = both.on_cpu(&positions);
         let count = curves.points_per_curve;
         let found = renderer.curves().unwrap();
-        // Frames are carried from point to point: their rounding adds up. A reciprocal root of a device may be two units
-        // in the last place off, which an H200 makes 3.1e-6 in a tangent of curls.
+        // Frames are carried from point to point: their rounding adds up. An H200 is 3.1e-6 off in a tangent
+        // of curls.
         for (which, bound) in [1e-6 * SIZE, 5e-6, 1e-5].into_iter().enumerate() {
             let all = (0..curves.guide_count).flat_map(|guide| (0..count).map(move |point| (guide, point)));
             let expected = all.map(|(guide, point)| curves.point(guide, point)[which]);

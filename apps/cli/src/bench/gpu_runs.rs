@@ -40,8 +40,8 @@ impl GradientTimes {
 }
 
 impl Device {
-    /// The first steps compile and allocate, and a device at rest lowers its clock: an H200 at 345 of 1980 MHz takes five
-    /// times as long.
+    /// The first steps compile and allocate, and a device at rest lowers its clock: on an H200 the step of the thesis's scene
+    /// took 3.5 ms without these, 0.7 ms with them.
     fn warm_up(&self, runner: &mut GpuRunner) -> anyhow::Result<()> {
         let begin = Instant::now();
         run(runner, 2, |_| Drive::default())?;
