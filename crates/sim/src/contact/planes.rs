@@ -1,6 +1,7 @@
 //! Planes that points remember of the solids, in the space of what carries these.
 
 use glam::Vec3;
+use strandline_base::par::prelude::*;
 use strandline_body::{Carrier, Collider, Pose, PosedSkin, Shape};
 use strandline_groom::{LANES, Lanes, Vec3Lanes};
 
@@ -71,6 +72,16 @@ impl Contacts {
             block.resize(block.len() + points, Plane::ON_FOOT);
         }
         Self { blocks: vec![block; block_count] }
+    }
+
+    /// Compares the bits of all planes.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let same = |(one, other): (&Plane, &Plane)| {
+            bytemuck::bytes_of(&one.numbers()) == bytemuck::bytes_of(&other.numbers())
+        };
+        let blocks = self.blocks.par_iter().zip(&other.blocks).with_min_len(64);
+        self.blocks.len() == other.blocks.len()
+            && blocks.all(|(one, other)| one.len() == other.len() && one.iter().zip(other).all(same))
     }
 
     /// Numbers of a plane for each strand.

@@ -12,6 +12,7 @@ pub mod poisson;
 pub mod pose_roots;
 mod runner;
 mod scratch;
+mod sleep;
 pub mod solve_pressure;
 pub mod solve_rods;
 pub mod splat;

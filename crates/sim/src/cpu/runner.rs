@@ -11,6 +11,7 @@ use super::gather::gather;
 use super::integrate::integrate;
 use super::mark::mark;
 use super::pose_roots::pose_roots;
+use super::sleep::Sleep;
 use super::solve_pressure::solve_pressure;
 use super::solve_rods::solve_rods;
 use super::splat::splat;
@@ -24,11 +25,12 @@ pub struct CpuRunner {
     scratch: Option<Scratch>,
     /// Skins of the last step.
     skins: Skins,
+    pub(super) sleep: Sleep,
 }
 
 impl From<Model> for CpuRunner {
     fn from(model: Model) -> Self {
-        Self { model, scratch: None, skins: Skins::new() }
+        Self { model, scratch: None, skins: Skins::new(), sleep: Sleep::default() }
     }
 }
 
@@ -48,18 +50,39 @@ impl CpuRunner {
     /// # Errors
     /// As [`Model::set_settings`].
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
+        self.sleep = Sleep::default();
         self.model.set_settings(settings)
     }
 
     /// Advances a state by one step of `settings.time_step`. It may be another state than the one before.
     pub fn step(&mut self, state: &mut State, drive: &Drive) -> StepReport {
+        let drive = drive.or_still_at(&state.body, self.model.strand_count);
+        state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
+        let report = par::awake(|| self.asleep(state, &drive));
+        if let Some(report) = report {
+            return report;
+        }
+        let report = self.make_step(state, &drive);
+        self.sleep.note(state, &drive, &report);
+        report
+    }
+
+    /// The report of a step that changes nothing but the time, without a look at the hair.
+    fn asleep(&self, state: &mut State, drive: &Drive) -> Option<StepReport> {
+        let watch = Stopwatch::start();
+        let mut report = self.sleep.report(state, drive)?.clone();
+        state.time += f64::from(self.model.settings.time_step);
+        report.seconds.iter_mut().for_each(|(_, seconds)| *seconds = 0.0);
+        report.seconds.last_mut().into_iter().for_each(|(_, seconds)| *seconds = watch.seconds());
+        Some(report)
+    }
+
+    fn make_step(&mut self, state: &mut State, drive: &Drive) -> StepReport {
         let model = &self.model;
         let scratch = self.scratch.get_or_insert_with(|| Scratch::new(model, state));
         scratch.refresh(model, state);
         model.give_sections(state);
-        let drive = drive.or_still_at(&state.body, model.strand_count);
-        state.grab.hand = drive.hand.unwrap_or(state.grab.hand);
-        let (start, end) = (state.body.clone(), drive.body);
+        let (start, end) = (state.body.clone(), drive.body.clone());
         let time_step = model.settings.time_step;
         let obstacles = Obstacles::after(&self.skins, &model.colliders, start, end, time_step);
         self.skins.clone_from(obstacles.skins());
