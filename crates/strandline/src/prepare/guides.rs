@@ -100,7 +100,7 @@ fn start(
     colliders: &[Collider],
 ) -> Result<Start, Error> {
     let head = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
-    let head = head.with_body(skin.cloned());
+    let head = head.with_body(skin.cloned()).with_neck(mesh.and_then(|mesh| mesh.neck));
     let time = if scene.groom.pose.is_some() { 0.0 } else { scene.film.start };
     let (origin, _) = about(head.origin_at(time), colliders.to_vec());
     Ok(Start { origin, body: head.seen_from(origin).frame(time) })

@@ -130,9 +130,10 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
     let vertices = mesh.as_ref().map_or(0, |mesh| mesh.positions.len());
     let load = |file: &std::path::PathBuf| HairPose::load(&scene.path(file), shape, vertices);
     let pose = scene.groom.pose.as_ref().map(load).transpose()?;
+    let neck = mesh.as_ref().and_then(|mesh| mesh.neck);
     let mesh = mesh.filter(|_| scene.body.visible);
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
-    let head = head_motion(&scene, pivot, bounds)?.with_body(skin);
+    let head = head_motion(&scene, pivot, bounds)?.with_body(skin).with_neck(neck);
     Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, placement, notes })
 }
 
