@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import json
 import os
 import subprocess
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._extras import alembic_package
-from ._receivers import group_names, joined, triangles
+from ._receivers import group_names, joined, of_file, triangles
 from .body import Body
 from .errors import Error
 from .groom import Groom
@@ -87,7 +88,7 @@ def apart(what: str, path: str, options: dict[str, Any]) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="strandline-") as folder:
         out = os.path.join(folder, "read.npz")
         seconds = time_limit(os.path.getsize(path))
-        task = {"what": what, "file": os.path.abspath(path), "out": out, "options": options}
+        task = {"what": what, "file": os.path.abspath(path), "out": out, "options": options, "seconds": seconds}
         answer = _reader.ask(task, seconds)
         if answer == ["done"]:
             with np.load(out) as arrays:
@@ -154,7 +155,12 @@ _reader = _Reader()
 def _serve() -> None:
     """Reads the archives that lines of standard input ask for."""
     for line in sys.stdin:
-        print(json.dumps(_answer(json.loads(line))), flush=True)
+        task = json.loads(line)
+        # It ends by itself where the process that asks is gone.
+        faulthandler.dump_traceback_later(task["seconds"] + 10, exit=True)
+        answer = _answer(task)
+        faulthandler.cancel_dump_traceback_later()
+        print(json.dumps(answer), flush=True)
 
 
 def _answer(task: dict[str, Any]) -> list[str]:
@@ -281,6 +287,6 @@ def _read_body(path: str, scale: float) -> Body:
     del archive
     if any(len(shape) != len(shapes[0]) for shape in shapes):
         raise Error(f"the mesh changes its number of vertices, expected the same at every time: {path}", "file")
-    if len(shapes) < 2:
-        return Body(shapes[0], faces)
-    return Body(shapes[0], faces, motion=np.stack(shapes), frames_per_second=1 / step)
+    motion = np.stack(shapes) if len(shapes) > 1 else None
+    with of_file(path):
+        return Body(shapes[0], faces, motion=motion, frames_per_second=1 / step)

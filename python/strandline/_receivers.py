@@ -43,6 +43,15 @@ def whole(path: str, part: str, what: str) -> Iterator[None]:
 _OWN = ("counts", "points", "ids", "closest", "shares", "group_names")
 
 
+@contextmanager
+def of_file(path: str) -> Iterator[None]:
+    """Names the file in errors on arrays that it holds."""
+    try:
+        yield
+    except Error as error:
+        raise Error(f"{error}: {path}", "file") from None
+
+
 def placed(points: NDArray[np.float32], for_: str) -> NDArray[np.float32]:
     """Points in the units and axes of a receiver."""
     unit, up = target(for_)
@@ -185,8 +194,9 @@ def joined(parts: list[dict[str, Any]], path: str) -> Groom:
     labels: dict[int, str] = {}
     for part in reversed(parts if "groups" in shared else []):
         labels |= part.get("group_names", {})
-    groom = Groom(points, starts, group_names=labels, **shared, **_bound(parts, len(counts)))
-    return groom.selected(counts > 1) if (counts < 2).any() else groom
+    with of_file(path):
+        groom = Groom(points, starts, group_names=labels, **shared, **_bound(parts, len(counts)))
+        return groom.selected(counts > 1) if (counts < 2).any() else groom
 
 
 def _bound(parts: list[dict[str, Any]], strands: int) -> dict[str, Any]:

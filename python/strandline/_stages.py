@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._extras import pxr_package
-from ._receivers import group_names, joined, triangles
+from ._receivers import group_names, joined, of_file, triangles
 from .body import Body
 from .errors import Error
 from .groom import Groom
@@ -187,11 +187,13 @@ def read_body(path: str) -> Body:
     if faces.size and (faces.min() < 0 or faces.max() >= len(rest)):
         raise Error(f"{mesh.GetPath()} has the corner {faces.max()} of {len(rest)} vertices: {path}", "file")
     if len(codes) < 2:
-        return Body(rest, faces)
+        with of_file(path):
+            return Body(rest, faces)
     shapes = [shape(pxr.Usd.TimeCode(code)) for code in codes]
     if any(len(one) != len(rest) for one in shapes):
         raise Error(f"{mesh.GetPath()} changes its number of vertices, expected the same at every time: {path}", "file")
-    return Body(rest, faces, motion=np.stack(shapes), frames_per_second=stage.GetTimeCodesPerSecond() or 24.0)
+    with of_file(path):
+        return Body(rest, faces, motion=np.stack(shapes), frames_per_second=stage.GetTimeCodesPerSecond() or 24.0)
 
 
 def _codes(stage: Any, mesh: Any, skinned: bool) -> list[float]:
