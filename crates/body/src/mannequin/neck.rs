@@ -23,11 +23,11 @@ const FREE: f32 = 1.31;
 const HALF_TURN: f32 = std::f32::consts::PI;
 
 /// Rigid parts that stand for the neck in contacts.
-const SLICES: usize = 3;
-/// Overlap \[m\] of neighbouring parts on either side: no corner of a cell of 4 mm on the skin lies in neither.
-const OVERLAP: f32 = 0.014;
+const SLICES: usize = 6;
+/// Overlap \[m\] of neighbouring parts on either side.
+const OVERLAP: f32 = 0.006;
 /// Depth \[m\] by which the skin of a part recedes over its overlap: under a bend its ends stay under the skin.
-const RECESS: f32 = 0.004;
+const RECESS: f32 = 0.002;
 /// Half the width \[m\] of the parts of the neck, and the air around them that their samples cover.
 const HALF_WIDTH: f32 = 0.10;
 const AIR: f32 = 0.008;
@@ -93,7 +93,7 @@ impl Neck {
     }
 
     /// The solid parts of samples of the bust, each with its carrier: head, shoulders, and the neck between. At rest their
-    /// union is the bust.
+    /// union is the bust, to the bit about the head.
     pub fn solids(&self, bust: &DistanceGrid) -> Vec<(DistanceGrid, Carrier)> {
         let steepness = Vec3::new(0.0, 1.0, SLOPE).length();
         let [low, high] = LEVELS;
