@@ -58,11 +58,8 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
         );
     }
     if offset < bytes.len() as u64 {
-        problems.push(counted(
-            bytes.len() as u64 - offset,
-            "byte after the last array is ignored",
-            "bytes after the last array are ignored",
-        ));
+        let more = counted(bytes.len() as u64 - offset, "byte", "bytes");
+        problems.push(format!("{more} after the last array: ignored"));
     }
     let starts = starts(&source, &header, segments_at, &mut problems)?;
     let has = |bit: u32| header.arrays & bit != 0;

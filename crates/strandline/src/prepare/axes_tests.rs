@@ -149,7 +149,7 @@ fn a_patch_within_the_skin_is_turned_to_no_skin_that_fits_a_little_better() {
     let beard = grown_on(&chin, Vec3::new(0.0, -2.0, 0.2), |place| place.z > 0.03 && place.y < -0.045);
     // A chin a millimetre higher than the roots; the back, where none is, lies as the roots do.
     let is_low = |place: &&mut Vec3| place.z > 0.0 && place.y < 0.0;
-    chin.positions.iter_mut().filter(is_low).for_each(|place| *place *= 1.012);
+    chin.positions.iter_mut().filter(is_low).for_each(|place| *place *= 1.008);
     for scale in [0.01, 0.00254] {
         let placing = Placing { scale, ..HERE };
         let (beard, mesh) = filed(&beard, &chin, HERE, placing);
@@ -161,14 +161,15 @@ fn a_patch_within_the_skin_is_turned_to_no_skin_that_fits_a_little_better() {
 
 #[test]
 fn hair_shows_the_axis_of_a_body_that_shows_none() {
-    let mesh = egg();
+    let mesh = balls(&[(Vec3::ZERO, Vec3::splat(0.08))]);
     let groom = grown_on(&mesh, Vec3::new(0.0, -3.0, -0.3), |place| place.y > 0.02);
     for up in [Up::Y, Up::Z, Up::MinusY] {
         let placing = turned(up.rotation());
         let (groom, mesh) = filed(&groom, &mesh, placing, placing);
         let found = found(&groom, &mesh, Defined::Nothing);
-        assert!(is_near(found.body, placing), "{up:?}: {:?} {:?}", found.body, found.notes);
-        assert!(is_near(found.groom, placing), "{up:?}: {:?} {:?}", found.groom, found.notes);
+        for place in [found.body, found.groom] {
+            assert!(place.turn.angle_between(up.rotation()) < 0.01, "{up:?}: {place:?} {:?}", found.notes);
+        }
     }
 }
 

@@ -187,24 +187,23 @@ mod tests {
         assert!(notes.len() == 1 && notes[0].contains("covers = false"), "{notes:?}");
         // Roots, and all strands that start beside it, stay.
         assert!(groom.roots().zip(pressed.roots()).all(|(one, two)| one == two));
-        let rim = hat.positions.iter().map(|place| place.y).fold(f32::INFINITY, f32::min);
         let strands = 0..groom.strand_count();
         let beside = strands.clone().filter(|strand| !inner.covers(groom.strand(*strand)[0]));
-        assert!(beside.clone().count() > 20, "{} strands", beside.count());
+        assert!(beside.clone().count() > 4, "{} strands", beside.count());
         assert!(beside.clone().all(|strand| groom.strand(strand) == pressed.strand(strand)));
-        // Lengths stay, and nothing stands out at the rim: beyond it hair goes the way that it went.
+        // Lengths stay, and nothing stands out at the rim: no segment leads from under it to where it was.
         let lengths = groom.lengths().into_iter().zip(pressed.lengths());
         let shorter = lengths.filter(|(one, two)| two / one < 0.95).count();
         assert!(shorter < 25, "{shorter} strands are shorter");
-        let out = |groom: &Groom, strand: usize| {
-            let points = groom.strand(strand).windows(2);
-            let beside = |point: Vec3| (point - inner.middle).with_y(0.0).length();
-            let steps = points.filter(|pair| pair[0].y > rim && pair[1].y <= rim);
-            steps.map(|pair| beside(pair[1]) - beside(pair[0])).fold(0.0, f32::max)
+        let segments = |groom: &Groom, strand: usize| -> Vec<f32> {
+            groom.strand(strand).windows(2).map(|pair| pair[0].distance(pair[1])).collect()
         };
-        let covered = strands.filter(|strand| inner.covers(groom.strand(*strand)[0]));
-        let standing = covered.clone().filter(|strand| out(&pressed, *strand) > out(&groom, *strand) + 0.01);
-        assert!(standing.clone().count() * 20 < covered.count(), "{}", standing.count());
+        let longer = |strand: usize| {
+            let pairs = segments(&pressed, strand).into_iter().zip(segments(&groom, strand));
+            pairs.map(|(now, own)| now / own).fold(0.0, f32::max)
+        };
+        let longest = strands.map(longer).fold(0.0, f32::max);
+        assert!(longest < 1.2, "a segment is {longest} times as long");
         // Drawn strands have room between these and the hat.
         let near = (0..groom.strand_count()).filter(|strand| inner.covers(groom.strand(*strand)[0]));
         let near = near.flat_map(|strand| pressed.strand(strand));

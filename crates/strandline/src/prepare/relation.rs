@@ -30,7 +30,7 @@ const OTHER: f32 = 0.5;
 const ROUND: f32 = 1.5;
 const STRANGE: f32 = 3.0;
 /// Evidence against axes of a patch for each step from its body's own: y or z up, -y up, turned round, and any others.
-/// Where its roots lie on the skin, nearer ones show nothing.
+/// Roots on the skin show nothing more by lying nearer to it.
 const STEP_OF_PATCH: f32 = ON_SKIN / PIECE + 0.75;
 /// Evidence against units that are not usual.
 const ODD_UNIT: f32 = 1.0;
