@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import struct
 from typing import TYPE_CHECKING, Any, NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +50,8 @@ def check(layout: str, path: str) -> None:
 
 def root_uvs(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     """Coordinates of roots on the scalp from a .npy, or from the array `uv_coords` (or the only one) of a .npz."""
+    from zipfile import BadZipFile
+
     try:
         loaded: Any = np.load(path)
     except OSError as error:
