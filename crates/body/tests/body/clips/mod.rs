@@ -60,7 +60,7 @@ fn clips_have_names_and_an_unknown_one_lists_them() {
         notes.iter().any(|note| note.contains("1 channel of KHR_animation_pointer is not played")),
         "{notes:?}"
     );
-    assert!(notes.iter().any(|note| note.contains("1 of 24 vertices have no weights")), "{notes:?}");
+    assert!(notes.iter().any(|note| note.contains("1 of 24 vertices has no weights")), "{notes:?}");
 }
 
 #[test]
