@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use glam::Vec3;
-use numpy::{PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
+use numpy::{BorrowError, PyArray3, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use strandline::{Camera, Hair as Moving, Out, OutSettings, Prepared, Scene, Sources, StepReport};
@@ -34,6 +34,8 @@ struct Playing {
     camera: Option<Camera>,
     notes: Vec<String>,
     out: Option<Out>,
+    /// The last frame that was played, its time \[s\] and its reports.
+    played: Option<(u32, f64, Vec<ReportParts>)>,
 }
 
 const CLOSED: &str = "the simulation is closed: make another one";
@@ -67,7 +69,7 @@ impl Hair {
             let mut hair = Moving::from_prepared(prepared, scene.devices)?;
             notes.extend(hair.take_notes());
             let scene = hair.scene().clone();
-            Ok(Playing { hair, scene, camera: None, notes, out: None })
+            Ok(Playing { hair, scene, camera: None, notes, out: None, played: None })
         })?;
         let guides = playing.hair.guides();
         let shape = [guides.strand_count(), guides.points_per_strand(), 3];
@@ -83,12 +85,16 @@ impl Hair {
     /// Puts the points of the moment into the array.
     fn refresh(&self, py: Python<'_>) -> PyResult<()> {
         let array = self.points.bind(py);
-        let mut memory = array.try_readwrite().map_err(|error| errors::value(py, &error.to_string()))?;
+        let mut memory = loop {
+            match array.try_readwrite() {
+                Ok(memory) => break memory,
+                // Another thread fills it.
+                Err(BorrowError::AlreadyBorrowed) => self.act(py, |_| Ok(()))?,
+                Err(error) => return Err(errors::value(py, &error.to_string())),
+            }
+        };
         let Ok(numbers) = memory.as_slice_mut() else { unreachable!("it was made contiguous") };
-        let mut playing = self.lock();
-        let Some(playing) = playing.as_mut() else { return Err(errors::error(py, CLOSED, "other")) };
-        let filled = playing.hair.points_into(bytemuck::cast_slice_mut::<f32, Vec3>(numbers));
-        filled.map_err(|error| errors::refused(py, &error))
+        self.act(py, |playing| playing.hair.points_into(bytemuck::cast_slice_mut::<f32, Vec3>(numbers)))
     }
 
     /// Lets time pass while the body moves evenly to a pose and a shape: `head` a 4 x 4 matrix, `skin` vertices \[m\],
@@ -125,11 +131,19 @@ impl Hair {
         })
     }
 
-    /// Moves to the end of a frame of the scene's film. Returns the time of the frame \[s\] and the reports.
+    /// Moves to the end of a frame of the scene's film. Returns the time of the frame \[s\] and the reports, which Ctrl-C
+    /// keeps from the caller: the same frame again returns them without a step.
     fn play(&self, py: Python<'_>, frame: u32) -> PyResult<(f64, Vec<ReportParts>)> {
         self.act(py, |playing| {
-            let stepped = playing.hair.play(frame)?;
-            Ok((playing.hair.frame_time(frame), reports(&stepped)))
+            let (_, time, reports) = match playing.played.take() {
+                Some(played) if played.0 == frame => played,
+                _ => {
+                    let stepped = playing.hair.play(frame)?;
+                    (frame, playing.hair.frame_time(frame), reports(&stepped))
+                }
+            };
+            playing.played = Some((frame, time, reports.clone()));
+            Ok((time, reports))
         })
     }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import json
 import os
 import subprocess
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._extras import alembic_package
-from ._receivers import joined, triangles
+from ._receivers import group_names, joined, of_file, triangles
 from .body import Body
 from .errors import Error
 from .groom import Groom
@@ -86,12 +87,20 @@ def apart(what: str, path: str, options: dict[str, Any]) -> dict[str, Any]:
     _checked(path)
     with tempfile.TemporaryDirectory(prefix="strandline-") as folder:
         out = os.path.join(folder, "read.npz")
-        answer = _reader.ask({"what": what, "file": os.path.abspath(path), "out": out, "options": options})
+        seconds = time_limit(os.path.getsize(path))
+        task = {"what": what, "file": os.path.abspath(path), "out": out, "options": options, "seconds": seconds}
+        answer = _reader.ask(task, seconds)
         if answer == ["done"]:
             with np.load(out) as arrays:
                 return {name: arrays[name] for name in arrays.files}
-    text, kind = answer or (f"cannot read the archive: its reader broke off, the file is damaged: {path}", "file")
+    late = f"was stopped after {seconds:.0f} s, which is long for its size" if answer is None else "broke off"
+    text, kind = answer or (f"cannot read the archive: its reader {late}, the file is damaged: {path}", "file")
     raise Error(text.replace(os.path.abspath(path), path), kind)
+
+
+def time_limit(size: int) -> float:
+    """Seconds that an archive of so many bytes may be read: a minute, and a second for each megabyte."""
+    return 60 + 1e-6 * size
 
 
 class _Reader:
@@ -102,18 +111,33 @@ class _Reader:
         self._process: subprocess.Popen[str] | None = None
         self._owner = 0
 
-    def ask(self, task: dict[str, Any]) -> list[str]:
-        """The answer to a task; none where the file ended the process."""
+    def ask(self, task: dict[str, Any], seconds: float) -> list[str] | None:
+        """The answer to a task; an empty one where the file ended the process, none where it took more than the time."""
         with self._lock:
             process = self._running()
             assert process.stdin is not None and process.stdout is not None
+            late = threading.Event()
+
+            def stop() -> None:
+                late.set()
+                process.kill()
+
+            timer = threading.Timer(seconds, stop)
+            timer.daemon = True
+            timer.start()
+            answer: list[str] = []
             try:
                 print(json.dumps(task), file=process.stdin, flush=True)
-                return list(json.loads(process.stdout.readline()))
+                answer = list(json.loads(process.stdout.readline()))
             except (OSError, ValueError):
-                process.kill()
-                process.wait()
-                return []
+                return None if late.is_set() else []
+            finally:
+                timer.cancel()
+                if not answer:
+                    # Also where Ctrl-C ends the wait: else the next task would get this answer.
+                    process.kill()
+                    process.wait()
+            return answer
 
     def _running(self) -> subprocess.Popen[str]:
         # A forked process has a reader of its own.
@@ -131,7 +155,12 @@ _reader = _Reader()
 def _serve() -> None:
     """Reads the archives that lines of standard input ask for."""
     for line in sys.stdin:
-        print(json.dumps(_answer(json.loads(line))), flush=True)
+        task = json.loads(line)
+        # It ends by itself where the process that asks is gone.
+        faulthandler.dump_traceback_later(task["seconds"] + 10, exit=True)
+        answer = _answer(task)
+        faulthandler.cancel_dump_traceback_later()
+        print(json.dumps(answer), flush=True)
 
 
 def _answer(task: dict[str, Any]) -> list[str]:
@@ -140,6 +169,8 @@ def _answer(task: dict[str, Any]) -> list[str]:
         if task["what"] == "groom":
             groom = _read_groom(task["file"], **task["options"])
             arrays = {"points": groom.points, "starts": groom.starts, "widths": np.asarray(groom.widths), **groom.attributes}
+            numbers, texts = list(groom.group_names), list(groom.group_names.values())
+            arrays |= {"named": np.array(numbers, dtype=np.int64), "names": np.array(texts, dtype=str)}
         else:
             body = _read_body(task["file"], **task["options"])
             arrays = {"vertices": body.vertices, "faces": body.faces, "rate": np.asarray(body.frames_per_second)}
@@ -156,10 +187,12 @@ def _read_groom(path: str, frame: int | None, scale: float) -> Groom:
     archive, top = _opened(path)
     geometry = alembic_package().AbcGeom
     parts: list[dict[str, Any]] = []
+    samples = 0
     try:
         for of in _below(top):
             if geometry.ICurves.matches(of.getHeader()):
                 part = _curves(of, frame or 0, scale)
+                samples = max(samples, part.pop("samples"))
                 if len(part["counts"]):
                     parts.append(part)
     except (RuntimeError, IndexError, ValueError) as error:
@@ -167,13 +200,16 @@ def _read_groom(path: str, frame: int | None, scale: float) -> Groom:
     del archive
     if not parts:
         raise Error(f"it holds no curves, expected strands: {path}", "file")
+    if frame is not None and frame >= samples:
+        raise Error(f"frame is {frame}, expected 0 to {samples - 1}, its samples: {path}", "value")
     return joined(parts, path)
 
 
 def _curves(of: Any, index: int, scale: float) -> dict[str, Any]:
     package = alembic_package()
     schema = package.AbcGeom.ICurves(of, package.Abc.WrapExistingFlag.kWrapExisting).getSchema()
-    index = min(index, max(schema.getNumSamples() - 1, 0))
+    samples = max(schema.getNumSamples(), 1)
+    index = min(index, samples - 1)
     at = _at(schema, index)
     sample = schema.getValue(at)
     time = schema.getTimeSampling().getSampleTime(index)
@@ -181,7 +217,7 @@ def _curves(of: Any, index: int, scale: float) -> dict[str, Any]:
     counts = _array(sample.getCurvesNumVertices(), 1)
     points = _array(sample.getPositions()).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     size = scale * float(np.cbrt(abs(np.linalg.det(matrix[:3, :3]))))
-    part: dict[str, Any] = {"counts": counts, "points": (points * scale).astype(np.float32)}
+    part: dict[str, Any] = {"samples": samples, "counts": counts, "points": (points * scale).astype(np.float32)}
     widths = schema.getWidthsParam()
     own = _array(widths.getExpandedValue(at).getVals(), 1) if widths and widths.valid() else np.empty(0)
     total = len(part["points"])
@@ -221,6 +257,9 @@ def _attributes(schema: Any, strands: int, points: int) -> dict[str, Any]:
             values = _array(param.getExpandedValue().getVals(), columns)
             if len(values) == length:
                 found[own] = values
+    if "groom_group_name" in names:
+        labels = package.AbcGeom.IStringGeomParam(arbitrary, "groom_group_name").getExpandedValue().getVals()
+        found["group_names"] = group_names(found.get("groups"), [labels[at] for at in range(len(labels))])
     if not {"closest", "shares"} <= found.keys():
         found = {name: values for name, values in found.items() if name not in ("closest", "shares")}
     return found
@@ -248,6 +287,6 @@ def _read_body(path: str, scale: float) -> Body:
     del archive
     if any(len(shape) != len(shapes[0]) for shape in shapes):
         raise Error(f"the mesh changes its number of vertices, expected the same at every time: {path}", "file")
-    if len(shapes) < 2:
-        return Body(shapes[0], faces)
-    return Body(shapes[0], faces, motion=np.stack(shapes), frames_per_second=1 / step)
+    motion = np.stack(shapes) if len(shapes) > 1 else None
+    with of_file(path):
+        return Body(shapes[0], faces, motion=motion, frames_per_second=1 / step)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import tempfile
@@ -111,6 +112,8 @@ class Files:
             arrays["widths" if np.size(own.widths) == len(own.points) else "strand_widths"] = own.widths
         names = {"root_uvs": "root_uv"}
         arrays.update({names.get(name, name): numbers for name, numbers in own.attributes.items()})
+        meta = json.dumps({"groups": own.group_names})
+        arrays["meta"] = np.frombuffer(meta.encode(), dtype=np.uint8)
         copy = self.place(path, ".npz")
         np.savez(copy, **arrays)
         return copy

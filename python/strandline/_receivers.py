@@ -40,7 +40,16 @@ def whole(path: str, part: str, what: str) -> Iterator[None]:
 
 
 #: Arrays of a part of a file that are no attributes of a groom by themselves.
-_OWN = ("counts", "points", "ids", "closest", "shares")
+_OWN = ("counts", "points", "ids", "closest", "shares", "group_names")
+
+
+@contextmanager
+def of_file(path: str) -> Iterator[None]:
+    """Names the file in errors on arrays that it holds."""
+    try:
+        yield
+    except Error as error:
+        raise Error(f"{error}: {path}", "file") from None
 
 
 def placed(points: NDArray[np.float32], for_: str) -> NDArray[np.float32]:
@@ -62,8 +71,35 @@ def left_out(groom: Groom, path: str, for_: str) -> list[str]:
     """Notes on attributes that a file of a receiver has not."""
     weights = ("guide_indices", "guide_weights") if for_ == "unreal" else ()
     held = ("colors", "root_uvs", "groups", "guide_flags", "velocities", *weights)
-    lacking = [name for name in groom.attributes if name not in held] + (["group_names"] if groom.group_names else [])
+    lacking = [name for name in groom.attributes if name not in held]
+    if groom.group_names.keys() - set(groom.attributes.get("groups", np.empty(0)).tolist()):
+        lacking.append("group_names of groups without strands")
     return [f"{os.path.basename(path)} has no {name}" for name in lacking]
+
+
+def attributes(groom: Groom) -> dict[str, Any]:
+    """Attributes of a groom by name, with the names of its groups."""
+    return {**groom.attributes, "group_names": groom.group_names}
+
+
+def group_labels(more: dict[str, Any]) -> list[str]:
+    """The name of each strand's group among attributes, empty for a group without one; none where no group has one."""
+    names, groups = more.get("group_names", {}), more.get("groups")
+    if groups is None or not names:
+        return []
+    if cut := [name for name in names.values() if "\0" in name]:
+        raise Error(f"group_names has {cut[0]!r} with a zero character, expected names without one", "value")
+    numbers, places = np.unique(groups, return_inverse=True)
+    own = [names.get(int(number), "") for number in numbers]
+    return [own[place] for place in places] if any(own) else []
+
+
+def group_names(groups: NDArray[Any] | None, labels: list[str]) -> dict[int, str]:
+    """Names of groups by number, of the group and the label of each strand."""
+    if groups is None or len(labels) != len(groups):
+        return {}
+    numbers, firsts = np.unique(groups, return_index=True)
+    return {int(number): labels[first] for number, first in zip(numbers, firsts, strict=True) if labels[first]}
 
 
 def nearest_guides(indices: NDArray[Any], weights: NDArray[Any]) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
@@ -95,7 +131,7 @@ def cache_attributes(cache: Cache, for_: str) -> tuple[dict[str, Any], Bound | N
     """Attributes of a cache's strands by the names of a groom's, and for Unreal the strands that are bound to them."""
     found = cache.attributes()
     named = {"colors": "colors", "root_uv": "root_uvs", "groups": "groups", "guide_flags": "guide_flags"}
-    more = {own: found[name] for name, own in named.items() if name in found}
+    more = {own: found[name] for name, own in named.items() if name in found} | {"group_names": found["group_names"]}
     if for_ != "unreal" or "guide_indices" not in found:
         return more, None
     binding = {name: found[name] for name in ("guide_indices", "guide_weights")}
@@ -155,8 +191,12 @@ def joined(parts: list[dict[str, Any]], path: str) -> Groom:
     names = [name for name in parts[0] if name not in _OWN and all(name in part for part in parts)]
     shared: dict[str, Any] = {name: np.concatenate([part[name] for part in parts]) for name in names}
     starts = np.concatenate([[0], np.cumsum(counts)])
-    groom = Groom(points, starts, **shared, **_bound(parts, len(counts)))
-    return groom.selected(counts > 1) if (counts < 2).any() else groom
+    labels: dict[int, str] = {}
+    for part in reversed(parts if "groups" in shared else []):
+        labels |= part.get("group_names", {})
+    with of_file(path):
+        groom = Groom(points, starts, group_names=labels, **shared, **_bound(parts, len(counts)))
+        return groom.selected(counts > 1) if (counts < 2).any() else groom
 
 
 def _bound(parts: list[dict[str, Any]], strands: int) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._extras import pxr_package
-from ._receivers import joined, triangles
+from ._receivers import group_names, joined, of_file, triangles
 from .body import Body
 from .errors import Error
 from .groom import Groom
@@ -85,9 +85,11 @@ def read_groom(path: str, frame: int | None) -> Groom:
     pxr = pxr_package()
     time, here = _time(stage, frame), _to_here(stage)
     parts: list[dict[str, Any]] = []
-    for prim in stage.Traverse():
-        if not prim.IsA(pxr.UsdGeom.BasisCurves):
-            continue
+    found = [prim for prim in stage.Traverse() if prim.IsA(pxr.UsdGeom.BasisCurves)]
+    codes = [code for prim in found for code in pxr.UsdGeom.BasisCurves(prim).GetPointsAttr().GetTimeSamples()]
+    if frame is not None and codes and not min(codes) <= frame <= max(codes):
+        raise Error(f"frame is {frame}, expected {min(codes):g} to {max(codes):g}, its time codes: {path}", "value")
+    for prim in found:
         curves = pxr.UsdGeom.BasisCurves(prim)
         counts = np.asarray(curves.GetCurveVertexCountsAttr().Get(time) or [], dtype=np.int64)
         points = curves.GetPointsAttr().Get(time)
@@ -120,6 +122,9 @@ def _attributes(curves: Any, counts: NDArray[np.int64], matrix: NDArray[np.float
         value = primvar.ComputeFlattened(time) if primvar and primvar.HasValue() else None
         return None if value is None else np.asarray(value)
 
+    def either(*names: str) -> NDArray[Any] | None:
+        return next((value for value in map(read, names) if value is not None), None)
+
     def spread(numbers: NDArray[Any] | None, place: str) -> NDArray[Any] | None:
         if numbers is None or numbers.ndim == 0:
             return None
@@ -136,15 +141,18 @@ def _attributes(curves: Any, counts: NDArray[np.int64], matrix: NDArray[np.float
     scale = float(np.cbrt(abs(np.linalg.det(matrix[:3, :3]))))
     velocities = curves.GetVelocitiesAttr().Get(time)
     moved = None if velocities is None or len(velocities) != sizes["point"] else _carried(velocities, _turned(matrix))
-    found = {
+    found: dict[str, Any] = {
         "widths": spread(None if widths is None else widths * scale, "point"),
         "velocities": moved if moved is not None and np.all(np.isfinite(moved)) else None,
-        "colors": spread(next((value for value in map(read, ("displayColor", "groom_color")) if value is not None), None), "point"),
-        "root_uvs": spread(next((value for value in map(read, ("st", "groom_root_uv", "surface_uv_coordinate")) if value is not None), None), "strand"),
-        "groups": spread(read("groom_group_id"), "strand"),
+        "colors": spread(either("displayColor", "groom_color"), "point"),
+        "root_uvs": spread(either("st", "groom_root_uv", "surface_uv_coordinate"), "strand"),
+        "groups": spread(either("groom_group_id", "group_id"), "strand"),
         "guide_flags": spread(read("groom_guide"), "strand"),
         "ids": spread(read("groom_id"), "strand"),
     }
+    labels = spread(either("groom_group_name", "group_name"), "strand")
+    if labels is not None:
+        found["group_names"] = group_names(found["groups"], labels.tolist())
     closest, shares = read("groom_closest_guides"), read("groom_guide_weights")
     if all(rows is not None and rows.shape == (sizes["strand"], 3) for rows in (closest, shares)):
         found |= {"closest": closest, "shares": shares}
@@ -179,11 +187,13 @@ def read_body(path: str) -> Body:
     if faces.size and (faces.min() < 0 or faces.max() >= len(rest)):
         raise Error(f"{mesh.GetPath()} has the corner {faces.max()} of {len(rest)} vertices: {path}", "file")
     if len(codes) < 2:
-        return Body(rest, faces)
+        with of_file(path):
+            return Body(rest, faces)
     shapes = [shape(pxr.Usd.TimeCode(code)) for code in codes]
     if any(len(one) != len(rest) for one in shapes):
         raise Error(f"{mesh.GetPath()} changes its number of vertices, expected the same at every time: {path}", "file")
-    return Body(rest, faces, motion=np.stack(shapes), frames_per_second=stage.GetTimeCodesPerSecond() or 24.0)
+    with of_file(path):
+        return Body(rest, faces, motion=np.stack(shapes), frames_per_second=stage.GetTimeCodesPerSecond() or 24.0)
 
 
 def _codes(stage: Any, mesh: Any, skinned: bool) -> list[float]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ._archives import apart
 from ._extras import alembic_package
-from ._receivers import cache_attributes, left_out, moments, nearest_guides, placed, point_widths, target, whole
+from ._receivers import attributes, cache_attributes, group_labels, left_out, moments, nearest_guides, placed, point_widths, target, whole
 from .body import Body
 from .errors import Error
 from .groom import Groom
@@ -39,6 +39,15 @@ def _integers(numbers: Any) -> Any:
     import imath
 
     return imath.IntArrayFromBuffer(np.ascontiguousarray(numbers, dtype=np.int32))
+
+
+def _texts(texts: list[str]) -> Any:
+    import imath
+
+    array = imath.StringArray(len(texts))
+    for at, text in enumerate(texts):
+        array[at] = text
+    return array
 
 
 class _File:
@@ -107,6 +116,8 @@ class _Strands:
             put("V2f", "groom_root_uv", uvs, uniform)
         if "groups" in more:
             put("Int32", "groom_group_id", _integers(more["groups"]), uniform)
+        if labels := group_labels(more):
+            put("String", "groom_group_name", _texts(labels), uniform)
         if "guide_flags" in more:
             put("Int32", "groom_guide", _integers(more["guide_flags"]), uniform)
         if "guide_indices" in more and self._for == "unreal":
@@ -148,7 +159,7 @@ def save_groom(groom: Groom, path: str | os.PathLike[str], *, for_: str = "any")
     with whole(path, part, "archive"):
         file = _File(part, 24.0, for_)
         strands = file.strands("hair")
-        strands.describe(groom.starts, point_widths(groom), groom.attributes)
+        strands.describe(groom.starts, point_widths(groom), attributes(groom))
         strands.add(groom.points, groom.attributes.get("velocities"))
         del strands
         file.close()
@@ -184,7 +195,8 @@ def load_groom(path: str | os.PathLike[str], *, frame: int | None = None, scale:
     """All curves of an archive as one groom, y up; ``scale`` is metres for each unit. ``frame`` is the number of a
     sample, without it the first is taken."""
     arrays = apart("groom", os.fspath(path), {"frame": frame, "scale": scale})
-    return Groom(arrays.pop("points"), arrays.pop("starts"), widths=arrays.pop("widths"), **arrays)
+    names = dict(zip(arrays.pop("named").tolist(), arrays.pop("names").tolist(), strict=True))
+    return Groom(arrays.pop("points"), arrays.pop("starts"), widths=arrays.pop("widths"), group_names=names, **arrays)
 
 
 def load_body(path: str | os.PathLike[str], *, scale: float = 1.0) -> Body:

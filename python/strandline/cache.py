@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import tomllib
 from collections.abc import Callable, Iterator
@@ -60,10 +61,13 @@ class Cache:
 
     def attributes(self) -> dict[str, Any]:
         """Attributes of the strands that the file has: widths and colors per point, root_uv and groups per strand,
-        guide_indices and guide_weights of strands that are bound, guide_flags where guides are among the strands."""
+        guide_indices and guide_weights of strands that are bound, guide_flags where guides are among the strands; and
+        group_names, the names of groups by number."""
         names = ("widths", "colors", "root_uv", "groups", "guide_flags", "guide_indices", "guide_weights", "bound_points", "bound_starts")
         with np.load(self.path) as arrays:
-            return {name: arrays[name] for name in names if name in arrays.files}
+            found: dict[str, Any] = {name: arrays[name] for name in names if name in arrays.files}
+            labels = json.loads(arrays["meta"].tobytes()).get("group_names", [])
+        return found | {"group_names": {group: name for group, name in enumerate(labels) if name}}
 
     def widths(self) -> NDArray[np.float32]:
         """Diameter at each point [m]."""
@@ -103,6 +107,10 @@ def by_part(path: str | os.PathLike[str], make: Callable[[str], bool], *, for_: 
         if not make(part):
             return None
         written = write(Cache(part), path, for_=for_, velocities=velocities)
+    except KeyboardInterrupt as stopped:
+        if os.path.exists(part):
+            stopped.add_note(f"the frames so far are kept: {part}")
+        raise
     except Exception as error:
         if not os.path.exists(part):
             raise

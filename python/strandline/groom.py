@@ -262,7 +262,7 @@ def load(
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
     if layout is not None:
-        research.check(layout)
+        research.check(layout, path)
         scale = research.LAYOUTS[layout].scale if scale == "auto" else scale
         points_per_strand = points_per_strand or research.LAYOUTS[layout].points_per_strand
         up = research.LAYOUTS[layout].up if up == "y" else up

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import struct
 from typing import TYPE_CHECKING, Any, NamedTuple
-from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,22 +36,28 @@ LAYOUTS: dict[str, Layout] = {
 }
 
 
-def check(layout: str) -> None:
-    """Refuses a layout that has no such name."""
+def check(layout: str, path: str) -> None:
+    """Refuses a layout that has no such name, and a file whose suffix is that of another."""
     if layout not in LAYOUTS:
         import difflib
 
         near = difflib.get_close_matches(layout, LAYOUTS, 1)
         nearest = f"`{near[0]}` or another of " if near else "one of "
         raise Error(f"`{layout}` is no layout, expected {nearest}{', '.join(LAYOUTS)}", "value")
+    if os.path.splitext(path)[1].lower() != LAYOUTS[layout].suffix:
+        raise Error(f"`{os.path.basename(path)}` has another suffix, expected {LAYOUTS[layout].suffix} for {layout}", "value")
 
 
 def root_uvs(path: str | os.PathLike[str]) -> NDArray[np.float32]:
     """Coordinates of roots on the scalp from a .npy, or from the array `uv_coords` (or the only one) of a .npz."""
+    from zipfile import BadZipFile
+
     try:
         loaded: Any = np.load(path)
-    except (OSError, ValueError, EOFError, BadZipFile) as error:
-        raise Error(f"cannot read root coordinates: {error}: {os.fspath(path)}", "file") from None
+    except OSError as error:
+        raise Error(f"cannot read root coordinates: {error.strerror or error}: {os.fspath(path)}", "file") from None
+    except (ValueError, EOFError, BadZipFile):
+        raise Error(f"cannot read root coordinates: no .npy or .npz of numbers: {os.fspath(path)}", "file") from None
     if not isinstance(loaded, np.ndarray):
         names = loaded.files
         name = "uv_coords" if "uv_coords" in names else names[0] if len(names) == 1 else None
@@ -64,12 +69,12 @@ def root_uvs(path: str | os.PathLike[str]) -> NDArray[np.float32]:
 
 def save(groom: Groom, path: str | os.PathLike[str], layout: str) -> list[str]:
     """Writes a groom in a layout; returns notes on what it cannot hold."""
-    check(layout)
-    about = LAYOUTS[layout]
     path = os.fspath(path)
-    if os.path.splitext(path)[1].lower() != about.suffix:
-        raise Error(f"`{os.path.basename(path)}` has another suffix, expected {about.suffix} for {layout}", "value")
+    check(layout, path)
+    about = LAYOUTS[layout]
     notes = [f"{layout} cannot hold {name}" for name in groom.attributes if not (layout == "positions" and name == "root_uvs")]
+    if groom.group_names:
+        notes.append(f"{layout} cannot hold group_names")
     each = about.points_per_strand
     if each is not None and not (groom.is_uniform and len(groom.points) == each * groom.strand_count):
         groom = groom.resampled(each)

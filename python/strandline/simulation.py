@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import os
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -86,6 +87,7 @@ class Simulation:
         frames: int | None = None,
         **sections: Any,
     ) -> None:
+        _check_names(sections)
         scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene) if scene is not None else Scene()
         groom = _by_extra(scene, "groom.file", groom, _extras.GROOMS, load)
         body = _by_extra(scene, "body.file", body, _extras.BODIES, Body.load)
@@ -168,17 +170,24 @@ class Simulation:
         if air is not None and air.shape != (3,):
             raise Error(f"wind has {air.size} numbers, expected 3 [m/s]", "value")
         seconds = _arrays.number(seconds, "seconds", "0 to 1,000,000 s", 0, 1e6)
-        self._fresh = False
-        reports = self._native.step(seconds, None if rows is None else rows.tolist(), skin, None if air is None else air.tolist())
-        self._time += seconds
-        self._shape = self._shape if skin is None else skin
+        try:
+            reports = self._native.step(seconds, None if rows is None else rows.tolist(), skin, None if air is None else air.tolist())
+        except Error:
+            seconds, skin = 0.0, None
+            raise
+        finally:
+            # Ctrl-C comes after the steps.
+            self._fresh = False
+            self._time += seconds
+            self._shape = self._shape if skin is None else skin
         return [StepReport(*report) for report in reports]
 
     def frames(self, count: int | None = None, *, progress: bool | None = None) -> Iterator[Frame]:
         """Plays the scene's film frame by frame, from the frame after the last: ``for frame in simulation.frames(240)``.
 
         Head and wind move as the scene has them, and a Body with a motion by that. The frames are those of
-        ``strandline sim`` to the bit on the CPU. Ctrl-C stops between two frames.
+        ``strandline sim`` to the bit on the CPU. Ctrl-C stops between two frames; the next call goes on with the frame
+        that was not handed out.
         """
         count = self._left(count, "count")
         return self._played(count, progress)
@@ -195,18 +204,22 @@ class Simulation:
 
     def _next(self) -> Frame:
         index = self._frame
-        time, stepped = self._native.play(index)
-        self._fresh = False
+        try:
+            time, stepped = self._native.play(index)
+        finally:
+            self._fresh = False
         self._frame, self._time = index + 1, time
         return Frame(index, time, self.points, [StepReport(*report) for report in stepped])
 
     def settle(self, seconds: float) -> None:
         """Lets the hair hang on the resting body for a time [s]; no time of the film passes."""
         left = _arrays.number(seconds, "seconds", "0 to 1,000,000 s", 0, 1e6)
-        while left > 0:
-            self._native.settle(min(left, _LOOK))
-            left -= _LOOK
-        self._fresh = False
+        try:
+            while left > 0:
+                self._native.settle(min(left, _LOOK))
+                left -= _LOOK
+        finally:
+            self._fresh = False
 
     def drape(self, seconds: float = 10.0) -> float:
         """Runs to rest on the resting body: until no point moves faster than 2 mm/s, or so many seconds are over.
@@ -418,6 +431,18 @@ class Simulation:
 
     def __repr__(self) -> str:
         return f"Simulation({self.strand_count} strands x {self.points_per_strand} points, {self._time:.3f} s, on {self.simulated_on})"
+
+
+def _check_names(sections: Mapping[str, Any]) -> None:
+    """Refuses a keyword that is no setting with the nearest argument, where one is near."""
+    for name in sections:
+        try:
+            _native.check(name)
+        except Error:
+            near = difflib.get_close_matches(name, ("scene", "groom", "body", "motion", "settings", "look", "backend", "frames"), 1)
+            if near:
+                raise Error(f"{name} is no argument of Simulation, expected `{near[0]}` or a key of docs/scene.md", "value") from None
+            raise
 
 
 def _by_extra(scene: Scene, key: str, given: Any, suffixes: tuple[str, ...], read: Callable[[str], Any]) -> Any:

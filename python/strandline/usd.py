@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._extras import pxr_package
-from ._receivers import cache_attributes, left_out, moments, nearest_guides, placed, point_widths, target, whole
+from ._receivers import attributes, cache_attributes, group_labels, left_out, moments, nearest_guides, placed, point_widths, target, whole
 from ._stages import read_body, read_groom, told
 from .body import Body
 from .errors import Error
@@ -88,6 +88,8 @@ def _describe(curves: Any, starts: NDArray[np.uint32], widths: NDArray[np.float3
         put("groom_root_uv" if unreal else "st", kinds.TexCoord2fArray, "uniform", vt.Vec2fArray.FromNumpy(floats(more["root_uvs"])))
     if "groups" in more:
         put("groom_group_id", kinds.IntArray, "uniform", integers(more["groups"]))
+    if labels := group_labels(more):
+        put("groom_group_name", kinds.StringArray, "uniform", vt.StringArray(labels))
     if "guide_flags" in more:
         put("groom_guide", kinds.IntArray, "uniform", integers(more["guide_flags"]))
     if unreal:
@@ -119,7 +121,7 @@ def save_groom(groom: Groom, path: str | os.PathLike[str], *, for_: str = "any")
         stage = _stage(part, for_, 24.0, 1)
         curves = _strands(stage, "Hair")
         widths = point_widths(groom)
-        _describe(curves, groom.starts, widths, groom.attributes, for_)
+        _describe(curves, groom.starts, widths, attributes(groom), for_)
         points = placed(groom.points, for_)
         curves.CreatePointsAttr(pxr.Vt.Vec3fArray.FromNumpy(points))
         if "velocities" in groom:

@@ -154,6 +154,9 @@ def test_scenes_take_sections_and_keys():
         scene["film.frames"] = 0
     with pytest.raises(Error, match="film.frames is .*many"):
         scene["film.frames"] = "many"
+    for wrong, words in {"frmes": "`frames`", "settngs": "`settings`", "sytle": "`style`", "zzzzzzzz": "expected a key of docs/scene.md"}.items():
+        with pytest.raises(Error, match=words):
+            strandline.Simulation(**{wrong: 1})
     assert scene["film.frames"] == 7, "a refused setting leaves the scene as it was"
 
 
@@ -225,6 +228,13 @@ def test_a_layout_that_nobody_has_is_refused(tmp_path, points):
         strandline.load(tmp_path / "a.ply", layout="nueral")
     with pytest.raises(Error, match="expected .ply for neural"):
         Groom(points).save(tmp_path / "a.obj", layout="neural")
+    with pytest.raises(Error, match="`a.npy` has another suffix, expected .data for usc"):
+        strandline.load(tmp_path / "a.npy", layout="usc")
+    (tmp_path / "a.npy").write_text("v 0 0 0")
+    Groom(points).save(tmp_path / "b.npy")
+    for name, words in {"a.npy": "no .npy or .npz of numbers: .*a.npy", "none.npy": "No such file or directory: [^:]*none.npy"}.items():
+        with pytest.raises(Error, match=f"cannot read root coordinates: {words}$"):
+            strandline.load(tmp_path / "b.npy", root_uvs=tmp_path / name)
 
 
 def test_root_coordinates_come_from_a_second_file(tmp_path, points):

@@ -53,13 +53,29 @@ def test_a_page_makes_its_picture(tmp_path, page):
         pytest.importorskip("pxr")
         pytest.importorskip("alembic3d")
     text = (PAGES / f"{page}.md").read_text(encoding="utf-8")
-    script = "\n".join(part.split("```")[0] for part in text.split("```python\n")[1:])
-    (tmp_path / "page.py").write_text(script, encoding="utf-8")
-    done = subprocess.run([sys.executable, "page.py"], cwd=tmp_path, capture_output=True, text=True)
+    makes(tmp_path, "\n".join(scripts(text)), f"guide_{page}.png")
+    assert f"](../gallery/guide_{page}.png)" in text
+
+
+if len(RUN) == len(ALL):
+
+    def test_the_page_before_the_guide_makes_its_picture(tmp_path):
+        text = (PAGES.parent / "python.md").read_text(encoding="utf-8")
+        makes(tmp_path, scripts(text)[0], "python.png")
+        assert "](gallery/python.png)" in text
+
+
+def scripts(text):
+    """The blocks of Python of a page."""
+    return [part.split("```")[0] for part in text.split("```python\n")[1:]]
+
+
+def makes(folder, script, name):
+    """Runs a script, which makes a picture that the gallery has."""
+    (folder / "page.py").write_text(script, encoding="utf-8")
+    done = subprocess.run([sys.executable, "page.py"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
-    name = f"guide_{page}.png"
-    assert f"](../gallery/{name})" in text
-    assert (tmp_path / name).stat().st_size > 3000
+    assert (folder / name).stat().st_size > 3000
     if WRITE:
-        shutil.copy(tmp_path / name, PAGES.parent / "gallery" / name)
+        shutil.copy(folder / name, PAGES.parent / "gallery" / name)
     assert (PAGES.parent / "gallery" / name).exists()

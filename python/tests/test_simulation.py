@@ -229,12 +229,80 @@ def test_other_threads_run_while_a_step_does(groom):
         thread = threading.Thread(target=beat)
         thread.start()
         begun = time.perf_counter()
-        simulation.step(1.5)
+        simulation.step(8.0)
         spent = time.perf_counter() - begun
         done.set()
         thread.join()
         longest = max(np.diff([begun, *beats, begun + spent]), default=spent)
         assert longest < 0.6 * spent + 0.05, f"{longest} s of {spent} s without the other thread"
+
+
+def test_other_threads_run_while_points_wait_for_a_step(groom):
+    with shake(groom) as simulation:
+        begun, ended, beats = threading.Event(), threading.Event(), []
+
+        def step():
+            begun.set()
+            simulation.step(8.0)
+
+        def beat():
+            while not ended.is_set():
+                beats.append(time.perf_counter())
+                time.sleep(0.001)
+
+        threads = [threading.Thread(target=act) for act in (step, beat)]
+        for thread in threads:
+            thread.start()
+        begun.wait()
+        time.sleep(0.02)
+        # Three threads wait for the same memory.
+        waiting = [threading.Thread(target=lambda: simulation.points) for _ in range(2)]
+        since = time.perf_counter()
+        for thread in waiting:
+            thread.start()
+        simulation.points
+        spent = time.perf_counter() - since
+        ended.set()
+        for thread in threads + waiting:
+            thread.join()
+        longest = max(np.diff([since, *[beat for beat in beats if beat > since], since + spent]), default=spent)
+        assert longest < 0.6 * spent + 0.05, f"{longest} s of {spent} s without the other thread"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_what_ctrl_c_stopped_goes_on_to_the_same_bits(tmp_path):
+    code = (
+        "import os, signal, threading, time, numpy as np, strandline\n"
+        "from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, Vt\n"
+        "def begin(**film):\n"
+        "    scene = strandline.Scene(style={'strand_count': 60}, film=film)\n"
+        "    return strandline.Simulation(scene, backend='cpu', motion='shake')\n"
+        "def stop(after):\n"
+        "    threading.Timer(after, lambda: os.kill(os.getpid(), signal.SIGINT)).start()\n"
+        "with begin(frames=4, settle=0.5) as simulation:\n"
+        "    wanted = [frame.points.copy() for frame in simulation.frames()]\n"
+        "with begin(frames=4, settle=0.5) as simulation:\n"
+        "    try:\n"
+        "        stop(0.02)\n"
+        "        list(simulation.frames())\n"
+        "        time.sleep(60)\n"
+        "    except KeyboardInterrupt:\n"
+        "        rest = [(frame.index, frame.points.copy()) for frame in simulation.frames()]\n"
+        "    assert np.array_equal(simulation.points, wanted[-1])\n"
+        "    assert all(np.array_equal(points, wanted[index]) for index, points in rest)\n"
+        "with begin(frames=5000) as simulation:\n"
+        "    try:\n"
+        "        stop(0.5)\n"
+        "        simulation.record('a.usdc')\n"
+        "    except KeyboardInterrupt as stopped:\n"
+        "        (note,) = stopped.__notes__\n"
+        "    assert note == 'the frames so far are kept: a.usdc.part.npz', note\n"
+        "    written = len(strandline.Cache('a.usdc.part.npz'))\n"
+        "    assert written > 0 and simulation._frame - written in (0, 1), (written, simulation._frame)\n"
+    )
+    pytest.importorskip("pxr")
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr[-2000:]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")

@@ -31,6 +31,9 @@ struct Meta {
     up: String,
     what: String,
     groups: BTreeMap<u32, String>,
+    /// Names of a moving cache by number, empty where a group has none.
+    #[serde(skip_serializing)]
+    group_names: Vec<String>,
 }
 
 /// The arrays of a file by their names.
@@ -153,7 +156,9 @@ pub(super) fn read_frame(bytes: &[u8], chosen: Chosen) -> Result<Parsed, GroomEr
     groom.influences = influences(&mut arrays, strands)?;
     groom.masses = arrays.floats("masses", points, 1)?;
     groom.velocities = arrays.vectors("velocities", points)?;
-    groom.group_names = meta(&mut arrays)?.groups;
+    let Meta { groups, group_names, .. } = meta(&mut arrays)?;
+    let of_cache = (0..).zip(group_names).filter(|(_, name)| !name.is_empty());
+    groom.group_names = of_cache.chain(groups).collect();
     Ok(Parsed { format: ".npz", groom, problems })
 }
 
@@ -279,6 +284,7 @@ pub fn write(groom: &Groom) -> Result<Vec<u8>, GroomError> {
         up: "y".to_owned(),
         what: "groom".to_owned(),
         groups: groom.group_names.clone(),
+        group_names: Vec::new(),
     };
     let meta = serde_json::to_vec(&meta).expect("plain text");
     arrays.push(npz::Array::of("meta", Kind::U8, &[meta.len()], meta));

@@ -156,9 +156,12 @@ pub const FORMATS: [Format; 10] = [
 fn way_in(ending: &str) -> &'static str {
     match ending {
         "abc" => {
-            "the `strandline` of `pip install 'strandline[abc]'` reads it; or import it in Blender and export the curves as USD with the ending .usda"
+            "the `strandline` of `pip install 'strandline[abc]'` reads and writes it; or import it in Blender and export the curves as USD with the ending .usda"
         }
-        "usdc" | "usdz" => {
+        "usdc" => {
+            "the `strandline` of `pip install 'strandline[usd]'` reads and writes it; or write it as text: `usdcat -o hair.usda FILE`"
+        }
+        "usdz" => {
             "the `strandline` of `pip install 'strandline[usd]'` reads it; or write it as text: `usdcat -o hair.usda FILE`"
         }
         "fbx" | "blend" | "ma" | "mb" | "hip" | "max" | "c4d" => {

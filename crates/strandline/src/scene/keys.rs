@@ -155,8 +155,9 @@ fn resolve(key: &str) -> Result<(Vec<Step>, &'static Row), Error> {
     let unknown = || {
         let mut all = Vec::new();
         keys(&Scene::TABLE, "", &mut all);
-        let nearest = nearest(key, &all).map_or_else(String::new, |near| format!("`{near}` or another "));
-        let expected = format!("{nearest}key of docs/scene.md");
+        let nearest =
+            nearest(key, &all).map_or_else(|| "a".to_owned(), |near| format!("`{near}` or another"));
+        let expected = format!("{nearest} key of docs/scene.md");
         SettingError::new(printable(key), "no setting of a scene", expected)
     };
     let mut steps = Vec::new();

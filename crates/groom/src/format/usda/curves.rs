@@ -227,7 +227,8 @@ impl Attributes<'_> {
         let names = names.map(|name| self.prim.properties.get(name));
         if let (Some(Value::Texts(names)), Some(groups)) = (names[0].or(names[1]), &groom.groups) {
             if names.len() == strands {
-                groom.group_names = groups.iter().copied().zip(names.iter().cloned()).collect();
+                let named = groups.iter().copied().zip(names.iter().cloned());
+                groom.group_names = named.filter(|(_, name)| !name.is_empty()).collect();
             } else {
                 self.refuse("names of groups", names.len());
             }
