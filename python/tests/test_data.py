@@ -223,6 +223,13 @@ def test_research_layouts_come_back(tmp_path, points, layout):
     assert np.allclose(back.points, groom.points, atol=1e-6)
 
 
+def test_bare_points_say_what_they_lack(tmp_path, points):
+    Groom(points).resampled(100).save(tmp_path / "a.ply", layout="neural")
+    for given in ({}, {"points_per_strand": 7}):
+        with pytest.raises(Error, match="`points_per_strand=N`"):
+            strandline.load(tmp_path / "a.ply", **given)
+
+
 def test_a_layout_that_nobody_has_is_refused(tmp_path, points):
     with pytest.raises(Error, match="`nueral` is no layout, expected `neural`"):
         strandline.load(tmp_path / "a.ply", layout="nueral")

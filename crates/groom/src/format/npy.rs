@@ -64,7 +64,8 @@ pub(super) fn strands(source: &Source, array: &Array, per_strand: Option<u32>) -
         ([strands, points, 3], _) => (*strands, *points),
         ([points, 3], Some(each)) => split(source, *points, each)?,
         ([_, 3], None) => {
-            let expected = "an array [strand, point, 3], or the points of a strand (`--per-strand N`)";
+            let expected = "an array [strand, point, 3], or the points of a strand (`--per-strand N`, in Python \
+                            `points_per_strand=N`)";
             return Err(source.error(format!("an array {:?}", array.shape), expected));
         }
         _ => return Err(source.error(format!("an array {:?}", array.shape), "[strand, point, 3]")),
@@ -76,7 +77,9 @@ pub(super) fn strands(source: &Source, array: &Array, per_strand: Option<u32>) -
 pub(super) fn split(source: &Source, points: u64, each: u32) -> Result<(u64, u64), GroomError> {
     let each = u64::from(each);
     if each == 0 || !points.is_multiple_of(each) {
-        let expected = format!("a multiple of {each}, the points of a strand (`--per-strand`)");
+        let expected = format!(
+            "a multiple of {each}, the points of a strand (`--per-strand N`, in Python `points_per_strand=N`)"
+        );
         return Err(source.error(format!("{points} points"), expected));
     }
     Ok((points / each, each))

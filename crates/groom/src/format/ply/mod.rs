@@ -56,7 +56,8 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
             return Err(source.error(found, "strands; a mesh is a body (`--body`)"));
         }
         (None, None) => {
-            let expected = "`strand` and `edge` elements, or the points of a strand (`--per-strand N`)";
+            let expected = "`strand` and `edge` elements, or the points of a strand (`--per-strand N`, in Python \
+                            `points_per_strand=N`)";
             return Err(source.error(format!("{count} vertices and nothing that joins them"), expected));
         }
     };
