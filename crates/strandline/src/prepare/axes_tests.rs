@@ -21,8 +21,7 @@ fn scene() -> Scene {
     scene
 }
 
-/// Grown hair of a style.
-pub(super) fn hair(style: Style) -> Groom {
+fn hair(style: Style) -> Groom {
     StyleSettings { strand_count: 300, ..StyleSettings::new(style) }.grow().unwrap()
 }
 
@@ -302,21 +301,15 @@ fn a_groom_whose_format_defines_its_space_is_believed_where_it_fits() {
     assert!(mended.notes[0].contains("otherwise than the format of its file defines"), "{:?}", mended.notes);
 }
 
-/// Long hair of metres, whose roots lie on the head.
-pub(super) fn of_ten_times_the_length() -> Groom {
+#[test]
+fn hair_of_metres_is_doubted() {
+    let mesh = Mannequin::new().mesh();
     let mut groom = hair(Style::Long);
     for strand in 0..groom.strand_count() {
         let range = groom.range(strand);
         let root = groom.points[range.start];
         groom.points[range].iter_mut().for_each(|point| *point = root + (*point - root) * 10.0);
     }
-    groom
-}
-
-#[test]
-fn hair_of_metres_is_doubted() {
-    let mesh = Mannequin::new().mesh();
-    let groom = of_ten_times_the_length();
     let found = found(&groom, &mesh, Defined::Nothing);
     assert!(found.confidence < 0.5, "{} {:?}", found.confidence, found.notes);
     assert!(found.notes.iter().any(|note| note.contains("m long in the mean")), "{:?}", found.notes);

@@ -7,16 +7,20 @@ use crate::{
     Error, Prepared, Scene, Sources,
     body::{Mannequin, Mesh, Random},
     groom::{
-        Groom, Style,
+        Groom, Style, StyleSettings,
         format::{Scale, Up},
     },
     prepare::{
-        axes_tests::{dandelion, hair, of_ten_times_the_length},
+        axes_tests::dandelion,
         guess::{self, Strands},
         placing::{Defined, Placing, Placings, place_mesh},
         shown::{Body, Shown},
     },
 };
+
+fn hair(style: Style) -> Groom {
+    StyleSettings { strand_count: 300, ..StyleSettings::new(style) }.grow().unwrap()
+}
 
 /// Loads a groom on a mesh of files that define nothing, or returns the refusal.
 fn loaded(groom: &Groom, mesh: &Mesh, change: impl Fn(&mut Scene)) -> Result<Prepared, String> {
@@ -70,7 +74,12 @@ fn hair_away_from_its_body_is_refused_and_the_scale_keeps_it_there() {
 #[test]
 fn hair_of_metres_is_refused_and_its_scale_keeps_it() {
     let mesh = Mannequin::new().mesh();
-    let groom = of_ten_times_the_length();
+    let mut groom = hair(Style::Long);
+    for strand in 0..groom.strand_count() {
+        let range = groom.range(strand);
+        let root = groom.points[range.start];
+        groom.points[range].iter_mut().for_each(|point| *point = root + (*point - root) * 10.0);
+    }
     let problem = refused(&groom, &mesh);
     assert!(
         problem.contains("m long in the mean") && problem.contains("`--scale 1` keeps it so"),
