@@ -115,17 +115,16 @@ fn in_light(kind: LightKind) -> Both {
 
 #[test]
 fn lights_with_an_area_light_alike() {
-    for kind in [LightKind::Rectangle, LightKind::Disc] {
-        let Some(pair) = channels(&in_light(kind), true) else { return };
-        let light = light_apart(&pair);
+    let kinds = [LightKind::Rectangle, LightKind::Disc, LightKind::Point];
+    let drawn: Option<Vec<_>> = kinds.iter().map(|kind| channels(&in_light(*kind), true)).collect();
+    let Some(drawn) = drawn else { return };
+    for (kind, pair) in kinds.iter().zip(&drawn).take(2) {
+        let light = light_apart(pair);
         assert!(light <= SOFT_LIGHT, "{kind:?}: {light}");
         // A light of the other kind, and one without an area, are noticed.
-        for other in [LightKind::Rectangle, LightKind::Disc, LightKind::Point] {
-            if other != kind {
-                let Some([_, wrong]) = channels(&in_light(other), true) else { return };
-                let light = light_apart(&[Arc::clone(&pair[0]), wrong]);
-                assert!(light > 2.0 * SOFT_LIGHT, "{kind:?} as {other:?}: {light}");
-            }
+        for (other, [_, wrong]) in kinds.iter().zip(&drawn).filter(|(other, _)| *other != kind) {
+            let light = light_apart(&[Arc::clone(&pair[0]), Arc::clone(wrong)]);
+            assert!(light > 2.0 * SOFT_LIGHT, "{kind:?} as {other:?}: {light}");
         }
     }
 }

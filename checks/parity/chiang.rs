@@ -49,6 +49,8 @@ fn the_fibre_of_chiang_agrees_point_by_point() {
         both.look = Look { grey: 0.2, ..Look::brown() };
         both.look.fibre.chiang.pigment = pigment;
         both.look.fibre.chiang.tip_pigment = 0.7;
+        // Colours of the groom are compared in all cells.
+        both.look.fibre.chiang.cells = 24;
         agree(both, body);
     }
 }

@@ -260,8 +260,10 @@ law! {
         let white = Chiang { eumelanin: 0.0, pheomelanin: 0.0, ..Chiang::default() };
         let off = furnace(on, white);
         assert!(off <= 0.005, "{off}");
-        // A touch of pigment is seen.
-        assert!(furnace(on, Chiang { eumelanin: 0.02, ..white }) > 0.02);
+        // A touch of pigment is seen: on a software adapter, which takes 10 s of processors for a picture, in the long run.
+        if on.short(true, false) {
+            assert!(furnace(on, Chiang { eumelanin: 0.02, ..white }) > 0.02);
+        }
     }
 }
 

@@ -37,13 +37,15 @@ fn sun() -> Light {
 }
 
 /// Hair of the fibre with its colours as they are.
-fn drawn(guides: Guides, change: impl FnOnce(&mut Look)) -> Drawn {
+fn drawn(on: &On, guides: Guides, change: impl FnOnce(&mut Look)) -> Drawn {
     let mut look = Look {
         variation: 0.0,
         highlight_noise: 0.0,
         root_width: 1.0,
         ..crate::light::look(Chiang::default())
     };
+    // A software adapter takes part of a second of processors for each.
+    look.fibre.chiang.scatterings = on.short(look.fibre.chiang.scatterings, 8);
     change(&mut look);
     let detail = LevelOfDetail { segments_per_span: 1, ..LevelOfDetail::full() };
     Drawn { guides, look, lights: vec![sun()], eye: Vec3::new(0.5, 0.3, 2.0), detail }
@@ -68,9 +70,9 @@ law! {
         // So far apart that they hardly light each other.
         let places = [Vec3::ZERO, Vec3::X * 0.25, Vec3::X * 0.5];
         let colors = [Vec3::new(0.11, 0.1, 0.09), Vec3::new(0.71, 0.45, 0.24), Vec3::new(0.95, 0.92, 0.89)];
-        let strands = drawn(tufts(&places, |tuft, _| colors[tuft]), |_| ()).strands(on);
+        let strands = drawn(on, tufts(&places, |tuft, _| colors[tuft]), |_| ()).strands(on);
         for (tuft, color) in colors.into_iter().enumerate() {
-            let alone = drawn(tufts(&places, |_, _| color), |_| ()).strands(on);
+            let alone = drawn(on, tufts(&places, |_, _| color), |_| ()).strands(on);
             let of_tuft = |strand: usize| strand / (SIDE * SIDE) == tuft;
             let (found, expected) = (mean(&strands, of_tuft), mean(&alone, of_tuft));
             // A colour between the others is a mixture of them, that gives back as much light but more of it forward:
@@ -87,7 +89,7 @@ fn probed(on: &On, colors: [Vec3; 2], scatterings: u32) -> Vec3 {
     let color = |_: usize, strand: usize| {
         if probe(strand) { Vec3::splat(0.63) } else { colors[(strand % SIDE + strand / SIDE) % 2] }
     };
-    let drawn = drawn(tufts(&[Vec3::ZERO], color), |look| look.fibre.chiang.scatterings = scatterings);
+    let drawn = drawn(on, tufts(&[Vec3::ZERO], color), |look| look.fibre.chiang.scatterings = scatterings);
     mean(&drawn.strands(on), probe)
 }
 
@@ -114,12 +116,12 @@ law! {
             }
             Guides::resample(&groom, POINTS).unwrap()
         };
-        let of_look = drawn(plain, |look| {
+        let of_look = drawn(on, plain, |look| {
             (look.root_color, look.tip_color, look.grey) = (color, color, 0.5);
             look.fibre.chiang.pigment = Pigment::Color;
             look.fibre.model = FibreModel::Chiang;
         });
-        let [found, expected] = [of_look, drawn(own, |_| ())].map(|drawn| mean(&drawn.strands(on), |_| true));
+        let [found, expected] = [of_look, drawn(on, own, |_| ())].map(|drawn| mean(&drawn.strands(on), |_| true));
         // Which strands turn white is up to chance.
         assert!(apart(found, expected) < 0.1, "{found}, expected {expected}");
     }

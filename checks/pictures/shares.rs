@@ -23,7 +23,7 @@ law! {
             mean(&layers, &head.crown(&layers))
         };
         // Of 8,176 strands all are summed, of 8,192 every second; of 16,368 every second, of 16,384 every fourth.
-        // A software adapter, which takes 30 s of processors for a picture, draws the pair that has both.
+        // A software adapter draws the pair that has both.
         for &guides in on.either(&[512, 1_024][..], &[1_024]) {
             let (few, many) = (light(guides - 1), light(guides));
             // Most of the light of blonde hair is scattered; half of the hair scatters far less of it.

@@ -22,6 +22,13 @@ impl On {
         }
     }
 
+    /// As [`On::either`], but a software adapter has the full number too where `STRANDLINE_FULL` is 1, as in
+    /// `cargo xtask long`.
+    pub fn short<T>(&self, full: T, software: T) -> T {
+        let in_full = std::env::var_os("STRANDLINE_FULL").is_some_and(|value| value == "1");
+        if in_full { full } else { self.either(full, software) }
+    }
+
     /// One bound for the CPU and software adapters, and one for hardware, whose arithmetic is not known to the bit.
     pub fn exact_or<T>(&self, exact: T, hardware: T) -> T {
         match self {

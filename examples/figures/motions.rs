@@ -28,11 +28,20 @@ enum Drive {
     Hand,
 }
 
-/// Two rows for each way to be moved: with constraints and as rods.
+/// All causes of motion.
+const DRIVES: [Drive; 5] = [
+    Drive::Head(MotionName::Shake),
+    Drive::Head(MotionName::Nod),
+    Drive::Head(MotionName::Turn),
+    Drive::Wind,
+    Drive::Hand,
+];
+
+/// Two rows for each way to be moved: with constraints and as rods. A quick sheet has one way, the next style the next.
 pub fn sheet(setup: &Setup, style: Style) -> Figure {
-    let heads = [MotionName::Shake, MotionName::Nod, MotionName::Turn].map(Drive::Head);
     let mut rows = Vec::new();
-    for drive in heads.into_iter().chain([Drive::Wind, Drive::Hand]) {
+    let drives = if setup.quick { &DRIVES[style as usize % DRIVES.len()..][..1] } else { &DRIVES };
+    for &drive in drives {
         for method in [StrandMethod::Constrain, StrandMethod::Rods] {
             rows.push(row(setup, style, drive, method)?);
         }

@@ -322,6 +322,11 @@ class Motion(TypedDict, total=False):
     """Rotation of the head added to its motion, about the pivot: pitch (about x), yaw (about y), roll (about z).
     Allowed: 3 numbers of -360 to 360 degrees."""
 
+    neck: bool
+    """Bends the neck of the built-in bust, so that its shoulders stay; without this the bust moves as one. Beyond 75
+    degrees the shoulders follow. It is a setting of the load: a window keeps the neck that it began with. The exact
+    mannequin never bends. Allowed: true or false."""
+
     interpolation: str
     """The way from pose to pose, where a pose does not name its own. Allowed: one of smooth, linear, hold."""
 

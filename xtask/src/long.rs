@@ -9,11 +9,14 @@ use crate::cargo::{cargo_command, root};
 use crate::{adapter, bare, python};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
-const TESTS: [((&str, &str), [&str; 2]); 2] = [
+const TESTS: [((&str, &str), [&str; 2]); 4] = [
     // Each command is ended as often as this, at random times.
     (("STRANDLINE_KILLS", "52"), ["reliability", "kills::"]),
     // Seconds of random clicks, keys and files.
     (("STRANDLINE_RANDOM_USE", "60"), ["window", "random_use::"]),
+    // On a software adapter, which else has fewer lights, steps and cells.
+    (("STRANDLINE_FULL", "1"), ["pictures", "gpu"]),
+    (("STRANDLINE_FULL", "1"), ["laws", "skin_contact::hair_on_a_gpu"]),
 ];
 
 /// Contents of bench/long.json.

@@ -43,7 +43,7 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            --table the page docs/faults.md
   bare     build the program without GPUs and window, check its crates, simulate and draw with it
   long     bare, and the full length of the tests that `test` shortens: kills, random use of the
-           window; records the day in bench/long.json
+           window, pictures and skins on a software adapter; records the day in bench/long.json
   deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
            faults if their list can be read; `test` does the first three if it is installed
   licences write docs/licences.md, the list of others' licences; [FILE] their texts as well";

@@ -1,7 +1,7 @@
 //! A Python with numpy and usd-core, which read files of the program, and with what tests its package.
 
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 
 use anyhow::{Context, Result};
 
@@ -41,15 +41,46 @@ const BLENDER_PACKAGE: &str = "bpy==5.0.1";
 /// Tests that Blender reads what is written for it.
 const BLENDER_TESTS: &str = "python/tests/test_blender.py";
 
+/// The Python of the tests, which may be on its way.
+pub enum Coming {
+    /// It has their packages.
+    There(String),
+    /// The packages of one in `target` are being installed.
+    Packages(Child),
+    /// There is none.
+    Missing,
+}
+
+impl Coming {
+    /// Looks for a Python with the packages of the tests. `setup` begins to make one in `target` if there is none.
+    pub fn begin(setup: bool) -> Self {
+        let named = std::env::var(NAMED).unwrap_or_else(|_| "python3".to_owned());
+        let known = [named, interpreter("python")];
+        if let Some(python) = known.into_iter().find(|python| is_whole(python)) {
+            return Self::There(python);
+        }
+        let begun = if setup { begin("python", &PACKAGES) } else { None };
+        begun.map_or(Self::Missing, Self::Packages)
+    }
+
+    /// The Python of the tests, once its packages are there; `None` if they cannot be had.
+    pub fn wait(self) -> Option<String> {
+        match self {
+            Self::There(python) => Some(python),
+            Self::Packages(mut installs) => {
+                let own = interpreter("python");
+                let installed = installs.wait().is_ok_and(|status| status.success());
+                (installed && is_whole(&own)).then_some(own)
+            }
+            Self::Missing => None,
+        }
+    }
+}
+
 /// The Python of the tests, if it has their packages. `setup` makes one in `target` if there is none, and
 /// packages can be had.
-pub fn prepare(setup: bool) -> Option<String> {
-    let named = std::env::var(NAMED).unwrap_or_else(|_| "python3".to_owned());
-    let own = interpreter("python");
-    if let Some(python) = [&named, &own].into_iter().find(|python| is_whole(python)) {
-        return Some(python.clone());
-    }
-    (setup && make("python", &PACKAGES) && is_whole(&own)).then_some(own)
+fn prepare(setup: bool) -> Option<String> {
+    Coming::begin(setup).wait()
 }
 
 /// The Python of an environment in the target folder.
@@ -58,11 +89,18 @@ fn interpreter(environment: &str) -> String {
     root().join("target").join(environment).join(own).to_string_lossy().into_owned()
 }
 
+/// Makes an environment in the target folder and begins to install packages there. What is imported is compiled then.
+fn begin(environment: &str, packages: &[&str]) -> Option<Child> {
+    let folder = root().join("target").join(environment);
+    let made = run("python3", &["-m", "venv", &folder.to_string_lossy()]);
+    let words = [&["-m", "pip", "install", "--quiet", "--no-compile"], packages].concat();
+    if made { quiet(&interpreter(environment), &words).spawn().ok() } else { None }
+}
+
 /// Makes an environment in the target folder with packages.
 fn make(environment: &str, packages: &[&str]) -> bool {
-    let folder = root().join("target").join(environment);
-    run("python3", &["-m", "venv", &folder.to_string_lossy()])
-        && run(&interpreter(environment), &[&["-m", "pip", "install", "--quiet"], packages].concat())
+    let installs = begin(environment, packages);
+    installs.is_some_and(|mut installs| installs.wait().is_ok_and(|status| status.success()))
 }
 
 /// A Python with Blender's module, which is named or in the target folder, or can be had.
@@ -195,9 +233,14 @@ fn is_whole(python: &str) -> bool {
 }
 
 fn run(program: &str, arguments: &[&str]) -> bool {
+    quiet(program, arguments).status().is_ok_and(|status| status.success())
+}
+
+/// A program that neither reads nor prints.
+fn quiet(program: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    command.status().is_ok_and(|status| status.success())
+    command
 }
 
 #[cfg(test)]

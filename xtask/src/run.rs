@@ -6,6 +6,7 @@ use std::process::Stdio;
 
 use crate::cargo::{cargo_command, root};
 use crate::programs::{self, Ran, Tally};
+use crate::python::Coming;
 use crate::times::{Clock, Times};
 use crate::{adapter, bare, house, licences, long, names, python, workflows};
 
@@ -41,6 +42,8 @@ impl Report {
 /// Runs all steps; false when anything failed. `setup` installs an adapter to test on where there is none.
 pub fn test(setup: bool) -> bool {
     let whole = Clock::start();
+    // Packages are fetched and unpacked beside what needs processors.
+    let coming = Coming::begin(setup);
     let there = match adapter::prepare(setup) {
         Ok(there) => there,
         Err(why) => {
@@ -48,19 +51,21 @@ pub fn test(setup: bool) -> bool {
             return false;
         }
     };
-    let python = python::prepare(setup);
-    let mut wanted = Vec::new();
-    if setup {
-        wanted.extend([(adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")]);
-    }
-    wanted.extend(python.as_deref().map(|python| (python::NAMED, python)));
     let mut report = Report::default();
-    report.times.add("adapter and Python", whole.stop());
+    report.times.add("adapter", whole.stop());
     look(&mut report);
     let denied = licences::deny_if_installed();
     report.step("deny", |_| denied.unwrap_or(true));
     let workflows = workflows::check_if_installed();
     report.step("workflows", |_| workflows.unwrap_or(true));
+    let clock = Clock::start();
+    let python = coming.wait();
+    report.times.add("packages of Python", clock.stop());
+    let mut wanted = Vec::new();
+    if setup {
+        wanted.extend([(adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")]);
+    }
+    wanted.extend(python.as_deref().map(|python| (python::NAMED, python)));
     tests(&mut report, &wanted);
     if let Some(python) = &python {
         report.step("Python package", |tally| python::test_package(python, tally));

@@ -1,6 +1,7 @@
 //! `strandline convert`: a groom in another format, and with other strands.
 
 use glam::{Quat, Vec3};
+use strandline::file::counted;
 use strandline::{
     Groom, Mesh,
     format::{self, Cleaning, LoadOptions, Scale},
@@ -40,7 +41,10 @@ pub fn convert(options: &ConvertOptions) -> anyhow::Result<()> {
         groom = groom.select(&chosen);
         drop(waiting);
         if torn > 0 {
-            output::note(&format!("{torn} strands have lost guides that they follow: these were not kept"));
+            output::note(&format!(
+                "{} lost guides that were not kept: followed guides are left out",
+                counted(torn, "strand has", "strands have")
+            ));
         }
     }
     if let Some(points) = options.points {
@@ -84,9 +88,9 @@ fn push_out(groom: &mut Groom, mesh: &Mesh) -> anyhow::Result<()> {
     let found = groom.move_outside(|point: Vec3| grid.distance_and_gradient(point));
     drop(waiting);
     output::note(&format!(
-        "{} points of {} strands lay inside, by up to {:.2} mm: moved to the surface, {:.2} mm left at most",
-        found.point_count,
-        found.strand_count,
+        "{} of {} lay inside, by up to {:.2} mm: moved to the surface, {:.2} mm left at most",
+        counted(found.point_count, "point", "points"),
+        counted(found.strand_count, "strand", "strands"),
         1e3 * found.depth,
         1e3 * found.depth_left
     ));

@@ -1,5 +1,6 @@
 //! `strandline groom`, `info` and `scene`: files without motion.
 
+use strandline::file::counted;
 use strandline::mesh::{Material, MeshFormat};
 use strandline::{Groom, Mesh, format, settings::StyleSettings};
 
@@ -28,9 +29,9 @@ pub(crate) fn write(groom: &Groom, path: &std::path::Path) -> anyhow::Result<()>
     }
     saved.notes.iter().for_each(|note| output::note(note));
     print_line!(
-        "wrote {} strands, {} points to {}",
-        groom.strand_count(),
-        groom.points.len(),
+        "wrote {}, {} to {}",
+        counted(groom.strand_count(), "strand", "strands"),
+        counted(saved.points, "point", "points"),
         path.display()
     );
     Ok(())
@@ -65,10 +66,11 @@ pub fn info(options: &InfoOptions) -> anyhow::Result<()> {
     }
     for (number, group) in report.groups.iter().take(MOST_GROUPS) {
         let name = group.name.as_deref().unwrap_or("without a name");
-        print_line!("group     {number}: {name}, {} strands", group.strands);
+        print_line!("group     {number}: {name}, {}", counted(group.strands, "strand", "strands"));
     }
     if report.groups.len() > MOST_GROUPS {
-        print_line!("          and {} groups more (--json has all)", report.groups.len() - MOST_GROUPS);
+        let more = counted(report.groups.len() - MOST_GROUPS, "group", "groups");
+        print_line!("          and {more} more (--json has all)");
     }
     for problem in &report.problems {
         print_line!("problem   {problem}");

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 use strandline::StepReport;
+use strandline::file::counted;
 
 /// The points of a run that were not finite.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -41,7 +42,10 @@ impl NonFinite {
         }
         let first = First { frame, strand: report.non_finite_strand };
         self.first = Some(first);
-        Some(format!("{first}: {} points are not finite; their strands go back to rest", report.non_finite))
+        Some(format!(
+            "{first}: {} not finite; strands that have them go back to rest",
+            counted(report.non_finite, "point is", "points are")
+        ))
     }
 
     /// Result of the run.
@@ -56,8 +60,9 @@ impl NonFinite {
 /// A run of which some points were not finite; ends with code 3.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "up to {points} points were not finite, first in {first}; their strands went back to rest: \
-     look for extreme values in the scene, its groom and its body"
+    "at most {}, first in {first}; strands that had them went back to rest: \
+     look for extreme values in the scene, its groom and its body",
+    counted(*points, "point was not finite", "points were not finite")
 )]
 pub struct NotFinite {
     points: usize,

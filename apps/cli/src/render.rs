@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use strandline::file::counted;
 use strandline::mesh::Placement;
 use strandline::{
     Backend, Cache, Error, Event, Player, Scene,
@@ -150,7 +151,11 @@ fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow
     let mut film = PictureFiles::new(path, player.frames())?;
     let non_finite = play_files(&mut player, &mut film, has_ending(path, "exr"), &stoppable, json);
     if non_finite.is_err() && !film.is_empty() {
-        output::note(&format!("the {} files already written are whole: {}", film.len(), path.display()));
+        output::note(&format!(
+            "the {} whole: {}",
+            counted(film.len(), "file already written is", "files already written are"),
+            path.display()
+        ));
     }
     let (files, notes) = film.finish();
     let non_finite = non_finite?;
@@ -163,8 +168,7 @@ fn files(scene: &Scene, cache: Option<Cache>, path: &Path, json: bool) -> anyhow
         ));
     } else {
         let last = files.last().map_or(path, PathBuf::as_path);
-        let count = if files.len() == 1 { "a file".to_owned() } else { format!("{} files", files.len()) };
-        print_line!("wrote {count}: look at {}", last.display());
+        print_line!("wrote {}: look at {}", counted(files.len(), "file", "files"), last.display());
     }
     Ok(non_finite.outcome()?)
 }
@@ -295,7 +299,11 @@ fn stopped_early(film: Film, folder: &Path, error: anyhow::Error) -> anyhow::Err
     };
     notes.iter().for_each(|note| output::note(note));
     if frames > 0 {
-        output::note(&format!("the {frames} frames already written are whole: {}", folder.display()));
+        output::note(&format!(
+            "the {} whole: {}",
+            counted(frames, "frame already written is", "frames already written are"),
+            folder.display()
+        ));
     }
     error
 }
@@ -307,10 +315,10 @@ pub struct NoVideo;
 
 fn print(report: &RenderReport, folder: &Path) {
     print_line!(
-        "{} pictures of {} strands, {} segments, drawn on {}, simulated on {}",
-        report.frames,
-        report.follow_strands,
-        report.segments,
+        "{} of {}, {}, drawn on {}, simulated on {}",
+        counted(report.frames, "picture", "pictures"),
+        counted(report.follow_strands, "strand", "strands"),
+        counted(report.segments, "segment", "segments"),
         report.render_backend,
         report.backend
     );
@@ -331,5 +339,6 @@ fn print(report: &RenderReport, folder: &Path) {
         print_line!("  {name:<15}{time:>8.1} ms alone{beside}");
     }
     let last = report.files.last().map_or(folder, PathBuf::as_path);
-    print_line!("wrote {} files to {}: look at {}", report.files.len(), folder.display(), last.display());
+    let files = counted(report.files.len(), "file", "files");
+    print_line!("wrote {files} to {}: look at {}", folder.display(), last.display());
 }

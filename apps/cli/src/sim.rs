@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use serde::Serialize;
+use strandline::file::counted;
 use strandline::mesh::Placement;
 use strandline::{Cache, Drift, Event, OutSettings, Player, Scene, StepReport, Stiffening, Written};
 
@@ -308,7 +309,7 @@ fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Opti
     };
     match written {
         Ok(Some(written)) if written.frames > 0 => output::note(&format!(
-            "the {} frames so far are whole; `sim --resume` continues from a cache: {}",
+            "the {} whole; `sim --resume` continues from a cache: {}",
             written.frames,
             written.place.display()
         )),
@@ -320,7 +321,8 @@ fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Opti
 
 fn print(report: &SimReport) {
     let SimReport { strands, points_per_strand, steps, ms_per_step, stretch, pcg, .. } = report;
-    print_line!("{strands} strands x {points_per_strand} points, {steps} steps on {}", report.backend);
+    let [strands, steps] = [counted(*strands, "strand", "strands"), counted(*steps, "step", "steps")];
+    print_line!("{strands} x {points_per_strand} points, {steps} on {}", report.backend);
     print_line!("a step takes {:.2} ms (95 of 100 at most {:.2} ms)", ms_per_step.median, ms_per_step.p95);
     for (name, time) in ms_per_step.stages.iter() {
         print_line!("  {name:<15}{time:>8.3} ms");
@@ -353,7 +355,10 @@ fn print(report: &SimReport) {
     if let Some(OutReport { path, frames, strands, points, bytes, .. }) = &report.out {
         let megabytes = 1e-6 * *bytes as f64;
         print_line!(
-            "wrote {frames} frames of {strands} strands, {points} points, {megabytes:.1} MB to {}",
+            "wrote {} of {}, {}, {megabytes:.1} MB to {}",
+            counted(*frames, "frame", "frames"),
+            counted(*strands, "strand", "strands"),
+            counted(*points, "point", "points"),
             path.display()
         );
     }

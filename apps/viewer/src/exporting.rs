@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use strandline::file::counted;
 use strandline::{Target, Written};
 
 use crate::App;
@@ -45,7 +46,12 @@ impl App {
         self.exporting = None;
         match result {
             Ok(Some(Written { place, frames, strands, .. })) => {
-                self.note(format!("wrote {frames} frames of {strands} strands: {}", place.display()));
+                self.note(format!(
+                    "wrote {} of {}: {}",
+                    counted(frames, "frame", "frames"),
+                    counted(strands, "strand", "strands"),
+                    place.display()
+                ));
             }
             Ok(None) => {}
             Err(error) => self.error = Some(format!("cannot export {}: {error}", path.display())),

@@ -1,6 +1,7 @@
 //! The status bar at the foot of the window: devices, speed and quality.
 
 use eframe::egui;
+use strandline::file::counted;
 
 use crate::App;
 
@@ -22,7 +23,7 @@ pub fn show(app: &App, ui: &mut egui::Ui) {
             ui.label("simpler while it moves").on_hover_text("see Detail; full when it stands still");
         }
         if shown.grabbed > 0 {
-            ui.label(format!("{} strands in hand", shown.grabbed));
+            ui.label(counted(shown.grabbed, "strand in hand", "strands in hand"));
         }
         if shown.stiffening.strands > 0 {
             ui.label(shown.stiffening.to_string())

@@ -43,5 +43,5 @@ pub use setting::{
 };
 pub use stopwatch::{Stopwatch, timed};
 pub use temporary::{Abandoned, abandon_unfinished};
-pub use text::{utf8_text, whole_lines};
+pub use text::{counted, utf8_text, whole_lines};
 pub use whole_file::WholeFile;

@@ -1,6 +1,13 @@
-//! The encoding of text files.
+//! The encoding of text files, and counts in sentences.
 
 use std::borrow::Cow;
+use std::fmt::Display;
+
+/// A count and the words behind it, for one and for another number: "1 strand is", "2 strands are".
+pub fn counted<N: Display + PartialEq + From<u8>>(count: N, one: &str, others: &str) -> String {
+    let words = if count == N::from(1) { one } else { others };
+    format!("{count} {words}")
+}
 
 /// Text of a file as UTF-8: without the byte order mark that some editors put before it, and from UTF-16 where such
 /// a mark says so. Other bytes stay as they are.
@@ -59,6 +66,15 @@ mod tests {
         }
         assert_eq!(&*utf8_text(&[0xFF, 0xFE, 0x00, 0xD8, 0x61]), "\u{FFFD}".as_bytes(), "a half pair");
         assert_eq!(&*utf8_text(&[0xFF]), [0xFF]);
+    }
+
+    #[test]
+    fn one_is_singular_and_every_other_count_plural() {
+        let told = |count: usize| counted(count, "strand is", "strands are");
+        assert_eq!(
+            [0, 1, 2, 21].map(told),
+            ["0 strands are", "1 strand is", "2 strands are", "21 strands are"]
+        );
     }
 
     #[test]

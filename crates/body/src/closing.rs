@@ -40,7 +40,7 @@ impl Mesh {
             return Cow::Borrowed(self);
         }
         let (positions, normals) = (self.positions.clone(), self.normals.clone());
-        Cow::Owned(Self { positions, normals, triangles, materials: None })
+        Cow::Owned(Self { positions, normals, triangles, ..Self::default() })
     }
 
     /// The mesh with every hole closed by a fan of triangles from the middle of its rim.

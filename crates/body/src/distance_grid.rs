@@ -124,6 +124,23 @@ impl DistanceGrid {
         Self { lattice, inverse_spacing, nodes, distances, least }
     }
 
+    /// A part of the solid: at the nodes of this grid in a box, which holds the part with some air, the signed distance \[m\]
+    /// that `part` makes of that of the whole and a place.
+    pub(crate) fn within(&self, bounds: Aabb, part: impl Fn(f32, Vec3) -> f32 + Sync) -> Self {
+        let Lattice { origin, spacing, node_count } = self.lattice;
+        let node = |place: Vec3| (place - origin) / spacing;
+        let first = node(bounds.min).floor().max(Vec3::ZERO).as_uvec3().min(node_count - 2);
+        let last = node(bounds.max).ceil().max(Vec3::ZERO).as_uvec3().min(node_count - 1).max(first + 1);
+        let lattice = Lattice { origin: self.lattice.position(first), spacing, node_count: last - first + 1 };
+        let mut distances = vec![0.0; lattice.len()];
+        distances.par_iter_mut().enumerate().for_each(|(index, distance)| {
+            let node = lattice.node(index);
+            let whole = self.distances[self.lattice.index(first + node)];
+            *distance = part(whole, lattice.position(node));
+        });
+        Self::from_distances(lattice, distances)
+    }
+
     /// Distance of neighbouring nodes \[m\]: the requested one, or more.
     pub fn spacing(&self) -> f32 {
         self.lattice.spacing

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::welding::welded_vertices;
-use crate::{Aabb, BodyError, Materials};
+use crate::{Aabb, BodyError, Materials, Neck};
 
 /// Largest coordinate that is taken for a place \[m\].
 const COORDINATE_LIMIT: f32 = 1e7;
@@ -19,6 +19,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Looks of its parts, where it has some.
     pub materials: Option<Arc<Materials>>,
+    /// The neck of a bust whose shoulders are a piece of their own.
+    pub neck: Option<Neck>,
 }
 
 impl Mesh {

@@ -1,12 +1,14 @@
 //! The drawn shape of a mesh whose vertices move by themselves.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::Mesh;
+use crate::mannequin::Bend;
 use crate::mesh::normals_about;
 use crate::welding::welded_vertices;
+use crate::{BodyFrame, Mesh};
 
 /// The vertices of a mesh as they were drawn last, and the normals that follow from them.
 #[derive(Clone, Debug, Default)]
@@ -14,22 +16,53 @@ pub struct MovedSkin {
     /// Vertices at one place at rest, which share a normal; found once.
     welded: Vec<u32>,
     positions: Option<Arc<[Vec3]>>,
+    /// Bend of the neck, and the vertices under it.
+    bend: Option<Bend>,
+    bent: Vec<Vec3>,
     normals: Vec<Vec3>,
 }
 
+impl Mesh {
+    /// Positions of the vertices \[m\] in a frame of the body, head space: its skin, if that has as many vertices, or the mesh
+    /// at rest, with its neck bent as the pieces of the frame are.
+    pub fn positions_in<'a>(&'a self, body: &'a BodyFrame) -> Cow<'a, [Vec3]> {
+        match (self.skin_in(body), self.bend_in(body)) {
+            (Some(skin), _) => Cow::Borrowed(skin),
+            (None, Some(bend)) => {
+                let [positions, _] = bend.skin(self);
+                Cow::Owned(positions)
+            }
+            (None, None) => Cow::Borrowed(&self.positions),
+        }
+    }
+
+    fn skin_in<'a>(&self, body: &'a BodyFrame) -> Option<&'a Arc<[Vec3]>> {
+        body.skin().filter(|skin| skin.len() == self.positions.len())
+    }
+
+    fn bend_in(&self, body: &BodyFrame) -> Option<Bend> {
+        self.neck.and_then(|neck| neck.bend(body))
+    }
+}
+
 impl MovedSkin {
-    /// Takes the skin vertices of a moment \[m\], head space; `None` is the mesh at rest, and so is another number of
-    /// vertices. Returns true where the shape is another one than before, of which the normals are computed anew.
-    pub fn take(&mut self, mesh: &Mesh, skin: Option<&Arc<[Vec3]>>) -> bool {
-        let skin = skin.filter(|skin| skin.len() == mesh.positions.len());
+    /// Takes the vertices of a mesh in a frame of the body: its skin, if that has as many vertices, or the mesh at rest, with
+    /// its neck bent as the pieces of the frame are. Returns true where the shape is another one than before, of which the
+    /// normals are computed anew.
+    pub fn take(&mut self, mesh: &Mesh, body: &BodyFrame) -> bool {
+        let skin = mesh.skin_in(body);
+        let bend = mesh.bend_in(body).filter(|_| skin.is_none());
         let is_same = match (&self.positions, skin) {
             (Some(known), Some(skin)) => Arc::ptr_eq(known, skin) || known == skin,
             (known, skin) => known.is_none() && skin.is_none(),
         };
-        if is_same {
+        if is_same && bend == self.bend {
             return false;
         }
-        self.positions = skin.cloned();
+        (self.positions, self.bend) = (skin.cloned(), bend);
+        if let Some(bend) = bend {
+            [self.bent, self.normals] = bend.skin(mesh);
+        }
         if let Some(skin) = skin {
             if self.welded.is_empty() {
                 self.welded = welded_vertices(&mesh.positions);
@@ -41,9 +74,10 @@ impl MovedSkin {
 
     /// Positions \[m\] and unit normals of all vertices, head space: those that were taken last, or the mesh's own.
     pub fn shape<'a>(&'a self, mesh: &'a Mesh) -> [&'a [Vec3]; 2] {
-        match &self.positions {
-            Some(positions) => [positions, &self.normals],
-            None => [&mesh.positions, &mesh.normals],
+        match (&self.positions, self.bend) {
+            (Some(positions), _) => [positions, &self.normals],
+            (None, Some(_)) => [&self.bent, &self.normals],
+            (None, None) => [&mesh.positions, &mesh.normals],
         }
     }
 }
@@ -71,19 +105,20 @@ mod tests {
         let mesh = octahedron();
         assert!(mesh.normals[0].distance(Vec3::X) < 1e-5 && mesh.normals[6] == mesh.normals[0]);
         let mut skin = MovedSkin::default();
-        assert!(!skin.take(&mesh, None));
+        let at = |skin: Arc<[Vec3]>| BodyFrame::REST.with_skin(skin);
+        assert!(!skin.take(&mesh, &BodyFrame::REST));
         assert_eq!(skin.shape(&mesh), [&mesh.positions[..], &mesh.normals[..]]);
         let turn = Quat::from_rotation_z(0.7);
         let turned: Arc<[Vec3]> = mesh.positions.iter().map(|point| turn * *point).collect();
-        assert!(skin.take(&mesh, Some(&turned)) && !skin.take(&mesh, Some(&turned)));
+        assert!(skin.take(&mesh, &at(turned.clone())) && !skin.take(&mesh, &at(turned.clone())));
         let [positions, normals] = skin.shape(&mesh);
         assert_eq!(positions, &turned[..]);
         for (found, rest) in normals.iter().zip(&mesh.normals) {
             assert!(found.distance(turn * *rest) < 1e-5, "{found} of {rest}");
         }
         // The same vertices in other memory are the same shape; another number of them is none.
-        assert!(!skin.take(&mesh, Some(&turned.iter().copied().collect())));
-        assert!(skin.take(&mesh, Some(&Arc::from([Vec3::ZERO]))));
+        assert!(!skin.take(&mesh, &at(turned.iter().copied().collect())));
+        assert!(skin.take(&mesh, &at(Arc::from([Vec3::ZERO]))));
         assert_eq!(skin.shape(&mesh)[0], &mesh.positions[..]);
     }
 
@@ -93,7 +128,7 @@ mod tests {
         let mut opened = mesh.positions.clone();
         opened[6] += vec3(0.0, -0.1, 0.0);
         let mut skin = MovedSkin::default();
-        assert!(skin.take(&mesh, Some(&opened.into())));
+        assert!(skin.take(&mesh, &BodyFrame::REST.with_skin(opened)));
         let [_, normals] = skin.shape(&mesh);
         assert_eq!(normals[0], normals[6]);
     }

@@ -1,7 +1,7 @@
 //! Strands wholly unlike those whose roots lie beside theirs.
 
 use glam::Vec3;
-use strandline_base::par::prelude::*;
+use strandline_base::{counted, par::prelude::*};
 
 use crate::Groom;
 use crate::choice::{Roots, features};
@@ -35,10 +35,9 @@ impl Groom {
             let mut strands = (0..found.len()).filter(|strand| found[*strand] == Some(kind));
             let first = strands.next()?;
             let count = 1 + strands.count();
-            let (are, they) = if count == 1 { ("strand is", "it") } else { ("strands are", "they") };
-            (count as f32 <= few).then(|| {
-                format!("{count} {are} {words}, the first is {first}: left as {they} stand in the file")
-            })
+            let strands = counted(count, "strand is", "strands are");
+            (count as f32 <= few)
+                .then(|| format!("{strands} {words}, the first is {first}: left as in the file"))
         };
         let longer = note(Unlike::Longer, "over 5 times as long as those beside");
         longer.into_iter().chain(note(Unlike::Against, "led against all those beside")).collect()

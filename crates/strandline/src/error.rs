@@ -70,8 +70,8 @@ pub enum Error {
     },
     /// The name of a file of moving hair belongs to no format.
     #[error(
-        "`{found}` names no format of moving hair, expected .npz, .usda, or a name with a number in it for a file \
-         a frame, such as hair.%04d.hair{}: {}", by_extra(found), path.display()
+        "`{found}` names no format of moving hair, expected .npz, .usda, or a name with one number in it for a file \
+         a frame, such as hair.%04d.hair{}: {}", by_extra(found, path), path.display()
     )]
     OutName {
         /// The ending.
@@ -256,9 +256,11 @@ impl Error {
     }
 }
 
-/// The program that writes moving hair of an ending which this one cannot write.
-fn by_extra(ending: &str) -> &'static str {
+/// The program that writes moving hair of an ending which this one cannot write, or the fault of a name with numbers.
+fn by_extra(ending: &str, path: &Path) -> &'static str {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
     match ending {
+        _ if name.matches('%').count() > 1 => "; this name has more than one",
         "usd" | "usdc" => "; the `strandline` of `pip install 'strandline[usd]'` writes it",
         "abc" => "; the `strandline` of `pip install 'strandline[abc]'` writes it",
         _ => "",
@@ -290,6 +292,18 @@ mod tests {
         assert_eq!(Error::from(SimError::from(value.clone())).kind(), ErrorKind::Value);
         assert_eq!(Error::from(value).kind(), ErrorKind::Value);
         assert_eq!(Error::WorkerGone.kind(), ErrorKind::Other);
+    }
+
+    #[test]
+    fn a_name_of_moving_hair_is_told_its_fault() {
+        let told = |name: &str| {
+            let (found, path) =
+                (name.rsplit('.').next().unwrap().to_owned(), PathBuf::from("50%").join(name));
+            Error::OutName { found, path }.to_string()
+        };
+        assert!(told("s.%04d%04d.hair").contains("this name has more than one"));
+        assert!(!told("s.%x.hair").contains("more than one"));
+        assert!(told("s.usdc").contains("strandline[usd]"));
     }
 
     #[test]

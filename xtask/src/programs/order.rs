@@ -10,13 +10,13 @@ use crate::cargo::root;
 /// Programs that start first while no run is kept, in this order: by the work and the waiting in their tests.
 const LONG: [&str; 9] = [
     "strandline-checks/laws",
-    "strandline-checks/parity",
-    "strandline-cli/window",
-    "strandline-cli/reliability",
     "strandline/it",
     "strandline-checks/pictures",
-    "strandline/soak",
+    "strandline-checks/parity",
     "strandline-cli/program",
+    "strandline-cli/reliability",
+    "strandline-cli/window",
+    "strandline/soak",
     "strandline-viewer/window",
 ];
 /// Seconds that such a program is taken for, and every other one without a kept run.

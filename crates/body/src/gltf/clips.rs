@@ -3,6 +3,7 @@
 use ::gltf::Document;
 use ::gltf::accessor::{Accessor, DataType};
 use ::gltf::json::Value;
+use strandline_base::counted;
 
 use super::buffers::Buffers;
 use super::track::{Property, Track, Way};
@@ -75,7 +76,11 @@ impl Clips {
             }
         }
         if pointers > 0 {
-            notes.push(format!("{pointers} channels of KHR_animation_pointer are not played"));
+            notes.push(counted(
+                pointers,
+                "channel of KHR_animation_pointer is not played",
+                "channels of KHR_animation_pointer are not played",
+            ));
         }
         if tracks.is_empty() {
             return Err((format!("the clip `{name}`, which moves nothing"), "a clip that moves nodes"));

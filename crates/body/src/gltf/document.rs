@@ -60,7 +60,7 @@ fn check_required(root: &Value) -> Result<(), Refusal> {
     let required = root.get("extensionsRequired").and_then(Value::as_array);
     let mut names = required.into_iter().flatten().filter_map(Value::as_str);
     names.find(|name| !is_needless(name)).map_or(Ok(()), |name| {
-        let found = format!("the extension `{name}`, which the file requires,");
+        let found = format!("the extension `{name}`, which the file requires");
         Err((found, "plain data, KHR_mesh_quantization or extensions of looks, lights and clips"))
     })
 }

@@ -175,8 +175,9 @@ impl File {
 fn note_weightless(weightless: usize, mesh: &Mesh, notes: &mut Vec<String>) {
     if weightless > 0 {
         let count = mesh.positions.len();
+        let (have, them) = if weightless == 1 { ("has", "it") } else { ("have", "them") };
         notes.push(format!(
-            "{weightless} of {count} vertices have no weights of joints: the first joint of their skin carries them"
+            "{weightless} of {count} vertices {have} no weights of joints: the first joint of the skin carries {them}"
         ));
     }
 }

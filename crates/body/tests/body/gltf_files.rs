@@ -247,7 +247,7 @@ fn a_skinned_mesh_stands_in_its_default_pose() {
         let (_folder, path) = scratch("cube.glb", &skinned(weights, false).bytes());
         Mesh::load_noted(&path, 1.0).unwrap().1
     };
-    let note = "8 of 8 vertices have no weights of joints: the first joint of their skin carries them";
+    let note = "8 of 8 vertices have no weights of joints: the first joint of the skin carries them";
     assert_eq!((notes([0.0, 0.0]), notes([1.0, 0.0])), (vec![note.to_owned()], Vec::new()));
     let file = skinned([1.0, 0.0], false).replace(r#""joints": [2, 3]"#, r#""joints": [2]"#);
     assert!(refused("cube.glb", &file.bytes()).contains("the joint 1 of 1"));

@@ -7,6 +7,7 @@ mod distance_grid;
 mod files;
 mod gltf_files;
 mod mesh_files;
+mod neck;
 mod painted;
 mod painted_file;
 mod posed_skin;

@@ -1,5 +1,7 @@
 //! `.bin`, strands as CT2Hair writes them: as `.data`, but each point has a normal and a label behind it.
 
+use strandline_base::counted;
+
 use super::bytes::{Source, put, put_u32};
 use super::{Parsed, data, headerless};
 use crate::{Groom, GroomError};
@@ -16,7 +18,7 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
     };
     let mut problems = vec!["normals and labels of points are not read".to_owned()];
     if bare > 0 {
-        problems.push(format!("{bare} roots have no hair"));
+        problems.push(counted(bare, "root has no hair", "roots have no hair"));
     }
     Ok(Parsed { format: ".bin", groom, problems })
 }

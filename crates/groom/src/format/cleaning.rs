@@ -1,6 +1,7 @@
 //! Strands and attributes unlike all others of a groom: found, named with their number, mended or left out.
 
 use glam::Vec3;
+use strandline_base::counted;
 use strandline_body::Aabb;
 
 use super::HAIR_WIDTH;
@@ -144,12 +145,12 @@ impl Strays {
     fn notes(&self, done: &str) -> Vec<String> {
         let mut notes = Vec::new();
         if let Some(first) = self.strands.first() {
-            let count = self.strands.len();
-            notes.push(format!("{count} strands reach far from all others, the first is {first}: {done}"));
+            let strands = counted(self.strands.len(), "strand reaches", "strands reach");
+            notes.push(format!("{strands} far from all others, the first is {first}: {done}"));
         }
         if let Some(first) = self.dummies.first() {
-            let count = self.dummies.len();
-            notes.push(format!("{count} dummy points lie at the origin, the first is point {first}: {done}"));
+            let points = counted(self.dummies.len(), "dummy point lies", "dummy points lie");
+            notes.push(format!("{points} at the origin, the first is point {first}: {done}"));
         }
         notes
     }
@@ -202,7 +203,8 @@ fn tiny(groom: &Groom) -> Vec<usize> {
 }
 
 fn tiny_note(tiny: &[usize]) -> String {
-    format!("{} strands are shorter than 1 mm and than 2 % of the median", tiny.len())
+    let strands = counted(tiny.len(), "strand is", "strands are");
+    format!("{strands} shorter than 1 mm and than 2 % of the median")
 }
 
 /// Widths that hair can have in place of those that it cannot, and a note.
@@ -253,7 +255,8 @@ fn widths(groom: &Groom) -> Option<(Widths, String)> {
             Widths::PerPoint(widths)
         }
     };
-    Some((mended, format!("{odd} strands have widths unlike the others: {} is taken", shown(median))))
+    let strands = counted(odd, "strand has a width unlike", "strands have widths unlike");
+    Some((mended, format!("{strands} the others: {} is taken", shown(median))))
 }
 
 fn scaled(widths: &Widths, unit: f32) -> Widths {
@@ -267,8 +270,8 @@ fn scaled(widths: &Widths, unit: f32) -> Widths {
 /// Scale by which parts of colours become light from 0 to 1.
 #[derive(Clone, Copy)]
 enum ColorScale {
-    /// Of 0 to 255, as pictures have them (sRGB).
-    Bytes,
+    /// Of 0 to a largest number, 255 or 65,535, as pictures have them (sRGB).
+    Whole(f32),
     /// Cut off at 0 and 1.
     Cut,
 }
@@ -277,7 +280,7 @@ impl ColorScale {
     fn of(self, part: f32) -> f32 {
         match self {
             Self::Cut => part.clamp(0.0, 1.0),
-            Self::Bytes => linear((part / 255.0).clamp(0.0, 1.0)),
+            Self::Whole(most) => linear((part / most).clamp(0.0, 1.0)),
         }
     }
 }
@@ -293,10 +296,14 @@ fn colors(groom: &Groom) -> Option<(ColorScale, String)> {
     let is_whole = parts.iter().all(|part| part.fract() == 0.0);
     let is_bytes =
         largest <= 255.0 && largest > 1.0 && (is_whole || quantile(parts.iter().copied(), 0.5) > 2.0);
-    Some(if is_bytes {
-        (ColorScale::Bytes, format!("colours up to {largest}: taken as 0 to 255 of sRGB"))
+    // Numbers of two bytes: far beyond those of one, in the middle too.
+    let is_wide = is_whole && largest <= 65_535.0 && quantile(parts.iter().copied(), 0.5) > 255.0;
+    Some(if is_bytes || is_wide {
+        let most = if is_bytes { 255.0 } else { 65_535.0 };
+        (ColorScale::Whole(most), format!("colours up to {largest}: taken as 0 to {most} of sRGB"))
     } else {
-        (ColorScale::Cut, format!("{odd} parts of colours are beyond 0 to 1: cut off there"))
+        let parts = counted(odd, "part of a colour is", "parts of colours are");
+        (ColorScale::Cut, format!("{parts} beyond 0 to 1: cut off there"))
     })
 }
 

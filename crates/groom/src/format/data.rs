@@ -1,5 +1,7 @@
 //! `.data`, strands as the USC-HairSalon database has them: a count, then for each strand a count and its points.
 
+use strandline_base::counted;
+
 use super::bytes::{Source, put, put_u32, vec3};
 use super::{MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed, headerless};
 use crate::{Groom, GroomError};
@@ -16,7 +18,7 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
     };
     let problems = match bare {
         0 => Vec::new(),
-        count => vec![format!("{count} roots have no hair")],
+        count => vec![counted(count, "root has no hair", "roots have no hair")],
     };
     Ok(Parsed { format: ".data", groom, problems })
 }

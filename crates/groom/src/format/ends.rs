@@ -145,7 +145,9 @@ impl Groom {
             return None;
         }
         let turned = self.from_tip()?;
-        let note = from_tip_note(&turned);
+        // Of strands that do not taper only those far from the other roots show it.
+        let least = if self.tapered_from_tip().is_none() { "at least " } else { "" };
+        let note = format!("{least}{}", from_tip_note(&turned));
         if cleaning == Cleaning::Named {
             return Some(format!("{note} ({hint})"));
         }
@@ -159,7 +161,10 @@ pub fn from_tip_note(turned: &[bool]) -> String {
     let found = turned.iter().filter(|turned| **turned).count();
     match found == turned.len() {
         true => "all strands are stored from tip to root".to_owned(),
-        false => format!("{found} of {} strands are stored from tip to root", turned.len()),
+        false => {
+            let is = if found == 1 { "is" } else { "are" };
+            format!("{found} of {} strands {is} stored from tip to root", turned.len())
+        }
     }
 }
 

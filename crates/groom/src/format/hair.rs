@@ -1,5 +1,7 @@
 //! `.hair`, Cem Yuksel's HAIR format: a header of 128 bytes, then arrays in the order of their bits.
 
+use strandline_base::counted;
+
 use super::bytes::{Source, put, put_u32, vec3};
 use super::{Attribute, MAX_POINTS, MAX_STRANDS, Parsed, headerless};
 use crate::{Groom, GroomError, Widths};
@@ -33,7 +35,7 @@ const NO_COLORS: [[f32; 3]; 2] = [[0.0; 3], [1.0; 3]];
 pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError> {
     let source = Source { bytes, format: ".hair" };
     if !bytes.starts_with(b"HAIR")
-        && let Some(parsed) = counted(&source).or_else(|| headerless::read(bytes, ".hair", per_strand))
+        && let Some(parsed) = with_counts(&source).or_else(|| headerless::read(bytes, ".hair", per_strand))
     {
         return Ok(parsed);
     }
@@ -56,7 +58,8 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
         );
     }
     if offset < bytes.len() as u64 {
-        problems.push(format!("{} bytes after the last array are ignored", bytes.len() as u64 - offset));
+        let more = counted(bytes.len() as u64 - offset, "byte", "bytes");
+        problems.push(format!("{more} after the last array: ignored"));
     }
     let starts = starts(&source, &header, segments_at, &mut problems)?;
     let has = |bit: u32| header.arrays & bit != 0;
@@ -91,7 +94,7 @@ pub fn read(bytes: &[u8], per_strand: Option<u32>) -> Result<Parsed, GroomError>
 
 /// Strands as HairStep, NeuralHDHair and MonoHair write them: the numbers of strands and of points (32 bits), the
 /// points of each strand (16 bits), then coordinates. `None` where the size of the file does not agree.
-fn counted(source: &Source) -> Option<Parsed> {
+fn with_counts(source: &Source) -> Option<Parsed> {
     let [strands, points] = [source.u32("strands", 0).ok()?, source.u32("points", 4).ok()?].map(u64::from);
     let length = strands.checked_mul(2)?.checked_add(points.checked_mul(12)?)?.checked_add(8)?;
     let is_within = (1..=MAX_STRANDS).contains(&strands) && (1..=MAX_POINTS).contains(&points);
@@ -184,7 +187,7 @@ fn starts(
         starts.push(sum);
     }
     if empty > 0 {
-        problems.push(format!("{empty} strands have no segment"));
+        problems.push(counted(empty, "strand has no segment", "strands have no segment"));
     }
     Ok(starts)
 }

@@ -1,5 +1,7 @@
 //! Joins lines that share end points into strands, in whatever order and direction a file lists them.
 
+use strandline_base::counted;
+
 /// Lines between vertices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lines {
@@ -27,13 +29,15 @@ impl Joined {
         let mut problems = Vec::new();
         let strands = self.firsts.len();
         if strands < listed {
-            problems.push(format!("{listed} lines that share their ends are joined into {strands} strands"));
+            let strands = counted(strands, "strand", "strands");
+            problems.push(format!("{listed} lines that share their ends are joined into {strands}"));
         }
         if self.branchings > 0 {
-            problems.push(format!("{} points where strands branch: strands end there", self.branchings));
+            let points = counted(self.branchings, "point", "points");
+            problems.push(format!("{points} where strands branch: strands end there"));
         }
         if self.rings > 0 {
-            problems.push(format!("{} strands are rings, cut open", self.rings));
+            problems.push(counted(self.rings, "strand is a ring, cut open", "strands are rings, cut open"));
         }
         problems
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use glam::Vec3;
-use strandline_base::whole_lines;
+use strandline_base::{counted, whole_lines};
 
 use super::bytes::Source;
 use super::joining::Lines;
@@ -52,7 +52,11 @@ pub fn read(bytes: &[u8]) -> Result<Parsed, GroomError> {
     let skipped = reading.skipped;
     let (groom, mut problems) = reading.groom();
     if skipped > 0 {
-        problems.push(format!("{skipped} faces or other elements are not read"));
+        problems.push(counted(
+            skipped,
+            "face or other element is not read",
+            "faces or other elements are not read",
+        ));
     }
     let longest = groom.starts.windows(2).map(|pair| u64::from(pair[1] - pair[0])).max().unwrap_or(0);
     if longest > MAX_POINTS_PER_STRAND || groom.strand_count() as u64 > MAX_STRANDS {

@@ -14,6 +14,8 @@ pub struct Saved {
     pub left_out: Vec<&'static str>,
     /// Changes that made the groom fit the format, human-readable.
     pub notes: Vec<String>,
+    /// Number of points in the file.
+    pub points: usize,
 }
 
 impl Groom {
@@ -48,11 +50,13 @@ pub fn save(groom: &Groom, path: &Path) -> Result<Saved, GroomError> {
     }
     let fitted = format.fit.map(|fit| fit(groom)).transpose().map_err(|error| error.of(path))?;
     let Fitted { groom: changed, notes } = fitted.unwrap_or_default();
-    let bytes = write(changed.as_ref().unwrap_or(groom)).map_err(|error| error.of(path))?;
+    let written = changed.as_ref().unwrap_or(groom);
+    let bytes = write(written).map_err(|error| error.of(path))?;
     WholeFile::save(path, &bytes).map_err(|source| GroomError::File {
         action: "write",
         path: path.to_owned(),
         source,
     })?;
-    Ok(Saved { left_out: lost.into_iter().map(Attribute::name).collect(), notes })
+    let left_out = lost.into_iter().map(Attribute::name).collect();
+    Ok(Saved { left_out, notes, points: written.points.len() })
 }

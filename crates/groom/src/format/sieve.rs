@@ -1,5 +1,7 @@
 //! Finds strands that cannot be used: named when reading strictly, left out and counted when not.
 
+use strandline_base::counted;
+
 use crate::{Groom, GroomError, Widths};
 
 use super::MAX_COORDINATE;
@@ -35,7 +37,11 @@ pub fn sieve(groom: Groom, strict: bool, problems: &mut Vec<String>) -> Result<G
     for (kind, (text, _)) in FAULTS.iter().enumerate() {
         let bad: Vec<usize> = (0..faults.len()).filter(|strand| faults[*strand] == Some(kind)).collect();
         if let Some(first) = bad.get(..bad.len().min(NAMED)).filter(|first| !first.is_empty()) {
-            problems.push(format!("{} strands left out: each {text}; the first are {first:?}", bad.len()));
+            let (left, are) = (
+                counted(bad.len(), "strand", "strands"),
+                if bad.len() == 1 { "it is" } else { "the first are" },
+            );
+            problems.push(format!("{left} left out: each {text}; {are} {first:?}"));
         }
     }
     if faults.iter().all(Option::is_none) {

@@ -3,7 +3,7 @@
 use std::str::SplitWhitespace;
 
 use glam::{Vec2, Vec3};
-use strandline_base::utf8_text;
+use strandline_base::{counted, utf8_text};
 
 use super::bytes::Source;
 use super::{MAX_POINTS, MAX_POINTS_PER_STRAND, MAX_STRANDS, Parsed};
@@ -88,8 +88,12 @@ impl Header {
             "numStrands" => self.strands = Some(rest.next()?.parse().ok()?),
             "numFollowHairsPerGuideHair" => {
                 if let Ok(count @ 1..) = rest.next()?.parse::<u32>() {
-                    self.problems
-                        .push(format!("{count} hairs that TressFX adds to each guide are not added"));
+                    let hairs = counted(
+                        count,
+                        "hair that TressFX adds to each guide is",
+                        "hairs that TressFX adds to each guide are",
+                    );
+                    self.problems.push(format!("{hairs} not added"));
                 }
             }
             // A point that no strand has.

@@ -51,7 +51,7 @@ fn hair_strands_without_segments_count_one_point_or_none() {
         let parsed = hair::read(&bytes, None).unwrap();
         assert_eq!(parsed.groom.starts, starts);
         let colour = "the header's one colour for all strands, linear (1, 0.5, 0.25), is not taken";
-        assert_eq!(parsed.problems, ["1 strands have no segment", colour]);
+        assert_eq!(parsed.problems, ["1 strand has no segment", colour]);
         let lenient = LoadOptions { strict: false, ..LoadOptions::default() };
         assert_eq!(prepare(parsed, &lenient).unwrap().groom.strand_count(), 1);
     }
@@ -155,7 +155,7 @@ fn bad_strands_are_named_strictly_and_left_out_leniently() {
         refused(prepare(parsed.clone(), &strict), &["strand 2", word]);
         let loaded = prepare(parsed, &LoadOptions { strict: false, ..strict }).unwrap();
         assert_eq!(loaded.groom, two_strands());
-        assert!(loaded.report.problems.iter().any(|text| text.contains("1 strands left out")));
+        assert!(loaded.report.problems.iter().any(|text| text.contains("1 strand left out")));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 use strandline_base::npz;
-use strandline_groom::format::{LoadOptions, Scale, bin, data, hair, load, obj, ply, tfx, usda};
+use strandline_groom::format::{LoadOptions, Saved, Scale, bin, data, hair, load, obj, ply, tfx, usda};
 use strandline_groom::{Groom, Widths};
 
 /// Three strands of four points.
@@ -303,7 +303,8 @@ fn tfx_files_have_numbers_of_points_that_tressfx_takes() {
         groom
     };
     for (counts, written) in [(&[24][..], 32), (&[2], 4), (&[5, 9], 16), (&[100], 64), (&[3, 16], 16)] {
-        let notes = of(64, counts).save(&path).unwrap().notes;
+        let Saved { notes, points, .. } = of(64, counts).save(&path).unwrap();
+        assert_eq!(points, 64 * written as usize, "{counts:?}");
         assert!(notes.len() == 1 && notes[0].ends_with(&format!("resampled to {written}")), "{notes:?}");
         let read = Groom::load(&path).unwrap();
         assert!(read.starts.windows(2).all(|pair| pair[1] - pair[0] == written), "{counts:?}");

@@ -51,7 +51,7 @@ impl Skin {
     /// The device was lost.
     pub fn take(&mut self, body: &BodyFrame, vertices: &Buffer<Vertex>) -> Result<(), GpuError> {
         let Some(mesh) = &self.mesh else { return Ok(()) };
-        if self.moved.take(mesh, body.skin()) {
+        if self.moved.take(mesh, body) {
             self.ball = ball(self.moved.shape(mesh)[0]);
             self.writes += 1;
             vertices.write(&self.vertices())?;

@@ -1,6 +1,9 @@
 //! A cache of drawn strands, made ready to be drawn again: each is a strand for itself.
 
-use strandline_base::memory::{self, Need};
+use strandline_base::{
+    counted,
+    memory::{self, Need},
+};
 
 use super::{Cache, What};
 use crate::{
@@ -42,7 +45,9 @@ pub(crate) fn prepared(scene: &Scene, cache: &mut Cache) -> Result<Prepared, Err
     crate::prepare::memory::check(&scene, groom.strand_count(), groom.strand_count())?;
     prepared.guides = Guides::resample(&groom, points.min(POINTS))?;
     (prepared.bound, prepared.pose, prepared.tags) = (None, None, Tags::default());
-    prepared.notes.push(format!("drawn are the {} strands of the cache", groom.strand_count()));
+    prepared
+        .notes
+        .push(format!("the cache's {} drawn", counted(groom.strand_count(), "strand is", "strands are")));
     prepared.scene = scene;
     Ok(prepared)
 }

@@ -8,6 +8,7 @@ use strandline_base::math;
 use super::guess::{self, Strands};
 use super::head::turns;
 use super::placing::{Defined, Placing, Placings, place_mesh};
+use super::sample::surface;
 use super::shown::{Body, Shown};
 use crate::{
     Scene,
@@ -49,7 +50,7 @@ fn turned(turn: Quat) -> Placing {
 }
 
 /// Strands out of the skin where a condition holds, that lead some way.
-fn patch(mesh: &Mesh, length: f32, way: Vec3, holds: impl Fn(Vec3) -> bool) -> Groom {
+pub(super) fn patch(mesh: &Mesh, length: f32, way: Vec3, holds: impl Fn(Vec3) -> bool) -> Groom {
     let mut groom = Groom::empty(8e-5);
     let places = mesh.positions.iter().zip(&mesh.normals).filter(|(place, _)| holds(**place));
     for (place, normal) in places.step_by(3) {
@@ -124,6 +125,51 @@ fn facial_hair_and_patches_turn_nothing() {
         let (groom, mesh) = filed(groom, &mesh, back, back);
         let found = found(&groom, &mesh, Defined::Nothing);
         assert!(is_near(found.body, back) && is_near(found.groom, back), "{name}: {:?}", found.notes);
+    }
+}
+
+/// An egg, which shows no axis.
+fn egg() -> Mesh {
+    balls(&[(Vec3::ZERO, Vec3::new(0.078, 0.105, 0.098))])
+}
+
+/// Strands out of places on a surface where a condition holds, that lead some way.
+fn grown_on(mesh: &Mesh, way: Vec3, holds: impl Fn(Vec3) -> bool) -> Groom {
+    let mut groom = Groom::empty(8e-5);
+    for place in surface(mesh, 2000).into_iter().filter(|place| holds(*place)) {
+        let way = (place.normalize() + way).normalize();
+        groom.push((0..6).map(|point| place + way * (0.03 * point as f32)));
+    }
+    groom
+}
+
+#[test]
+fn a_patch_within_the_skin_is_turned_to_no_skin_that_fits_a_little_better() {
+    let mut chin = egg();
+    let beard = grown_on(&chin, Vec3::new(0.0, -2.0, 0.2), |place| place.z > 0.03 && place.y < -0.045);
+    // A chin a millimetre higher than the roots; the back, where none is, lies as the roots do.
+    let is_low = |place: &&mut Vec3| place.z > 0.0 && place.y < 0.0;
+    chin.positions.iter_mut().filter(is_low).for_each(|place| *place *= 1.008);
+    for scale in [0.01, 0.00254] {
+        let placing = Placing { scale, ..HERE };
+        let (beard, mesh) = filed(&beard, &chin, HERE, placing);
+        let found = found(&beard, &mesh, Defined::Nothing);
+        assert!(is_near(found.body, placing), "{:?} {:?}", found.body, found.notes);
+        assert!(is_near(found.groom, HERE) && found.rival.is_none(), "{:?} {:?}", found.groom, found.notes);
+    }
+}
+
+#[test]
+fn hair_shows_the_axis_of_a_body_that_shows_none() {
+    let mesh = balls(&[(Vec3::ZERO, Vec3::splat(0.08))]);
+    let groom = grown_on(&mesh, Vec3::new(0.0, -3.0, -0.3), |place| place.y > 0.02);
+    for up in [Up::Y, Up::Z, Up::MinusY] {
+        let placing = turned(up.rotation());
+        let (groom, mesh) = filed(&groom, &mesh, placing, placing);
+        let found = found(&groom, &mesh, Defined::Nothing);
+        for place in [found.body, found.groom] {
+            assert!(place.turn.angle_between(up.rotation()) < 0.01, "{up:?}: {place:?} {:?}", found.notes);
+        }
     }
 }
 

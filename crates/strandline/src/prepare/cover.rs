@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
-use strandline_base::math;
+use strandline_base::{counted, math};
 
 use super::sample::surface;
 use super::skull::Skull;
@@ -17,8 +17,12 @@ const PLACES: usize = 60_000;
 /// Distance \[m\] of a part from the roots that it covers, and the largest over the width of the skull.
 const GAP: f32 = 0.002;
 const FAR: f32 = 0.5;
-/// Distance \[m\] that pressed hair keeps from the part.
+/// Least distance \[m\] that pressed hair keeps from the part, and that over the gap between part and roots: drawn
+/// strands lie around those that are pressed.
 const UNDER: f32 = 0.003;
+const OF_GAP: f32 = 0.6;
+/// Rounds in which a segment under the part gets its length back.
+const ROUNDS: usize = 4;
 /// Share of the roots that a part covers to be taken for a hat.
 const A_HAT: f32 = 0.15;
 
@@ -43,15 +47,16 @@ pub(super) fn press(groom: &mut Groom, covers: &[Cover], skull: Option<&Skull>) 
         if under.is_empty() || !cover.covers.unwrap_or(is_hat) {
             continue;
         }
+        let inner = inner.above(under.iter().map(|strand| groom.strand(*strand)[0]));
         for strand in &under {
             let range = groom.range(*strand);
-            groom.points[range].iter_mut().for_each(|point| *point = inner.pressed(*point));
+            inner.press(&mut groom.points[range]);
         }
         notes.push(format!(
-            "{} covers the roots of {} strands, which start under it; in motion and between them hair may come through. \
+            "{} covers the roots of {} under it; in motion and between them hair may come through. \
              `covers = false` of its part of [body] leaves them as they are",
             cover.name,
-            under.len()
+            counted(under.len(), "strand, which starts", "strands, which start")
         ));
     }
     notes
@@ -64,6 +69,8 @@ struct Inner {
     far: f32,
     /// Its least distance \[m\] in each direction; infinite where nothing is.
     reach: Vec<f32>,
+    /// Distance \[m\] that pressed hair keeps from it.
+    under: f32,
 }
 
 impl Inner {
@@ -74,7 +81,15 @@ impl Inner {
             let held = &mut reach[direction(place - middle)];
             *held = held.min(place.distance(middle));
         }
-        Self { middle, far: FAR * width, reach }
+        Self { middle, far: FAR * width, reach, under: UNDER }
+    }
+
+    /// The same surface above some roots, from which pressed hair keeps a share of the gap.
+    fn above(self, roots: impl Iterator<Item = Vec3>) -> Self {
+        let mut gaps: Vec<f32> = roots.map(|root| self.reach(root) - root.distance(self.middle)).collect();
+        gaps.sort_by(f32::total_cmp);
+        let gap = gaps.get(gaps.len() / 2).copied().unwrap_or(0.0);
+        Self { under: UNDER.max(OF_GAP * gap), ..self }
     }
 
     /// Distance \[m\] of the part from the middle in the direction of a point.
@@ -90,17 +105,45 @@ impl Inner {
 
     /// A point, brought under the part where it lies beyond it.
     fn pressed(&self, point: Vec3) -> Vec3 {
-        let (beside, most) = (point - self.middle, self.reach(point) - UNDER);
+        let (beside, most) = (point - self.middle, self.reach(point) - self.under);
         if beside.length() > most { self.middle + beside * (most / beside.length()) } else { point }
+    }
+
+    /// Presses a strand from its root on. Segments keep their lengths, and those beyond the rim their ways.
+    fn press(&self, strand: &mut [Vec3]) {
+        let mut before = strand[0];
+        for index in 1..strand.len() {
+            let segment = strand[index] - before;
+            before = strand[index];
+            let (start, length) = (strand[index - 1], segment.length());
+            let mut point = start + segment;
+            for _ in 0..ROUNDS {
+                let pressed = self.pressed(point);
+                if pressed == point {
+                    break;
+                }
+                point = start + self.along(start, pressed - start).normalize_or_zero() * length;
+            }
+            strand[index] = self.pressed(point);
+        }
+    }
+
+    /// A way from a place under the part: the way itself, or down along the part where that leads nowhere.
+    fn along(&self, place: Vec3, way: Vec3) -> Vec3 {
+        let out = (place - self.middle).normalize_or_zero();
+        let flat = way - out * way.dot(out);
+        if flat.length() > 0.1 * self.under { way } else { way + (out * out.y - Vec3::Y) * self.under }
     }
 }
 
-/// The index of a direction.
+/// The index of a direction. Rings near the poles have fewer cells, so that each cell sees enough places of a surface.
 fn direction(beside: Vec3) -> usize {
     let height = (beside.y / beside.length().max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0);
     let around = (math::atan2(beside.x, beside.z) / TAU).rem_euclid(1.0);
-    let high = (math::acos(height) / PI * HIGH as f32) as usize;
-    high.min(HIGH - 1) * AROUND + ((around * AROUND as f32) as usize).min(AROUND - 1)
+    let high = ((math::acos(height) / PI * HIGH as f32) as usize).min(HIGH - 1);
+    let ring = math::unit_at((high as f32 + 0.5) / HIGH as f32 * PI);
+    let cells = (AROUND as f32 * ring.y).ceil().max(1.0);
+    high * AROUND + ((around * cells) as usize).min(cells as usize - 1)
 }
 
 #[cfg(test)]
@@ -144,12 +187,30 @@ mod tests {
         };
         assert!(through(&groom) > 200 && through(&pressed) == 0, "{} points", through(&groom));
         assert!(notes.len() == 1 && notes[0].contains("covers = false"), "{notes:?}");
-        // Roots, and all that hangs below the rim, stay.
+        // Roots, and all strands that start beside it, stay.
         assert!(groom.roots().zip(pressed.roots()).all(|(one, two)| one == two));
-        let rim = hat.positions.iter().map(|place| place.y).fold(f32::INFINITY, f32::min);
-        let pairs = groom.points.iter().zip(&pressed.points);
-        assert!(pairs.clone().filter(|(one, two)| one == two).count() > 500);
-        assert!(pairs.filter(|(one, two)| one != two).all(|(one, _)| one.y > rim - 0.3));
+        let strands = 0..groom.strand_count();
+        let beside = strands.clone().filter(|strand| !inner.covers(groom.strand(*strand)[0]));
+        assert!(beside.clone().count() > 0, "{} strands", beside.count());
+        assert!(beside.clone().all(|strand| groom.strand(strand) == pressed.strand(strand)));
+        // Lengths stay, and nothing stands out at the rim: no segment leads from under it to where it was.
+        let lengths = groom.lengths().into_iter().zip(pressed.lengths());
+        let shorter = lengths.filter(|(one, two)| two / one < 0.95).count();
+        assert!(shorter < 25, "{shorter} strands are shorter");
+        let segments = |groom: &Groom, strand: usize| -> Vec<f32> {
+            groom.strand(strand).windows(2).map(|pair| pair[0].distance(pair[1])).collect()
+        };
+        let longer = |strand: usize| {
+            let pairs = segments(&pressed, strand).into_iter().zip(segments(&groom, strand));
+            pairs.map(|(now, own)| now - own).fold(0.0, f32::max)
+        };
+        let apart = strands.filter(|strand| longer(*strand) > 0.01).count();
+        assert!(apart < 25, "segments of {apart} strands are a centimetre longer");
+        // Drawn strands have room between these and the hat.
+        let near = (0..groom.strand_count()).filter(|strand| inner.covers(groom.strand(*strand)[0]));
+        let near = near.flat_map(|strand| pressed.strand(strand));
+        let near = near.filter(|point| point.distance(inner.middle) > inner.reach(**point) - 0.006).count();
+        assert!(near == 0, "{near} points lie at the hat");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::{
         format::{Scale, Up},
     },
     prepare::{
-        axes_tests::dandelion,
+        axes_tests::{dandelion, patch},
         guess::{self, Strands},
         placing::{Defined, Placing, Placings, place_mesh},
         shown::{Body, Shown},
@@ -87,6 +87,23 @@ fn hair_of_metres_is_refused_and_its_scale_keeps_it() {
     );
     let kept = loaded(&groom, &mesh, |scene| scene.groom.scale = Scale::Factor(1.0)).unwrap();
     assert!(kept.notes.iter().any(|note| note.contains("m long in the mean")), "{:?}", kept.notes);
+}
+
+#[test]
+fn hair_that_leads_up_from_low_roots_is_refused_and_its_axes_keep_it() {
+    let mesh = Mannequin::new().mesh();
+    let is_low = |place: Vec3| (-0.07..0.03).contains(&place.y) && place.z < 0.045 && place.x.abs() < 0.1;
+    let way = |up: f32| patch(&mesh, 0.15, Vec3::Y * up, is_low);
+    let problem = refused(&way(3.0), &mesh);
+    assert!(
+        problem.contains("lead up from roots below the middle") && problem.contains("`--up y` keeps it so"),
+        "{problem}"
+    );
+    let kept = loaded(&way(3.0), &mesh, |scene| scene.groom.up = Up::Y).unwrap();
+    assert!(kept.notes.iter().any(|note| note.contains("lead up from roots")), "{:?}", kept.notes);
+    // The same roots with hair that hangs.
+    let hanging = loaded(&way(-3.0), &mesh, |_| ()).unwrap();
+    assert!(!hanging.notes.iter().any(|note| note.contains("lead up")), "{:?}", hanging.notes);
 }
 
 #[test]

@@ -26,7 +26,7 @@ use crate::{
 
 /// Diagonal of the box around a groom without a body \[m\].
 const GROOMS: std::ops::RangeInclusive<f32> = 0.05..=2.0;
-/// Least advantage of z over y in the height of roots for z to be up, and in all evidence.
+/// Least advantage of another axis over y in the height of roots for it to be up, and in all evidence.
 const HIGHER: f32 = 0.15;
 const SURER: f32 = 0.3;
 /// Evidence beyond that for the axes of a file with which others are taken for a groom without a body.
@@ -110,8 +110,9 @@ fn together(scene: &Scene, strands: Strands, Body { mesh, shown }: Body) -> Plac
     let Shown { mut placing, pose, mut strange, confidence: sure, .. } = *shown;
     let (hair, sample) = (Hair::new(grooms), Sample::new(grooms, mesh));
     let mut other = None;
-    if !pose.is_sure && scene.groom.up == Up::Auto && shows_z(&sample) {
-        placing.turn = upright(Up::Z);
+    let shown_up = if !pose.is_sure && scene.groom.up == Up::Auto { shown_up(&sample) } else { None };
+    if let Some(up) = shown_up {
+        placing.turn = upright(up);
         other = Some(Head::new(scene, mesh, placing, pose));
     }
     let (body, head) = (placing, other.as_ref().unwrap_or(&shown.head));
@@ -193,11 +194,17 @@ fn away(search: &Search, grooms: &[&Groom]) -> Placing {
     if is_hair || is_given { same } else { Placing { scale: alone, ..same } }
 }
 
-/// True where hair shows that z points up in the file of a body that itself does not show an axis.
-fn shows_z(sample: &Sample) -> bool {
-    let ([high_y, hangs_y], [high_z, hangs_z]) = (sample.upness(Vec3::Y), sample.upness(Vec3::Z));
+/// The axis that points up in the file of a body that itself shows none, where hair shows another than y.
+fn shown_up(sample: &Sample) -> Option<Up> {
+    let shown = |up: Up| sample.upness(up.rotation().inverse() * Vec3::Y);
+    let [high_y, hangs_y] = shown(Up::Y);
+    let others = [Up::Z, Up::MinusY].map(|up| (up, shown(up)));
     // Fur that is combed along z hangs down z, but grows no higher there.
-    high_z > high_y + HIGHER && high_z + hangs_z > high_y + hangs_y + SURER
+    let is_shown =
+        |[high, hangs]: [f32; 2]| high > high_y + HIGHER && high + hangs > high_y + hangs_y + SURER;
+    let found = others.into_iter().filter(|(_, found)| is_shown(*found));
+    let sum = |found: [f32; 2]| found[0] + found[1];
+    found.max_by(|one, two| sum(one.1).total_cmp(&sum(two.1))).map(|(up, _)| up)
 }
 
 /// The place of a further groom: given, or that of the first unless another unit or axis brings its roots to the

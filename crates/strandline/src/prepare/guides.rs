@@ -1,6 +1,7 @@
 //! Seventh stage of loading: the simulated strands, resampled, at rest outside of all solids.
 
 use glam::Vec3;
+use strandline_base::counted;
 
 use crate::{
     Error, Scene,
@@ -86,7 +87,10 @@ fn choose(scene: &Scene, groom: &Groom, notes: &mut Vec<String>) -> Option<Vec<u
         return None;
     }
     let bound = count - guides.len();
-    notes.push(format!("{} strands are simulated ({how}), {bound} are bound to them", guides.len()));
+    let simulated = counted(guides.len(), "strand is", "strands are");
+    let bound = counted(bound, "is", "are");
+    let them = if guides.len() == 1 { "it" } else { "them" };
+    notes.push(format!("{simulated} simulated ({how}), {bound} bound to {them}"));
     Some(guides)
 }
 
@@ -100,7 +104,7 @@ fn start(
     colliders: &[Collider],
 ) -> Result<Start, Error> {
     let head = head_motion(scene, pivot, bounds(strands, mesh.filter(|_| scene.body.visible)))?;
-    let head = head.with_body(skin.cloned());
+    let head = head.with_body(skin.cloned()).with_neck(mesh.and_then(|mesh| mesh.neck));
     let time = if scene.groom.pose.is_some() { 0.0 } else { scene.film.start };
     let (origin, _) = about(head.origin_at(time), colliders.to_vec());
     Ok(Start { origin, body: head.seen_from(origin).frame(time) })
@@ -132,9 +136,10 @@ pub(super) fn move_outside(
         if distance < nearest.0 { (distance, back.direction(gradient)) } else { nearest }
     });
     let Outside { point_count, strand_count, depth, depth_left } = found;
+    let [points, strands] =
+        [counted(point_count, "point", "points"), counted(strand_count, "strand", "strands")];
     let mut note = format!(
-        "{point_count} points of {strand_count} strands rested inside solids, by up to {:.2} mm: moved to the \
-         surface, lengths kept",
+        "{points} of {strands} rested inside solids, by up to {:.2} mm: moved to the surface, lengths kept",
         1e3 * depth
     );
     if depth_left > 1e-4 {

@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
-use strandline_base::{SettingError, math};
+use strandline_base::{SettingError, counted, math};
 
 use super::join::part_placing;
 use super::loading::Loading;
@@ -183,7 +183,11 @@ pub(super) fn onto(
     if bare > 0 {
         *groom = groom.select(&kept);
     }
-    let left = if bare > 0 { format!("; {bare} strands have no place on it") } else { String::new() };
+    let left = if bare > 0 {
+        format!("; {} no place on it", counted(bare, "strand has", "strands have"))
+    } else {
+        String::new()
+    };
     Ok(format!("the style grows on the scalp that the body marks{left}"))
 }
 

@@ -111,8 +111,9 @@ impl Prepared {
 /// Last stage of loading: all strands bound to their guides, and the motion of the head.
 fn bind(loading: Loading) -> Result<Prepared, Error> {
     let placement = loading.placings.placement();
-    let Loading { scene, notes, groom, mesh, colliders, pivot, strands, chosen, guides, start, skin, .. } =
-        loading;
+    let Loading {
+        scene, mut notes, groom, mesh, colliders, pivot, strands, chosen, guides, start, skin, ..
+    } = loading;
     let (Some(groom), Some(mut all), Some(guides)) = (groom, strands, guides) else {
         unreachable!("the stages before end with strands or an error")
     };
@@ -127,12 +128,19 @@ fn bind(loading: Loading) -> Result<Prepared, Error> {
         }
     };
     let shape = [guides.strand_count(), guides.points_per_strand()];
+    let drawn = bound.as_ref().map_or(&guides, BoundStrands::strands).strand_count();
+    if let Some(fewer) = scene.look.fewer_hairs(drawn) {
+        notes.push(format!(
+            "look.hair_count x look.width_scale would take long and hide all else: strands cover as much as {fewer:.0} hairs"
+        ));
+    }
     let vertices = mesh.as_ref().map_or(0, |mesh| mesh.positions.len());
     let load = |file: &std::path::PathBuf| HairPose::load(&scene.path(file), shape, vertices);
     let pose = scene.groom.pose.as_ref().map(load).transpose()?;
+    let neck = mesh.as_ref().and_then(|mesh| mesh.neck);
     let mesh = mesh.filter(|_| scene.body.visible);
     let bounds = bounds(bound.as_ref().map_or(&guides, BoundStrands::strands), mesh.as_ref());
-    let head = head_motion(&scene, pivot, bounds)?.with_body(skin);
+    let head = head_motion(&scene, pivot, bounds)?.with_body(skin).with_neck(neck);
     Ok(Prepared { guides, bound, tags, mesh, colliders, head, pose, bounds, scene, placement, notes })
 }
 

@@ -25,12 +25,14 @@ const FARTHER: f32 = 0.25;
 /// Distance of roots over their size that counts as one piece of evidence, and most pieces.
 pub(super) const PIECE: f32 = 0.02;
 pub(super) const MOST: f32 = 6.0;
-/// Evidence against axes: of a standard other than the body's own, for a full head of hair and for a patch, turned round,
-/// and any others; and units.
+/// Evidence against axes of a full head of hair: of a standard other than the body's own, turned round, and any others.
 const OTHER: f32 = 0.5;
-const OTHER_OF_PATCH: f32 = 1.0;
 const ROUND: f32 = 1.5;
 const STRANGE: f32 = 3.0;
+/// Evidence against axes of a patch for each step from its body's own: y or z up, -y up, turned round, and any others.
+/// Roots on the skin show nothing more by lying nearer to it.
+const STEP_OF_PATCH: f32 = ON_SKIN / PIECE + 0.75;
+/// Evidence against units that are not usual.
 const ODD_UNIT: f32 = 1.0;
 /// Advantage of other axes over those of the body's file with which they are taken, where both fit.
 const CLEAR: f32 = 1.5;
@@ -195,23 +197,25 @@ impl Search<'_> {
     /// Evidence for a place.
     fn evidence(&self, placing: &Placing, fit: f32) -> f32 {
         let near = |one: Quat, two: Quat| one.angle_between(two) < 0.01;
-        let standard = [Up::Y, Up::Z, Up::MinusY].map(upright);
+        let [y, z, down] = [Up::Y, Up::Z, Up::MinusY].map(upright);
+        let is_near = |turns: &[Quat]| turns.iter().any(|turn| near(placing.turn, *turn));
         let body = self.own();
         let placed = self.placed(placing);
         let lies = self.head.skull.as_ref().filter(|skull| placed.is_full(Some(skull.center())));
         let lies = lies.map(|skull| placed.on(skull, self.head.pose.shows_front));
-        let against = if near(placing.turn, body.turn) {
-            0.0
-        } else if standard.iter().any(|turn| near(placing.turn, *turn)) {
-            if lies.is_some() { OTHER } else { OTHER_OF_PATCH }
-        } else if standard
-            .iter()
-            .any(|turn| near(placing.turn, math::rotation(Vec3::Y, std::f32::consts::PI) * *turn))
-        {
-            ROUND
+        let round = math::rotation(Vec3::Y, std::f32::consts::PI);
+        let (of_hair, steps) = if near(placing.turn, body.turn) {
+            (0.0, 0.0)
+        } else if is_near(&[y, z]) {
+            (OTHER, 1.0)
+        } else if is_near(&[down]) {
+            (OTHER, 2.0)
+        } else if is_near(&[round * y, round * z, round * down]) {
+            (ROUND, 3.0)
         } else {
-            STRANGE
+            (STRANGE, 4.0)
         };
+        let against = if lies.is_some() { of_hair } else { STEP_OF_PATCH * steps };
         let is_usual = UNITS.contains(&placing.scale) || placing.scale == body.scale;
         let unit = if is_usual { 0.0 } else { ODD_UNIT };
         lies.unwrap_or(0.0) - (fit / PIECE).min(MOST) - against - unit

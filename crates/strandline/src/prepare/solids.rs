@@ -8,7 +8,7 @@ use super::loading::Loading;
 use super::placing::place_mesh;
 use crate::{
     Error,
-    body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Shape, SkinSolid},
+    body::{Carrier, Collider, DistanceGrid, Mannequin, Mesh, Neck, Shape, SkinSolid},
     scene::{Model, solid_motion},
 };
 
@@ -27,10 +27,19 @@ pub(super) fn solids(loading: &mut Loading) -> Result<(), Error> {
         (false, Model::Auto | Model::None) => {}
     }
     let scene = &loading.scene;
+    let neck = loading.mesh.as_ref().and_then(|mesh| mesh.neck);
     if let Some(shape) = loading.shape.clone().filter(|_| is_solid) {
-        loading.colliders.push(Collider::new(shape, Carrier::HEAD, scene.body.friction)?);
+        let parts = match (&shape, neck) {
+            (Shape::Grid(bust), Some(neck)) => neck.solids(bust),
+            _ => Vec::new(),
+        };
+        let parts = parts.into_iter().map(|(part, carrier)| (Shape::Grid(Arc::new(part)), carrier));
+        let whole = (parts.len() == 0).then_some((shape, Carrier::HEAD));
+        for (shape, carrier) in whole.into_iter().chain(parts) {
+            loading.colliders.push(Collider::new(shape, carrier, scene.body.friction)?);
+        }
     }
-    let beside = solid_motion::colliders(&scene.colliders)?;
+    let beside = solid_motion::colliders(&scene.colliders, neck.map_or(0, |_| Neck::PIECES))?;
     loading.colliders.extend(beside);
     Ok(())
 }
@@ -45,7 +54,10 @@ fn mannequin(loading: &mut Loading) -> Result<(), Error> {
         let grid = DistanceGrid::from_field(&*mannequin, body.spacing, DISTANCE_PADDING)?;
         grid_shape(loading, grid)
     };
-    (loading.mesh, loading.pivot) = (Some(mannequin.mesh()), Some(mannequin.neck_pivot()));
+    let (scene, pivot) = (&loading.scene, mannequin.neck_pivot());
+    let bends = scene.motion.neck && !scene.body.exact;
+    let neck = bends.then(|| Neck::new(scene.motion.pivot.unwrap_or(pivot)));
+    (loading.mesh, loading.pivot) = (Some(Mesh { neck, ..mannequin.mesh() }), Some(pivot));
     loading.shape = Some(shape);
     Ok(())
 }

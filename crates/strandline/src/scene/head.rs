@@ -5,7 +5,7 @@ use strandline_base::math;
 
 use crate::{
     Error,
-    body::{BodyFrame, Motion, Pose, RecordedMotion, SkinMotion},
+    body::{BodyFrame, Motion, Neck, Pose, RecordedMotion, SkinMotion},
     scene::{MotionName, MotionSection, origin, solid_motion::SolidMotion},
 };
 
@@ -24,6 +24,9 @@ pub struct HeadMotion {
     /// Motion from a file, in the place of `motion` where the section asks for it.
     recorded: Option<RecordedMotion>,
     is_recorded: bool,
+    /// Neck of the built-in bust, and whether it bends under the motion.
+    neck: Option<Neck>,
+    bends: bool,
 }
 
 impl HeadMotion {
@@ -41,6 +44,8 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded,
+            neck: None,
+            bends: section.neck,
             solids: Arc::default(),
             origin: Vec3::ZERO,
         })
@@ -49,6 +54,16 @@ impl HeadMotion {
     /// The same motion, which carries a body that moves by itself.
     pub(crate) fn with_body(self, body: Option<SkinMotion>) -> Self {
         Self { body, ..self }
+    }
+
+    /// The same motion of a bust with a neck of its own.
+    pub(crate) fn with_neck(self, neck: Option<Neck>) -> Self {
+        Self { neck, ..self }
+    }
+
+    /// Neck of the built-in bust, where its parts are pieces of the body.
+    pub(crate) fn neck(&self) -> Option<Neck> {
+        self.neck
     }
 
     /// The same motion beside solids that move by themselves.
@@ -85,6 +100,8 @@ impl HeadMotion {
             body: None,
             recorded: None,
             is_recorded: false,
+            neck: None,
+            bends: false,
             solids: Arc::default(),
             origin: Vec3::ZERO,
         }
@@ -94,38 +111,46 @@ impl HeadMotion {
     pub fn pose(&self, time: f64) -> Pose {
         match &self.body {
             Some(_) => self.frame(time).world_from_head(),
-            None => self.carrying(time),
+            None => self.carrying(time).0,
         }
     }
 
     /// The body at a time \[s\]: the pose of the head, and the skin where it moves by itself.
     pub fn frame(&self, time: f64) -> BodyFrame {
+        let (carrying, shoulders) = self.carrying(time);
         let frame = match &self.body {
-            Some(body) => body.frame(time).carried_by(&self.carrying(time)),
-            None => self.carrying(time).into(),
+            Some(body) => body.frame(time).carried_by(&carrying),
+            None => carrying.into(),
         };
-        self.beside_solids(frame, time)
+        self.with_pieces(frame, &shoulders, time)
     }
 
-    /// A body with the solids that move by themselves at a time \[s\], where it has no pieces of its own.
+    /// A body with the solids that move by themselves at a time \[s\], where it has no pieces of its own. A bust moves as one.
     pub(crate) fn beside_solids(&self, body: BodyFrame, time: f64) -> BodyFrame {
-        if self.solids.is_empty() || body.piece_count() > 1 {
+        let head = body.world_from_head();
+        self.with_pieces(body, &head, time)
+    }
+
+    fn with_pieces(&self, body: BodyFrame, shoulders: &Pose, time: f64) -> BodyFrame {
+        if (self.solids.is_empty() && self.neck.is_none()) || body.piece_count() > 1 {
             return body;
         }
         let head = body.world_from_head();
-        body.with_pieces(
-            self.solids.iter().map(|solid| solid.pose(time, &head, self.origin)).collect::<Vec<_>>(),
-        )
+        let neck = self.neck.map(|neck| neck.pieces(&head, shoulders));
+        let solids = self.solids.iter().map(|solid| solid.pose(time, &head, self.origin));
+        body.with_pieces(neck.into_iter().flatten().chain(solids).collect::<Vec<_>>())
     }
 
-    /// Transform of everything by the motion about the pivot.
-    fn carrying(&self, time: f64) -> Pose {
+    /// Transforms of the head, or of a body that moves by itself, and of the shoulders by the motion about the pivot.
+    fn carrying(&self, time: f64) -> (Pose, Pose) {
         let pose = match self.recorded.as_ref().filter(|_| self.is_recorded) {
             Some(recorded) => recorded.pose_from(time, self.pivot, self.origin),
             None => self.motion.pose_from(time, self.pivot, self.origin),
         };
-        let rotation = pose.rotation * self.turn;
-        Pose { rotation, translation: pose.point(self.pivot) - rotation * self.pivot }
+        let pivot = pose.point(self.pivot);
+        let about = |rotation: Quat| Pose { rotation, translation: pivot - rotation * self.pivot };
+        let of_shoulders = if self.bends { Neck::of_shoulders(pose.rotation) } else { pose.rotation };
+        (about(pose.rotation * self.turn), about(of_shoulders * self.turn))
     }
 
     /// The same motion in a world whose origin lies at `origin` \[m\].

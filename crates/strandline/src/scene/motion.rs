@@ -56,6 +56,10 @@ settings! {
         /// Rotation of the head added to its motion, about the pivot: pitch (about x), yaw (about y),
         /// roll (about z).
         rotation: Vec3 = Vec3::ZERO, in [-360.0, 360.0] "degrees", slider [-70.0, 70.0];
+        /// Bends the neck of the built-in bust, so that its shoulders stay; without this the bust moves as one. Beyond 75
+        /// degrees the shoulders follow. It is a setting of the load: a window keeps the neck that it began with. The exact
+        /// mannequin never bends.
+        neck: bool = false;
         /// The way from pose to pose, where a pose does not name its own.
         interpolation: Interpolation = Interpolation::default();
         /// A .bvh, .gltf, .glb or .vrm file with a skeleton; used by "file".

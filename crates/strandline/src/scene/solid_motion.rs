@@ -34,12 +34,13 @@ pub(crate) fn solid_motions(
     solids.iter().filter(|solid| !solid.keyframes().is_empty()).map(motion).collect()
 }
 
-/// The solids beside a body: those with keyframes, in their order, are the pieces 1, 2 and so on, about their middles.
+/// The solids beside a body: those with keyframes, in their order, are the pieces behind `pieces` of the body, about their
+/// middles.
 ///
 /// # Errors
 /// As [`ColliderSection::collider`].
-pub(crate) fn colliders(solids: &[ColliderSection]) -> Result<Vec<Collider>, Error> {
-    let mut moved = 0;
+pub(crate) fn colliders(solids: &[ColliderSection], pieces: usize) -> Result<Vec<Collider>, Error> {
+    let mut moved = pieces as u16;
     let solid = |section: &ColliderSection| {
         let collider = section.collider()?;
         if section.keyframes().is_empty() {

@@ -71,8 +71,8 @@ impl Direction {
         motion.check_as("motion")?;
         let (body, recorded) = (self.head.body().cloned(), self.head.recorded().cloned());
         let head = HeadMotion::new(&motion, self.head.pivot())?;
-        let solids = self.head.solids().clone();
-        self.head = head.with_body(body).with_recorded(recorded).with_solids(solids);
+        let (solids, neck) = (self.head.solids().clone(), self.head.neck());
+        self.head = head.with_body(body).with_recorded(recorded).with_solids(solids).with_neck(neck);
         self.head_from_origin = self.head.seen_from(self.head_from_origin.origin());
         if (motion.name, &motion.keyframes) != (self.motion.name, &self.motion.keyframes) {
             (self.begun, self.time, self.counts) = (0.0, 0.0, false);

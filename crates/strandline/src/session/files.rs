@@ -1,5 +1,7 @@
 //! Files of moving hair that a session writes and resumes from.
 
+use strandline_base::counted;
+
 use super::{Executor, Session, resuming};
 use crate::{
     Cache, Error, OutSettings, What, Written,
@@ -63,8 +65,8 @@ impl<E: Executor> Session<E> {
         let differences = differences.map_err(|found| Error::cache(cache.path(), found))?;
         let made = state.frame + 1;
         if made >= frames {
-            let found =
-                format!("its run made {made} frames, and the film has {frames}: ask for more with --frames");
+            let made = counted(made, "frame", "frames");
+            let found = format!("its run made {made}, and the film has {frames}: ask for more with --frames");
             return Err(Error::cache(cache.path(), found));
         }
         let steps = cache.steps();

@@ -52,8 +52,7 @@ impl Ray {
     /// Distance along it \[m\] to a body; infinity when it passes by.
     fn to_body(self, mesh: &Mesh, body: &BodyFrame) -> f32 {
         let head_from_world = body.world_from_head().inverse();
-        let skin = body.skin().filter(|skin| skin.len() == mesh.positions.len());
-        let positions = skin.map_or(&mesh.positions[..], |skin| skin);
+        let positions = mesh.positions_in(body);
         let inside = Self {
             origin: head_from_world.point(self.origin),
             direction: head_from_world.rotation * self.direction,

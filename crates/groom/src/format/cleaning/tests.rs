@@ -135,8 +135,10 @@ fn colours_of_bytes_become_light() {
     // 139 / 255 of sRGB is 0.2582 of light.
     assert!((colors[1][0] - 0.2582).abs() < 1e-4 && colors[1][2] < 0.03, "{:?}", colors[1]);
     assert!(with([139.5, 90.25, 43.0], 1.0).1[0].contains("0 to 255"));
+    assert!(with([35_723.0, 23_130.0, 11_051.0], 1.0).1[0].contains("0 to 65535"));
+    assert!(with([35_723.5, 23_130.0, 11_051.0], 1.0).1[0].contains("cut off"));
     let (colors, notes) = with([0.25, 0.5, 0.75], 1.5);
-    assert_eq!(notes, ["1 parts of colours are beyond 0 to 1: cut off there"]);
+    assert_eq!(notes, ["1 part of a colour is beyond 0 to 1: cut off there"]);
     assert_eq!((colors[0], colors[1]), ([1.0, 0.5, 0.75], [0.25, 0.5, 0.75]));
     assert!(with([0.0, 1.0, 0.5], -0.5).0[0][0] == 0.0);
 }

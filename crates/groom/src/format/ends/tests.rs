@@ -56,6 +56,8 @@ fn few_turned_strands_are_found_by_the_roots_of_the_others_in_any_units() {
             mixed.turn_strands(&turned);
             let found = mixed.from_tip().unwrap_or_default();
             assert_eq!(found.len(), 600, "one in {every} at {scale}");
+            let named = mixed.clone().rooted(RootEnd::Auto, Cleaning::Named, "hint").unwrap();
+            assert!(named.starts_with("at least "), "{named}");
             let wrong = found.iter().zip(&turned).filter(|(found, turned)| **found && !**turned).count();
             let missed = found.iter().zip(&turned).filter(|(found, turned)| !**found && **turned).count();
             // Strands that end as near to the roots as they begin show nothing.

@@ -107,7 +107,7 @@ impl Body {
 
     /// Carries the body to its place.
     pub fn place(&mut self, body: &BodyFrame) {
-        self.skin.take(&self.mesh, body.skin());
+        self.skin.take(&self.mesh, body);
         let ([positions, normals], head) = (self.skin.shape(&self.mesh), body.world_from_head());
         let carry = |from: &[Vec3], to: &mut Vec<Vec3>, carry: &(dyn Fn(Vec3) -> Vec3 + Sync)| {
             to.resize(from.len(), Vec3::ZERO);
