@@ -167,7 +167,7 @@ mod tests {
             assert!(pair.states[0].velocities != vec![Default::default(); pair.states[0].velocities.len()]);
         }
         pair.rest(&calm, 2);
-        // What a caller does to the state.
+        // A caller changes the state.
         for state in &mut pair.states {
             state.set_length_scale(pair.sleeper.model(), &[0.7; 20]).unwrap();
         }
