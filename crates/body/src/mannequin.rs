@@ -3,11 +3,8 @@
 mod ear;
 mod field;
 mod model;
-mod neck;
 mod proportions;
 mod shape;
 mod surface;
 
 pub use model::Mannequin;
-pub(crate) use neck::Bend;
-pub use neck::Neck;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::mannequin::Bend;
 use crate::mesh::normals_about;
+use crate::neck::Bend;
 use crate::welding::welded_vertices;
 use crate::{BodyFrame, Mesh};
 
@@ -29,7 +29,7 @@ impl Mesh {
         match (self.skin_in(body), self.bend_in(body)) {
             (Some(skin), _) => Cow::Borrowed(skin),
             (None, Some(bend)) => {
-                let [positions, _] = bend.skin(self);
+                let [positions, _] = bend.skin(&self.positions, &self.normals);
                 Cow::Owned(positions)
             }
             (None, None) => Cow::Borrowed(&self.positions),
@@ -61,7 +61,7 @@ impl MovedSkin {
         }
         (self.positions, self.bend) = (skin.cloned(), bend);
         if let Some(bend) = bend {
-            [self.bent, self.normals] = bend.skin(mesh);
+            [self.bent, self.normals] = bend.skin(&mesh.positions, &mesh.normals);
         }
         if let Some(skin) = skin {
             if self.welded.is_empty() {

@@ -6,13 +6,13 @@ use glam::{Mat3, Quat, Vec3};
 use strandline_base::math;
 use strandline_base::par::prelude::*;
 
-use crate::{Aabb, BodyFrame, Carrier, DistanceGrid, Mesh, Pose};
+use crate::{BodyFrame, Pose};
 
 /// Slope of the planes across the neck, which rise toward the nape: level = y + SLOPE z.
-const SLOPE: f32 = 0.5;
+pub(crate) const SLOPE: f32 = 0.5;
 /// Levels \[m\] below which the skin stays with the shoulders and above which it moves with the head: under the collar
 /// bones, and under jaw and hairline.
-const LEVELS: [f32; 2] = [-0.200, -0.114];
+pub(crate) const LEVELS: [f32; 2] = [-0.200, -0.114];
 /// Point \[m\] about which the lowest part bends: between the lowest vertebra of the neck and the uppermost of the chest.
 const BASE: Vec3 = Vec3::new(0.0, -0.186, -0.028);
 /// Exponent of the share of an axial rotation over that of a bend. Half-way up, at the fourth vertebra, a neck has
@@ -23,18 +23,7 @@ const FREE: f32 = 1.31;
 const HALF_TURN: f32 = std::f32::consts::PI;
 
 /// Rigid parts that stand for the neck in contacts.
-const SLICES: usize = 6;
-/// Overlap \[m\] of neighbouring parts on either side.
-const OVERLAP: f32 = 0.006;
-/// Depth \[m\] by which the skin of a part recedes over its overlap: under a bend its ends stay under the skin.
-const RECESS: f32 = 0.002;
-/// Half the width \[m\] of the parts of the neck, and the air around them that their samples cover.
-const HALF_WIDTH: f32 = 0.10;
-const AIR: f32 = 0.008;
-/// Depth \[m\] of the back and of the front of the neck, and of the back of the bust.
-const BACK: f32 = -0.10;
-const FRONT: f32 = 0.065;
-const BACK_OF_BUST: f32 = -0.12;
+pub(crate) const SLICES: usize = 6;
 /// Steps of the table of the bent skin.
 const STEPS: usize = 128;
 /// Vertices that a thread carries at a time.
@@ -92,34 +81,6 @@ impl Neck {
         Share { turn, about: BASE.lerp(self.pivot, share) }
     }
 
-    /// The solid parts of samples of the bust, each with its carrier: head, shoulders, and the neck between. At rest their
-    /// union is the bust, to the bit about the head.
-    pub fn solids(&self, bust: &DistanceGrid) -> Vec<(DistanceGrid, Carrier)> {
-        let steepness = Vec3::new(0.0, 1.0, SLOPE).length();
-        let [low, high] = LEVELS;
-        let below = move |level: f32, point: Vec3| (self::level(point) - level) / steepness - OVERLAP;
-        let above = move |level: f32, point: Vec3| (level - self::level(point)) / steepness - OVERLAP;
-        let reach = OVERLAP * steepness + AIR;
-        let all = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
-        let torso = Aabb { max: Vec3::INFINITY.with_y(low - SLOPE * BACK_OF_BUST + reach), ..all };
-        let mut parts = vec![
-            (bust.within(all, |whole, point| capped(whole, above(high, point))), Carrier::HEAD),
-            (bust.within(torso, |whole, point| capped(whole, below(low, point))), Carrier::Piece(1)),
-        ];
-        let height = (high - low) / SLICES as f32;
-        for slice in 0..SLICES {
-            let [from, to] = [slice, slice + 1].map(|slice| low + height * slice as f32);
-            let bounds = Aabb {
-                min: Vec3::new(-HALF_WIDTH - AIR, from - SLOPE * FRONT - reach, BACK - AIR),
-                max: Vec3::new(HALF_WIDTH + AIR, to - SLOPE * BACK + reach, FRONT + AIR),
-            };
-            let cap = |point: Vec3| below(to, point).max(above(from, point)).max(point.x.abs() - HALF_WIDTH);
-            let part = bust.within(bounds, |whole, point| capped(whole, cap(point)));
-            parts.push((part, Carrier::Piece(slice as u16 + 2)));
-        }
-        parts
-    }
-
     /// The bend of the neck in a frame of the body; `None` where the shoulders are where the head has them at rest.
     pub(crate) fn bend(&self, body: &BodyFrame) -> Option<Bend> {
         let (head, shoulders) = (body.world_from_head(), body.piece(1));
@@ -149,10 +110,10 @@ impl Carry {
 }
 
 impl Bend {
-    /// Positions \[m\] and unit normals of the skin of a mesh of the bust, head space.
-    pub fn skin(&self, mesh: &Mesh) -> [Vec<Vec3>; 2] {
+    /// Positions \[m\] and unit normals of the skin, from those at rest, head space.
+    pub fn skin(&self, positions: &[Vec3], normals: &[Vec3]) -> [Vec<Vec3>; 2] {
         let table: Vec<Carry> = (0..=STEPS).map(|step| self.carry(step as f32 / STEPS as f32)).collect();
-        let mut skin = [mesh.positions.clone(), mesh.normals.clone()];
+        let mut skin = [positions.to_vec(), normals.to_vec()];
         let [positions, normals] = &mut skin;
         let chunks = positions.par_chunks_mut(CHUNK).zip(normals.par_chunks_mut(CHUNK));
         chunks.for_each(|(positions, normals)| {
@@ -194,13 +155,8 @@ fn carry(table: &[Carry], position: &mut Vec3, normal: &mut Vec3) {
     *position = from.lerp(to, share);
 }
 
-/// Signed distance \[m\] of a part of the bust, given that of the whole and of the caps that cut it.
-fn capped(whole: f32, cap: f32) -> f32 {
-    whole.max(cap) + RECESS * (1.0 + cap / OVERLAP).clamp(0.0, 1.0)
-}
-
 /// Level \[m\] of a point across the neck.
-fn level(point: Vec3) -> f32 {
+pub(crate) fn level(point: Vec3) -> f32 {
     point.y + SLOPE * point.z
 }
 
