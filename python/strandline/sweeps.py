@@ -74,6 +74,8 @@ def sweep(
     folder = os.path.abspath(os.fspath(folder))
     check(keep, threads)
     workers = None if workers is None else _arrays.count(workers, "workers")
+    if cluster is not None:
+        _ray()
     os.makedirs(folder, exist_ok=True)
     todo, rows, order = plan(scene, samples, folder, keep, drape)
     with Progress(len(order), "sweep", "job", progress) as bar:
@@ -161,14 +163,20 @@ def _local(todo: list[Job], folder: str, workers: int | None, threads: int) -> I
 _RETRIES = 3
 
 
-def _on_ray(todo: list[Job], folder: str, threads: int, cluster: str | None, gpus: float | None) -> Iterator[dict[str, Any]]:
-    """Runs jobs as tasks of Ray. A task whose machine is lost runs again on another."""
-    if not todo:
-        return
+def _ray() -> Any:
+    """The module of Ray."""
     try:
         import ray
     except ImportError:
         raise missing("ray", "sweep") from None
+    return ray
+
+
+def _on_ray(todo: list[Job], folder: str, threads: int, cluster: str | None, gpus: float | None) -> Iterator[dict[str, Any]]:
+    """Runs jobs as tasks of Ray. A task whose machine is lost runs again on another."""
+    if not todo:
+        return
+    ray = _ray()
     joined = not ray.is_initialized()
     if joined:
         _reach(cluster)

@@ -4,6 +4,7 @@ import json
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 
@@ -73,6 +74,13 @@ def test_draped_hair_is_one_moment(tmp_path):
     done = sweep(SCENE, [{"style.seed": 1}], tmp_path, keep=("points",), drape=True, workers=0)
     with np.load(tmp_path / done.rows[0]["file"]) as arrays:
         assert arrays["points"].shape[0] == 12
+
+
+def test_a_cluster_without_ray_is_refused_before_anything_is_made(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "ray", None)
+    with pytest.raises(Error, match="strandline.sweep") as caught:
+        sweep(SCENE, [{"style.seed": 1}], tmp_path / "made", cluster="local")
+    assert caught.value.kind == "extra" and not (tmp_path / "made").exists()
 
 
 def test_what_cannot_be_kept_is_refused(tmp_path):
