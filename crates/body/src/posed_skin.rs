@@ -9,7 +9,7 @@ use crate::skin_solid::{NONE, SkinSolid};
 use crate::{BodyFrame, Carrier, Collider, Shape};
 
 /// Most waiting nodes: one for each halving of 2^32 triangles, and one more.
-pub(crate) const DEPTH: usize = 40;
+const DEPTH: usize = 40;
 /// Distance \[m\] below which the way to the nearest place has no direction.
 const TOUCHING: f32 = 1e-5;
 /// Share of the distance that the quick search may be off, and the lower bound that it leaves.
@@ -110,7 +110,7 @@ impl PosedSkin {
         self.most_shift
     }
 
-    pub(crate) fn corners(&self, positions: &[Vec3], triangle: u32) -> [Vec3; 3] {
+    fn corners(&self, positions: &[Vec3], triangle: u32) -> [Vec3; 3] {
         self.solid.triangles[triangle as usize].map(|corner| positions[corner as usize])
     }
 
@@ -201,26 +201,18 @@ impl PosedSkin {
     fn seen(&self, point: Vec3, triangle: u32, away: f32) -> SkinPlace {
         let (place, feature) = nearest_on(self.corners(&self.end, triangle), point);
         let outward = self.outward(triangle, feature) * self.solid.facing;
+        let side = if outward.dot(point - place) < 0.0 { -1.0 } else { 1.0 };
         let is_face = matches!(feature, Feature::Face);
-        let is_inside = if !is_face && away >= TOUCHING && self.disagrees(triangle, feature, point - place) {
-            self.winds_around(point, point - place)
-        } else {
-            outward.dot(point - place) < 0.0
-        };
-        let side = if is_inside { -1.0 } else { 1.0 };
         let normal = if is_face || away < TOUCHING { outward } else { (point - place) * (side / away) };
         SkinPlace { distance: side * away, normal: normal.normalize_or(Vec3::Y), triangle }
     }
 
-    /// Unit normal of a triangle at the end; zero without an area.
-    pub(crate) fn face_normal(&self, triangle: u32) -> Vec3 {
-        let [a, b, c] = self.corners(&self.end, triangle);
-        (b - a).cross(c - a).normalize_or_zero()
-    }
-
     /// Direction that leads out of the skin at a part of a triangle \[Baerentzen2005\].
     fn outward(&self, triangle: u32, feature: Feature) -> Vec3 {
-        let normal = |index: u32| self.face_normal(index);
+        let normal = |index: u32| {
+            let [a, b, c] = self.corners(&self.end, index);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
         match feature {
             Feature::Face => normal(triangle),
             Feature::Edge(edge) => match self.solid.across[triangle as usize][edge] {

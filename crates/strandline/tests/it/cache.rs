@@ -89,7 +89,7 @@ fn a_cache_of_drawn_strands_is_drawn_as_it_is() {
     let own = cache.scene().unwrap();
     let mut player = Player::showing(&own, Backend::Cpu, cache).unwrap();
     assert!(
-        player.notes().iter().any(|note| note.contains("120 strands of the cache")),
+        player.notes().iter().any(|note| note.contains("the cache's 120 strands")),
         "{:?}",
         player.notes()
     );
