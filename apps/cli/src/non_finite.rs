@@ -95,7 +95,10 @@ mod tests {
         assert!(note.starts_with("frame 4, strand 17: 2 points are not finite"), "{note}");
         assert_eq!(found.add(&bad(5, None), 6), None);
         let error = found.outcome().unwrap_err().to_string();
-        assert!(error.starts_with("up to 5 points were not finite, first in frame 4, strand 17"), "{error}");
+        assert!(
+            error.starts_with("at most 5 points were not finite, first in frame 4, strand 17"),
+            "{error}"
+        );
         let json = serde_json::to_string(&found).unwrap();
         assert_eq!(json, r#"{"non_finite":5,"non_finite_first":{"frame":4,"strand":17}}"#);
     }

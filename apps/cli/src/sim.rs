@@ -310,7 +310,7 @@ fn close(player: &mut Player, played: anyhow::Result<()>) -> anyhow::Result<Opti
     match written {
         Ok(Some(written)) if written.frames > 0 => output::note(&format!(
             "the {} whole; `sim --resume` continues from a cache: {}",
-            written.frames,
+            counted(written.frames, "frame so far is", "frames so far are"),
             written.place.display()
         )),
         // One error is enough.

@@ -21,6 +21,8 @@ fn limited(folder: &Path, arguments: &[&str]) -> Output {
         .env("STRANDLINE_MEMORY", ALLOWED)
         // The scratch of each thread grows with the machine.
         .env("RAYON_NUM_THREADS", "2")
+        // Addresses that the allocator reserves at a time [KiB]: a gibibyte else.
+        .env("MIMALLOC_ARENA_RESERVE", "65536")
         .current_dir(folder)
         .output()
         .unwrap()

@@ -120,5 +120,5 @@ fn a_frame_within_a_step_makes_one() {
     let still = scene.replace("frames = 4", "frames = 1\nframes_per_second = 1000.0");
     std::fs::write(folder.path().join("still.toml"), still).unwrap();
     let text = String::from_utf8(run(folder.path(), &["sim", "--scene", "still.toml"]).stdout).unwrap();
-    assert!(text.contains(" 1 steps"), "{text}");
+    assert!(text.contains(" 1 step on"), "{text}");
 }
