@@ -17,7 +17,7 @@ const LEVELS: [(u32, f64); 2] = [(4, 14.0), (2, 7.0)];
 /// Half of a block's diagonal over its side, rounded up: no node of it is farther from a corner.
 const HALF: f64 = 0.875;
 /// Nodes of a lattice that are all searched for.
-const FEW: usize = 1 << 20;
+const FEW: usize = 1 << 19;
 
 /// The corners of all blocks of a size.
 pub(crate) struct FarNodes {
