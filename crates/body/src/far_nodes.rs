@@ -1,5 +1,5 @@
-//! Nodes far from the surface: of a large lattice only every second or fourth of them along each axis is searched for, and
-//! what lies between is a bound.
+//! Nodes far from the surface: of a large lattice only every fourth of them along each axis is searched for, and what
+//! lies between is a bound.
 //!
 //! The distance to a triangle is convex and curved by at most 2 / d in all, so that what is interpolated over a block
 //! lies no more than (side^2 / 8) (2 / d) above it, and that to the nearest of several no more above either: less this,
@@ -11,44 +11,36 @@ use strandline_base::par::prelude::*;
 use crate::lattice::Lattice;
 use crate::triangle_tree::{Nearest, TriangleTree};
 
-/// Cells along a side of a block, and the distance \[cells\] of all corners of a block of which only these are searched
-/// for: a bound is less than the distance by half a cell at most where the surface is smooth.
-const LEVELS: [(u32, f64); 2] = [(4, 14.0), (2, 7.0)];
-/// Half of a block's diagonal over its side, rounded up: no node of it is farther from a corner.
-const HALF: f64 = 0.875;
+/// Cells along a side of a block.
+const SIDE: u32 = 4;
+/// Distance \[cells\] of all corners of a block of which only these are searched for.
+const FAR: f64 = 14.0;
+/// Half of a block's diagonal \[cells\]: no node of it is farther from a corner.
+const HALF: f64 = 3.5;
 /// Nodes of a lattice that are all searched for.
-const FEW: usize = 1 << 19;
+const FEW: usize = 1 << 20;
 
-/// The corners of all blocks of a size.
+/// The corners of all blocks.
 pub(crate) struct FarNodes {
-    /// Cells along a side of a block.
-    side: u32,
-    /// Distance \[cells\] of the corners of a block that is far.
-    far: f64,
     counts: UVec3,
     nearest: Vec<Nearest>,
 }
 
 impl FarNodes {
-    /// Looks for the surface from every corner of large and of small blocks, at no more than `budget` triangles each; empty
-    /// for a small lattice. A corner for which these do not suffice counts as near, so that the nodes of its blocks are
-    /// searched for.
-    pub fn levels(tree: &TriangleTree, lattice: &Lattice, budget: u64) -> Vec<Self> {
+    /// Looks for the surface from every corner, at no more than `budget` triangles each; `None` for a small lattice. A
+    /// corner for which these do not suffice counts as near, so that the nodes of its blocks are searched for.
+    pub fn new(tree: &TriangleTree, lattice: &Lattice, budget: u64) -> Option<Self> {
         if lattice.len() <= FEW {
-            return Vec::new();
+            return None;
         }
-        LEVELS.iter().map(|(side, far)| Self::new(tree, lattice, (*side, *far), budget)).collect()
-    }
-
-    fn new(tree: &TriangleTree, lattice: &Lattice, (side, far): (u32, f64), budget: u64) -> Self {
-        let counts = (lattice.node_count - 1).map(|cells| cells.div_ceil(side)) + 1;
+        let counts = (lattice.node_count - 1).map(|cells| cells.div_ceil(SIDE)) + 1;
         let mut nearest = vec![Nearest::NONE; (counts.x * counts.y * counts.z) as usize];
         let last = lattice.node_count - 1;
         nearest.par_chunks_mut(counts.x as usize).enumerate().for_each(|(row, nearest)| {
             let (y, z) = (row as u32 % counts.y, row as u32 / counts.y);
             let mut before = Nearest::NONE;
             for (x, nearest) in (0..).zip(nearest) {
-                let point = (side * UVec3::new(x, y, z)).min(last).as_dvec3();
+                let point = (SIDE * UVec3::new(x, y, z)).min(last).as_dvec3();
                 if before.triangle != Nearest::NONE.triangle {
                     tree.offer(before.triangle, point, nearest);
                 }
@@ -59,15 +51,15 @@ impl FarNodes {
                 }
             }
         });
-        Self { side, far, counts, nearest }
+        Some(Self { counts, nearest })
     }
 
     /// Lower bound of the distance of a node and a triangle near it, from the corners of its block, if these
     /// are far.
     pub fn at(&self, node: UVec3, lattice: &Lattice) -> Option<Nearest> {
-        let block = (node / self.side).min(self.counts - 2);
+        let block = (node / SIDE).min(self.counts - 2);
         let [low, high] =
-            [block, block + 1].map(|corner| (self.side * corner).min(lattice.node_count - 1).as_dvec3());
+            [block, block + 1].map(|corner| (SIDE * corner).min(lattice.node_count - 1).as_dvec3());
         let share = (node.as_dvec3() - low) / (high - low);
         let mut least = f64::INFINITY;
         let mut sum = 0.0;
@@ -84,9 +76,8 @@ impl FarNodes {
                 (least, triangle) = (distance, nearest.triangle);
             }
         }
-        let side = f64::from(self.side);
-        let above = side * side / 8.0 * 2.0 / (least - HALF * side);
-        (least >= self.far).then(|| Nearest { squared: (sum - above).powi(2), triangle })
+        let above = f64::from(SIDE * SIDE) / 8.0 * 2.0 / (least - HALF);
+        (least >= FAR).then(|| Nearest { squared: (sum - above).powi(2), triangle })
     }
 }
 
@@ -114,7 +105,7 @@ mod tests {
         let node = UVec3::new(70, 52, 71);
         let mut nearest = Nearest::NONE;
         tree.search(node.as_dvec3(), u64::MAX, &mut nearest);
-        let at = |budget| FarNodes::levels(&tree, &lattice, budget)[0].at(node, &lattice);
+        let at = |budget| FarNodes::new(&tree, &lattice, budget).expect("a large lattice").at(node, &lattice);
         let found = at(u64::MAX).expect("all corners of its block are far").squared.sqrt();
         assert!(found <= nearest.squared.sqrt() && found > nearest.squared.sqrt() - 0.5, "{found}");
         assert!(at(16).is_none(), "after 16 triangles of 2,000 a corner is sure of nothing");

@@ -10,13 +10,13 @@ use crate::far_nodes::FarNodes;
 use crate::inside::inside_nodes;
 use crate::lattice::{Lattice, SLAB};
 use crate::layers::{Corners, Layers};
-use crate::near_surface::{paint, reach_of};
+use crate::near_surface::{REACH, paint};
 use crate::triangle_tree::{Nearest, TriangleTree};
 use crate::{Aabb, BodyError, Mesh};
 
 /// Triangles that are looked at for all nodes together, and for each node, on the average: more than meshes of bodies
 /// need. Where triangles overlap so much that it does not suffice, as thousands of thin ones that meet in one vertex,
-/// [`spread`] finds what is nearest beyond [`reach_of`] of the surface, to about a quarter of a cell.
+/// [`spread`] finds what is nearest beyond [`REACH`] of the surface, to about a quarter of a cell.
 const LOOKS: u64 = 100_000_000;
 const LOOKS_OF_A_NODE: std::ops::RangeInclusive<u64> = 32..=128;
 
@@ -25,7 +25,7 @@ const SIDE_OF_SHELLS: f32 = 256.0;
 
 /// Signed distance \[m\] at each node, in the order of storage.
 ///
-/// The distance is exact, from the nearest triangle; of a large lattice it may be less more than five cells from the
+/// The distance is exact, from the nearest triangle; of a large lattice it may be less more than ten cells from the
 /// surface, by half a cell where the surface is smooth ([`FarNodes`]). Its sign comes from counting the surface along
 /// lines of nodes, since the sign that the nearest triangle gives is wrong near its edges.
 pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
@@ -42,11 +42,11 @@ pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
     }
     let tree = TriangleTree::new(&triangles, skin.clone());
     let layers = Layers::new(&triangles, skin);
-    let far = FarNodes::levels(&tree, lattice, LOOKS / lattice.len() as u64 * LOOKS_OF_A_NODE.start());
+    let far = FarNodes::new(&tree, lattice, LOOKS / lattice.len() as u64 * LOOKS_OF_A_NODE.start());
     let mut found = vec![Found::default(); lattice.len()];
     let sufficed = AtomicBool::new(true);
     found.par_chunks_mut(lattice.layer_len() * SLAB).enumerate().for_each(|(slab, found)| {
-        if !nearest_in_slab(&tree, &layers, &far, lattice, slab * SLAB, found) {
+        if !nearest_in_slab(&tree, &layers, far.as_ref(), lattice, slab * SLAB, found) {
             sufficed.store(false, Ordering::Relaxed);
         }
     });
@@ -87,7 +87,7 @@ struct Found {
 fn nearest_in_slab(
     tree: &TriangleTree,
     layers: &Layers,
-    far: &[FarNodes],
+    far: Option<&FarNodes>,
     lattice: &Lattice,
     first_layer: usize,
     found: &mut [Found],
@@ -95,17 +95,16 @@ fn nearest_in_slab(
     let layer_len = lattice.layer_len();
     let strides = [1, lattice.node_count.x as usize, layer_len];
     let mut nearest = vec![Nearest::NONE; found.len()];
-    let reach = reach_of(layers.triangles().len());
-    paint(layers, lattice, (first_layer, reach), &mut nearest);
+    paint(layers, lattice, first_layer, &mut nearest);
     let (least, most) = LOOKS_OF_A_NODE.into_inner();
     let mut looks = found.len() as u64 * (LOOKS / lattice.len() as u64).clamp(least, most);
     let mut sufficed = true;
     for index in 0..found.len() {
-        if nearest[index].squared <= reach * reach {
+        if nearest[index].squared <= REACH * REACH {
             continue;
         }
         let node = lattice.node(first_layer * layer_len + index);
-        if let Some(known) = far.iter().find_map(|far| far.at(node, lattice)) {
+        if let Some(known) = far.and_then(|far| far.at(node, lattice)) {
             nearest[index] = known;
             continue;
         }

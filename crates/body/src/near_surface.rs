@@ -7,10 +7,8 @@ use crate::layers::{Corners, Layers};
 use crate::triangle::nearer;
 use crate::triangle_tree::Nearest;
 
-/// Distances \[cells\] from the surface within which nodes are painted, by few and by many triangles, and the most that are
-/// few: to search is cheaper than to paint every node with many.
-const REACHES: [f64; 2] = [3.0, 1.0];
-const FEW: usize = 40_000;
+/// Nodes within this distance \[cells\] of the surface are painted.
+pub(crate) const REACH: f64 = 1.0;
 /// Margin of visited nodes, so that rounding leaves none out.
 const MARGIN: f64 = 1e-6;
 /// Squared sine of the angles below which a triangle has no normal of its own.
@@ -18,30 +16,20 @@ const FLAT: f64 = 1e-20;
 /// Squared share of the z axis in a normal above which a triangle lies in few layers.
 const LEVEL: f64 = 0.8;
 
-/// Distance \[cells\] from a number of triangles within which nodes are painted.
-pub(crate) fn reach_of(triangles: usize) -> f64 {
-    REACHES[usize::from(triangles > FEW)]
-}
-
-/// Tells the nodes of some layers, from the first one on, about every triangle within `reach` \[cells\] of them: what
+/// Tells the nodes of some layers, from the first one on, about every triangle within [`REACH`] of them: what
 /// is then known no further than that is the nearest of all.
-pub(crate) fn paint(
-    layers: &Layers,
-    lattice: &Lattice,
-    (first_layer, reach): (usize, f64),
-    nearest: &mut [Nearest],
-) {
+pub(crate) fn paint(layers: &Layers, lattice: &Lattice, first_layer: usize, nearest: &mut [Nearest]) {
     let layer_len = lattice.layer_len();
     let last_layer = first_layer + nearest.len() / layer_len - 1;
     let low = DVec3::new(0.0, 0.0, first_layer as f64);
     let high = (lattice.node_count - 1).as_dvec3().with_z(last_layer as f64);
-    for triangle in layers.between(low.z - reach, high.z + reach) {
+    for triangle in layers.between(low.z - REACH, high.z + REACH) {
         let corners = &layers.triangles()[triangle as usize];
         let seen = Seen::new(corners);
-        seen.for_each_node_beside(reach, [low, high], |point| {
+        seen.for_each_node_beside(low, high, |point| {
             let known = &mut nearest[lattice.index(point.as_uvec3()) - first_layer * layer_len];
             let height = (point - corners[0]).dot(seen.normal);
-            if height * height >= known.squared.min(reach * reach * (1.0 + MARGIN)) {
+            if height * height >= known.squared.min(REACH * REACH * (1.0 + MARGIN)) {
                 return;
             }
             if let Some(squared) = nearer(corners, point, known.squared) {
@@ -84,10 +72,10 @@ impl<'a> Seen<'a> {
         Self { corners, normal, axes }
     }
 
-    /// Visits every node between two that is within `reach` \[cells\] of the triangle, and some more: in every row those
+    /// Visits every node between two that is within [`REACH`] of the triangle, and some more: in every row those
     /// within reach of what of it passes by, along the sight those within reach of its plane.
-    fn for_each_node_beside(&self, reach: f64, [low, high]: [DVec3; 2], mut visit: impl FnMut(DVec3)) {
-        let reach = reach + MARGIN;
+    fn for_each_node_beside(&self, low: DVec3, high: DVec3, mut visit: impl FnMut(DVec3)) {
+        let reach = REACH + MARGIN;
         let [across, along, sight] = self.axes;
         let [a, b, c] = *self.corners;
         let first = (a.min(b).min(c) - reach).max(low).ceil();
@@ -173,15 +161,14 @@ mod tests {
                 _ => {}
             }
             let mut visited = std::collections::HashSet::new();
-            let reach = REACHES[turn % 2];
-            Seen::new(&corners).for_each_node_beside(reach, [low, high], |point| {
+            Seen::new(&corners).for_each_node_beside(low, high, |point| {
                 assert!(visited.insert(point.as_uvec3()), "{point} twice: {corners:?}");
             });
             for z in low.z as u32..=high.z as u32 {
                 for y in 0..=high.y as u32 {
                     for x in 0..=high.x as u32 {
                         let node = UVec3::new(x, y, z);
-                        let near = nearer(&corners, node.as_dvec3(), reach * reach * (1.0 + 1e-12)).is_some();
+                        let near = nearer(&corners, node.as_dvec3(), REACH * REACH * (1.0 + 1e-12)).is_some();
                         assert!(!near || visited.contains(&node), "{node} beside {corners:?}");
                     }
                 }
@@ -205,8 +192,7 @@ mod tests {
                 } else {
                     [middle + 28.0 * DVec3::Y, rim(index), rim(index + 1)]
                 };
-                Seen::new(&corners)
-                    .for_each_node_beside(1.0, [DVec3::ZERO, DVec3::splat(60.0)], |_| visits += 1);
+                Seen::new(&corners).for_each_node_beside(DVec3::ZERO, DVec3::splat(60.0), |_| visits += 1);
             }
             visits as f64
         };
