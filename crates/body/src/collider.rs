@@ -116,19 +116,6 @@ impl Shape {
         }
     }
 
-    /// Lower bound of the distance \[m\] of a point from the shape without a look at samples: the distance from the box of a
-    /// grid, 0 in it and for other shapes.
-    #[inline]
-    pub fn distance_from_box(&self, point: Vec3) -> f32 {
-        match self {
-            Self::Grid(grid) => {
-                let Aabb { min, max } = SignedDistance::bounds(&**grid);
-                point.distance(point.clamp(min, max))
-            }
-            Self::Skin(_) | Self::Mannequin(_) | Self::Sphere { .. } | Self::Capsule { .. } => 0.0,
-        }
-    }
-
     /// Distance \[m\] that drawn strands keep from the shape.
     pub fn clearance(&self) -> f32 {
         let of_grid = |grid: &DistanceGrid| (CLEARANCE * grid.spacing()).min(MOST_CLEARANCE);

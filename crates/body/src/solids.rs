@@ -73,7 +73,6 @@ impl PlacedSolids<'_> {
             let local = self.local(solid.carrier, point);
             let (distance, gradient) = match posed {
                 Some(skin) => skin.distance_and_gradient(local),
-                None if solid.shape.distance_from_box(local) - away > best.0 => return best,
                 None => solid.shape.distance_and_gradient(local),
             };
             if distance - away < best.0 { (distance - away, gradient, solid.carrier) } else { best }
@@ -97,16 +96,15 @@ impl PlacedSolids<'_> {
 
     /// No more than that distance, and 0 where the point may be inside: quick.
     pub fn at_least(&self, point: Vec3) -> f32 {
-        let solids = self.solids.iter().zip(&self.posed);
-        solids.fold(f32::INFINITY, |best, ((solid, away), posed)| {
+        let least = self.solids.iter().zip(&self.posed).map(|((solid, away), posed)| {
             let local = self.local(solid.carrier, point);
             let least = match posed {
                 Some(skin) => skin.at_least(local),
-                None if solid.shape.distance_from_box(local) - away > best => return best,
                 None => solid.shape.distance_at_least(local),
             };
-            best.min(least - away)
-        })
+            least - away
+        });
+        least.fold(f32::INFINITY, f32::min)
     }
 }
 

@@ -108,7 +108,7 @@ pub const FORMATS: [Format; 10] = [
         fit: None,
         defines_space: false,
         holds: &Attribute::ALL,
-        taken: 16,
+        taken: 18,
     },
     Format {
         ending: "npz",

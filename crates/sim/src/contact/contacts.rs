@@ -11,7 +11,7 @@
 use std::cell::Cell;
 
 use glam::Vec3;
-use strandline_body::{Aabb, BodyFrame, Carrier, Collider, Pose, PosedSkin};
+use strandline_body::{BodyFrame, Carrier, Collider, Pose, PosedSkin};
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
@@ -85,31 +85,6 @@ pub(super) struct Group<'a> {
     end_from_start: Rigid,
     /// Carries it through each part of the step; empty for a step in one.
     part_moves: Vec<Rigid>,
-    /// Box around a piece behind the head through the step, world space: points outside of it need none of its planes.
-    bounds: Option<[Vec3x8; 2]>,
-}
-
-/// A box in the world \[m\] around the colliders of a piece behind the head that keep their shape, through a step.
-fn bounds(
-    carrier: Carrier,
-    colliders: &[(&Collider, Option<&PosedSkin>)],
-    poses: [&Pose; 2],
-) -> Option<[Vec3x8; 2]> {
-    let is_behind = matches!(carrier, Carrier::Piece(piece) if piece > 0);
-    if !is_behind || colliders.iter().any(|(_, skin)| skin.is_some()) {
-        return None;
-    }
-    let corners = colliders.iter().flat_map(|(collider, _)| {
-        let Aabb { min, max } = collider.shape.bounds();
-        (0..8).map(move |corner| {
-            let share = Vec3::new((corner & 1) as f32, (corner >> 1 & 1) as f32, (corner >> 2) as f32);
-            min + share * (max - min)
-        })
-    });
-    let places = corners.flat_map(|corner| poses.map(|pose| pose.point(corner)));
-    let start = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-    let found = places.fold(start, |[low, high], place| [low.min(place), high.max(place)]);
-    Some(found.map(Vec3x8::splat))
 }
 
 impl<'a> Solids<'a> {
@@ -121,7 +96,6 @@ impl<'a> Solids<'a> {
             let solids = obstacles.solids().filter(|(collider, _)| collider.carrier == carrier);
             let colliders: Vec<_> = solids.collect();
             Group {
-                bounds: bounds(carrier, &colliders, [&start, &end]),
                 skin: colliders.iter().find_map(|(_, skin)| *skin),
                 colliders,
                 carrier_from_world: Rigid::new(&end.inverse()),
@@ -171,9 +145,6 @@ impl<'a> Solids<'a> {
         let mut touch: Option<Touch> = None;
         let (planes, riders) = planes.split_at_mut(self.groups.len() * self.points);
         for (group, planes) in self.groups.iter().zip(planes.chunks_mut(self.points)) {
-            if group.is_beyond(position, start, margin + splat(care.near)) {
-                continue;
-            }
             let plane = &mut planes[point];
             let mut rider = riders.get_mut(point).filter(|_| group.skin.is_some());
             let carried = start.map(|start| group.end_from_start.points(start));
@@ -226,17 +197,14 @@ impl<'a> Solids<'a> {
                 deepest = deepest.max(group.depth_on(position, plane, rider, &counted));
                 continue;
             }
-            if group.is_beyond(position, None, splat(0.0)) {
-                continue;
-            }
             let mut local = Vec3Lanes::default();
             group.carrier_from_world.points(position).store(&mut local);
             for point in (0..LANES).filter(|lane| counted(*lane)).map(|lane| local.get(lane)) {
                 // A lower bound shows that most points are outside; the surface is not searched for those.
-                let near = group.colliders.iter().filter(|(collider, _)| {
-                    let Collider { shape, .. } = collider;
-                    shape.distance_from_box(point) <= 0.0 && shape.distance_at_least(point) <= 0.0
-                });
+                let near = group
+                    .colliders
+                    .iter()
+                    .filter(|(collider, _)| collider.shape.distance_at_least(point) <= 0.0);
                 let distances = near.map(|(collider, _)| collider.shape.distance(point));
                 deepest = distances.fold(deepest, |deepest, distance| deepest.max(-distance));
             }
@@ -261,21 +229,6 @@ struct Look {
 }
 
 impl Group<'_> {
-    /// True where all points, and where they stood at the beginning of the step, are farther than `reach` \[m\] from the box
-    /// about the group on one of its sides.
-    fn is_beyond(&self, position: Vec3x8, start: Option<Vec3x8>, reach: f32x8) -> bool {
-        let Some([low, high]) = self.bounds else { return false };
-        let start = start.unwrap_or(position);
-        let side = |position: f32x8, start: f32x8, low: f32x8, high: f32x8| {
-            let below = position.max(start).simd_lt(low - reach);
-            below | position.min(start).simd_gt(high + reach)
-        };
-        let beyond = side(position.x, start.x, low.x, high.x)
-            | side(position.y, start.y, low.y, high.y)
-            | side(position.z, start.z, low.z, high.z);
-        beyond.all()
-    }
-
     /// Renews planes that are out of date, for points that matter only within `reach` \[m\] of a solid.
     ///
     /// `stuck` are the positions of points that stick to the solid, where their paths begin.

@@ -97,57 +97,48 @@ impl<'a> Obstacles<'a> {
     /// Signed distance \[m\] to the nearest solid at the end of the step, its unit gradient, and
     /// the solid's index; `None` without colliders. World space.
     pub fn nearest(&self, point: Vec3) -> Option<(f32, Vec3, usize)> {
-        let mut best: Option<(f32, Vec3, usize)> = None;
-        for (index, (collider, skin)) in self.solids().enumerate() {
+        let look = |(index, (collider, skin)): (usize, (&Collider, Option<&PosedSkin>))| {
             let local = self.local(collider, point);
-            let least = best.map_or(f32::INFINITY, |best| best.0);
             let (distance, gradient) = match skin {
                 Some(skin) => skin.distance_and_gradient(local),
-                None if collider.shape.distance_from_box(local) > least => continue,
                 None => collider.shape.distance_and_gradient(local),
             };
-            if best.is_none() || distance.total_cmp(&least).is_lt() {
-                let gradient = match collider.carrier {
-                    Carrier::World => gradient,
-                    Carrier::Piece(piece) | Carrier::Moved(piece) => {
-                        self.pieces[usize::from(piece)].end.direction(gradient)
-                    }
-                };
-                best = Some((distance, gradient, index));
-            }
-        }
-        best
+            let gradient = match collider.carrier {
+                Carrier::World => gradient,
+                Carrier::Piece(piece) | Carrier::Moved(piece) => {
+                    self.pieces[usize::from(piece)].end.direction(gradient)
+                }
+            };
+            (distance, gradient, index)
+        };
+        self.solids().enumerate().map(look).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Lower bound \[m\] of the distance of all solids from a point at the end of the step, 0 where it may be inside
     /// one; quicker than [`Self::nearest`]. World space. `before` is the triangle of a skin near the last point, for
     /// points one beside the other.
     pub fn at_least(&self, point: Vec3, before: &mut u32) -> f32 {
-        self.solids().fold(f32::INFINITY, |best, (collider, skin)| {
+        let least = self.solids().map(|(collider, skin)| {
             let local = self.local(collider, point);
-            let Some(skin) = skin else {
-                let is_far = collider.shape.distance_from_box(local) > best;
-                return if is_far { best } else { best.min(collider.shape.distance_at_least(local)) };
-            };
+            let Some(skin) = skin else { return collider.shape.distance_at_least(local) };
             let (least, triangle) = skin.at_least_about(local, *before);
             *before = triangle;
-            best.min(least)
-        })
+            least
+        });
+        least.fold(f32::INFINITY, f32::min)
     }
 
     /// Signed distance \[m\] to the nearest solid at the end of the step, infinite without solids: that of
     /// [`Self::nearest`]. World space. `before` is as in [`Self::at_least`].
     pub fn distance(&self, point: Vec3, before: &mut u32) -> f32 {
-        self.solids().fold(f32::INFINITY, |best, (collider, skin)| {
+        let distances = self.solids().map(|(collider, skin)| {
             let local = self.local(collider, point);
-            let Some(skin) = skin else {
-                let is_far = collider.shape.distance_from_box(local) > best;
-                return if is_far { best } else { best.min(collider.shape.distance(local)) };
-            };
+            let Some(skin) = skin else { return collider.shape.distance(local) };
             let found = skin.nearest(local, *before);
             *before = found.triangle;
-            best.min(found.distance)
-        })
+            found.distance
+        });
+        distances.fold(f32::INFINITY, f32::min)
     }
 
     /// Mean velocity \[m/s\] over the step of the material of the nearest solid that ends at `point`, `None` without
