@@ -1,12 +1,12 @@
 //! A Python with numpy and usd-core, which read files of the program, and with what tests its package.
 
 use std::path::PathBuf;
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 
 use anyhow::{Context, Result};
 
 use crate::cargo::{cargo_command, root};
-use crate::programs::Tally;
+use crate::programs::{self, Prints, Program};
 
 /// Variable that names the interpreter to the tests.
 pub const NAMED: &str = "STRANDLINE_PYTHON";
@@ -15,6 +15,11 @@ pub const NAMED: &str = "STRANDLINE_PYTHON";
 pub const NONE: &str = "no Python with numpy, usd-core, alembic3d, ray, pyarrow, pytest, mypy and openjd-model: nobody else \
                         read moving caches and USD, and the Python package was not tested (STRANDLINE_PYTHON names \
                         one; with STRANDLINE_REQUIRE_PYTHON the tests fail without it)";
+
+/// The tests of the package as a step.
+pub const NAME: &str = "Python package";
+/// All of them.
+pub const ALL: [&str; 1] = ["python/tests"];
 
 /// Packages that the tests need.
 const PACKAGES: [&str; 8] = [
@@ -111,17 +116,28 @@ fn blender() -> Option<String> {
     known.find(has_it).or_else(|| (make("blender", &[BLENDER_PACKAGE]) && has_it(&own)).then_some(own))
 }
 
-/// Builds the Python package in the target folder and runs its tests, which count as others do.
-pub fn test_package(python: &str, tally: &mut Tally) -> bool {
-    match pytest(python, &["python/tests"], &[]) {
-        Ok(output) => {
-            let text = String::from_utf8_lossy(&output.stdout);
-            println!("{text}{}", String::from_utf8_lossy(&output.stderr));
-            let last = text.lines().last().unwrap_or_default();
-            let [passed, failed, ignored] = ["passed", "failed", "skipped"].map(|word| counted(last, word));
-            tally.join(Tally { passed, failed, ignored });
-            output.status.success()
-        }
+/// The tests of the package, or some of them, as a program; the package is built in the target folder.
+pub fn program(python: &str, tests: &[&str], environment: &[(&str, &str)]) -> Result<Program> {
+    let words = ["-m", "pytest", "-q", "-p", "no:cacheprovider"];
+    let own = [("PYTHONPATH", &*installed()?.to_string_lossy()), ("PYTHONDONTWRITEBYTECODE", "1")].map(owned);
+    Ok(Program {
+        name: NAME.into(),
+        path: python.into(),
+        folder: root().to_owned(),
+        prints: Prints::Python,
+        arguments: words.iter().chain(tests).map(|&word| word.to_owned()).collect(),
+        environment: own.into_iter().chain(environment.iter().copied().map(owned)).collect(),
+    })
+}
+
+fn owned((name, value): (&str, &str)) -> (String, String) {
+    (name.to_owned(), value.to_owned())
+}
+
+/// Builds the package and runs some of its tests; false if one fails.
+fn passes(python: &str, tests: &[&str], environment: &[(&str, &str)]) -> bool {
+    match program(python, tests, environment) {
+        Ok(program) => programs::run(vec![program], &[]).iter().all(|ran| ran.passed),
         Err(error) => {
             println!("the Python package is not tested: {error:#}");
             false
@@ -135,7 +151,7 @@ pub fn test() -> bool {
         println!("{NONE}");
         return false;
     };
-    test_package(&python, &mut Tally::default())
+    passes(&python, &ALL, &[])
 }
 
 /// Runs the long form of the package's tests, and with Blender where it can be had. Returns its name, and true where it
@@ -153,28 +169,12 @@ pub fn long() -> (String, bool) {
              names a Python that has it)"
         ),
     }
-    let tested = prepare(true).context(NONE).and_then(|python| pytest(&python, &tests, &environment));
-    let passed = match tested {
-        Ok(output) => {
-            print!("{}", String::from_utf8_lossy(&output.stdout));
-            output.status.success()
-        }
-        Err(error) => {
-            println!("the long tests of the Python package did not run: {error:#}");
-            false
-        }
-    };
+    let python = prepare(true);
+    if python.is_none() {
+        println!("the long tests of the Python package did not run: {NONE}");
+    }
+    let passed = python.is_some_and(|python| passes(&python, &tests, &environment));
     (format!("{}={} {}", JOBS.0, JOBS.1, tests.join(" ")), passed)
-}
-
-/// Builds the package and runs some of its tests.
-fn pytest(python: &str, tests: &[&str], environment: &[(&str, &str)]) -> Result<Output> {
-    let site = installed()?;
-    println!("\n== pytest {}", tests.join(" "));
-    let mut command = Command::new(python);
-    command.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).args(tests).current_dir(root());
-    command.env("PYTHONPATH", site).env("PYTHONDONTWRITEBYTECODE", "1").envs(environment.iter().copied());
-    command.output().context(python.to_owned())
 }
 
 /// Writes the sections of a scene of the Python package from the settings table; false if that fails, true without a
@@ -196,13 +196,6 @@ pub fn write_sections() -> bool {
             false
         }
     }
-}
-
-/// The number before a word in the last line of pytest.
-fn counted(line: &str, word: &str) -> u64 {
-    let words: Vec<&str> = line.split([' ', ',']).filter(|word| !word.is_empty()).collect();
-    let number = words.windows(2).find(|pair| pair[1] == word).and_then(|pair| pair[0].parse().ok());
-    number.unwrap_or(0)
 }
 
 /// The folder that has the package as it would be installed: its files, and the extension beside them.
@@ -241,16 +234,4 @@ fn quiet(program: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.args(arguments).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_last_line_of_pytest_is_counted() {
-        let line = "2 failed, 40 passed, 1 skipped in 9.31s";
-        assert_eq!(["passed", "failed", "skipped"].map(|word| counted(line, word)), [40, 2, 1]);
-        assert_eq!(counted("40 passed in 9.31s", "failed"), 0);
-    }
 }

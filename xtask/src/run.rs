@@ -66,10 +66,7 @@ pub fn test(setup: bool) -> bool {
         wanted.extend([(adapter::REQUIRED, "1"), (adapter::DISPLAY_REQUIRED, "1")]);
     }
     wanted.extend(python.as_deref().map(|python| (python::NAMED, python)));
-    tests(&mut report, &wanted);
-    if let Some(python) = &python {
-        report.step("Python package", |tally| python::test_package(python, tally));
-    }
+    tests(&mut report, &wanted, python.as_deref());
     let missing = [
         (there.adapter, adapter::UNTESTED),
         (there.display, adapter::NO_WINDOW),
@@ -100,15 +97,30 @@ fn look(report: &mut Report) {
     report.step("lints without GPUs and window", |_| bare::is_built_from_what_it_needs() && passes(&without));
 }
 
-/// Builds, then runs the test programs and examples side by side, the doc tests and the documentation.
-fn tests(report: &mut Report, wanted: &[(&str, &str)]) {
+/// Builds, then runs the test programs, the tests in Python and the examples side by side, the doc tests and the
+/// documentation.
+fn tests(report: &mut Report, wanted: &[(&str, &str)], python: Option<&str>) {
     let mut messages = String::new();
     if !report.step("build", |_| build(&mut messages)) {
         return;
     }
     report.step("second build", |_| nothing_is_built_again());
+    let mut programs = programs::found(&messages, &examples());
+    report.step("build of the Python package", |_| {
+        match python.map(|python| python::program(python, &python::ALL, &[])) {
+            Some(Ok(program)) => {
+                programs.push(program);
+                true
+            }
+            Some(Err(error)) => {
+                println!("the Python package is not tested: {error:#}");
+                false
+            }
+            None => true,
+        }
+    });
     let clock = Clock::start();
-    let ran = programs::run(programs::found(&messages, &examples()), wanted);
+    let ran = programs::run(programs, wanted);
     programs::keep(ran.iter().filter(|ran| ran.passed).map(|ran| (ran.name.clone(), ran.seconds.wall)));
     report.times.add_sum("test programs and examples", clock.stop());
     for ran in ran {

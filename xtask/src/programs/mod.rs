@@ -1,4 +1,4 @@
-//! Test programs and examples: found in cargo's messages, run side by side, the longest first.
+//! Test programs, examples and tests in Python: found in cargo's messages, run side by side, the longest first.
 
 mod order;
 mod tally;
@@ -10,7 +10,7 @@ use std::process::Command;
 use serde_json::Value;
 
 pub use order::keep;
-pub use tally::Tally;
+pub use tally::{Prints, Tally};
 pub use turns::{Ran, run};
 
 /// Programs that need the machine for themselves, with the reason. They run last, one after the other.
@@ -26,8 +26,12 @@ pub struct Program {
     pub path: PathBuf,
     /// The folder in which cargo would run it.
     pub folder: PathBuf,
-    /// True if it prints results of tests.
-    pub tests: bool,
+    /// What it prints of tests.
+    pub prints: Prints,
+    /// Its words.
+    pub arguments: Vec<String>,
+    /// Variables of its own.
+    pub environment: Vec<(String, String)>,
 }
 
 impl Program {
@@ -40,7 +44,8 @@ impl Program {
     fn command(&self) -> Command {
         let mut command = Command::new(&self.path);
         command.current_dir(&self.folder).env("CARGO_MANIFEST_DIR", &self.folder);
-        if !self.tests {
+        command.args(&self.arguments).envs(self.environment.iter().cloned());
+        if self.prints == Prints::Nothing {
             command.env("STRANDLINE_QUICK", "1");
         }
         command
@@ -88,8 +93,9 @@ fn program(message: &Value, examples: &[String]) -> Option<Program> {
         "lib" => format!("{}/lib", package(message)),
         _ => format!("{}/{target}", package(message)),
     };
-    let folder = if tests { folder } else { crate::cargo::root().to_owned() };
-    Some(Program { name, path, folder, tests })
+    let (folder, prints) =
+        if tests { (folder, Prints::Tests) } else { (crate::cargo::root().to_owned(), Prints::Nothing) };
+    Some(Program { name, path, folder, prints, arguments: Vec::new(), environment: Vec::new() })
 }
 
 #[cfg(test)]

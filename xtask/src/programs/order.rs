@@ -8,12 +8,13 @@ use super::Program;
 use crate::cargo::root;
 
 /// Programs that start first while no run is kept, in this order: by the work and the waiting in their tests.
-const LONG: [&str; 9] = [
+const LONG: [&str; 10] = [
     "strandline-checks/laws",
     "strandline/it",
     "strandline-checks/pictures",
     "strandline-checks/parity",
     "strandline-cli/program",
+    "Python package",
     "strandline-cli/reliability",
     "strandline-cli/window",
     "strandline/soak",
@@ -69,7 +70,9 @@ mod tests {
             name: name.into(),
             path: PathBuf::new(),
             folder: PathBuf::new(),
-            tests: true,
+            prints: super::super::Prints::Tests,
+            arguments: Vec::new(),
+            environment: Vec::new(),
         };
         let kept = Kept::from([("a/short".into(), 0.5), ("a/long".into(), 90.0), ("a/middle".into(), 7.0)]);
         let sorted = |names: &[&str], kept: &Kept| {

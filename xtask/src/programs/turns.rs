@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use super::{Program, Tally, order};
+use super::{Prints, Program, Tally, order};
 use crate::cargo::root;
 use crate::times::{Seconds, of_children};
 
@@ -57,13 +57,13 @@ pub fn run(mut programs: Vec<Program>, environment: &[(&str, &str)]) -> Vec<Ran>
 fn job(program: Program, environment: &[(&str, &str)]) -> Job {
     let mut command = program.command();
     command.envs(environment.iter().copied());
-    Job { name: program.name, tests: program.tests, command }
+    Job { name: program.name, prints: program.prints, command }
 }
 
 /// A program with all that it is started with.
 struct Job {
     name: String,
-    tests: bool,
+    prints: Prints,
     command: Command,
 }
 
@@ -105,7 +105,7 @@ fn not_started(name: String, error: &io::Error) -> Ran {
 /// A program that has not ended.
 struct Running {
     name: String,
-    tests: bool,
+    prints: Prints,
     child: Child,
     begin: Instant,
     late: bool,
@@ -113,13 +113,13 @@ struct Running {
 }
 
 impl Running {
-    fn start(Job { name, tests, mut command }: Job) -> io::Result<Self> {
+    fn start(Job { name, prints, mut command }: Job) -> io::Result<Self> {
         let folder = root().join("target/xtask/output");
         std::fs::create_dir_all(&folder)?;
         let output = folder.join(format!("{}.txt", name.replace(['/', ' '], "-")));
         let file = File::create(&output)?;
         let child = command.stdin(Stdio::null()).stdout(file.try_clone()?).stderr(file).spawn()?;
-        Ok(Self { name, tests, child, begin: Instant::now(), late: false, output })
+        Ok(Self { name, prints, child, begin: Instant::now(), late: false, output })
     }
 
     /// The program's end and its seconds, once it has ended. The processor seconds are those that one wait
@@ -143,10 +143,9 @@ impl Running {
         let mut output = std::fs::read(&self.output)
             .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
             .unwrap_or_else(|error| format!("its output cannot be read: {error}"));
-        let mut tally = Tally::default();
-        let results = output.lines().filter(|line| tally.add(line)).count();
+        let (mut tally, results) = Tally::of(&output, self.prints);
         let succeeded = status.is_some_and(|status| status.success());
-        let passed = succeeded && tally.failed == 0 && (results > 0 || !self.tests);
+        let passed = succeeded && tally.failed == 0 && (results > 0 || self.prints == Prints::Nothing);
         if !passed {
             let why = if self.late { "it took too long" } else { "it ended early" };
             let status = status.map_or_else(|| why.to_owned(), |status| format!("{why}: {status}"));
@@ -169,7 +168,7 @@ mod tests {
         let job = |(name, script): &(&str, &str)| {
             let mut command = Command::new("sh");
             command.args(["-c", script]).current_dir(folder.path());
-            Job { name: format!("turns {name}"), tests: true, command }
+            Job { name: format!("turns {name}"), prints: Prints::Tests, command }
         };
         side_by_side(scripts.iter().map(job).collect(), at_once)
     }
@@ -215,7 +214,9 @@ mod tests {
             name: name.into(),
             path: "true".into(),
             folder: root().to_owned(),
-            tests: false,
+            prints: Prints::Nothing,
+            arguments: Vec::new(),
+            environment: Vec::new(),
         };
         let done = run(
             vec![program("strandline-cli/window"), program("turns beside"), program("turns before")],
@@ -227,7 +228,11 @@ mod tests {
 
     #[test]
     fn a_program_that_is_not_there_has_failed() {
-        let job = Job { name: "turns nothing".into(), tests: true, command: Command::new("/nothing/here") };
+        let job = Job {
+            name: "turns nothing".into(),
+            prints: Prints::Tests,
+            command: Command::new("/nothing/here"),
+        };
         let done = side_by_side(vec![job], 1);
         assert!(!done[0].passed && done[0].tally.failed == 1);
     }
