@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use crate::cargo::{cargo_command, root};
-use crate::{adapter, bare, python};
+use crate::{adapter, bare, python, web};
 
 /// Long tests: an environment, and the words for cargo behind `test --workspace --test`.
 const TESTS: [((&str, &str), [&str; 2]); 4] = [
@@ -44,8 +44,9 @@ pub fn run() -> bool {
         checks.push(format!("{name}={value} {}", test.join(" ")));
     }
     let (sweep, swept) = python::long();
-    checks.push(sweep);
-    passed && swept && record(checks)
+    let (page, shown) = web::long();
+    checks.extend([sweep, page]);
+    passed && swept && shown && record(checks)
 }
 
 fn record(checks: Vec<String>) -> bool {

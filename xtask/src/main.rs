@@ -1,4 +1,4 @@
-//! Project chores: `cargo xtask test | ci | python | bless | docs | names | house | faults | bare | long | deny | licences`.
+//! Project chores: `cargo xtask test | ci | python | bless | docs | names | house | faults | bare | web | long | deny | licences`.
 
 #![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to a person at a terminal
@@ -16,6 +16,7 @@ mod programs;
 mod python;
 mod run;
 mod times;
+mod web;
 mod workflows;
 
 use std::process::ExitCode;
@@ -42,7 +43,11 @@ const USAGE: &str = "usage: cargo xtask COMMAND
            [NAME..] these only, --cpu without the tests on a GPU, --list names and meanings,
            --table the page docs/faults.md
   bare     build the program without GPUs and window, check its crates, simulate and draw with it
-  long     bare, and the full length of the tests that `test` shortens: kills, random use of the
+  web      build the browser page into out/web: the module for WebAssembly, its script, the files of
+           apps/web/site. --setup gets a compiler for it where rustup has none, and with --test
+           Debian's Chromium; --test compares the module in Node with the native program to the
+           bit, and opens the page in Chromium; --serve serves it on this machine
+  long     bare, web with --test, and the full length of the tests that `test` shortens: kills, random use of the
            window, pictures and skins on a software adapter; records the day in bench/long.json
   deny     check licences, sources and duplicates of dependencies with cargo-deny, and known
            faults if their list can be read; `test` does the first three if it is installed
@@ -59,6 +64,7 @@ enum Chore {
     House,
     Faults(faults::Wish),
     Bare,
+    Web(web::Wish),
     Long,
     Deny,
     Licences(Option<String>),
@@ -77,6 +83,7 @@ fn main() -> ExitCode {
         Some(Chore::House) => house::check(),
         Some(Chore::Faults(wish)) => faults::faults(&wish),
         Some(Chore::Bare) => bare::check(),
+        Some(Chore::Web(wish)) => web::web(wish),
         Some(Chore::Long) => long::run(),
         Some(Chore::Deny) => licences::deny(),
         Some(Chore::Licences(texts)) => licences::write(texts.as_deref()),
@@ -107,6 +114,7 @@ fn chore(words: &[&str]) -> Option<Chore> {
         ["house"] => Some(Chore::House),
         ["faults", words @ ..] => faults::Wish::parse(words).map(Chore::Faults),
         ["bare"] => Some(Chore::Bare),
+        ["web", words @ ..] => web::Wish::parse(words).map(Chore::Web),
         ["long"] => Some(Chore::Long),
         ["deny"] => Some(Chore::Deny),
         ["licences"] => Some(Chore::Licences(None)),

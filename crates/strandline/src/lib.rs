@@ -25,6 +25,7 @@
 mod cache;
 mod error;
 mod film;
+mod frame_loop;
 mod hair;
 pub mod live;
 mod player;
@@ -96,6 +97,7 @@ pub(crate) use strandline_sim as sim;
 pub use body::{Mesh, Pose};
 pub use cache::{Cache, Out, OutSettings, Target, What, Written};
 pub use error::{Error, ErrorKind};
+pub use frame_loop::FrameLoop;
 pub use groom::{Groom, Style};
 pub use hair::Hair;
 pub use live::Live;
@@ -119,6 +121,7 @@ mod tests {
     #[test]
     fn faces_and_loaded_scenes_may_be_shared_by_threads() {
         shared::<Hair>();
+        shared::<FrameLoop>();
         shared::<Player>();
         shared::<Live>();
         shared::<Prepared>();

@@ -21,7 +21,7 @@ const LONGEST_SHADER: usize = 200;
 const LONGEST_FUNCTION: usize = 60;
 
 /// Each crate and those of ours that it may use.
-const ARROWS: [(&str, &[&str]); 10] = [
+const ARROWS: [(&str, &[&str]); 11] = [
     ("crates/base", &[]),
     ("crates/body", &["strandline-base"]),
     ("crates/gpu", &["strandline-base"]),
@@ -41,6 +41,7 @@ const ARROWS: [(&str, &[&str]); 10] = [
     ),
     ("apps/viewer", &["strandline"]),
     ("apps/cli", &["strandline", "strandline-viewer"]),
+    ("apps/web", &["strandline"]),
     ("python", &["strandline", "strandline-cli"]),
 ];
 

@@ -24,9 +24,14 @@ impl Draft {
     /// The finest.
     pub(crate) const FINEST: Self = Self { step: 0 };
 
+    /// One by its coarseness, from 0 on; the coarsest beyond it.
+    pub(crate) fn of(coarseness: usize) -> Self {
+        Self { step: coarseness.min(STEPS.len() - 1) }
+    }
+
     /// A coarser one, if there is one.
     pub(crate) fn coarser(self) -> Self {
-        Self { step: (self.step + 1).min(STEPS.len() - 1) }
+        Self::of(self.step + 1)
     }
 
     /// A finer one, if there is one.

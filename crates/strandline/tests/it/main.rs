@@ -7,6 +7,7 @@ mod corpora;
 mod crossed;
 mod export_time;
 mod far;
+mod frame_loop;
 mod keyed_solids;
 mod live;
 mod moving;

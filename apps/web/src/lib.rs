@@ -1,0 +1,12 @@
+//! Hair in a browser page: what a worker of the page runs. [`Page`] is plain Rust and tested without a browser; in a
+//! WebAssembly module it is the class `Engine` of the page's script.
+
+#![deny(unsafe_code)]
+
+pub mod bits;
+mod dropped;
+#[cfg(target_family = "wasm")]
+mod exports;
+mod page;
+
+pub use page::Page;

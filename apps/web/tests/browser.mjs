@@ -1,0 +1,223 @@
+// Opens the page in Chromium without a screen and uses it: node browser.mjs FOLDER CHROMIUM ADDRESS [PICTURES].
+// Talks to Chromium by its pipe (DevTools protocol). With a folder for PICTURES the page is kept as it looks.
+
+import { spawn } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [folder, chromium, address, pictures] = process.argv.slice(2);
+// Milliseconds that a thing may take on a busy machine, and that the whole may take.
+const PATIENCE = 60_000;
+const MOST = 280_000;
+
+const profile = mkdtempSync(join(tmpdir(), "strandline-web-"));
+const flags = [
+  "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-extensions", "--remote-debugging-pipe",
+  `--user-data-dir=${profile}`, "--window-size=1200,800", "about:blank",
+];
+const browser = spawn(chromium, flags, { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
+const end = (code) => {
+  browser.kill("SIGKILL");
+  browser.once("close", () => {
+    rmSync(profile, { recursive: true, force: true, maxRetries: 5, retryDelay: 200 });
+    process.exit(code);
+  });
+};
+setTimeout(() => {
+  console.error("the page takes too long");
+  end(1);
+}, MOST).unref();
+
+// Messages of the protocol, each ended by a zero.
+let buffer = "";
+let count = 0;
+const answers = new Map();
+const problems = [];
+browser.stdio[4].on("data", (data) => {
+  buffer += data;
+  const messages = buffer.split("\0");
+  buffer = messages.pop();
+  messages.map((message) => JSON.parse(message)).forEach(take);
+});
+function take(message) {
+  const { id, method, params, result, error } = message;
+  if (id !== undefined) {
+    const { resolve, reject } = answers.get(id);
+    answers.delete(id);
+    return error ? reject(new Error(JSON.stringify(error))) : resolve(result);
+  }
+  if (method === "Runtime.consoleAPICalled" && params.type === "error") {
+    problems.push(params.args.map((part) => part.value ?? part.description).join(" "));
+  } else if (method === "Runtime.exceptionThrown") {
+    problems.push(params.exceptionDetails.exception?.description ?? params.exceptionDetails.text);
+  } else if (method === "Log.entryAdded" && params.entry.level === "error") {
+    problems.push(`${params.entry.text} ${params.entry.url ?? ""}`);
+  } else if (method === "Target.attachedToTarget") {
+    // The worker of the page.
+    const session = params.sessionId;
+    send("Runtime.enable", {}, session);
+    send("Log.enable", {}, session).catch(() => {});
+    send("Runtime.runIfWaitingForDebugger", {}, session);
+  }
+}
+function send(method, params = {}, sessionId = page) {
+  count += 1;
+  browser.stdio[3].write(`${JSON.stringify({ id: count, method, params, sessionId })}\0`);
+  return new Promise((resolve, reject) => answers.set(count, { resolve, reject }));
+}
+
+let page;
+const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
+// The value of an expression in the page, `seen` of its script among its names.
+async function value(expression) {
+  const whole = `import("./page.js").then(({ seen }) => (${expression}))`;
+  const { result, exceptionDetails } = await send("Runtime.evaluate", { expression: whole, awaitPromise: true, returnByValue: true });
+  if (exceptionDetails) throw new Error(`${expression}: ${exceptionDetails.exception?.description}`);
+  return result.value;
+}
+async function until(expression) {
+  const last = Date.now() + PATIENCE;
+  while (Date.now() < last) {
+    if (await value(expression)) return;
+    await pause(50);
+  }
+  throw new Error(`never so: ${expression}; refused: ${await value("seen.refused.join()")}; ${problems.join("; ")}`);
+}
+function held(condition, what) {
+  if (!condition) throw new Error(what);
+  console.log(`passed: ${what}`);
+}
+const mouse = (type, x, y) => send("Input.dispatchMouseEvent", { type, x, y, button: "left", buttons: 1, clickCount: 1 });
+async function look(name) {
+  if (!pictures) return;
+  const { data } = await send("Page.captureScreenshot", { format: "png" });
+  writeFileSync(join(pictures, `${name}.png`), Buffer.from(data, "base64"));
+}
+// Mean difference of the canvas from a picture of the module in Node, of 255.
+async function difference(bytes, width, height) {
+  const wanted = Buffer.from(bytes).toString("base64");
+  return value(`(async () => {
+    const bitmap = await createImageBitmap(seen.saved);
+    const own = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    own.drawImage(bitmap, 0, 0);
+    const found = own.getImageData(0, 0, bitmap.width, bitmap.height).data;
+    const wanted = Uint8Array.from(atob("${wanted}"), (letter) => letter.charCodeAt(0));
+    if (bitmap.width !== ${width} || bitmap.height !== ${height}) return 255;
+    return found.reduce((sum, byte, index) => sum + Math.abs(byte - wanted[index]), 0) / found.length;
+  })()`);
+}
+
+async function opens(hash) {
+  const begin = Date.now();
+  await send("Page.navigate", { url: "about:blank" });
+  await send("Page.navigate", { url: `${address}${hash}` });
+  await pause(100);
+  await until("document.getElementById('progress').hidden");
+  return (Date.now() - begin) / 1e3;
+}
+
+async function test() {
+  const { targetInfos } = await send("Target.getTargets", {}, undefined);
+  const target = targetInfos.find(({ type }) => type === "page");
+  ({ sessionId: page } = await send("Target.attachToTarget", { targetId: target.targetId, flatten: true }, undefined));
+  await send("Page.enable");
+  await send("Runtime.enable");
+  await send("Log.enable");
+  await send("Target.setAutoAttach", { autoAttach: true, waitForDebuggerOnStart: true, flatten: true });
+  const size = (width, height) =>
+    send("Emulation.setDeviceMetricsOverride", { width, height, deviceScaleFactor: 1, mobile: width < 500 });
+
+  // A small canvas: a quarter of the window is the panel's.
+  await size(480, 640);
+  console.log(`ready in ${await opens("")} s`);
+  await until("seen.figures?.strands === 400");
+  held(true, "the page opens and moves 400 guides");
+  await until("seen.figures.rate > 0");
+
+  // Rest, so that a picture can be compared.
+  const hash = "#motion.name=still&style.style=bob&style.strand_count=64";
+  await opens(hash);
+  await until("seen.figures?.still");
+  await value("document.getElementById('save').click()");
+  await until("seen.saved");
+  const [width, height, frames] = await value("[seen.figures.width, seen.figures.height, 0]");
+  const script = await import(pathToFileURL(join(folder, "strandline_web.js")));
+  await script.default({ module_or_path: readFileSync(join(folder, "strandline_web_bg.wasm")) });
+  const settings = [...new URLSearchParams(hash.slice(1))];
+  const engine = new script.Engine(settings.map(([key]) => key), settings.map(([, text]) => text), width, height);
+  for (let frame = 0; frame < 30 + frames; frame += 1) engine.frame();
+  const own = await difference(engine.picture(), width, height);
+  console.log(`mean difference from the picture in Node: ${own.toFixed(3)} of 255`);
+  held(own < 0.5, "the picture is that of the module in Node");
+  engine.set("look.preset", "blonde");
+  held((await difference(engine.picture(), width, height)) > 1, "a picture of other hair is seen as another");
+
+  // A hand on the hair.
+  const box = await value("(({ x, y, width, height }) => ({ x, y, width, height }))(document.getElementById('hair').getBoundingClientRect())");
+  const at = (x, y) => [box.x + x * box.width, box.y + y * box.height];
+  await mouse("mousePressed", ...at(0.5, 0.25));
+  await until("seen.grabbed === true");
+  for (let step = 1; step <= 6; step += 1) {
+    await mouse("mouseMoved", ...at(0.5 + 0.05 * step, 0.25));
+    await pause(60);
+  }
+  await until("seen.figures.still === false");
+  await look("grab");
+  await mouse("mouseReleased", ...at(0.8, 0.25));
+  held(true, "hair is grabbed and pulled");
+  await until("seen.figures.still");
+  await mouse("mousePressed", ...at(0.02, 0.02));
+  await until("seen.grabbed === false");
+  await mouse("mouseReleased", ...at(0.02, 0.02));
+
+  // Keys, and settings that the link carries.
+  await value("document.getElementById('hair').focus()");
+  await send("Input.dispatchKeyEvent", { type: "keyDown", key: "ArrowRight", code: "ArrowRight" });
+  await until("location.hash.includes('motion.rotation')");
+  held(true, "an arrow key turns the head");
+  await value("document.querySelector('[value=red]').click()");
+  await until("location.hash.includes('look.preset=red')");
+  held(true, "the link carries a colour");
+
+  // Files.
+  const drop = (name, content) => value(`(() => {
+    const data = new DataTransfer();
+    data.items.add(new File([${content}], "${name}"));
+    dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+  })()`);
+  await drop("cat.jpg", "'JFIF'");
+  await until("seen.refused.some((text) => text.includes('cat.jpg'))");
+  await drop("broken.hair", "'PK'");
+  await until("seen.refused.length === 2");
+  held(await value("!document.getElementById('problem').hidden"), "a wrong file is refused by name");
+  await drop("cut.obj", "Array.from({ length: 40 }, (_, strand) => Array.from({ length: 8 }, (_, point) => `v ${0.004 * strand - 0.08} ${0.12 - 0.03 * point} 0.1\\n`).join('') + `l ${Array.from({ length: 8 }, (_, point) => 8 * strand + point + 1).join(' ')}\\n`).join('')");
+  await until("seen.opened === 'cut.obj' || seen.refused.length > 2");
+  held(await value("seen.opened === 'cut.obj'"), `a groom is opened: ${await value("seen.refused.slice(2).join()")}`);
+
+  // A link that is wrong.
+  await opens("#style.stile=bob");
+  await until("seen.refused.some((text) => text.includes('style.stile'))");
+  held(true, "a wrong link is refused by its key, and the page opens");
+
+  if (pictures) {
+    await size(1200, 800);
+    await opens("#style.style=wavy&look.preset=red");
+    await pause(6000);
+    await look("desktop");
+    await value("document.getElementById('pause').click()");
+    await until("seen.figures.still");
+    await look("still");
+    await size(390, 844);
+    await opens("#style.style=curly");
+    await pause(6000);
+    await look("phone");
+  }
+  held(problems.length === 0, `nothing on the console: ${problems.join("; ")}`);
+}
+
+test().then(() => end(0), (error) => {
+  console.error(`failed: ${error.message}`);
+  end(1);
+});

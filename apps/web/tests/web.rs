@@ -1,0 +1,125 @@
+//! Hair of a page, without a browser.
+
+#![allow(clippy::disallowed_methods)] // what is held to others may be rounded
+
+use glam::Vec2;
+use strandline_web::{Page, bits};
+
+const SIZE: [u32; 2] = [48, 60];
+
+/// A page of few strands on a head that rests, with further settings.
+fn page(further: &[(&str, &str)]) -> Result<Page, String> {
+    let few = [("style.strand_count", "32"), ("motion.name", "still")];
+    let given = few.iter().chain(further).map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
+    Page::open(given.collect(), SIZE)
+}
+
+#[test]
+fn scenes_are_told_apart_and_a_scene_has_the_same_bits_twice() {
+    let pixie = bits::line("pixie").unwrap();
+    assert_eq!(pixie, bits::line("pixie").unwrap());
+    let bob = bits::line("bob").unwrap();
+    let words = |line: &str| line.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let (pixie, bob) = (words(&pixie), words(&bob));
+    assert!(pixie.len() == 3 && (0..3).all(|word| pixie[word] != bob[word]), "{pixie:?} {bob:?}");
+    assert!(bits::line("mohawk").is_err());
+}
+
+#[test]
+fn a_link_makes_the_page_that_its_settings_made() {
+    let changes = [
+        ("look.tip_color", "#ff2000"),
+        ("look.preset", "blonde"),
+        ("page.light", "90"),
+        ("page.view", "-30"),
+        ("page.color", "#ffc0a0"),
+        ("motion.rotation", "[5, 20, 0]"),
+        ("groom.length", "0.8"),
+        ("style.style", "bob"),
+    ];
+    let mut changed = page(&[]).unwrap();
+    let plain = changed.picture(None).unwrap();
+    for (key, value) in changes {
+        changed.set(key, value).unwrap();
+    }
+    let mut linked = Page::open(changed.given().to_vec(), SIZE).unwrap();
+    assert_eq!(linked.get("look.preset").unwrap(), "\"blonde\"");
+    for page in [&mut changed, &mut linked] {
+        page.reset().unwrap();
+        (0..3).for_each(|_| page.frame().unwrap());
+    }
+    let picture = linked.picture(None).unwrap();
+    assert_eq!(changed.picture(None).unwrap(), picture);
+    assert_ne!(plain, picture);
+}
+
+#[test]
+fn what_is_refused_leaves_the_page_as_it_was() {
+    let mut page = page(&[]).unwrap();
+    let given = page.given().to_vec();
+    let refusals = [
+        ("style.stile", "bob", "style.stile"),
+        ("style.strand_count", "0", "strand_count"),
+        ("look.tip_width", "2", "tip_width"),
+        ("page.light", "east", "page.light"),
+        ("page.lights", "1", "page.lights"),
+        ("page.color", "red", "page.color"),
+        ("groom.file", "secret.hair", "drop them"),
+        ("simulation.time_step", "-1", "time_step"),
+    ];
+    for (key, value, named) in refusals {
+        let error = page.set(key, value).unwrap_err();
+        assert!(error.contains(named), "{key}: {error}");
+    }
+    for (name, bytes) in [("cat.jpg", &b"JFIF"[..]), ("no ending", b""), ("a.hair", b"PK"), ("a.glb", b"PK")]
+    {
+        let error = page.drop_file(name, bytes).unwrap_err();
+        assert!(error.contains(name), "{error}");
+    }
+    assert_eq!(page.given(), given);
+    assert_eq!(page.strand_count(), 32);
+    assert!(Page::open(vec![("style.stile".into(), "bob".into())], SIZE).is_err());
+}
+
+#[test]
+fn a_hand_takes_hair_where_there_is_some() {
+    let mut page = page(&[("style.style", "bob")]).unwrap();
+    assert!(!page.grab(Vec2::new(0.01, 0.01), 0.01).unwrap());
+    let places = (1..20).flat_map(|x| (1..20).map(move |y| Vec2::new(x as f32, y as f32) / 20.0));
+    let held =
+        places.into_iter().find(|place| page.grab(*place, 0.02).unwrap()).expect("hair in the picture");
+    let before = page.points().unwrap();
+    page.drag(held + Vec2::new(0.2, 0.0)).unwrap();
+    (0..5).for_each(|_| page.frame().unwrap());
+    let pulled = before.iter().zip(page.points().unwrap()).map(|(one, other)| one.distance(other));
+    assert!(pulled.fold(0.0, f32::max) > 0.02);
+    page.release().unwrap();
+}
+
+#[test]
+fn dropped_files_take_the_place_of_the_style_and_of_each_other() {
+    let lines = |strands: usize| {
+        let mut text = String::new();
+        for strand in 0..strands {
+            for point in 0..8 {
+                let (x, y) = (0.004 * strand as f32 - 0.08, 0.12 - 0.03 * point as f32);
+                text.push_str(&format!("v {x} {y} 0.1\n"));
+            }
+        }
+        for strand in 0..strands {
+            let corners: Vec<String> = (1..=8).map(|point| (8 * strand + point).to_string()).collect();
+            text.push_str(&format!("l {}\n", corners.join(" ")));
+        }
+        text.into_bytes()
+    };
+    let mut page = page(&[]).unwrap();
+    page.drop_file("a.obj", &lines(40)).unwrap();
+    assert_eq!(page.strand_count(), 40);
+    page.drop_file("b.obj", &lines(24)).unwrap();
+    assert_eq!(page.strand_count(), 24);
+    page.frame().unwrap();
+    assert!(!page.picture(Some(3)).unwrap().is_blank());
+    // A style takes their place.
+    page.set("style.style", "wavy").unwrap();
+    assert_eq!(page.strand_count(), 32);
+}
