@@ -11,7 +11,7 @@ const FAST = 24;
 // Coarsest picture of the engine; beyond it the sides shrink by SHRINK, down to LEAST of the canvas.
 const COARSEST = 3;
 const SHRINK = 0.8;
-const LEAST = 0.4;
+const LEAST = 0.7;
 // Hair rests when no coordinate has moved by more than this in a frame [m], for so many frames.
 const REST = 2e-5;
 const REST_FRAMES = 20;

@@ -9,7 +9,7 @@ use strandline::{
 use crate::dropped::{Dropped, text};
 
 /// Strands that a page simulates until it is asked for more.
-const STRANDS: usize = 400;
+const STRANDS: &str = "400";
 /// Widths and heights of pictures on the CPU \[pixel\].
 const SIDES: [u32; 2] = [16, 2048];
 
@@ -87,7 +87,6 @@ impl Page {
     fn load(given: Vec<(String, String)>, dropped: Vec<Dropped>, size: [u32; 2]) -> Result<Self, String> {
         let size = size.map(|side| side.clamp(SIDES[0], SIDES[1]));
         let mut scene = Scene::demo();
-        scene.style.strand_count = STRANDS;
         (scene.motion.name, scene.motion.neck) = (MotionName::Turn, true);
         [scene.picture.width, scene.picture.height] = size;
         let mut own = Own::OFF;
@@ -97,6 +96,10 @@ impl Page {
                 settings.push((&**key, &**value));
             }
         }
+        // A style brings the number of its strands along.
+        settings.sort_by_key(|(key, _)| *key != "style.style");
+        let styles = settings.iter().take_while(|(key, _)| *key == "style.style").count();
+        settings.insert(styles, ("style.strand_count", STRANDS));
         scene.set_all(settings).map_err(text)?;
         if scene.paths_mut().next().is_some() {
             return Err("a link cannot name files: drop them onto the page".to_owned());
