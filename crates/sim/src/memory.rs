@@ -10,6 +10,10 @@ const POINT_BYTES: u64 = 296;
 /// Further bytes of a point of a rod: its node, its section and spin, and the copies of them that a change of settings
 /// or a device holds.
 const ROD_BYTES: u64 = 204;
+/// Bytes of a point in the state that hair which rests is compared with: positions now and one step ago, velocities and
+/// their corrections, the planes of two carriers; and of a rod its section and spin.
+const KEPT_BYTES: u64 = 112;
+const KEPT_ROD_BYTES: u64 = 16;
 /// Bytes of a cell: velocities and their changes on three faces, points, kind, distance and unknown.
 const CELL_BYTES: u64 = 44;
 
@@ -18,7 +22,8 @@ impl Settings {
     pub fn memory(&self, strand_count: usize, points_per_strand: usize) -> Vec<Need> {
         let points = (strand_count as u64).saturating_mul(points_per_strand as u64);
         let strands = format!("{points_per_strand} points on each of {strand_count} simulated strands");
-        let bytes = POINT_BYTES + if self.has_rods() { ROD_BYTES } else { 0 };
+        let of_rods = if self.has_rods() { ROD_BYTES + KEPT_ROD_BYTES } else { 0 };
+        let bytes = POINT_BYTES + KEPT_BYTES + of_rods;
         let mut needs = vec![Need::new(strands, points, bytes)];
         if self.volume.enabled {
             let cells = self.volume.cells;
@@ -27,5 +32,35 @@ impl Settings {
             needs.push(Need::new(format!("simulation.volume.cells = {cells:?}"), count, CELL_BYTES));
         }
         needs
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use strandline_body::{Carrier, Collider, Pose, Shape};
+    use strandline_groom::{Groom, Guides};
+
+    use super::*;
+    use crate::Model;
+
+    #[test]
+    fn a_kept_state_is_counted() {
+        let mut groom = Groom::empty(8e-5);
+        (0..64).for_each(|strand| groom.push([Vec3::X * strand as f32, Vec3::X * strand as f32 + Vec3::Y]));
+        let guides = Guides::resample(&groom, 16).unwrap();
+        let solid = |carrier| {
+            let ball = Shape::Sphere { center: Vec3::NEG_Y, radius: 0.5 };
+            Collider::new(ball, carrier, 0.3).unwrap()
+        };
+        for (settings, wanted) in
+            [(Settings::default(), KEPT_BYTES + KEPT_ROD_BYTES), (Settings::constrained(), KEPT_BYTES)]
+        {
+            let solids = vec![solid(Carrier::HEAD), solid(Carrier::World)];
+            let state = Model::new(&guides, &settings, solids).unwrap().rest_state(Pose::IDENTITY);
+            let numbers: usize = state.checkpoint().parts.iter().map(|part| part.numbers.len()).sum();
+            // And a scale of its length for each strand.
+            assert_eq!(4 * (numbers as u64 - 64), wanted * 64 * 16);
+        }
     }
 }
