@@ -1,5 +1,6 @@
 //! Laws that any implementation has to keep.
 
+mod air;
 mod angles;
 mod attributes;
 mod bound;

@@ -141,9 +141,12 @@ choices! {
 }
 
 settings! {
-    /// Drag of the air: the rate at which hair takes the velocity of the wind.
+    /// Drag of the air.
     ///
-    /// A hair is pushed along by air across it about twice as strongly as by air along it.
+    /// Hair takes the velocity of the wind at two rates, `across` and `along` the strand. With `factor` rods feel the force of
+    /// a flow on a cylinder as thin as their hair instead [Cheng2013, Collis1959]; that of a wisp is at most the force on a
+    /// cylinder as thick as the wisp. Hair shelters no other hair yet, so that the force of physics slows fast hair on a head
+    /// more than it does outside: it is off by default.
     pub struct Drag: Copy {
         /// Rate at which hair takes the velocity of wind across the strand.
         across: f32 = 1.5, in [0.0, 1000.0] "1/s", slider [0.0, 20.0],
@@ -151,12 +154,24 @@ settings! {
         /// Rate at which hair takes the velocity of wind along the strand.
         along: f32 = 0.75, in [0.0, 1000.0] "1/s", slider [0.0, 20.0],
             more "hair that follows the wind sooner and falls more slowly";
+        /// Force of the air on rods over that of physics: 1 is physics, and stands for both rates. 0 leaves the rates.
+        factor: f32 = 0.0, in [0.0, 1000.0], slider [0.0, 5.0],
+            more "rods that follow the wind sooner and swing less in still air";
+        /// Hairs that a guide stands for in the air under `factor`: a wisp whose outer hairs shelter the inner ones. Without it
+        /// those of the look over the guides in a scene, else `strands.rods.wisp_hairs`.
+        hairs: Option<f32> = None, in [1.0, 1e6], slider [1.0, 200.0],
+            more "wisps that the air moves less, which swing longer";
     }
 }
 
 impl Drag {
     /// No air.
-    pub const OFF: Self = Self { across: 0.0, along: 0.0 };
+    pub const OFF: Self = Self { across: 0.0, along: 0.0, factor: 0.0, hairs: None };
+
+    /// The rates of rods, across and along: none where they feel the force of physics.
+    pub(crate) fn rates_of_rods(&self) -> [f32; 2] {
+        if self.factor > 0.0 { [0.0; 2] } else { [self.across, self.along] }
+    }
 }
 
 settings! {

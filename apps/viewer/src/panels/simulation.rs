@@ -42,8 +42,14 @@ fn strands(settings: &mut Settings, base: &Settings, ui: &mut Ui) {
     choose(ui, method, &StrandMethod::ALL, &StrandSettings::ROWS.method, "strands");
     slide(ui, (&mut settings.gravity.y, base.gravity.y), &rows.gravity, "gravity");
     slide(ui, (&mut settings.damping, base.damping), &rows.damping, "damping");
-    slide(ui, (&mut settings.drag.across, base.drag.across), &drag.across, "drag across");
-    slide(ui, (&mut settings.drag.along, base.drag.along), &drag.along, "drag along");
+    let rods = settings.strands.method == StrandMethod::Rods;
+    if rods {
+        slide(ui, (&mut settings.drag.factor, base.drag.factor), &drag.factor, "drag of the air");
+    }
+    if !rods || settings.drag.factor == 0.0 {
+        slide(ui, (&mut settings.drag.across, base.drag.across), &drag.across, "drag across");
+        slide(ui, (&mut settings.drag.along, base.drag.along), &drag.along, "drag along");
+    }
 }
 
 fn rods(rods: &mut RodSettings, base: &RodSettings, ui: &mut Ui) {

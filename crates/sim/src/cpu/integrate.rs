@@ -51,19 +51,25 @@ pub(crate) struct Fall {
 
 impl Fall {
     fn new(model: &Model, wind: Vec3) -> Self {
-        Self::for_time(model, model.settings.time_step, wind)
+        let drag = &model.settings.drag;
+        Self::for_time(model, model.settings.time_step, wind, [drag.across, drag.along])
     }
 
-    /// Accelerations over a time \[s\], a substep or a whole step.
-    pub(crate) fn for_time(model: &Model, time_step: f32, wind: Vec3) -> Self {
+    /// Accelerations of rods over a time \[s\], a part of a step.
+    pub(crate) fn of_rods(model: &Model, time_step: f32, wind: Vec3) -> Self {
+        Self::for_time(model, time_step, wind, model.settings.drag.rates_of_rods())
+    }
+
+    /// Accelerations over a time \[s\] with rates of the air across and along a strand \[1/s\].
+    fn for_time(model: &Model, time_step: f32, wind: Vec3, [across, along]: [f32; 2]) -> Self {
         let settings = &model.settings;
         let taken = |rate: f32| -math::exp_m1(-rate * time_step);
         Self {
             time_step: splat(time_step),
             gravity: Vec3x8::splat(settings.gravity * time_step),
             wind: Vec3x8::splat(wind),
-            across: splat(taken(settings.drag.across)),
-            along: splat(taken(settings.drag.along)),
+            across: splat(taken(across)),
+            along: splat(taken(along)),
             kept: splat(1.0 - taken(settings.damping)),
         }
     }

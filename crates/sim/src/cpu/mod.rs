@@ -19,6 +19,7 @@ pub mod splat;
 pub mod volume;
 
 pub(crate) mod length_pass;
+mod rod_air;
 mod rod_pulls;
 mod rod_rest;
 pub(crate) mod spans;

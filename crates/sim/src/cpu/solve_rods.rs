@@ -10,6 +10,7 @@ use super::Scratch;
 use super::advance::{Block, NonFinite, recover};
 use super::integrate::Fall;
 use super::length_pass::Follow;
+use super::rod_air::{Air, Around};
 use crate::contact::Obstacles;
 use crate::contact::contacts::Solids;
 use crate::contact::planes::Plane;
@@ -69,7 +70,8 @@ pub fn solve_rods(
                     clearance: &model.rest_clearance[range.clone()],
                     rest_sections: &rods.sections[range],
                     viscous: parts.viscous(&rods.traits[block * LANES..]),
-                    crowding: crowding(&rods.traits[block * LANES..]),
+                    crowding: of_lanes(&rods.traits[block * LANES..], |traits| traits.crowding),
+                    air: parts.air.of(&rods.traits[block * LANES..]),
                     driven: parts.driven(model, block),
                     block,
                     live: model.live_lanes(block),
@@ -92,6 +94,7 @@ pub(super) struct Parts<'a> {
     pub(super) count: u32,
     pub(super) time_step: f64,
     fall: Fall,
+    air: Air,
     pub(super) solids: Solids<'a>,
     /// Body at the start and at the end of the step.
     body: [&'a BodyFrame; 2],
@@ -123,7 +126,8 @@ impl<'a> Parts<'a> {
             settings,
             count,
             time_step: f64::from(time_step),
-            fall: Fall::for_time(model, time_step, wind),
+            fall: Fall::of_rods(model, time_step, wind),
+            air: Air::new(model, time_step, wind),
             solids: Solids::in_parts(obstacles, model.points_per_strand, count),
             body,
             head: (0..count).map(ride).collect(),
@@ -177,6 +181,8 @@ pub(super) struct Strands<'a> {
     viscous: f32x8,
     /// Share of each strand beside which others pass.
     pub(super) crowding: f32x8,
+    /// Air about the strands.
+    air: Around,
     /// Mask of the strands whose root frames move.
     driven: f32x8,
     block: usize,
@@ -218,6 +224,9 @@ impl Strands<'_> {
             let remainder = moved.as_ref().map_or(remainder, |moved| moved.direction(remainder));
             space.remainders[point] = remainder * free;
             let tangent = space.points[last.min(point + 1)] - space.points[point.saturating_sub(1)];
+            if self.parts.air.blows() {
+                self.air.blow(space, point, back);
+            }
             let fallen = self.parts.fall.weighted(space.velocities[point], tangent);
             let coast = space.velocities[point] * step + back;
             space.coast[point] = coast;
@@ -263,10 +272,13 @@ impl Strands<'_> {
     /// Way of a free strand that forces take from it on the whole \[m\], which Newton's method would find to a hundredth.
     fn pushed_back(&self, space: &Workspace) -> Vector<f32x8> {
         let (mut pushed, mut mass) = (Vector::zero(), f32x8::ZERO);
+        let square = f32x8::of(self.parts.time_step * self.parts.time_step);
         for (point, node) in self.nodes.iter().enumerate() {
-            let free = node.mass * node.free;
-            pushed += (space.coast[point] - space.wanted[point]) * free;
-            mass += free;
+            let (air, blows) = space.work.blown(point);
+            let (free, blown) = (node.mass * node.free, blows * square * node.free);
+            let coast = space.coast[point];
+            pushed += (coast - space.wanted[point]) * free + (coast - air) * blown;
+            mass += free + blown;
         }
         pushed * (f32x8::of(1.0) / mass)
     }
@@ -364,9 +376,9 @@ fn sum_and_remainder(large: Vector<f32x8>, small: Vector<f32x8>) -> (Vector<f32x
     (sum, (large - (sum - taken)) + (small - taken))
 }
 
-/// Share of a block's strands beside which others pass.
-fn crowding(strands: &[Traits]) -> f32x8 {
-    f32x8::from(std::array::from_fn::<f32, LANES, _>(|lane| strands[lane].crowding))
+/// A number of each of a block's strands.
+pub(super) fn of_lanes(strands: &[Traits], number: impl Fn(&Traits) -> f32) -> f32x8 {
+    f32x8::from(std::array::from_fn::<f32, LANES, _>(|lane| number(&strands[lane])))
 }
 
 /// A vector, zero in the lanes of a mask.

@@ -9,11 +9,12 @@ use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::motion::{Root, has_roots, part_count};
 use super::records::{Outcome, PointBox, PressureState, Report};
-use super::rod_buffers::{NUMBERS, RodBuffers};
+use super::rod_buffers::{NUMBERS, RodBuffers, TRAITS};
 use super::solids;
 use super::volume::Volume;
 use crate::grab::{Grab, Grip, NO_POINT};
 use crate::masses::Masses;
+use crate::strands::rods::hairs::Traits;
 use crate::{Model, SimError, State};
 
 /// Steps whose reports the device keeps until they are read.
@@ -171,8 +172,12 @@ impl Buffers {
         }
         buffers.nodes.write(&numbers)?;
         let traits = model.rods.iter().flat_map(|rods| &rods.traits);
-        let traits: Vec<f32> =
-            traits.flat_map(|one| [one.bend_ratio, one.twist_ratio, one.damping, one.crowding]).collect();
+        let numbers_of = |one: &Traits| -> [f32; TRAITS] {
+            let Traits { bend_ratio, twist_ratio, damping, crowding, diameter, tip, taper_start, hairs } =
+                *one;
+            [bend_ratio, twist_ratio, damping, crowding, diameter, tip, taper_start, hairs]
+        };
+        let traits: Vec<f32> = traits.flat_map(numbers_of).collect();
         // The grips lie before them.
         Ok(buffers.nodes.write_at(numbers.len() + 4 * self.lane_count, &traits)?)
     }

@@ -32,6 +32,12 @@ mirror! {
         pub head_moves: u32,
         /// Distance removed by rubbing from the path of a part \[m\].
         pub rubbing: f32,
+        /// Factor of the force of the air over the length of a part \[1/s\].
+        pub air: f32,
+        /// Hairs that a guide stands for in the air; 0 takes those that resist together.
+        pub air_hairs: f32,
+        pub unused_a: u32,
+        pub unused_b: u32,
     }
 }
 
@@ -109,6 +115,9 @@ impl RodStep {
             head_moves: u32::from(start != end),
             rubbing: rods.rubbing * part_time * part_time,
             tolerance: rods.tolerance,
+            air: model.settings.drag.factor / part_time,
+            air_hairs: model.settings.drag.hairs.unwrap_or(0.0),
+            ..Self::default()
         }
     }
 }
@@ -121,6 +130,8 @@ impl Step {
         // Forces common to all points act in each part of a step of rods.
         let part_time = settings.time_step / part_count(model) as f32;
         let taken = |rate: f32| -math::exp_m1(-rate * part_time);
+        let drag = &settings.drag;
+        let rates = if settings.has_rods() { drag.rates_of_rods() } else { [drag.across, drag.along] };
         let is_last = !settings.has_rods() && !settings.strands.constrain.length_pass.enabled;
         let care = if is_last { Care::ROUNDS } else { Care::ROUGH };
         Self {
@@ -136,8 +147,8 @@ impl Step {
             stretch_spring: spring(&settings.strands.constrain.springs.stretch),
             bend_spring: spring(&settings.strands.constrain.springs.bend),
             torsion_spring: spring(&settings.strands.constrain.springs.torsion),
-            drag_across: taken(settings.drag.across),
-            drag_along: taken(settings.drag.along),
+            drag_across: taken(rates[0]),
+            drag_along: taken(rates[1]),
             kept: 1.0 - taken(settings.damping),
             near: care.near,
             cos_limit: math::cos(settings.strands.constrain.angles.limit),

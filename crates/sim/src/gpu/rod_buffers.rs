@@ -4,8 +4,10 @@ use strandline_gpu::{Buffer, Gpu, GpuError, THREADS};
 
 /// Numbers of a node in the buffer of rods.
 pub(super) const NUMBERS: usize = 10;
+/// Numbers of the traits of a strand.
+pub(super) const TRAITS: usize = 8;
 /// Vectors of four numbers that a point takes while its strand is solved.
-const SLOTS: usize = 18;
+const SLOTS: usize = 19;
 
 /// The buffers of rods.
 pub(super) struct RodBuffers {
@@ -21,7 +23,7 @@ impl RodBuffers {
     pub fn new(gpu: &Gpu, lane_count: usize, points: usize) -> Result<Self, GpuError> {
         let groups = groups_at_once(lane_count, points);
         Ok(Self {
-            nodes: Buffer::new(gpu, "rods", lane_count * (NUMBERS * points + 4 + 4))?,
+            nodes: Buffer::new(gpu, "rods", lane_count * (NUMBERS * points + 4 + TRAITS))?,
             work: Buffer::new(gpu, "work of rods", groups * THREADS * points * SLOTS)?,
             groups,
         })

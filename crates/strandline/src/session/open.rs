@@ -5,7 +5,10 @@ use std::{collections::VecDeque, sync::Arc};
 use glam::Vec3;
 use strandline_base::{Group, par::Pool};
 
-use super::{Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment};
+use super::{
+    Inline, Session, Simulation, View, direction::Direction, engine::Engine, moment::Moment,
+    simulation::with_hairs,
+};
 use crate::{
     BoundStrands, Devices, Error, Prepared, Scene,
     body::{BodyFrame, Collider, Mesh},
@@ -22,6 +25,12 @@ use crate::{
     sim::{Model, Settings},
     strands::tags::Tags,
 };
+
+/// Hairs that a guide of a scene stands for in the air: its share of those that the look has; `None` without a number.
+fn hairs_of_a_guide(scene: &Scene, guides: &Guides) -> Option<f32> {
+    let hairs = scene.look.hair_count as f32 / guides.strand_count() as f32;
+    (hairs > 0.0).then_some(hairs.clamp(1.0, 1e6))
+}
 
 impl Session<Inline> {
     /// Guides, and the strands that they carry, on a body: its drawn mesh and the solids that hair hits.
@@ -97,7 +106,9 @@ impl Session<Inline> {
             bound.map(|bound| if origin == Vec3::ZERO { bound } else { bound.among(colliders.clone()) });
         let head = head.seen_from(origin);
         let pair = devices.open()?;
-        let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &scene.simulation)?;
+        let hairs = hairs_of_a_guide(&scene, &guides);
+        let settings = with_hairs(&scene.simulation, hairs);
+        let mut session = Self::new(pair, guides, bound, mesh.as_ref(), colliders, &settings)?;
         let view = &mut session.view;
         view.lights = lights(&scene, view);
         (view.camera, view.look) = (camera, scene.look.clone());
@@ -105,7 +116,7 @@ impl Session<Inline> {
         session.set_picture(picture)?;
         let scales = vec![scene.groom.length; session.view.guides.strand_count()];
         let simulation = session.executor.simulation_mut();
-        simulation.origin = origin;
+        (simulation.origin, simulation.hairs) = (origin, hairs);
         if scene.groom.length != 1.0 {
             simulation.set_length_scale(&scales)?;
         }

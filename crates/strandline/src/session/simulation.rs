@@ -27,6 +27,13 @@ fn move_lanes(points: &mut [Vec3Lanes], by: Vec3) {
     }
 }
 
+/// Settings whose guides stand for a number of hairs in the air unless they tell another.
+pub(super) fn with_hairs(settings: &Settings, hairs: Option<f32>) -> Settings {
+    let mut settings = settings.clone();
+    settings.drag.hairs = settings.drag.hairs.or(hairs);
+    settings
+}
+
 /// Steps that settling hair makes in one run.
 const AT_ONCE: usize = 1024;
 /// Steps that may be due at once, ten seconds of the shortest ones.
@@ -52,6 +59,8 @@ pub(crate) struct Simulation {
     hand: Option<[Vec3; 2]>,
     /// Roots that the skin carries.
     pub skin: SkinCarrier,
+    /// Hairs that a guide stands for in the air where the settings do not tell.
+    pub hairs: Option<f32>,
     /// Threads of its own beside those that draw, which else keep it waiting for a whole picture.
     pub threads: Option<Pool>,
 }
@@ -69,6 +78,7 @@ impl Simulation {
             origin: Vec3::ZERO,
             hand: None,
             skin: SkinCarrier::default(),
+            hairs: None,
             threads: None,
         }
     }
@@ -76,7 +86,7 @@ impl Simulation {
     /// Changes the settings; steps of another length take that long from now on.
     pub fn set_settings(&mut self, settings: &Settings) -> Result<(), SimError> {
         let before = self.engine.model().settings().time_step;
-        self.engine.set_settings(settings)?;
+        self.engine.set_settings(&with_hairs(settings, self.hairs))?;
         if settings.time_step != before {
             self.clock.set_time_step(settings.time_step);
         }

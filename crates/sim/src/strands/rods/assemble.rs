@@ -58,6 +58,12 @@ impl<R: Real> Work<R> {
             front.add(row, row, weight);
             front.add_right(row, weight * (self.wanted[index][row] - self.moved[index][row]));
         }
+        // A term of its own: still air takes not a bit of the weight of resting hair.
+        let [.., stiffness] = self.air[index];
+        for row in 0..3 {
+            front.add(row, row, stiffness);
+            front.add_right(row, stiffness * (self.air[index][row] - self.moved[index][row]));
+        }
     }
 
     /// A solid presses with the force of its spring, at `first` with the force that stops the inertia of a touching point.
@@ -76,8 +82,11 @@ impl<R: Real> Work<R> {
             solid = missing * pull.stiffness;
             let (mut size, mut rate) = (slip.length(), pull.stiffness);
             if first {
-                let wanted = vector(self.wanted[pull.node]);
-                rate = pull.stiffness.choose(inertia, none);
+                // Where inertia and the air take the point.
+                let (air, blows) = self.blown(pull.node);
+                let inert = vector(self.wanted[pull.node]);
+                let wanted = inert + (air - inert) * (blows / (inertia + blows));
+                rate = pull.stiffness.choose(inertia + blows, none);
                 ahead = (pull.reach - normal.dot(wanted)) * rate;
                 solid = solid.or_more((missing + R::of(ROUNDING)).choose(ahead, none));
                 size = pull.slip(wanted).length();

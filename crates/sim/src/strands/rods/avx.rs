@@ -196,6 +196,7 @@ impl Avx {
         for index in 0..rod.len() {
             own.moved[index] = work.moved[index].map(Eight::from);
             own.wanted[index] = work.wanted[index].map(Eight::from);
+            own.air[index] = work.air[index].map(Eight::from);
             own.step[index] = work.step[index].map(Eight::from);
             own.edges[index] = taken(work.edges[index]);
             let Segment { length, tangent, across } = work.segments[index];

@@ -21,6 +21,12 @@ pub(crate) struct Traits {
     pub damping: f32,
     /// Share of the strand beside which others pass at rest.
     pub crowding: f32,
+    /// Diameter \[m\] of a hair at the root, and over it at the tip; share of the length where it begins to taper.
+    pub diameter: f32,
+    pub tip: f32,
+    pub taper_start: f32,
+    /// Hairs that weigh and resist together.
+    pub hairs: f32,
 }
 
 /// Material of a strand.
@@ -28,11 +34,20 @@ pub(crate) struct Traits {
 struct Hair {
     section: Section,
     damping: f32,
+    /// \[m\]
+    diameter: f32,
+    hairs: f32,
 }
 
 impl Hair {
     fn new(rods: &RodSettings) -> Self {
-        Self { section: rods.material().section(), damping: rods.damping }
+        let material = rods.material();
+        Self {
+            section: material.section(),
+            damping: rods.damping,
+            diameter: material.diameter() as f32,
+            hairs: material.hairs as f32,
+        }
     }
 }
 
@@ -91,12 +106,16 @@ impl Hairs {
 
     /// Properties of a strand's hair that are constant along it.
     pub fn traits(&self, strand: usize) -> Traits {
-        let Hair { section, damping } = self.hair(strand);
+        let Hair { section, damping, diameter, hairs } = self.hair(strand);
         Traits {
             bend_ratio: (section.bend[1] / section.bend[0]) as f32,
             twist_ratio: (section.twist / section.bend[0]) as f32,
             damping,
             crowding: self.crowding[strand],
+            diameter,
+            tip: section.along.tip as f32,
+            taper_start: section.along.start as f32,
+            hairs,
         }
     }
 

@@ -91,6 +91,11 @@ pub struct Section {
 }
 
 impl Material {
+    /// Diameter \[m\] of a round hair of the same area.
+    pub fn diameter(&self) -> f64 {
+        2.0 * self.radius * self.ellipticity.sqrt()
+    }
+
     /// Stiffness and weight of the hairs that a guide stands for: E I, G J and rho A of an ellipse times their number;
     /// glued hairs have the second moments of one bundle of their area.
     pub fn section(&self) -> Section {

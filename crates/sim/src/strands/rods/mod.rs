@@ -4,6 +4,7 @@
 // Rows and columns of small matrices are numbers, several of them in one loop.
 #![allow(clippy::needless_range_loop)]
 
+pub mod air;
 mod assemble;
 #[cfg(target_arch = "x86_64")]
 mod avx;

@@ -110,6 +110,8 @@ pub struct Work<R> {
     pub segments: Vec<Segment<R>>,
     pub(super) edges: Vec<Vector<R>>,
     pub(super) wanted: Vec<[R; UNKNOWNS]>,
+    /// Displacement of each point \[m\] with the air, and force over displacement \[N/m\].
+    pub(super) air: Vec<[R; 4]>,
     pub(super) rest: Vec<[R; 3]>,
     pub(super) factors: Vec<Factors<R>>,
     pub(super) step: Vec<[R; UNKNOWNS]>,
@@ -126,6 +128,7 @@ impl<R: Real> Work<R> {
             segments: vec![segment; points],
             edges: vec![zero; points],
             wanted: unknowns.clone(),
+            air: vec![[R::of(0.0); 4]; points],
             rest: vec![[R::of(0.0); 3]; points],
             factors: vec![Factors::zero(); points],
             step: unknowns,
@@ -151,6 +154,21 @@ impl<R: Real> Work<R> {
     #[inline(always)]
     pub fn want(&mut self, node: usize, unknowns: [R; UNKNOWNS]) {
         self.wanted[node] = unknowns;
+    }
+
+    /// Sets the place to which the air takes each node, displacement \[m\], and its force over the distance from there
+    /// \[N/m\].
+    #[inline(always)]
+    pub fn blow(&mut self, node: usize, goal: Vector<R>, stiffness: R) {
+        let [x, y, z] = goal.array();
+        self.air[node] = [x, y, z, stiffness];
+    }
+
+    /// Displacement \[m\] with the air and force over displacement \[N/m\] of a node.
+    #[inline(always)]
+    pub fn blown(&self, node: usize) -> (Vector<R>, R) {
+        let [x, y, z, stiffness] = self.air[node];
+        (Vector::new(x, y, z), stiffness)
     }
 
     /// Sets where Newton's method begins: displacement \[m\] and angle \[rad\] of a node, 0 for what is held. Without,

@@ -30,7 +30,7 @@ settings! {
         load: f32 = 0.0, in [0.0, 20.0], slider [0.0, 3.0], more "hair that gives way more easily", invalidates masses;
         /// Hairs that a guide stands for: they weigh and resist together.
         wisp_hairs: u32 = 1, in [1, 10_000], slider [1, 200],
-            more "stiffer hair where `cohesion` is above 0, and no other motion where it is 0", invalidates masses;
+            more "stiffer hair where `cohesion` is above 0; where it is 0 the air alone moves it otherwise", invalidates masses;
         /// Sharing of load among the hairs of a guide: 0 lets each bend by itself, so that n hairs are n
         /// times as stiff as one; 1 glues them to one, n^2 times; between, n^(1 + cohesion).
         cohesion: f32 = 0.0, in [0.0, 1.0], more "locks that bend as one", invalidates rest_shape;
