@@ -100,6 +100,17 @@ law! {
     }
 }
 
+/// Places of the nodes of a chain of segments \[m\] by their angles from the vertical.
+fn places(angles: &[f64]) -> Vec<[f64; 2]> {
+    let size = f64::from(LENGTH) / COUNT as f64;
+    let mut places = vec![[0.0, 0.0]];
+    for angle in angles {
+        let [x, y] = places[places.len() - 1];
+        places.push([x + size * angle.sin(), y - size * angle.cos()]);
+    }
+    places
+}
+
 /// Angle \[rad\] from the vertical of the chord of a clamped hair in a wind across it \[m/s\]: angles of the segments at which
 /// moments of weight and air are those of the bends, by Newton's method with differences.
 fn chord(radius: f64, wind: f64) -> f64 {
@@ -107,14 +118,6 @@ fn chord(radius: f64, wind: f64) -> f64 {
     let radius = 1e-6 * radius;
     let mass = 1300.0 * PI * radius * radius;
     let stiffness = 3.5e9 * PI * radius.powi(4) / 4.0;
-    let places = |angles: &[f64]| {
-        let mut places = vec![[0.0, 0.0]];
-        for angle in angles {
-            let [x, y] = places[places.len() - 1];
-            places.push([x + size * angle.sin(), y - size * angle.cos()]);
-        }
-        places
-    };
     let missing = |angles: &[f64]| -> Vec<f64> {
         let places = places(angles);
         let force = |point: usize| {

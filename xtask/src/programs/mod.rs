@@ -26,7 +26,7 @@ pub struct Program {
     pub path: PathBuf,
     /// The folder in which cargo would run it.
     pub folder: PathBuf,
-    /// What it prints of tests.
+    /// Lines that tell the results of its tests.
     pub prints: Prints,
     /// Its words.
     pub arguments: Vec<String>,

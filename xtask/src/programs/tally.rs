@@ -1,6 +1,6 @@
 //! Sums over the `test result:` lines of test programs, and the last line of pytest.
 
-/// What a program prints of the tests that it runs.
+/// Lines of a program that tell the results of tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Prints {
     /// Nothing: it passes if it succeeds.

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use strandline_base::vec3x8::splat;
+use strandline_groom::LANES;
 use wide::f32x8;
 
-use super::solve_rods::of_lanes;
 use crate::Model;
 use crate::strands::rods::air::Wisp;
 use crate::strands::rods::hairs::Traits;
@@ -97,4 +97,9 @@ impl Around {
         let tapered = ((share - self.start) * self.per_taper).or_more(f32x8::ZERO).or_less(splat(1.0));
         self.wisp.thinned(splat(1.0) + self.thinner * tapered)
     }
+}
+
+/// A number of each of a block's strands.
+pub(super) fn of_lanes(strands: &[Traits], number: impl Fn(&Traits) -> f32) -> f32x8 {
+    f32x8::from(std::array::from_fn::<f32, LANES, _>(|lane| number(&strands[lane])))
 }

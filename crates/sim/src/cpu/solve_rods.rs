@@ -10,7 +10,7 @@ use super::Scratch;
 use super::advance::{Block, NonFinite, recover};
 use super::integrate::Fall;
 use super::length_pass::Follow;
-use super::rod_air::{Air, Around};
+use super::rod_air::{Air, Around, of_lanes};
 use crate::contact::Obstacles;
 use crate::contact::contacts::Solids;
 use crate::contact::planes::Plane;
@@ -374,11 +374,6 @@ fn sum_and_remainder(large: Vector<f32x8>, small: Vector<f32x8>) -> (Vector<f32x
     let sum = large + small;
     let taken = sum - large;
     (sum, (large - (sum - taken)) + (small - taken))
-}
-
-/// A number of each of a block's strands.
-pub(super) fn of_lanes(strands: &[Traits], number: impl Fn(&Traits) -> f32) -> f32x8 {
-    f32x8::from(std::array::from_fn::<f32, LANES, _>(|lane| number(&strands[lane])))
 }
 
 /// A vector, zero in the lanes of a mask.

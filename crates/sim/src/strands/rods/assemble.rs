@@ -82,7 +82,7 @@ impl<R: Real> Work<R> {
             solid = missing * pull.stiffness;
             let (mut size, mut rate) = (slip.length(), pull.stiffness);
             if first {
-                // Where inertia and the air take the point.
+                // Inertia and the air take the point there.
                 let (air, blows) = self.blown(pull.node);
                 let inert = vector(self.wanted[pull.node]);
                 let wanted = inert + (air - inert) * (blows / (inertia + blows));
