@@ -430,14 +430,25 @@ class Colliders(TypedDict, total=False):
 
 
 class SimulationDrag(TypedDict, total=False):
-    """Drag of the air: the rate at which hair takes the velocity of the wind. A hair is pushed along by air across it
-    about twice as strongly as by air along it."""
+    """Drag of the air. Hair takes the velocity of the wind at two rates, `across` and `along` the strand. With
+    `factor` rods feel the force of a flow on a cylinder as thin as their hair instead [Cheng2013, Collis1959]; that
+    of a wisp is at most the force on a cylinder as thick as the wisp. Hair shelters no other hair yet, so that the
+    force of physics slows fast hair on a head more than it does outside: it is off by default."""
 
     across: float
     """Rate at which hair takes the velocity of wind across the strand. Allowed: 0 to 1000 1/s."""
 
     along: float
     """Rate at which hair takes the velocity of wind along the strand. Allowed: 0 to 1000 1/s."""
+
+    factor: float
+    """Force of the air on rods over that of physics: 1 is physics, and stands for both rates. 0 leaves the rates.
+    Allowed: 0 to 1000."""
+
+    hairs: float
+    """Hairs that a guide stands for in the air under `factor`: a wisp whose outer hairs shelter the inner ones.
+    Without it those of the look over the guides in a scene, else `strands.rods.wisp_hairs`. Allowed: 1 to
+    1,000,000."""
 
 
 class SimulationStrandsRods(TypedDict, total=False):
@@ -718,7 +729,7 @@ class Simulation(TypedDict, total=False):
     Allowed: 0 to 0.1 m."""
 
     drag: SimulationDrag
-    """Drag of the air: the rate at which hair takes the velocity of the wind."""
+    """Drag of the air."""
 
     strands: SimulationStrands
     """Motion of a strand within a step."""
