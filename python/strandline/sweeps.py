@@ -141,16 +141,17 @@ def _local(todo: list[Job], folder: str, workers: int | None, threads: int) -> I
     os.environ["RAYON_NUM_THREADS"] = str(threads)
     pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
     try:
-        # The processes begin with the first job.
+        # The processes begin with the first jobs.
         waiting: set[Future[dict[str, Any]]] = {pool.submit(jobs.run, job, folder) for job in todo}
         while waiting:
             finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
             for future in finished:
-                try:
-                    row = future.result()
-                except BrokenProcessPool:
-                    raise Error("a process of the sweep was ended from outside; the same call goes on with the samples that are left", "other") from None
-                yield row
+                yield future.result()
+    except BrokenProcessPool:
+        # One that began while another ended is not among those that a broken pool ends, which then waits for it without end.
+        for process in list((getattr(pool, "_processes", None) or {}).values()):
+            process.kill()
+        raise Error("a process of the sweep was ended from outside; the same call goes on with the samples that are left", "other") from None
     finally:
         pool.shutdown(wait=True, cancel_futures=True)
         if before is None:

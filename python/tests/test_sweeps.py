@@ -70,6 +70,33 @@ def test_a_process_that_is_ended_is_said_and_the_rest_goes_on(tmp_path):
     assert [row["state"] for row in sweep(SCENE, samples, tmp_path, workers=0).rows] == ["done", "done"]
 
 
+@pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
+def test_a_process_that_begins_while_another_is_ended_is_not_waited_for(tmp_path, monkeypatch):
+    from concurrent.futures import ProcessPoolExecutor
+
+    class Late(dict):
+        """The processes of a pool: the second comes among them after the pool has ended those that it knew."""
+
+        def __setitem__(self, pid, process):
+            if self:
+                os.kill(next(iter(self)), signal.SIGKILL)
+                until = time.monotonic() + 20
+                while not self.pool._call_queue._reader.closed and time.monotonic() < until:
+                    time.sleep(0.01)
+            super().__setitem__(pid, process)
+
+    begin = ProcessPoolExecutor.__init__
+
+    def begin_late(pool, *words, **more):
+        begin(pool, *words, **more)
+        pool._processes = Late()
+        pool._processes.pool = pool
+
+    monkeypatch.setattr(ProcessPoolExecutor, "__init__", begin_late)
+    with pytest.raises(Error, match="the same call goes on"):
+        sweep(SCENE, sweeps.grid({"style.seed": [1, 2]}), tmp_path, workers=2)
+
+
 def test_draped_hair_is_one_moment(tmp_path):
     done = sweep(SCENE, [{"style.seed": 1}], tmp_path, keep=("points",), drape=True, workers=0)
     with np.load(tmp_path / done.rows[0]["file"]) as arrays:
