@@ -23,6 +23,15 @@ pub fn page(compiler: &Compiler) -> Result<()> {
     Ok(())
 }
 
+/// Checks that all crates compile for browsers with GPUs too, which the page does not ask for yet.
+pub fn compiles_with_gpus(compiler: &Compiler) -> bool {
+    println!("\n== all crates with GPUs, for browsers");
+    let mut check =
+        compiler.cargo(&["check", "--quiet", "--lib", "--package", "strandline", "--features", "gpu"]);
+    check.args(["--target", TARGET, "--target-dir"]).arg(work().join("check"));
+    check.status().is_ok_and(|status| status.success())
+}
+
 /// Compiles the module. A library of the workspace becomes one here alone, so that nothing else links it.
 fn module(compiler: &Compiler) -> Result<PathBuf> {
     println!("\n== the module");
