@@ -1,5 +1,7 @@
 //! Prints the bits of scenes, to be compared with those of the page's module: `cargo xtask web --test`.
 
+#![allow(clippy::print_stdout, clippy::print_stderr)] // it talks to the command that compares
+
 use std::time::Instant;
 
 use strandline_web::bits;

@@ -14,7 +14,7 @@ pub const MAX_BYTES: usize = 64 << 20;
 /// A groom or a head in memory, under the name of its file.
 #[derive(Clone)]
 pub enum Dropped {
-    Groom(String, Groom),
+    Groom(String, Box<Groom>),
     Head(String, Mesh),
 }
 
@@ -37,7 +37,7 @@ impl Dropped {
         });
         let mesh = MeshFormat::of(path).ok().map(|format| Mesh::from_bytes(bytes, format));
         match (groom, mesh) {
-            (Some(Ok(parsed)), _) => Ok(Self::Groom(name.to_owned(), parsed.groom)),
+            (Some(Ok(parsed)), _) => Ok(Self::Groom(name.to_owned(), Box::new(parsed.groom))),
             (_, Some(Ok(mesh))) => Ok(Self::Head(name.to_owned(), mesh)),
             (Some(Err(error)), _) => Err(format!("{error}: {name}")),
             (None, Some(Err(error))) => Err(format!("{error}: {name}")),
@@ -62,7 +62,7 @@ impl Dropped {
     /// Adds it to the sources of a scene.
     pub fn add_to(&self, sources: Sources) -> Sources {
         match self {
-            Self::Groom(name, groom) => sources.with_groom(name, groom.clone()),
+            Self::Groom(name, groom) => sources.with_groom(name, Groom::clone(groom)),
             Self::Head(name, mesh) => sources.with_mesh(name, mesh.clone()),
         }
     }
