@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 
@@ -38,6 +39,11 @@ const PACKAGES: [&str; 8] = [
 const JOBS: (&str, &str) = ("STRANDLINE_JOBS", "64");
 /// Tests that have a long form.
 const LONG: [&str; 2] = ["python/tests/test_cluster.py", "python/tests/test_guide.py"];
+
+/// Options of pytest in the long form: a test may take an hour.
+const AN_HOUR_EACH: (&str, &str) = ("PYTEST_ADDOPTS", "-o faulthandler_timeout=3600");
+/// Time that the long form may take: files for Blender alone took 43 minutes on a busy machine.
+const LONG_FORM: Duration = Duration::from_secs(4 * 3600);
 
 /// Variable that names a Python with Blender's module to the tests, which else leave Blender out.
 const BLENDER: &str = "STRANDLINE_BLENDER";
@@ -127,6 +133,7 @@ pub fn program(python: &str, tests: &[&str], environment: &[(&str, &str)]) -> Re
         prints: Prints::Python,
         arguments: words.iter().chain(tests).map(|&word| word.to_owned()).collect(),
         environment: own.into_iter().chain(environment.iter().copied().map(owned)).collect(),
+        longest: programs::LONGEST,
     })
 }
 
@@ -135,9 +142,9 @@ fn owned((name, value): (&str, &str)) -> (String, String) {
 }
 
 /// Builds the package and runs some of its tests; false if one fails.
-fn passes(python: &str, tests: &[&str], environment: &[(&str, &str)]) -> bool {
+fn passes(python: &str, tests: &[&str], environment: &[(&str, &str)], longest: Duration) -> bool {
     match program(python, tests, environment) {
-        Ok(program) => programs::run(vec![program], &[]).iter().all(|ran| ran.passed),
+        Ok(program) => programs::run(vec![Program { longest, ..program }], &[]).iter().all(|ran| ran.passed),
         Err(error) => {
             println!("the Python package is not tested: {error:#}");
             false
@@ -151,14 +158,14 @@ pub fn test() -> bool {
         println!("{NONE}");
         return false;
     };
-    passes(&python, &ALL, &[])
+    passes(&python, &ALL, &[], programs::LONGEST)
 }
 
 /// Runs the long form of the package's tests, and with Blender where it can be had. Returns its name, and true where it
 /// passed.
 pub fn long() -> (String, bool) {
     let blender = blender();
-    let (mut tests, mut environment) = (LONG.to_vec(), vec![JOBS]);
+    let (mut tests, mut environment) = (LONG.to_vec(), vec![JOBS, AN_HOUR_EACH]);
     match &blender {
         Some(python) => {
             tests.push(BLENDER_TESTS);
@@ -173,7 +180,7 @@ pub fn long() -> (String, bool) {
     if python.is_none() {
         println!("the long tests of the Python package did not run: {NONE}");
     }
-    let passed = python.is_some_and(|python| passes(&python, &tests, &environment));
+    let passed = python.is_some_and(|python| passes(&python, &tests, &environment, LONG_FORM));
     (format!("{}={} {}", JOBS.0, JOBS.1, tests.join(" ")), passed)
 }
 

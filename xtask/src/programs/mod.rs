@@ -6,6 +6,7 @@ mod turns;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Duration;
 
 use serde_json::Value;
 
@@ -17,7 +18,10 @@ pub use turns::{Ran, run};
 const ALONE: [(&str, &str); 1] =
     [("strandline-cli/window", "a click or a drag that falls into one slow pass of the window is none")];
 
-/// An executable that cargo built.
+/// A program that runs longer than this is ended and has failed, unless it has a limit of its own.
+pub const LONGEST: Duration = Duration::from_secs(1800);
+
+/// An executable that cargo built, or one that runs its tests.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     /// `PACKAGE/TARGET` as faults name tests (`strandline/it`, `strandline-sim/lib`), or `example NAME`.
@@ -32,6 +36,8 @@ pub struct Program {
     pub arguments: Vec<String>,
     /// Variables of its own.
     pub environment: Vec<(String, String)>,
+    /// Time that it may take.
+    pub longest: Duration,
 }
 
 impl Program {
@@ -95,7 +101,15 @@ fn program(message: &Value, examples: &[String]) -> Option<Program> {
     };
     let (folder, prints) =
         if tests { (folder, Prints::Tests) } else { (crate::cargo::root().to_owned(), Prints::Nothing) };
-    Some(Program { name, path, folder, prints, arguments: Vec::new(), environment: Vec::new() })
+    Some(Program {
+        name,
+        path,
+        folder,
+        prints,
+        arguments: Vec::new(),
+        environment: Vec::new(),
+        longest: LONGEST,
+    })
 }
 
 #[cfg(test)]

@@ -73,6 +73,7 @@ mod tests {
             prints: super::super::Prints::Tests,
             arguments: Vec::new(),
             environment: Vec::new(),
+            longest: super::super::LONGEST,
         };
         let kept = Kept::from([("a/short".into(), 0.5), ("a/long".into(), 90.0), ("a/middle".into(), 7.0)]);
         let sorted = |names: &[&str], kept: &Kept| {

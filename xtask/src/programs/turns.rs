@@ -13,8 +13,6 @@ use crate::times::{Seconds, of_children};
 
 /// Programs that run side by side at most: each has threads of its own, and memory.
 const MOST: usize = 4;
-/// A program that runs longer than this is ended and has failed.
-const LONGEST: Duration = Duration::from_secs(1800);
 /// Time between two looks at the programs that run.
 const LOOK: Duration = Duration::from_millis(20);
 /// Lines that are repeated of a failed program that names no failures.
@@ -57,13 +55,14 @@ pub fn run(mut programs: Vec<Program>, environment: &[(&str, &str)]) -> Vec<Ran>
 fn job(program: Program, environment: &[(&str, &str)]) -> Job {
     let mut command = program.command();
     command.envs(environment.iter().copied());
-    Job { name: program.name, prints: program.prints, command }
+    Job { name: program.name, prints: program.prints, longest: program.longest, command }
 }
 
 /// A program with all that it is started with.
 struct Job {
     name: String,
     prints: Prints,
+    longest: Duration,
     command: Command,
 }
 
@@ -106,6 +105,7 @@ fn not_started(name: String, error: &io::Error) -> Ran {
 struct Running {
     name: String,
     prints: Prints,
+    longest: Duration,
     child: Child,
     begin: Instant,
     late: bool,
@@ -113,20 +113,20 @@ struct Running {
 }
 
 impl Running {
-    fn start(Job { name, prints, mut command }: Job) -> io::Result<Self> {
+    fn start(Job { name, prints, longest, mut command }: Job) -> io::Result<Self> {
         let folder = root().join("target/xtask/output");
         std::fs::create_dir_all(&folder)?;
         let output = folder.join(format!("{}.txt", name.replace(['/', ' '], "-")));
         let file = File::create(&output)?;
         let child = command.stdin(Stdio::null()).stdout(file.try_clone()?).stderr(file).spawn()?;
-        Ok(Self { name, prints, child, begin: Instant::now(), late: false, output })
+        Ok(Self { name, prints, longest, child, begin: Instant::now(), late: false, output })
     }
 
     /// The program's end and its seconds, once it has ended. The processor seconds are those that one wait
     /// adds, so that no other child may be waited for on another thread.
     fn ended(&mut self) -> Option<(Option<ExitStatus>, Seconds)> {
         let before = of_children();
-        if self.begin.elapsed() > LONGEST {
+        if self.begin.elapsed() > self.longest {
             self.late = true;
             let _ = self.child.kill();
         }
@@ -160,6 +160,7 @@ impl Running {
 
 #[cfg(all(test, unix))]
 mod tests {
+    use super::super::LONGEST;
     use super::*;
 
     /// Runs shell scripts as test programs in a folder of their own.
@@ -168,7 +169,7 @@ mod tests {
         let job = |(name, script): &(&str, &str)| {
             let mut command = Command::new("sh");
             command.args(["-c", script]).current_dir(folder.path());
-            Job { name: format!("turns {name}"), prints: Prints::Tests, command }
+            Job { name: format!("turns {name}"), prints: Prints::Tests, longest: LONGEST, command }
         };
         side_by_side(scripts.iter().map(job).collect(), at_once)
     }
@@ -217,6 +218,7 @@ mod tests {
             prints: Prints::Nothing,
             arguments: Vec::new(),
             environment: Vec::new(),
+            longest: LONGEST,
         };
         let done = run(
             vec![program("strandline-cli/window"), program("turns beside"), program("turns before")],
@@ -227,10 +229,22 @@ mod tests {
     }
 
     #[test]
+    fn a_program_that_takes_too_long_is_ended() {
+        let mut command = Command::new("sleep");
+        command.arg("60");
+        let longest = Duration::from_millis(100);
+        let job = Job { name: "turns late".into(), prints: Prints::Nothing, longest, command };
+        let done = side_by_side(vec![job], 1);
+        assert!(!done[0].passed && done[0].seconds.wall < 30.0, "{done:?}");
+        assert!(done[0].failures().contains("it took too long"), "{}", done[0].failures());
+    }
+
+    #[test]
     fn a_program_that_is_not_there_has_failed() {
         let job = Job {
             name: "turns nothing".into(),
             prints: Prints::Tests,
+            longest: LONGEST,
             command: Command::new("/nothing/here"),
         };
         let done = side_by_side(vec![job], 1);
