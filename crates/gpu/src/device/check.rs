@@ -2,7 +2,7 @@
 
 use wgpu::naga::{
     AddressSpace, ArraySize, Handle, ImageClass, Module, ScalarKind, ShaderStage, StorageAccess,
-    StructMember, Type, TypeInner, VectorSize,
+    StorageFormat, StructMember, Type, TypeInner, VectorSize,
     front::wgsl,
     valid::{Capabilities, ValidationFlags, Validator},
 };
@@ -61,7 +61,7 @@ fn problems(declaration: &Declaration) -> Vec<String> {
             problems.push(format!("{} at {} is not used by the shader", declared.name, declared.index));
         }
     }
-    let storage = declaration.bindings.iter().filter(|binding| binding.access != Access::Texture).count();
+    let storage = declaration.bindings.iter().filter(|binding| binding.access.is_buffer()).count();
     let most = wgpu::Limits::default().max_storage_buffers_per_shader_stage as usize;
     if storage > most {
         problems.push(format!("{storage} storage buffers, at most {most} are portable"));
@@ -110,16 +110,19 @@ fn compare_variable(
     if !is_named(name, declared.name) {
         problems.push(format!("{name} at {} is declared as {}", declared.index, declared.name));
     }
+    let inner = &module.types[ty].inner;
     let access = match space {
         AddressSpace::Storage { access } if access.contains(StorageAccess::STORE) => Some(Access::ReadWrite),
         AddressSpace::Storage { .. } => Some(Access::Read),
-        AddressSpace::Handle => Some(Access::Texture),
+        AddressSpace::Handle => match inner {
+            TypeInner::Image { class: ImageClass::Storage { .. }, .. } => Some(Access::Written),
+            _ => Some(Access::Texture),
+        },
         _ => None,
     };
     if access != Some(declared.access) {
         problems.push(format!("{} is {access:?}, declared {:?}", declared.name, declared.access));
     }
-    let inner = &module.types[ty].inner;
     let element = match inner {
         TypeInner::Array { base, stride, .. } => {
             let size = size_of_layout(&declared.layout);
@@ -134,6 +137,12 @@ fn compare_variable(
                 return;
             };
             return compare_scalar(scalar, *kind, declared.name, problems);
+        }
+        TypeInner::Image { class: ImageClass::Storage { format, access }, .. } => {
+            if (*format, *access) != (StorageFormat::Rgba16Float, StorageAccess::STORE) {
+                problems.push(format!("{} is {format:?}, {access:?}", declared.name));
+            }
+            return;
         }
         TypeInner::Struct { .. } => ty,
         other => {

@@ -15,6 +15,15 @@ pub enum Access {
     ReadWrite,
     /// `var` of type `texture_2d`, read without a sampler.
     Texture,
+    /// `var` of type `texture_storage_2d<rgba16float, write>`.
+    Written,
+}
+
+impl Access {
+    /// True for a buffer.
+    pub(crate) fn is_buffer(self) -> bool {
+        matches!(self, Self::Read | Self::ReadWrite)
+    }
 }
 
 /// One buffer of a kernel.
@@ -83,6 +92,7 @@ impl Resource for crate::Texture {
 #[macro_export]
 macro_rules! field_type {
     (Texture $kind:ty) => { $crate::Texture };
+    (Written $kind:ty) => { $crate::Texture };
     ($access:ident $kind:ty) => { $crate::Buffer<$kind> };
 }
 
@@ -284,9 +294,17 @@ fn entry_of(binding: &Binding, declaration: &Declaration) -> wgpu::BindGroupLayo
         Access::Read => buffer(true),
         Access::ReadWrite => buffer(false),
         Access::Texture => wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            sample_type: match binding.layout {
+                Layout::Scalar("u32") => wgpu::TextureSampleType::Uint,
+                _ => wgpu::TextureSampleType::Float { filterable: false },
+            },
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
+        },
+        Access::Written => wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: wgpu::TextureFormat::Rgba16Float,
+            view_dimension: wgpu::TextureViewDimension::D2,
         },
     };
     wgpu::BindGroupLayoutEntry { binding: binding.index, visibility, ty, count: None }

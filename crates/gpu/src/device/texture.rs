@@ -17,8 +17,31 @@ impl Texture {
     pub fn new(
         gpu: &Gpu,
         name: &'static str,
+        size: [u32; 2],
+        format: wgpu::TextureFormat,
+    ) -> Result<Self, GpuError> {
+        Self::for_uses(gpu, name, size, format, wgpu::TextureUsages::empty())
+    }
+
+    /// The same that kernels write too, see [`Access::Written`](crate::Access::Written).
+    ///
+    /// # Errors
+    /// As [`Texture::new`].
+    pub fn written(
+        gpu: &Gpu,
+        name: &'static str,
+        size: [u32; 2],
+        format: wgpu::TextureFormat,
+    ) -> Result<Self, GpuError> {
+        Self::for_uses(gpu, name, size, format, wgpu::TextureUsages::STORAGE_BINDING)
+    }
+
+    fn for_uses(
+        gpu: &Gpu,
+        name: &'static str,
         [width, height]: [u32; 2],
         format: wgpu::TextureFormat,
+        more: wgpu::TextureUsages,
     ) -> Result<Self, GpuError> {
         let limit = u64::from(wgpu::Limits::default().max_texture_dimension_2d);
         let needed = u64::from(width.max(height));
@@ -39,7 +62,8 @@ impl Texture {
                 format,
                 usage: wgpu::TextureUsages::RENDER_ATTACHMENT
                     | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
+                    | wgpu::TextureUsages::COPY_SRC
+                    | more,
                 view_formats: &[],
             });
             let view = raw.create_view(&wgpu::TextureViewDescriptor::default());

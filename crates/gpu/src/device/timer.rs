@@ -3,7 +3,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::{Buffer, Gpu, GpuError};
 
 /// Stages that a timer can take.
-const STAGES: usize = 32;
+const STAGES: usize = 48;
 /// Timestamps of a recording: begin and end of each stage.
 const MARKS: usize = 2 * STAGES;
 

@@ -15,6 +15,8 @@ use crate::{PictureSettings, RenderError};
 
 /// Format of the samples: the widest that blends on every device.
 pub(super) const SAMPLES: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of the numbers of triangles.
+pub(super) const TRIANGLES: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// Format of depths.
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Numbers of the box around the hair, and of what each shadow light sees.
@@ -187,6 +189,8 @@ impl Maps {
 /// Targets of a picture.
 pub(super) struct Targets {
     pub samples: Texture,
+    /// One more than the number of the body's triangle that a sample shows, 0 for none.
+    pub triangles: Texture,
     pub depth: Texture,
 }
 
@@ -194,7 +198,8 @@ impl Targets {
     pub fn new(gpu: &Gpu, settings: &PictureSettings) -> Result<Self, RenderError> {
         let size = [settings.width, settings.height].map(|length| length * settings.supersampling);
         Ok(Self {
-            samples: Texture::new(gpu, "samples", size, SAMPLES)?,
+            samples: Texture::written(gpu, "samples", size, SAMPLES)?,
+            triangles: Texture::new(gpu, "triangles of samples", size, TRIANGLES)?,
             depth: Texture::new(gpu, "depths of samples", size, DEPTH)?,
         })
     }

@@ -6,9 +6,10 @@ use super::buffers::{CELLS, Groom, Maps};
 use super::inputs::body_stride;
 use super::scatter::light_grid::{self, LightGrid};
 use super::scene::Scene;
+use super::shade::lit_pixels;
 use super::shadow::fit;
 use super::stages::Stages;
-use super::{buffers, draw};
+use super::{buffers, codes, draw};
 use crate::frame::{Drawn, Stage, stages};
 use crate::scatter::lattice::DIRECTIONS;
 
@@ -204,20 +205,33 @@ fn body_depths(recorder: &mut Recorder, scene: &Scene, stages: &Stages, maps: &M
 
 /// Background, body and hair, in this order.
 pub(super) fn samples(recorder: &mut Recorder, scene: &Scene, held: &Held) {
+    let name = Stage::Draw.name();
+    let Held { stages, samples: to, .. } = held;
+    let has_body = scene.triangle_count > 0;
+    if has_body {
+        body_triangles(recorder, scene, held);
+    }
+    let backdrop = (!scene.settings.transparent)
+        .then_some((&stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
+    let color = Some((to.samples.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
+    recorder.draw(name, &Targets { color, depth: None }, backdrop.as_slice());
+    if has_body {
+        let skin = scattering(scene, held).map_or(&stages.light_skin, |(_, light)| &light.light_skin);
+        recorder.stage(name, &[skin.clone().over(lit_pixels(scene.settings))]);
+    }
     let instances = scene.segment_count().div_ceil(draw::BATCH) as u32;
-    let mut list = Vec::new();
-    if !scene.settings.transparent {
-        list.push((&held.stages.backdrop, Amount::Vertices { count: 3, instance: 0 }));
-    }
-    if scene.triangle_count > 0 {
-        let count = 3 * scene.triangle_count as u32;
-        let body = scattering(scene, held).map_or(&held.stages.body, |(_, light)| &light.body);
-        list.push((body, Amount::Vertices { count, instance: 0 }));
-    }
-    list.push((&held.stages.hair, Amount::Instanced { indices: held.indices, instances }));
-    let targets = Targets {
-        color: Some((held.samples.samples.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))),
-        depth: Some((held.samples.depth.view(), wgpu::LoadOp::Clear(0.0))),
-    };
-    recorder.draw(Stage::Draw.name(), &targets, &list);
+    let hair = (&stages.hair, Amount::Instanced { indices: held.indices, instances });
+    let color = Some((to.samples.view(), wgpu::LoadOp::Load));
+    let depth = Some((to.depth.view(), if has_body { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(0.0) }));
+    recorder.draw(name, &Targets { color, depth }, &[hair]);
+}
+
+/// The body's triangle and depth in every sample.
+fn body_triangles(recorder: &mut Recorder, scene: &Scene, held: &Held) {
+    let Held { stages, samples: to, .. } = held;
+    let body = stages.cut_body.as_ref().filter(|_| scene.paint & codes::CUT != 0).unwrap_or(&stages.body);
+    let amount = Amount::Vertices { count: 3 * scene.triangle_count as u32, instance: 0 };
+    let color = Some((to.triangles.view(), wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT)));
+    let depth = Some((to.depth.view(), wgpu::LoadOp::Clear(0.0)));
+    recorder.draw(Stage::Draw.name(), &Targets { color, depth }, &[(body, amount)]);
 }

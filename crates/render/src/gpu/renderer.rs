@@ -133,6 +133,7 @@ impl GpuRenderer {
             }
             self.targets = targets;
             self.own = None;
+            self.unbind();
         }
         self.settings = *settings;
         Ok(())
@@ -324,7 +325,8 @@ impl GpuRenderer {
         if self.stages.is_none()
             && let (Some(strands), Some(maps)) = (&self.strands, &self.maps)
         {
-            self.stages = Some(Stages::new(&self.gpu, &self.kernels, &self.groom, strands, maps)?);
+            let Self { gpu, kernels, groom, targets, .. } = &*self;
+            self.stages = Some(Stages::new(gpu, kernels, groom, strands, maps, targets)?);
         }
         if scene.input.look.fibre.model.scatters_many_times() {
             self.prepare_light(Source::new(scene.input.look, self.own_colors.as_ref()))?;
@@ -338,17 +340,22 @@ impl GpuRenderer {
             self.light_grid = Some(LightGrid::new(&self.gpu)?);
         }
         if let (Some(grid), Some(strands), Some(maps)) = (&mut self.light_grid, &self.strands, &self.maps) {
-            grid.prepare(&self.gpu, source, &self.groom, strands, maps)?;
+            grid.prepare(&self.gpu, source, &self.groom, strands, maps, &self.targets)?;
         }
         Ok(())
     }
 
     /// The last picture is lost with its buffers.
     fn forget(&mut self) {
-        self.stages = None;
-        self.light_grid.iter_mut().for_each(LightGrid::forget);
+        self.unbind();
         self.drawn = Drawn::default();
         self.lit.0.clear();
+    }
+
+    /// The stages are bound anew for the next picture.
+    fn unbind(&mut self) {
+        self.stages = None;
+        self.light_grid.iter_mut().for_each(LightGrid::forget);
     }
 
     fn prepare_format(&mut self, format: wgpu::TextureFormat) -> Result<(), RenderError> {

@@ -4,7 +4,7 @@ use strandline_gpu::{
     Bindings, Bound, BoundDrawing, Declaration, Dispatches, Drawing, Gpu, GpuError, Kernel, Scan,
 };
 
-use super::buffers::{Groom, Maps, Strands};
+use super::buffers::{Groom, Maps, Strands, Targets};
 use super::draw::{background, body, sort};
 use super::scatter::{light_grid, occlude};
 use super::shadow::{fit, opacity_depth, opacity_layers};
@@ -15,7 +15,7 @@ use super::{draw, resolve, shade};
 /// blend mode. The code that compiles, keeps and binds them derives from that.
 macro_rules! stages {
     (
-        |$groom:ident, $strands:ident, $maps:ident| { $($rooms:tt)* }
+        |$groom:ident, $strands:ident, $maps:ident, $targets:ident| { $($rooms:tt)* }
         kernels { $($kernel:ident: $kernel_in:ident::$Kernel:ident { $($kernel_buffers:tt)* })* }
         drawings { $($drawing:ident: $drawing_in:ident::$Drawing:ident, $output:ident { $($drawing_buffers:tt)* })* }
     ) => {
@@ -42,8 +42,9 @@ macro_rules! stages {
         /// Every kernel but `tessellate`, bound to the buffers of the moment.
         pub(super) struct Stages {
             pub scan: Dispatches,
-            /// In place of `body_depth` where materials cut parts of the body away.
+            /// In place of `body_depth` and `body` where materials cut parts of the body away.
             pub cut_depth: Option<BoundDrawing>,
+            pub cut_body: Option<BoundDrawing>,
             $(pub $kernel: Bound,)*
             $(pub $drawing: BoundDrawing,)*
         }
@@ -56,11 +57,13 @@ macro_rules! stages {
                 $groom: &Groom,
                 $strands: &Strands,
                 $maps: &Maps,
+                $targets: &Targets,
             ) -> Result<Self, GpuError> {
                 $($rooms)*
                 Ok(Self {
                     scan: kernels.scan.bind(gpu, &$groom.starts, &$groom.start_totals)?,
                     cut_depth: if $groom.cuts { Some(cut_depth(gpu, $groom)?) } else { None },
+                    cut_body: if $groom.cuts { Some(cut_body(gpu, $groom)?) } else { None },
                     $($kernel: kernels.$kernel.bind(gpu, &$kernel_in::$Kernel { $($kernel_buffers)* })?,)*
                     $($drawing: kernels.$drawing.bind(gpu, &$drawing_in::$Drawing { $($drawing_buffers)* })?,)*
                 })
@@ -78,11 +81,12 @@ macro_rules! stages {
 }
 
 stages! {
-    |groom, strands, maps| {
+    |groom, strands, maps, targets| {
         let Groom { frame, bounds, cubes, areas, roots, clumps, .. } = groom;
         let Groom { triangles, vertices, corners, surfaces, starts, .. } = groom;
         let Strands { tables, scales, curves, points, radiances, keys, order, .. } = strands;
         let Maps { texels, body: body_depths, .. } = maps;
+        let Targets { samples, triangles: triangle_numbers, depth: depths } = targets;
         // Kernels that add to them see single numbers.
         let (texel_numbers, cube_numbers) = (&texels.viewed_as(), &cubes.viewed_as());
     }
@@ -99,15 +103,17 @@ stages! {
         sum_areas: occlude::SumAreas { frame, points, areas }
         sweep: occlude::Sweep { frame, cubes: cube_numbers, areas }
         shade: shade::Shade { frame, points, maps: texels, body_depths, cubes, radiances }
+        light_skin: shade::LightSkin {
+            frame, triangle_numbers, depths, samples, maps: texels, body_depths, cubes, triangles, vertices, corners,
+            surfaces
+        }
         list_segments: sort::ListSegments { frame, points, keys, starts }
         order_segments: sort::OrderSegments { frame, keys, starts, order }
     }
     drawings {
         body_depth: opacity_depth::BodyDepth, body_depth_output { frame, triangles, vertices }
         hair: draw::Hair, hair_output { frame, points, radiances, starts, order }
-        body: body::Body, body_output {
-            frame, maps: texels, body_depths, cubes, triangles, vertices, corners, surfaces
-        }
+        body: body::Body, body_output { frame, triangles, vertices }
         backdrop: background::Backdrop, background_output { frame }
     }
 }
@@ -120,6 +126,13 @@ fn cut_depth(gpu: &Gpu, groom: &Groom) -> Result<BoundDrawing, GpuError> {
     drawing.bind(gpu, &buffers)
 }
 
+/// Draws such a body.
+fn cut_body(gpu: &Gpu, groom: &Groom) -> Result<BoundDrawing, GpuError> {
+    let Groom { frame, triangles, vertices, corners, surfaces, .. } = groom;
+    let buffers = body::CutBody { frame, triangles, vertices, corners, surfaces };
+    Drawing::<body::CutBody<'static>>::new(gpu, &draw::body_output(), &[])?.bind(gpu, &buffers)
+}
+
 /// Every kernel's and drawing's declaration, to be held against its shader: those of every frame, and those that are
 /// bound where a groom, a look or a picture asks for them.
 pub fn declarations() -> Vec<Declaration> {
@@ -129,6 +142,7 @@ pub fn declarations() -> Vec<Declaration> {
     all.extend([
         tessellate::Tessellate::declaration(),
         opacity_depth::CutDepth::declaration(),
+        body::CutBody::declaration(),
         shade::LayerColors::declaration(),
         shade::Numbers::declaration(),
         resolve::Resolve::declaration(),

@@ -1,4 +1,4 @@
-//! The body, for `draw`.
+//! The body, for `draw`: the triangle that each sample shows, and its depth.
 
 use strandline_gpu::drawing;
 
@@ -9,9 +9,16 @@ drawing! {
     /// Three vertices are one triangle.
     pub(crate) struct Body in "body" (crate::gpu::linked::BODY), vertex "body_vertex", fragment Some("body"), {
         0 frame: Read Frame,
-        4 maps: Read [u32; 4],
-        5 body_depths: Read f32,
-        6 cubes: Read [f32; 4],
+        7 triangles: Read u32,
+        8 vertices: Read Vertex,
+    }
+}
+
+drawing! {
+    /// The same of a body whose materials cut parts of it away.
+    pub(crate) struct CutBody in "body" (crate::gpu::linked::BODY),
+    vertex "cut_body_vertex", fragment Some("cut_body"), {
+        0 frame: Read Frame,
         7 triangles: Read u32,
         8 vertices: Read Vertex,
         9 corners: Read Corner,

@@ -6,7 +6,7 @@ pub(crate) mod sort;
 
 use strandline_gpu::{Buffer, Gpu, GpuError, Output, drawing, wgpu};
 
-use crate::gpu::buffers::{DEPTH, SAMPLES};
+use crate::gpu::buffers::{DEPTH, SAMPLES, TRIANGLES};
 use crate::gpu::inputs::Frame;
 
 drawing! {
@@ -38,14 +38,14 @@ pub(crate) fn hair_output() -> Output {
     }
 }
 
-/// Blending of the body.
+/// Of the body the nearest triangle.
 pub(crate) fn body_output() -> Output {
-    Output { color: Some((SAMPLES, None)), depth: Some(depth(wgpu::CompareFunction::Greater, true)) }
+    Output { color: Some((TRIANGLES, None)), depth: Some(depth(wgpu::CompareFunction::Greater, true)) }
 }
 
-/// The background covers nothing.
+/// The background covers everything.
 pub(crate) fn background_output() -> Output {
-    Output { color: Some((SAMPLES, None)), depth: Some(depth(wgpu::CompareFunction::Always, false)) }
+    Output { color: Some((SAMPLES, None)), depth: None }
 }
 
 /// Depths of a body for a light: nearer is smaller.

@@ -1,17 +1,15 @@
 //! Light that hair and skin scatter many times, and `shade` with it.
 
 use glam::{Vec3, Vec4};
-use strandline_gpu::{
-    Bindings, Bound, BoundDrawing, Buffer, Declaration, Drawing, Gpu, GpuError, Kernel, kernel,
-};
+use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, kernel};
 
 use crate::RenderError;
 use crate::fibre::chiang::Table;
-use crate::gpu::buffers::{CELLS, Groom, Maps, PLANE, Strands};
-use crate::gpu::draw::body::Body;
+use crate::gpu::MAX_SHADOWS;
+use crate::gpu::buffers::{CELLS, Groom, Maps, PLANE, Strands, Targets};
 use crate::gpu::inputs::Frame;
 use crate::gpu::records::{LightCell, Vertex};
-use crate::gpu::{MAX_SHADOWS, draw};
+use crate::gpu::shade::LightSkin;
 use crate::scatter::lattice::{DIRECTIONS, MOST_ENDS, TANGENTS};
 use crate::scatter::made::Made;
 use crate::scatter::source::Source;
@@ -128,7 +126,7 @@ pub(crate) struct LightGrid {
     scatter: Kernel<Scatter<'static>>,
     gather: Kernel<Gather<'static>>,
     shade: Kernel<ShadeChiang<'static>>,
-    body: Drawing<Body<'static>>,
+    light_skin: Kernel<LightSkin<'static>>,
     sums: Buffer<u32>,
     cells: Buffer<LightCell>,
     rays: Buffer<[f32; 4]>,
@@ -149,7 +147,7 @@ pub(crate) struct Bounds {
     pub scatter: Bound,
     pub gather: Bound,
     pub shade: Bound,
-    pub body: BoundDrawing,
+    pub light_skin: Bound,
 }
 
 impl LightGrid {
@@ -162,7 +160,7 @@ impl LightGrid {
             scatter: Kernel::new(gpu, &[])?,
             gather: Kernel::new(gpu, &[])?,
             shade: Kernel::new(gpu, &[])?,
-            body: Drawing::new(gpu, &draw::body_output(), &[])?,
+            light_skin: Kernel::new(gpu, &[])?,
             sums: Buffer::new(gpu, "sums of cells", SUMS * CELLS)?,
             cells: Buffer::new(gpu, "cells", CELLS)?,
             rays: Buffer::new(gpu, "light along directions", 2 * DIRECTIONS * CELLS)?,
@@ -181,10 +179,11 @@ impl LightGrid {
         groom: &Groom,
         strands: &Strands,
         maps: &Maps,
+        targets: &Targets,
     ) -> Result<(), RenderError> {
         self.write(source)?;
         if self.bounds.is_none() {
-            self.bounds = Some(self.bind(gpu, groom, strands, maps)?);
+            self.bounds = Some(self.bind(gpu, groom, strands, maps, targets)?);
         }
         Ok(())
     }
@@ -224,10 +223,18 @@ impl LightGrid {
     }
 
     /// Binds the kernels.
-    fn bind(&self, gpu: &Gpu, groom: &Groom, strands: &Strands, maps: &Maps) -> Result<Bounds, GpuError> {
+    fn bind(
+        &self,
+        gpu: &Gpu,
+        groom: &Groom,
+        strands: &Strands,
+        maps: &Maps,
+        targets: &Targets,
+    ) -> Result<Bounds, GpuError> {
         let Groom { frame, cubes: open, triangles, vertices, corners, surfaces, .. } = groom;
         let Strands { points, radiances, .. } = strands;
         let Maps { texels: maps, body: body_depths, .. } = maps;
+        let Targets { samples, triangles: triangle_numbers, depth: depths } = targets;
         let Self { sums, cells, rays, lattice: cubes, glow, .. } = self;
         Ok(Bounds {
             sum_hair: self
@@ -243,9 +250,21 @@ impl LightGrid {
             shade: self
                 .shade
                 .bind(gpu, &ShadeChiang { frame, points, maps, body_depths, cubes: glow, radiances })?,
-            body: self.body.bind(
+            light_skin: self.light_skin.bind(
                 gpu,
-                &Body { frame, maps, body_depths, cubes: glow, triangles, vertices, corners, surfaces },
+                &LightSkin {
+                    frame,
+                    triangle_numbers,
+                    depths,
+                    samples,
+                    maps,
+                    body_depths,
+                    cubes: glow,
+                    triangles,
+                    vertices,
+                    corners,
+                    surfaces,
+                },
             )?,
         })
     }
