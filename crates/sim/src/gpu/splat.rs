@@ -75,7 +75,7 @@ kernel! {
 }
 
 kernel! {
-    /// The sums; one thread is the three lower faces of a cell.
+    /// The sums; [`SHARERS`] threads are the three lower faces of a cell.
     pub(super) struct SumFaces in "splat" (super::linked::SPLAT), entry "sum_faces" {
         1 grid: ReadWrite GridState,
         9 start_index: Read u32,
@@ -83,6 +83,9 @@ kernel! {
         11 faces: ReadWrite [f32; 2],
     }
 }
+
+/// Threads that share the points around a cell: where hair is dense a cell has hundreds.
+const SHARERS: usize = 8;
 
 pub(super) struct Stage {
     bounds: Kernel<Bounds<'static>>,
@@ -147,7 +150,7 @@ impl StageKernels for Stage {
             vec![bounds.over(buffers.strand_count), (follow, [1; 3]), find_cells.over(points)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);
         dispatches.extend([list_points.over(points), rank_points.over(points), sort_points.over(points)]);
-        dispatches.push(sum_faces.over(volume.cell_count));
+        dispatches.push(sum_faces.over(SHARERS * volume.cell_count));
         Ok(dispatches)
     }
 }
