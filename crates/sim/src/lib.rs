@@ -38,6 +38,7 @@ mod state;
 mod step;
 pub mod strands;
 mod teleport;
+mod wind;
 
 pub use checkpoint::{Checkpoint, Part};
 pub use clock::{Clock, Ticks};

@@ -11,6 +11,7 @@ use super::gather::gather;
 use super::integrate::integrate;
 use super::mark::mark;
 use super::pose_roots::pose_roots;
+use super::shelter::shelter;
 use super::sleep::Sleep;
 use super::solve_pressure::solve_pressure;
 use super::solve_rods::solve_rods;
@@ -120,6 +121,10 @@ impl Step<'_> {
         match stage {
             Stage::PoseRoots => pose_roots(model, state, scratch, &obstacles.end),
             Stage::Cells => scratch.cells.iter_mut().for_each(|sorted| cells(sorted, &state.positions)),
+            Stage::Shelter => {
+                let found = scratch.shelter.iter_mut();
+                found.for_each(|found| shelter(model, state, obstacles, wind, found));
+            }
             Stage::Integrate => integrate(model, state, scratch, wind),
             Stage::Constrain => {
                 let non_finite = constrain(model, state, scratch, obstacles);

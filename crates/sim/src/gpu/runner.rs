@@ -265,6 +265,9 @@ impl GpuRunner {
                 if let (Stage::Splat, Some(volume)) = (stage, &self.buffers.volume) {
                     recorder.clear(&volume.start_index);
                 }
+                if let (Stage::Shelter, Some(shelter)) = (stage, self.buffers.shelter()) {
+                    recorder.clear(&shelter.sums);
+                }
                 if let (Stage::Cells, Some(cells)) = (stage, &self.buffers.cells) {
                     recorder.clear(&cells.start_index);
                 }
@@ -308,6 +311,7 @@ impl GpuRunner {
                 None => None,
             };
         }
+        let changed = self.buffers.fit_shelter(&self.gpu, &self.model.settings)? || changed;
         if let (Some(volume), Some(place)) = (&self.buffers.volume, self.volume_box.take()) {
             volume.put(place)?;
         }
