@@ -52,9 +52,8 @@ pub(crate) fn most_speed_sum(model: &Model) -> f32 {
 /// Whole numbers in a square metre of drag area.
 pub(crate) fn per_area(model: &Model) -> f32 {
     let Some(rods) = &model.rods else { return 1.0 };
-    let wisps = rods.traits.iter().map(|traits| {
-        (traits.diameter, model.settings.drag.hairs.unwrap_or(traits.hairs))
-    });
+    let wisps =
+        rods.traits.iter().map(|traits| (traits.diameter, model.settings.drag.hairs.unwrap_or(traits.hairs)));
     // Strands of one kind lie one behind the other.
     let (mut last, mut largest) = ((0.0, 0.0), 0.0);
     for wisp in wisps {

@@ -89,7 +89,7 @@ impl CpuRunner {
         self.skins.clone_from(obstacles.skins());
         state.contacts.ride(&Solids::new(&obstacles, model.points_per_strand));
         let (wind, report) = (drive.wind, StepReport::default());
-        let mut step = Step { model, state, scratch, obstacles, wind, report };
+        let mut step = Step { model, state, scratch, obstacles, drive, wind, report };
         par::awake(|| {
             for stage in stages(&model.settings) {
                 let watch = Stopwatch::start();
@@ -109,6 +109,7 @@ struct Step<'a> {
     state: &'a mut State,
     scratch: &'a mut Scratch,
     obstacles: Obstacles<'a>,
+    drive: &'a Drive,
     /// \[m/s\]
     wind: Vec3,
     report: StepReport,
@@ -116,14 +117,14 @@ struct Step<'a> {
 
 impl Step<'_> {
     fn run(&mut self, stage: Stage) {
-        let (model, obstacles, wind) = (self.model, &self.obstacles, self.wind);
+        let (model, obstacles, drive, wind) = (self.model, &self.obstacles, self.drive, self.wind);
         let (state, scratch) = (&mut *self.state, &mut *self.scratch);
         match stage {
             Stage::PoseRoots => pose_roots(model, state, scratch, &obstacles.end),
             Stage::Cells => scratch.cells.iter_mut().for_each(|sorted| cells(sorted, &state.positions)),
             Stage::Shelter => {
                 let found = scratch.shelter.iter_mut();
-                found.for_each(|found| shelter(model, state, obstacles, wind, found));
+                found.for_each(|found| shelter(model, state, obstacles, drive, found));
             }
             Stage::Integrate => integrate(model, state, scratch, wind),
             Stage::Constrain => {

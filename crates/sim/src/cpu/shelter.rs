@@ -7,12 +7,12 @@ use strandline_groom::{LANES, Lanes, Vec3Lanes};
 use wide::f32x8;
 
 use super::rod_air::{Air, Around, shares};
-use super::wind_box::{Content, Inside, WindBox};
+use super::wind_box::{Content, Inside, MEAN_SHARE, WindBox};
 use crate::cells::grid::REACH;
-use crate::wind::{Axes, CELLS, LEAST_SPEED, most_speed_sum, per_area};
 use crate::contact::Obstacles;
 use crate::strands::rods::air::{DENSITY, Wisp};
-use crate::{Model, State};
+use crate::wind::{Axes, CELLS, LEAST_SPEED, NO_SPEED, most_speed_sum, per_area};
+use crate::{Drive, Model, State};
 
 /// Tasks that sum points.
 const MOST_TASKS: usize = 4;
@@ -41,18 +41,21 @@ pub struct Shelter {
 /// the balance of momentum (Beer's law), with the drag area of all hair that the points stand for; in solids it has their velocity, and
 /// behind both the wind mixes in. Each cell takes the air that comes the way the wind blows as seen from its hair: the air in
 /// a lock that moves comes along, and where all hair moves alike nothing depends on which of hair and air moves.
-pub fn shelter(model: &Model, state: &State, obstacles: &Obstacles, wind: Vec3, space: &mut Shelter) {
+pub fn shelter(model: &Model, state: &State, obstacles: &Obstacles, drive: &Drive, space: &mut Shelter) {
+    let (wind, currents) = (drive.wind, &drive.currents);
     space.air.resize(state.positions.len(), Vec3Lanes::default());
-    let Some(inside) = survey(model, state, wind) else {
+    let inside = survey(model, state, wind);
+    if !inside.blows(!currents.is_empty()) {
         space.air.fill(Vec3Lanes::splat(wind));
         return;
-    };
+    }
     let cells = WindBox::new(wind, &inside);
     space.sums.resize_with(par::current_num_threads().clamp(1, MOST_TASKS), || vec![Sum::default(); CELLS]);
     space.flow.resize(CELLS, Vec3::ZERO);
     let deposit = Deposit::new(model, wind, &cells, &inside);
     deposit.sum(model, state, &mut space.sums);
     deposit.contents(&space.sums, model.settings.drag.factor, &mut space.contents);
+    cells.add_currents(currents, &mut space.contents);
     cells.add_solids(obstacles, &mut space.contents);
     cells.sweep(&space.contents, &mut space.flow);
     let (flow, cells) = (&space.flow, &cells);
@@ -60,12 +63,11 @@ pub fn shelter(model: &Model, state: &State, obstacles: &Obstacles, wind: Vec3, 
     lanes.for_each(|(air, places)| cells.blow(flow, &Vec3x8::load(places), air));
 }
 
-/// Bounds of points in the wind's axes, and their largest velocity relative to it along an axis \[m/s\]; `None` where no air
-/// passes hair.
-fn survey(model: &Model, state: &State, wind: Vec3) -> Option<Inside> {
+/// Bounds of points in the wind's axes, and their largest velocity relative to it along an axis \[m/s\].
+fn survey(model: &Model, state: &State, wind: Vec3) -> Inside {
     let points = model.points_per_strand;
     let axes = Axes::along(wind);
-    let found = state
+    state
         .positions
         .par_chunks(points)
         .zip(state.velocities.par_chunks(points))
@@ -81,8 +83,7 @@ fn survey(model: &Model, state: &State, wind: Vec3) -> Option<Inside> {
             }
             inside
         })
-        .reduce(|| Inside::NONE, Inside::with);
-    found.blows().then_some(found)
+        .reduce(|| Inside::NONE, Inside::with)
 }
 
 /// Lanes of a block that hold strands.
@@ -123,7 +124,7 @@ impl<'a> Deposit<'a> {
         Self {
             cells,
             wind: Vec3x8::splat(wind),
-            per_speed: most_speed_sum(model) / inside.speed,
+            per_speed: most_speed_sum(model) / inside.speed.max(NO_SPEED),
             per_area: per_area(model),
         }
     }
@@ -199,7 +200,7 @@ impl<'a> Deposit<'a> {
         let whole =
             contents.iter().fold(Vec3::ZERO, |sum, content| sum + content.speed * content.points as f32);
         let mean = whole / total.max(1) as f32;
-        contents.iter_mut().for_each(|content| content.turn(mean));
+        contents.iter_mut().for_each(|content| content.toward = -(content.speed + mean * MEAN_SHARE));
     }
 }
 

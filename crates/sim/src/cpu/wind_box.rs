@@ -7,9 +7,10 @@ use strandline_body::PosedSkin;
 use strandline_groom::{LANES, Vec3Lanes};
 use wide::f32x8;
 
+use crate::Currents;
 use crate::cells::grid::REACH;
-use crate::wind::{Axes, NO_SPEED, SIDE, WIDE};
 use crate::contact::Obstacles;
+use crate::wind::{Axes, NO_SPEED, SIDE, WIDE};
 
 /// Least edge of a cell \[m\]: a hair alone shelters itself by a few hundredths at most.
 pub(crate) const LEAST_EDGE: f32 = 0.01;
@@ -60,8 +61,9 @@ impl Inside {
         }
     }
 
-    pub fn blows(&self) -> bool {
-        self.speed > NO_SPEED
+    /// True where air passes hair, also in `currents`.
+    pub fn blows(&self, currents: bool) -> bool {
+        self.speed > NO_SPEED || (currents && self.speed >= 0.0)
     }
 }
 
@@ -72,30 +74,50 @@ pub(crate) struct Content {
     pub speed: Vec3,
     /// Drag area of its hair over its volume \[1/m\]; below 0 in a solid.
     pub depth: f32,
-    /// Direction in which the air passes.
+    /// Direction in which the air passes, of any length until the currents are known.
     pub toward: Vec3,
+    /// Currents beside the wind, along the axes \[m/s\].
+    pub breeze: Vec3,
     pub points: u32,
 }
 
-impl Content {
-    /// Sets the direction of the air, with the mean velocity of all hair relative to the wind.
-    pub fn turn(&mut self, mean: Vec3) {
-        self.toward = -(self.speed + mean * MEAN_SHARE).normalize_or(Vec3::NEG_X);
-    }
+/// Air on its way from cell to cell.
+#[derive(Clone, Copy)]
+struct Stream {
+    /// Relative to the wind, without currents \[m/s\].
+    air: Vec3,
+    /// Share of the currents that is left.
+    open: f32,
+    /// Way since a solid \[m\].
+    way: f32,
+}
 
-    /// Air relative to the wind in the middle of the cell and behind it, from that before it, over a way \[m\].
+impl Stream {
+    const FREE: Self = Self { air: Vec3::ZERO, open: 1.0, way: CALM };
+
+    /// Passes a cell of a length \[m\]. Returns the air in its middle relative to the wind \[m/s\].
     ///
     /// The share of e^-x that goes through is 1 / (1 + x + x^2/2), which no way makes negative; the mean on the way is
     /// what keeps the momentum: hair gains what the air loses.
     #[inline(always)]
-    fn passed(&self, air: Vec3, way: f32) -> [Vec3; 2] {
-        if self.depth < 0.0 {
-            return [self.speed; 2];
+    fn pass(&mut self, content: &Content, edge: f32) -> Vec3 {
+        if self.way >= CALM {
+            let left = MIXING / (MIXING + edge);
+            self.air *= left;
+            self.open = 1.0 - (1.0 - self.open) * left;
         }
-        let depth = self.depth * way;
+        self.way += edge;
+        if content.depth < 0.0 {
+            *self = Self { air: content.speed, open: 0.0, way: 0.0 };
+            return content.speed;
+        }
+        let depth = content.depth * edge;
         let through = 1.0 / (1.0 + depth + 0.5 * depth * depth);
         let mean = (1.0 + 0.5 * depth) * through;
-        [mean, through].map(|share| self.speed + (air - self.speed) * share)
+        let against = self.air - content.speed;
+        let middle = content.speed + against * mean + content.breeze * (self.open * mean);
+        (self.air, self.open) = (content.speed + against * through, self.open * through);
+        middle
     }
 }
 
@@ -138,6 +160,17 @@ impl WindBox {
         std::array::from_fn(|axis| {
             (along[axis] - splat(self.origin[axis])) / splat(self.edges[axis]) - splat(less)
         })
+    }
+
+    /// Sets the currents of the cells, and the directions of the air.
+    pub fn add_currents(&self, currents: &Currents, contents: &mut [Content]) {
+        contents.par_iter_mut().enumerate().with_min_len(256).for_each(|(cell, content)| {
+            if !currents.is_empty() {
+                let breeze = currents.at(self.axes.world(self.origin + (corner(cell) + 0.5) * self.edges));
+                content.breeze = Vec3::from(self.axes.0.map(|axis| axis.dot(breeze)));
+            }
+            content.toward = (content.toward + content.breeze).normalize_or(Vec3::X);
+        });
     }
 
     /// Marks the cells whose middle lies in a solid, which has its velocity.
@@ -202,24 +235,17 @@ impl WindBox {
         flow.fill(Vec3::ZERO);
         for axis in 0..3 {
             let edge = self.edges[axis];
-            // Share of what is held back that the wind leaves.
-            let left = MIXING / (MIXING + edge);
             let [along, one, other] = [0, 1, 2].map(|next| WIDE.pow((axis as u32 + next) % 3));
             for start in (0..WIDE * WIDE).map(|row| row / WIDE * one + row % WIDE * other) {
-                // With the way since a solid.
-                let (mut ahead, mut back) = ((Vec3::ZERO, CALM), (Vec3::ZERO, CALM));
+                let (mut ahead, mut back) = (Stream::FREE, Stream::FREE);
                 for count in 0..WIDE {
-                    for (cell, (air, way), sign) in [
+                    for (cell, stream, sign) in [
                         (start + count * along, &mut ahead, 1.0),
                         (start + (WIDE - 1 - count) * along, &mut back, -1.0),
                     ] {
-                        let content = &contents[cell];
-                        let left = if *way < CALM { 1.0 } else { left };
-                        let [middle, behind] = content.passed(*air * left, edge);
-                        *way = if content.depth < 0.0 { 0.0 } else { *way + edge };
-                        let share = (content.toward[axis] * sign).max(0.0);
+                        let middle = stream.pass(&contents[cell], edge);
+                        let share = (contents[cell].toward[axis] * sign).max(0.0);
                         flow[cell] += middle * (share * share);
-                        *air = behind;
                     }
                 }
             }

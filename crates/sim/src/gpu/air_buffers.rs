@@ -2,6 +2,7 @@
 
 use strandline_gpu::{Buffer, Gpu, GpuError, mirror};
 
+use crate::currents::{MOST_EDDIES, MOST_SOURCES};
 use crate::wind::CELLS;
 
 /// Numbers of a cell in the sums.
@@ -22,8 +23,10 @@ pub(super) struct ShelterBuffers {
     pub cells: Buffer<WindBox>,
     /// All 0 when the stage begins, shape `[cell][number]` with one more for all hair.
     pub sums: Buffer<u32>,
-    /// Shape `[cell][2]`: see air_cells.wesl.
+    /// Shape `[cell][3]`: see air_cells.wesl.
     pub contents: Buffer<[f32; 4]>,
+    /// Currents of the step: see currents.wesl.
+    pub currents: Buffer<[f32; 4]>,
     /// Air in the middle of each cell \[m/s\].
     pub flow: Buffer<[f32; 4]>,
     /// Air at each point \[m/s\], shape `[block][point][component]` of lanes.
@@ -35,7 +38,8 @@ impl ShelterBuffers {
         Ok(Self {
             cells: Buffer::new(gpu, "box along the wind", 1)?,
             sums: Buffer::new(gpu, "sums of hair in the wind", NUMBERS * (CELLS + 1))?,
-            contents: Buffer::new(gpu, "hair in the wind", 2 * CELLS)?,
+            contents: Buffer::new(gpu, "hair in the wind", 3 * CELLS)?,
+            currents: Buffer::new(gpu, "currents of air", 1 + 2 * (MOST_EDDIES + MOST_SOURCES))?,
             flow: Buffer::new(gpu, "air in cells", CELLS)?,
             air: Buffer::new(gpu, "air at points", 3 * point_count)?,
         })

@@ -1,16 +1,15 @@
 //! The settings of a step as the kernels read them.
 
-use glam::Vec3;
 use strandline_base::math;
 use strandline_body::{BodyFrame, Pose};
 use strandline_gpu::{Rigid, mirror};
 
 use super::motion::{has_roots, in_parts, part_count, piece_count};
-use crate::wind::{Axes, most_speed_sum, per_area};
 use crate::constrain::Spring;
 use crate::contact::contacts::Care;
 use crate::grab::Grab;
 use crate::strands::constrain::angles::bend_share;
+use crate::wind::{Axes, most_speed_sum, per_area};
 use crate::{Drive, Model, Preconditioner, VolumeSettings};
 
 /// Codes of preconditioners, which shaders know from here.
@@ -40,7 +39,8 @@ mirror! {
         pub air_hairs: f32,
         /// 1 where hair and solids hold back the air.
         pub shelters: u32,
-        pub unused: u32,
+        /// 1 where there are currents beside the wind.
+        pub currents: u32,
         /// Axes along the wind, upward from it and aside; whole numbers that speeds of a point sum up to at most, and in
         /// a square metre of drag area.
         pub wind_along: [f32; 3],
@@ -113,10 +113,10 @@ mirror! {
 }
 
 impl RodStep {
-    fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32, wind: Vec3) -> Self {
+    fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32, drive: &Drive) -> Self {
         let rods = &model.settings.strands.rods;
         let shelters = model.settings.has_shelter();
-        let [along, up, aside] = Axes::along(wind).0.map(|axis| axis.to_array());
+        let [along, up, aside] = Axes::along(drive.wind).0.map(|axis| axis.to_array());
         let (turn, from, way) = in_parts(start, end, rods.substeps);
         Self {
             part_rotation: turn.to_array(),
@@ -131,6 +131,7 @@ impl RodStep {
             air: model.settings.drag.factor / part_time,
             air_hairs: model.settings.drag.hairs.unwrap_or(0.0),
             shelters: u32::from(shelters),
+            currents: u32::from(!drive.currents.is_empty()),
             wind_along: along,
             wind_up: up,
             wind_aside: aside,
@@ -199,7 +200,7 @@ impl Step {
             piece_count: piece_count(&model.colliders) as u32,
             has_roots: u32::from(has_roots(before, &drive.body)),
             hand: grab.hand.to_array(),
-            rods: RodStep::new(model, start, &end, part_time, drive.wind),
+            rods: RodStep::new(model, start, &end, part_time, drive),
             ..Self::default()
         }
     }

@@ -253,6 +253,9 @@ impl GpuRunner {
         self.buffers.step.write(&[Step { skin, ..uniform }])?;
         solids::write_pieces(&self.buffers.step, &self.model, bodies)?;
         self.buffers.write_roots(&self.model, bodies)?;
+        if let Some(shelter) = self.buffers.shelter() {
+            shelter.currents.write_at(0, &drive.currents.rows())?;
+        }
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
         let Pending { timer, marks, count, .. } = &self.pending;
         self.gpu.ask("a step", || {

@@ -38,6 +38,7 @@ kernel! {
         0 step: Read Step,
         1 cells: Read WindBox,
         2 contents: ReadWrite [f32; 4],
+        3 currents: Read [f32; 4],
         8 sums: Read u32,
     }
 }
@@ -96,12 +97,12 @@ impl StageKernels for Stage {
     fn bind(&self, to: &Target) -> Result<Dispatches, GpuError> {
         let Target { gpu, buffers, side, .. } = *to;
         let (Some(rods), Some(shelter)) = (&buffers.rods, buffers.shelter()) else { return Ok(Vec::new()) };
-        let ShelterBuffers { cells, sums, contents, flow, air } = shelter;
+        let ShelterBuffers { cells, sums, contents, currents, flow, air } = shelter;
         let (step, positions, velocities) = (&buffers.step, &buffers.places[side], &buffers.velocities);
         let survey = self.survey.bind(gpu, &Survey { step, cells, positions, velocities })?;
         let deposit =
             Deposit { step, cells, rods: &rods.nodes, rest: &buffers.rest, positions, velocities, sums };
-        let find_contents = FindContents { step, cells, contents, sums };
+        let find_contents = FindContents { step, cells, contents, currents, sums };
         let sweep = self.sweep.bind(gpu, &Sweep { step, cells, contents, flow })?;
         let points = PassPoints { step, cells, positions, flow, air };
         Ok(vec![

@@ -1,5 +1,6 @@
 //! A scene: everything that one run needs, as one TOML file. docs/scene.md lists every key.
 
+mod air;
 mod body;
 mod builtin;
 pub(crate) mod camera_motion;
@@ -19,6 +20,7 @@ use std::path::{Path, PathBuf};
 
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
+pub(crate) use air::Air;
 pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
 pub use colors::hex_color;
 pub use devices::Devices;
@@ -26,7 +28,7 @@ pub use film::{CameraKeyframe, CameraSection, FilmSection, View};
 pub(crate) use given::Given;
 pub use groom::{GroomPart, GroomSection};
 pub use head::HeadMotion;
-pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection};
+pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection, WindSource};
 pub use surroundings::SurroundingsSection;
 
 pub use crate::body::Interpolation;
@@ -220,10 +222,27 @@ impl Scene {
         self.picture.validate()?;
         self.motion.motion()?;
         self.wind.curve()?;
+        self.check_currents()?;
         camera_motion::curve(&self.camera.keyframes)?;
         solid_motion::solid_motions(&self.colliders, self.motion.interpolation)?;
         if matches!(self.devices.simulation, Backend::Gpu(_)) {
             self.simulation.check_on_gpu()?;
+        }
+        Ok(())
+    }
+
+    /// Refuses turbulence and sources that no hair would feel.
+    fn check_currents(&self) -> Result<(), Error> {
+        let Settings { drag, strands, .. } = &self.simulation;
+        let felt = strands.method == StrandMethod::Rods && drag.factor > 0.0 && drag.shelter;
+        for (key, blows) in
+            [("wind.turbulence", self.wind.turbulence > 0.0), ("wind.sources", !self.wind.sources.is_empty())]
+        {
+            if blows && !felt {
+                let expected =
+                    "none, or rods with `simulation.drag.factor = 1` and `simulation.drag.shelter = true`";
+                return Err(SettingError::new(key, "currents that no hair feels", expected).into());
+            }
         }
         Ok(())
     }
