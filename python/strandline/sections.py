@@ -403,7 +403,7 @@ class Wind(TypedDict, total=False):
     """Length of the largest eddies; the smallest have a quarter of it. Allowed: 0.02 to 100 m."""
 
     seed: int
-    """Seed of the turbulence. Allowed: a finite number."""
+    """Seed of the turbulence. Allowed: 0 to 4,294,967,295."""
 
     sources: Sequence[WindSources]
     """Places from which air blows. Allowed: 0 to 8."""

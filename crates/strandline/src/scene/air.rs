@@ -51,7 +51,7 @@ impl WindSection {
     /// Waves of random directions and phases, each across its own direction [Kraichnan1970], whose energy falls with the
     /// 5/3 power of their number [Pope2000]. They ride along with the mean wind and change by themselves.
     fn eddies(&self, time: f64, origin: Vec3, speed: f32) -> Vec<Eddy> {
-        let mut random = Random::new(self.seed, 0);
+        let mut random = Random::new(u64::from(self.seed), 0);
         let mut unit = || Vec3::new(random.signed(), random.signed(), random.signed()).normalize_or(Vec3::X);
         // Of constant velocity: else a change of the wind would throw all eddies about.
         let carried = self.carrying().as_dvec3();

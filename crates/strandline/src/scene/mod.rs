@@ -222,27 +222,10 @@ impl Scene {
         self.picture.validate()?;
         self.motion.motion()?;
         self.wind.curve()?;
-        self.check_currents()?;
         camera_motion::curve(&self.camera.keyframes)?;
         solid_motion::solid_motions(&self.colliders, self.motion.interpolation)?;
         if matches!(self.devices.simulation, Backend::Gpu(_)) {
             self.simulation.check_on_gpu()?;
-        }
-        Ok(())
-    }
-
-    /// Refuses turbulence and sources that no hair would feel.
-    fn check_currents(&self) -> Result<(), Error> {
-        let Settings { drag, strands, .. } = &self.simulation;
-        let felt = strands.method == StrandMethod::Rods && drag.factor > 0.0 && drag.shelter;
-        for (key, blows) in
-            [("wind.turbulence", self.wind.turbulence > 0.0), ("wind.sources", !self.wind.sources.is_empty())]
-        {
-            if blows && !felt {
-                let expected =
-                    "none, or rods with `simulation.drag.factor = 1` and `simulation.drag.shelter = true`";
-                return Err(SettingError::new(key, "currents that no hair feels", expected).into());
-            }
         }
         Ok(())
     }

@@ -155,7 +155,7 @@ settings! {
         /// Length of the largest eddies; the smallest have a quarter of it.
         turbulence_size: f32 = 0.4, in [0.02, 100.0] "m", slider [0.05, 2.0], more "whole locks that move together";
         /// Seed of the turbulence.
-        seed: u64 = 1;
+        seed: u32 = 1, in [0, u32::MAX];
         /// Places from which air blows.
         sources: Vec<WindSource> = Vec::new(), in [0, 8];
         /// Mean velocities in the order of their times, in the place of `velocity`.
