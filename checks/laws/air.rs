@@ -36,13 +36,13 @@ fn along(diameter: f64, speed_across: f64, speed: f64) -> f64 {
     PI * AIR * NU * 1.1 * (0.24 + 0.56 * reynolds.powf(0.45)) * speed
 }
 
-fn airy(time_step: f32, radius: f32) -> Settings {
+pub fn airy(time_step: f32, radius: f32) -> Settings {
     let mut settings = Settings { drag: Drag { factor: 1.0, ..Drag::default() }, ..rods(time_step) };
     settings.strands.rods.radius = radius;
     settings
 }
 
-fn blown(wind: Vec3) -> Drive {
+pub fn blown(wind: Vec3) -> Drive {
     Drive { wind, ..Drive::default() }
 }
 

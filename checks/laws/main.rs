@@ -27,6 +27,7 @@ mod rod_styles;
 mod rod_waves;
 mod rods;
 mod shake;
+mod shelter;
 mod sintel;
 mod skin_contact;
 mod small_motion;

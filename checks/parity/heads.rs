@@ -92,6 +92,7 @@ pub fn drive(step: usize) -> Drive {
         body: Pose::rotation_about(Vec3::new(0.0, -0.1, 0.0), turned).into(),
         wind: Vec3::new(0.4, 0.1, -0.2),
         hand: None,
+        ..Drive::default()
     }
 }
 

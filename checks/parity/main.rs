@@ -14,6 +14,7 @@ mod picture;
 mod pieces;
 mod rods;
 mod shaders;
+mod shelter;
 mod simulator;
 mod skin;
 mod strands;

@@ -346,6 +346,24 @@ class Motion(TypedDict, total=False):
     """Poses, in the order of their times; used by "keyframes"."""
 
 
+class WindSources(TypedDict, total=False):
+    """A place from which air blows: a fan with a direction, else a source to all sides. Rods under
+    `simulation.drag.factor` feel it."""
+
+    position: Sequence[float]
+    """Place, world space. Allowed: 3 numbers of -10,000 to 10,000 m."""
+
+    direction: Sequence[float]
+    """Direction in which a fan blows, of any length: a jet that widens by a tenth of its way. Without it air blows to
+    all sides. Allowed: 3 numbers of -10,000 to 10,000."""
+
+    speed: float
+    """Speed of the air where a fan begins, else at `radius`. Allowed: 0 to 100 m/s."""
+
+    radius: float
+    """Radius of the source. Allowed: 0.001 to 100 m."""
+
+
 class WindKeyframes(TypedDict, total=False):
     """Mean velocity of the air at a time."""
 
@@ -368,11 +386,27 @@ class Wind(TypedDict, total=False):
     velocity: Sequence[float]
     """Mean velocity, world space. Allowed: 3 numbers of -100 to 100 m/s."""
 
+    rise: float
+    """Time in which the wind rises from calm at the beginning. Allowed: 0 to 1000 s."""
+
     gust: float
     """Share of the velocity that comes and goes. Allowed: 0 to 1."""
 
     gust_period: float
     """Time from gust to gust. Allowed: 0.05 to 1000 s."""
+
+    turbulence: float
+    """Speed of turbulence over that of the wind: eddies of many sizes that ride along with it. Rods under
+    `simulation.drag.factor` feel it. Allowed: 0 to 2."""
+
+    turbulence_size: float
+    """Length of the largest eddies; the smallest have a quarter of it. Allowed: 0.02 to 100 m."""
+
+    seed: int
+    """Seed of the turbulence. Allowed: 0 to 4,294,967,295."""
+
+    sources: Sequence[WindSources]
+    """Places from which air blows. Allowed: 0 to 8."""
 
     keyframes: Sequence[WindKeyframes]
     """Mean velocities in the order of their times, in the place of `velocity`. Allowed: 0 to 100,000."""
@@ -432,8 +466,8 @@ class Colliders(TypedDict, total=False):
 class SimulationDrag(TypedDict, total=False):
     """Drag of the air. Hair takes the velocity of the wind at two rates, `across` and `along` the strand. With
     `factor` rods feel the force of a flow on a cylinder as thin as their hair instead [Cheng2013, Collis1959]; that
-    of a wisp is at most the force on a cylinder as thick as the wisp. Hair shelters no other hair yet, so that the
-    force of physics slows fast hair on a head more than it does outside: it is off by default."""
+    of a wisp is at most the force on a cylinder as thick as the wisp. Hair and solids take the wind from the hair
+    behind them (`shelter`)."""
 
     across: float
     """Rate at which hair takes the velocity of wind across the strand. Allowed: 0 to 1000 1/s."""
@@ -444,6 +478,10 @@ class SimulationDrag(TypedDict, total=False):
     factor: float
     """Force of the air on rods over that of physics: 1 is physics, and stands for both rates. 0 leaves the rates.
     Allowed: 0 to 1000."""
+
+    shelter: bool
+    """Under `factor`: hair and solids hold back the wind from the hair behind them, and the air in a lock moves along
+    with it. Allowed: true or false."""
 
     hairs: float
     """Hairs that a guide stands for in the air under `factor`: a wisp whose outer hairs shelter the inner ones.

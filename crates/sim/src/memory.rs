@@ -10,6 +10,8 @@ const POINT_BYTES: u64 = 296;
 /// Further bytes of a point of a rod: its node, its section and spin, and the copies of them that a change of settings
 /// or a device holds.
 const ROD_BYTES: u64 = 204;
+/// Further bytes of a point of a rod where hair and solids hold back the air: its velocity there.
+const AIR_BYTES: u64 = 12;
 /// Bytes of a point in the state that hair which rests is compared with: positions now and one step ago, velocities and
 /// their corrections, the planes of two carriers; and of a rod its section and spin.
 const KEPT_BYTES: u64 = 112;
@@ -23,7 +25,8 @@ impl Settings {
         let points = (strand_count as u64).saturating_mul(points_per_strand as u64);
         let strands = format!("{points_per_strand} points on each of {strand_count} simulated strands");
         let of_rods = if self.has_rods() { ROD_BYTES + KEPT_ROD_BYTES } else { 0 };
-        let bytes = POINT_BYTES + KEPT_BYTES + of_rods;
+        let of_air = if self.has_shelter() { AIR_BYTES } else { 0 };
+        let bytes = POINT_BYTES + KEPT_BYTES + of_rods + of_air;
         let mut needs = vec![Need::new(strands, points, bytes)];
         if self.volume.enabled {
             let cells = self.volume.cells;

@@ -75,6 +75,11 @@ impl Settings {
         self.strands.method == StrandMethod::Rods
     }
 
+    /// True where hair and solids hold back the air.
+    pub(crate) fn has_shelter(&self) -> bool {
+        self.has_rods() && self.drag.factor > 0.0 && self.drag.shelter
+    }
+
     /// Strands of springs and rounds of constraints in place of rods [Chen2011 §4], with bends toward the groom's
     /// and exact lengths, which the thesis has not.
     pub fn constrained() -> Self {
@@ -145,8 +150,7 @@ settings! {
     ///
     /// Hair takes the velocity of the wind at two rates, `across` and `along` the strand. With `factor` rods feel the force of
     /// a flow on a cylinder as thin as their hair instead [Cheng2013, Collis1959]; that of a wisp is at most the force on a
-    /// cylinder as thick as the wisp. Hair shelters no other hair yet, so that the force of physics slows fast hair on a head
-    /// more than it does outside: it is off by default.
+    /// cylinder as thick as the wisp. Hair and solids take the wind from the hair behind them (`shelter`).
     pub struct Drag: Copy {
         /// Rate at which hair takes the velocity of wind across the strand.
         across: f32 = 1.5, in [0.0, 1000.0] "1/s", slider [0.0, 20.0],
@@ -156,7 +160,10 @@ settings! {
             more "hair that follows the wind sooner and falls more slowly";
         /// Force of the air on rods over that of physics: 1 is physics, and stands for both rates. 0 leaves the rates.
         factor: f32 = 0.0, in [0.0, 1000.0], slider [0.0, 5.0],
-            more "rods that follow the wind sooner and swing less in still air";
+            more "rods that follow the wind sooner and swing less in still air", invalidates stages;
+        /// Under `factor`: hair and solids hold back the wind from the hair behind them, and the air in a lock moves along
+        /// with it.
+        shelter: bool = true, invalidates stages;
         /// Hairs that a guide stands for in the air under `factor`: a wisp whose outer hairs shelter the inner ones. Without it
         /// those of the look over the guides in a scene, else `strands.rods.wisp_hairs`.
         hairs: Option<f32> = None, in [1.0, 1e6], slider [1.0, 200.0],
@@ -166,7 +173,7 @@ settings! {
 
 impl Drag {
     /// No air.
-    pub const OFF: Self = Self { across: 0.0, along: 0.0, factor: 0.0, hairs: None };
+    pub const OFF: Self = Self { across: 0.0, along: 0.0, factor: 0.0, shelter: true, hairs: None };
 
     /// The rates of rods, across and along: none where they feel the force of physics.
     pub(crate) fn rates_of_rods(&self) -> [f32; 2] {

@@ -8,7 +8,7 @@ use strandline_groom::{LANES, Lanes, RestShape, Vec3Lanes};
 use crate::contact::planes::Contacts;
 use crate::grab::Grab;
 use crate::length_scale::Lengths;
-use crate::{Model, SimError};
+use crate::{Currents, Model, SimError};
 use strandline_base::vec3x8::{Vec3x8, splat};
 
 /// The world during one step: body, air and hand.
@@ -18,6 +18,8 @@ pub struct Drive {
     pub body: BodyFrame,
     /// Velocity of the air \[m/s\], world space.
     pub wind: Vec3,
+    /// Currents of the air beside the wind.
+    pub currents: Currents,
     /// Position of the hand that holds hair at the end of the step \[m\], world space; `None` leaves the hand in
     /// place. See [`State::grab`].
     pub hand: Option<Vec3>,
@@ -30,12 +32,13 @@ impl Drive {
     }
 
     /// This drive, each part replaced where it is unusable: a body that fails [`BodyFrame::check`] or a hand that is
-    /// not finite stays, wind that is not finite is none.
+    /// not finite stays, wind and currents that are not finite are none.
     pub(crate) fn or_still_at(&self, start: &BodyFrame, strand_count: usize) -> Self {
         let sound = self.body.check(Some(strand_count), None).is_ok();
         Self {
             body: if sound { self.body.clone() } else { start.clone() },
             wind: if self.wind.is_finite() { self.wind } else { Vec3::ZERO },
+            currents: self.currents.sound(),
             hand: self.hand.filter(|hand| hand.is_finite()),
         }
     }
@@ -311,8 +314,10 @@ mod tests {
     fn a_drive_that_is_not_finite_leaves_the_head_where_it_is() {
         let (model, mut state) = two_strands();
         let pose = Pose { translation: Vec3::splat(f32::NAN), ..Pose::IDENTITY };
-        let report = CpuRunner::from(model.clone())
-            .step(&mut state, &Drive { body: pose.into(), wind: Vec3::NAN, hand: Some(Vec3::NAN) });
+        let report = CpuRunner::from(model.clone()).step(
+            &mut state,
+            &Drive { body: pose.into(), wind: Vec3::NAN, hand: Some(Vec3::NAN), ..Drive::default() },
+        );
         assert_eq!(report.non_finite, 0);
         assert_eq!(state.body, BodyFrame::REST);
         // Root frames of other hair.

@@ -38,6 +38,8 @@ stages! {
     PoseRoots = "pose_roots", always;
     /// Points sorted by cell, by their positions alone, for stages that look for neighbours.
     Cells = "cells", neighbours;
+    /// Air at the points, behind hair and solids.
+    Shelter = "shelter", sheltered;
     /// Forces, then a prediction.
     Integrate = "integrate", constrained;
     /// Lengths, bends and solids.
@@ -62,6 +64,10 @@ fn always(_: &Settings) -> bool {
 
 fn neighbours(settings: &Settings) -> bool {
     settings.cells.is_some()
+}
+
+fn sheltered(settings: &Settings) -> bool {
+    settings.has_shelter()
 }
 
 fn constrained(settings: &Settings) -> bool {

@@ -69,7 +69,7 @@ impl Device {
             let begin = Instant::now();
             let drive = |step: usize| {
                 let time = (first + step + 1) as f64 * f64::from(scene.simulation.time_step);
-                Drive { body: head.pose(time).into(), wind: scene.wind.at(time), hand: None }
+                Drive { body: head.pose(time).into(), wind: scene.wind.at(time), ..Drive::default() }
             };
             for (step, report) in run(&mut runner, queued, drive)?.iter().enumerate() {
                 let note = steps.add(report, (first + step) as u32);

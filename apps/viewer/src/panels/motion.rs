@@ -94,8 +94,14 @@ fn wind(app: &mut App, ui: &mut Ui) {
     for (axis, name) in ["wind x", "wind y", "wind z"].into_iter().enumerate() {
         slide(ui, (&mut wind.velocity[axis], base.velocity[axis]), &WindSection::ROWS.velocity, name);
     }
+    let rows = &WindSection::ROWS;
+    slide(ui, (&mut wind.rise, base.rise), &rows.rise, "rise of the wind");
     slide(ui, (&mut wind.gust, base.gust), &WindSection::ROWS.gust, "gusts");
     slide(ui, (&mut wind.gust_period, base.gust_period), &WindSection::ROWS.gust_period, "gust period");
+    if app.scene.simulation.drag.factor > 0.0 {
+        slide(ui, (&mut wind.turbulence, base.turbulence), &rows.turbulence, "turbulence");
+        slide(ui, (&mut wind.turbulence_size, base.turbulence_size), &rows.turbulence_size, "size of eddies");
+    }
     if *wind != before {
         app.live.send(Change::Wind(app.scene.wind.clone()));
     }

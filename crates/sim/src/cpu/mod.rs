@@ -12,6 +12,7 @@ pub mod poisson;
 pub mod pose_roots;
 mod runner;
 mod scratch;
+pub mod shelter;
 mod sleep;
 pub mod solve_pressure;
 pub mod solve_rods;
@@ -23,6 +24,7 @@ mod rod_air;
 mod rod_pulls;
 mod rod_rest;
 pub(crate) mod spans;
+pub(crate) mod wind_box;
 
 pub use runner::CpuRunner;
 pub use scratch::Scratch;

@@ -15,7 +15,7 @@ use crate::strands::rods::workspace::Workspace;
 pub(super) struct Air {
     time_step: f32x8,
     /// \[m/s\]
-    wind: Vector<f32x8>,
+    pub(super) wind: Vector<f32x8>,
     /// Factor of the force, over the length of the part \[1/s\].
     rate: f32x8,
     /// Hairs that a guide stands for; `None` takes those that resist together.
@@ -52,7 +52,6 @@ impl Air {
             start,
             per_taper: splat(1.0) / (splat(1.0) - start).or_more(splat(1e-6)),
             time_step: self.time_step,
-            wind: self.wind,
             rate: self.rate,
         }
     }
@@ -67,36 +66,46 @@ pub(super) struct Around {
     start: f32x8,
     per_taper: f32x8,
     time_step: f32x8,
-    wind: Vector<f32x8>,
     rate: f32x8,
 }
 
 impl Around {
     /// Sets the force of the air on a point, by its speed at the beginning of the part: implicit by the force across the
     /// strand, less what the air along it leaves of that. `back` leads from where the head carries the point to where it
-    /// is \[m\].
+    /// is \[m\], `wind` is the velocity of the air there \[m/s\].
     #[inline(always)]
-    pub(super) fn blow(&self, space: &mut Workspace, point: usize, back: Vector<f32x8>) {
+    pub(super) fn blow(&self, space: &mut Workspace, point: usize, back: Vector<f32x8>, wind: Vector<f32x8>) {
         let last = space.points.len() - 1;
         let (above, below) = (last.min(point + 1), point.saturating_sub(1));
         let tangent = space.points[above] - space.points[below];
-        let relative = self.wind - space.velocities[point];
+        let relative = wind - space.velocities[point];
         let along = tangent * (tangent.dot(relative) / (tangent.dot(tangent) + splat(1e-30)));
-        let [across, slide] = self.wisp_at(point, last).drag((relative - along).length());
-        let goal = (self.wind - along * (splat(1.0) - slide / across)) * self.time_step + back;
+        let [across, slide] = self.wisp_at(space.share[point]).drag((relative - along).length());
+        let goal = (wind - along * (splat(1.0) - slide / across)) * self.time_step + back;
         let before = if point > 0 { space.length[below] } else { f32x8::ZERO };
         let after = if point < last { space.length[point] } else { f32x8::ZERO };
         let length = (before + after) * splat(0.5);
         space.work.blow(point, goal, across * length * self.rate);
     }
 
-    /// The wisp at a point.
+    /// The wisp at a share of the length.
     #[inline(always)]
-    fn wisp_at(&self, point: usize, last: usize) -> Wisp<f32x8> {
-        let share = splat(point as f32 / last as f32);
+    pub(super) fn wisp_at(&self, share: f32x8) -> Wisp<f32x8> {
         let tapered = ((share - self.start) * self.per_taper).or_more(f32x8::ZERO).or_less(splat(1.0));
         self.wisp.thinned(splat(1.0) + self.thinner * tapered)
     }
+}
+
+/// Shares of the length before each point, from the lengths behind each \[m\].
+pub(super) fn shares(lengths: &[f32x8], shares: &mut [f32x8]) {
+    let mut passed = f32x8::ZERO;
+    for (share, length) in shares.iter_mut().zip(lengths) {
+        *share = passed;
+        passed += *length;
+    }
+    // Nothing lies behind the last point.
+    let whole = shares.last().map_or(passed, |whole| whole.or_more(splat(1e-9)));
+    shares.iter_mut().for_each(|share| *share = *share / whole);
 }
 
 /// A number of each of a block's strands.

@@ -11,6 +11,7 @@ use super::gather::gather;
 use super::integrate::integrate;
 use super::mark::mark;
 use super::pose_roots::pose_roots;
+use super::shelter::shelter;
 use super::sleep::Sleep;
 use super::solve_pressure::solve_pressure;
 use super::solve_rods::solve_rods;
@@ -88,7 +89,7 @@ impl CpuRunner {
         self.skins.clone_from(obstacles.skins());
         state.contacts.ride(&Solids::new(&obstacles, model.points_per_strand));
         let (wind, report) = (drive.wind, StepReport::default());
-        let mut step = Step { model, state, scratch, obstacles, wind, report };
+        let mut step = Step { model, state, scratch, obstacles, drive, wind, report };
         par::awake(|| {
             for stage in stages(&model.settings) {
                 let watch = Stopwatch::start();
@@ -108,6 +109,7 @@ struct Step<'a> {
     state: &'a mut State,
     scratch: &'a mut Scratch,
     obstacles: Obstacles<'a>,
+    drive: &'a Drive,
     /// \[m/s\]
     wind: Vec3,
     report: StepReport,
@@ -115,11 +117,15 @@ struct Step<'a> {
 
 impl Step<'_> {
     fn run(&mut self, stage: Stage) {
-        let (model, obstacles, wind) = (self.model, &self.obstacles, self.wind);
+        let (model, obstacles, drive, wind) = (self.model, &self.obstacles, self.drive, self.wind);
         let (state, scratch) = (&mut *self.state, &mut *self.scratch);
         match stage {
             Stage::PoseRoots => pose_roots(model, state, scratch, &obstacles.end),
             Stage::Cells => scratch.cells.iter_mut().for_each(|sorted| cells(sorted, &state.positions)),
+            Stage::Shelter => {
+                let found = scratch.shelter.iter_mut();
+                found.for_each(|found| shelter(model, state, obstacles, drive, found));
+            }
             Stage::Integrate => integrate(model, state, scratch, wind),
             Stage::Constrain => {
                 let non_finite = constrain(model, state, scratch, obstacles);

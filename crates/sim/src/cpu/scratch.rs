@@ -7,6 +7,7 @@ use wide::f32x8;
 
 use super::Volume;
 use super::cells::Cells;
+use super::shelter::Shelter;
 use crate::cells::Grid;
 use crate::masses::Masses;
 use crate::strands::rods::rod::Node;
@@ -26,6 +27,8 @@ pub struct Scratch {
     pub(crate) volume: Option<Volume>,
     /// Points sorted by cell; `None` while nothing reads them.
     pub(crate) cells: Option<Cells>,
+    /// Air at the points; `None` where all of it is the wind.
+    pub(crate) shelter: Option<Shelter>,
     /// Inputs of masses and nodes.
     made_from: Made,
 }
@@ -66,6 +69,7 @@ impl Scratch {
             masses,
             volume: None,
             cells: None,
+            shelter: None,
             made_from: Made::new(model, state),
         }
     }
@@ -80,6 +84,7 @@ impl Scratch {
         }
         self.predicted.resize(state.positions.len(), Vec3Lanes::default());
         self.refresh_volume(model, state.volume_box);
+        self.shelter = model.settings.has_shelter().then(|| self.shelter.take().unwrap_or_default());
         let old = self.cells.take();
         self.cells = model
             .settings

@@ -10,7 +10,7 @@ use super::Scratch;
 use super::advance::{Block, NonFinite, recover};
 use super::integrate::Fall;
 use super::length_pass::Follow;
-use super::rod_air::{Air, Around, of_lanes};
+use super::rod_air::{Air, Around, of_lanes, shares};
 use crate::contact::Obstacles;
 use crate::contact::contacts::Solids;
 use crate::contact::planes::Plane;
@@ -41,6 +41,7 @@ pub fn solve_rods(
     let Some(rods) = &model.rods else { return Default::default() };
     let points = model.points_per_strand;
     let parts = Parts::new(model, obstacles, wind);
+    let flow = scratch.shelter.as_ref().map_or(&[][..], |shelter| &shelter.air[..]);
     let nodes = scratch.nodes.as_ref().unwrap_or(&rods.nodes);
     let (lengths, masses, grab) = (&state.lengths.stretch, &scratch.masses, &state.grab);
     scratch
@@ -68,7 +69,8 @@ pub fn solve_rods(
                     inverse_mass: &masses.inverse_mass[range.clone()],
                     rest: &model.positions[range.clone()],
                     clearance: &model.rest_clearance[range.clone()],
-                    rest_sections: &rods.sections[range],
+                    rest_sections: &rods.sections[range.clone()],
+                    flow: flow.get(range).unwrap_or_default(),
                     viscous: parts.viscous(&rods.traits[block * LANES..]),
                     crowding: of_lanes(&rods.traits[block * LANES..], |traits| traits.crowding),
                     air: parts.air.of(&rods.traits[block * LANES..]),
@@ -181,8 +183,9 @@ pub(super) struct Strands<'a> {
     viscous: f32x8,
     /// Share of each strand beside which others pass.
     pub(super) crowding: f32x8,
-    /// Air about the strands.
+    /// Air about the strands, and its velocity at each point \[m/s\]; empty where it is the wind.
     air: Around,
+    flow: &'a [Vec3Lanes],
     /// Mask of the strands whose root frames move.
     driven: f32x8,
     block: usize,
@@ -196,6 +199,7 @@ impl Strands<'_> {
             space.inverse_mass[point] = f32x8::new(self.inverse_mass[point].0);
             space.length[point] = f32x8::new(self.lengths[point].0);
         }
+        shares(&space.length, &mut space.share);
         (space.bad, space.report) = (f32x8::ZERO, RodReport::default());
         for part in 0..self.parts.count {
             let own = self.parts.has_roots().then(|| self.parts.ride(self.model, self.block, part));
@@ -225,7 +229,8 @@ impl Strands<'_> {
             space.remainders[point] = remainder * free;
             let tangent = space.points[last.min(point + 1)] - space.points[point.saturating_sub(1)];
             if self.parts.air.blows() {
-                self.air.blow(space, point, back);
+                let wind = self.flow.get(point).map_or(self.parts.air.wind, Vector::load);
+                self.air.blow(space, point, back, wind);
             }
             let fallen = self.parts.fall.weighted(space.velocities[point], tangent);
             let coast = space.velocities[point] * step + back;

@@ -5,6 +5,7 @@ use strandline_body::{BodyFrame, SkinTable};
 use strandline_gpu::{Buffer, Gpu, THREADS};
 use strandline_groom::{LANES, RestShape, Vec3Lanes};
 
+use super::air_buffers::ShelterBuffers;
 use super::cell_buffers::Cells;
 use super::inputs::Step;
 use super::motion::{Root, has_roots, part_count};
@@ -15,7 +16,7 @@ use super::volume::Volume;
 use crate::grab::{Grab, Grip, NO_POINT};
 use crate::masses::Masses;
 use crate::strands::rods::hairs::Traits;
-use crate::{Model, SimError, State};
+use crate::{Model, Settings, SimError, State};
 
 /// Steps whose reports the device keeps until they are read.
 pub(super) const REPORTS: usize = 64;
@@ -111,6 +112,21 @@ impl Buffers {
 
     pub fn point_count(&self) -> usize {
         self.lane_count * self.points
+    }
+
+    /// The air at the points, where it differs.
+    pub fn shelter(&self) -> Option<&ShelterBuffers> {
+        self.rods.as_ref()?.shelter.as_ref()
+    }
+
+    /// Makes buffers for the air at the points, or drops them, by the settings. Returns true where that changed.
+    pub fn fit_shelter(&mut self, gpu: &Gpu, settings: &Settings) -> Result<bool, SimError> {
+        let (count, wanted) = (self.point_count(), settings.has_shelter());
+        let Some(rods) = self.rods.as_mut().filter(|rods| rods.shelter.is_some() != wanted) else {
+            return Ok(false);
+        };
+        rods.shelter = if wanted { Some(ShelterBuffers::new(gpu, count)?) } else { None };
+        Ok(true)
     }
 
     /// Bytes that a step must move at least, without the rounds of the pressure solve: each number

@@ -9,6 +9,7 @@ use crate::constrain::Spring;
 use crate::contact::contacts::Care;
 use crate::grab::Grab;
 use crate::strands::constrain::angles::bend_share;
+use crate::wind::{Axes, most_speed_sum, per_area};
 use crate::{Drive, Model, Preconditioner, VolumeSettings};
 
 /// Codes of preconditioners, which shaders know from here.
@@ -36,8 +37,18 @@ mirror! {
         pub air: f32,
         /// Hairs that a guide stands for in the air; 0 takes those that resist together.
         pub air_hairs: f32,
-        pub unused_a: u32,
-        pub unused_b: u32,
+        /// 1 where hair and solids hold back the air.
+        pub shelters: u32,
+        /// 1 where there are currents beside the wind.
+        pub currents: u32,
+        /// Axes along the wind, upward from it and aside; whole numbers that speeds of a point sum up to at most, and in
+        /// a square metre of drag area.
+        pub wind_along: [f32; 3],
+        pub speed_sum: f32,
+        pub wind_up: [f32; 3],
+        pub per_area: f32,
+        pub wind_aside: [f32; 3],
+        pub unused_c: u32,
     }
 }
 
@@ -102,8 +113,10 @@ mirror! {
 }
 
 impl RodStep {
-    fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32) -> Self {
+    fn new(model: &Model, start: &Pose, end: &Pose, part_time: f32, drive: &Drive) -> Self {
         let rods = &model.settings.strands.rods;
+        let shelters = model.settings.has_shelter();
+        let [along, up, aside] = Axes::along(drive.wind).0.map(|axis| axis.to_array());
         let (turn, from, way) = in_parts(start, end, rods.substeps);
         Self {
             part_rotation: turn.to_array(),
@@ -117,6 +130,13 @@ impl RodStep {
             tolerance: rods.tolerance,
             air: model.settings.drag.factor / part_time,
             air_hairs: model.settings.drag.hairs.unwrap_or(0.0),
+            shelters: u32::from(shelters),
+            currents: u32::from(!drive.currents.is_empty()),
+            wind_along: along,
+            wind_up: up,
+            wind_aside: aside,
+            speed_sum: most_speed_sum(model),
+            per_area: if shelters { per_area(model) } else { 1.0 },
             ..Self::default()
         }
     }
@@ -180,7 +200,7 @@ impl Step {
             piece_count: piece_count(&model.colliders) as u32,
             has_roots: u32::from(has_roots(before, &drive.body)),
             hand: grab.hand.to_array(),
-            rods: RodStep::new(model, start, &end, part_time),
+            rods: RodStep::new(model, start, &end, part_time, drive),
             ..Self::default()
         }
     }

@@ -5,8 +5,8 @@ use strandline_gpu::{Declaration, Dispatches, Gpu, GpuError, Scan};
 use super::buffers::Buffers;
 use super::stage::{StageKernels, Target};
 use super::{
-    advance, cells, constrain, gather, integrate, lengths_alone, mark, pose_roots, slide, solve_pressure,
-    solve_rods, splat,
+    advance, cells, constrain, gather, integrate, lengths_alone, mark, pose_roots, shelter, slide,
+    solve_pressure, solve_rods, splat,
 };
 use crate::step::Stage;
 use crate::{Model, Preconditioner};
@@ -49,6 +49,7 @@ macro_rules! kernels {
 kernels! {
     PoseRoots => pose_roots,
     Cells => cells,
+    Shelter => shelter,
     Integrate => integrate,
     Constrain => constrain,
     SolveRods => solve_rods,

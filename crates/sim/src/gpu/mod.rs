@@ -4,6 +4,7 @@
 //! nothing is read back until it is asked for.
 
 mod advance;
+mod air_buffers;
 mod alone;
 mod between;
 mod buffers;
@@ -26,6 +27,7 @@ mod probe;
 mod records;
 mod rod_buffers;
 mod runner;
+mod shelter;
 mod slide;
 mod solids;
 mod solve_pressure;

@@ -167,6 +167,15 @@ impl Probe {
         Ok((cells.order.read_first(count as usize)?, starts))
     }
 
+    /// Velocity of the air at each point \[m/s\]; empty where it is the wind.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn air(&self) -> Result<Vec<Vec3Lanes>, SimError> {
+        let shelter = self.runner.buffers.shelter();
+        shelter.map_or(Ok(Vec::new()), |shelter| Ok(vectors(&shelter.air.read()?)))
+    }
+
     /// Velocity and change \[m/s\] of every face, shape `[component][cell]`.
     ///
     /// # Errors

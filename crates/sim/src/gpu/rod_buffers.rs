@@ -2,6 +2,8 @@
 
 use strandline_gpu::{Buffer, Gpu, GpuError, THREADS};
 
+use super::air_buffers::ShelterBuffers;
+
 /// Numbers of a node in the buffer of rods.
 pub(super) const NUMBERS: usize = 10;
 /// Numbers of the traits of a strand.
@@ -16,6 +18,10 @@ pub(super) struct RodBuffers {
     pub work: Buffer<[f32; 4]>,
     /// Workgroups that there is room for.
     pub groups: usize,
+    /// Air at the points; `None` where all of it is the wind.
+    pub shelter: Option<ShelterBuffers>,
+    /// Stands for it there.
+    pub no_air: Buffer<f32>,
 }
 
 impl RodBuffers {
@@ -26,6 +32,8 @@ impl RodBuffers {
             nodes: Buffer::new(gpu, "rods", lane_count * (NUMBERS * points + 4 + TRAITS))?,
             work: Buffer::new(gpu, "work of rods", groups * THREADS * points * SLOTS)?,
             groups,
+            shelter: None,
+            no_air: Buffer::new(gpu, "no air at points", 1)?,
         })
     }
 }

@@ -253,6 +253,9 @@ impl GpuRunner {
         self.buffers.step.write(&[Step { skin, ..uniform }])?;
         solids::write_pieces(&self.buffers.step, &self.model, bodies)?;
         self.buffers.write_roots(&self.model, bodies)?;
+        if let Some(shelter) = self.buffers.shelter() {
+            shelter.currents.write_at(0, &drive.currents.rows())?;
+        }
         let mut costs = Costs { bytes: self.buffers.bytes_of_step(), ..Costs::default() };
         let Pending { timer, marks, count, .. } = &self.pending;
         self.gpu.ask("a step", || {
@@ -264,6 +267,9 @@ impl GpuRunner {
                 }
                 if let (Stage::Splat, Some(volume)) = (stage, &self.buffers.volume) {
                     recorder.clear(&volume.start_index);
+                }
+                if let (Stage::Shelter, Some(shelter)) = (stage, self.buffers.shelter()) {
+                    recorder.clear(&shelter.sums);
                 }
                 if let (Stage::Cells, Some(cells)) = (stage, &self.buffers.cells) {
                     recorder.clear(&cells.start_index);
@@ -308,6 +314,7 @@ impl GpuRunner {
                 None => None,
             };
         }
+        let changed = self.buffers.fit_shelter(&self.gpu, &self.model.settings)? || changed;
         if let (Some(volume), Some(place)) = (&self.buffers.volume, self.volume_box.take()) {
             volume.put(place)?;
         }

@@ -11,6 +11,7 @@ kernel! {
     /// One thread is one strand after another.
     pub(super) struct SolveRods in "solve_rods" (super::linked::SOLVE_RODS), entry "solve_rods" {
         0 step: Read Step,
+        1 air: Read f32,
         2 rods: Read f32,
         3 rest: Read f32,
         4 positions: Read f32,
@@ -39,6 +40,7 @@ impl StageKernels for Stage {
             gpu,
             &SolveRods {
                 step: &buffers.step,
+                air: rods.shelter.as_ref().map_or(&rods.no_air, |shelter| &shelter.air),
                 rods: &rods.nodes,
                 rest: &buffers.rest,
                 positions: &buffers.places[side],

@@ -156,7 +156,7 @@ impl Hair {
         let wind = self.wind;
         self.played = None;
         let simulation = self.session.simulation_mut();
-        let reports = simulation.step_along(seconds, &|share| (body(share), wind))?;
+        let reports = simulation.step_along(seconds, &|share| (body(share), wind.into()))?;
         self.note_reports(&reports);
         Ok(reports)
     }

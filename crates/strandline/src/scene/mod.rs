@@ -1,5 +1,6 @@
 //! A scene: everything that one run needs, as one TOML file. docs/scene.md lists every key.
 
+mod air;
 mod body;
 mod builtin;
 pub(crate) mod camera_motion;
@@ -19,6 +20,7 @@ use std::path::{Path, PathBuf};
 
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
+pub(crate) use air::Air;
 pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
 pub use colors::hex_color;
 pub use devices::Devices;
@@ -26,7 +28,7 @@ pub use film::{CameraKeyframe, CameraSection, FilmSection, View};
 pub(crate) use given::Given;
 pub use groom::{GroomPart, GroomSection};
 pub use head::HeadMotion;
-pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection};
+pub use motion::{KeyframeSection, MotionName, MotionSection, WindKeyframe, WindSection, WindSource};
 pub use surroundings::SurroundingsSection;
 
 pub use crate::body::Interpolation;

@@ -123,14 +123,41 @@ settings! {
 }
 
 settings! {
+    /// A place from which air blows: a fan with a direction, else a source to all sides. Rods under
+    /// `simulation.drag.factor` feel it.
+    pub struct WindSource: Copy {
+        /// Place, world space.
+        position: Vec3 = Vec3::ZERO, in [-1e4, 1e4] "m";
+        /// Direction in which a fan blows, of any length: a jet that widens by a tenth of its way. Without it air blows to
+        /// all sides.
+        direction: Option<Vec3> = None, in [-1e4, 1e4];
+        /// Speed of the air where a fan begins, else at `radius`.
+        speed: f32 = 5.0, in [0.0, 100.0] "m/s", slider [0.0, 20.0];
+        /// Radius of the source.
+        radius: f32 = 0.1, in [1e-3, 100.0] "m", slider [0.01, 1.0], more "air that blows farther";
+    }
+}
+
+settings! {
     /// Motion of the air.
     pub struct WindSection {
         /// Mean velocity, world space.
         velocity: Vec3 = Vec3::ZERO, in [-100.0, 100.0] "m/s", slider [-10.0, 10.0];
+        /// Time in which the wind rises from calm at the beginning.
+        rise: f32 = 0.0, in [0.0, 1000.0] "s", slider [0.0, 5.0], more "a wind that comes up more slowly";
         /// Share of the velocity that comes and goes.
         gust: f32 = 0.5, in [0.0, 1.0], more "stronger gusts and lulls";
         /// Time from gust to gust.
         gust_period: f32 = 1.7, in [0.05, 1000.0] "s", slider [0.2, 10.0], more "slower gusts";
+        /// Speed of turbulence over that of the wind: eddies of many sizes that ride along with it. Rods under
+        /// `simulation.drag.factor` feel it.
+        turbulence: f32 = 0.0, in [0.0, 2.0], slider [0.0, 1.0], more "hair that flutters more";
+        /// Length of the largest eddies; the smallest have a quarter of it.
+        turbulence_size: f32 = 0.4, in [0.02, 100.0] "m", slider [0.05, 2.0], more "whole locks that move together";
+        /// Seed of the turbulence.
+        seed: u32 = 1, in [0, u32::MAX];
+        /// Places from which air blows.
+        sources: Vec<WindSource> = Vec::new(), in [0, 8];
         /// Mean velocities in the order of their times, in the place of `velocity`.
         keyframes: Vec<WindKeyframe> = Vec::new(), in [0, 100_000];
     }
@@ -141,7 +168,27 @@ impl WindSection {
     pub fn at(&self, time: f64) -> Vec3 {
         let phase = std::f64::consts::TAU * time / f64::from(self.gust_period);
         let swing = 0.7 * math::sin(phase) + 0.3 * math::sin(2.618 * phase);
-        self.mean(time) * (1.0 + self.gust * swing as f32)
+        let wind = self.mean(time) * (1.0 + self.gust * swing as f32);
+        if self.rise > 0.0 { wind * self.risen(time) } else { wind }
+    }
+
+    /// Share of the wind that has risen at a time \[s\], without a jolt at either end.
+    pub(super) fn risen(&self, time: f64) -> f32 {
+        if self.rise == 0.0 {
+            return 1.0;
+        }
+        let share = (time as f32 / self.rise).clamp(0.0, 1.0);
+        share * share * (3.0 - 2.0 * share)
+    }
+
+    /// Velocity \[m/s\] at which turbulence rides along: the mean of keyframes, if there are any.
+    pub(super) fn carrying(&self) -> Vec3 {
+        let keys = self.keyframes.iter().map(|key| key.velocity);
+        if self.keyframes.is_empty() {
+            self.velocity
+        } else {
+            keys.sum::<Vec3>() / self.keyframes.len() as f32
+        }
     }
 
     /// Mean velocity of the air \[m/s\] at a time \[s\].
@@ -172,6 +219,14 @@ impl WindSection {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn wind_rises_from_calm() {
+        let wind = WindSection { velocity: Vec3::X, gust: 0.0, rise: 2.0, ..WindSection::default() };
+        for (time, share) in [(-1.0, 0.0), (0.0, 0.0), (1.0, 0.5), (2.0, 1.0), (3.0, 1.0)] {
+            assert_eq!(wind.at(time), Vec3::X * share, "{time} s");
+        }
+    }
 
     #[test]
     fn wind_follows_its_keyframes() {

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
-
 use super::simulation::Simulation;
 
 use crate::{
     HeadMotion, Scene,
     body::{BodyFrame, Pose},
+    scene::Air,
     sim::{SimError, StepReport},
 };
 
@@ -16,7 +15,7 @@ use crate::{
 #[derive(Clone)]
 pub(crate) struct FilmTiming {
     body: Arc<dyn Fn(f64) -> BodyFrame + Send + Sync>,
-    wind: Arc<dyn Fn(f64) -> Vec3 + Send + Sync>,
+    air: Arc<dyn Fn(f64) -> Air + Send + Sync>,
     frames_per_second: f64,
     settle_seconds: f64,
     /// Time of motion and wind at the beginning \[s\].
@@ -34,9 +33,10 @@ impl FilmTiming {
     /// The timing of a scene with a motion of the head, which is `here` at the beginning.
     pub fn new(scene: &Scene, head: HeadMotion, here: Pose) -> Self {
         let (wind, there) = (scene.wind.clone(), head.pose(scene.film.start));
+        let origin = head.origin();
         Self {
             body: Arc::new(move |time| head.frame(time)),
-            wind: Arc::new(move |time| wind.at(time)),
+            air: Arc::new(move |time| wind.air(time, origin)),
             frames_per_second: f64::from(scene.film.frames_per_second),
             settle_seconds: f64::from(scene.film.settle),
             start: scene.film.start,
@@ -54,9 +54,9 @@ impl FilmTiming {
             return Ok(Vec::new());
         }
         if frame == 0 {
-            simulation.settle(self.settle_seconds, (self.wind)(self.start))?;
+            simulation.settle(self.settle_seconds, (self.air)(self.start))?;
         }
-        simulation.run_to(self.time(frame), &|time| (self.body(time), (self.wind)(self.start + time)))
+        simulation.run_to(self.time(frame), &|time| (self.body(time), (self.air)(self.start + time)))
     }
 
     /// Time of the film at which a frame is shown \[s\].

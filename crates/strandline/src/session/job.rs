@@ -9,8 +9,8 @@ use crate::{
     HeadMotion,
     body::{BodyFrame, Pose},
     groom::Vec3Lanes,
-    scene::WindSection,
     scene::devices::device_name,
+    scene::{Air, WindSection},
     session::worker::{Gone, Work, Worker},
     sim::{Settings, SimError, StepReport, Stiffening},
 };
@@ -28,7 +28,7 @@ pub(crate) enum Task {
     /// Another length of each strand, over that of the groom.
     Lengths(Vec<f32>),
     /// Back to rest on a body, on which the hair then hangs for a time \[s\] in wind \[m/s\].
-    Reset { body: BodyFrame, settle: f64, wind: Vec3 },
+    Reset { body: BodyFrame, settle: f64, air: Air },
     /// Takes the hair about a point of a guide, wherever that is by then, into a hand of a radius \[m\].
     Grab { index: usize, lane: usize, radius: f32 },
     /// Lets go of it.
@@ -63,8 +63,8 @@ impl Task {
             Self::Cached { body, positions } => simulation.show_cached(&body, &positions),
             Self::Settings(settings) => simulation.set_settings(&settings),
             Self::Lengths(scales) => simulation.engine.set_length_scale(&scales),
-            Self::Reset { body, settle, wind } => {
-                simulation.reset(body).and_then(|()| simulation.settle(settle, wind))
+            Self::Reset { body, settle, air } => {
+                simulation.reset(body).and_then(|()| simulation.settle(settle, air))
             }
             Self::Grab { index, lane, radius } => {
                 let now = simulation.engine.state()?.positions[index].get(lane) + simulation.origin;
@@ -87,7 +87,7 @@ impl Live {
         simulation.step_along(seconds, &|share| {
             let time = self.begin + seconds * f64::from(share);
             let body = if follows { self.head.frame(time) } else { start.toward(&end, share) };
-            (body, self.wind.at(time))
+            (body, self.wind.air(time, self.head.origin()))
         })
     }
 }

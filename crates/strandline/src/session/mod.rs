@@ -277,9 +277,9 @@ impl<E: Executor> Session<E> {
                 self.direction.reset();
                 let body = self.direction.head_from_origin.frame(0.0);
                 let settle = f64::from(self.scene.film.settle);
-                let wind = self.direction.wind.at(0.0);
+                let air = self.direction.wind.air(0.0, self.direction.head_from_origin.origin());
                 self.follow_camera();
-                self.start(Task::Reset { body, settle, wind }, false, 0)?;
+                self.start(Task::Reset { body, settle, air }, false, 0)?;
             }
         }
         Ok(())

@@ -181,7 +181,7 @@ impl Session<Inline> {
     pub fn settle(&mut self) -> Result<(), Error> {
         let film = self.scene.film;
         if self.scene.groom.pose.is_none() && film.settle > 0.0 {
-            let wind = self.scene.wind.at(film.start);
+            let wind = self.scene.wind.air(film.start, self.direction.head_from_origin.origin());
             self.executor.simulation_mut().settle(f64::from(film.settle), wind)?;
             self.show()?;
         }

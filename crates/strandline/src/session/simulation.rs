@@ -16,6 +16,7 @@ use crate::{
     body::BodyFrame,
     cache::Snapshot,
     groom::Vec3Lanes,
+    scene::Air,
     sim::{Clock, Drift, Drive, Settings, SimError, State, StepReport, Stiffening, Ticks},
     strands::hair_pose::HairPose,
 };
@@ -234,8 +235,8 @@ impl Simulation {
     }
 
     /// Makes whole steps under a head that rests where it is; no time of the clock passes.
-    pub fn settle(&mut self, seconds: f64, wind: Vec3) -> Result<(), SimError> {
-        let drive = Drive { body: self.end.clone(), wind, hand: None };
+    pub fn settle(&mut self, seconds: f64, air: impl Into<Air>) -> Result<(), SimError> {
+        let drive = air.into().drive(Drive::of(self.end.clone()));
         let mut left = (seconds / self.time_step() - 1e-6).ceil().max(0.0) as usize;
         while left > 0 {
             let count = left.min(AT_ONCE);
@@ -253,7 +254,7 @@ impl Simulation {
     pub fn step_along(
         &mut self,
         seconds: f64,
-        drive: &dyn Fn(f32) -> (BodyFrame, Vec3),
+        drive: &dyn Fn(f32) -> (BodyFrame, Air),
     ) -> Result<Vec<StepReport>, SimError> {
         let (before, begin, shown) = (self.clock, self.clock.time(), self.share);
         let mut ticks = self.clock.advance(seconds);
@@ -279,7 +280,7 @@ impl Simulation {
     pub fn run_to(
         &mut self,
         time: f64,
-        drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
+        drive: &dyn Fn(f64) -> (BodyFrame, Air),
     ) -> Result<Vec<StepReport>, SimError> {
         let (before, begin) = (self.clock, self.clock.time());
         let ticks = self.clock.reach(time);
@@ -298,7 +299,7 @@ impl Simulation {
         before: Clock,
         ticks: Ticks,
         span: Range<f64>,
-        drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
+        drive: &dyn Fn(f64) -> (BodyFrame, Air),
     ) -> Result<Vec<StepReport>, SimError> {
         let outcome = self.drives(ticks, &span, drive).and_then(|mut drives| {
             self.carry_over_jumps(&mut drives, span.end - span.start)?;
@@ -338,7 +339,7 @@ impl Simulation {
         &self,
         ticks: Ticks,
         span: &Range<f64>,
-        drive: &dyn Fn(f64) -> (BodyFrame, Vec3),
+        drive: &dyn Fn(f64) -> (BodyFrame, Air),
     ) -> Result<Vec<Drive>, SimError> {
         if ticks.count > MOST_STEPS {
             let found = format!("{} s, {} steps at once", self.time_step(), ticks.count);
@@ -349,12 +350,12 @@ impl Simulation {
         let mut last = self.bodies[1].clone();
         let drives = (1..=u64::from(ticks.count)).map(|step| {
             let time = self.clock.step_time(ticks.first + step);
-            let (body, wind) = drive(time);
+            let (body, air) = drive(time);
             let body = self.skin.placed(body, &last);
             last = body.clone();
             let share = ((time - span.start) / seconds).clamp(0.0, 1.0);
             let hand = self.hand.map(|[from, to]| from.lerp(to, share as f32));
-            Drive { body, wind, hand }
+            air.drive(Drive { body, hand, ..Drive::default() })
         });
         Ok(drives.collect())
     }

@@ -48,6 +48,12 @@ impl<R: Real> Wisp<R> {
         Self { diameter: self.diameter * share, ..*self }
     }
 
+    /// The same wisp, whose guide has the mass of all its hairs.
+    #[inline(always)]
+    pub fn together(&self) -> Self {
+        Self { share: R::of(1.0), ..*self }
+    }
+
     /// Force over speed of a metre of the guide \[N s/m^2\], across and along it, where the air crosses it at a speed
     /// \[m/s\].
     ///

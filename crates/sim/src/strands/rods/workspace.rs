@@ -61,6 +61,8 @@ pub(crate) struct Workspace {
     pub moved: Vec<Vector<f32x8>>,
     pub inverse_mass: Vec<f32x8>,
     pub length: Vec<f32x8>,
+    /// Share of the length before each point.
+    pub share: Vec<f32x8>,
     /// Lanes of which a number is not finite.
     pub bad: f32x8,
     pub report: RodReport,
@@ -86,6 +88,7 @@ impl Workspace {
             moved: vec![zero; points],
             inverse_mass: vec![none; points],
             length: vec![none; points],
+            share: vec![none; points],
             bad: none,
             report: RodReport::default(),
             work: Work::new(points),

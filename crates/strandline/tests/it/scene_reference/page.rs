@@ -110,6 +110,7 @@ fn item(list: &str) -> toml::Table {
         "body.parts" => toml::Table::try_from(BodyPart::default()),
         "motion.keyframes" | "colliders.keyframes" => toml::Table::try_from(KeyframeSection::default()),
         "wind.keyframes" => toml::Table::try_from(strandline::scene::WindKeyframe::default()),
+        "wind.sources" => toml::Table::try_from(strandline::scene::WindSource::default()),
         "camera.keyframes" => toml::Table::try_from(strandline::scene::CameraKeyframe::default()),
         "colliders" => {
             let sphere = ColliderSection::Sphere(SphereSection { center: Vec3::ZERO, ..Default::default() });
