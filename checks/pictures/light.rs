@@ -84,17 +84,17 @@ fn ball() -> Mesh {
 /// A scene that a reference was drawn from.
 pub struct Scene {
     pub guides: Guides,
-    body: Mesh,
+    pub body: Option<Mesh>,
     camera: Camera,
     pub look: Look,
     pub body_look: BodyLook,
-    lights: Vec<Light>,
+    pub lights: Vec<Light>,
     settings: PictureSettings,
 }
 
 impl Scene {
     pub fn drawn(&self) -> Linear {
-        let mut renderer = Renderer::new(&self.guides, Some(&self.body), &self.settings).unwrap();
+        let mut renderer = Renderer::new(&self.guides, self.body.as_ref(), &self.settings).unwrap();
         renderer.draw_samples(&self.input()).unwrap();
         let pixels = resolve_linear(renderer.samples(), &self.settings);
         Linear {
@@ -107,12 +107,12 @@ impl Scene {
     /// Picture drawn by a GPU.
     fn drawn_on(&self, gpu: &Gpu) -> Linear {
         let settings = PictureSettings { layers: true, ..self.settings };
-        let mut renderer = GpuRenderer::new(gpu, &self.guides, Some(&self.body), &settings).unwrap();
+        let mut renderer = GpuRenderer::new(gpu, &self.guides, self.body.as_ref(), &settings).unwrap();
         let (_, report) = renderer.draw(&self.input()).unwrap();
         Linear::of(&report.layers.unwrap())
     }
 
-    fn drawn_by(&self, on: &On) -> Linear {
+    pub fn drawn_by(&self, on: &On) -> Linear {
         match on {
             On::Cpu => self.drawn(),
             On::Gpu(gpu) => self.drawn_on(gpu),
@@ -148,7 +148,7 @@ pub fn sphere(light: Option<Light>, around: f32) -> Scene {
     let chiang = Chiang { eumelanin: 0.6, pheomelanin: 0.2, ..Chiang::default() };
     Scene {
         guides: guides(&groom, 4e-4, 48),
-        body: ball(),
+        body: Some(ball()),
         camera: Camera {
             position: Vec3::new(0.0, 0.04, 0.75),
             target: Vec3::new(0.0, -0.01, 0.0),
@@ -290,7 +290,7 @@ fn head(folder: &Path, lights: Vec<Light>) -> Scene {
     let chiang = Chiang { eumelanin: 0.6, pheomelanin: 0.2, roughness_along: 0.25, ..Chiang::default() };
     Scene {
         guides: guides(&groom, 1e-4, 40),
-        body: Mesh::load(&folder.join("bust.obj"), 1.0).unwrap(),
+        body: Some(Mesh::load(&folder.join("bust.obj"), 1.0).unwrap()),
         camera: Camera {
             position: Vec3::new(0.6501, 0.0978, 0.8073),
             target: Vec3::new(0.0, -0.07, 0.0),
@@ -333,6 +333,18 @@ fn on_head(on: &On, name: &str, lights: Vec<Light>, map_size: u32) -> Option<Mea
     drawn.boxed().save(&format!("{name}_boxed"), 1.0);
     expected.save(&format!("{name}_expected"), 1.0);
     Some(found)
+}
+
+pub fn named_head(name: &str) -> Scene {
+    let folder = strandline_checks::reference(&["look/wavy.hair", "look/bust.obj"]).unwrap().join("look");
+    let lights = match name {
+        "studio" => vec![panel([-0.9, 1.25, 1.35], 0.7, [42.0, 39.0, 36.0]), panel([1.1, 1.2, -1.2], 0.4, [70.0, 74.0, 78.0])],
+        "back" => vec![Light { samples: 2, ..panel([0.35, 0.9, -1.5], 0.5, [150.0, 143.0, 134.0]) }],
+        _ => vec![panel([1.6, 0.25, -0.2], 0.6, [60.0; 3])],
+    };
+    let mut scene = head(&folder, lights);
+    scene.look.shadow.map_size = if name == "back" { 4096 } else { 1024 };
+    scene
 }
 
 law! {

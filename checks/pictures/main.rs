@@ -24,3 +24,4 @@ mod stillness;
 mod surroundings;
 mod terms;
 mod tessellation;
+mod traced;

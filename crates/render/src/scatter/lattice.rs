@@ -6,11 +6,12 @@
 //! Hair that is not all alike scatters as a mixture of its darkest and its lightest does: what many hairs show is the
 //! mean of what each shows, never what hair of their mean pigment would.
 
-use glam::{IVec3, Vec3, Vec4};
-use strandline_base::math;
+use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
-use crate::fibre::chiang::{Lobes, MOMENTS, Met, Pigments, Seen, Table};
+use super::inclination::{Inclination, REGION, offsets};
+use super::ways::{directions, tangent};
+use crate::fibre::chiang::{Lobes, MOMENTS, Met, Pigments, Seen, Table, terms_along};
 use crate::light_field;
 
 /// Directions along which light is carried.
@@ -19,11 +20,10 @@ pub const DIRECTIONS: usize = 26;
 pub const TANGENTS: usize = 256;
 /// Least by which albedos of two kinds of hair differ, for a third to lie between them.
 const LEAST_APART: f32 = 1e-6;
-/// Variance of the inclination \[rad^2\] by which lobes are widened: directions stand for all around them.
-const SPREAD: f64 = 0.005;
-/// The same for light that is carried on: among the directions, that which a ray has is the only one at just its
-/// inclination, and lobes as narrow as a fibre's would let light keep it for too long.
-const SPREAD_CARRIED: f64 = 0.02;
+/// Variance of the inclination \[rad^2\] by which lobes are widened: directions stand for all around them. Among the
+/// directions, that which a ray has is the only one at just its inclination, and lobes as narrow as a fibre's would let
+/// light keep it for too long.
+const SPREAD: f64 = 0.02;
 
 /// Radiance of every direction.
 pub type Rays = [Vec4; DIRECTIONS];
@@ -42,6 +42,9 @@ pub const ALL_DARK: Mix = [Vec4::ONE, Vec4::ZERO];
 #[derive(Clone, Debug)]
 pub struct Lattice {
     table: Table,
+    /// Terms along the fibre of straight light: parts of a lobe around the directions.
+    straight: Vec<Vec4>,
+    inclination: Inclination,
     /// Unit directions in which light goes, and their shares of the sphere.
     ways: [(Vec3, f32); DIRECTIONS],
     tangents: Vec<Vec3>,
@@ -60,43 +63,25 @@ struct End {
     albedo: Vec4,
 }
 
-/// The directions: steps from cell to cell, with their shares of the sphere.
-pub fn directions() -> [(IVec3, f32); DIRECTIONS] {
-    let mut found = [(IVec3::ZERO, 0.0); DIRECTIONS];
-    let mut count = 0;
-    for index in 0..27 {
-        let step = IVec3::new(index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1);
-        // [Lebedev1976]: sums of polynomials up to the seventh order are exact.
-        let share = match step.length_squared() {
-            1 => 1.0 / 21.0,
-            2 => 4.0 / 105.0,
-            3 => 9.0 / 280.0,
-            _ => continue,
-        };
-        found[count] = (step, share);
-        count += 1;
-    }
-    found
-}
-
 impl Lattice {
     /// The scattering of hair with the darkest's absorption per fibre radius, and of the lightest, whose pigment is a
     /// share of that; none where all hair is the same.
     pub fn new(lobes: &Lobes, absorption: [f64; 3], lightest: Option<Pigments>) -> Self {
-        let [table, carried] =
-            [SPREAD, SPREAD_CARRIED].map(|spread| Table::new(&lobes.spread(spread), absorption));
+        let table = Table::new(&lobes.spread(SPREAD), absorption);
+        let straight = terms_along(&lobes.spread(REGION), table.floor);
+        let inclination = Inclination::new(lobes);
         let ways = directions().map(|(step, share)| (step.as_vec3().normalize(), share));
         let tangents: Vec<Vec3> = (0..TANGENTS).map(tangent).collect();
-        let mut lattice = Self { table, ways, tangents, ends: Vec::new() };
+        let mut lattice = Self { table, straight, inclination, ways, tangents, ends: Vec::new() };
         let kinds = [Some(Pigments::Even(1.0)), lightest];
-        lattice.ends = kinds.into_iter().flatten().map(|pigments| lattice.end(pigments, &carried)).collect();
+        lattice.ends = kinds.into_iter().flatten().map(|pigments| lattice.end(pigments)).collect();
         lattice
     }
 
-    fn end(&self, pigments: Pigments, carried: &Table) -> End {
+    fn end(&self, pigments: Pigments) -> End {
         let seen = Seen::new(MEAN_SINE, pigments);
         let albedo = self.table.seen_moments(&seen)[0];
-        let shown = |&t: &Vec3| self.ways.map(|(way, _)| self.weights_of(carried, &seen, t, way));
+        let shown = |&t: &Vec3| self.ways.map(|(way, _)| self.weights_of(&seen, t, way, &[0.0; DIRECTIONS]));
         End { seen, shown: self.tangents.par_iter().map(shown).collect(), albedo }
     }
 
@@ -121,11 +106,18 @@ impl Lattice {
         &self.table
     }
 
-    /// The entries of the tables; known directions of hair; what hair shows, shape `[end][tangent][shown][arriving]`.
+    /// Inclination of light behind the fibre.
+    pub(crate) fn inclination(&self) -> &Inclination {
+        &self.inclination
+    }
+
+    /// The entries of the tables; known directions of hair; terms along the fibre of straight light; what hair shows, shape
+    /// `[end][tangent][shown][arriving]`.
     pub fn entries(&self) -> Vec<Vec4> {
         let tangents = self.tangents.iter().map(|tangent| tangent.extend(0.0));
         let shown = self.ends.iter().flat_map(|end| end.shown.iter().flatten().flatten().copied());
-        self.table.entries.iter().copied().chain(tangents).chain(shown).collect()
+        let straight = self.straight.iter().copied();
+        self.table.entries.iter().copied().chain(tangents).chain(straight).chain(shown).collect()
     }
 
     /// The directions and their shares of the sphere.
@@ -139,29 +131,42 @@ impl Lattice {
         dots.enumerate().fold((0, -1.0), |best, next| if next.1 > best.1 { next } else { best }).0
     }
 
-    /// Radiance toward `to_eye` of each kind of hair of unit tangent `t` in light along each direction, and
-    /// its moments.
-    pub fn weights(&self, t: Vec3, to_eye: Vec3) -> impl Iterator<Item = (Rays, [Vec4; MOMENTS])> {
+    /// Radiance toward `to_eye` of each kind of hair of unit tangent `t` in light along each direction, whose
+    /// inclinations are those of `rays`, and its moments.
+    pub fn weights(
+        &self,
+        t: Vec3,
+        to_eye: Vec3,
+        rays: &Rays,
+    ) -> impl Iterator<Item = (Rays, [Vec4; MOMENTS])> {
+        let offsets = offsets(rays);
         let of = move |end: &End| {
             let moments = self.table.seen_moments(&end.seen.at(t.dot(to_eye)));
-            (self.weights_of(&self.table, &end.seen, t, to_eye), moments)
+            (self.weights_of(&end.seen, t, to_eye, &offsets), moments)
         };
         self.ends.iter().map(of)
     }
 
-    fn weights_of(&self, table: &Table, seen: &Seen, t: Vec3, to_eye: Vec3) -> Rays {
+    /// Sines of the inclinations of light along each direction lie so much beside the direction's own.
+    fn weights_of(&self, seen: &Seen, t: Vec3, to_eye: Vec3, offsets: &[f32; DIRECTIONS]) -> Rays {
         let u = light_field::across(t, to_eye);
         let seen = seen.at(t.dot(to_eye));
-        let paths = self.ways.map(|(way, share)| {
+        let along = |arriving: &Arriving, share: f32| {
             let solid = 4.0 * std::f32::consts::PI * share;
-            paths_of(table, u, &seen, &Arriving::new(t, -way)).map(|path| path * solid)
-        });
-        let shares = table.shares(&seen);
+            paths_of(&self.table, &self.table.entries, u, &seen, arriving).map(|path| path * solid)
+        };
+        let mut paths = self.ways.map(|(way, share)| along(&Arriving::new(t, -way), share));
+        let shares = self.table.shares(&seen);
         let mut sums = [Vec3::ZERO; 3];
         for path in &paths {
             sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += *path);
         }
         let scales: [Vec3; 3] = std::array::from_fn(|path| shares[path] / sums[path].max(Vec3::splat(1e-20)));
+        for ((path, offset), (way, share)) in paths.iter_mut().zip(offsets).zip(&self.ways) {
+            if *offset != 0.0 {
+                *path = along(&Arriving::new(t, -*way).beside(-offset), *share);
+            }
+        }
         paths.map(|[r, tt, trt]| (r * scales[0] + tt * scales[1] + trt * scales[2]).extend(0.0))
     }
 
@@ -176,7 +181,8 @@ impl Lattice {
     }
 
     /// Adds what a mixture of hair of unit tangent `t` shows along every direction of light of the given radiance (of a
-    /// white surface that faces it) from a unit direction; what is shown all around is what meets the hair.
+    /// white surface that faces it) from a unit direction; what is shown all around is what meets the hair. The last
+    /// lanes hold its first moments: see [`inclination`](super::inclination).
     pub fn add_light(
         &self,
         t: Vec3,
@@ -203,7 +209,7 @@ impl Lattice {
     ) {
         let mut sums = [Vec3::ZERO; 3];
         let paths = shows.each_ref().map(|Shows { u, seen, weight }| {
-            let path = paths_of(&self.table, *u, &seen.of(&end.seen), arriving);
+            let path = paths_of(&self.table, &self.straight, *u, &seen.of(&end.seen), arriving);
             sums.iter_mut().zip(path).for_each(|(sum, path)| *sum += path * *weight);
             path
         });
@@ -211,9 +217,17 @@ impl Lattice {
         let light = light * (std::f32::consts::PI * flat(arriving.sine));
         let scales: [Vec3; 3] =
             std::array::from_fn(|path| light * shares[path] / sums[path].max(Vec3::splat(1e-20)));
-        for (shown, [r, tt, trt]) in shown.iter_mut().zip(paths) {
-            *shown += (r * scales[0] + tt * scales[1] + trt * scales[2]).extend(0.0);
+        for ((shown, shows), paths) in shown.iter_mut().zip(shows).zip(paths) {
+            let paths = std::array::from_fn(|path| paths[path] * scales[path]);
+            let moment = self.inclination.moment(&paths, arriving.sine, shows.seen.sine());
+            *shown += paths.into_iter().sum::<Vec3>().extend(moment);
         }
+    }
+
+    /// Shares of straight light whose inclination has a sine that the darkest hair sends on as R, TT and TRT.
+    #[cfg(test)]
+    pub(super) fn straight_shares(&self, sine: f32) -> [Vec3; 3] {
+        self.table.shares(&self.ends[0].seen.at(sine))
     }
 
     /// Adds what a mixture of hair near tangent number `tangent` shows of light along every direction; a share `order`
@@ -249,9 +263,9 @@ impl Lattice {
 
 /// Radiance of each kind of path toward the eye, in whose direction `u` is a unit vector across the hair.
 #[inline]
-fn paths_of(table: &Table, u: Vec3, seen: &Seen, light: &Arriving) -> [Vec3; 3] {
+fn paths_of(table: &Table, terms: &[Vec4], u: Vec3, seen: &Seen, light: &Arriving) -> [Vec3; 3] {
     let turn = (u.dot(light.to_light) / light.flat).clamp(-1.0, 1.0);
-    table.by_path(seen, &light.met, turn, 0.0)
+    table.by_path_along(terms, seen, &light.met, turn, 0.0)
 }
 
 /// View of hair along one direction.
@@ -279,20 +293,18 @@ impl Arriving {
         let sine = t.dot(to_light);
         Self { to_light, sine, flat: (1.0 - sine * sine).max(1e-8).sqrt(), met: Met::new(sine) }
     }
+
+    /// The same turn at an inclination whose sine is greater by an offset.
+    #[inline]
+    fn beside(self, offset: f32) -> Self {
+        Self { met: Met::new((self.sine + offset).clamp(-1.0, 1.0)), ..self }
+    }
 }
 
 /// The cosine of a sine.
 #[inline]
 fn flat(sine: f32) -> f32 {
     (1.0 - sine * sine).max(0.0).sqrt()
-}
-
-/// Unit vectors spread evenly over half of the sphere.
-fn tangent(index: usize) -> Vec3 {
-    let height = 1.0 - (index as f32 + 0.5) / TANGENTS as f32;
-    let flat = (1.0 - height * height).sqrt();
-    let turn = index as f32 * 2.399_963_2;
-    Vec3::new(flat * math::cos(turn), height, flat * math::sin(turn))
 }
 
 #[cfg(test)]
@@ -362,7 +374,8 @@ mod tests {
         let of_fibre = kept(&lattice, &sphere, |tangent, to, from| {
             let (t, (way, share)) = (lattice.tangents[tangent], lattice.ways[from]);
             let u = light_field::across(t, sphere[to]);
-            let paths = paths_of(&exact, u, &seen.at(t.dot(sphere[to])), &Arriving::new(t, -way));
+            let arriving = Arriving::new(t, -way);
+            let paths = paths_of(&exact, &exact.entries, u, &seen.at(t.dot(sphere[to])), &arriving);
             share * paths.into_iter().sum::<Vec3>().x
         });
         for (carried, of_fibre) in carried.into_iter().zip(of_fibre) {

@@ -167,7 +167,8 @@ impl Toward {
         let to_eye = (self.eye - middle).normalize_or(Vec3::Z);
         let u = light_field::across(cell.tangent, to_eye);
         let mut sums = [Vec4::ZERO; 2];
-        for ((weights, moments), share) in self.lattice.weights(cell.tangent, to_eye).zip(&cell.mix) {
+        let weights = self.lattice.weights(cell.tangent, to_eye, rays);
+        for ((weights, moments), share) in weights.zip(&cell.mix) {
             let shown = rays.iter().zip(weights).fold(Vec4::ZERO, |sum, (ray, weight)| sum + *ray * weight);
             let known = light_field::shown(field, &moments, cell.tangent, u);
             // Weighted with the cell's hair: empty cells have no say.

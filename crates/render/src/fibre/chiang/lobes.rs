@@ -48,6 +48,21 @@ impl Lobes {
         self.variances[0]
     }
 
+    /// Variances of the inclination of R, TT and TRT \[rad^2\].
+    pub(crate) fn path_variances(&self) -> [f64; 3] {
+        std::array::from_fn(|lobe| self.variances[lobe])
+    }
+
+    /// Share of the sine of its inclination that light keeps as R, TT and TRT, but for the scales' tilt.
+    pub(crate) fn kept(&self) -> [f64; 3] {
+        // The terms along the fibre [d'Eon2011] are von Mises-Fisher distributions of concentration 1 / v, turned about
+        // it. Their mean is coth(1 / v) - v.
+        self.path_variances().map(|variance| {
+            let power = math::exp(-2.0 / variance);
+            (1.0 + power) / (1.0 - power) - variance
+        })
+    }
+
     /// Share of light that goes each way, for the eye's inclination \[rad\] and offset `h`; absorption of each
     /// channel is per fibre radius.
     pub fn shares<const N: usize>(&self, eye: f64, h: f64, absorption: [f64; N]) -> [[f64; N]; LOBES] {

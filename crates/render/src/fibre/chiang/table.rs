@@ -124,16 +124,7 @@ impl Table {
         let mut entries = Vec::with_capacity(ENTRIES);
         // Wide lobes depend on little, and need no evening out.
         let floor = lobes.variance().powi(6).clamp(0.02, 1.0) as f32;
-        for sum in 0..SUMS {
-            for difference in 0..DIFFERENCES {
-                let [sum, difference] = [node(sum, SUMS, PI), node(difference, DIFFERENCES, PI)];
-                let [eye, light] = [0.5 * (sum - difference), 0.5 * (sum + difference)];
-                let [r, tt, trt, _] = lobes.inclinations(eye, light).map(|density| {
-                    density * f64::from(evened((math::cos(eye) * math::cos(light)) as f32, floor))
-                });
-                entries.push(Vec4::new(r as f32, tt as f32, trt as f32, 0.0));
-            }
-        }
+        entries.extend(terms_along(lobes, floor));
         let rings: Vec<[Ring; LEVEL_COUNT]> = (0..EYES)
             .into_par_iter()
             .map(|eye| rings(lobes, FRAC_PI_2 * eye as f64 / (EYES - 1) as f64, absorption))
@@ -186,8 +177,21 @@ impl Table {
     /// [`Table::shown`] of R, TT and TRT.
     #[inline]
     pub fn by_path(&self, seen: &Seen, met: &Met, turn: f32, shift: f32) -> [Vec3; 3] {
+        self.by_path_along(&self.entries, seen, met, turn, shift)
+    }
+
+    /// [`Table::by_path`] with other [`terms_along`] the fibre.
+    #[inline]
+    pub(crate) fn by_path_along(
+        &self,
+        terms: &[Vec4],
+        seen: &Seen,
+        met: &Met,
+        turn: f32,
+        shift: f32,
+    ) -> [Vec3; 3] {
         let cosines = (seen.square * met.square).max(0.0).sqrt();
-        let along = self.along(seen.angle, met.angle, shift) / evened(cosines, self.floor);
+        let along = along(terms, seen.angle, met.angle, shift) / evened(cosines, self.floor);
         let turn = FRAC_PI_2 as f32 - arc_sine(turn);
         let turn = place(turn * std::f32::consts::FRAC_1_PI, TURNS);
         let [first, second] = if seen.even {
@@ -197,18 +201,6 @@ impl Table {
             channels(found, [0, 1].map(|term| found[0][term].w))
         };
         [Vec3::splat(first.w * along.x), first.truncate() * along.y, second.truncate() * along.z]
-    }
-
-    /// Terms along the fibre of R, TT and TRT, times `evened`.
-    #[inline]
-    fn along(&self, eye: f32, light: f32, shift: f32) -> Vec4 {
-        const WHOLE: f32 = std::f32::consts::PI;
-        let (row, part) = place((eye + light + shift + WHOLE) / (2.0 * WHOLE), SUMS);
-        let (column, across) = place((light - eye + WHOLE) / (2.0 * WHOLE), DIFFERENCES);
-        let first = row * DIFFERENCES + column;
-        let near = self.entries[first].lerp(self.entries[first + 1], across);
-        let far = self.entries[first + DIFFERENCES].lerp(self.entries[first + DIFFERENCES + 1], across);
-        near.lerp(far, part)
     }
 
     /// Terms around the fibre between nodes of the eye's inclination, the turn and the pigment.
@@ -277,6 +269,32 @@ impl Table {
             at(first).lerp(at(first + MOMENTS * MOMENT_EYES), between)
         })
     }
+}
+
+/// Terms along a fibre, times `evened` with the floor of its table: shape `[sum][difference]`.
+pub(crate) fn terms_along(lobes: &Lobes, floor: f32) -> Vec<Vec4> {
+    let nodes = (0..SUMS).flat_map(|sum| (0..DIFFERENCES).map(move |difference| (sum, difference)));
+    let term = |(sum, difference)| {
+        let [sum, difference] = [node(sum, SUMS, PI), node(difference, DIFFERENCES, PI)];
+        let [eye, light] = [0.5 * (sum - difference), 0.5 * (sum + difference)];
+        let [r, tt, trt, _] = lobes.inclinations(eye, light).map(|density| {
+            density * f64::from(evened((math::cos(eye) * math::cos(light)) as f32, floor))
+        });
+        Vec4::new(r as f32, tt as f32, trt as f32, 0.0)
+    };
+    nodes.map(term).collect()
+}
+
+/// Terms along the fibre of R, TT and TRT, times `evened`.
+#[inline]
+fn along(terms: &[Vec4], eye: f32, light: f32, shift: f32) -> Vec4 {
+    const WHOLE: f32 = std::f32::consts::PI;
+    let (row, part) = place((eye + light + shift + WHOLE) / (2.0 * WHOLE), SUMS);
+    let (column, across) = place((light - eye + WHOLE) / (2.0 * WHOLE), DIFFERENCES);
+    let first = row * DIFFERENCES + column;
+    let near = terms[first].lerp(terms[first + 1], across);
+    let far = terms[first + DIFFERENCES].lerp(terms[first + DIFFERENCES + 1], across);
+    near.lerp(far, part)
 }
 
 /// One channel of each of three, and last lanes.

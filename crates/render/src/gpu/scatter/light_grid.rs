@@ -4,12 +4,13 @@ use glam::{Vec3, Vec4};
 use strandline_gpu::{Bindings, Bound, Buffer, Declaration, Gpu, GpuError, Kernel, kernel};
 
 use crate::RenderError;
-use crate::fibre::chiang::Table;
+use crate::fibre::chiang::{AROUND, ENTRIES, Table};
 use crate::gpu::MAX_SHADOWS;
 use crate::gpu::buffers::{CELLS, Groom, Maps, PLANE, Strands, Targets};
 use crate::gpu::inputs::Frame;
 use crate::gpu::records::{LightCell, Vertex};
 use crate::gpu::shade::LightSkin;
+use crate::scatter::inclination::Inclination;
 use crate::scatter::lattice::{DIRECTIONS, MOST_ENDS, TANGENTS};
 use crate::scatter::made::Made;
 use crate::scatter::source::Source;
@@ -270,7 +271,7 @@ impl LightGrid {
     }
 }
 
-const _: () = assert!(crate::fibre::chiang::ENTRIES <= FIRST_GLOW);
+const _: () = assert!(ENTRIES <= FIRST_GLOW);
 
 impl Made {
     /// The tables as a device reads them.
@@ -295,11 +296,13 @@ impl Made {
         let scale = fibre.color_scale() as f32;
         let single = [table.floor, albedos.len() as f32, fibre.tip_pigment, scale];
         let vectors = [dark, light, darkest, self.from.of_darkest(lightest)];
+        let Inclination { kept, drawn } = *self.lattice.inclination();
         let numbers = single.into_iter().chain(vectors.into_iter().flat_map(|vector| vector.to_array()));
+        let numbers = numbers.chain(kept).chain(drawn);
         entries.iter_mut().zip(numbers).for_each(|(entry, number)| entry.w = number);
     }
 
     fn lattice_len() -> usize {
-        crate::fibre::chiang::ENTRIES + TANGENTS + MOST_ENDS * TANGENTS * DIRECTIONS * DIRECTIONS
+        ENTRIES + TANGENTS + AROUND + MOST_ENDS * TANGENTS * DIRECTIONS * DIRECTIONS
     }
 }
