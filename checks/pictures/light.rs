@@ -338,7 +338,10 @@ fn on_head(on: &On, name: &str, lights: Vec<Light>, map_size: u32) -> Option<Mea
 pub fn named_head(name: &str) -> Scene {
     let folder = strandline_checks::reference(&["look/wavy.hair", "look/bust.obj"]).unwrap().join("look");
     let lights = match name {
-        "studio" => vec![panel([-0.9, 1.25, 1.35], 0.7, [42.0, 39.0, 36.0]), panel([1.1, 1.2, -1.2], 0.4, [70.0, 74.0, 78.0])],
+        "studio" => vec![
+            panel([-0.9, 1.25, 1.35], 0.7, [42.0, 39.0, 36.0]),
+            panel([1.1, 1.2, -1.2], 0.4, [70.0, 74.0, 78.0]),
+        ],
         "back" => vec![Light { samples: 2, ..panel([0.35, 0.9, -1.5], 0.5, [150.0, 143.0, 134.0]) }],
         _ => vec![panel([1.6, 0.25, -0.2], 0.6, [60.0; 3])],
     };

@@ -84,9 +84,12 @@ fn trial() {
             };
             let mut scene = crate::light::named_head(parts[2]);
             scene.look.fibre.chiang = Chiang { eumelanin, pheomelanin, ..scene.look.fibre.chiang };
-            if let Ok(s) = std::env::var("TRIAL_ROUNDS") { scene.look.fibre.chiang.scatterings = s.parse().unwrap(); }
+            if let Ok(s) = std::env::var("TRIAL_ROUNDS") {
+                scene.look.fibre.chiang.scatterings = s.parse().unwrap();
+            }
             let boxed = scene.drawn().boxed();
-            let bytes: Vec<u8> = boxed.pixels.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
+            let bytes: Vec<u8> =
+                boxed.pixels.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
             std::fs::write(format!("{out}/{name}.f32"), bytes).unwrap();
             continue;
         }
@@ -106,12 +109,15 @@ fn trial() {
             _ => [8.0, 0.0],
         };
         scene.look.fibre.chiang = Chiang { eumelanin, pheomelanin, ..Chiang::default() };
-        if let Ok(s) = std::env::var("TRIAL_ROUNDS") { scene.look.fibre.chiang.scatterings = s.parse().unwrap(); }
+        if let Ok(s) = std::env::var("TRIAL_ROUNDS") {
+            scene.look.fibre.chiang.scatterings = s.parse().unwrap();
+        }
         if parts.len() > 2 {
             scene.body = None;
         }
         let boxed = scene.drawn().boxed();
-        let bytes: Vec<u8> = boxed.pixels.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
+        let bytes: Vec<u8> =
+            boxed.pixels.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
         std::fs::write(format!("{out}/{name}.f32"), bytes).unwrap();
     }
 }

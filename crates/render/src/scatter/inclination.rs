@@ -91,7 +91,8 @@ mod tests {
             let (height, turn) = (0.9 - 0.075 * index as f32, index as f32 * 2.4);
             let flat = (1.0 - height * height).sqrt();
             let to_light = Vec3::new(flat * turn.cos(), height, flat * turn.sin());
-            for t in [Vec3::Y, Vec3::new(0.06, 1.0, 0.03).normalize(), Vec3::new(0.3, 0.8, -0.5).normalize()] {
+            for t in [Vec3::Y, Vec3::new(0.06, 1.0, 0.03).normalize(), Vec3::new(0.3, 0.8, -0.5).normalize()]
+            {
                 let [own, moved, sent] = means(t, to_light);
                 apart = [apart[0].max((own - sent).abs()), apart[1].max((moved - sent).abs())];
             }
