@@ -86,11 +86,13 @@ fn the_frame_rate_does_not_change_a_bit() {
     assert_ne!(results[0], results[1], "another time is not noticed");
 }
 
-fn with_threads(threads: usize, friction: f32) -> Vec<Vec3Lanes> {
+fn with_threads(threads: usize, friction: f32, air: f32) -> Vec<Vec3Lanes> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| {
         let hair = ball_of_hair(300, 8, 0.25);
-        let model = Model::new(&hair, &Settings::default(), vec![skull(friction)]).unwrap();
+        let mut settings = Settings::default();
+        settings.drag.factor = air;
+        let model = Model::new(&hair, &settings, vec![skull(friction)]).unwrap();
         let mut clock = Clock::new(1.0 / 60.0);
         shake_for(&mut clock, &model, 60, 60.0).positions
     })
@@ -98,10 +100,13 @@ fn with_threads(threads: usize, friction: f32) -> Vec<Vec3Lanes> {
 
 #[test]
 fn the_number_of_threads_does_not_change_a_bit() {
-    let one = with_threads(1, 0.3);
-    assert_eq!(one, with_threads(2, 0.3));
-    assert_eq!(one, with_threads(5, 0.3));
-    assert_ne!(one, with_threads(2, 0.1), "another friction is not noticed");
+    // The force of the air comes with the sums of its cells.
+    for air in [0.0, 1.0] {
+        let one = with_threads(1, 0.3, air);
+        assert_eq!(one, with_threads(2, 0.3, air));
+        assert_eq!(one, with_threads(5, 0.3, air));
+        assert_ne!(one, with_threads(2, 0.1, air), "another friction is not noticed");
+    }
 }
 
 /// Mean way \[m\] of a point in the last step of 10 s on a head that rests.
