@@ -12,9 +12,9 @@ use glam::Vec3;
 use super::lattice::{DIRECTIONS, Rays};
 use crate::fibre::chiang::Lobes;
 
-/// Variance \[rad^2\] of the inclinations that a direction stands for: those of a square of 4 pi / 26 sr have 0.04, those
-/// of a hat between neighbours 45 degrees apart 0.1.
-pub(super) const REGION: f64 = 0.05;
+/// Variance \[rad^2\] of the inclinations that a direction stands for: those of a hat function between nearest
+/// neighbours, which lie 35.26 degrees apart.
+pub(super) const REGION: f64 = 0.063;
 /// Kinds of paths: R, TT, TRT.
 pub(crate) const PATHS: usize = 3;
 
@@ -91,7 +91,8 @@ mod tests {
             let (height, turn) = (0.9 - 0.075 * index as f32, index as f32 * 2.4);
             let flat = (1.0 - height * height).sqrt();
             let to_light = Vec3::new(flat * turn.cos(), height, flat * turn.sin());
-            for t in [Vec3::Y, Vec3::new(0.06, 1.0, 0.03).normalize(), Vec3::new(0.3, 0.8, -0.5).normalize()] {
+            for t in [Vec3::Y, Vec3::new(0.06, 1.0, 0.03).normalize(), Vec3::new(0.3, 0.8, -0.5).normalize()]
+            {
                 let [own, moved, sent] = means(t, to_light);
                 apart = [apart[0].max((own - sent).abs()), apart[1].max((moved - sent).abs())];
             }

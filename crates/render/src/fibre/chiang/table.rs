@@ -277,9 +277,9 @@ pub(crate) fn terms_along(lobes: &Lobes, floor: f32) -> Vec<Vec4> {
     let term = |(sum, difference)| {
         let [sum, difference] = [node(sum, SUMS, PI), node(difference, DIFFERENCES, PI)];
         let [eye, light] = [0.5 * (sum - difference), 0.5 * (sum + difference)];
-        let [r, tt, trt, _] = lobes.inclinations(eye, light).map(|density| {
-            density * f64::from(evened((math::cos(eye) * math::cos(light)) as f32, floor))
-        });
+        let [r, tt, trt, _] = lobes
+            .inclinations(eye, light)
+            .map(|density| density * f64::from(evened((math::cos(eye) * math::cos(light)) as f32, floor)));
         Vec4::new(r as f32, tt as f32, trt as f32, 0.0)
     };
     nodes.map(term).collect()
