@@ -84,11 +84,11 @@ fn ball() -> Mesh {
 /// A scene that a reference was drawn from.
 pub struct Scene {
     pub guides: Guides,
-    pub body: Option<Mesh>,
+    body: Option<Mesh>,
     camera: Camera,
     pub look: Look,
     pub body_look: BodyLook,
-    pub lights: Vec<Light>,
+    lights: Vec<Light>,
     settings: PictureSettings,
 }
 
@@ -333,21 +333,6 @@ fn on_head(on: &On, name: &str, lights: Vec<Light>, map_size: u32) -> Option<Mea
     drawn.boxed().save(&format!("{name}_boxed"), 1.0);
     expected.save(&format!("{name}_expected"), 1.0);
     Some(found)
-}
-
-pub fn named_head(name: &str) -> Scene {
-    let folder = strandline_checks::reference(&["look/wavy.hair", "look/bust.obj"]).unwrap().join("look");
-    let lights = match name {
-        "studio" => vec![
-            panel([-0.9, 1.25, 1.35], 0.7, [42.0, 39.0, 36.0]),
-            panel([1.1, 1.2, -1.2], 0.4, [70.0, 74.0, 78.0]),
-        ],
-        "back" => vec![Light { samples: 2, ..panel([0.35, 0.9, -1.5], 0.5, [150.0, 143.0, 134.0]) }],
-        _ => vec![panel([1.6, 0.25, -0.2], 0.6, [60.0; 3])],
-    };
-    let mut scene = head(&folder, lights);
-    scene.look.shadow.map_size = if name == "back" { 4096 } else { 1024 };
-    scene
 }
 
 law! {

@@ -2,7 +2,7 @@
 //! path-traced pictures (reference/look/README.md).
 
 use glam::Vec3;
-use strandline_checks::{On, law};
+use strandline_checks::law;
 use strandline_render::Light;
 use strandline_render::fibre::Chiang;
 
@@ -14,12 +14,15 @@ const BANDS: usize = 16;
 /// Share of the brightest band's light below which a band is not looked at by itself.
 const DIM: f32 = 0.2;
 
-/// Lights and the directions in which they go.
-const LIGHTS: [(&str, [f32; 3]); 4] = [
-    ("behind", [-0.3, -0.5, 0.8]),
-    ("side", [-1.0, -0.15, -0.1]),
-    ("above", [0.1, -1.0, -0.05]),
-    ("below", [0.25, 0.6, -0.75]),
+/// Lights, the directions in which they go, and the greatest share by which a channel of the whole may differ, and of a
+/// band. Upright hair that is lit along itself is dark deep inside, and light from below that the camera's side throws
+/// back is too bright there. With the inclinations of the 26 directions alone white hair from behind was 0.22 off, hair
+/// of any pigment but black from aside 0.28, and bands of it up to 0.96.
+const LIGHTS: [(&str, [f32; 3], [f32; 2]); 4] = [
+    ("behind", [-0.3, -0.5, 0.8], [0.1, 0.45]),
+    ("side", [-1.0, -0.15, -0.1], [0.1, 0.42]),
+    ("above", [0.1, -1.0, -0.05], [0.17, 0.3]),
+    ("below", [0.25, 0.6, -0.75], [0.22, 0.58]),
 ];
 /// Hair, with its eumelanin and pheomelanin.
 const PIGMENTS: [(&str, [f32; 2]); 4] =
@@ -59,65 +62,12 @@ fn apart(found: &[Vec3], expected: &[Vec3]) -> [f32; 2] {
 law! {
     fn hair_in_any_light_is_as_bright_as_path_tracing_shows_it(on) {
         let chosen = on.either(&PIGMENTS[..], &PIGMENTS[..1]);
-        for (light, way) in on.either(&LIGHTS[..], &LIGHTS[..1]) {
+        for (light, way, most) in on.either(&LIGHTS[..], &LIGHTS[..1]) {
             for (pigment, melanin) in chosen {
                 let found = bands(&scene(*way, *melanin).drawn_by(on));
                 let [whole, band] = apart(&found, &reference(light, pigment));
-                println!("{light} {pigment}: {whole:.3} {band:.3}");
+                assert!(whole <= most[0] && band <= most[1], "{light} {pigment}: {whole} {band}");
             }
         }
-    }
-}
-
-#[test]
-fn trial() {
-    let Ok(names) = std::env::var("TRIAL") else { return };
-    let out = std::env::var("TRIAL_OUT").unwrap();
-    for name in names.split(',') {
-        let parts: Vec<&str> = name.split('_').collect();
-        if parts[0] == "head" {
-            let [eumelanin, pheomelanin] = match parts[1] {
-                "white" => [0.0, 0.0],
-                "blonde" => [0.3, 0.0],
-                "brown" => [0.6, 0.2],
-                _ => [8.0, 0.0],
-            };
-            let mut scene = crate::light::named_head(parts[2]);
-            scene.look.fibre.chiang = Chiang { eumelanin, pheomelanin, ..scene.look.fibre.chiang };
-            if let Ok(s) = std::env::var("TRIAL_ROUNDS") {
-                scene.look.fibre.chiang.scatterings = s.parse().unwrap();
-            }
-            let boxed = scene.drawn().boxed();
-            let bytes: Vec<u8> =
-                boxed.pixels.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
-            std::fs::write(format!("{out}/{name}.f32"), bytes).unwrap();
-            continue;
-        }
-        let way = match parts[1] {
-            "front" => [-0.4, -0.7, -0.6],
-            "behind" => [-0.3, -0.5, 0.8],
-            "side" => [-1.0, -0.15, -0.1],
-            "above" => [0.1, -1.0, -0.05],
-            _ => [0.25, 0.6, -0.75],
-        };
-        let light = Light { position: -Vec3::from(way), ..crate::light::sun() };
-        let mut scene = crate::light::sphere(Some(light), 0.0);
-        let [eumelanin, pheomelanin] = match parts[0] {
-            "white" => [0.0, 0.0],
-            "blonde" => [0.3, 0.0],
-            "brown" => [0.6, 0.2],
-            _ => [8.0, 0.0],
-        };
-        scene.look.fibre.chiang = Chiang { eumelanin, pheomelanin, ..Chiang::default() };
-        if let Ok(s) = std::env::var("TRIAL_ROUNDS") {
-            scene.look.fibre.chiang.scatterings = s.parse().unwrap();
-        }
-        if parts.len() > 2 {
-            scene.body = None;
-        }
-        let boxed = scene.drawn().boxed();
-        let bytes: Vec<u8> =
-            boxed.pixels.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
-        std::fs::write(format!("{out}/{name}.f32"), bytes).unwrap();
     }
 }

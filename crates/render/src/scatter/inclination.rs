@@ -12,9 +12,9 @@ use glam::Vec3;
 use super::lattice::{DIRECTIONS, Rays};
 use crate::fibre::chiang::Lobes;
 
-/// Variance \[rad^2\] of the inclinations that a direction stands for: those of a square of 4 pi / 26 sr have 0.04, those
-/// of a hat between neighbours 45 degrees apart 0.1.
-pub(super) const REGION: f64 = 0.05;
+/// Variance \[rad^2\] of the inclinations that a direction stands for: those of a hat function between nearest
+/// neighbours, which lie 35.26 degrees apart.
+pub(super) const REGION: f64 = 0.063;
 /// Kinds of paths: R, TT, TRT.
 pub(crate) const PATHS: usize = 3;
 
