@@ -93,7 +93,9 @@ fn pieces_and_a_skin_that_moves_are_carried_as_exactly() {
             let body = BodyFrame::from(pose).with_pieces([piece]).with_skin(grown.clone());
             let simulation = session.simulation_mut();
             let start = simulation.end().clone();
-            simulation.step_along(1.0 / 60.0, &|share| (start.toward(&body, share), Vec3::ZERO)).unwrap();
+            simulation
+                .step_along(1.0 / 60.0, &|share| (start.toward(&body, share), Vec3::ZERO.into()))
+                .unwrap();
         }
         let off = apart(&positions(&mut near), &positions(&mut far), between);
         assert!(off < APART, "{off} m in step {step}");

@@ -46,7 +46,9 @@ fn simulation(guides: &Guides, method: StrandMethod) -> Simulation {
 
 fn run(simulation: &mut Simulation, frames: std::ops::Range<u32>) {
     for frame in frames {
-        simulation.run_to(f64::from(frame + 1) * FRAME, &|time| (body(time), Vec3::X * 0.3)).unwrap();
+        simulation
+            .run_to(f64::from(frame + 1) * FRAME, &|time| (body(time), (Vec3::X * 0.3).into()))
+            .unwrap();
     }
 }
 
