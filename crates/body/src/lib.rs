@@ -48,6 +48,7 @@ mod rigid_fit;
 mod scalp;
 mod skin_motion;
 mod skin_roots;
+mod skin_side;
 mod skin_solid;
 mod skin_table;
 mod solid_table;
