@@ -54,6 +54,7 @@ mod skin_table;
 mod solid_table;
 mod solids;
 mod stl;
+mod teleports;
 mod texture;
 mod triangle;
 mod triangle_tree;
