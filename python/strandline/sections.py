@@ -179,6 +179,15 @@ class Style(TypedDict, total=False):
     """Amplitude of each strand's own disorder at the tip. Allowed: 0 to 0.1 m."""
 
 
+class BodyTeleports(TypedDict, total=False):
+    """A mark of the body's motion: there it is elsewhere at once, and hair is carried with it instead of being
+    pulled."""
+
+    time: float
+    """Time of the motion. Between its samples on both sides of a mark nothing is interpolated. Allowed: -1,000,000 to
+    1,000,000 s."""
+
+
 class BodyParts(TypedDict, total=False):
     """A further mesh of the body: eyes, teeth, a collar, a hat."""
 
@@ -246,6 +255,11 @@ class Body(TypedDict, total=False):
 
     loop: bool
     """Begins the motion again after its end. Allowed: true or false."""
+
+    teleports: Sequence[BodyTeleports]
+    """Marks at which the body is elsewhere at once, beside those of its file: `extras.teleports` of a glTF's clip and
+    the array `teleports` of an .npz, times of the motion. A `loop` jumps at its beginning where 0 is marked. Allowed:
+    0 to 100,000."""
 
     collider_file: str
     """A closed mesh that hair hits in place of the drawn one. Allowed: the path of a file."""

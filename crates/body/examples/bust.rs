@@ -9,9 +9,10 @@
 
 #![allow(clippy::print_stdout)] // a program for a terminal
 
-use fast_surface_nets::ndshape::RuntimeShape;
-use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
-use glam::{Mat4, Quat, UVec3, Vec3, vec3};
+mod glb;
+
+use glam::{Mat4, Quat, Vec3, vec3};
+use glb::{Parts, container, joint_nodes, surface, turns};
 use strandline_base::math;
 use strandline_body::{Mannequin, SignedDistance};
 
@@ -32,18 +33,8 @@ const JOINTS: [(&str, Option<usize>, Vec3); 5] = [
 fn skin() -> (Vec<Vec3>, Vec<u32>) {
     let bust = Mannequin::new();
     let bounds = bust.bounds();
-    let origin = bounds.min - Vec3::splat(2.0 * SPACING);
-    let size = ((bounds.max - origin) / SPACING).as_uvec3() + UVec3::splat(4);
-    let place = |index: u32| {
-        let cell = UVec3::new(index % size.x, index / size.x % size.y, index / (size.x * size.y));
-        origin + cell.as_vec3() * SPACING
-    };
-    let samples: Vec<f32> = (0..size.x * size.y * size.z).map(|index| bust.distance(place(index))).collect();
-    let mut buffer = SurfaceNetsBuffer::default();
-    let shape = RuntimeShape::<u32, 3>::new(size.to_array());
-    surface_nets(&samples, &shape, [0; 3], (size - UVec3::ONE).to_array(), &mut buffer);
-    let settled = |cell: &[f32; 3]| bust.nearest_skin(origin + Vec3::from_array(*cell) * SPACING).0;
-    (buffer.positions.iter().map(settled).collect(), buffer.indices)
+    let (places, corners) = surface(|place| bust.distance(place), [bounds.min, bounds.max], SPACING);
+    (places.iter().map(|place| bust.nearest_skin(*place).0).collect(), corners)
 }
 
 /// From 0 below a range to 1 above it.
@@ -76,67 +67,6 @@ fn smile(place: Vec3) -> Vec3 {
     let corner = near(vec3(0.0245, -0.0786, 0.088), 0.014) * vec3(0.006, 0.008, -0.004);
     let cheek = near(vec3(0.045, -0.05, 0.072), 0.02) * vec3(0.002, 0.004, 0.002);
     (corner + cheek) * vec3(side, 1.0, 1.0)
-}
-
-/// The parts of the file: bytes, and the views and accessors over them as text.
-#[derive(Default)]
-struct Parts {
-    bytes: Vec<u8>,
-    views: Vec<String>,
-    accessors: Vec<String>,
-}
-
-impl Parts {
-    fn view(&mut self, bytes: &[u8], stride: usize) -> usize {
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let (offset, length) = (self.bytes.len(), bytes.len());
-        let stride = if stride > 0 { format!(r#","byteStride":{stride}"#) } else { String::new() };
-        self.views.push(format!(r#"{{"buffer":0,"byteOffset":{offset},"byteLength":{length}{stride}}}"#));
-        self.bytes.extend_from_slice(bytes);
-        self.views.len() - 1
-    }
-
-    fn accessor(&mut self, bytes: &[u8], stride: usize, members: &str) -> usize {
-        let view = self.view(bytes, stride);
-        self.accessors.push(format!(r#"{{"bufferView":{view},{members}}}"#));
-        self.accessors.len() - 1
-    }
-
-    fn floats(&mut self, numbers: &[f32], kind: &str, more: &str) -> usize {
-        let width = match kind {
-            "SCALAR" => 1,
-            "VEC3" => 3,
-            "VEC4" => 4,
-            _ => 16,
-        };
-        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-        let count = numbers.len() / width;
-        let members = format!(r#""componentType":5126,"count":{count},"type":"{kind}"{more}"#);
-        self.accessor(&bytes, 0, &members)
-    }
-
-    /// A clip whose channels rest at every key: a name, times \[s\], and nodes with path, kind and values.
-    fn clip(&mut self, name: &str, times: &[f32], channels: &[(usize, &str, &str, Vec<f32>)]) -> String {
-        let last = times[times.len() - 1];
-        let input = self.floats(times, "SCALAR", &format!(r#","min":[0],"max":[{last}]"#));
-        let (mut samplers, mut targets) = (Vec::new(), Vec::new());
-        for (index, (node, path, kind, values)) in channels.iter().enumerate() {
-            let width = values.len() / times.len();
-            let rest = vec![0.0; width];
-            let cubic: Vec<f32> =
-                values.chunks(width).flat_map(|value| [&rest[..], value, &rest[..]].concat()).collect();
-            let output = self.floats(&cubic, kind, "");
-            samplers.push(format!(r#"{{"input":{input},"output":{output},"interpolation":"CUBICSPLINE"}}"#));
-            targets.push(format!(r#"{{"sampler":{index},"target":{{"node":{node},"path":"{path}"}}}}"#));
-        }
-        let (samplers, targets) = (samplers.join(","), targets.join(","));
-        format!(r#"{{"name":"{name}","samplers":[{samplers}],"channels":[{targets}]}}"#)
-    }
-}
-
-/// Rotations about pitch and yaw \[degrees\] and roll, one behind the other.
-fn turns(degrees: &[[f32; 3]]) -> Vec<f32> {
-    degrees.iter().flat_map(|degrees| math::pitch_yaw_roll(Vec3::from(*degrees)).to_array()).collect()
 }
 
 fn clips(parts: &mut Parts) -> Vec<String> {
@@ -258,40 +188,9 @@ fn smile_target(parts: &mut Parts, places: &[Vec3], size: f32) -> usize {
 
 /// The joints, and the node of the skinned mesh.
 fn nodes() -> Vec<String> {
-    let joint = |(index, (name, above, place)): (usize, &(&str, Option<usize>, Vec3))| {
-        let from = above.map_or(Vec3::ZERO, |above| JOINTS[above].2);
-        let Vec3 { x, y, z } = *place - from;
-        let below: Vec<String> = (JOINTS.iter().enumerate())
-            .filter(|(_, joint)| joint.1 == Some(index))
-            .map(|(below, _)| below.to_string())
-            .collect();
-        let children =
-            if below.is_empty() { String::new() } else { format!(r#","children":[{}]"#, below.join(",")) };
-        format!(r#"{{"name":"{name}","translation":[{x},{y},{z}]{children}}}"#)
-    };
-    let mut nodes: Vec<String> = JOINTS.iter().enumerate().map(joint).collect();
+    let mut nodes = joint_nodes(&JOINTS);
     nodes.push(r#"{"name":"bust","mesh":0,"skin":0}"#.to_owned());
     nodes
-}
-
-/// A binary glTF.
-fn container(mut json: Vec<u8>, mut bytes: Vec<u8>) -> Vec<u8> {
-    json.resize(json.len().next_multiple_of(4), b' ');
-    bytes.resize(bytes.len().next_multiple_of(4), 0);
-    let number = |number: usize| (number as u32).to_le_bytes();
-    let total = number(28 + json.len() + bytes.len());
-    [
-        b"glTF",
-        &number(2)[..],
-        &total,
-        &number(json.len()),
-        b"JSON",
-        &json,
-        &number(bytes.len()),
-        b"BIN\0",
-        &bytes,
-    ]
-    .concat()
 }
 
 fn main() -> std::io::Result<()> {

@@ -103,6 +103,12 @@ impl<const N: usize> Curve<N> {
         within.any(|key| key.is_cut)
     }
 
+    /// Number of jumps up to a time \[s\]; `None` of a curve without any.
+    pub fn cuts_until(&self, time: f64) -> Option<i64> {
+        let cuts = || self.keys.iter().skip(1).filter(|key| key.is_cut);
+        (cuts().count() > 0).then(|| cuts().filter(|key| key.time <= time).count() as i64)
+    }
+
     /// The way from a key to the next; `None` beyond both ends.
     fn way(&self, key: usize) -> Option<Interpolation> {
         let next = self.keys.get(key.checked_add(1)?)?;

@@ -26,6 +26,8 @@ pub struct BodyFrame {
     skin: Option<Arc<[Vec3]>>,
     /// True after a jump.
     has_jumped: bool,
+    /// Number of marks of the motion up to here; `None` of one without marks.
+    jumps: Option<i64>,
 }
 
 impl From<Pose> for BodyFrame {
@@ -74,6 +76,7 @@ impl BodyFrame {
         rides_skin: false,
         skin: None,
         has_jumped: false,
+        jumps: None,
     };
 
     /// Adds the transforms of the pieces after the head, `world_from_piece`, piece 1 first.
@@ -110,6 +113,21 @@ impl BodyFrame {
         self.has_jumped
     }
 
+    /// Numbers a frame by the marks of its motion up to it. Between two frames of other numbers the body jumps.
+    pub fn after_jumps(self, count: i64) -> Self {
+        Self { jumps: Some(count), ..self }
+    }
+
+    /// Adds marks of another motion that carries this one.
+    pub fn after_further_jumps(self, count: i64) -> Self {
+        Self { jumps: Some(self.jumps.unwrap_or(0).saturating_add(count)), ..self }
+    }
+
+    /// True where a mark lies between this frame and one after it, or [`Self::after_jump`] marked that one.
+    pub fn jumps_to(&self, next: &Self) -> bool {
+        next.has_jumped || self.jumps.zip(next.jumps).is_some_and(|(here, there)| here != there)
+    }
+
     /// The frame without root frames.
     pub(crate) fn without_roots(self) -> Self {
         Self { roots: None, rides_skin: false, ..self }
@@ -126,6 +144,7 @@ impl BodyFrame {
             rides_skin: self.rides_skin,
             skin: self.skin.clone(),
             has_jumped: self.has_jumped,
+            jumps: self.jumps,
         }
     }
 
@@ -189,7 +208,7 @@ impl BodyFrame {
     /// the skin, as [`SkinRoots::placed`](crate::SkinRoots::placed) adds them, are left to follow from the skin there.
     /// To a frame after a jump there is no way: it is that frame.
     pub fn toward(&self, end: &Self, share: f32) -> Self {
-        if end.has_jumped {
+        if self.jumps_to(end) {
             return end.clone();
         }
         if self == end {
@@ -218,6 +237,7 @@ impl BodyFrame {
             rides_skin: false,
             skin,
             has_jumped: false,
+            jumps: self.jumps.or(end.jumps),
         }
     }
 

@@ -14,7 +14,7 @@ use crate::{BodyError, DistanceGrid, Mesh};
 
 /// First bytes of a file. The number counts the ways of building a grid: it increases with every change that
 /// gives other distances.
-const MAGIC: &[u8; 16] = b"strandline grid2";
+const MAGIC: &[u8; 16] = b"strandline grid3";
 /// Bytes before the distances: the magic, the key, place, spacing and number of nodes.
 const HEADER: usize = 16 + DIGEST + 7 * 4;
 const DIGEST: usize = 32;

@@ -55,6 +55,11 @@ impl Keyframes {
         pose
     }
 
+    /// Number of jumps up to a time \[s\]; `None` without any.
+    pub(crate) fn jumps_until(&self, time: f64) -> Option<i64> {
+        self.0.cuts_until(time)
+    }
+
     /// Tells whether the head jumps later than `after` and not later than `until` \[s\].
     pub(crate) fn is_cut_between(&self, after: f64, until: f64) -> bool {
         self.0.is_cut_between(after, until)

@@ -25,8 +25,8 @@ const SIDE_OF_SHELLS: f32 = 256.0;
 
 /// Signed distance \[m\] at each node, in the order of storage.
 ///
-/// The distance is exact, from the nearest triangle; of a large lattice it may be less more than ten cells from the
-/// surface, by half a cell where the surface is smooth ([`FarNodes`]). Its sign comes from counting the surface along
+/// The distance is exact, from the nearest triangle; of a large lattice it may be less more than seven cells from the
+/// surface, by a seventh of a cell, and by 0.4 more than ten cells ([`FarNodes`]). Its sign comes from counting the surface along
 /// lines of nodes, since the sign that the nearest triangle gives is wrong near its edges.
 pub(crate) fn at_nodes(mesh: &Mesh, lattice: &Lattice) -> Vec<f32> {
     let triangles = corners_in_cells(mesh, lattice);

@@ -61,6 +61,14 @@ impl Motion {
         }
     }
 
+    /// Number of jumps (`is_cut` of a keyframe) up to a time \[s\]; `None` of a motion without any.
+    pub fn jumps_until(&self, time: f64) -> Option<i64> {
+        match self {
+            Self::Still | Self::Shake | Self::Nod | Self::Turn => None,
+            Self::Keyframes(keys) => keys.jumps_until(time),
+        }
+    }
+
     /// The head's pose (`world_from_head`) at a time \[s\].
     ///
     /// `pivot` \[m\], head space, is the point about which the head rotates, near the top of the

@@ -9,7 +9,7 @@ use crate::skin_solid::{NONE, SkinSolid};
 use crate::{BodyFrame, Carrier, Collider, Shape};
 
 /// Most waiting nodes: one for each halving of 2^32 triangles, and one more.
-const DEPTH: usize = 40;
+pub(crate) const DEPTH: usize = 40;
 /// Distance \[m\] below which the way to the nearest place has no direction.
 const TOUCHING: f32 = 1e-5;
 /// Share of the distance that the quick search may be off, and the lower bound that it leaves.
@@ -110,7 +110,7 @@ impl PosedSkin {
         self.most_shift
     }
 
-    fn corners(&self, positions: &[Vec3], triangle: u32) -> [Vec3; 3] {
+    pub(crate) fn corners(&self, positions: &[Vec3], triangle: u32) -> [Vec3; 3] {
         self.solid.triangles[triangle as usize].map(|corner| positions[corner as usize])
     }
 
@@ -201,10 +201,20 @@ impl PosedSkin {
     fn seen(&self, point: Vec3, triangle: u32, away: f32) -> SkinPlace {
         let (place, feature) = nearest_on(self.corners(&self.end, triangle), point);
         let outward = self.outward(triangle, feature) * self.solid.facing;
-        let side = if outward.dot(point - place) < 0.0 { -1.0 } else { 1.0 };
+        let is_inside =
+            outward.dot(point - place) < 0.0 && !self.is_before_a_fold(point, triangle, feature, place);
+        let side = if is_inside { -1.0 } else { 1.0 };
         let is_face = matches!(feature, Feature::Face);
         let normal = if is_face || away < TOUCHING { outward } else { (point - place) * (side / away) };
         SkinPlace { distance: side * away, normal: normal.normalize_or(Vec3::Y), triangle }
+    }
+
+    /// Corners of a triangle at the end, that at the place of a vertex first.
+    pub(crate) fn from_corner(&self, triangle: u32, vertex: u32) -> [Vec3; 3] {
+        let (at, first) = (self.solid.triangles[triangle as usize], self.solid.welded[vertex as usize]);
+        let own = at.iter().position(|corner| self.solid.welded[*corner as usize] == first).unwrap_or(0);
+        let corners = self.corners(&self.end, triangle);
+        [own, (own + 1) % 3, (own + 2) % 3].map(|corner| corners[corner])
     }
 
     /// Direction that leads out of the skin at a part of a triangle \[Baerentzen2005\].
@@ -221,14 +231,8 @@ impl PosedSkin {
             },
             Feature::Corner(corner) => {
                 let vertex = self.solid.triangles[triangle as usize][corner];
-                let first = self.solid.welded[vertex as usize];
                 let part = |index: &u32| {
-                    let at = self.solid.triangles[*index as usize];
-                    let own = at.iter().position(|corner| self.solid.welded[*corner as usize] == first);
-                    let corners = self.corners(&self.end, *index);
-                    let own = own.unwrap_or(0);
-                    let [here, next, last] =
-                        [own, (own + 1) % 3, (own + 2) % 3].map(|corner| corners[corner]);
+                    let [here, next, last] = self.from_corner(*index, vertex);
                     let angle = (next - here).angle_between(last - here);
                     if angle.is_finite() { normal(*index) * angle } else { Vec3::ZERO }
                 };

@@ -72,6 +72,13 @@ impl RecordedMotion {
         pose
     }
 
+    /// Number of marks of the clip up to a time \[s\]; `None` of a motion without any.
+    pub fn jumps_until(&self, time: f64) -> Option<i64> {
+        let Source::Node(rig, _) = &self.source else { return None };
+        let marks = rig.teleports();
+        (!marks.times().is_empty()).then(|| marks.passed(time, 0.0))
+    }
+
     /// Rotation and place of the joint in the world, units of the file.
     fn joint(&self, time: f64) -> (DQuat, DVec3) {
         match &self.source {

@@ -6,6 +6,7 @@ use glam::{Quat, Vec3};
 
 use crate::gltf::Rig;
 use crate::rigid_fit::rigid_fit;
+use crate::teleports::Teleports;
 use crate::vertex_frames::VertexFrames;
 use crate::{BodyError, BodyFrame};
 
@@ -18,7 +19,10 @@ const FARTHEST: f32 = 1e6;
 
 /// Motion of the vertices of a mesh, in the units and axes of its file, in the order of the mesh.
 #[derive(Clone, Debug)]
-pub struct VertexMotion(Source);
+pub struct VertexMotion {
+    source: Source,
+    teleports: Teleports,
+}
 
 #[derive(Clone, Debug)]
 enum Source {
@@ -29,11 +33,12 @@ enum Source {
 
 impl VertexMotion {
     pub(crate) fn of_clip(rig: Rig) -> Self {
-        Self(Source::Clip(Arc::new(rig)))
+        let teleports = rig.teleports().clone();
+        Self { source: Source::Clip(Arc::new(rig)), teleports }
     }
 
     pub(crate) fn of_frames(frames: VertexFrames) -> Self {
-        Self(Source::Frames(Arc::new(frames), None))
+        Self { source: Source::Frames(Arc::new(frames), None), teleports: Teleports::default() }
     }
 
     /// Vertices at times \[s\]: shape `[frame][vertex]`. Between two times they move on straight lines; at rest they are
@@ -48,15 +53,32 @@ impl VertexMotion {
     /// The motion of a mesh whose vertices have these positions at rest, units of the file; clips have their own rest.
     #[must_use]
     pub fn with_rest(self, rest: &[Vec3]) -> Self {
-        match self.0 {
-            Source::Frames(frames, _) => Self(Source::Frames(frames, Some(rest.into()))),
-            clip => Self(clip),
-        }
+        let source = match self.source {
+            Source::Frames(frames, _) => Source::Frames(frames, Some(rest.into())),
+            clip => clip,
+        };
+        Self { source, ..self }
+    }
+
+    /// Adds marks, times of the motion \[s\] at which the body is elsewhere at once: hair is carried there, not pulled.
+    /// Between the samples on both sides of a mark nothing is interpolated. The earlier one is held until the mark. In a
+    /// motion that begins again a mark at 0 makes the beginning a jump.
+    ///
+    /// # Errors
+    /// Times that are not finite.
+    pub fn with_teleports(self, times: &[f64]) -> Result<Self, BodyError> {
+        let teleports = Teleports::new(&[self.teleports.times(), times].concat())?;
+        Ok(Self { teleports, ..self })
+    }
+
+    /// Times of the marks \[s\], rising: those of the file and those that were added.
+    pub fn teleports(&self) -> &[f64] {
+        self.teleports.times()
     }
 
     /// Time of the last sample \[s\]; those before the first and after the last are held.
     pub fn end(&self) -> f64 {
-        match &self.0 {
+        match &self.source {
             Source::Clip(rig) => rig.end(),
             Source::Frames(frames, _) => frames.end(),
         }
@@ -64,24 +86,24 @@ impl VertexMotion {
 
     /// Positions of all vertices at a time \[s\], units of the file.
     pub fn positions(&self, time: f64) -> Vec<Vec3> {
-        match &self.0 {
-            Source::Clip(rig) => rig.positions(Some(time)),
-            Source::Frames(frames, _) => frames.positions(time),
+        match &self.source {
+            Source::Clip(rig) => rig.positions(Some(time), &self.teleports),
+            Source::Frames(frames, _) => frames.positions(time, &self.teleports),
         }
     }
 
     /// Positions of all vertices at rest, units of the file.
     fn rest(&self) -> Vec<Vec3> {
-        match &self.0 {
-            Source::Clip(rig) => rig.positions(None),
+        match &self.source {
+            Source::Clip(rig) => rig.positions(None, &self.teleports),
             Source::Frames(_, Some(rest)) => rest.to_vec(),
-            Source::Frames(frames, None) => frames.positions(f64::NEG_INFINITY),
+            Source::Frames(frames, None) => frames.positions(f64::NEG_INFINITY, &self.teleports),
         }
     }
 
     /// Of some vertices those that are known to move as one.
     fn rigid(&self, vertices: &[u32]) -> Vec<u32> {
-        match &self.0 {
+        match &self.source {
             Source::Clip(rig) => rig.rigid(vertices),
             Source::Frames(..) => Vec::new(),
         }
@@ -89,7 +111,7 @@ impl VertexMotion {
 
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
-        match &self.0 {
+        match &self.source {
             Source::Clip(rig) => rig.vertex_count(),
             Source::Frames(frames, _) => frames.vertex_count(),
         }
@@ -119,6 +141,12 @@ impl Playback {
         let time = self.start + self.speed * time;
         let time = if self.is_loop && end > 0.0 { time.rem_euclid(end) } else { time };
         if time.is_finite() { time } else { 0.0 }
+    }
+
+    /// Number of times that the motion has begun again.
+    fn rounds(&self, time: f64, end: f64) -> f64 {
+        let is_round = self.is_loop && end > 0.0;
+        if is_round { ((self.start + self.speed * time) / end).floor() } else { 0.0 }
     }
 }
 
@@ -182,6 +210,16 @@ impl SkinMotion {
 
     /// The body at a time of the scene \[s\].
     pub fn frame(&self, time: f64) -> BodyFrame {
+        let frame = self.frame_without_marks(time);
+        let marks = &self.motion.teleports;
+        if marks.times().is_empty() {
+            return frame;
+        }
+        let end = self.motion.end();
+        frame.after_jumps(marks.passed(self.playback.time(time, end), self.playback.rounds(time, end)))
+    }
+
+    fn frame_without_marks(&self, time: f64) -> BodyFrame {
         let time = self.playback.time(time, self.motion.end());
         let known = |last: &Option<(f64, BodyFrame)>| {
             last.as_ref().filter(|(known, _)| *known == time).map(|(_, frame)| frame.clone())
@@ -260,6 +298,29 @@ mod tests {
         assert_eq!(Playback { speed: -1.0, ..playback }.time(1.0, 2.0), 1.5);
         assert_eq!(Playback { is_loop: false, ..playback }.time(5.0, 2.0), 10.5);
         assert_eq!(playback.time(f64::NAN, 2.0), 0.0);
+    }
+
+    #[test]
+    fn a_mark_holds_what_was_before_it_and_numbers_the_frames() {
+        let (motion, rest, turn) = motion();
+        let motion = motion.with_teleports(&[0.6]).unwrap();
+        let new =
+            |playback| SkinMotion::new(motion.clone(), playback, &rest, (0.01, turn), &[0, 1, 2, 3]).unwrap();
+        let body = new(Playback::default());
+        let [held, before, after, later] = [0.3, 0.59, 0.6, 2.0].map(|time| body.frame(time));
+        assert_eq!(held.world_from_head(), crate::Pose::IDENTITY, "nothing is interpolated over a mark");
+        assert_eq!(before, held);
+        assert!(after.world_from_head().translation.distance(Vec3::X * 0.3) < 1e-6);
+        assert_eq!(later, after);
+        assert!(before.jumps_to(&after) && !held.jumps_to(&before) && !after.jumps_to(&later));
+        assert_eq!(before.toward(&after, 0.5), after, "there is no way to a frame behind a mark");
+        // Each round has the mark again, also backward; the beginning of a round has none.
+        let rounds = new(Playback { is_loop: true, ..Playback::default() });
+        let [first, end, begun, second] = [0.7, 0.99, 1.1, 1.7].map(|time| rounds.frame(time));
+        assert!(!first.jumps_to(&end) && !end.jumps_to(&begun) && begun.jumps_to(&second));
+        let unmarked = self::motion().0;
+        let body = SkinMotion::new(unmarked, Playback::default(), &rest, (0.01, turn), &[]).unwrap();
+        assert!(!body.frame(0.3).jumps_to(&body.frame(0.9)));
     }
 
     #[test]

@@ -11,6 +11,7 @@ use strandline_base::par::prelude::*;
 use strandline_base::read_plain;
 
 use crate::parsing::{Refusal, read_file};
+use crate::teleports::Teleports;
 use crate::vertex_frames::VertexFrames;
 use crate::{BodyError, Mesh, MeshFormat, VertexMotion, obj};
 
@@ -38,13 +39,15 @@ struct Found {
     faces: Option<Numbers>,
     times: Option<Numbers>,
     rate: Option<Numbers>,
+    /// Times of marks \[s\].
+    teleports: Vec<f64>,
     has_poses: bool,
 }
 
 impl VertexMotion {
     /// Loads the vertices of a mesh over time from a .npy or .npz file, in the units and axes of the mesh: an array
     /// `[frame, vertex, 3]` or `[frame, 3 * vertex]`, in an archive by the name vertices, verts, positions or v, with
-    /// `times` \[s\] or a rate `fps` \[Hz\] where it is not `rate`. The vertices are in the order of the mesh's file.
+    /// `times` \[s\] or a rate `fps` \[Hz\] where it is not `rate`, and `teleports`, times \[s\] of marks. The vertices are in the order of the mesh's file.
     ///
     /// # Errors
     /// See [`BodyError`]: no such array, another number of vertices than the mesh has, more memory than may be taken.
@@ -72,7 +75,7 @@ impl VertexMotion {
             None => frames,
         };
         let times = found.times(frames.len(), rate).map_err(|refusal| refused(path, refusal))?;
-        Ok(Self::sampled(times, frames)?.with_rest(&mesh.positions))
+        Self::sampled(times, frames)?.with_rest(&mesh.positions).with_teleports(&found.teleports)
     }
 }
 
@@ -133,8 +136,8 @@ fn of_arrays(path: &Path, rate: f64) -> Result<(Mesh, VertexMotion), BodyError> 
     let frames = found.frames().map_err(refuse)?;
     let times = found.times(frames.len(), rate).map_err(refuse)?;
     let frames = VertexFrames::new(times, frames)?;
-    let mesh = Mesh::new(frames.positions(f64::NEG_INFINITY), triangles)?;
-    Ok((mesh, VertexMotion::of_frames(frames)))
+    let mesh = Mesh::new(frames.positions(f64::NEG_INFINITY, &Teleports::default()), triangles)?;
+    Ok((mesh, VertexMotion::of_frames(frames).with_teleports(&found.teleports)?))
 }
 
 fn refused(path: &Path, (found, expected): Refusal) -> BodyError {
@@ -216,8 +219,10 @@ fn arrays(path: &Path) -> Result<Found, BodyError> {
     };
     let (vertices, faces) = (array(&VERTICES)?, array(&FACES)?);
     let (times, rate) = (array(&["times"])?, array(&RATES)?);
+    let teleports = array(&["teleports"])?.map(|marks| marks.kind.numbers(&marks.bytes).collect());
+    let teleports = teleports.unwrap_or_default();
     let has_poses = npz.names().any(|name| name == "poses");
-    Ok(Found { vertices, faces, times, rate, has_poses })
+    Ok(Found { vertices, faces, times, rate, teleports, has_poses })
 }
 
 impl Found {

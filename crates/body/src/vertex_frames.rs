@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::BodyError;
+use crate::teleports::Teleports;
 
 /// Positions of vertices at times.
 #[derive(Debug)]
@@ -58,13 +59,16 @@ impl VertexFrames {
         self.frames[0].len()
     }
 
-    /// Positions at a time \[s\], on straight lines between two frames.
-    pub fn positions(&self, time: f64) -> Vec<Vec3> {
+    /// Positions at a time \[s\], on straight lines between two frames without a mark between them.
+    pub fn positions(&self, time: f64, teleports: &Teleports) -> Vec<Vec3> {
         let next = self.times.partition_point(|own| *own <= time);
         if next == 0 || next == self.times.len() {
             return self.frames[next.saturating_sub(1)].clone();
         }
         let [from, to] = [next - 1, next];
+        if let Some(is_after) = teleports.is_after([self.times[from], self.times[to]], time) {
+            return self.frames[if is_after { to } else { from }].clone();
+        }
         let share = ((time - self.times[from]) / (self.times[to] - self.times[from])) as f32;
         self.frames[from].iter().zip(&self.frames[to]).map(|(from, to)| from.lerp(*to, share)).collect()
     }

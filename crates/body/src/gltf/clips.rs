@@ -8,6 +8,7 @@ use strandline_base::counted;
 use super::buffers::Buffers;
 use super::track::{Property, Track, Way};
 use crate::parsing::{A_NAME, Refusal};
+use crate::teleports::Teleports;
 
 /// Most names of clips that a refusal lists.
 const LISTED: usize = 20;
@@ -35,7 +36,34 @@ impl Clips {
         self.0.iter().enumerate().map(name).collect()
     }
 
-    /// The tracks of a clip; adds notes. Upper and lower case are the same where no name is equal.
+    /// A clip by its name. Upper and lower case are the same where no name is equal.
+    fn find(&self, name: &str) -> Result<&Value, Refusal> {
+        let names = self.names();
+        let equal = names.iter().position(|own| own == name);
+        let found = equal.or_else(|| names.iter().position(|own| own.eq_ignore_ascii_case(name)));
+        found.map(|index| &self.0[index]).ok_or_else(|| absent(name, &names))
+    }
+
+    /// Marks of a clip: `teleports` of its extras, a list of times \[s\].
+    ///
+    /// # Errors
+    /// No clip of that name; a value that is no list of numbers.
+    pub fn teleports(&self, name: &str) -> Result<Teleports, Refusal> {
+        let extras = self.find(name)?.get("extras");
+        let Some(marks) = extras.and_then(|extras| extras.get("teleports")) else {
+            return Ok(Teleports::default());
+        };
+        let times =
+            marks.as_array().and_then(|marks| marks.iter().map(Value::as_f64).collect::<Option<Vec<_>>>());
+        times.and_then(|times| Teleports::new(&times).ok()).ok_or_else(|| {
+            (
+                format!("the extra `teleports` of the clip `{name}`, which is no list of times"),
+                "times [s], as [0.5, 1.25]",
+            )
+        })
+    }
+
+    /// The tracks of a clip; adds notes.
     ///
     /// # Errors
     /// No clip of that name, with the names; numbers of another kind or number than a track has.
@@ -46,12 +74,7 @@ impl Clips {
         buffers: &Buffers,
         notes: &mut Vec<String>,
     ) -> Result<Vec<Track>, Refusal> {
-        let names = self.names();
-        let equal = names.iter().position(|own| own == name);
-        let found = equal.or_else(|| names.iter().position(|own| own.eq_ignore_ascii_case(name)));
-        let Some(clip) = found.map(|index| &self.0[index]) else {
-            return Err(absent(name, &names));
-        };
+        let clip = self.find(name)?;
         let samplers = clip.get("samplers").and_then(Value::as_array).map_or(&[][..], |all| &all[..]);
         let mut tracks = Vec::new();
         let (mut pointers, mut held) = (0, 0);

@@ -70,6 +70,7 @@ pub(crate) fn parse_moving(
     let nodes = Nodes::new(&file.document)?;
     let tracks = file.clips.tracks(clip, &file.document, &file.buffers, notes)?;
     let mut rig = Rig::new(&nodes, tracks);
+    rig.set_teleports(file.clips.teleports(clip)?);
     memory::check(&[rig.need(&nodes.shown, file.buffers.limit)]).map_err(Fault::Memory)?;
     let add = &mut |node: &Node<'_>, part: &Primitive<'_>, influences| {
         rig.add(node, part, influences, &file.buffers)
@@ -88,7 +89,9 @@ pub(crate) fn parse_nodes(
     let file = File::open(bytes, folder)?;
     let nodes = Nodes::new(&file.document)?;
     let tracks = file.clips.tracks(clip, &file.document, &file.buffers, notes)?;
-    Ok(Rig::new(&nodes, tracks))
+    let mut rig = Rig::new(&nodes, tracks);
+    rig.set_teleports(file.clips.teleports(clip)?);
+    Ok(rig)
 }
 
 /// Names of the clips of a file, in their order.

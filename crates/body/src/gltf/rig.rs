@@ -13,6 +13,7 @@ use super::nodes::Nodes;
 use super::track::{Property, Track, unit};
 use super::vertices::{Influences, default_weights, joints_of};
 use crate::parsing::Refusal;
+use crate::teleports::Teleports;
 
 /// Share of one node from which on a vertex moves rigidly with it.
 const RIGID: f32 = 0.99;
@@ -31,6 +32,8 @@ pub(crate) struct Rig {
     skins: Vec<Option<Vec<(usize, DMat4)>>>,
     parts: Vec<Part>,
     tracks: Vec<Track>,
+    /// Marks of the clip.
+    teleports: Teleports,
 }
 
 /// Transform of a node in the space of the node above.
@@ -76,7 +79,18 @@ impl Rig {
             skins: Vec::new(),
             parts: Vec::new(),
             tracks,
+            teleports: Teleports::default(),
         }
+    }
+
+    /// Marks the clip.
+    pub fn set_teleports(&mut self, teleports: Teleports) {
+        self.teleports = teleports;
+    }
+
+    /// Marks of the clip.
+    pub fn teleports(&self) -> &Teleports {
+        &self.teleports
     }
 
     /// Time of the last key \[s\].
@@ -152,9 +166,9 @@ impl Rig {
     }
 
     /// Positions of all vertices in the units of the file, in the order of the mesh, at a time of the clip \[s\], held
-    /// before its first key and after its last; without a time at rest.
-    pub fn positions(&self, time: Option<f64>) -> Vec<Vec3> {
-        let pose = self.pose(time);
+    /// before its first key and after its last; without a time at rest. Nothing is interpolated over marks.
+    pub fn positions(&self, time: Option<f64>, teleports: &Teleports) -> Vec<Vec3> {
+        let pose = self.pose(time, teleports);
         let joints: Vec<Vec<Mat4>> = (self.skins.iter())
             .map(|skin| {
                 let placed = |(joint, own): &(usize, DMat4)| (pose.world_from_node[*joint] * *own).as_mat4();
@@ -236,14 +250,14 @@ impl Rig {
 
     /// Transform of a node into the world at a time of the clip \[s\].
     pub fn world_from_node(&self, node: usize, time: f64) -> DMat4 {
-        self.pose(Some(time)).world_from_node[node]
+        self.pose(Some(time), &self.teleports).world_from_node[node]
     }
 
-    fn pose(&self, time: Option<f64>) -> Pose {
+    fn pose(&self, time: Option<f64>, teleports: &Teleports) -> Pose {
         let (mut locals, mut weights) = (self.rest.clone(), self.weights.clone());
         let mut value = Vec::new();
         for track in time.map_or(&[][..], |_| &self.tracks[..]) {
-            track.sample(time.unwrap_or_default(), &mut value);
+            track.sample(time.unwrap_or_default(), teleports, &mut value);
             match track.property {
                 Property::Weights => weights[track.node].clone_from(&value),
                 property => locals[track.node].set(property, &value),

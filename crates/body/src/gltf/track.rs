@@ -3,6 +3,8 @@
 use glam::{DQuat, DVec4};
 use strandline_base::math;
 
+use crate::teleports::Teleports;
+
 /// Property of a node that a track moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Property {
@@ -53,11 +55,17 @@ impl Track {
         self.part(key, usize::from(self.way == Way::Cubic))
     }
 
-    /// Writes the value at a time \[s\]; the first and the last one are held outside. // glTF 2.0 appendix C
-    pub fn sample(&self, time: f64, into: &mut Vec<f64>) {
+    /// Writes the value at a time \[s\]; the first and the last one are held outside, and that before a mark until it.
+    // glTF 2.0 appendix C
+    pub fn sample(&self, time: f64, teleports: &Teleports, into: &mut Vec<f64>) {
         let next = self.times.partition_point(|key| *key <= time);
         let key = next.saturating_sub(1);
         into.clear();
+        let ends = self.times.get(next).filter(|_| next > 0).map(|end| [self.times[key], *end]);
+        if let Some(is_after) = ends.and_then(|ends| teleports.is_after(ends, time)) {
+            into.extend(self.value(if is_after { next } else { key }).iter().copied().map(f64::from));
+            return;
+        }
         if next == 0 || next == self.times.len() || self.way == Way::Step {
             into.extend(self.value(key).iter().copied().map(f64::from));
         } else {
@@ -128,7 +136,7 @@ mod tests {
 
     fn sampled(track: &Track, time: f64) -> Vec<f64> {
         let mut value = Vec::new();
-        track.sample(time, &mut value);
+        track.sample(time, &Teleports::default(), &mut value);
         value
     }
 

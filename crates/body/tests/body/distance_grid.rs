@@ -152,6 +152,14 @@ fn the_border_of_the_box_does_not_show() {
     }
 }
 
+/// Distance \[m\] that a node of a large grid may be less, which is this far \[m\] from the surface: beyond seven cells it
+/// is a bound, as `far_nodes_of_a_large_grid_are_never_farther_than_the_surface` holds it.
+fn may_be_less(grid: &DistanceGrid, exact: f64) -> f64 {
+    let spacing = f64::from(grid.spacing());
+    let is_bound = grid.nodes().len() > 5 << 17 && exact > 7.0 * spacing;
+    if is_bound { 2.5 * spacing } else { 0.0 }
+}
+
 /// Compares some nodes with the search through all triangles, in distance and in sign.
 fn check_against_search(mesh: &Mesh, grid: &DistanceGrid, every: usize) {
     let size = grid.bounds().max - grid.bounds().min;
@@ -159,7 +167,9 @@ fn check_against_search(mesh: &Mesh, grid: &DistanceGrid, every: usize) {
         let (distance, exact) = (f64::from(grid.distance(point)), distance_by_search(mesh, point));
         // Single precision over the box; node places are rounded by that too.
         let tolerance = 2e-6 * f64::from(size.max_element());
-        assert!((distance.abs() - exact).abs() < tolerance, "{point}: {distance}, not {exact}");
+        let less = exact - distance.abs();
+        let is_right = less > -tolerance && less < tolerance + may_be_less(grid, exact);
+        assert!(is_right, "{point}: {distance}, not {exact}");
         if exact > tolerance {
             let winding = winding_number(mesh, point);
             assert_eq!(distance < 0.0, winding > 0.5, "{point}: {distance}, winds {winding} times");
@@ -239,7 +249,8 @@ fn open_heads_get_an_inside() {
             assert_eq!(distance < 0.0, inside, "{name} at {point}: {distance}");
             // Inside, shells within the head are left out, so that the way out is longer.
             let tolerance = 1e-6;
-            assert!(distance.abs() > exact - tolerance, "{name} at {point}: {distance}, not {exact}");
+            let least = exact - tolerance - may_be_less(&grid, exact);
+            assert!(distance.abs() > least, "{name} at {point}: {distance}, not {exact}");
             assert!(
                 inside || distance.abs() < exact + tolerance,
                 "{name} at {point}: {distance}, not {exact}"

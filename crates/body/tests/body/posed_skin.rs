@@ -140,3 +140,35 @@ fn triangles_carry_what_lies_near_them() {
     assert!(shift.distance(turn * place + Vec3::X - place) < 2e-3, "{shift}");
     assert!(posed.motion(PosedSkin::UNKNOWN, point).is_none());
 }
+
+/// The outer ear of the sample bust is thinner than its triangles, which cross there: the angle-weighted normal of a vertex
+/// of a crease leads into the body.
+#[test]
+fn a_crease_that_crosses_itself_has_its_outside_outside() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/bust.glb");
+    let (mesh, motion, _) = Mesh::load_moving(&path, "shrug").unwrap();
+    let solid = solid(&mesh, 0.01);
+    let (mut at_vertex, mut wrong) = (0, Vec::new());
+    for time in [0.0, 0.45] {
+        let skin: Arc<[Vec3]> = motion.positions(time).into();
+        let posed = PosedSkin::new(&solid, [None, Some(&skin)]).unwrap();
+        let deformed = Mesh::new(skin.to_vec(), mesh.triangles.clone()).unwrap().closed();
+        let ears = (0..skin.len()).filter(|index| mesh.positions[*index].x.abs() > 0.078);
+        let ears = ears.filter(|index| mesh.positions[*index].y > -0.1);
+        for (vertex, way) in
+            ears.map(|index| skin[index]).flat_map(|vertex| (0..26).map(move |way| (vertex, way)))
+        {
+            let step = vec3((way % 3) as f32, (way / 3 % 3) as f32, (way / 9) as f32) - 1.0;
+            let point = vertex + step.normalize_or(Vec3::ONE.normalize()) * 0.025;
+            let found = posed.nearest(point, PosedSkin::UNKNOWN);
+            if (found.distance.abs() - 0.025).abs() < 1e-6 {
+                at_vertex += 1;
+                if (found.distance < 0.0) != (winding(&deformed, point) > 0.5) {
+                    wrong.push((time, vertex, way, found.distance));
+                }
+            }
+        }
+    }
+    assert!(at_vertex > 50, "{at_vertex} points");
+    assert!(wrong.is_empty(), "{} of {at_vertex}: {:?}", wrong.len(), &wrong[..wrong.len().min(4)]);
+}

@@ -82,6 +82,13 @@ fn an_archive_with_faces_is_a_mesh_in_motion() {
     let (mesh, motion) = Mesh::load_sequence(&whole, 1.0).unwrap();
     assert_eq!((&mesh.positions, mesh.triangles.len()), (&frames(1)[0], 12));
     check(&mesh, &motion, 0.5, 4.0);
+    let marks = || Array::f64s("teleports", &[2], [3.0, 1.0]);
+    let (_folder, marked) =
+        path(&[vertices(), faces(), Array::f64s("times", &[3], [0.0, 2.0, 4.0]), marks()]);
+    let (_, marked) = Mesh::load_sequence(&marked, 1.0).unwrap();
+    assert_eq!(marked.teleports(), [1.0, 3.0]);
+    let held = [0.0, 0.99, 1.0, 2.99, 3.0].map(|time| marked.positions(time));
+    assert!(held[0] == held[1] && held[1] != held[2] && held[2] == held[3] && held[3] != held[4]);
     let refused = |arrays: &[Array], words: &str| {
         let (_folder, path) = path(arrays);
         let error = Mesh::load_sequence(&path, 1.0).unwrap_err().to_string();
@@ -96,6 +103,7 @@ fn an_archive_with_faces_is_a_mesh_in_motion() {
     );
     refused(&[vertices(), faces(), Array::f64s("times", &[3], [0.0, 2.0, 1.0])], "not rising");
     refused(&[vertices(), faces(), Array::f64s("fps", &[], [0.0])], "a rate of 0");
+    refused(&[vertices(), faces(), Array::f64s("teleports", &[1], [f64::NAN])], "the time of a teleport");
     refused(&[vertices(), Array::u32s("f", &[1, 3], [0, 1, 8])], "between the vertices 0, 1, 8 of 8");
     refused(&[vertices(), Array::f32s("f", &[1, 3], [0.0, 1.0, 2.5])], "faces of shape [1, 3]");
     let (_folder, obj) = scratch("cube.obj", CUBE_OBJ.as_bytes());

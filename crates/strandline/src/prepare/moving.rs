@@ -32,6 +32,8 @@ pub(super) fn skin(
     let every = guides.strand_count().div_ceil(ROOTS).max(1);
     let roots: Vec<Vec3> =
         (0..guides.strand_count()).step_by(every).map(|strand| guides.position(strand, 0)).collect();
+    let marks: Vec<f64> = body.teleports.iter().map(|mark| mark.time).collect();
+    let motion = motion.with_teleports(&marks)?;
     let head = about(mesh, motion.vertex_count(), &roots);
     Ok(SkinMotion::new(motion, playback, &mesh.positions, placing, &head)?)
 }

@@ -48,6 +48,14 @@ settings! {
 }
 
 settings! {
+    /// A mark of the body's motion: there it is elsewhere at once, and hair is carried with it instead of being pulled.
+    pub struct TeleportSection {
+        /// Time of the motion. Between its samples on both sides of a mark nothing is interpolated.
+        time: f64 = 0.0, required true, in [-1e6, 1e6] "s";
+    }
+}
+
+settings! {
     /// The body that hair grows on and hits.
     pub struct BodySection {
         /// The body when no file is named.
@@ -72,6 +80,9 @@ settings! {
         speed: f64 = 1.0, in [-1000.0, 1000.0], slider [0.0, 4.0], more "a faster motion";
         /// Begins the motion again after its end.
         r#loop: bool = false;
+        /// Marks at which the body is elsewhere at once, beside those of its file: `extras.teleports` of a glTF's clip and
+        /// the array `teleports` of an .npz, times of the motion. A `loop` jumps at its beginning where 0 is marked.
+        teleports: Vec<TeleportSection> = Vec::new(), in [0, 100_000];
         /// A closed mesh that hair hits in place of the drawn one.
         collider_file: Option<PathBuf> = None;
         /// Metres per unit of the body's files; "auto" takes 1 for a glTF, which is in metres, and else that of 1, 0.01,

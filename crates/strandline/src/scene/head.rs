@@ -122,6 +122,12 @@ impl HeadMotion {
             Some(body) => body.frame(time).carried_by(&carrying),
             None => carrying.into(),
         };
+        let recorded = self.recorded.as_ref().filter(|_| self.is_recorded);
+        let jumps = recorded.map_or_else(|| self.motion.jumps_until(time), |motion| motion.jumps_until(time));
+        let frame = match jumps {
+            Some(jumps) => frame.after_further_jumps(jumps),
+            None => frame,
+        };
         self.with_pieces(frame, &shoulders, time)
     }
 

@@ -21,7 +21,10 @@ use std::path::{Path, PathBuf};
 use strandline_base::{Group, SettingError, Value, printable, read_plain, settings};
 
 pub(crate) use air::Air;
-pub use body::{BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection};
+pub use body::{
+    BodyPart, BodySection, CapsuleSection, CarrierName, ColliderSection, Model, SphereSection,
+    TeleportSection,
+};
 pub use colors::hex_color;
 pub use devices::Devices;
 pub use film::{CameraKeyframe, CameraSection, FilmSection, View};
@@ -201,6 +204,12 @@ impl Scene {
                 "body.clip",
                 no_body && self.body.clip.is_some(),
                 "a clip of a body without a file",
+                "body.file",
+            ),
+            (
+                "body.teleports",
+                no_body && !self.body.teleports.is_empty(),
+                "marks without a body that moves",
                 "body.file",
             ),
             ("motion.name", no_motion, "\"file\" without one", "motion.file"),

@@ -8,7 +8,7 @@ use strandline::{
     Backend, Event, Hair, Mesh, Picture, Player, Pose, Prepared, Scene, Sources, Style,
     low_level::body::BodyFrame,
     mesh::VertexMotion,
-    scene::{BodyPart, MotionName},
+    scene::{BodyPart, MotionName, TeleportSection},
 };
 
 fn bust() -> PathBuf {
@@ -187,6 +187,32 @@ fn a_motion_in_memory_moves_a_mesh_in_memory() {
     memory.body.clip = Some("nod".into());
     let error = Prepared::from_sources(&memory, &Sources::default().with_mesh("bust", mesh)).err().unwrap();
     assert!(error.to_string().contains("a clip of a body in memory"), "{error}");
+}
+
+/// A body that moves by 0.3 m in a tenth of a second, slower than any jump by itself.
+#[test]
+fn a_marked_jump_carries_hair_and_is_reported() {
+    let mesh = Mesh::load(&bust(), 1.0).unwrap();
+    let beside = mesh.positions.iter().map(|place| *place + Vec3::X * 0.3).collect();
+    let motion = VertexMotion::sampled(vec![0.1, 0.2], vec![mesh.positions.clone(), beside]).unwrap();
+    let sources = Sources::default().with_mesh("bust", mesh).with_motion("bust", motion);
+    let played = |marks: &[f64]| {
+        let mut memory = scene("nod");
+        (memory.body.file, memory.body.clip) = (Some("bust".into()), None);
+        memory.body.teleports = marks.iter().map(|time| TeleportSection { time: *time }).collect();
+        let mut hair = Hair::from_sources(&memory, &sources).unwrap();
+        let mut fastest = 0.0_f32;
+        for frame in 0..12 {
+            let reports = hair.play(frame).unwrap();
+            fastest = reports.iter().map(|report| report.speed_max).fold(fastest, f32::max);
+        }
+        (fastest, hair.take_notes().join("\n"))
+    };
+    let (carried, notes) = played(&[0.2]);
+    assert!(notes.contains("jumps by 0.30 m and 0 degrees, as marked: hair is carried with it"), "{notes}");
+    let (pulled, notes) = played(&[]);
+    assert!(!notes.contains("jumps"), "{notes}");
+    assert!(carried < 0.5 && pulled > 2.0, "carried at {carried} m/s, pulled at {pulled} m/s");
 }
 
 /// Writes a mesh as an .obj file, raised \[m\].

@@ -78,6 +78,34 @@ fn parts() -> (String, Vec<u8>) {
     (String::from_utf8(bytes[20..20 + length].to_vec()).unwrap(), bytes[28 + length..].to_vec())
 }
 
+#[test]
+fn a_clip_is_not_interpolated_over_a_mark_of_its_extras() {
+    let (json, bin) = parts();
+    let marked = |marks: &str| {
+        let at = json.find("\"linear\"").unwrap() + "\"linear\"".len();
+        let document = format!("{},\"extras\":{{\"teleports\":{marks}}}{}", &json[..at], &json[at..]);
+        let (folder, path) = scratch("marked.glb", &glb(&document, &bin));
+        (folder, play(&path, "linear"))
+    };
+    let (_, motion, _) = play(&rig(), "linear").unwrap();
+    assert!(motion.teleports().is_empty());
+    let (_folder, found) = marked("[0.37, 9.0]");
+    let (_, jumps, _) = found.unwrap();
+    assert_eq!(jumps.teleports(), [0.37, 9.0]);
+    let apart = |one: f64, other: f64| {
+        let pairs = jumps.positions(one).into_iter().zip(jumps.positions(other));
+        pairs.map(|(one, other)| one.distance(other)).fold(0.0, f32::max)
+    };
+    // All keys lie at 0, 0.5, 1 and 2 s or beside: nothing moves on either side of the mark, and much at it.
+    assert!(apart(0.3, 0.369) < 1e-6 && apart(0.37, 0.44) < 1e-6, "held on both sides");
+    assert!(apart(0.369, 0.37) > 0.01, "{} m at the mark", apart(0.369, 0.37));
+    assert_eq!(jumps.positions(1.5), motion.positions(1.5), "elsewhere as without it");
+    for marks in ["0.5", "[\"soon\"]", "[null]", "{}"] {
+        let error = marked(marks).1.unwrap_err().to_string();
+        assert!(error.contains("the extra `teleports` of the clip `linear`"), "{error}");
+    }
+}
+
 /// A whole number below another.
 fn below(random: &mut Random, count: usize) -> usize {
     (random.bits() as usize) % count

@@ -6,7 +6,9 @@ use glam::Vec3;
 use strandline::{
     Light, Scene, Style,
     look::GroupLook,
-    scene::{BodyPart, CapsuleSection, ColliderSection, GroomPart, KeyframeSection, SphereSection},
+    scene::{
+        BodyPart, CapsuleSection, ColliderSection, GroomPart, KeyframeSection, SphereSection, TeleportSection,
+    },
     settings::{Group, Kind, Row, Table, rods::GroupSettings},
 };
 
@@ -108,6 +110,7 @@ fn item(list: &str) -> toml::Table {
     let defaults = match list {
         "groom.parts" => toml::Table::try_from(GroomPart::default()),
         "body.parts" => toml::Table::try_from(BodyPart::default()),
+        "body.teleports" => toml::Table::try_from(TeleportSection::default()),
         "motion.keyframes" | "colliders.keyframes" => toml::Table::try_from(KeyframeSection::default()),
         "wind.keyframes" => toml::Table::try_from(strandline::scene::WindKeyframe::default()),
         "wind.sources" => toml::Table::try_from(strandline::scene::WindSource::default()),

@@ -1,0 +1,116 @@
+//! The side of a skin on which a point lies, where the triangles about the nearest place do not tell it: at the crease of a
+//! fold that crosses itself, an ear or an eyelid, the angle-weighted normal of a vertex may lead into the body.
+
+use glam::{DVec2, Vec3};
+
+use crate::PosedSkin;
+use crate::nearest_corner::Feature;
+use crate::posed_skin::DEPTH;
+use crate::skin_solid::NONE;
+
+/// A half line along an axis.
+struct Ray {
+    origin: Vec3,
+    axis: usize,
+    /// 1 toward greater coordinates, -1 toward smaller ones.
+    way: f32,
+}
+
+impl PosedSkin {
+    /// True for a point \[m\] behind a nearest place that lies outside all the same: some of the faces about an edge or a
+    /// corner see it in front of them, and the skin does not wind around it. Points before their nearest place are left
+    /// outside: where a limb passes through another, those within both would be thrown.
+    pub(crate) fn is_before_a_fold(&self, point: Vec3, triangle: u32, feature: Feature, place: Vec3) -> bool {
+        let away = point - place;
+        let sees = |index: u32| {
+            let [a, b, c] = self.corners(&self.end, index);
+            (b - a).cross(c - a).dot(away) * self.solid.facing > 0.0
+        };
+        let is_doubtful = match feature {
+            Feature::Face => false,
+            Feature::Edge(edge) => {
+                let other = self.solid.across[triangle as usize][edge];
+                sees(triangle) || (other != NONE && sees(other))
+            }
+            Feature::Corner(corner) => {
+                let vertex = self.solid.triangles[triangle as usize][corner];
+                self.solid.around(vertex).iter().any(|index| sees(*index))
+            }
+        };
+        is_doubtful && !self.winds_around(point, away)
+    }
+
+    /// True for a point \[m\] around which the skin winds, at the end of the step. It counts the triangles that a half line
+    /// crosses, which leads about as `away` does: the crossings where it leaves less those where it enters.
+    fn winds_around(&self, point: Vec3, away: Vec3) -> bool {
+        let axis = away.abs().max_position();
+        let ray = Ray { origin: point, axis, way: 1f32.copysign(away[axis]) };
+        let nodes = &self.solid.nodes;
+        let (mut waiting, mut count) = ([0_u32; DEPTH], 1);
+        let mut crossings = 0;
+        while count > 0 {
+            count -= 1;
+            let index = waiting[count];
+            let [min, max] = self.boxes[index as usize].map(Vec3::from);
+            if !ray.meets(min, max) {
+                continue;
+            }
+            let node = nodes[index as usize];
+            if node.right == 0 {
+                let triangles = node.range[0]..node.range[1];
+                crossings +=
+                    triangles.map(|triangle| ray.crossing(self.corners(&self.end, triangle))).sum::<i32>();
+                continue;
+            }
+            waiting[count] = node.right;
+            waiting[count + 1] = index + 1;
+            count += 2;
+        }
+        crossings as f32 * self.solid.facing > 0.0
+    }
+}
+
+impl Ray {
+    /// The two axes across it, in the order that leaves triangles facing as they do.
+    fn across(&self) -> [usize; 2] {
+        [(self.axis + 1) % 3, (self.axis + 2) % 3]
+    }
+
+    /// True if it meets a box.
+    fn meets(&self, min: Vec3, max: Vec3) -> bool {
+        let [u, v] = self.across();
+        let holds = |axis: usize| min[axis] <= self.origin[axis] && self.origin[axis] <= max[axis];
+        let end = if self.way > 0.0 { max } else { min };
+        holds(u) && holds(v) && (end[self.axis] - self.origin[self.axis]) * self.way >= 0.0
+    }
+
+    /// 1 where it leaves through the front of a triangle, -1 where it enters, 0 where it passes. A line through an edge
+    /// crosses one of the two triangles there.
+    fn crossing(&self, corners: [Vec3; 3]) -> i32 {
+        let [u, v] = self.across();
+        let flat = corners.map(|corner| {
+            let corner = corner.as_dvec3() - self.origin.as_dvec3();
+            (DVec2::new(corner[u], corner[v]), corner[self.axis])
+        });
+        let mut turns = 0;
+        for side in 0..3 {
+            let (start, end) = (flat[side].0, flat[(side + 1) % 3].0);
+            let rises = end.y > 0.0;
+            if (start.y > 0.0) == rises {
+                continue;
+            }
+            // The same numbers in the same order from either triangle at an edge.
+            let (low, high) = if rises { (start, end) } else { (end, start) };
+            let is_right = low.perp_dot(high) > 0.0;
+            turns += i32::from(is_right) * if rises { 1 } else { -1 };
+        }
+        if turns == 0 {
+            return 0;
+        }
+        // Height of the plane above the origin of the line, by the areas that the origin cuts off.
+        let areas = [0, 1, 2].map(|side| flat[(side + 1) % 3].0.perp_dot(flat[(side + 2) % 3].0));
+        let height = flat.iter().zip(areas).map(|((_, height), area)| height * area).sum::<f64>();
+        let is_ahead = height / areas.iter().sum::<f64>() * f64::from(self.way) > 0.0;
+        if is_ahead { turns * self.way as i32 } else { 0 }
+    }
+}
