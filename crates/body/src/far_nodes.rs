@@ -86,7 +86,7 @@ impl Level {
         self.nearest[(corner.x + self.counts.x * (corner.y + self.counts.y * corner.z)) as usize]
     }
 
-    /// What is nearest to a node that is a corner and was searched for with success.
+    /// The nearest place to a node that is a corner and was searched for with success.
     fn at_corner(&self, node: UVec3) -> Option<Nearest> {
         let is_corner = node % self.side == UVec3::ZERO;
         is_corner.then(|| self.corner(node / self.side)).filter(|nearest| nearest.squared > 0.0)

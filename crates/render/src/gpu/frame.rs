@@ -11,7 +11,7 @@ use super::shadow::fit;
 use super::stages::Stages;
 use super::{buffers, codes, draw};
 use crate::frame::{Drawn, Stage, stages};
-use crate::scatter::lattice::DIRECTIONS;
+use crate::scatter::ways::DIRECTIONS;
 
 /// Kernels, drawings and buffers of a frame.
 pub(super) struct Bounds<'a> {

@@ -10,23 +10,16 @@ use glam::{Vec3, Vec4};
 use strandline_base::par::prelude::*;
 
 use super::inclination::{Inclination, REGION, offsets};
-use super::ways::{directions, tangent};
+use super::ways::{DIRECTIONS, Rays, TANGENTS, directions, tangent};
 use crate::fibre::chiang::{Lobes, MOMENTS, Met, Pigments, Seen, Table, terms_along};
 use crate::light_field;
 
-/// Directions along which light is carried.
-pub const DIRECTIONS: usize = 26;
-/// Directions of hair for which scattering is known, on half of the sphere.
-pub const TANGENTS: usize = 256;
 /// Least by which albedos of two kinds of hair differ, for a third to lie between them.
 const LEAST_APART: f32 = 1e-6;
 /// Variance of the inclination \[rad^2\] by which lobes are widened: directions stand for all around them. Among the
 /// directions, that which a ray has is the only one at just its inclination, and lobes as narrow as a fibre's would let
 /// light keep it for too long.
 const SPREAD: f64 = 0.02;
-
-/// Radiance of every direction.
-pub type Rays = [Vec4; DIRECTIONS];
 
 /// Most kinds of hair that are mixed.
 pub const MOST_ENDS: usize = 2;

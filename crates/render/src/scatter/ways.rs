@@ -1,9 +1,15 @@
 //! Directions along which light is carried, and directions of hair for which scattering is known.
 
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Vec3, Vec4};
 use strandline_base::math;
 
-use super::lattice::{DIRECTIONS, TANGENTS};
+/// Directions along which light is carried.
+pub const DIRECTIONS: usize = 26;
+/// Directions of hair for which scattering is known, on half of the sphere.
+pub const TANGENTS: usize = 256;
+
+/// Radiance of every direction.
+pub type Rays = [Vec4; DIRECTIONS];
 
 /// The directions: steps from cell to cell, with their shares of the sphere.
 pub fn directions() -> [(IVec3, f32); DIRECTIONS] {

@@ -7,8 +7,8 @@ use super::light_scene::{Cell, Scene};
 use super::occlusion::GridBox;
 use crate::fast_math::exp;
 use crate::light_field::{self, Field};
-use crate::scatter::lattice::{DIRECTIONS, Rays};
 use crate::scatter::ways::directions;
+use crate::scatter::ways::{DIRECTIONS, Rays};
 
 /// Mean cosine between random hairs and the plane across a direction.
 const MEAN_COSINE: f32 = std::f32::consts::FRAC_PI_4;

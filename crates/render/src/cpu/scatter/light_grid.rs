@@ -15,7 +15,8 @@ use super::light_scene::{Cell, Scene};
 use super::light_sums::{HAIR_SUMS, SKIN_SUMS, UNITS, sum};
 use super::occlusion::{GridBox, toward};
 use crate::light_field::{self, Field};
-use crate::scatter::lattice::{ALL_DARK, Lattice, Rays};
+use crate::scatter::lattice::{ALL_DARK, Lattice};
+use crate::scatter::ways::Rays;
 
 /// Cosine of the angle between lights that are taken for one where straight light enters the grid.
 const ONE_BEAM: f32 = 0.985;

@@ -11,9 +11,10 @@ use crate::gpu::inputs::Frame;
 use crate::gpu::records::{LightCell, Vertex};
 use crate::gpu::shade::LightSkin;
 use crate::scatter::inclination::Inclination;
-use crate::scatter::lattice::{DIRECTIONS, MOST_ENDS, TANGENTS};
+use crate::scatter::lattice::MOST_ENDS;
 use crate::scatter::made::Made;
 use crate::scatter::source::Source;
+use crate::scatter::ways::{DIRECTIONS, TANGENTS};
 
 /// Sums of a cell: see light_sums.wesl.
 const SUMS: usize = 13 + MAX_SHADOWS;

@@ -1,0 +1,47 @@
+//! Inclination of light behind a fibre, by the directions and by the moments.
+
+use glam::Vec3;
+
+use super::inclination::Inclination;
+use super::lattice::{ALL_DARK, Lattice};
+use super::ways::Rays;
+use crate::fibre::Chiang;
+
+/// Mean sines of inclination of light of a direction behind white hair: by the directions alone, with the moments,
+/// and as a fibre sends it.
+fn means(t: Vec3, to_light: Vec3) -> [f32; 3] {
+    let lobes = Chiang::default().lobes();
+    let lattice = Lattice::new(&lobes, [0.0; 3], None);
+    let mut shown = Rays::default();
+    lattice.add_light(t, &lattice.shows(t), &ALL_DARK, (to_light, Vec3::ONE), &mut shown);
+    let (mut whole, mut own, mut moved) = (0.0, 0.0, 0.0);
+    for (shown, (way, share)) in shown.iter().zip(lattice.ways()) {
+        let (sine, power) = (t.dot(*way), shown.truncate().element_sum() * share);
+        let flat = (1.0 - sine * sine).max(0.0).sqrt();
+        whole += power * flat;
+        own += power * flat * sine;
+        moved += share * flat * shown.w;
+    }
+    let from = t.dot(to_light);
+    let shares = lattice.straight_shares(from);
+    let kept = Inclination::new(&lobes).kept;
+    let sent: f32 = shares.iter().zip(kept).map(|(share, kept)| share.x * -kept * from).sum();
+    let all: f32 = shares.iter().map(|share| share.x).sum();
+    [own / whole, (own + moved) / whole, sent / all]
+}
+
+#[test]
+fn light_that_is_scattered_once_keeps_its_inclination() {
+    let mut apart = [0.0_f32; 2];
+    for index in 0..24 {
+        let (height, turn) = (0.9 - 0.075 * index as f32, index as f32 * 2.4);
+        let flat = (1.0 - height * height).sqrt();
+        let to_light = Vec3::new(flat * turn.cos(), height, flat * turn.sin());
+        for t in [Vec3::Y, Vec3::new(0.06, 1.0, 0.03).normalize(), Vec3::new(0.3, 0.8, -0.5).normalize()] {
+            let [own, moved, sent] = means(t, to_light);
+            apart = [apart[0].max((own - sent).abs()), apart[1].max((moved - sent).abs())];
+        }
+    }
+    // The directions alone are 6 degrees off.
+    assert!(apart[0] > 0.08 && apart[1] < 0.04, "{apart:?}");
+}
