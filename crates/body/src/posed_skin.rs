@@ -210,7 +210,7 @@ impl PosedSkin {
     }
 
     /// Corners of a triangle at the end, that at the place of a vertex first.
-    pub(crate) fn from_corner(&self, triangle: u32, vertex: u32) -> [Vec3; 3] {
+    pub(crate) fn corners_from(&self, triangle: u32, vertex: u32) -> [Vec3; 3] {
         let (at, first) = (self.solid.triangles[triangle as usize], self.solid.welded[vertex as usize]);
         let own = at.iter().position(|corner| self.solid.welded[*corner as usize] == first).unwrap_or(0);
         let corners = self.corners(&self.end, triangle);
@@ -232,7 +232,7 @@ impl PosedSkin {
             Feature::Corner(corner) => {
                 let vertex = self.solid.triangles[triangle as usize][corner];
                 let part = |index: &u32| {
-                    let [here, next, last] = self.from_corner(*index, vertex);
+                    let [here, next, last] = self.corners_from(*index, vertex);
                     let angle = (next - here).angle_between(last - here);
                     if angle.is_finite() { normal(*index) * angle } else { Vec3::ZERO }
                 };

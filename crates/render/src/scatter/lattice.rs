@@ -100,6 +100,7 @@ impl Lattice {
     }
 
     /// Inclination of light behind the fibre.
+    #[cfg(feature = "gpu")]
     pub(crate) fn inclination(&self) -> &Inclination {
         &self.inclination
     }

@@ -105,7 +105,7 @@ pub(super) fn shares(lengths: &[f32x8], shares: &mut [f32x8]) {
     }
     // Nothing lies behind the last point.
     let whole = shares.last().map_or(passed, |whole| whole.or_more(splat(1e-9)));
-    shares.iter_mut().for_each(|share| *share = *share / whole);
+    shares.iter_mut().for_each(|share| *share /= whole);
 }
 
 /// A number of each of a block's strands.
