@@ -23,13 +23,13 @@ fn numbers(table: &'static Table, path: &str, before: &str, found: &mut Vec<(Str
     }
 }
 
-/// A scene with one setting as given; a solid, a further file and the look of a group also have what they need.
+/// A scene with one setting as given; a solid, a further file, a mark of a body and the look of a group also have what they need.
 fn scene(key: &str, before: &str, value: &str) -> String {
     let name = key.rsplit('.').next().unwrap();
     let list = key.split('[').next().unwrap();
     let whole = match list {
         "groom.parts" => "[groom]\nfile = \"a.hair\"\n",
-        "body.parts" => "[body]\nfile = \"a.obj\"\n",
+        "body.parts" | "body.teleports" => "[body]\nfile = \"a.obj\"\n",
         _ => "",
     };
     let rest = match (list, name) {
