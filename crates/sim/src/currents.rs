@@ -10,7 +10,7 @@ pub(crate) const MOST_EDDIES: usize = 16;
 pub(crate) const MOST_SOURCES: usize = 8;
 
 /// A wave of turbulence: air that goes to and fro across the direction in which the wave changes, so that it is nowhere
-/// compressed. Some of different lengths make a field [Kraichnan1970].
+/// compressed. Some of different lengths make a field \[Kraichnan1970\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Eddy {
     /// Direction in which it changes, 2 pi over its length \[rad/m\], world space.
