@@ -19,7 +19,7 @@ pub fn style(style: Style, settings: &Settings, strands: usize) -> Model {
 }
 
 /// The same on a body with a coefficient of friction.
-fn on_a_body(style: Style, settings: &Settings, strands: usize, friction: f32) -> Model {
+pub fn on_a_body(style: Style, settings: &Settings, strands: usize, friction: f32) -> Model {
     let mut scene = Scene::default();
     scene.set_style(style);
     scene.style.strand_count = strands;

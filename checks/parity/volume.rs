@@ -102,7 +102,7 @@ fn mark_tells_the_same_cells_and_walls() {
         let mut probe = state.probe(&gpu_runner);
         probe.run(&drive(6), &[Stage::Splat]).unwrap();
         probe.run(&drive(6), &[Stage::Mark]).unwrap();
-        mark(&mut volume, &obstacles(&model, &state), None);
+        mark(&mut volume, &obstacles(&model, &state), None, None);
         let kinds = probe.kinds().unwrap();
         for (cell, kind) in kinds.iter().enumerate() {
             assert_eq!(*kind, volume.kind(cell), "{}, cell {cell}", head.name);
@@ -118,7 +118,7 @@ fn mark_tells_the_same_cells_and_walls() {
 fn marked(head: &Head) -> (Model, Moving, Volume) {
     let (model, state, mut volume) = constrained(head);
     splat_cpu(&model, &state, &mut volume);
-    mark(&mut volume, &obstacles(&model, &state), None);
+    mark(&mut volume, &obstacles(&model, &state), None, None);
     (model, state, volume)
 }
 

@@ -105,7 +105,8 @@ mirror! {
         pub has_roots: u32,
         /// One more than the row of the header of a skin that moves by itself, 0 without one.
         pub skin: u32,
-        pub unused_b: u32,
+        /// 1 where pressure acts against compression alone.
+        pub one_sided: u32,
         pub unused_c: u32,
         pub rods: RodStep,
         then solids: [u32; 4],
@@ -195,6 +196,7 @@ impl Step {
                 Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => CHEBYSHEV,
             },
             slot: slot as u32,
+            one_sided: u32::from(settings.volume.is_one_sided()),
             pressure_share: VolumeSettings::pressure_share_in(settings.time_step),
             holds: u32::from(!grab.grips.is_empty()),
             piece_count: piece_count(&model.colliders) as u32,
