@@ -9,7 +9,8 @@ use crate::volume::wisps;
 
 /// Positions of all points, to the bit.
 fn bits(state: &State) -> Vec<[u32; 3]> {
-    let lanes = |at: &Vec3Lanes| (0..LANES).map(|lane| at.get(lane).to_array().map(f32::to_bits)).collect::<Vec<_>>();
+    let lanes =
+        |at: &Vec3Lanes| (0..LANES).map(|lane| at.get(lane).to_array().map(f32::to_bits)).collect::<Vec<_>>();
     state.positions.iter().flat_map(lanes).collect()
 }
 

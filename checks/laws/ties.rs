@@ -23,9 +23,8 @@ fn ponytail(strands: usize, settings: &Settings, find_ties: bool) -> Model {
 /// The mean of all tips in head space \[m\].
 fn tip(model: &Model, state: &State) -> Vec3 {
     let (points, back) = (model.points_per_strand(), state.body.world_from_head().inverse());
-    let tips = (0..model.strand_count()).map(|strand| {
-        back.point(state.positions[(strand / LANES + 1) * points - 1].get(strand % LANES))
-    });
+    let tips = (0..model.strand_count())
+        .map(|strand| back.point(state.positions[(strand / LANES + 1) * points - 1].get(strand % LANES)));
     tips.sum::<Vec3>() / model.strand_count() as f32
 }
 

@@ -123,7 +123,8 @@ impl Meetings {
     /// Strands that pass through a cell or one beside it, each by its point nearest the middle of all; none where there are
     /// fewer.
     fn around(&self, cell: IVec3, fewest: usize) -> Vec<&Meeting> {
-        let beside = (0..27).map(|number| cell + IVec3::new(number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1));
+        let beside =
+            (0..27).map(|number| cell + IVec3::new(number % 3 - 1, number / 3 % 3 - 1, number / 9 - 1));
         let all: Vec<&Meeting> =
             beside.filter_map(|cell| self.cells.get(&cell.to_array())).flatten().collect();
         if all.len() < fewest {

@@ -5,8 +5,8 @@ use strandline_body::{BodyFrame, Collider, Pose};
 use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 use wide::f32x8;
 
-use crate::cpu::packing::rest_density;
 use crate::at_rest::{by_lane, check_rest, clearance, directions, velocities};
+use crate::cpu::packing::rest_density;
 use crate::strands::rods::hairs::Hairs;
 use crate::strands::rods::model::{Rods, RodsAtRest};
 use crate::strands::rods::other_lengths::Lengthened;

@@ -140,7 +140,8 @@ fn hidden_nodes_and_what_is_below_them_are_not_drawn() {
         assert_eq!(hidden(visible).positions.len(), 16, "{visible}");
     }
     // A circle of hidden nodes ends.
-    let circle = r#"{"nodes": [{"children": [0], "extensions": {"KHR_node_visibility": {"visible": false}}}]}"#;
+    let circle =
+        r#"{"nodes": [{"children": [0], "extensions": {"KHR_node_visibility": {"visible": false}}}]}"#;
     assert!(load_bytes("circle.gltf", circle.as_bytes()).is_err());
 }
 

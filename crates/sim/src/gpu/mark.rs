@@ -67,8 +67,7 @@ impl StageKernels for Stage {
         let (grid, start_index, kinds) = (&volume.grid, &volume.start_index, &volume.kinds);
         let (unknowns, faces) = (&volume.unknowns, &volume.faces);
         let (sorted_points, densities) = (&volume.sorted_points, &volume.densities);
-        let mark =
-            Mark { step, grid, start_index, kinds, unknowns, faces, sorted_points, densities };
+        let mark = Mark { step, grid, start_index, kinds, unknowns, faces, sorted_points, densities };
         let mut dispatches = vec![self.mark.bind(gpu, &mark)?.over(volume.cell_count)];
         if volume.is_one_sided {
             let forget = self.forget_masses.bind(gpu, &ForgetMasses { grid, faces })?;

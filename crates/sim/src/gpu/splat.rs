@@ -146,7 +146,8 @@ impl StageKernels for Stage {
             gpu,
             &SortPoints { step, grid, predicted, velocities, mass, cell_ranks, start_index, sorted_points },
         )?;
-        let sum_faces = self.sum_faces.bind(gpu, &SumFaces { step, grid, start_index, sorted_points, faces })?;
+        let sum_faces =
+            self.sum_faces.bind(gpu, &SumFaces { step, grid, start_index, sorted_points, faces })?;
         let mut dispatches =
             vec![bounds.over(buffers.strand_count), (follow, [1; 3]), find_cells.over(points)];
         dispatches.extend(scan.bind(gpu, start_index, &volume.totals)?);

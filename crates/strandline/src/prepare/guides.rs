@@ -78,7 +78,9 @@ fn tie(scene: &Scene, guides: &mut Guides) -> Vec<String> {
             );
         }
         match count {
-            0 => format!("ties[{index}] holds no strand: none passes within {} m of its position", tie.radius),
+            0 => {
+                format!("ties[{index}] holds no strand: none passes within {} m of its position", tie.radius)
+            }
             _ => format!("ties[{index}] holds {}", counted(count, "strand", "strands")),
         }
     };
