@@ -38,7 +38,7 @@ fn turns(on: &On, model: &Model) -> Vec<(f32, f32)> {
         range.map(|index| Drive::of(pose(f64::from(index) * step))).collect::<Vec<_>>()
     };
     rig.steps(&drives(0.0, 1.5));
-    let rest = tip(model, &model.rest_state(&rig.state().body.clone()));
+    let rest = tip(model, &model.rest_state(rig.state().body.clone()));
     let mut ways = Vec::new();
     for drive in drives(1.5, 4.5) {
         rig.step(&drive);

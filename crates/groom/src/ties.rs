@@ -194,7 +194,7 @@ mod tests {
         let mut tail = grown(Style::Ponytail);
         let knots = tail.knots();
         assert_eq!(knots.len(), 1, "{knots:?}");
-        // Where the style has its tie.
+        // At the tie of the style.
         assert!(knots[0].position.distance(Vec3::new(0.0, 0.038, -0.117)) < 0.025, "{knots:?}");
         let held = tail.tie(&knots)[0];
         assert!(held > 390, "{held} of 400 strands");

@@ -6,7 +6,7 @@ use strandline_groom::{Guides, LANES, Lanes, RestShape, Vec3Lanes};
 use wide::f32x8;
 
 use crate::at_rest::{by_lane, check_rest, clearance, directions, velocities};
-use crate::cpu::packing::rest_density;
+use crate::cells::packing::rest_density;
 use crate::strands::rods::hairs::Hairs;
 use crate::strands::rods::model::{Rods, RodsAtRest};
 use crate::strands::rods::other_lengths::Lengthened;
@@ -173,7 +173,13 @@ impl Model {
     fn pack(&mut self) {
         let volume = &self.settings.volume;
         self.rest_density = if volume.enabled && volume.is_one_sided() {
-            rest_density(volume, self.strand_count, self.points_per_strand, &self.positions, &self.rest.mass)
+            rest_density(
+                volume.cells,
+                self.strand_count,
+                self.points_per_strand,
+                &self.positions,
+                &self.rest.mass,
+            )
         } else {
             Vec::new()
         };

@@ -186,7 +186,7 @@ settings! {
     pub struct VolumeSettings: Copy {
         /// Keeps the density of hair: pressed hair spreads again. Single locks still pass through each other.
         enabled: bool = true, invalidates stages;
-        /// What the volume keeps.
+        /// Flow that the volume holds back.
         method: VolumeMethod = VolumeMethod::default(), invalidates stages;
         /// Cells along x, y and z.
         cells: [u32; 3] = [32; 3], in [4, 512], slider [8, 128],
@@ -228,7 +228,7 @@ impl VolumeSettings {
 }
 
 choices! {
-    /// What a volume keeps.
+    /// Flow that a volume holds back.
     pub enum VolumeMethod as "simulation.volume.method" {
         /// Density, by pressure where hair is denser than it rests or is about to be: hair that parts, shears or swings
         /// without being compressed moves as without a volume \[Narain2009\].

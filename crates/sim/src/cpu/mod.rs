@@ -7,7 +7,7 @@ pub mod faces;
 pub mod gather;
 pub mod integrate;
 pub mod mark;
-pub(crate) mod packing;
+mod packing;
 pub mod pcg;
 pub mod poisson;
 pub mod pose_roots;

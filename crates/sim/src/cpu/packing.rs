@@ -1,40 +1,14 @@
-//! Density of hair in the cells of a one-sided volume, and the cells that are packed.
+//! Cells of a one-sided volume that are packed.
 
 use strandline_base::par::prelude::*;
-use strandline_groom::{LANES, Lanes, Vec3Lanes};
+use strandline_groom::{LANES, Lanes};
 
-use super::splat::splat;
 use super::volume::Volume;
-use crate::VolumeSettings;
 use crate::cells::Kind;
-
-/// Times its density at rest that hair reaches before pressure acts on it \[judged\]. Sums over the points of a cell differ by
-/// so much between two places of the same hair in the cells: below it, hair that swings as it hangs would be pressed apart.
-pub const PACKED: f32 = 1.25;
-
-/// Density \[kg/m^3\] that each point has around it at rest, shape `[block][point]` of lanes like `positions` \[m\] and
-/// `mass` \[kg\]: that of the cell it lies in. Points that take no part have the largest number.
-pub fn rest_density(
-    settings: &VolumeSettings,
-    strand_count: usize,
-    points_per_strand: usize,
-    positions: &[Vec3Lanes],
-    mass: &[Lanes],
-) -> Vec<Lanes> {
-    let mut volume = Volume::new(settings, strand_count, points_per_strand);
-    splat(&mut volume, positions, &vec![Vec3Lanes::default(); positions.len()], mass);
-    let mut density = vec![Lanes([f32::MAX; LANES]); positions.len()];
-    for (index, &cell) in volume.sort.cells().iter().enumerate() {
-        let here = volume.density(cell as usize);
-        for &point in volume.sort.points_of(index) {
-            density[point as usize / LANES].0[point as usize % LANES] = here;
-        }
-    }
-    density
-}
+use crate::cells::packing::PACKED;
 
 impl Volume {
-    /// Density \[kg/m^3\] around the middle of a cell, from the masses that [`splat`] leaves on its six faces.
+    /// Density \[kg/m^3\] around the middle of a cell, from the masses that `splat` leaves on its six faces.
     fn density(&self, cell: usize) -> f32 {
         let (strides, size) = (self.grid.strides(), self.grid.spacing());
         let on = |axis: usize, cell: usize| self.faces.change(axis, cell);

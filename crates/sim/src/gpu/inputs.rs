@@ -190,11 +190,7 @@ impl Step {
             flip_share: settings.volume.flip_share_in(settings.time_step),
             tolerance: settings.volume.tolerance,
             max_iterations: settings.volume.max_iterations,
-            preconditioner: match settings.volume.preconditioner {
-                Preconditioner::None => PLAIN,
-                Preconditioner::Jacobi => JACOBI,
-                Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => CHEBYSHEV,
-            },
+            preconditioner: code(settings.volume.preconditioner),
             slot: slot as u32,
             one_sided: u32::from(settings.volume.is_one_sided()),
             pressure_share: VolumeSettings::pressure_share_in(settings.time_step),
@@ -205,6 +201,14 @@ impl Step {
             rods: RodStep::new(model, start, &end, part_time, drive),
             ..Self::default()
         }
+    }
+}
+
+fn code(preconditioner: Preconditioner) -> u32 {
+    match preconditioner {
+        Preconditioner::None => PLAIN,
+        Preconditioner::Jacobi => JACOBI,
+        Preconditioner::Auto | Preconditioner::Chebyshev | Preconditioner::Mic0 => CHEBYSHEV,
     }
 }
 
