@@ -99,7 +99,7 @@ mod tests {
         let found = density[inner / LANES * 12 + 6].0[inner % LANES];
         assert!((found / 8.0 - 1.0).abs() < 0.25, "{found} kg/m^3");
         assert_eq!(density[3].0[2], f32::MAX);
-        // At a corner of the block an eighth of its cell and more is empty.
-        assert!(density[0].0[0] < 0.8 * found, "{} kg/m^3", density[0].0[0]);
+        // Half of the faces of a cell at a corner of the block lie on its sides.
+        assert!(density[0].0[0] < 0.95 * found, "{} of {found} kg/m^3", density[0].0[0]);
     }
 }
